@@ -1,0 +1,131 @@
+//! The one way the engine reads a surface: in blocks, along a contact path.
+//!
+//! A source is owned by the audio half and called only from it. It must not allocate, lock, wait or
+//! panic, and **every sample must be a function of the path at that sample alone** (or of state that
+//! is anchored to the absolute sample index), so that any split of time into blocks gives the same
+//! bits. The path's positions are finite; they may be any number of periods away from the origin.
+
+/// Longest block a source is ever asked for, samples.
+pub const MAX_BLOCK: usize = 64;
+
+/// Where a contact is during up to [`MAX_BLOCK`] consecutive samples. All slices are equally long.
+#[derive(Debug, Clone, Copy)]
+pub struct PathBlock<'a> {
+    /// Position on the surface along its u and v axes, metres; (0, 0) is the top left corner of a
+    /// map and v grows downwards. Not wrapped.
+    pub position_m: &'a [[f64; 2]],
+    /// Tangential velocity along u and v, m/s.
+    pub velocity_m_s: &'a [[f64; 2]],
+    /// Distance travelled between two samples, metres: wavelengths below twice this alias.
+    pub footprint_m: &'a [f64],
+    /// Absolute index of the first sample.
+    pub first_sample: u64,
+    /// Which contact this is (its slot in the engine), so that a source can keep state per contact.
+    pub contact: usize,
+}
+
+impl PathBlock<'_> {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.position_m.len()
+    }
+
+    /// Whether there is no sample.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.position_m.is_empty()
+    }
+}
+
+/// What a surface is at each sample of a [`PathBlock`]; only the first `path.len()` entries count.
+#[derive(Debug, Clone)]
+pub struct SurfaceBlock {
+    /// Height, metres, positive out of the surface.
+    pub height_m: [f64; MAX_BLOCK],
+    /// Slope of the height along u and v, m/m.
+    pub gradient: [[f64; 2]; MAX_BLOCK],
+    /// Perceptual roughness R of the roughness map, 0–1 (Hasti §III-C).
+    pub roughness: [f64; MAX_BLOCK],
+    /// Coulomb friction coefficient.
+    pub friction: [f64; MAX_BLOCK],
+    /// Extra compliance of the surface in series with the contact spring, m/N; 0 = rigid.
+    pub compliance_m_n: [f64; MAX_BLOCK],
+}
+
+impl Default for SurfaceBlock {
+    fn default() -> Self {
+        Self {
+            height_m: [0.0; MAX_BLOCK],
+            gradient: [[0.0; 2]; MAX_BLOCK],
+            roughness: [0.0; MAX_BLOCK],
+            friction: [0.0; MAX_BLOCK],
+            compliance_m_n: [0.0; MAX_BLOCK],
+        }
+    }
+}
+
+/// The wavelengths a source represents, metres. The engine adds the paper's micro-noise only below
+/// `shortest_m`, so that no scale is rough twice.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WavelengthBand {
+    /// Shortest wavelength in the source; `f64::INFINITY` for a source without any relief.
+    pub shortest_m: f64,
+    /// Longest wavelength in the source.
+    pub longest_m: f64,
+}
+
+impl WavelengthBand {
+    /// A source without relief: the micro-noise fills every wavelength.
+    pub const EMPTY: Self = Self { shortest_m: f64::INFINITY, longest_m: 0.0 };
+
+    /// The band that holds both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            shortest_m: self.shortest_m.min(other.shortest_m),
+            longest_m: self.longest_m.max(other.longest_m),
+        }
+    }
+}
+
+/// How a contact presses on the surface, told to the source once every [`MAX_BLOCK`] samples on the
+/// absolute sample grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// The contact's slot, as in [`PathBlock::contact`].
+    pub contact: usize,
+    /// Absolute index of the sample this describes.
+    pub sample: u64,
+    /// Position on the surface, metres.
+    pub position_m: [f64; 2],
+    /// Tangential velocity, m/s.
+    pub velocity_m_s: [f64; 2],
+    /// Force pressing the contact onto the surface, N.
+    pub normal_force_n: f64,
+}
+
+/// What the surface does back.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Reaction {
+    /// Force on the tool along u, v and out of the surface, N, beyond contact and Coulomb friction.
+    pub force_n: [f64; 3],
+    /// Rate of small impacts among the surface's grains, 1/s; 0 for surfaces that do not give way.
+    pub grain_rate_per_s: f64,
+    /// Mean momentum of one such impact, N·s.
+    pub grain_impulse_n_s: f64,
+}
+
+/// A surface that can be sampled in real time.
+pub trait HeightField: Send {
+    /// The wavelengths this source represents.
+    fn band(&self) -> WavelengthBand;
+
+    /// Fills the first `path.len()` entries of `out`.
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);
+
+    /// Tells the source how it is touched; a source that gives way answers with a force.
+    fn react(&mut self, _touch: &Touch) -> Reaction {
+        Reaction::default()
+    }
+}

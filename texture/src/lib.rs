@@ -1,0 +1,7 @@
+//! What a surface is.
+//!
+//! *Real time*: [`height_field`] is the trait through which the engine samples any surface along a
+//! contact path; the other real-time files implement it.
+//! *Offline* (feature `offline`): tools that make surfaces from pictures and from other surfaces.
+
+pub mod height_field;
