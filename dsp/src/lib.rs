@@ -18,5 +18,6 @@ pub mod butterworth;
 mod error;
 pub mod mode;
 pub mod rng;
+pub mod trajectory;
 
 pub use error::DesignError;
