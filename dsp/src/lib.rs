@@ -16,7 +16,10 @@ extern crate std;
 
 pub mod butterworth;
 mod error;
+pub mod fractal_noise;
+pub mod gradient_noise_2d;
 pub mod mode;
 pub mod rng;
+pub mod trajectory;
 
 pub use error::DesignError;
