@@ -9,6 +9,7 @@
 //! | file | from → to |
 //! |---|---|
 //! | [`butterworth`] | positions → smooth positions |
+//! | [`micro_contact`] | profile heights and normal force → pad, contact force, collisions |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
@@ -16,6 +17,7 @@ extern crate std;
 
 pub mod butterworth;
 mod error;
+pub mod micro_contact;
 pub mod mode;
 pub mod rng;
 
