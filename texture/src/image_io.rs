@@ -5,7 +5,9 @@
 //! have any shape, 16 bits stay 16 bits. A header is believed only within [`MAX_SIDE`] and
 //! [`MAX_TEXELS`], before any pixel is decoded.
 
+use crate::deband::deband;
 use crate::raster::Raster;
+use crate::wrap::Wrap;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits};
 use std::fs::{self, File};
 use std::io::{BufReader, BufWriter, Write};
@@ -43,6 +45,14 @@ pub struct ChannelImage {
     /// Distance between two neighbouring levels of the file, in the raster's units; 0 for floating
     /// point. Measured, so that 8-bit data in a 16-bit file is known for what it is.
     pub step: f64,
+}
+
+impl ChannelImage {
+    /// The raster without the terraces of coarse quantisation ([`crate::deband`]).
+    #[must_use]
+    pub fn debanded(&self, wrap: Wrap) -> Raster {
+        deband(&self.raster, self.step, wrap)
+    }
 }
 
 /// Why a map could not be read or written: which file, what is wrong, what would be right.
