@@ -9,13 +9,19 @@
 //! | file | from → to |
 //! |---|---|
 //! | [`butterworth`] | positions → smooth positions |
+//! | [`hertz`] | impacts → force pulses → impulses a sample |
+//! | [`mode`], [`modal_bank`] | impulses → sound |
+//! | [`actuator`] | pad motion → haptic samples |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+pub mod actuator;
 pub mod butterworth;
 mod error;
+pub mod hertz;
+pub mod modal_bank;
 pub mod mode;
 pub mod rng;
 
