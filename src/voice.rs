@@ -17,6 +17,10 @@ use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBloc
 
 /// Samples of impulse a contact can hold ahead.
 const BUS_SAMPLES: usize = 2048;
+/// What rounding leaves of a pad that does not move, m or m/s².
+const ROUNDING: f64 = 1e-13;
+/// What rounding leaves of a force that does not change, N.
+const ROUNDING_N: f64 = 1e-11;
 /// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
 const STILL_M: f64 = 1e-12;
 /// Pad acceleration that counts as still, m/s²: −120 dB of what a fingertip just feels.
@@ -65,6 +69,7 @@ pub(crate) struct Voice {
     pub(crate) refreshed: u64,
     slot: usize,
     asleep: bool,
+    fade_in_left: u32,
     trajectory: Trajectory,
     last_point: PathPoint,
     last_row: PadSample,
@@ -87,6 +92,18 @@ pub(crate) struct VoiceBlock {
     pub(crate) impulse_n_s: [f64; MAX_BLOCK],
     pub(crate) collisions: u64,
     pub(crate) resets: u64,
+}
+
+impl VoiceBlock {
+    fn scale(&mut self, i: usize, gain: f64) {
+        self.haptic[i] *= gain;
+        self.impulse_n_s[i] *= gain;
+    }
+}
+
+/// 0 at `step` 0, 1 at `step` = `total`.
+fn raised_cosine(step: u32, total: u32) -> f64 {
+    0.5 - 0.5 * (std::f64::consts::PI * f64::from(step) / f64::from(total)).cos()
 }
 
 /// Work space of one stretch; reused by every voice.
@@ -117,6 +134,7 @@ impl Voice {
             refreshed: 0,
             slot,
             asleep: false,
+            fade_in_left: 0,
             trajectory: Trajectory::begin(&shared.idle_path, &IDLE),
             last_point: PathPoint::default(),
             last_row: PadSample::default(),
@@ -150,6 +168,7 @@ impl Voice {
         self.phase = Phase::Sounding;
         (self.begun, self.refreshed) = (position, position);
         self.asleep = false;
+        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         self.last_point = PathPoint {
             position_m: event.position_m,
@@ -229,7 +248,7 @@ impl Voice {
             self.excite(seat, shared, position, n, scratch);
             self.feel(output, n, scratch);
         }
-        self.apply_fade(shared, n, scratch);
+        self.apply_fades(shared, n, scratch);
         self.show(seat, shared, position, n, scratch, tap);
         self.last_point = scratch.points[n - 1];
         if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
@@ -303,7 +322,8 @@ impl Voice {
                 }
             }
             let alternating_n = self.force_high_pass.tick(&shared.force_high_pass, row.contact_force_n).high;
-            scratch.force_impulse_n_s[i] = alternating_n / rate;
+            let moves = alternating_n.abs() >= ROUNDING_N;
+            scratch.force_impulse_n_s[i] = if moves { alternating_n / rate } else { 0.0 };
             if self.reaction.grain_rate_per_s > 0.0 {
                 self.shift_grain(slot, sample, rate);
             }
@@ -352,7 +372,8 @@ impl Voice {
     /// What the actuator is to reproduce: the pad's displacement or acceleration about the mean surface.
     fn feel(&mut self, output: &ContactOutput, n: usize, scratch: &mut Scratch) {
         for (out, row) in scratch.out.haptic[..n].iter_mut().zip(&scratch.pad[..n]) {
-            *out = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
+            let felt = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
+            *out = if felt.abs() < ROUNDING { 0.0 } else { felt };
         }
         self.last_felt = scratch.out.haptic[n - 1];
     }
@@ -366,17 +387,24 @@ impl Voice {
         (scratch.out.collisions, scratch.out.resets) = (0, 0);
     }
 
-    fn apply_fade(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        let Phase::Fading { mut left } = self.phase else { return };
+    /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
+    /// its own beginning), out for one that ended, lapsed or was stolen.
+    fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
+        let total = shared.fade_samples;
         for i in 0..n {
-            left = left.saturating_sub(1);
-            // Raised cosine: no step and no corner.
-            let x = f64::from(left) / f64::from(shared.fade_samples);
-            let gain = 0.5 - 0.5 * (std::f64::consts::PI * x).cos();
-            scratch.out.haptic[i] *= gain;
-            scratch.out.impulse_n_s[i] *= gain;
+            if self.fade_in_left > 0 {
+                self.fade_in_left -= 1;
+                scratch.out.scale(i, raised_cosine(total - self.fade_in_left, total));
+            }
+            if let Phase::Fading { left } = self.phase {
+                let left = left.saturating_sub(1);
+                scratch.out.scale(i, raised_cosine(left, total));
+                self.phase = Phase::Fading { left };
+            }
         }
-        self.phase = if left == 0 { Phase::Free } else { Phase::Fading { left } };
+        if self.phase == (Phase::Fading { left: 0 }) {
+            self.phase = Phase::Free;
+        }
     }
 
     fn fall_asleep_when_still(
