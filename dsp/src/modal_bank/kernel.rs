@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
-use super::vector::{Plain, Vector};
+use super::vector::{Plain, Row, Vector};
 use super::{LANES, sleep};
 
 /// An instruction set the bank has code for.
@@ -185,7 +185,7 @@ unsafe fn walk_avx2(first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
 #[target_feature(enable = "avx512f,avx2,fma")]
 unsafe fn walk_avx512(first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
     // SAFETY: this function is only called where AVX-512F is present.
-    unsafe { walk::<super::vector::x86::Avx512, 1, 5>(first_sample, job, out) }
+    unsafe { walk::<super::vector::x86::Avx512, 1, 6>(first_sample, job, out) }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -202,7 +202,7 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
     job: &mut Job<'_>,
     out: &mut [f32],
 ) {
-    let mut sums = [[0.0_f32; LANES]; ROWS];
+    let mut sums = [Row([0.0; LANES]); ROWS];
     let (mut at, samples) = (0, out.len());
     while at < samples {
         let now = first_sample.wrapping_add(at as u64);
@@ -213,9 +213,10 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
             sets::<V, P, MAX>(job, at, rows);
             V::add_sums(rows, &mut out[at..at + len]);
         }
-        if (now + len as u64) % GRID_SAMPLES == 0 {
+        if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
             for (group, state) in job.groups.iter().zip(job.states.iter_mut()) {
-                trim(group, state);
+                // SAFETY: the caller has the instructions of V.
+                unsafe { trim::<V, P>(group, state) };
             }
         }
         at += len;
@@ -224,10 +225,17 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
 
 /// Gives every lane the decay that `f32` could not store.
 #[inline(always)]
-fn trim(group: &ModeGroup, state: &mut GroupState) {
-    for lane in 0..LANES {
-        state.y[lane] += state.y[lane] * group.trim[lane];
-        state.d[lane] += state.d[lane] * group.trim[lane];
+unsafe fn trim<V: Vector, const P: usize>(group: &ModeGroup, state: &mut GroupState) {
+    for p in 0..P {
+        // SAFETY: lane p · LEN and the LEN − 1 after it are inside arrays of LANES = P · LEN values.
+        unsafe {
+            let by = V::load(group.trim.as_ptr().add(p * V::LEN));
+            for lanes in [&mut state.y, &mut state.d] {
+                let at = lanes.as_mut_ptr().add(p * V::LEN);
+                let x = V::load(at);
+                x.mul_add(by, x).store(at);
+            }
+        }
     }
 }
 
@@ -237,7 +245,7 @@ fn trim(group: &ModeGroup, state: &mut GroupState) {
 unsafe fn sets<V: Vector, const P: usize, const MAX: usize>(
     job: &mut Job<'_>,
     at: usize,
-    rows: &mut [[f32; LANES]],
+    rows: &mut [Row],
 ) {
     let count = job.groups.len();
     let mut from = 0;
@@ -269,7 +277,7 @@ unsafe fn inputs<V: Vector, const P: usize, const S: usize>(
     job: &mut Job<'_>,
     from: usize,
     at: usize,
-    rows: &mut [[f32; LANES]],
+    rows: &mut [Row],
 ) {
     // SAFETY: passed on from the caller.
     unsafe {
@@ -288,7 +296,7 @@ unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usize>(
     job: &mut Job<'_>,
     from: usize,
     at: usize,
-    rows: &mut [[f32; LANES]],
+    rows: &mut [Row],
 ) {
     let groups = &job.groups[from..from + S];
     let feed = job.feed.inputs;
@@ -306,7 +314,7 @@ unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usize>(
         }
         let shared = feed[0].impulses.as_ptr().add(at);
         for (n, row) in rows.iter_mut().enumerate() {
-            let row = row.as_mut_ptr();
+            let row = row.0.as_mut_ptr();
             let mut sum = [V::splat(0.0); P];
             if from > 0 {
                 for (p, sum) in sum.iter_mut().enumerate() {

@@ -7,6 +7,11 @@
 
 use super::LANES;
 
+/// The lane sums of one sample. Aligned, because a vector across two cache lines costs two.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Row(pub [f32; LANES]);
+
 /// A few `f32` side by side.
 pub(super) trait Vector: Copy {
     /// `f32` in one vector; divides [`LANES`].
@@ -25,7 +30,7 @@ pub(super) trait Vector: Copy {
     unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self;
     /// Adds the sum over the lanes of each row to `out`, in the order of [`sum_row`].
     #[inline(always)]
-    unsafe fn add_sums(rows: &[[f32; LANES]], out: &mut [f32]) {
+    unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
         for (row, y) in rows.iter().zip(out) {
             *y += sum_row(row);
         }
@@ -34,8 +39,8 @@ pub(super) trait Vector: Copy {
 
 /// The one order of summation: halves onto each other, then neighbours, then neighbours, then halves.
 #[inline(always)]
-pub(super) fn sum_row(row: &[f32; LANES]) -> f32 {
-    let half = |i: usize| row[i] + row[i + 8];
+pub(super) fn sum_row(row: &Row) -> f32 {
+    let half = |i: usize| row.0[i] + row.0[i + 8];
     let low = (half(0) + half(1)) + (half(2) + half(3));
     let high = (half(4) + half(5)) + (half(6) + half(7));
     low + high
@@ -87,8 +92,7 @@ impl From<[f32; 4]> for Plain {
 #[cfg(target_arch = "x86_64")]
 pub(super) mod x86 {
     //! AVX2 with FMA, and AVX-512.
-    use super::super::LANES;
-    use super::Vector;
+    use super::{Row, Vector};
     use core::arch::x86_64::*;
 
     macro_rules! vector {
@@ -127,7 +131,7 @@ pub(super) mod x86 {
                     Self(unsafe { $fnmadd(self.0, by.0, plus.0) })
                 }
                 #[inline(always)]
-                unsafe fn add_sums(rows: &[[f32; LANES]], out: &mut [f32]) {
+                unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
                     // SAFETY: both sets include AVX.
                     unsafe { add_sums_avx(rows, out) }
                 }
@@ -167,14 +171,14 @@ pub(super) mod x86 {
 
     /// The upper eight lanes of a row onto its lower eight.
     #[inline(always)]
-    unsafe fn halves(row: &[f32; LANES]) -> __m256 {
+    unsafe fn halves(row: &Row) -> __m256 {
         // SAFETY: a row holds 16 values; the processor has AVX.
-        unsafe { _mm256_add_ps(_mm256_loadu_ps(row.as_ptr()), _mm256_loadu_ps(row.as_ptr().add(8))) }
+        unsafe { _mm256_add_ps(_mm256_loadu_ps(row.0.as_ptr()), _mm256_loadu_ps(row.0.as_ptr().add(8))) }
     }
 
     /// Four rows at a time through the horizontal adds, in the order of `sum_row`.
     #[inline(always)]
-    unsafe fn add_sums_avx(rows: &[[f32; LANES]], out: &mut [f32]) {
+    unsafe fn add_sums_avx(rows: &[Row], out: &mut [f32]) {
         let (four_rows, last_rows) = rows.as_chunks::<4>();
         let (four_out, last_out) = out.as_chunks_mut::<4>();
         for (rows, y) in four_rows.iter().zip(four_out) {
