@@ -46,11 +46,19 @@ pub(super) fn sum_row(row: &Row) -> f32 {
     low + high
 }
 
-/// Four lanes in plain Rust; the compiler keeps them in one register of the baseline.
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::Sse as Baseline;
+
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) use Plain as Baseline;
+
+/// Four lanes in plain Rust.
+#[cfg(not(target_arch = "x86_64"))]
 #[derive(Clone, Copy)]
 #[repr(C, align(16))]
 pub(super) struct Plain([f32; 4]);
 
+#[cfg(not(target_arch = "x86_64"))]
 impl Vector for Plain {
     const LEN: usize = 4;
     #[inline(always)]
@@ -82,6 +90,7 @@ impl Vector for Plain {
     }
 }
 
+#[cfg(not(target_arch = "x86_64"))]
 impl From<[f32; 4]> for Plain {
     #[inline(always)]
     fn from(lanes: [f32; 4]) -> Self {
@@ -137,6 +146,44 @@ pub(super) mod x86 {
                 }
             }
         };
+    }
+
+    /// Four lanes of the baseline, SSE2: two roundings where the others have one.
+    #[derive(Clone, Copy)]
+    pub(in super::super) struct Sse(__m128);
+
+    impl Vector for Sse {
+        const LEN: usize = 4;
+        #[inline(always)]
+        unsafe fn splat(x: f32) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_set1_ps(x) })
+        }
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            // SAFETY: as above, and the caller hands LEN readable values.
+            Self(unsafe { _mm_loadu_ps(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f32) {
+            // SAFETY: as above, and the caller hands LEN writable values.
+            unsafe { _mm_storeu_ps(to, self.0) }
+        }
+        #[inline(always)]
+        unsafe fn add(self, other: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_add_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_add_ps(_mm_mul_ps(self.0, by.0), plus.0) })
+        }
+        #[inline(always)]
+        unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_sub_ps(plus.0, _mm_mul_ps(self.0, by.0)) })
+        }
     }
 
     /// Eight lanes.
