@@ -9,6 +9,7 @@
 //! | file | from → to |
 //! |---|---|
 //! | [`butterworth`] | positions → smooth positions |
+//! | [`gradient_noise_3d`] | a point in space → solid noise and its gradient |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
@@ -16,6 +17,7 @@ extern crate std;
 
 pub mod butterworth;
 mod error;
+pub mod gradient_noise_3d;
 pub mod mode;
 pub mod rng;
 
