@@ -4,4 +4,11 @@
 //! contact path; the other real-time files implement it.
 //! *Offline* (feature `offline`): tools that make surfaces from pictures and from other surfaces.
 
+pub mod change;
+pub mod combine;
+pub mod fade;
 pub mod height_field;
+pub mod lattice;
+pub mod raster;
+pub mod solid_materials;
+pub mod solid_noise;
