@@ -10,6 +10,12 @@
 //! |---|---|
 //! | [`butterworth`] | positions → smooth positions |
 //! | [`gradient_noise_3d`] | a point in space → solid noise and its gradient |
+//! | [`trajectory`] | sparse contact events → path, velocity and force at every sample |
+//! | [`butterworth`] | the path's smoothing filter, and every high-pass |
+//! | [`fractal_noise`], [`gradient_noise_2d`] | path → 1/f^α micro-relief |
+//! | [`micro_contact`] | profile heights and normal force → pad, contact force, collisions |
+//! | [`mode`] | what a mode is |
+//! | [`rng`] | seeded numbers |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
@@ -18,7 +24,11 @@ extern crate std;
 pub mod butterworth;
 mod error;
 pub mod gradient_noise_3d;
+pub mod fractal_noise;
+pub mod gradient_noise_2d;
+pub mod micro_contact;
 pub mod mode;
 pub mod rng;
+pub mod trajectory;
 
 pub use error::DesignError;

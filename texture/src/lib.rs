@@ -12,3 +12,4 @@ pub mod lattice;
 pub mod raster;
 pub mod solid_materials;
 pub mod solid_noise;
+pub mod raster;
