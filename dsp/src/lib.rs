@@ -23,9 +23,9 @@ extern crate std;
 
 pub mod butterworth;
 mod error;
-pub mod gradient_noise_3d;
 pub mod fractal_noise;
 pub mod gradient_noise_2d;
+pub mod gradient_noise_3d;
 pub mod micro_contact;
 pub mod mode;
 pub mod rng;

@@ -4,6 +4,8 @@
 //! contact path; the other real-time files implement it.
 //! *Offline* (feature `offline`): tools that make surfaces from pictures and from other surfaces.
 
+#[cfg(feature = "brownian")]
+pub mod brownian;
 pub mod change;
 pub mod combine;
 pub mod fade;
@@ -12,4 +14,3 @@ pub mod lattice;
 pub mod raster;
 pub mod solid_materials;
 pub mod solid_noise;
-pub mod raster;

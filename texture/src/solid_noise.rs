@@ -159,21 +159,15 @@ pub struct SolidCut {
 
 impl SolidCut {
     /// Along the lattice, through its origin: the document's own use with the tool in the plane z = 0.
-    pub const LATTICE: Self =
-        Self { origin_m: [0.0; 3], u_axis: [1.0, 0.0, 0.0], v_axis: [0.0, 1.0, 0.0] };
+    pub const LATTICE: Self = Self { origin_m: [0.0; 3], u_axis: [1.0, 0.0, 0.0], v_axis: [0.0, 1.0, 0.0] };
 
-    /// At a slant to all lattice axes (cosines without small integer ratios), so that no straight
-    /// stroke meets the lattice at regular intervals. The default.
-    #[must_use]
-    pub fn slanted() -> Self {
-        // Rows of the rotation by the angles 0.62, −0.49 and 0.37 rad about z, y and x.
-        let ((sa, ca), (sb, cb), (sc, cc)) = (0.62_f64.sin_cos(), (-0.49_f64).sin_cos(), 0.37_f64.sin_cos());
-        Self {
-            origin_m: [0.0; 3],
-            u_axis: [ca * cb, sa * cb, -sb],
-            v_axis: [ca * sb * sc - sa * cc, sa * sb * sc + ca * cc, cb * sc],
-        }
-    }
+    /// At a slant to all lattice axes, so that no straight stroke meets the lattice at regular
+    /// intervals: the rotation by 0.62, −0.49 and 0.37 rad about z, y and x. The default.
+    pub const SLANTED: Self = Self {
+        origin_m: [0.0; 3],
+        u_axis: [0.718_111_705_228_247_4, 0.512_666_414_149_871_2, 0.470_625_888_171_158],
+        v_axis: [-0.680_225_349_253_427_1, 0.659_917_333_115_655_6, 0.319_065_177_803_187_8],
+    };
 
     /// The point of the block under a point of the surface, metres.
     #[inline]
@@ -204,7 +198,11 @@ impl SolidNoise {
     ///
     /// # Errors
     /// When a parameter is out of its range or the sample rate is not above 0 Hz.
-    pub fn new(parameters: SolidNoiseParameters, seed: u64, sample_rate_hz: f64) -> Result<Self, DesignError> {
+    pub fn new(
+        parameters: SolidNoiseParameters,
+        seed: u64,
+        sample_rate_hz: f64,
+    ) -> Result<Self, DesignError> {
         parameters.check()?;
         let lattice = |module: u64, octave: usize| {
             GradientNoise3d::new(seed.wrapping_add(module << 32).wrapping_add(octave as u64))
@@ -212,7 +210,7 @@ impl SolidNoise {
         Ok(Self {
             parameters: Fade::new(parameters, sample_rate_hz)?,
             lattices: [core::array::from_fn(|i| lattice(0, i)), core::array::from_fn(|i| lattice(1, i))],
-            cut: SolidCut::slanted(),
+            cut: SolidCut::SLANTED,
         })
     }
 
@@ -301,9 +299,7 @@ impl SolidNoise {
         let direction = match parameters.direction {
             ForceDirection::X => [1.0, 0.0, 0.0],
             ForceDirection::Normal => [0.0, 0.0, 1.0],
-            ForceDirection::Tangent if speed > 0.0 => {
-                [velocity_m_s[0] / speed, velocity_m_s[1] / speed, 0.0]
-            }
+            ForceDirection::Tangent if speed > 0.0 => [velocity_m_s[0] / speed, velocity_m_s[1] / speed, 0.0],
             ForceDirection::Tangent => [0.0; 3],
         };
         let drag = parameters.viscosity_n_s_m;
@@ -394,11 +390,8 @@ impl HeightField for SolidNoise {
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let n = path.len().min(MAX_BLOCK);
         out.clear(n);
-        let mut scratch = Scratch {
-            cells: [[0.0; MAX_BLOCK]; 3],
-            value: [0.0; MAX_BLOCK],
-            slope: [[0.0; MAX_BLOCK]; 3],
-        };
+        let mut scratch =
+            Scratch { cells: [[0.0; MAX_BLOCK]; 3], value: [0.0; MAX_BLOCK], slope: [[0.0; MAX_BLOCK]; 3] };
         let weights: [[f64; 3]; MAX_BLOCK] = core::array::from_fn(|i| {
             if i < n { self.parameters.weights(path.first_sample + i as u64) } else { [0.0; 3] }
         });
