@@ -8,6 +8,8 @@
 //!
 //! | file | from → to |
 //! |---|---|
+//! | [`butterworth`] | positions → smooth positions |
+//! | [`gradient_noise_3d`] | a point in space → solid noise and its gradient |
 //! | [`trajectory`] | sparse contact events → path, velocity and force at every sample |
 //! | [`butterworth`] | the path's smoothing filter, and every high-pass |
 //! | [`fractal_noise`], [`gradient_noise_2d`] | path → 1/f^α micro-relief |
@@ -27,6 +29,7 @@ mod error;
 pub mod fractal_noise;
 pub mod gradient_noise_2d;
 pub mod hertz;
+pub mod gradient_noise_3d;
 pub mod micro_contact;
 pub mod modal_bank;
 pub mod mode;
