@@ -4,4 +4,7 @@
 //! contact path; the other real-time files implement it.
 //! *Offline* (feature `offline`): tools that make surfaces from pictures and from other surfaces.
 
+#[cfg(feature = "offline")]
+pub mod fractal_dimension;
 pub mod height_field;
+pub mod raster;
