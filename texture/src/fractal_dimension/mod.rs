@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | box D_B, information D_I, correlation D_C | grid cubes of side δ ∈ {2, 4, 8, 16, 32} that hold a surface point | `grid_cubes` |
 //! | probability D_P (Voss) | surface points in the cube of side L ∈ {3, 5, 7, 9, 13, 17} round each point | `probability` |
-//! | recommended | mean absolute height difference along every row and column, lags 1 and 2 | `transect` |
+//! | recommended | height differences along every row and column, and their median | `transect` |
 //!
 //! The dimension becomes the roughness R of the engine's micro-noise in closed form, exact for ideal
 //! fractional Brownian surfaces: H = 3 − D, profile power spectrum 1/f^α with α = 2H + 1 = 7 − 2D, and
@@ -16,7 +16,7 @@
 //!
 //! The document is silent about the vertical scale of the cubes, and it decides everything; each file
 //! says what we chose and what it changed. Measured on exact Brownian surfaces (256 × 256, D 2.1–2.9,
-//! `examples/analysis_table.rs` prints the table): the recommended estimator errs by 0.006 on the mean,
+//! `examples/analysis_table.rs` prints the table): the recommended estimator errs by 0.005 on the mean,
 //! the probability dimension by 0.04, the grid cubes by 0.4 because they saturate near D = 2.45 as the
 //! document's own table does.
 
@@ -42,7 +42,9 @@ pub const SMALLEST_SIDE: usize = 64;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DimensionError {
     /// Too few texels for the estimators' scales.
-    #[error("the picture is {width} × {height} texels; the fractal dimension needs at least {SMALLEST_SIDE} × {SMALLEST_SIDE}")]
+    #[error(
+        "the picture is {width} × {height} texels; the fractal dimension needs at least {SMALLEST_SIDE} × {SMALLEST_SIDE}"
+    )]
     TooSmall {
         /// Texels in a row.
         width: usize,
@@ -186,7 +188,8 @@ mod tests {
 
     #[test]
     fn the_slope_of_a_line_is_its_slope() {
-        let points: Vec<(f64, f64)> = (0..7).map(|i| (f64::from(i * i), 3.0 - 1.5 * f64::from(i * i))).collect();
+        let points: Vec<(f64, f64)> =
+            (0..7).map(|i| (f64::from(i * i), 3.0 - 1.5 * f64::from(i * i))).collect();
         assert!((slope(&points) + 1.5).abs() < 1e-12);
     }
 }

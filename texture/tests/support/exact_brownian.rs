@@ -23,11 +23,8 @@ impl ExactBrownian {
         let reach = if alpha <= 1.5 { 1.0 } else { 2.0 };
         // Lengths in units of the domain in which Stein's covariance is exact: the map's diagonal.
         let texel = 1.0 / ((size - 1) as f64 * 2.0_f64.sqrt());
-        let beta = if reach > 1.0 {
-            alpha * (2.0 - alpha) / (3.0 * reach * (reach * reach - 1.0))
-        } else {
-            0.0
-        };
+        let beta =
+            if reach > 1.0 { alpha * (2.0 - alpha) / (3.0 * reach * (reach * reach - 1.0)) } else { 0.0 };
         let c2 = 0.5 * (alpha - beta * (reach - 1.0) * (reach - 1.0) * (reach + 2.0));
         let c0 = beta * (reach - 1.0).powi(3) + 1.0 - c2;
         let covariance = |r: f64| {
