@@ -23,3 +23,7 @@ pub mod lattice;
 pub mod raster;
 pub mod solid_materials;
 pub mod solid_noise;
+#[cfg(feature = "offline")]
+pub mod fractal_dimension;
+pub mod height_field;
+pub mod raster;
