@@ -31,9 +31,17 @@ pub struct Histogram {
 impl Histogram {
     /// The histogram of `values`, which must be finite.
     #[must_use]
-    pub fn new(mut values: Vec<f64>) -> Self {
-        values.sort_unstable_by(f64::total_cmp);
-        Self { sorted: values }
+    pub fn new(values: &[f64]) -> Self {
+        let mut matcher = Matcher::default();
+        matcher.order(values, 0.0);
+        let mut sorted: Vec<f64> = matcher.keys.iter().map(|&key| values[position(key)]).collect();
+        // Keys grow with the values, so that only equal keys are still to be told apart.
+        let mut start = 0;
+        for tied in matcher.keys.chunk_by(|a, b| a >> 32 == b >> 32) {
+            sorted[start..start + tied.len()].sort_unstable_by(f64::total_cmp);
+            start += tied.len();
+        }
+        Self { sorted }
     }
 
     /// The value below which the fraction (rank + ½)/count lies.
@@ -78,23 +86,34 @@ impl Matcher {
     /// keep their order.
     pub fn run(&mut self, values: &mut [f64], reference: &Histogram) {
         let count = values.len();
-        self.rank(values);
-        for (rank, key) in self.keys.iter().enumerate() {
-            values[(key & 0xffff_ffff) as usize] = reference.quantile(rank, count);
+        self.order(values, TIE);
+        // What is still equal keeps no trace of its position either.
+        for tied in self.keys.chunk_by_mut(|a, b| a >> 32 == b >> 32).filter(|tied| tied.len() > 1) {
+            tied.sort_unstable_by_key(|&key| hash_u32(key as u32));
+        }
+        if count == reference.sorted.len() {
+            for (&key, &value) in self.keys.iter().zip(&reference.sorted) {
+                values[position(key)] = value;
+            }
+        } else {
+            for (rank, &key) in self.keys.iter().enumerate() {
+                values[position(key)] = reference.quantile(rank, count);
+            }
         }
     }
 
-    /// Leaves in `keys` the positions of `values` (low halves) in ascending order of value.
-    fn rank(&mut self, values: &[f64]) {
+    /// Leaves in `keys` the positions of `values` (low halves) in ascending order of value, where
+    /// values closer than `tie` of the range come in random order: a radix sort.
+    fn order(&mut self, values: &[f64], tie: f64) {
         let (low, high) =
             values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-        let tie_steps = TIE * 4_294_967_296.0;
+        let tie_steps = tie * 4_294_967_296.0;
         // The sum of key and jitter stays below 2³².
         let scale = if high > low { (4_294_967_295.0 - tie_steps) / (high - low) } else { 0.0 };
         let mut counts = [[0_u32; DIGITS]; 3];
         self.keys.clear();
         self.keys.extend(values.iter().enumerate().map(|(i, &v)| {
-            let jitter = f64::from(hash_u32(i as u32)) * TIE;
+            let jitter = f64::from(hash_u32(i as u32)) * tie;
             let key = ((v - low) * scale + jitter) as u32;
             for (digit, count) in counts.iter_mut().enumerate() {
                 count[(key >> (DIGIT_BITS * digit as u32)) as usize & (DIGITS - 1)] += 1;
@@ -115,11 +134,12 @@ impl Matcher {
             }
             std::mem::swap(&mut self.keys, &mut self.other);
         }
-        // What is still equal keeps no trace of its position either.
-        for tied in self.keys.chunk_by_mut(|a, b| a >> 32 == b >> 32).filter(|tied| tied.len() > 1) {
-            tied.sort_unstable_by_key(|&key| hash_u32(key as u32));
-        }
     }
+}
+
+/// The position in the low half of a key.
+fn position(key: u64) -> usize {
+    (key & 0xffff_ffff) as usize
 }
 
 #[cfg(test)]
@@ -130,21 +150,31 @@ mod tests {
     #[test]
     fn matched_numbers_have_exactly_the_reference_histogram() {
         let mut rng = Rng::new(5);
-        let reference = Histogram::new((0..5000).map(|_| rng.normal()).collect());
+        let reference = Histogram::new(&(0..5000).map(|_| rng.normal()).collect::<Vec<_>>());
         let mut values: Vec<f64> = (0..5000).map(|_| rng.uniform()).collect();
         let before = values.clone();
         Matcher::default().run(&mut values, &reference);
-        assert_eq!(Histogram::new(values.clone()), reference);
+        assert_eq!(Histogram::new(&values), reference);
         let mut order: Vec<usize> = (0..5000).collect();
         order.sort_by(|&a, &b| before[a].total_cmp(&before[b]));
         assert!(order.windows(2).all(|w| values[w[0]] <= values[w[1]]), "ranks are kept");
     }
 
     #[test]
+    fn a_histogram_is_sorted_to_the_last_bit() {
+        let mut rng = Rng::new(7);
+        let values: Vec<f64> = (0..9000).map(|i| f64::from(i % 3) + 1e-14 * rng.normal()).collect();
+        let histogram = Histogram::new(&values);
+        let mut sorted = values;
+        sorted.sort_unstable_by(f64::total_cmp);
+        assert_eq!(histogram.sorted, sorted);
+    }
+
+    #[test]
     fn matching_numbers_with_themselves_changes_them_by_less_than_a_tie() {
         let mut rng = Rng::new(6);
         let values: Vec<f64> = (0..20_000).map(|i| (i % 7) as f64 + 1e-13 * rng.normal()).collect();
-        let reference = Histogram::new(values.clone());
+        let reference = Histogram::new(&values);
         let mut matched = values.clone();
         Matcher::default().run(&mut matched, &reference);
         for (a, b) in values.iter().zip(&matched) {
@@ -155,7 +185,7 @@ mod tests {
     #[test]
     fn unequal_counts_meet_at_equal_quantiles() {
         // Quantiles of the uniform ramp are known in closed form.
-        let reference = Histogram::new((0..1000).map(|i| (f64::from(i) + 0.5) / 1000.0).collect());
+        let reference = Histogram::new(&(0..1000).map(|i| (f64::from(i) + 0.5) / 1000.0).collect::<Vec<_>>());
         let mut values: Vec<f64> = (0..333).map(|i| -f64::from(i)).collect();
         Matcher::default().run(&mut values, &reference);
         for (i, v) in values.iter().enumerate() {
@@ -166,15 +196,15 @@ mod tests {
 
     #[test]
     fn the_distance_of_a_shifted_set_is_the_shift() {
-        let a = Histogram::new((0..100).map(f64::from).collect());
-        let b = Histogram::new((0..100).map(|i| f64::from(i) + 2.5).collect());
+        let a = Histogram::new(&(0..100).map(f64::from).collect::<Vec<_>>());
+        let b = Histogram::new(&(0..100).map(|i| f64::from(i) + 2.5).collect::<Vec<_>>());
         assert!((a.distance(&b) - 2.5).abs() < 1e-12);
         assert!((b.distance(&a) - 2.5).abs() < 1e-12 && a.distance(&a) == 0.0);
     }
 
     #[test]
     fn a_flat_set_is_spread_without_order() {
-        let reference = Histogram::new((0..4096).map(f64::from).collect());
+        let reference = Histogram::new(&(0..4096).map(f64::from).collect::<Vec<_>>());
         let mut values = vec![1.0; 4096];
         Matcher::default().run(&mut values, &reference);
         // Correlation of value and position: none.

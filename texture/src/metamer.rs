@@ -23,8 +23,9 @@
 //! Images that do not tile are analysed through their periodic component ([`crate::borders`]).
 
 use crate::borders::{Borders, SplitBorders};
+use crate::fft2::Fft2;
 use crate::histogram::{Histogram, Matcher};
-use crate::pyramid::{Kind, Pyramid, Sampling};
+use crate::pyramid::{Kind, Pyramid, Sampling, Subband};
 use crate::raster::Raster;
 use crate::resample::{resample, resample_spectrum};
 use asperity_dsp::DesignError;
@@ -36,7 +37,16 @@ pub const BANDS: usize = 4;
 pub const ORIENTATIONS: usize = 4;
 /// Passes of the default method. Source: ours, the fewest that leave a mean band distance below 0.02
 /// on wood, grid, Brownian and ridge surfaces matched to each other.
-pub const PASSES: usize = 30;
+pub const PASSES: usize = 20;
+/// How far each pass moves the heights towards their histogram. All the way would lock a surface of
+/// few distinct heights (a grid) into the first one that fits: the next pass would be undone exactly.
+const HEIGHT_STEP: f64 = 0.25;
+/// How far each pass moves the surface along the change that matching the bands makes. Beyond 1: the
+/// change is the same from pass to pass, only smaller; at 1.7 twenty passes do what fifty do at 1.
+const BAND_STEP: f64 = 1.7;
+/// Deviation of a sub-band over that of the heights (−40 dB) below which its distance is measured
+/// against this deviation instead of its own.
+pub const EMPTY_BAND: f64 = 0.01;
 
 /// How the original is changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,6 +106,10 @@ pub struct Metamer {
     pub image: Raster,
     /// One entry a sub-band, from fine to coarse, with the residuals first and last.
     pub bands: Vec<BandDistance>,
+    /// Distance of the heights themselves before, over the reference's standard deviation.
+    pub heights_before: f64,
+    /// The same after.
+    pub heights_after: f64,
     /// Whether the images were taken to tile.
     pub tileable: bool,
 }
@@ -129,7 +143,7 @@ pub fn metamer(
     original: &Raster,
     reference: &Raster,
     options: &MetamerOptions,
-    mut progress: impl FnMut(f64),
+    progress: impl FnMut(f64),
 ) -> Result<Metamer, DesignError> {
     check_finite("original", original)?;
     check_finite("reference", reference)?;
@@ -137,30 +151,30 @@ pub fn metamer(
     let borders = options.borders.decide(reference);
     let ours = SplitBorders::of(original, borders);
     let theirs = SplitBorders::of(&scaled(reference, options.scale), borders);
-    let mut target = Target::new(&theirs.periodic, options)?;
+    let target = Target::new(&theirs.periodic, options)?;
     let mut work = Work::new(original, options)?;
-    let before = target.distances(&ours.periodic, options)?;
+    let (before, heights_before) = target.distances(&ours.periodic, &mut work.pyramid);
     let mut image = match options.method {
         Method::SinglePass => work.pass(&ours.periodic, &target, Parts::OrientedBands),
-        Method::Iterated(passes) => {
-            let mut image = ours.periodic.clone();
-            for pass in 0..passes {
-                work.matcher.run(&mut image.values, &target.heights);
-                image = work.pass(&image, &target, Parts::Everything);
-                progress((pass + 1) as f64 / passes as f64);
-            }
-            image
-        }
-        Method::Spectrum => with_amplitudes(&ours.periodic, &theirs.periodic, &mut work),
+        Method::Iterated(passes) => work.iterate(&ours.periodic, &target, passes, progress),
+        Method::Spectrum => with_amplitudes(&ours.periodic, &theirs.periodic, work.pyramid.fft()),
     };
-    let after = target.distances(&image, options)?;
+    let (after, heights_after) = target.distances(&image, &mut work.pyramid);
     ours.add_borders(&mut image, &theirs);
-    let bands = before.into_iter().zip(after);
-    let bands = bands.map(|(mut band, after)| {
-        band.after = after.before;
-        band
-    });
-    Ok(Metamer { image, bands: bands.collect(), tileable: borders == Borders::Periodic })
+    let subbands = work.pyramid.subbands().iter().zip(before.into_iter().zip(after));
+    let distance = |(subband, (before, after)): (&Subband, (f64, f64))| BandDistance {
+        kind: subband.kind,
+        wavelength_px: subband.wavelength_px,
+        before,
+        after,
+    };
+    Ok(Metamer {
+        image,
+        bands: subbands.map(distance).collect(),
+        heights_before,
+        heights_after,
+        tileable: borders == Borders::Periodic,
+    })
 }
 
 fn check_finite(field: &'static str, image: &Raster) -> Result<(), DesignError> {
@@ -182,50 +196,30 @@ fn scaled(reference: &Raster, scale: f64) -> Raster {
 struct Target {
     bands: Vec<Histogram>,
     heights: Histogram,
-    /// Histograms at full sampling and their deviations: what distances are measured against.
-    full: Vec<Histogram>,
 }
 
 impl Target {
     fn new(reference: &Raster, options: &MetamerOptions) -> Result<Self, DesignError> {
-        let histograms = |sampling| -> Result<Vec<Histogram>, DesignError> {
-            let mut pyramid = design(reference, options, sampling)?;
-            let split = pyramid.split(&reference.values);
-            Ok((0..split.len()).map(|i| Histogram::new(split.get(i))).collect())
-        };
-        Ok(Self {
-            bands: histograms(SAMPLING)?,
-            heights: Histogram::new(reference.values.clone()),
-            full: histograms(Sampling::Full)?,
-        })
+        let split = design(reference, options)?.split(&reference.values);
+        let bands = (0..split.len()).map(|i| Histogram::new(&split.get(i))).collect();
+        Ok(Self { bands, heights: Histogram::new(&reference.values) })
     }
 
-    /// Distances of an image's sub-bands, in `before`.
-    fn distances(
-        &mut self,
-        image: &Raster,
-        options: &MetamerOptions,
-    ) -> Result<Vec<BandDistance>, DesignError> {
-        let mut pyramid = design(image, options, Sampling::Full)?;
-        let split = pyramid.split(&image.values);
+    /// Distances of an image's sub-bands and of its heights.
+    fn distances(&self, image: &Raster, pyramid: &mut Pyramid) -> (Vec<f64>, f64) {
         // A sub-band that the reference does not have cannot be measured in its own deviations.
-        let floor = 1e-6 * self.heights.deviation().max(f64::MIN_POSITIVE);
-        let subbands = pyramid.subbands().iter().enumerate().zip(&self.full);
-        Ok(subbands
-            .map(|((index, subband), reference)| {
-                let distance = Histogram::new(split.get(index)).distance(reference);
-                let before = distance / reference.deviation().max(floor);
-                BandDistance { kind: subband.kind, wavelength_px: subband.wavelength_px, before, after: 0.0 }
-            })
-            .collect())
+        let floor = EMPTY_BAND * self.heights.deviation().max(f64::MIN_POSITIVE);
+        let relative =
+            |values: &[f64], to: &Histogram| Histogram::new(values).distance(to) / to.deviation().max(floor);
+        let split = pyramid.split(&image.values);
+        let bands = self.bands.iter().enumerate().map(|(i, to)| relative(&split.get(i), to)).collect();
+        (bands, relative(&image.values, &self.heights))
     }
 }
 
-/// Sampling of the passes: full, as in the document.
-const SAMPLING: Sampling = Sampling::Full;
-
-fn design(image: &Raster, options: &MetamerOptions, sampling: Sampling) -> Result<Pyramid, DesignError> {
-    Pyramid::new(image.width, image.height, options.bands, options.orientations, sampling)
+/// A pyramid with every band as large as the image, as in the document.
+fn design(image: &Raster, options: &MetamerOptions) -> Result<Pyramid, DesignError> {
+    Pyramid::new(image.width, image.height, options.bands, options.orientations, Sampling::Full)
 }
 
 /// Which sub-bands a pass changes.
@@ -246,7 +240,7 @@ struct Work {
 
 impl Work {
     fn new(original: &Raster, options: &MetamerOptions) -> Result<Self, DesignError> {
-        let pyramid = design(original, options, SAMPLING)?;
+        let pyramid = design(original, options)?;
         Ok(Self {
             pyramid,
             matcher: Matcher::default(),
@@ -254,6 +248,27 @@ impl Work {
             half: Vec::new(),
             spare: Vec::new(),
         })
+    }
+
+    /// Repeats passes over everything; the last one goes all the way and no further.
+    fn iterate(
+        &mut self,
+        original: &Raster,
+        target: &Target,
+        passes: usize,
+        mut progress: impl FnMut(f64),
+    ) -> Raster {
+        let mut image = original.clone();
+        let mut matched = Vec::new();
+        for pass in 1..=passes {
+            matched.clone_from(&image.values);
+            self.matcher.run(&mut matched, &target.heights);
+            step(&mut image.values, &matched, HEIGHT_STEP);
+            let made = self.pass(&image, target, Parts::Everything);
+            step(&mut image.values, &made.values, if pass == passes { 1.0 } else { BAND_STEP });
+            progress(pass as f64 / passes as f64);
+        }
+        image
     }
 
     /// Splits, matches every sub-band and joins.
@@ -286,15 +301,22 @@ impl Work {
     }
 }
 
+/// Moves `values` by `fraction` of the way to `goal`.
+fn step(values: &mut [f64], goal: &[f64], fraction: f64) {
+    for (value, goal) in values.iter_mut().zip(goal) {
+        *value += fraction * (goal - *value);
+    }
+}
+
 /// The original's phases with the reference's amplitudes.
-fn with_amplitudes(original: &Raster, reference: &Raster, work: &mut Work) -> Raster {
+fn with_amplitudes(original: &Raster, reference: &Raster, fft: &mut Fft2) -> Raster {
     let amplitudes = resample_spectrum(reference, original.width, original.height);
-    let mut spectrum = work.pyramid.fft().spectrum(&original.values);
+    let mut spectrum = fft.spectrum(&original.values);
     for (value, &amplitude) in spectrum.iter_mut().zip(&amplitudes) {
         let norm = value.norm();
         *value = if norm > 0.0 { *value * (amplitude / norm) } else { Complex64::default() };
     }
     // The mean is a height, not an amplitude: it keeps its sign.
     spectrum[0] = Complex64::new(reference.mean() * original.values.len() as f64, 0.0);
-    work.pyramid.fft().image(&mut spectrum)
+    fft.image(&mut spectrum)
 }
