@@ -38,9 +38,10 @@ pub const ORIENTATIONS: usize = 4;
 /// Passes of the default method. Source: ours, the fewest that leave a mean band distance below 0.02
 /// on wood, grid, Brownian and ridge surfaces matched to each other.
 pub const PASSES: usize = 20;
-/// How far each pass moves the heights towards their histogram. All the way would lock a surface of
-/// few distinct heights (a grid) into the first one that fits: the next pass would be undone exactly.
-const HEIGHT_STEP: f64 = 0.25;
+/// How far the first pass moves the heights towards their histogram; later passes less, the last not
+/// at all, so that the bands have the last word. All the way every time would lock a surface of
+/// few distinct heights (a grid) into the first one that fits: the bands would be undone exactly.
+const HEIGHT_STEP: f64 = 0.4;
 /// How far each pass moves the surface along the change that matching the bands makes. Beyond 1: the
 /// change is the same from pass to pass, only smaller; at 1.7 twenty passes do what fifty do at 1.
 const BAND_STEP: f64 = 1.7;
@@ -263,7 +264,7 @@ impl Work {
         for pass in 1..=passes {
             matched.clone_from(&image.values);
             self.matcher.run(&mut matched, &target.heights);
-            step(&mut image.values, &matched, HEIGHT_STEP);
+            step(&mut image.values, &matched, HEIGHT_STEP * (passes - pass) as f64 / passes as f64);
             let made = self.pass(&image, target, Parts::Everything);
             step(&mut image.values, &made.values, if pass == passes { 1.0 } else { BAND_STEP });
             progress(pass as f64 / passes as f64);
