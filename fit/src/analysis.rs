@@ -19,6 +19,7 @@ use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
 use nalgebra::Complex;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Most passes over the levels.
 const PASSES: usize = 3;
@@ -26,6 +27,8 @@ const PASSES: usize = 3;
 const SPAN_NEPERS: f64 = 3.0;
 /// Accepted steps of a refinement within a level, after removals, and at the end.
 const LEVEL_STEPS: usize = 3;
+/// Most rounds of one level.
+const LEVEL_ROUNDS: usize = 3;
 const FINAL_STEPS: usize = 12;
 
 /// What bounds an analysis, in units of samples.
@@ -68,25 +71,20 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         capped: false,
     };
     let levels = Level::ladder(segment.len());
-    let mut residual = segment.to_vec();
     for pass in 0..PASSES {
         let known = work.partials.clone();
         let mut added = 0;
         for (i, &level) in levels.iter().enumerate() {
-            let done = (pass * levels.len() + i) as f64 / (PASSES * levels.len()) as f64;
-            progress(0.9 * done);
-            if pass > 0 || i > 0 {
-                residual = subtract(segment, &work.partials);
-            }
-            added += work.level(level, &residual);
+            progress(0.9 * (pass * levels.len() + i) as f64 / (PASSES * levels.len()) as f64);
+            added += work.level(level, pass > 0);
         }
         if pass > 0 && added == 0 {
             break;
         }
         work.settle(FINAL_STEPS);
-        residual = subtract(segment, &work.partials);
+        let residual = subtract(segment, &work.partials);
         work.noise = NoiseFloor::estimate(&residual, limits.rate_hz, limits.least_noise);
-        while work.prune_within(0, segment, 0) > 0 {
+        while prune(&mut work.partials, &work.noise, segment.len()) > 0 {
             work.settle(LEVEL_STEPS);
         }
         if pass > 0 && work.partials.len() <= known.len() {
@@ -94,7 +92,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         }
     }
     work.settle(FINAL_STEPS);
-    residual = subtract(segment, &work.partials);
+    let residual = subtract(segment, &work.partials);
     progress(1.0);
     Analysis { partials: work.partials, noise: work.noise, residual, capped: work.capped }
 }
@@ -116,31 +114,49 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Looks for new partials in `residual` at one level and refits; says how many it proposed.
-    fn level(&mut self, level: Level, residual: &[f64]) -> usize {
-        let found = self.candidates(level, residual);
-        if found.is_empty() {
-            return 0;
+    /// Looks for new partials at one level and refits, again while strong ones hid weak ones; says how
+    /// many it proposed. `whole`: refit over the whole segment, not only after the level's span.
+    fn level(&mut self, level: Level, whole: bool) -> usize {
+        let mut proposed = 0;
+        for _ in 0..LEVEL_ROUNDS {
+            let residual = subtract(self.segment, &self.partials);
+            let (found, hidden) = self.candidates(level, &residual);
+            if found.is_empty() {
+                break;
+            }
+            proposed += found.len();
+            self.join(found, level.span(), if whole { 0 } else { level.span() });
+            if !hidden {
+                break;
+            }
         }
-        let start = level.span();
-        let window = &self.segment[start..];
+        proposed
+    }
+
+    /// Refits what is known together with `found` (amplitudes unknown) from sample `start` on.
+    fn join(&mut self, found: Vec<Partial>, span: usize, start: usize) {
+        let offset = start as f64;
         let (alive, frozen): (Vec<Partial>, Vec<Partial>) =
-            self.partials.iter().partition(|p| p.delta * (start as f64) < 3.0 * SPAN_NEPERS);
-        let frozen_late: Vec<Partial> = frozen.iter().map(|p| p.moved(start as f64)).collect();
-        let target = subtract(window, &frozen_late);
-        let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(start as f64)).collect();
-        let proposed = found.len();
+            self.partials.iter().partition(|p| p.delta * offset < SPAN_NEPERS);
+        let frozen_late: Vec<Partial> = frozen.iter().map(|p| p.moved(offset)).collect();
+        let target = subtract(&self.segment[start..], &frozen_late);
+        let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(offset)).collect();
         active.extend(found);
         fit_amplitudes(&target, &mut active);
         self.drop_faint(&mut active, target.len());
-        let bounds = Bounds { amplitude_high: f64::INFINITY, ..self.limits.bounds };
+        let mut bounds = self.limits.bounds;
+        if start > 0 {
+            bounds.amplitude_high = f64::INFINITY;
+            bounds.delta_high = bounds.delta_high.min(1.5 * SPAN_NEPERS / span as f64);
+        }
         refine(&target, &mut active, &bounds, LEVEL_STEPS);
         while prune(&mut active, &self.noise, target.len()) > 0 {
             refine(&target, &mut active, &bounds, LEVEL_STEPS);
         }
         self.partials = frozen;
-        self.partials.extend(active.iter().map(|p| p.moved(-(start as f64))));
-        proposed
+        // What would have been absurdly loud at the start was over before the window.
+        let early = active.iter().map(|p| p.moved(-offset));
+        self.partials.extend(early.filter(|p| p.c.norm() <= self.limits.bounds.amplitude_high));
     }
 
     /// Joint refinement over the whole segment.
@@ -151,10 +167,6 @@ impl Work<'_> {
             refine(self.segment, &mut partials, &self.limits.bounds, steps);
         }
         self.partials = partials;
-    }
-
-    fn prune_within(&mut self, _start: usize, segment: &[f64], _unused: usize) -> usize {
-        prune(&mut self.partials, &self.noise, segment.len())
     }
 
     /// Keeps the strongest by energy, within the cap and the level limit; says how many went.
@@ -172,52 +184,88 @@ impl Work<'_> {
         before - partials.len()
     }
 
-    /// Poles of all bands of a level, as partials without amplitudes (at the end of the level's span).
-    fn candidates(&self, level: Level, residual: &[f64]) -> Vec<Partial> {
+    /// Poles of all bands of a level, as partials without amplitudes, and whether bands were left out
+    /// because what they hold may have leaked from stronger ones.
+    fn candidates(&self, level: Level, residual: &[f64]) -> (Vec<Partial>, bool) {
         let bands = split(residual, level);
-        let count = bands.bands.len();
         let samples = bands.bands[0].len();
         if samples < 8 {
-            return Vec::new();
+            return (Vec::new(), false);
         }
         let gate = Gate::new(samples);
-        let next = std::sync::atomic::AtomicUsize::new(0);
-        let scan = || {
+        let real = level.decimation == 1;
+        let peaks = self.on_threads(bands.bands.len(), &|k| gate.peaks(&bands.bands[k], real));
+        let leak = strongest(&peaks);
+        let mut open = Vec::new();
+        let mut hidden = false;
+        for (k, peaks) in peaks.iter().enumerate() {
+            if !self.within_limits(level, k) {
+                continue;
+            }
+            let noise_std = self.noise_std(level, &bands, k);
+            if gate.opens(peaks, noise_std, &leak) {
+                open.push(k);
+            } else {
+                hidden |= gate.opens(peaks, noise_std, &[0.0; 4]);
+            }
+        }
+        let found = self.on_threads(open.len(), &|i| {
+            (open[i], self.band_partials(level, &bands, open[i]))
+        });
+        (without_doubles(found, level, samples), hidden)
+    }
+
+    /// `work(0 .. count)` in order, shared among the threads allowed.
+    fn on_threads<T: Send>(&self, count: usize, work: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
+        let threads = self.limits.threads.clamp(1, count.max(1));
+        if threads == 1 {
+            return (0..count).map(work).collect();
+        }
+        let next = AtomicUsize::new(0);
+        let take = || {
             let mut mine = Vec::new();
             loop {
-                let k = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                if k >= count {
+                let i = next.fetch_add(1, Ordering::Relaxed);
+                if i >= count {
                     break mine;
                 }
-                mine.push((k, self.band_partials(level, &bands, k, &gate)));
+                mine.push((i, work(i)));
             }
         };
-        let threads = self.limits.threads.clamp(1, count);
-        let mut found = std::thread::scope(|scope| {
-            let others: Vec<_> = (1..threads).map(|_| scope.spawn(scan)).collect();
-            let mut all = scan();
+        let mut all = std::thread::scope(|scope| {
+            let others: Vec<_> = (1..threads).map(|_| scope.spawn(take)).collect();
+            let mut all = take();
             for other in others {
-                all.extend(other.join().unwrap_or_default());
+                match other.join() {
+                    Ok(results) => all.extend(results),
+                    Err(panic) => std::panic::resume_unwind(panic),
+                }
             }
             all
         });
-        found.sort_by_key(|(k, _)| *k);
-        without_doubles(found, level, samples)
+        all.sort_by_key(|(i, _)| *i);
+        all.into_iter().map(|(_, result)| result).collect()
     }
 
-    fn band_partials(&self, level: Level, bands: &Bands, k: usize, gate: &Gate) -> Vec<Partial> {
-        let centre = level.centre(k);
+    fn reach(level: Level) -> f64 {
+        if level.decimation == 1 { PI } else { 2.0 * PI * KEPT_HALF_WIDTH / level.decimation as f64 }
+    }
+
+    fn within_limits(&self, level: Level, k: usize) -> bool {
+        let (centre, reach) = (level.centre(k), Self::reach(level));
+        centre + reach >= self.limits.bounds.omega_low && centre - reach <= self.limits.bounds.omega_high
+    }
+
+    fn noise_std(&self, level: Level, bands: &Bands, k: usize) -> f64 {
+        (self.noise.variance_at(level.centre(k)) * bands.noise_gain).sqrt()
+    }
+
+    fn band_partials(&self, level: Level, bands: &Bands, k: usize) -> Vec<Partial> {
+        let (centre, reach) = (level.centre(k), Self::reach(level));
         let bounds = &self.limits.bounds;
         let d = level.decimation as f64;
-        let reach = if level.decimation == 1 { PI } else { 2.0 * PI * KEPT_HALF_WIDTH / d };
-        if centre + reach < bounds.omega_low || centre - reach > bounds.omega_high {
-            return Vec::new();
-        }
         let band = &bands.bands[k];
-        let noise_std = (self.noise.variance_at(centre) * bands.noise_gain).sqrt();
-        if !gate.opens(band, noise_std, level.decimation == 1) {
-            return Vec::new();
-        }
+        let noise_std = self.noise_std(level, bands, k);
         let longest_delta = SPAN_NEPERS / (level.span() as f64).max(1.0);
         poles(band, noise_std)
             .into_iter()
@@ -237,6 +285,11 @@ impl Work<'_> {
             })
             .collect()
     }
+}
+
+/// The largest peak of every window over all bands.
+fn strongest(peaks: &[[f64; 4]]) -> [f64; 4] {
+    peaks.iter().fold([0.0; 4], |most, peaks| std::array::from_fn(|w| most[w].max(peaks[w])))
 }
 
 /// Joins the bands' partials; a pole that two neighbouring bands saw is kept once, from the band whose

@@ -7,14 +7,14 @@
 //! S_2 = q (2 S_1 − S_0 + 1 − (N − 1)² E)
 //! ```
 //! The last two follow from summation by parts. Where |1 − w|·N is small they cancel (relative error
-//! ε/(|1 − w| N)²); there the sum is doubled instead, S(2M) from S(M), which only adds terms.
+//! ε N/(|1 − w| N)²); there the sum is doubled instead, S(2M) from S(M), which only adds terms.
 
 use nalgebra::Complex;
 
 type C = Complex<f64>;
 
 /// |1 − w|·N below which the closed forms would lose more than four digits.
-const CANCELLATION: f64 = 0.02;
+const CANCELLATION: f64 = 0.3;
 
 /// `[S_0, S_1, S_2]` of `w` over `count` terms; `power` is w^count, which callers have as a product.
 #[must_use]
@@ -83,7 +83,7 @@ mod tests {
                 let sums = geometric_sums(w, w.powu(count as u32), count);
                 for (closed, direct) in sums.iter().zip(direct(w, count)) {
                     let error = (closed - direct).norm() / direct.norm().max(1.0);
-                    assert!(error < 1e-9, "{w} {count}: {closed} {direct}");
+                    assert!(error < 1e-7, "{w} {count}: {closed} {direct}");
                 }
             }
         }

@@ -152,12 +152,12 @@ mod tests {
     }
 
     #[test]
-    fn white_noise_is_measured_within_a_decibel_at_every_frequency() {
+    fn white_noise_is_measured_within_two_decibels_at_every_frequency() {
         for (seed, count) in [(1, 88_200), (2, 20_000), (3, 200_000)] {
             let floor = NoiseFloor::estimate(&noise(seed, count), 44_100.0, 0.0);
             for i in 1..100 {
                 let db = 10.0 * (floor.variance_at(PI * f64::from(i) / 100.0) / 0.01).log10();
-                assert!(db.abs() < 1.3, "{count}: {i} {db}");
+                assert!(db.abs() < 2.0, "{count}: {i} {db}");
             }
             assert!((10.0 * (floor.mean_variance() / 0.01).log10()).abs() < 0.6);
         }

@@ -144,7 +144,9 @@ pub fn score(impact: &Impact, bounds: &[[f64; 4]], found: &[Mode]) -> Score {
             let gap = (mode.frequency_hz - truth.frequency_hz).abs();
             if gap < tolerance {
                 let decays = (mode.decay_per_s - truth.decay_per_s).abs() / bound[1];
-                pairs.push((gap / bound[0] + decays.min(20.0), t, f));
+                // What cannot be told apart must not take what can.
+                let last = if identifiable(truth, bound) { 0.0 } else { 1e6 };
+                pairs.push((last + gap / bound[0] + decays.min(20.0), t, f));
             }
         }
     }
