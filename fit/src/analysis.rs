@@ -14,7 +14,7 @@ use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
-use crate::pruning::prune;
+use crate::pruning::{prune, prune_missed_by_nobody};
 use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
 use nalgebra::Complex;
@@ -84,7 +84,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         work.settle(FINAL_STEPS);
         let residual = subtract(segment, &work.partials);
         work.noise = NoiseFloor::estimate(&residual, limits.rate_hz, limits.least_noise);
-        while prune(&mut work.partials, &work.noise, segment.len()) > 0 {
+        while prune_missed_by_nobody(segment, &mut work.partials, &work.noise, &limits.bounds) > 0 {
             work.settle(LEVEL_STEPS);
         }
         if pass > 0 && work.partials.len() <= known.len() {
@@ -150,7 +150,12 @@ impl Work<'_> {
             bounds.delta_high = bounds.delta_high.min(1.5 * SPAN_NEPERS / span as f64);
         }
         refine(&target, &mut active, &bounds, LEVEL_STEPS);
-        while prune(&mut active, &self.noise, target.len()) > 0 {
+        while if start > 0 {
+            prune(&mut active, &self.noise, target.len())
+        } else {
+            prune_missed_by_nobody(&target, &mut active, &self.noise, &bounds)
+        } > 0
+        {
             refine(&target, &mut active, &bounds, LEVEL_STEPS);
         }
         self.partials = frozen;

@@ -10,11 +10,16 @@
 
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
-use crate::refinement::{Scaled, gram_matrix};
+use crate::projection::synthesise;
+use crate::refinement::{Bounds, Scaled, gram_matrix, refine};
+use crate::analysis::subtract;
+use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 /// Chance of one false mode in a recording.
 pub const FALSE_ALARM: f64 = 0.01;
+/// Steps of the refit that a likelihood ratio is taken with.
+const TEST_STEPS: usize = 6;
 
 /// Standard deviations of one partial's parameters, in units of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,22 +92,76 @@ pub fn threshold(count: usize) -> f64 {
 
 /// Removes the unproven partials that are weakest among their neighbours; says how many.
 pub fn prune(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize) -> usize {
+    let doomed = unproven(partials, noise, count);
+    for &k in doomed.iter().rev() {
+        partials.remove(k);
+    }
+    doomed.len()
+}
+
+/// Like [`prune`], but a partial goes only if the data do not miss it: the likelihood ratio of its
+/// neighbourhood refitted without it decides. Two modes closer than their bandwidth each fail the Wald
+/// test, which is local, although one mode in their place leaves far more than noise behind.
+pub fn prune_missed_by_nobody(
+    signal: &[f64],
+    partials: &mut Vec<Partial>,
+    noise: &NoiseFloor,
+    bounds: &Bounds,
+) -> usize {
+    let doomed = unproven(partials, noise, signal.len());
+    if doomed.is_empty() {
+        return 0;
+    }
+    let mut residual = subtract(signal, partials);
+    let mut gone = vec![false; partials.len()];
+    for k in doomed {
+        let variance = noise.variance_at(partials[k].omega);
+        let near: Vec<usize> = neighbours(partials, k, signal.len())
+            .into_iter()
+            .filter(|&j| !gone[j] && j != k)
+            .collect();
+        let mut with: Vec<Partial> = near.iter().map(|&j| partials[j]).collect();
+        with.push(partials[k]);
+        let mut target = synthesise(&with, signal.len());
+        target.iter_mut().zip(&residual).for_each(|(t, r)| *t += r);
+        let before: f64 = residual.iter().map(|r| r * r).sum();
+        let mut without = with;
+        without.pop();
+        let refitted = refine(&target, &mut without, bounds, TEST_STEPS);
+        if refitted.cost - before < threshold(signal.len()) * variance {
+            gone[k] = true;
+            for (&j, partial) in near.iter().zip(&without) {
+                partials[j] = *partial;
+            }
+            residual = refitted.residual;
+        }
+    }
+    let before = partials.len();
+    let mut gone = gone.into_iter();
+    partials.retain(|_| !gone.next().unwrap_or(false));
+    before - partials.len()
+}
+
+/// Partials that share a neighbourhood with `k` (itself among them), at most a dozen.
+fn neighbours(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
+    let gap = |j: usize| (partials[j].omega - partials[k].omega).abs();
+    let reach = |j: usize| 4.0 * PI / count as f64 + 2.0 * (partials[j].delta + partials[k].delta);
+    let mut near: Vec<usize> = (0..partials.len()).filter(|&j| gap(j) <= reach(j)).collect();
+    near.sort_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+    near.truncate(12);
+    near
+}
+
+/// Indices, ascending, of the partials below the threshold that are weakest among their neighbours.
+fn unproven(partials: &[Partial], noise: &NoiseFloor, count: usize) -> Vec<usize> {
     let wald: Vec<f64> = uncertainties(partials, noise, count).iter().map(|u| u.wald).collect();
     let least = threshold(count);
-    let reach = 4.0 * std::f64::consts::PI / count as f64;
-    let doomed: Vec<bool> = (0..partials.len())
-        .map(|k| {
+    (0..partials.len())
+        .filter(|&k| {
             wald[k] < least
-                && partials.iter().zip(&wald).enumerate().all(|(j, (other, &w))| {
-                    let gap = (other.omega - partials[k].omega).abs();
-                    j == k
-                        || gap > reach + 2.0 * (other.delta + partials[k].delta)
-                        || (w, j) > (wald[k], k)
-                })
+                && neighbours(partials, k, count)
+                    .into_iter()
+                    .all(|j| j == k || (wald[j], j) > (wald[k], k))
         })
-        .collect();
-    let before = partials.len();
-    let mut doomed = doomed.into_iter();
-    partials.retain(|_| !doomed.next().unwrap_or(false));
-    before - partials.len()
+        .collect()
 }
