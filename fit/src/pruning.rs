@@ -10,16 +10,14 @@
 
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
-use crate::projection::synthesise;
-use crate::refinement::{Bounds, Scaled, gram_matrix, refine};
-use crate::analysis::subtract;
+use crate::refinement::{Bounds, Scaled, gradient, gram_matrix, refine};
 use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 
 /// Chance of one false mode in a recording.
 pub const FALSE_ALARM: f64 = 0.01;
-/// Steps of the refit that a likelihood ratio is taken with.
-const TEST_STEPS: usize = 6;
+/// Steps of the refit without the partials in doubt.
+const TEST_STEPS: usize = 4;
 
 /// Standard deviations of one partial's parameters, in units of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,9 +97,14 @@ pub fn prune(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize) -> u
     doomed.len()
 }
 
-/// Like [`prune`], but a partial goes only if the data do not miss it: the likelihood ratio of its
-/// neighbourhood refitted without it decides. Two modes closer than their bandwidth each fail the Wald
-/// test, which is local, although one mode in their place leaves far more than noise behind.
+/// Like [`prune`], but a partial goes only if the data do not miss it: when the others, refitted
+/// without it, leave nothing that its pole would explain. Two modes closer than their bandwidth each
+/// fail the Wald test, which is local, although one mode in their place leaves far more than noise
+/// behind (measured: 9 dB of resynthesis at 10 modes and 40 dB).
+///
+/// The statistic is Rao's: with r the residual of the refit, J the Jacobian of the others and A the two
+/// amplitude columns of the pole, h = Aᵀr − AᵀJ (JᵀJ)⁻¹ Jᵀr and S = AᵀA − AᵀJ (JᵀJ)⁻¹ JᵀA give
+/// hᵀ S⁻¹ h / σ², what the squared residual would fall by.
 pub fn prune_missed_by_nobody(
     signal: &[f64],
     partials: &mut Vec<Partial>,
@@ -112,34 +115,63 @@ pub fn prune_missed_by_nobody(
     if doomed.is_empty() {
         return 0;
     }
-    let mut residual = subtract(signal, partials);
-    let mut gone = vec![false; partials.len()];
-    for k in doomed {
-        let variance = noise.variance_at(partials[k].omega);
-        let near: Vec<usize> = neighbours(partials, k, signal.len())
-            .into_iter()
-            .filter(|&j| !gone[j] && j != k)
-            .collect();
-        let mut with: Vec<Partial> = near.iter().map(|&j| partials[j]).collect();
-        with.push(partials[k]);
-        let mut target = synthesise(&with, signal.len());
-        target.iter_mut().zip(&residual).for_each(|(t, r)| *t += r);
-        let before: f64 = residual.iter().map(|r| r * r).sum();
-        let mut without = with;
-        without.pop();
-        let refitted = refine(&target, &mut without, bounds, TEST_STEPS);
-        if refitted.cost - before < threshold(signal.len()) * variance {
-            gone[k] = true;
-            for (&j, partial) in near.iter().zip(&without) {
-                partials[j] = *partial;
-            }
-            residual = refitted.residual;
+    let candidates: Vec<Partial> = doomed.iter().map(|&k| partials[k]).collect();
+    let mut others = partials.clone();
+    for &k in doomed.iter().rev() {
+        others.remove(k);
+    }
+    let refitted = refine(signal, &mut others, bounds, TEST_STEPS);
+    let gains = rao_gains(&refitted.residual, &others, &candidates);
+    let least = threshold(signal.len());
+    let missed: Vec<bool> = candidates
+        .iter()
+        .zip(&gains)
+        .map(|(candidate, gain)| gain / noise.variance_at(candidate.omega) >= least)
+        .collect();
+    let removed = missed.iter().filter(|missed| !**missed).count();
+    if removed == doomed.len() {
+        *partials = others;
+    } else {
+        for (&k, _) in doomed.iter().zip(&missed).rev().filter(|(_, missed)| !**missed) {
+            partials.remove(k);
         }
     }
-    let before = partials.len();
-    let mut gone = gone.into_iter();
-    partials.retain(|_| !gone.next().unwrap_or(false));
-    before - partials.len()
+    removed
+}
+
+/// What adding each candidate pole to `others` would take off the squared residual.
+fn rao_gains(residual: &[f64], others: &[Partial], candidates: &[Partial]) -> Vec<f64> {
+    let mut all = others.to_vec();
+    all.extend_from_slice(candidates);
+    let gram = gram_matrix(&all, residual.len());
+    let known = 4 * others.len();
+    let slope = gradient(residual, &all);
+    let inner = gram.view((0, 0), (known, known)).into_owned();
+    let system = if known == 0 { None } else { Scaled::new(&inner, 1e-12) };
+    (0..candidates.len())
+        .map(|i| {
+            let at = known + 4 * i;
+            let mut own = gram.fixed_view::<2, 2>(at, at).into_owned();
+            let mut pull = Vector2::new(slope[at], slope[at + 1]);
+            let size = own.trace();
+            if let Some(system) = &system {
+                let known_slope = slope.rows(0, known);
+                let columns = [0, 1].map(|j| gram.view((0, at + j), (known, 1)).column(0).into_owned());
+                let solved = columns.each_ref().map(|column| system.solve(column));
+                for a in 0..2 {
+                    pull[a] -= solved[a].dot(&known_slope);
+                    for b in 0..2 {
+                        own[(a, b)] -= columns[a].dot(&solved[b]);
+                    }
+                }
+            }
+            // Columns the others span already explain nothing more.
+            if own.trace() < 1e-9 * size {
+                return 0.0;
+            }
+            own.try_inverse().map_or(0.0, |inverse| pull.dot(&(inverse * pull)).max(0.0))
+        })
+        .collect()
 }
 
 /// Partials that share a neighbourhood with `k` (itself among them), at most a dozen.

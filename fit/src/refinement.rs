@@ -89,7 +89,8 @@ pub fn gram_matrix(partials: &[Partial], count: usize) -> DMatrix<f64> {
 }
 
 /// Jᵀr, in the order of [`gram_matrix`].
-fn gradient(residual: &[f64], partials: &[Partial]) -> DVector<f64> {
+#[must_use]
+pub fn gradient(residual: &[f64], partials: &[Partial]) -> DVector<f64> {
     let mut out = DVector::zeros(4 * partials.len());
     for (k, ([p0, p1], partial)) in correlate(residual, partials).into_iter().zip(partials).enumerate() {
         out[4 * k] = p0.re;
