@@ -20,6 +20,7 @@ mod error;
 mod output;
 mod plot;
 mod progress;
+mod scene_file;
 mod wav;
 
 use clap::{Parser, Subcommand, error::ErrorKind};
