@@ -8,7 +8,12 @@
 //!
 //! | file | from → to |
 //! |---|---|
-//! | [`butterworth`] | positions → smooth positions |
+//! | [`trajectory`] | sparse contact events → path, velocity and force at every sample |
+//! | [`butterworth`] | the path's smoothing filter, and every high-pass |
+//! | [`fractal_noise`], [`gradient_noise_2d`] | path → 1/f^α micro-relief |
+//! | [`micro_contact`] | profile heights and normal force → pad, contact force, collisions |
+//! | [`mode`] | what a mode is |
+//! | [`rng`] | seeded numbers |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
@@ -16,7 +21,11 @@ extern crate std;
 
 pub mod butterworth;
 mod error;
+pub mod fractal_noise;
+pub mod gradient_noise_2d;
+pub mod micro_contact;
 pub mod mode;
 pub mod rng;
+pub mod trajectory;
 
 pub use error::DesignError;

@@ -5,3 +5,4 @@
 //! *Offline* (feature `offline`): tools that make surfaces from pictures and from other surfaces.
 
 pub mod height_field;
+pub mod raster;
