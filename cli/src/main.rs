@@ -16,10 +16,12 @@
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
 mod csv;
+mod demo;
 mod error;
 mod output;
 mod plot;
 mod progress;
+mod render;
 mod scene_file;
 mod wav;
 

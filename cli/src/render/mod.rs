@@ -1,0 +1,2 @@
+//! `asperity render`.
+pub mod picture;
