@@ -168,7 +168,7 @@ fn octave_ratio(roughness: f32) -> f32 {
 /// 1/r, within 1e-6.
 #[inline(always)]
 fn inverse_octave_ratio(roughness: f32) -> f32 {
-    const C: [f32; 5] = [1.681_791_9, -0.874_248_97, 0.226_884_53, -0.038_360_09, 0.003_933_027_4];
+    const C: [f32; 5] = [1.681_791_9, -0.874_249, 0.226_884_53, -0.038_360_09, 0.003_933_027_4];
     C[0] + roughness * (C[1] + roughness * (C[2] + roughness * (C[3] + roughness * C[4])))
 }
 
@@ -182,7 +182,7 @@ fn level(roughness: f32) -> f32 {
 /// What the finest living octave gains beyond 1 to stand in for the tails of all finer ones.
 #[inline(always)]
 fn tail_boost(roughness: f32) -> f32 {
-    const C: [f32; 4] = [0.092_212_49, 0.124_280_165, -0.010_080_097, 0.167_875_61];
+    const C: [f32; 4] = [0.092_212_5, 0.124_280_17, -0.010_080_097, 0.167_875_62];
     C[0] + roughness * (C[1] + roughness * (C[2] + roughness * C[3]))
 }
 

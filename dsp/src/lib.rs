@@ -14,16 +14,23 @@
 //! | [`micro_contact`] | profile heights and normal force → pad, contact force, collisions |
 //! | [`mode`] | what a mode is |
 //! | [`rng`] | seeded numbers |
+//! | [`butterworth`] | positions → smooth positions |
+//! | [`hertz`] | impacts → force pulses → impulses a sample |
+//! | [`mode`], [`modal_bank`] | impulses → sound |
+//! | [`actuator`] | pad motion → haptic samples |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+pub mod actuator;
 pub mod butterworth;
 mod error;
 pub mod fractal_noise;
 pub mod gradient_noise_2d;
 pub mod micro_contact;
+pub mod hertz;
+pub mod modal_bank;
 pub mod mode;
 pub mod rng;
 pub mod trajectory;

@@ -4,5 +4,12 @@
 //! contact path; the other real-time files implement it.
 //! *Offline* (feature `offline`): tools that make surfaces from pictures and from other surfaces.
 
+pub mod deband;
 pub mod height_field;
+pub mod height_map;
+#[cfg(feature = "image")]
+pub mod image_io;
 pub mod raster;
+mod resample;
+mod spline;
+pub mod wrap;
