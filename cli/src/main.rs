@@ -15,6 +15,7 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+mod build;
 mod csv;
 mod demo;
 mod error;
@@ -39,10 +40,14 @@ struct Arguments {
 
 /// What to do.
 #[derive(Debug, Subcommand)]
-enum Verb {}
+enum Verb {
+    Render(render::Options),
+}
 
 fn run(verb: Verb) -> Result<(), CliError> {
-    match verb {}
+    match verb {
+        Verb::Render(options) => render::run(&options),
+    }
 }
 
 fn main() -> ExitCode {

@@ -6,7 +6,7 @@
 use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, quantity, spectrogram};
 
 /// Contacts drawn one by one; more would cover each other.
-const DRAWN_CONTACTS: usize = 4;
+pub const DRAWN_CONTACTS: usize = 4;
 /// Length of the enlarged instant, s.
 const ZOOM_S: f64 = 0.03;
 
@@ -17,6 +17,8 @@ pub struct ContactCurve {
     pub label: String,
     /// Time of the first sample, s.
     pub start_s: f64,
+    /// How many samples it lasted.
+    pub samples: u64,
     /// Profile under the contact, m.
     pub height_m: Vec<f64>,
     /// Pad, m.

@@ -103,8 +103,8 @@ pub struct ActuatorEntry {
     pub highpass_hz: f64,
     /// Name of a device profile whose response is inverted; none = no equaliser.
     pub equalise: Option<String>,
-    /// Keeps the channel within full scale and the device's excursion.
-    pub limit: bool,
+    /// Name of the device profile whose excursion and heat are kept within limits; none = no limit.
+    pub limit: Option<String>,
 }
 
 impl Default for ActuatorEntry {
@@ -114,7 +114,7 @@ impl Default for ActuatorEntry {
             full_scale: 1e-4,
             highpass_hz: 10.0,
             equalise: None,
-            limit: false,
+            limit: None,
         }
     }
 }
@@ -259,11 +259,11 @@ fn read_probe(mut fields: Fields) -> Result<ProbeEntry, CliError> {
     let probe = ProbeEntry {
         preset: fields.text("preset")?,
         pad_mass_kg: fields.number("pad_mass_kg", Allowed::between(1e-6, 1.0, "kg"))?,
-        pad_stiffness_n_m: fields.number("pad_stiffness_n_m", Allowed::between(0.0, 1e7, "N/m"))?,
+        pad_stiffness_n_m: fields.number("pad_stiffness_n_m", Allowed::between(1e-3, 1e7, "N/m"))?,
         pad_damping_n_s_m: fields.number("pad_damping_n_s_m", Allowed::between(0.0, 1e4, "N·s/m"))?,
-        finger_mass_kg: fields.number("finger_mass_kg", Allowed::between(1e-6, 100.0, "kg"))?,
+        finger_mass_kg: fields.number("finger_mass_kg", Allowed::between(1e-5, 100.0, "kg"))?,
         contact_stiffness_n_m: fields.number("contact_stiffness_n_m", Allowed::between(1.0, 1e9, "N/m"))?,
-        leash_m: fields.number("leash_m", Allowed::above(0.0, 1.0, "m"))?,
+        leash_m: fields.number("leash_m", Allowed::between(1e-6, 0.05, "m"))?,
     };
     fields.finish()?;
     Ok(probe)
@@ -274,6 +274,22 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, CliError> {
         [("displacement", ActuatorOutput::Displacement), ("acceleration", ActuatorOutput::Acceleration)];
     let default = ActuatorEntry::default();
     let output = fields.word("output", &words)?.unwrap_or(default.output);
+    let equalise = fields.text("equalise")?.filter(|name| name != "none");
+    let limit = match fields.take("limit") {
+        None | Some(Value::Boolean(false)) => None,
+        Some(Value::Boolean(true)) => match &equalise {
+            Some(device) => Some(device.clone()),
+            None => {
+                let right = "write the device as equalise = \"…\" or as limit = \"…\"";
+                return Err(fields.refuse("limit", "true names no device", right));
+            }
+        },
+        Some(Value::String(device)) => Some(device),
+        Some(other) => {
+            let what = format!("{} is refused", fields::shown(&other));
+            return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
+        }
+    };
     let actuator = ActuatorEntry {
         output,
         full_scale: match fields.number("full_scale", Allowed::between(1e-12, 1e12, "m (or m/s²)"))? {
@@ -288,8 +304,8 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, CliError> {
             default.highpass_hz,
             Allowed::between(0.0, 1_000.0, "Hz, 0 = off"),
         )?,
-        equalise: fields.text("equalise")?.filter(|name| name != "none"),
-        limit: fields.flag("limit")?.unwrap_or(default.limit),
+        equalise,
+        limit,
     };
     fields.finish()?;
     Ok(actuator)
