@@ -30,65 +30,71 @@ pub const PEAK_WAVELENGTH_CELLS: f64 = 1.92;
 pub type Cells<const N: usize> = [u64; N];
 
 /// Odd constants that spread neighbouring cell indices over 32 bits (2³²/φ and a prime of xxHash's
-/// avalanche family), and the multiplier of the finishing step.
+/// avalanche family), and the multipliers of the finishing step (C. Wellons, "hash-prospector").
 const SPREAD_X: u32 = 0x9E37_79B1;
 const SPREAD_Y: u32 = 0x85EB_CA77;
-const FINISH: u32 = 0x2C1B_3C6D;
+const FINISH_X: u32 = 0x2C1B_3C6D;
+const FINISH_Y: u32 = 0x297A_2D39;
 
 /// Sign bits.
 const SIGN: u32 = 0x8000_0000;
 
-/// Hash of a corner from what its column and its row contribute. Two random bits per corner at the
-/// top; tested in `tests/noise_lattice.rs`.
+/// Hash of a corner from what its column and its row contribute.
 #[inline(always)]
 fn corner(column: u32, row: u32) -> u32 {
     let h = column ^ row;
-    (h ^ (h >> 15)).wrapping_mul(FINISH)
+    h ^ (h >> 15)
 }
 
-/// ±x ± y, signs from the hash's top two bits.
+/// ±x ± y, signs from the top bits of two products of the hash.
 #[inline(always)]
 fn along(hash: u32, x: f32, y: f32) -> f32 {
-    f32::from_bits(x.to_bits() ^ (hash & SIGN)) + f32::from_bits(y.to_bits() ^ ((hash << 1) & SIGN))
+    let (a, b) = (hash.wrapping_mul(FINISH_X), hash.wrapping_mul(FINISH_Y));
+    f32::from_bits(x.to_bits() ^ (a & SIGN)) + f32::from_bits(y.to_bits() ^ (b & SIGN))
 }
 
-/// fade(t + ½) − ½ for t in [−½, ½].
+/// fade(t + ½) for t in [−½, ½].
 #[inline(always)]
 fn centred_fade(t: f32) -> f32 {
     let q = t * t;
-    t * (1.875 + q * (6.0 * q - 5.0))
+    0.5 + t * (1.875 + q * (6.0 * q - 5.0))
 }
 
-/// Place in the cell, −½ to ½ about its centre.
+/// Place in the cell, −½ to ½ about its centre, from the fraction's 32 bits.
 #[inline(always)]
-fn place(position: u64) -> f32 {
-    (((position as u32) ^ SIGN) as i32) as f32 * (1.0 / 4_294_967_296.0)
+fn place(fraction: u32) -> f32 {
+    ((fraction ^ SIGN) as i32) as f32 * (1.0 / 4_294_967_296.0)
 }
 
-/// The noise at one position; `key` tells lattices apart.
+/// The noise at N positions; `key` tells lattices apart.
 #[inline(always)]
-pub fn gradient_noise(x: u64, y: u64, key: u32) -> f32 {
-    let (tx, ty) = (place(x), place(y));
-    let column = ((x >> 32) as u32).wrapping_mul(SPREAD_X).wrapping_add(key);
-    let row = ((y >> 32) as u32).wrapping_mul(SPREAD_Y);
+pub fn gradient_noise<const N: usize>(x: &Cells<N>, y: &Cells<N>, key: u32) -> [f32; N] {
+    // 64-bit work apart from 32-bit work, so that each fills its vectors.
+    let (mut column, mut row, mut u, mut v) = ([0; N], [0; N], [0; N], [0; N]);
+    for n in 0..N {
+        (column[n], u[n]) = ((x[n] >> 32) as u32, x[n] as u32);
+        (row[n], v[n]) = ((y[n] >> 32) as u32, y[n] as u32);
+    }
+    let mut out = [0.0; N];
+    for n in 0..N {
+        out[n] = in_cell(column[n], row[n], place(u[n]), place(v[n]), key);
+    }
+    out
+}
+
+/// The noise at a place of the cell in a column and a row.
+#[inline(always)]
+fn in_cell(column: u32, row: u32, x: f32, y: f32, key: u32) -> f32 {
+    let column = column.wrapping_mul(SPREAD_X).wrapping_add(key);
+    let row = row.wrapping_mul(SPREAD_Y);
     let (next_column, next_row) = (column.wrapping_add(SPREAD_X), row.wrapping_add(SPREAD_Y));
-    let (left, right, top, bottom) = (tx + 0.5, tx - 0.5, ty + 0.5, ty - 0.5);
+    let (left, right, top, bottom) = (x + 0.5, x - 0.5, y + 0.5, y - 0.5);
     let a = along(corner(column, row), left, top);
     let b = along(corner(next_column, row), right, top);
     let c = along(corner(column, next_row), left, bottom);
     let d = along(corner(next_column, next_row), right, bottom);
-    let (fx, fy) = (centred_fade(tx) + 0.5, centred_fade(ty) + 0.5);
+    let (fx, fy) = (centred_fade(x), centred_fade(y));
     let upper = a + fx * (b - a);
     let lower = c + fx * (d - c);
     upper + fy * (lower - upper)
-}
-
-/// The noise at N positions.
-#[inline(always)]
-pub fn gradient_noise_lanes<const N: usize>(x: &Cells<N>, y: &Cells<N>, key: u32) -> [f32; N] {
-    let mut out = [0.0; N];
-    for n in 0..N {
-        out[n] = gradient_noise(x[n], y[n], key);
-    }
-    out
 }

@@ -8,16 +8,16 @@
 //!
 //! | file | from → to |
 //! |---|---|
+//! | [`butterworth`] | positions → smooth positions |
+//! | [`gradient_noise_3d`] | a point in space → solid noise and its gradient |
 //! | [`trajectory`] | sparse contact events → path, velocity and force at every sample |
 //! | [`butterworth`] | the path's smoothing filter, and every high-pass |
 //! | [`fractal_noise`], [`gradient_noise_2d`] | path → 1/f^α micro-relief |
 //! | [`micro_contact`] | profile heights and normal force → pad, contact force, collisions |
-//! | [`mode`] | what a mode is |
-//! | [`rng`] | seeded numbers |
-//! | [`butterworth`] | positions → smooth positions |
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
 //! | [`actuator`] | pad motion → haptic samples |
+//! | [`rng`] | seeded numbers for all of them |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
@@ -28,8 +28,9 @@ pub mod butterworth;
 mod error;
 pub mod fractal_noise;
 pub mod gradient_noise_2d;
-pub mod micro_contact;
 pub mod hertz;
+pub mod gradient_noise_3d;
+pub mod micro_contact;
 pub mod modal_bank;
 pub mod mode;
 pub mod rng;

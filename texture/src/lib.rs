@@ -13,3 +13,17 @@ pub mod raster;
 mod resample;
 mod spline;
 pub mod wrap;
+#[cfg(feature = "brownian")]
+pub mod brownian;
+pub mod change;
+pub mod combine;
+pub mod fade;
+pub mod height_field;
+pub mod lattice;
+pub mod raster;
+pub mod solid_materials;
+pub mod solid_noise;
+#[cfg(feature = "offline")]
+pub mod fractal_dimension;
+pub mod height_field;
+pub mod raster;

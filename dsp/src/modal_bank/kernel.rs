@@ -2,8 +2,10 @@
 #![allow(unsafe_code)]
 
 use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
-use super::vector::{Plain, Vector};
+use super::vector::{Baseline, Row, Vector};
 use super::{LANES, sleep};
+use core::array::from_fn;
+use core::mem::MaybeUninit;
 
 /// An instruction set the bank has code for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -113,7 +115,7 @@ impl Kernel {
         let out = &mut out[..samples];
         match self.0 {
             // SAFETY: the plain vector needs no instruction beyond the baseline.
-            Isa::Portable => unsafe { walk::<Plain, 4, 1>(first_sample, &mut job, out) },
+            Isa::Portable => unsafe { walk::<Baseline, 4, 1>(first_sample, &mut job, out) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: a Kernel of this set exists only where the processor has it.
             Isa::Avx2 => unsafe { walk_avx2(first_sample, &mut job, out) },
@@ -185,7 +187,7 @@ unsafe fn walk_avx2(first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
 #[target_feature(enable = "avx512f,avx2,fma")]
 unsafe fn walk_avx512(first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
     // SAFETY: this function is only called where AVX-512F is present.
-    unsafe { walk::<super::vector::x86::Avx512, 1, 5>(first_sample, job, out) }
+    unsafe { walk::<super::vector::x86::Avx512, 1, 6>(first_sample, job, out) }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -202,20 +204,22 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
     job: &mut Job<'_>,
     out: &mut [f32],
 ) {
-    let mut sums = [[0.0_f32; LANES]; ROWS];
+    let mut sums: [MaybeUninit<Row>; ROWS] = [const { MaybeUninit::uninit() }; ROWS];
     let (mut at, samples) = (0, out.len());
     while at < samples {
         let now = first_sample.wrapping_add(at as u64);
         let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
         let rows = &mut sums[..len];
-        // SAFETY: the caller has the instructions of V; `at + len` is inside every input.
+        // SAFETY: the caller has the instructions of V; `at + len` is inside every input. The first set
+        // writes every row, and there is one: `walk` is not called without groups.
         unsafe {
             sets::<V, P, MAX>(job, at, rows);
-            V::add_sums(rows, &mut out[at..at + len]);
+            V::add_sums(rows.assume_init_ref(), &mut out[at..at + len]);
         }
-        if (now + len as u64) % GRID_SAMPLES == 0 {
+        if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
             for (group, state) in job.groups.iter().zip(job.states.iter_mut()) {
-                trim(group, state);
+                // SAFETY: the caller has the instructions of V.
+                unsafe { trim::<V, P>(group, state) };
             }
         }
         at += len;
@@ -224,10 +228,17 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
 
 /// Gives every lane the decay that `f32` could not store.
 #[inline(always)]
-fn trim(group: &ModeGroup, state: &mut GroupState) {
-    for lane in 0..LANES {
-        state.y[lane] += state.y[lane] * group.trim[lane];
-        state.d[lane] += state.d[lane] * group.trim[lane];
+unsafe fn trim<V: Vector, const P: usize>(group: &ModeGroup, state: &mut GroupState) {
+    for p in 0..P {
+        // SAFETY: lane p · LEN and the LEN − 1 after it are inside arrays of LANES = P · LEN values.
+        unsafe {
+            let by = V::load(group.trim.as_ptr().add(p * V::LEN));
+            for lanes in [&mut state.y, &mut state.d] {
+                let at = lanes.as_mut_ptr().add(p * V::LEN);
+                let x = V::load(at);
+                x.mul_add(by, x).store(at);
+            }
+        }
     }
 }
 
@@ -237,7 +248,7 @@ fn trim(group: &ModeGroup, state: &mut GroupState) {
 unsafe fn sets<V: Vector, const P: usize, const MAX: usize>(
     job: &mut Job<'_>,
     at: usize,
-    rows: &mut [[f32; LANES]],
+    rows: &mut [MaybeUninit<Row>],
 ) {
     let count = job.groups.len();
     let mut from = 0;
@@ -252,7 +263,9 @@ unsafe fn sets<V: Vector, const P: usize, const MAX: usize>(
                 3 if MAX >= 3 => inputs::<V, P, 3>(job, from, at, rows),
                 4 if MAX >= 4 => inputs::<V, P, 4>(job, from, at, rows),
                 5 if MAX >= 5 => inputs::<V, P, 5>(job, from, at, rows),
-                _ if MAX >= 6 => inputs::<V, P, 6>(job, from, at, rows),
+                6 if MAX >= 6 => inputs::<V, P, 6>(job, from, at, rows),
+                7 if MAX >= 7 => inputs::<V, P, 7>(job, from, at, rows),
+                _ if MAX >= 8 => inputs::<V, P, 8>(job, from, at, rows),
                 _ => {}
             }
         }
@@ -269,7 +282,7 @@ unsafe fn inputs<V: Vector, const P: usize, const S: usize>(
     job: &mut Job<'_>,
     from: usize,
     at: usize,
-    rows: &mut [[f32; LANES]],
+    rows: &mut [MaybeUninit<Row>],
 ) {
     // SAFETY: passed on from the caller.
     unsafe {
@@ -288,7 +301,7 @@ unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usize>(
     job: &mut Job<'_>,
     from: usize,
     at: usize,
-    rows: &mut [[f32; LANES]],
+    rows: &mut [MaybeUninit<Row>],
 ) {
     let groups = &job.groups[from..from + S];
     let feed = job.feed.inputs;
@@ -304,9 +317,15 @@ unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usize>(
                 d[s][p] = V::load(state.d.as_ptr().add(p * V::LEN));
             }
         }
+        // Read before the loop: the compiler cannot know that storing sums leaves them as they are.
+        let read = |lanes: &[f32; LANES], p: usize| V::load(lanes.as_ptr().add(p * V::LEN));
+        let r2: [[V; P]; S] = from_fn(|s| from_fn(|p| read(&groups[s].r2, p)));
+        let m: [[V; P]; S] = from_fn(|s| from_fn(|p| read(&groups[s].m, p)));
+        let out_y: [[V; P]; S] = from_fn(|s| from_fn(|p| read(&groups[s].out_y, p)));
+        let out_d: [[V; P]; S] = from_fn(|s| from_fn(|p| read(&groups[s].out_d, p)));
         let shared = feed[0].impulses.as_ptr().add(at);
         for (n, row) in rows.iter_mut().enumerate() {
-            let row = row.as_mut_ptr();
+            let row = row.as_mut_ptr().cast::<f32>();
             let mut sum = [V::splat(0.0); P];
             if from > 0 {
                 for (p, sum) in sum.iter_mut().enumerate() {
@@ -315,7 +334,6 @@ unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usize>(
             }
             let u = V::splat(if K == 0 { *shared.add(n) } else { 0.0 });
             for s in 0..S {
-                let g = &groups[s];
                 for p in 0..P {
                     let lane = p * V::LEN;
                     let mut x = u;
@@ -327,11 +345,11 @@ unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usize>(
                             x = V::load(gains).mul_add(impulse, x);
                         }
                     }
-                    let kept = d[s][p].mul_add(V::load(g.r2.as_ptr().add(lane)), x);
-                    d[s][p] = y[s][p].neg_mul_add(V::load(g.m.as_ptr().add(lane)), kept);
+                    let kept = d[s][p].mul_add(r2[s][p], x);
+                    d[s][p] = y[s][p].neg_mul_add(m[s][p], kept);
                     y[s][p] = y[s][p].add(d[s][p]);
-                    sum[p] = y[s][p].mul_add(V::load(g.out_y.as_ptr().add(lane)), sum[p]);
-                    sum[p] = d[s][p].mul_add(V::load(g.out_d.as_ptr().add(lane)), sum[p]);
+                    sum[p] = y[s][p].mul_add(out_y[s][p], sum[p]);
+                    sum[p] = d[s][p].mul_add(out_d[s][p], sum[p]);
                 }
             }
             for (p, sum) in sum.into_iter().enumerate() {

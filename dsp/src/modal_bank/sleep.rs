@@ -84,7 +84,7 @@ impl Awake {
             let awake = self.groups.min(groups.len()).min(states.len());
             let (groups, states) = (&groups[..awake], &mut states[..awake]);
             kernel.render(now, groups, states, impulses, y);
-            if (now + len as u64) % GRID_SAMPLES == 0 {
+            if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
                 self.groups = kernel.settle(groups, states, threshold);
             }
             at += len;

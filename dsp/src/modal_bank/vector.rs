@@ -7,6 +7,11 @@
 
 use super::LANES;
 
+/// The lane sums of one sample. Aligned, because a vector across two cache lines costs two.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Row(pub [f32; LANES]);
+
 /// A few `f32` side by side.
 pub(super) trait Vector: Copy {
     /// `f32` in one vector; divides [`LANES`].
@@ -25,7 +30,7 @@ pub(super) trait Vector: Copy {
     unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self;
     /// Adds the sum over the lanes of each row to `out`, in the order of [`sum_row`].
     #[inline(always)]
-    unsafe fn add_sums(rows: &[[f32; LANES]], out: &mut [f32]) {
+    unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
         for (row, y) in rows.iter().zip(out) {
             *y += sum_row(row);
         }
@@ -34,18 +39,26 @@ pub(super) trait Vector: Copy {
 
 /// The one order of summation: halves onto each other, then neighbours, then neighbours, then halves.
 #[inline(always)]
-pub(super) fn sum_row(row: &[f32; LANES]) -> f32 {
-    let half = |i: usize| row[i] + row[i + 8];
+pub(super) fn sum_row(row: &Row) -> f32 {
+    let half = |i: usize| row.0[i] + row.0[i + 8];
     let low = (half(0) + half(1)) + (half(2) + half(3));
     let high = (half(4) + half(5)) + (half(6) + half(7));
     low + high
 }
 
-/// Four lanes in plain Rust; the compiler keeps them in one register of the baseline.
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::Sse as Baseline;
+
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) use Plain as Baseline;
+
+/// Four lanes in plain Rust.
+#[cfg(not(target_arch = "x86_64"))]
 #[derive(Clone, Copy)]
 #[repr(C, align(16))]
 pub(super) struct Plain([f32; 4]);
 
+#[cfg(not(target_arch = "x86_64"))]
 impl Vector for Plain {
     const LEN: usize = 4;
     #[inline(always)]
@@ -77,6 +90,7 @@ impl Vector for Plain {
     }
 }
 
+#[cfg(not(target_arch = "x86_64"))]
 impl From<[f32; 4]> for Plain {
     #[inline(always)]
     fn from(lanes: [f32; 4]) -> Self {
@@ -87,8 +101,7 @@ impl From<[f32; 4]> for Plain {
 #[cfg(target_arch = "x86_64")]
 pub(super) mod x86 {
     //! AVX2 with FMA, and AVX-512.
-    use super::super::LANES;
-    use super::Vector;
+    use super::{Row, Vector};
     use core::arch::x86_64::*;
 
     macro_rules! vector {
@@ -127,12 +140,50 @@ pub(super) mod x86 {
                     Self(unsafe { $fnmadd(self.0, by.0, plus.0) })
                 }
                 #[inline(always)]
-                unsafe fn add_sums(rows: &[[f32; LANES]], out: &mut [f32]) {
+                unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
                     // SAFETY: both sets include AVX.
                     unsafe { add_sums_avx(rows, out) }
                 }
             }
         };
+    }
+
+    /// Four lanes of the baseline, SSE2: two roundings where the others have one.
+    #[derive(Clone, Copy)]
+    pub(in super::super) struct Sse(__m128);
+
+    impl Vector for Sse {
+        const LEN: usize = 4;
+        #[inline(always)]
+        unsafe fn splat(x: f32) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_set1_ps(x) })
+        }
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            // SAFETY: as above, and the caller hands LEN readable values.
+            Self(unsafe { _mm_loadu_ps(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f32) {
+            // SAFETY: as above, and the caller hands LEN writable values.
+            unsafe { _mm_storeu_ps(to, self.0) }
+        }
+        #[inline(always)]
+        unsafe fn add(self, other: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_add_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_add_ps(_mm_mul_ps(self.0, by.0), plus.0) })
+        }
+        #[inline(always)]
+        unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_sub_ps(plus.0, _mm_mul_ps(self.0, by.0)) })
+        }
     }
 
     /// Eight lanes.
@@ -167,14 +218,14 @@ pub(super) mod x86 {
 
     /// The upper eight lanes of a row onto its lower eight.
     #[inline(always)]
-    unsafe fn halves(row: &[f32; LANES]) -> __m256 {
+    unsafe fn halves(row: &Row) -> __m256 {
         // SAFETY: a row holds 16 values; the processor has AVX.
-        unsafe { _mm256_add_ps(_mm256_loadu_ps(row.as_ptr()), _mm256_loadu_ps(row.as_ptr().add(8))) }
+        unsafe { _mm256_add_ps(_mm256_loadu_ps(row.0.as_ptr()), _mm256_loadu_ps(row.0.as_ptr().add(8))) }
     }
 
     /// Four rows at a time through the horizontal adds, in the order of `sum_row`.
     #[inline(always)]
-    unsafe fn add_sums_avx(rows: &[[f32; LANES]], out: &mut [f32]) {
+    unsafe fn add_sums_avx(rows: &[Row], out: &mut [f32]) {
         let (four_rows, last_rows) = rows.as_chunks::<4>();
         let (four_out, last_out) = out.as_chunks_mut::<4>();
         for (rows, y) in four_rows.iter().zip(four_out) {
