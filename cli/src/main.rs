@@ -15,11 +15,15 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+mod build;
 mod csv;
+mod demo;
 mod error;
 mod output;
 mod plot;
 mod progress;
+mod render;
+mod scene_file;
 mod wav;
 
 use clap::{Parser, Subcommand, error::ErrorKind};
@@ -36,10 +40,14 @@ struct Arguments {
 
 /// What to do.
 #[derive(Debug, Subcommand)]
-enum Verb {}
+enum Verb {
+    Render(render::Options),
+}
 
 fn run(verb: Verb) -> Result<(), CliError> {
-    match verb {}
+    match verb {
+        Verb::Render(options) => render::run(&options),
+    }
 }
 
 fn main() -> ExitCode {
