@@ -13,6 +13,7 @@
 
 use super::flow::{MAX_LEVEL, Regime};
 use super::guard::{CleanBlock, rescue};
+use super::quad::{Plain, Quad};
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 
 /// ω_c·(tick) that events are located to, radians.
@@ -62,7 +63,7 @@ impl ExactEvent {
 
     /// Runs one clean block; row n describes input n − 1.
     #[inline(always)]
-    pub fn run(
+    pub fn run<Q: Quad>(
         &self,
         design: &MicroContact,
         state: &mut ContactState,
@@ -71,48 +72,53 @@ impl ExactEvent {
     ) {
         let [mut h0, mut h1, mut h2] = state.heights_m;
         let [mut f1, mut f2] = state.forces_n;
-        let mut y = state.y;
+        let mut y = Q::load(&state.y);
+        // Changes with events only, so that no map waits for a comparison.
+        let mut pressed = state.y[0] < 0.0;
         for ((out, &h3), &f3) in out.iter_mut().zip(&block.height_m).zip(&block.force_n) {
             let c = catmull_rom(h1 - h0, h2 - h1, h3 - h2);
             let force = 0.5 * (f1 + f2);
-            let pressed = usize::from(y[0] < 0.0);
-            let next = self.regimes[pressed].maps[0].apply(y, c, force);
-            let smooth = self.coarsest[pressed] == 0 && usize::from(next[0] < 0.0) == pressed;
-            let step = if smooth {
-                Step { y: next, touched: pressed == 1, onset: None }
+            let next = self.regimes[usize::from(pressed)].maps[0].apply(y, c, force);
+            let before = y.array();
+            let (mut touched, mut onset) = (pressed, None);
+            if (next.first() < 0.0) == pressed && self.coarsest[usize::from(pressed)] == 0 {
+                y = next;
             } else {
-                self.walk(y, c, force)
-            };
-            let contact_force_n = if step.touched {
-                let momentum =
-                    self.mass_rate[0] * (step.y[2] - y[2]) + self.mass_rate[1] * (step.y[3] - y[3]);
-                (force + momentum).max(0.0)
-            } else {
-                0.0
-            };
-            y = step.y;
-            if !(y[0] <= design.leash_m && y[0] >= -design.max_penetration_m)
-                && rescue(design, &mut y, step.y[0], f2)
-            {
-                state.resets = state.resets.saturating_add(1);
+                let step = self.walk(before, c, force);
+                (touched, onset) = (step.touched, step.onset);
+                y = Q::load(&step.y);
+                pressed = y.first() < 0.0;
             }
-            let pad_m = h2 + y[0];
+            let after = y.array();
+            let momentum =
+                self.mass_rate[0] * (after[2] - before[2]) + self.mass_rate[1] * (after[3] - before[3]);
+            let contact_force_n = if touched { at_least_zero(force + momentum) } else { 0.0 };
+            if !(y.first() <= design.leash_m && y.first() >= -design.max_penetration_m) {
+                let mut lost = after;
+                if rescue(design, &mut lost, after[0], f2) {
+                    state.resets = state.resets.saturating_add(1);
+                }
+                y = Q::load(&lost);
+                pressed = lost[0] < 0.0;
+            }
+            let [gap_m, stretch_m, pad_velocity_m_s, _] = y.array();
+            let pad_m = h2 + gap_m;
             *out = ContactSample {
                 height_m: h2,
                 normal_force_n: f2,
                 pad_m,
-                pad_velocity_m_s: y[2],
-                finger_m: pad_m - y[1],
+                pad_velocity_m_s,
+                finger_m: pad_m - stretch_m,
                 contact_force_n,
-                onset: step.onset,
+                onset,
             };
             (h0, h1, h2) = (h1, h2, h3);
             (f1, f2) = (f2, f3);
         }
         state.heights_m = [h0, h1, h2];
         state.forces_n = [f1, f2];
-        state.y = y;
-        state.gap_m = y[0];
+        state.y = y.array();
+        state.gap_m = y.first();
     }
 
     /// One sample with events, piece by piece.
@@ -125,7 +131,7 @@ impl ExactEvent {
         while now < ticks {
             let pressed = usize::from(y[0] < 0.0);
             level = level.max(self.coarsest[pressed].min(self.finest));
-            let mut next = self.regimes[pressed].maps[level].apply(y, c, force_n);
+            let mut next = self.regimes[pressed].maps[level].apply(Plain::load(&y), c, force_n).array();
             let event = usize::from(next[0] < 0.0) != pressed;
             if event && level < self.finest {
                 level += 1;

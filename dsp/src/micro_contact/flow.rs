@@ -11,6 +11,7 @@
 //! unit is never squared, which keeps the undamped flow conservative to 1e-16 a sample.
 
 use super::Probe;
+use super::quad::Quad;
 
 /// Rows and columns of the augmented vector.
 const N: usize = 9;
@@ -29,14 +30,30 @@ pub(super) struct Map {
 impl Map {
     /// Applies the map. The profile and force terms are summed first: they are known early.
     #[inline(always)]
-    pub fn apply(&self, y: [f64; 4], c: [f64; 3], force_n: f64) -> [f64; 4] {
-        let m = &self.columns;
-        let mut next = [0.0; 4];
-        for (i, next) in next.iter_mut().enumerate() {
-            let inputs = (m[4][i] * c[0] + m[5][i] * c[1]) + (m[6][i] * c[2] + m[7][i] * force_n);
-            *next = ((m[0][i] * y[0] + inputs) + m[1][i] * y[1]) + (m[2][i] * y[2] + m[3][i] * y[3]);
-        }
-        next
+    pub fn apply<Q: Quad>(&self, y: Q, c: [f64; 3], force_n: f64) -> Q {
+        let [_, _, _, _, slope, bend, twist, force] = &self.columns;
+        let inputs = Q::load(slope).mul(Q::splat(c[0]));
+        let inputs = Q::load(bend).times_plus(Q::splat(c[1]), inputs);
+        let inputs = Q::load(twist).times_plus(Q::splat(c[2]), inputs);
+        let inputs = Q::load(force).times_plus(Q::splat(force_n), inputs);
+        self.apply_with(y, inputs)
+    }
+
+    /// The same for a straight profile: it rises by `rise_m` within the sample.
+    #[inline(always)]
+    pub fn apply_straight<Q: Quad>(&self, y: Q, rise_m: f64, force_n: f64) -> Q {
+        let inputs = Q::load(&self.columns[4]).mul(Q::splat(rise_m));
+        self.apply_with(y, Q::load(&self.columns[7]).times_plus(Q::splat(force_n), inputs))
+    }
+
+    #[inline(always)]
+    fn apply_with<Q: Quad>(&self, y: Q, inputs: Q) -> Q {
+        let [gap, stretch, pad, finger, ..] = &self.columns;
+        let positions = Q::load(gap).times_plus(y.spread::<0>(), inputs);
+        let positions = Q::load(stretch).times_plus(y.spread::<1>(), positions);
+        let velocities = Q::load(pad).mul(y.spread::<2>());
+        let velocities = Q::load(finger).times_plus(y.spread::<3>(), velocities);
+        positions.add(velocities)
     }
 }
 
