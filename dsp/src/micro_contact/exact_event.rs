@@ -2,10 +2,11 @@
 //!
 //! A sample whose two ends lie in one regime costs one map. Otherwise the sample is walked in a
 //! binary tree: a piece that ends in the other regime is halved, down to a tick; the tick in which
-//! skin and surface meet or part is taken whole and the force it had too much or too little,
-//! k_m·g linear in time over the part ρ of the tick after the event, is given back as
-//! Δv = k_m |g| ρ / 2m_s and Δx = Δv ρ / 3 (error of fourth order in ω_c ρ). No root is searched and
-//! no exponential computed at run time; every node of the tree is visited at most once, so a sample
+//! skin and surface meet or part is taken whole, and the force it had too much or too little, k_m·g
+//! with g a parabola over the part ρ of the tick after the event, is given back as its integrals
+//! Δv = (k_m/m_s) ρ (4g − ġρ)/6 and Δx = (k_m/m_s) ρ² (3g − ġρ)/12 (g, ġ at the end of the tick): an
+//! undamped finger bouncing for 10 s gains less than 1e-6 of its energy to 5e6 N/m. No exponential is
+//! computed at run time; every node of the tree is visited at most once, so a sample
 //! costs at most 2·64 − 1 = 127 maps.
 //!
 //! The profile over a step is the Catmull-Rom cubic through four heights, hence one sample of
@@ -138,19 +139,21 @@ impl ExactEvent {
                 continue;
             }
             let size = 1.0 / (1_usize << level) as f64;
+            let end = [c[0] + size * (2.0 * c[1] + 3.0 * size * c[2]), c[1] + 3.0 * size * c[2], c[2]];
             if event {
-                let at = self.split(y[0], &mut next, size);
+                let free_end = next[0];
+                let at = self.split(y[0], &mut next, end[0] / self.step_s, size * self.step_s);
                 if pressed == 0 {
                     let touch = Onset {
                         offset: (now as f64 / ticks as f64 + at * size).min(1.0),
-                        closing_m_s: at_least_zero(y[0] - next[0]) / (size * self.step_s),
+                        closing_m_s: at_least_zero(y[0] - free_end) / (size * self.step_s),
                     };
                     onset = harder(onset, touch);
                 }
             }
             touched |= pressed == 1 || event;
             y = next;
-            c = [c[0] + size * (2.0 * c[1] + 3.0 * size * c[2]), c[1] + 3.0 * size * c[2], c[2]];
+            c = end;
             now += ticks >> level;
             while level > 0 && now % (ticks >> (level - 1)) == 0 {
                 level -= 1;
@@ -159,18 +162,30 @@ impl ExactEvent {
         Step { y, touched, onset }
     }
 
-    /// Corrects a tick that ended in the other regime; returns where in the tick the event lies.
+    /// Corrects a tick of `tick_s` that ended in the other regime; `slope_m_s` is the profile's at its
+    /// end. Returns where in the tick the event lies, 0…1.
     #[inline(always)]
-    fn split(&self, before: f64, next: &mut [f64; 4], size: f64) -> f64 {
-        let past = next[0].abs();
-        let at = before.abs() / (before.abs() + past).max(f64::MIN_POSITIVE);
-        let rest_s = (1.0 - at) * size * self.step_s;
-        let kick = 0.5 * self.stiffness_per_mass * past * rest_s;
-        let shift = kick * rest_s * (1.0 / 3.0);
+    fn split(&self, before: f64, next: &mut [f64; 4], slope_m_s: f64, tick_s: f64) -> f64 {
+        // Penetration at the end, its rate and its bend, with the sign turned so that it ends positive.
+        let sign = if next[0] < 0.0 { 1.0 } else { -1.0 };
+        let (past, past_before) = (-sign * next[0], -sign * before);
+        let rate = sign * (slope_m_s - next[2]);
+        let bend = 2.0 * (past_before - past + rate * tick_s) / (tick_s * tick_s);
+        // Time from the event to the end: the parabola's root, by Newton from the chord's.
+        let mut rest_s = tick_s * past / (past - past_before).max(f64::MIN_POSITIVE);
+        for _ in 0..2 {
+            let slope = rate - bend * rest_s;
+            let height = past - rest_s * (rate - 0.5 * bend * rest_s);
+            if slope > 0.0 {
+                rest_s = (rest_s + height / slope).clamp(0.0, tick_s);
+            }
+        }
+        let kick = rest_s * (4.0 * past - rate * rest_s) * (1.0 / 6.0) * self.stiffness_per_mass;
+        let shift = rest_s * rest_s * (3.0 * past - rate * rest_s) * (1.0 / 12.0) * self.stiffness_per_mass;
         next[0] += shift;
         next[1] += shift;
         next[2] += kick;
-        at
+        1.0 - rest_s / tick_s
     }
 }
 

@@ -210,6 +210,19 @@ impl MicroContact {
         inputs_stay && still && near(state.y[1], rest[1]) && (hangs || near(state.y[0], rest[0]))
     }
 
+    /// Energy in masses and springs, J, at the last row (the Euler schemes: half a step off). Without
+    /// damper, surface motion and normal force it is conserved; the passivity tests hold it to that.
+    #[must_use]
+    pub fn energy_j(&self, state: &ContactState) -> f64 {
+        let Probe { pad_mass_kg, pad_stiffness_n_m, finger_mass_kg, contact_stiffness_n_m, .. } = self.probe;
+        let [gap, stretch, pad, finger] = state.y;
+        let penetration = gap.min(0.0);
+        0.5 * (pad_mass_kg * pad * pad
+            + finger_mass_kg * finger * finger
+            + pad_stiffness_n_m * stretch * stretch
+            + contact_stiffness_n_m * penetration * penetration)
+    }
+
     /// (d, p, v_s, v_f) of static equilibrium.
     fn resting(&self, force_n: f64) -> [f64; 4] {
         [-force_n / self.probe.contact_stiffness_n_m, force_n / self.probe.pad_stiffness_n_m, 0.0, 0.0]
