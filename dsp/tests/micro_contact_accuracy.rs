@@ -113,7 +113,7 @@ fn the_reference_agrees_with_scipy() {
     let table = include_str!("independent/micro_contact_reference.csv");
     for (profile, fine) in SUITE.iter().chain(&HELD_OUT).zip(references()) {
         let coarse = rows(profile, Integrator::ExactEvent, RATE_HZ);
-        let (mut count, mut worst) = (0, [0.0_f64; 3]);
+        let (mut count, mut worst) = (0, [0.0_f64; 4]);
         let mean = fine.iter().map(|s| s.pad_m).sum::<f64>() / fine.len() as f64;
         let rms = (fine.iter().map(|s| (s.pad_m - mean).powi(2)).sum::<f64>() / fine.len() as f64).sqrt();
         for line in table.lines().filter(|l| l.starts_with(&format!("{},", profile.name))) {
@@ -122,6 +122,7 @@ fn the_reference_agrees_with_scipy() {
             worst[0] = worst[0].max((fine[n].pad_m - field(2)).abs() / rms);
             worst[1] = worst[1].max((fine[n].finger_m - field(3)).abs() / rms);
             worst[2] = worst[2].max((coarse[n].pad_m - field(2)).abs() / rms);
+            worst[3] = worst[3].max((fine[n].pad_velocity_m_s - field(4)).abs());
             count += 1;
         }
         println!(
@@ -132,6 +133,7 @@ fn the_reference_agrees_with_scipy() {
         // The lightest finger bounces chaotically, everything else agrees to 1e-5 or far better.
         let bar = if profile.name == "fractal 1 light" { 1e-3 } else { 1e-5 };
         assert!(worst[0] <= bar && worst[1] <= bar, "{}: {worst:?}", profile.name);
+        assert!(worst[3] <= 1e3 * bar * rms, "{}: velocity {worst:?}", profile.name);
         assert!(worst[2] <= 5e-2, "{}: {worst:?}", profile.name);
     }
 }

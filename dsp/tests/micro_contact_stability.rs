@@ -132,7 +132,11 @@ fn hostile_inputs_are_counted_and_forgotten_within_64_samples() {
                 let mut state = design.at_rest(0.0, 0.5);
                 let rows = run(&design, &mut state, &heights, &forces);
                 assert!(rows.iter().all(is_finite), "{integrator:?} {bad}");
-                assert_eq!(state.resets(), u32::from(!(bad.abs() < 1.0)), "{integrator:?} {bad}");
+                assert_eq!(
+                    state.resets(),
+                    u32::from(bad.is_nan() || bad.abs() > 1000.0),
+                    "{integrator:?} {bad}"
+                );
                 for (row, wanted) in rows.iter().zip(&reference).skip(1064) {
                     assert!((row.pad_m - wanted.pad_m).abs() < 1e-6, "{integrator:?} {bad}: {row:?}");
                 }
@@ -158,7 +162,9 @@ fn a_storm_of_nan_and_infinities_never_comes_out() {
         let forces: Vec<f64> = (0..20_000).map(|_| wild(&mut rng)).collect();
         let mut state = design.at_rest(f64::NAN, f64::INFINITY);
         assert_eq!(state.resets(), 2);
-        assert!(run(&design, &mut state, &heights, &forces).iter().all(is_finite));
+        for row in run(&design, &mut state, &heights, &forces) {
+            assert!(is_finite(&row), "{integrator:?} {row:?}");
+        }
         assert!(state.resets() > 10_000);
         // And it is itself again at once.
         let after = run(&design, &mut state, &[1e-3; 44_100], &[0.5; 44_100]);

@@ -43,6 +43,9 @@ struct Step {
     y: [f64; 4],
     touched: bool,
     onset: Option<Onset>,
+    /// Maps it took; the tests hold the promise of the module with it.
+    #[cfg_attr(not(test), expect(dead_code))]
+    maps: u32,
 }
 
 impl ExactEvent {
@@ -128,11 +131,12 @@ impl ExactEvent {
     fn walk(&self, mut y: [f64; 4], mut c: [f64; 3], force_n: f64) -> Step {
         let ticks = 1_usize << self.finest;
         let (mut now, mut level) = (0, 0);
-        let (mut touched, mut onset) = (false, None);
+        let (mut touched, mut onset, mut maps) = (false, None, 0);
         while now < ticks {
             let pressed = usize::from(y[0] < 0.0);
             level = level.max(self.coarsest[pressed].min(self.finest));
             let mut next = self.regimes[pressed].maps[level].apply(Plain::load(&y), c, force_n).array();
+            maps += 1;
             let event = usize::from(next[0] < 0.0) != pressed;
             if event && level < self.finest {
                 level += 1;
@@ -145,7 +149,7 @@ impl ExactEvent {
                 let at = self.split(y[0], &mut next, end[0] / self.step_s, size * self.step_s);
                 if pressed == 0 {
                     let touch = Onset {
-                        offset: (now as f64 / ticks as f64 + at * size).min(1.0),
+                        offset: (now as f64 / ticks as f64 + at * size).clamp(0.0, 1.0),
                         closing_m_s: at_least_zero(y[0] - free_end) / (size * self.step_s),
                     };
                     onset = harder(onset, touch);
@@ -159,7 +163,7 @@ impl ExactEvent {
                 level -= 1;
             }
         }
-        Step { y, touched, onset }
+        Step { y, touched, onset, maps }
     }
 
     /// Corrects a tick of `tick_s` that ended in the other regime; `slope_m_s` is the profile's at its
@@ -203,5 +207,41 @@ fn harder(known: Option<Onset>, new: Onset) -> Option<Onset> {
     match known {
         Some(known) if known.closing_m_s >= new.closing_m_s => Some(known),
         _ => Some(new),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn no_sample_takes_more_than_127_maps_however_wild_it_is() {
+        let mut rng = Rng::new(11);
+        let mut worst = 0;
+        for stiffness in [1e3, 5e4, 1e6, 5e6, 1e9] {
+            for rate_hz in [8e3, 44.1e3, 192e3] {
+                let probe =
+                    Probe { contact_stiffness_n_m: stiffness, pad_damping_n_s_m: 0.0, ..Probe::default() };
+                let exact = ExactEvent::new(&probe, 1.0 / rate_hz);
+                for _ in 0..4000 {
+                    let size = 1e-6 * libm::exp2(20.0 * rng.uniform() - 10.0);
+                    let c = [rng.normal() * size, rng.normal() * size, rng.normal() * size];
+                    let speed = size * rate_hz * rng.normal();
+                    let step = exact.walk([rng.normal() * size * 0.3, 0.0, speed, 0.0], c, 0.5);
+                    assert!(step.y.iter().all(|y| y.is_finite()));
+                    worst = worst.max(step.maps);
+                }
+            }
+        }
+        assert!(worst <= 127, "{worst} maps");
+        assert!(worst > 10, "the inputs were not wild: {worst} maps");
+    }
+
+    #[test]
+    fn the_cubic_passes_through_its_heights_with_their_slopes() {
+        let [c1, c2, c3] = catmull_rom(1.0, 3.0, 5.0);
+        assert_eq!(c1 + c2 + c3, 3.0);
+        assert_eq!((c1, c1 + 2.0 * c2 + 3.0 * c3), (2.0, 4.0));
     }
 }

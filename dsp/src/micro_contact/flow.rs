@@ -189,3 +189,53 @@ impl Units {
         Map { columns }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::quad::Plain;
+    use super::*;
+
+    const STEP_S: f64 = 1.0 / 44_100.0;
+
+    fn apply(map: &Map, y: [f64; 4], c: [f64; 3], force_n: f64) -> [f64; 4] {
+        map.apply(Plain::load(&y), c, force_n).array()
+    }
+
+    #[test]
+    fn a_free_unloaded_pad_flies_straight() {
+        let free = Regime::new(&Probe::default(), 0.0, STEP_S);
+        let next = apply(&free.maps[0], [1e-3, 0.0, 0.2, 0.2], [0.0; 3], 0.0);
+        assert_eq!((next[1], next[2], next[3]), (0.0, 0.2, 0.2));
+        assert!((next[0] - 1e-3 - 0.2 * STEP_S).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_pressed_skin_without_damper_turns_as_a_harmonic_oscillator() {
+        let probe = Probe { pad_stiffness_n_m: 1e-3, pad_damping_n_s_m: 0.0, ..Probe::default() };
+        let pressed = Regime::new(&probe, 5e4, STEP_S);
+        let omega = libm::sqrt(5e4 / probe.pad_mass_kg);
+        let next = apply(&pressed.maps[0], [-1e-5, 0.0, 0.1, 0.0], [0.0; 3], 0.0);
+        let (sin, cos) = (libm::sin(omega * STEP_S), libm::cos(omega * STEP_S));
+        assert!((next[0] - (-1e-5 * cos + 0.1 / omega * sin)).abs() < 5e-14, "{next:?}");
+        assert!((next[2] - (1e-5 * omega * sin + 0.1 * cos)).abs() < 1e-9, "{next:?}");
+    }
+
+    #[test]
+    fn two_half_steps_make_a_whole_one_at_every_level() {
+        for stiffness in [0.0, 5e4, 1e8] {
+            let regime = Regime::new(&Probe::default(), stiffness, STEP_S);
+            for level in 1..=MAX_LEVEL {
+                let (y, c) = ([1e-5, -2e-5, 0.03, -0.04], [3e-6, -2e-6, 1e-6]);
+                // A level-k map takes its cubic over a whole sample and covers the first 2⁻ᵏ of it.
+                let t = libm::exp2(-(level as f64));
+                let half = apply(&regime.maps[level], y, c, 0.5);
+                let later = [c[0] + t * (2.0 * c[1] + 3.0 * t * c[2]), c[1] + 3.0 * t * c[2], c[2]];
+                let twice = apply(&regime.maps[level], half, later, 0.5);
+                let once = apply(&regime.maps[level - 1], y, c, 0.5);
+                for (a, b) in twice.iter().zip(&once) {
+                    assert!((a - b).abs() <= 1e-12 * (1.0 + b.abs()), "level {level}: {twice:?} {once:?}");
+                }
+            }
+        }
+    }
+}

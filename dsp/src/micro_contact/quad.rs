@@ -80,7 +80,9 @@ impl Quad for Plain {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use x86::{Halves, Whole};
+pub(super) use x86::Halves;
+#[cfg(all(target_arch = "x86_64", feature = "std"))]
+pub(super) use x86::Whole;
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
@@ -173,7 +175,8 @@ mod x86 {
         }
     }
 
-    /// One AVX register. Only for code that runs after AVX2 was detected.
+    /// One AVX register. Only for code that runs after AVX2 and FMA were detected.
+    #[cfg_attr(not(feature = "std"), expect(dead_code))]
     #[derive(Clone, Copy)]
     pub(in super::super) struct Whole(__m256d);
 
