@@ -28,7 +28,8 @@ fn modal_bank(c: &mut Criterion) {
     for modes in [16, 64, 256, 1024, 4096] {
         let groups = bank(modes);
         group.throughput(Throughput::Elements((modes * BLOCK) as u64));
-        for kernel in [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512].into_iter().filter_map(Kernel::find) {
+        for kernel in [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512].into_iter().filter_map(Kernel::find)
+        {
             let (mut states, mut out, mut at) = (vec![GroupState::REST; groups.len()], vec![0.0; BLOCK], 0);
             group.bench_function(format!("{:?}, {modes} modes", kernel.isa()), |b| {
                 b.iter(|| {
