@@ -213,7 +213,7 @@ fn no_signal_drives_the_device_beyond_its_limits() {
                         3 if n % 997 == 0 => 1e5,
                         3 => 0.0,
                         _ => {
-                            if (t * profile.resonance_hz * 2.0) as u64 % 2 == 0 {
+                            if ((t * profile.resonance_hz * 2.0) as u64).is_multiple_of(2) {
                                 1e3
                             } else {
                                 -1e3

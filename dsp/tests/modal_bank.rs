@@ -101,7 +101,9 @@ fn an_impulse_rings_as_the_formula_says_at_every_rate_and_phase() {
 fn the_bank_agrees_with_scipy() {
     let modes = [mode(440.0, 12.0, 0.8, 0.0), mode(3217.5, 55.0, 0.5, 1.1), mode(61.7, 3.0, 1.3, -0.6)];
     // scipy.signal.lfilter, tests/independent/modal_bank.py.
-    let figures: [(f64, [(usize, f64); 7], f64); 2] = [
+    // Rate, (sample, value), rms over half a second.
+    type Figures = (f64, [(usize, f64); 7], f64);
+    let figures: [Figures; 2] = [
         (
             44_100.0,
             [
@@ -132,7 +134,7 @@ fn the_bank_agrees_with_scipy() {
     for (rate, values, rms) in figures {
         let mut impulses = vec![0.0_f32; (0.5 * rate) as usize];
         for (t, j) in [(0.0, 1e-3), (0.05, -4e-4), (0.1, 7e-4)] {
-            impulses[(t * rate as f64).round() as usize] = j;
+            impulses[(t * rate).round() as usize] = j;
         }
         for kernel in kernels() {
             let y = render(kernel, &design(&modes, rate), &impulses, 0, || 64);

@@ -211,10 +211,12 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
         let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
         let rows = &mut sums[..len];
         // SAFETY: the caller has the instructions of V; `at + len` is inside every input. The first set
-        // writes every row, and there is one: `walk` is not called without groups.
+        // writes every row, and there is one: `walk` is not called without groups. So the rows may be read
+        // as what they are, in the same memory.
         unsafe {
             sets::<V, P, MAX>(job, at, rows);
-            V::add_sums(rows.assume_init_ref(), &mut out[at..at + len]);
+            let written = core::slice::from_raw_parts(rows.as_ptr().cast::<Row>(), len);
+            V::add_sums(written, &mut out[at..at + len]);
         }
         if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
             for (group, state) in job.groups.iter().zip(job.states.iter_mut()) {
