@@ -8,7 +8,10 @@
 //!
 //! | file | from → to |
 //! |---|---|
+//! | [`trajectory`] | sparse contact events → position, velocity and force a sample |
 //! | [`butterworth`] | positions → smooth positions |
+//! | [`fractal_noise`] | place and roughness → micro-relief |
+//! | [`gradient_noise_2d`] | place → one octave of it |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
