@@ -12,5 +12,6 @@ pub mod fade;
 pub mod height_field;
 pub mod lattice;
 pub mod raster;
+pub mod sand;
 pub mod solid_materials;
 pub mod solid_noise;
