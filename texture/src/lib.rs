@@ -8,3 +8,5 @@
 pub mod fractal_dimension;
 pub mod height_field;
 pub mod raster;
+#[cfg(feature = "offline")]
+pub mod symmetry;
