@@ -10,7 +10,7 @@ mod wallpaper;
 fn gray(path:&str)->Raster{ let i=image::open(path).unwrap().to_luma16(); Raster{width:i.width() as usize,height:i.height() as usize,values:i.pixels().map(|p| p.0[0] as f64/65535.0).collect()} }
 fn main(){
   if std::env::args().nth(1).as_deref()==Some("groups") { let (mut ok,mut n,mut nolat)=(0,0,0); let mut t=0.0;
-    for g in WallpaperGroup::ALL { let mut line=String::new(); for seed in 0..10u64 { let p=wallpaper::picture(g,256,seed*31+7); let Some(l)=find_lattice(&p) else { nolat+=1; n+=1; line+=" nolat"; continue }; let s=std::time::Instant::now(); let c=averaged_cell(&p,&l); let r=wallpaper_group(&c,&l); t+=s.elapsed().as_secs_f64(); n+=1; if r.group==g {ok+=1;} else { line+=&format!(" {}({:.2},rel {:.3},{:.1?}{:.1?})",r.group.name(),r.agreement,c.reliability,l.t1_px,l.t2_px); } } println!("{} wrong:{line}",g.name()); }
+    for g in WallpaperGroup::ALL { let mut line=String::new(); for seed in 0..10u64 { let p=wallpaper::picture(g,256,seed*31+7); let Some(l)=find_lattice(&p) else { nolat+=1; n+=1; line+=&format!(" nolat{:?}",best_lattice(&p)); continue }; let s=std::time::Instant::now(); let c=averaged_cell(&p,&l); let r=wallpaper_group(&c,&l); t+=s.elapsed().as_secs_f64(); n+=1; if r.group==g {ok+=1;} else { line+=&format!(" {}({:.2},rel {:.3},{:.1?}{:.1?})",r.group.name(),r.agreement,c.reliability,l.t1_px,l.t2_px); } } println!("{} wrong:{line}",g.name()); }
     println!("{ok}/{n} nolat {nolat} ms {:.1}", t*1e3/n as f64); return; }
   let n: u64 = std::env::args().nth(1).and_then(|s| s.parse().ok()).unwrap_or(12);
   let verbose = std::env::args().nth(2).is_some();

@@ -25,7 +25,7 @@ pub struct AveragedCell {
     /// first texel. Mean 0.
     pub cell: Raster,
     /// How much of the mean cell's variance is pattern and not noise, 0–1, from the agreement of two
-    /// halves of the cells.
+    /// halves of the cells (odd and even along t1, along t2, or both: the worst).
     pub reliability: f64,
     /// How many cells each sample averages, at least.
     pub repeats: usize,
@@ -48,31 +48,39 @@ pub fn averaged_cell(picture: &Raster, lattice: &Lattice) -> AveragedCell {
     let even = detrended(picture);
     let longest = length(lattice.t1_px).max(length(lattice.t2_px)).ceil() as usize;
     let side = (longest.div_ceil(SIDE_MULTIPLE).max(2) * SIDE_MULTIPLE).min(LARGEST_SIDE);
-    // Even and odd cells apart: their agreement tells pattern from noise.
-    let mut sums = [vec![0.0; side * side], vec![0.0; side * side]];
-    let mut counts = [vec![0_usize; side * side], vec![0_usize; side * side]];
+    // Four kinds of cells by the parity of m and n: their agreement tells pattern from noise, whichever way it differs.
+    let mut kinds = [(); 4].map(|()| (vec![0.0; side * side], vec![0_usize; side * side]));
     for (m, n) in cells(lattice, picture.width, picture.height) {
-        let half = (m + n).rem_euclid(2) as usize;
+        let (sums, counts) = &mut kinds[(m.rem_euclid(2) + 2 * n.rem_euclid(2)) as usize];
         for j in 0..side {
             for i in 0..side {
                 let (u, v) = (i as f64 / side as f64 + m as f64, j as f64 / side as f64 + n as f64);
                 if let Some(value) = read(&even, lattice.translation(u, v)) {
-                    sums[half][j * side + i] += value;
-                    counts[half][j * side + i] += 1;
+                    sums[j * side + i] += value;
+                    counts[j * side + i] += 1;
                 }
             }
         }
     }
-    let mean = |half: usize, k: usize| sums[half][k] / counts[half][k].max(1) as f64;
-    let halves = [0, 1].map(|half| centred(Raster::from_fn(side, side, |i, j| mean(half, j * side + i))));
-    let cell = centred(Raster::from_fn(side, side, |i, j| {
-        let k = j * side + i;
-        (sums[0][k] + sums[1][k]) / (counts[0][k] + counts[1][k]).max(1) as f64
-    }));
-    let repeats = (0..side * side).map(|k| counts[0][k] + counts[1][k]).min().unwrap_or(0);
-    let agreement = correlation(&halves[0], &halves[1]).max(0.0);
-    // Spearman and Brown: the mean of both halves is more reliable than either.
-    AveragedCell { cell, reliability: 2.0 * agreement / (1.0 + agreement), repeats }
+    let count = |members: &[usize], k: usize| members.iter().map(|&kind| kinds[kind].1[k]).sum::<usize>();
+    let mean = |members: &[usize]| {
+        let sum = |k: usize| members.iter().map(|&kind| kinds[kind].0[k]).sum::<f64>();
+        centred(Raster::from_fn(side, side, |i, j| {
+            let k = j * side + i;
+            sum(k) / count(members, k).max(1) as f64
+        }))
+    };
+    let everything = [0, 1, 2, 3];
+    let agreement = [([0, 2], [1, 3]), ([0, 1], [2, 3]), ([0, 3], [1, 2])]
+        .map(|(one, other)| correlation(&mean(&one), &mean(&other)).max(0.0))
+        .into_iter()
+        .fold(1.0, f64::min);
+    AveragedCell {
+        cell: mean(&everything),
+        // Spearman and Brown: the mean of both halves is more reliable than either.
+        reliability: 2.0 * agreement / (1.0 + agreement),
+        repeats: (0..side * side).map(|k| count(&everything, k)).min().unwrap_or(0),
+    }
 }
 
 /// Takes a picture apart into its averaged cell, the repeated cell and the rest.

@@ -39,11 +39,11 @@ const COARSER: [(f64, f64, f64); 7] = [
 ];
 
 /// The nodes outside every coarser lattice must fit at least this well, relative to those on it.
-const EVEN_LIMIT: f64 = 0.7;
+const EVEN_LIMIT: f64 = 0.92;
 
 /// Half translations that fit better than this share of the nodes mean that the pattern does not
 /// repeat in one of the directions, or on no scale we can see.
-const HALF_LIMIT: f64 = 0.8;
+const HALF_LIMIT: f64 = 0.93;
 
 /// Shortest translation, texels of the (decimated) picture.
 const SHORTEST: f64 = 4.0;

@@ -19,9 +19,15 @@ use super::operation::{Matrix, Operation, closure, holohedry};
 use crate::raster::Raster;
 use rustfft::{FftPlanner, num_complex::Complex};
 
-/// A symmetry correlates at least this much with the cell's reliable part. Random motifs stay below 0.85 under any false
-/// one, true ones reach 0.95 (`analysis_table groups`).
-const SYMMETRY_LIMIT: f64 = 0.9;
+/// A symmetry of a perfectly known cell correlates at least this much. Motifs of four blobs reach up to
+/// 0.96 under a false one, true ones 0.99 (`analysis_table groups`).
+const SYMMETRY_LIMIT: f64 = 0.97;
+
+/// How much less is asked for of a cell that is not perfectly known, per unit of missing reliability.
+const DOUBT: f64 = 0.7;
+
+/// Least that is asked for.
+const LEAST_LIMIT: f64 = 0.85;
 
 /// How much a symmetry may change the lattice's lengths and angles, relative: nearly square lattices are tried as square.
 const METRIC_TOLERANCE: f64 = 0.08;
@@ -119,7 +125,8 @@ pub fn wallpaper_group(averaged: &AveragedCell, lattice: &Lattice) -> CellSymmet
         .into_iter()
         .map(|matrix| spectrum.best_image(&averaged.cell, matrix, reliability))
         .collect();
-    let point_group = largest_symmetric_subgroup(&fits);
+    let limit = (SYMMETRY_LIMIT - DOUBT * (1.0 - averaged.reliability)).max(LEAST_LIMIT);
+    let point_group = largest_symmetric_subgroup(&fits, limit);
     let agreement = point_group.iter().map(|fit| fit.agreement).fold(1.0, f64::min);
     CellSymmetry {
         group: name(&point_group, basis),
@@ -140,8 +147,8 @@ struct Fit {
 }
 
 /// The largest subgroup of the holohedry all of whose members agree; of equals the one that agrees better.
-fn largest_symmetric_subgroup(fits: &[Fit]) -> Vec<Fit> {
-    let good: Vec<&Fit> = fits.iter().filter(|fit| fit.agreement >= SYMMETRY_LIMIT).collect();
+fn largest_symmetric_subgroup(fits: &[Fit], limit: f64) -> Vec<Fit> {
+    let good: Vec<&Fit> = fits.iter().filter(|fit| fit.agreement >= limit).collect();
     let mut best: Vec<Fit> = fits.iter().filter(|fit| fit.matrix == Matrix::IDENTITY).copied().collect();
     let mut best_agreement = 0.0;
     for (i, a) in good.iter().enumerate() {
