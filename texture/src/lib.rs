@@ -41,3 +41,5 @@ pub mod metamer;
 pub mod pyramid;
 #[cfg(feature = "offline")]
 pub mod spectral_resample;
+#[cfg(feature = "offline")]
+pub mod symmetry;
