@@ -27,7 +27,7 @@ use crate::fft2::Fft2;
 use crate::histogram::{Histogram, Matcher};
 use crate::pyramid::{Kind, Pyramid, Sampling, Subband};
 use crate::raster::Raster;
-use crate::resample::{resample, resample_spectrum};
+use crate::spectral_resample::{resample, resample_spectrum};
 use asperity_dsp::DesignError;
 use rustfft::num_complex::Complex64;
 

@@ -93,7 +93,7 @@ fn unequal_sizes_match_and_the_result_has_the_size_of_the_original() {
 fn a_reference_at_half_the_scale_is_brought_to_the_texels_of_the_original() {
     // The same surface on texels half as large: matched to it, the original hardly changes.
     let fine = fractal(256, 5.0, 1.0, 22);
-    let coarse = asperity_texture::resample::resample(&fine, 128, 128);
+    let coarse = asperity_texture::spectral_resample::resample(&fine, 128, 128);
     let options = MetamerOptions { scale: 2.0, ..Default::default() };
     let result = metamer(&coarse, &fine, &options, |_| {}).unwrap();
     let worst = result.image.values.iter().zip(&coarse.values).map(|(a, b)| (a - b).abs());
