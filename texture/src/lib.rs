@@ -48,3 +48,5 @@ pub mod pyramid;
 pub mod shape_from_shading;
 #[cfg(feature = "offline")]
 pub mod spectral_resample;
+#[cfg(feature = "offline")]
+pub mod symmetry;
