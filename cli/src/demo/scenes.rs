@@ -71,11 +71,12 @@ fn plate_scene(plate: &Plate) -> DemoScene {
          relief_m = {RELIEF_M}\n\
          wrap = \"clamp\"\n\n\
          [[actuator]]\n\
-         output = \"acceleration\"\n\
-         full_scale = 100.0          # m/s² at sample value 1\n\n\
+         output = \"displacement\"\n\
+         full_scale = {full_scale}          # metres at sample value 1\n\n\
          [audio]\n\
          gain = {PLATE_GAIN}\n",
         title = plate.title,
+        full_scale = plate.full_scale_m,
     );
     DemoScene {
         name,
@@ -245,8 +246,7 @@ fn scraped() -> DemoScene {
              finger_mass_kg = 0.05\n\
              contact_stiffness_n_m = 1e6\n\n\
              [[actuator]]\n\
-             output = \"acceleration\"\n\
-             full_scale = 400.0\n\n\
+             full_scale = 0.001\n\n\
              [audio]\n\
              gain = 0.5\n"
         ),

@@ -154,7 +154,8 @@ impl Ruler {
         let usable = from.is_finite() && to.is_finite() && from > 0.0 && to > from;
         let (from, to) = if usable { (from, to) } else { (1.0, 10.0) };
         let decades = (to / from).log10();
-        let every = (decades / count.max(1) as f64).ceil().max(1.0) as i64;
+        // `1k` is half as wide as `1.75`.
+        let every = (decades / (2 * count).max(1) as f64).ceil().max(1.0) as i64;
         let numbered: &[i64] = if decades * 3.0 <= count as f64 { &[1, 2, 5] } else { &[1] };
         let mut ticks = Vec::new();
         for decade in from.log10().floor() as i64..=to.log10().ceil() as i64 {

@@ -77,6 +77,9 @@ pub fn draw(take: &Take<'_>) -> String {
         figure.row(190.0, zoom_panels(take));
     }
     for (index, channel) in take.haptic.iter().enumerate() {
+        if channel.samples.iter().all(|&sample| sample == 0.0) {
+            continue;
+        }
         haptic_rows(&mut figure, take, index, channel);
     }
     audio_rows(&mut figure, take);
@@ -175,12 +178,13 @@ fn impulse_panel(take: &Take<'_>) -> Panel {
     .with(Layer::Stems { label: String::new(), colour: palette::IMPACT.to_owned(), points })
 }
 
-/// The window with the most momentum, on the contact it belongs to.
+/// The window with the most collisions, or else the most momentum, on the contact it belongs to.
 fn busiest(take: &Take<'_>) -> Option<(usize, f64)> {
     let mut best: Option<(f64, usize, f64)> = None;
     for (index, contact) in take.contacts.iter().enumerate() {
-        let events = if contact.collisions.is_empty() { &contact.impulses } else { &contact.collisions };
-        let strength = |at: usize| events[at][1].abs();
+        let collides = !contact.collisions.is_empty();
+        let events = if collides { &contact.collisions } else { &contact.impulses };
+        let strength = |at: usize| if collides { 1.0 } else { events[at][1].abs() };
         let (mut first, mut sum) = (0, 0.0);
         for last in 0..events.len() {
             sum += strength(last);
