@@ -20,6 +20,7 @@ mod material;
 mod modal_model;
 pub mod offline;
 mod queue;
+mod recording;
 mod renderer;
 mod scene;
 mod seat;

@@ -5,11 +5,13 @@
 use crate::body::BodySlot;
 use crate::clock::Clock;
 use crate::config::Config;
+use crate::contact_log::{ContactLog, Names};
 use crate::error::{AddError, Refusal, ReportError};
 use crate::event::{Actuator, BodyId, ContactEvent, ContactId, Impact, SurfaceId};
 use crate::material::Material;
 use crate::modal_model::ModalModel;
 use crate::queue::{Dead, Message, Receiver, Sender};
+use crate::recording::Recording;
 use crate::stats::{Counters, Stats};
 use crate::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M, Surface, SurfaceSlot};
 use asperity_dsp::hertz::{Elastic, HertzContact, HertzPulse};
@@ -29,6 +31,7 @@ pub struct Scene {
     to_audio: Sender<Message>,
     from_audio: Receiver<Dead>,
     counters: Arc<Counters>,
+    recording: Option<Recording>,
 }
 
 /// A body that surfaces can be on before its material matters.
@@ -52,6 +55,7 @@ impl Scene {
             to_audio,
             from_audio,
             counters,
+            recording: None,
         }
     }
 
@@ -206,6 +210,14 @@ impl Scene {
         Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
         self.flush_held();
         let sample = stamped.sample;
+        self.send_stamped(sample, event)?;
+        if let Some(recording) = &mut self.recording {
+            recording.note(sample as f64 / self.config.sample_rate_hz, &event);
+        }
+        Ok(())
+    }
+
+    fn send_stamped(&mut self, sample: u64, event: ContactEvent) -> Result<(), Refusal> {
         match event {
             ContactEvent::Moved { contact, .. } => self.send_move(sample, contact, event),
             ContactEvent::Begin { contact, .. } | ContactEvent::End { contact } => {
@@ -294,6 +306,18 @@ impl Scene {
 
     fn send(&mut self, message: Message) -> Result<(), AddError> {
         self.to_audio.send(message).map_err(|_| AddError::QueueFull)
+    }
+
+    /// Records from now on what is reported, with the time at which the engine applies it, so that
+    /// [`offline::render`](crate::offline::render) gives the same samples. Ids that `names` does not
+    /// name are recorded by number. Recording allocates on the game thread as it grows.
+    pub fn start_recording(&mut self, names: &Names) {
+        self.recording = Some(Recording::new(names));
+    }
+
+    /// Ends the recording and hands it over; empty if there was none.
+    pub fn stop_recording(&mut self) -> ContactLog {
+        self.recording.take().map(Recording::into_log).unwrap_or_default()
     }
 
     /// Frees surfaces and bodies that the audio half no longer needs; `add_…` and `replace_…` do it

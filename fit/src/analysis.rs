@@ -214,9 +214,7 @@ impl Work<'_> {
                 hidden |= gate.opens(peaks, noise_std, &[0.0; 4]);
             }
         }
-        let found = self.on_threads(open.len(), &|i| {
-            (open[i], self.band_partials(level, &bands, open[i]))
-        });
+        let found = self.on_threads(open.len(), &|i| (open[i], self.band_partials(level, &bands, open[i])));
         (without_doubles(found, level, samples), hidden)
     }
 
@@ -282,11 +280,7 @@ impl Work<'_> {
                     && (bounds.omega_low..=bounds.omega_high).contains(&omega)
                     && delta <= bounds.delta_high.min(longest_delta)
                     && growth < 1.0;
-                kept.then(|| Partial {
-                    omega,
-                    delta: delta.max(bounds.delta_low),
-                    c: Complex::new(0.0, 0.0),
-                })
+                kept.then(|| Partial { omega, delta: delta.max(bounds.delta_low), c: Complex::new(0.0, 0.0) })
             })
             .collect()
     }
@@ -305,8 +299,7 @@ fn without_doubles(found: Vec<(usize, Vec<Partial>)>, level: Level, samples: usi
     for (k, partials) in found {
         for partial in partials {
             let double = kept.iter().rposition(|(other, p)| {
-                *other + 1 == k
-                    && (p.omega - partial.omega).abs() < tolerance + 0.2 * partial.delta
+                *other + 1 == k && (p.omega - partial.omega).abs() < tolerance + 0.2 * partial.delta
             });
             match double {
                 None => kept.push((k, partial)),

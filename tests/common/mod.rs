@@ -63,7 +63,7 @@ pub fn stroke_of(
     seconds: f64,
 ) -> ContactLog {
     let sample = |t: f64| LogSample {
-        uv: [0.1 + speed_m_s * t / width_m, 0.5],
+        uv: [0.1 + speed_m_s * t / width_m, 0.525],
         velocity_m_s: Some([speed_m_s, 0.0]),
         normal_force_n,
         closing_m_s: 0.0,
