@@ -8,7 +8,9 @@
 //! | [`output`] | files that appear complete, together, or not at all |
 //! | [`progress`] | a bar on a terminal, after a second, and nothing in a pipe |
 //! | [`wav`], [`csv`] | samples and tables on disk |
-//! | [`plot`] | pictures as SVG |
+//! | [`pixels`] | PNG pictures |
+//! | [`plot`] | plots as SVG |
+//! | [`scene_file`], [`build`] | a scene as written, and as an engine |
 //!
 //! A verb is a file with `pub struct Options` (derives `clap::Args`) and `pub fn run(options: &Options)
 //! -> Result<(), CliError>`, one variant of [`Verb`] and one arm of [`run`].
@@ -20,6 +22,7 @@ mod csv;
 mod demo;
 mod error;
 mod output;
+mod pixels;
 mod plot;
 mod progress;
 mod render;
@@ -41,11 +44,13 @@ struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 enum Verb {
+    Demo(demo::Options),
     Render(render::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
+        Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
     }
 }
