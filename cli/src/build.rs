@@ -1,0 +1,229 @@
+//! From a scene file to a running engine.
+
+use crate::error::CliError;
+use crate::scene_file::{
+    ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MaterialEntry, Pixels, ProbeEntry,
+    Roughness as RoughnessEntry, SceneFile, Source, SurfaceEntry, Wrap as WrapEntry,
+};
+use asperity::contact_log::Names;
+use asperity::{
+    ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent, Integrator, Material,
+    ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
+};
+use asperity_texture::height_map::HeightMap;
+use asperity_texture::image_io::{self, Channel};
+
+/// What the command line may set, whatever the scene file says.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Overrides {
+    /// Rate of the outputs, Hz.
+    pub sample_rate_hz: Option<f64>,
+    /// Seed of every random number.
+    pub seed: Option<u64>,
+    /// Integrator of the contact model.
+    pub integrator: Option<Integrator>,
+    /// How sparse positions become a path.
+    pub path: Option<PathMode>,
+}
+
+/// A scene ready to be rendered.
+pub struct Built {
+    /// Game half.
+    pub scene: Scene,
+    /// Audio half.
+    pub renderer: Renderer,
+    /// Ids by the names of the scene file.
+    pub names: Names,
+}
+
+/// Device profiles by the names that `equalise` and `limit` use.
+const DEVICES: [(&str, DeviceProfile); 4] = [
+    ("lra-170", DeviceProfile::LRA_170),
+    ("console-voice-coil", DeviceProfile::CONSOLE_VOICE_COIL),
+    ("haptuator", DeviceProfile::HAPTUATOR),
+    ("vr-controller", DeviceProfile::VR_CONTROLLER),
+];
+
+/// Loads every file that a scene names and builds the engine.
+///
+/// # Errors
+/// When a file cannot be used or the engine refuses a number; the message names file and field.
+pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError> {
+    let at = |error: CliError| error.within(file.path.display());
+    let config = config(file, overrides).map_err(at)?;
+    let seed = config.seed;
+    let (mut scene, renderer) = config.build().map_err(|error| at(CliError::told(error)))?;
+    let mut names = Names::default();
+    for body in &file.bodies {
+        let place = |error: CliError| at(error.within(format!("body \"{}\"", body.name)));
+        let model = match &body.modes {
+            Some(path) => ModalModel::load(path).map_err(CliError::told)?,
+            None => ModalModel { source: String::new(), impulse_n_s: 1.0, modes: Vec::new() },
+        };
+        let material = body.material.as_ref().map(material).transpose().map_err(place)?;
+        let id = match material {
+            Some(material) => scene.add_body_of(model, material),
+            None => scene.add_body(model),
+        };
+        names.bodies.insert(body.name.clone(), id.map_err(|error| place(CliError::told(error)))?);
+    }
+    for entry in &file.surfaces {
+        let place = |error: CliError| at(error.within(format!("surface \"{}\"", entry.name)));
+        let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
+        let surface = surface(entry, body, seed).map_err(place)?;
+        let id = scene.add_surface(surface).map_err(|error| place(CliError::told(error)))?;
+        names.surfaces.insert(entry.name.clone(), id);
+    }
+    Ok(Built { scene, renderer, names })
+}
+
+fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
+    let default = Config::default();
+    Ok(Config {
+        sample_rate_hz: overrides.sample_rate_hz.or(file.sample_rate_hz).unwrap_or(default.sample_rate_hz),
+        seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
+        path: overrides.path.unwrap_or(default.path),
+        integrator: overrides.integrator.unwrap_or(default.integrator),
+        probe: probe(&file.probe)?,
+        actuators: file.actuators.iter().map(actuator).collect::<Result<_, _>>()?,
+        audio: AudioSettings { gain: file.audio.gain, limit: file.audio.limit },
+        max_surfaces: default.max_surfaces.max(file.surfaces.len()),
+        max_bodies: default.max_bodies.max(file.bodies.len()),
+        // A scene is loaded whole before the first block is rendered.
+        queue_capacity: default.queue_capacity.max(2 * (file.surfaces.len() + file.bodies.len())),
+        ..default
+    })
+}
+
+fn probe(entry: &ProbeEntry) -> Result<Probe, CliError> {
+    let preset = match entry.preset.as_deref() {
+        None | Some("fingertip") => Probe::default(),
+        Some(other) => {
+            let what = format!("\"{other}\" is unknown");
+            return Err(CliError::new("probe: preset", what, "must be \"fingertip\", or write the fields"));
+        }
+    };
+    Ok(Probe {
+        pad_mass_kg: entry.pad_mass_kg.unwrap_or(preset.pad_mass_kg),
+        pad_stiffness_n_m: entry.pad_stiffness_n_m.unwrap_or(preset.pad_stiffness_n_m),
+        pad_damping_n_s_m: entry.pad_damping_n_s_m.unwrap_or(preset.pad_damping_n_s_m),
+        finger_mass_kg: entry.finger_mass_kg.unwrap_or(preset.finger_mass_kg),
+        contact_stiffness_n_m: entry.contact_stiffness_n_m.unwrap_or(preset.contact_stiffness_n_m),
+        leash_m: entry.leash_m.unwrap_or(preset.leash_m),
+    })
+}
+
+fn actuator(entry: &ActuatorEntry) -> Result<ActuatorSettings, CliError> {
+    Ok(ActuatorSettings {
+        output: match entry.output {
+            ActuatorOutput::Displacement => Quantity::Displacement,
+            ActuatorOutput::Acceleration => Quantity::Acceleration,
+        },
+        full_scale: entry.full_scale,
+        highpass_hz: entry.highpass_hz,
+        equalise: device("equalise", entry.equalise.as_deref())?,
+        limit: device("limit", entry.limit.as_deref())?,
+        ..ActuatorSettings::default()
+    })
+}
+
+fn device(field: &str, name: Option<&str>) -> Result<Option<DeviceProfile>, CliError> {
+    let Some(name) = name else { return Ok(None) };
+    match DEVICES.iter().find(|(known, _)| *known == name) {
+        Some((_, profile)) => Ok(Some(*profile)),
+        None => {
+            let known = DEVICES.map(|(name, _)| name).join(", ");
+            let at = format!("actuator: {field}");
+            Err(CliError::new(
+                at,
+                format!("\"{name}\" is unknown"),
+                format!("must be none or one of: {known}"),
+            ))
+        }
+    }
+}
+
+fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
+    match entry {
+        MaterialEntry::Constants { young_pa, poisson, density_kg_m3 } => {
+            Ok(Material { young_pa: *young_pa, poisson: *poisson, density_kg_m3: *density_kg_m3 })
+        }
+        MaterialEntry::Preset(name) => Material::by_name(name).ok_or_else(|| {
+            let right = format!("must be one of: {}, or a table of constants", Material::names());
+            CliError::new("material", format!("\"{name}\" is unknown"), right)
+        }),
+    }
+}
+
+fn surface(entry: &SurfaceEntry, body: Option<BodyId>, seed: u64) -> Result<Surface, CliError> {
+    let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
+    let wrap = match entry.wrap {
+        WrapEntry::Repeat => Wrap::Repeat,
+        WrapEntry::Clamp => Wrap::Clamp,
+        WrapEntry::Mirror => Wrap::Mirror,
+    };
+    let mut surface = source(&entry.source, extent, wrap, seed)?.wraps(wrap == Wrap::Repeat);
+    surface = match &entry.roughness {
+        RoughnessEntry::Number(None) => surface,
+        RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),
+        RoughnessEntry::Map { image, gloss } => {
+            let raster = pixels(image)?.raster;
+            let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
+            let flat = HeightMap::flat(extent, 0.5).and_then(|map| map.with_roughness_map(&raster));
+            let map = flat.map_err(|error| CliError::told(error).within(image.path.display()))?;
+            surface.roughness(Roughness::Map(Box::new(map)))
+        }
+    };
+    if let Some(rms_m) = entry.micro_relief_m {
+        surface = surface.micro_relief_m(rms_m);
+    }
+    if let Some(friction) = entry.friction {
+        surface = surface.friction(friction);
+    }
+    if let Some(excitation) = entry.excitation {
+        surface = surface.excitation(match excitation {
+            ExcitationEntry::Collisions => Excitation::Collisions,
+            ExcitationEntry::Force => Excitation::Force,
+            ExcitationEntry::Both => Excitation::Both,
+        });
+    }
+    Ok(match body {
+        Some(body) => surface.on(body),
+        None => surface,
+    })
+}
+
+fn source(source: &Source, extent: Extent, wrap: Wrap, _seed: u64) -> Result<Surface, CliError> {
+    let (width_m, height_m) = (extent.width_m, extent.height_m);
+    let surface = match source {
+        Source::Flat => {
+            Surface::new(HeightMap::flat(extent, 0.5).map_err(CliError::told)?, width_m, height_m)
+        }
+        Source::Map { image, relief_m, invert } => {
+            let heights = pixels(image)?.debanded(wrap);
+            let heights = if *invert { heights.map(|height| 1.0 - height) } else { heights };
+            let map = HeightMap::new(&heights, Extent { relief_m: *relief_m, ..extent }, wrap)
+                .map_err(|error| CliError::told(error).within(image.path.display()))?;
+            Surface::new(map, width_m, height_m)
+        }
+        other => {
+            return Err(CliError::new(
+                "surface",
+                format!("{other:?} cannot be built"),
+                "use a displacement map",
+            ));
+        }
+    };
+    surface.map_err(CliError::told)
+}
+
+fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {
+    let channel = match image.channel {
+        Some('r') => Channel::R,
+        Some('g') => Channel::G,
+        Some('b') => Channel::B,
+        Some('a') => Channel::A,
+        _ => Channel::Luma,
+    };
+    image_io::load_channel(&image.path, channel).map_err(CliError::told)
+}

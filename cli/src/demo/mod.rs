@@ -1,0 +1,3 @@
+//! `asperity demo`.
+pub mod plates;
+pub mod strokes;
