@@ -17,7 +17,6 @@ use asperity_dsp::actuator::{
     self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
     Quantity, RELEASE_S,
 };
-use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::micro_contact::{MicroContact, Probe};
 use asperity_dsp::modal_bank::Kernel;
@@ -25,10 +24,6 @@ use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
-
-/// The contact force above this frequency excites the body, Hz; slower force is the hand, not the
-/// surface.
-const FORCE_HIGH_PASS_HZ: f64 = 30.0;
 
 /// Where the audio limiter holds the peaks: full scale.
 const AUDIO_CEILING: f64 = 1.0;
@@ -97,7 +92,6 @@ impl Renderer {
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
             micro_contact,
             noise: FractalNoise::new(config.seed),
-            force_high_pass: Butterworth::new(FORCE_HIGH_PASS_HZ, rate)?,
             fade_samples: (RELEASE_S * rate).ceil() as u32,
         };
         // Spare voices let stolen and ended contacts fade while new ones sound.
