@@ -24,6 +24,7 @@ mod plot;
 mod progress;
 mod render;
 mod scene_file;
+mod texture;
 mod wav;
 
 use clap::{Parser, Subcommand, error::ErrorKind};
@@ -42,11 +43,15 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Render(render::Options),
+    /// Make surfaces from pictures and from other surfaces
+    #[command(subcommand)]
+    Texture(texture::Verb),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Render(options) => render::run(&options),
+        Verb::Texture(verb) => texture::run(verb),
     }
 }
 
