@@ -27,6 +27,7 @@ mod plot;
 mod progress;
 mod render;
 mod scene_file;
+mod texture;
 mod wav;
 
 use clap::{Parser, Subcommand, error::ErrorKind};
@@ -46,12 +47,16 @@ struct Arguments {
 enum Verb {
     Demo(demo::Options),
     Render(render::Options),
+    /// Make surfaces from pictures and from other surfaces
+    #[command(subcommand)]
+    Texture(texture::Verb),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
+        Verb::Texture(verb) => texture::run(verb),
     }
 }
 
