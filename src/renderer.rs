@@ -6,7 +6,7 @@
 
 use crate::body::BodySeat;
 use crate::config::{ActuatorSettings, AudioSettings, Config};
-use crate::event::{ContactEvent, ContactId, ContactSample};
+use crate::event::{ContactEvent, ContactId, ContactSample, SurfaceId};
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::seat::{Change, Seat};
 use crate::stats::Counters;
@@ -22,6 +22,7 @@ use asperity_dsp::micro_contact::{MicroContact, Probe};
 use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
+use asperity_texture::sand::{SandFigures, SandPicture};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -189,6 +190,17 @@ impl Renderer {
         self.counters.position.store(self.position, Relaxed);
     }
 
+    /// Figures and pictures of the surfaces that are sand, settled; for the end of an offline render.
+    pub(crate) fn finish_sand(&mut self) -> Vec<(SurfaceId, SandFigures, SandPicture)> {
+        let seats = self.seats.iter_mut().enumerate();
+        seats
+            .filter_map(|(slot, seat)| {
+                let (figures, picture) = seat.source()?.sand()?.finish()?;
+                Some((SurfaceId(slot as u32), figures, picture))
+            })
+            .collect()
+    }
+
     /// How many samples can be rendered before the next event, the grid or the end of the block.
     fn stretch(&mut self, wanted: usize) -> usize {
         let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
@@ -234,6 +246,13 @@ impl Renderer {
                 }
             }
             Message::SetSurface { slot, surface } => self.set_surface(slot, surface),
+            Message::ChangeSurface { slot, change } => {
+                if !self.seats[slot].change(&change, self.position) {
+                    Counters::add(&self.counters.quarantined, 1);
+                }
+                // A resting finger feels the change.
+                self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(Voice::wake);
+            }
             Message::RemoveSurface { slot } => {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);

@@ -17,6 +17,7 @@ use crate::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M, Surface, SurfaceSlot};
 use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::hertz::{Elastic, HertzContact, HertzPulse};
 use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_texture::change::SurfaceChange;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -178,6 +179,16 @@ impl Scene {
         self.send(Message::SetSurface { slot, surface })?;
         self.surfaces[slot] = true;
         Ok(())
+    }
+
+    /// Changes parameters of a surface's source while it is touched, without a click. A change the
+    /// source does not take (another kind, or impossible numbers) is counted as quarantined.
+    ///
+    /// # Errors
+    /// When the surface is not in this scene or the queue is full.
+    pub fn change_surface(&mut self, id: SurfaceId, change: SurfaceChange) -> Result<(), AddError> {
+        self.known_surface(id)?;
+        self.send(Message::ChangeSurface { slot: id.0 as usize, change })
     }
 
     /// Takes a surface away; contacts on it fade.

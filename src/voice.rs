@@ -204,6 +204,11 @@ impl Voice {
         let _: Moved = self.trajectory.moved(&slot.trajectory, &event);
     }
 
+    /// Something changed under a resting contact.
+    pub(crate) fn wake(&mut self) {
+        self.asleep = false;
+    }
+
     /// Starts to fade, if it has not yet.
     pub(crate) fn fade(&mut self, shared: &Shared) {
         if self.phase == Phase::Sounding {
@@ -277,6 +282,12 @@ impl Voice {
             contact: self.slot,
         };
         seat.sample(&path, &shared.noise, &mut scratch.surface, &mut scratch.rough);
+        // A surface that gives way lies lower by as much as the force presses it in.
+        let surface = &mut scratch.surface;
+        let give = surface.compliance_m_n[..n].iter().zip(&scratch.force_n);
+        for (height_m, (compliance_m_n, force_n)) in surface.height_m.iter_mut().zip(give) {
+            *height_m -= compliance_m_n * force_n;
+        }
     }
 
     /// Tells the source how it is touched, and hears what it does back.
