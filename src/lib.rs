@@ -11,13 +11,18 @@
 //! ```
 
 mod body;
+pub mod channel_map;
 mod clock;
 mod config;
 pub mod contact_log;
+#[cfg(feature = "device")]
+pub mod device;
+pub mod drift;
 mod error;
 mod event;
 mod material;
 mod modal_model;
+pub mod null_sink;
 pub mod offline;
 mod queue;
 mod recording;

@@ -66,6 +66,12 @@ impl<T> Receiver<T> {
         self.0.peek().ok()
     }
 
+    /// How many items wait.
+    #[cfg(feature = "device")]
+    pub(crate) fn waiting(&self) -> usize {
+        self.0.slots()
+    }
+
     /// The next item.
     pub(crate) fn receive(&mut self) -> Option<T> {
         self.0.pop().ok()

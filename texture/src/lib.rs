@@ -13,6 +13,8 @@ pub mod fade;
 pub mod height_field;
 pub mod height_map;
 pub mod lattice;
+pub mod raster;
+pub mod sand;
 pub mod solid_materials;
 pub mod solid_noise;
 
@@ -20,7 +22,6 @@ pub mod solid_noise;
 pub mod deband;
 #[cfg(feature = "image")]
 pub mod image_io;
-pub mod raster;
 mod resample;
 mod spline;
 pub mod wrap;
@@ -33,10 +34,20 @@ pub mod fft2;
 #[cfg(feature = "offline")]
 pub mod fractal_dimension;
 #[cfg(feature = "offline")]
+pub mod gradient_field;
+#[cfg(feature = "offline")]
 pub mod histogram;
+#[cfg(feature = "offline")]
+pub mod light;
 #[cfg(feature = "offline")]
 pub mod metamer;
 #[cfg(feature = "offline")]
+pub mod normal_map;
+#[cfg(feature = "offline")]
 pub mod pyramid;
 #[cfg(feature = "offline")]
+pub mod shape_from_shading;
+#[cfg(feature = "offline")]
 pub mod spectral_resample;
+#[cfg(feature = "offline")]
+pub mod symmetry;

@@ -211,10 +211,12 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
         let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
         let rows = &mut sums[..len];
         // SAFETY: the caller has the instructions of V; `at + len` is inside every input. The first set
-        // writes every row, and there is one: `walk` is not called without groups.
+        // writes every row, and there is one: `walk` is not called without groups. So the rows may be read
+        // as what they are, in the same memory.
         unsafe {
             sets::<V, P, MAX>(job, at, rows);
-            V::add_sums(rows.assume_init_ref(), &mut out[at..at + len]);
+            let written = core::slice::from_raw_parts(rows.as_ptr().cast::<Row>(), len);
+            V::add_sums(written, &mut out[at..at + len]);
         }
         if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
             for (group, state) in job.groups.iter().zip(job.states.iter_mut()) {
@@ -226,18 +228,20 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
     }
 }
 
-/// Gives every lane the decay that `f32` could not store.
+/// Gives every lane the decay and the phase that `f32` could not store.
 #[inline(always)]
 unsafe fn trim<V: Vector, const P: usize>(group: &ModeGroup, state: &mut GroupState) {
     for p in 0..P {
-        // SAFETY: lane p · LEN and the LEN − 1 after it are inside arrays of LANES = P · LEN values.
+        let lane = p * V::LEN;
+        // SAFETY: `lane` and the LEN − 1 after it are inside arrays of LANES = P · LEN values.
         unsafe {
-            let by = V::load(group.trim.as_ptr().add(p * V::LEN));
-            for lanes in [&mut state.y, &mut state.d] {
-                let at = lanes.as_mut_ptr().add(p * V::LEN);
-                let x = V::load(at);
-                x.mul_add(by, x).store(at);
-            }
+            let read = |lanes: &[f32; LANES]| V::load(lanes.as_ptr().add(lane));
+            let (y, d) = (read(&state.y), read(&state.d));
+            // The small parts are added up before they meet the large one.
+            let to_y = y.mul_add(read(&group.trim_yy), d.mul_add(read(&group.trim_yd), V::splat(0.0)));
+            let to_d = y.mul_add(read(&group.trim_dy), d.mul_add(read(&group.trim_dd), V::splat(0.0)));
+            y.add(to_y).store(state.y.as_mut_ptr().add(lane));
+            d.add(to_d).store(state.d.as_mut_ptr().add(lane));
         }
     }
 }
