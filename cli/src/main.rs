@@ -17,10 +17,13 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+mod bench_scene;
 mod build;
 mod csv;
 mod demo;
 mod error;
+mod headroom;
+mod measure;
 mod output;
 mod pixels;
 mod plot;
@@ -46,12 +49,14 @@ struct Arguments {
 enum Verb {
     Demo(demo::Options),
     Render(render::Options),
+    Headroom(headroom::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
+        Verb::Headroom(options) => headroom::run(&options),
     }
 }
 

@@ -41,7 +41,8 @@ fn logs_that_are_no_logs_are_refused_with_their_line() {
 #[test]
 fn unknown_names_are_answered_with_the_known_ones() {
     let scene = Scene::new();
-    let impact = |body: &str, striker: &str| support::impact(0.1).replace("bar", body).replace("steel", striker);
+    let impact =
+        |body: &str, striker: &str| support::impact(0.1).replace("bar", body).replace("steel", striker);
     for (log, parts) in [
         (stroke(1, 0.1).replace("plate", "plat"), ["\"plat\"", "plate"]),
         (impact("bra", "steel"), ["\"bra\"", "bar"]),
@@ -152,8 +153,9 @@ fn a_thousand_contacts_at_once_steal_voices_and_say_so() {
 #[test]
 fn sixty_four_contacts_sound_without_stealing() {
     let scene = Scene::new();
-    let mut lines: Vec<String> =
-        (0..64).flat_map(|contact| stroke(contact, 0.1).lines().map(str::to_owned).collect::<Vec<_>>()).collect();
+    let mut lines: Vec<String> = (0..64)
+        .flat_map(|contact| stroke(contact, 0.1).lines().map(str::to_owned).collect::<Vec<_>>())
+        .collect();
     let time = |line: &str| -> f64 { line[5..line.find(',').unwrap()].parse().unwrap() };
     lines.sort_by(|a, b| time(a).total_cmp(&time(b)));
     scene.write("stroke.jsonl", lines.join("\n"));
@@ -224,7 +226,10 @@ fn enormous_png() -> Vec<u8> {
 
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0u32, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(*byte), |crc, _| if crc & 1 == 1 { (crc >> 1) ^ 0xEDB8_8320 } else { crc >> 1 })
+        (0..8).fold(
+            crc ^ u32::from(*byte),
+            |crc, _| if crc & 1 == 1 { (crc >> 1) ^ 0xEDB8_8320 } else { crc >> 1 },
+        )
     })
 }
 
@@ -258,7 +263,11 @@ fn scene_files_with_absurd_numbers_are_refused_by_key() {
         ("tail_s = 0.2", "tail_s = 1e300", "tail_s"),
         ("full_scale = 1.0", "full_scale = 0", "full_scale"),
         ("material = \"steel\"", "material = \"cheese\"", "material"),
-        ("material = \"steel\"", "material = { young_pa = inf, poisson = 0.3, density_kg_m3 = 1000 }", "young_pa"),
+        (
+            "material = \"steel\"",
+            "material = { young_pa = inf, poisson = 0.3, density_kg_m3 = 1000 }",
+            "young_pa",
+        ),
         ("roughness = 0.7", "roughnes = 0.7", "roughnes"),
         ("body = \"bar\"", "body = \"bra\"", "body"),
         ("full_scale = 1.0", "full_scale = 1.0\nequalise = \"tooth\"", "equalise"),

@@ -51,7 +51,9 @@ fn help_and_version_go_to_stdout() {
         assert!(out.contains("asperity"));
     }
     let (_, out, _) = told(&asperity(Path::new("."), &["render", "--help"]));
-    for option in ["--rate", "--block", "--seed", "--integrator", "--path", "--trace", "--plot", "--force", "--json"] {
+    for option in
+        ["--rate", "--block", "--seed", "--integrator", "--path", "--trace", "--plot", "--force", "--json"]
+    {
         assert!(out.contains(option), "{out}");
     }
 }

@@ -111,7 +111,10 @@ impl Scene {
     /// Samples of a WAV file, interleaved.
     pub fn samples(&self, name: &str) -> Vec<f32> {
         let mut reader = hound::WavReader::open(self.path(name)).unwrap();
-        assert_eq!((reader.spec().bits_per_sample, reader.spec().sample_format), (32, hound::SampleFormat::Float));
+        assert_eq!(
+            (reader.spec().bits_per_sample, reader.spec().sample_format),
+            (32, hound::SampleFormat::Float)
+        );
         reader.samples::<f32>().map(Result::unwrap).collect()
     }
 }
