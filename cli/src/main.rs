@@ -29,6 +29,7 @@ mod pixels;
 mod plot;
 mod progress;
 mod render;
+mod report;
 mod scene_file;
 mod wav;
 
@@ -50,6 +51,7 @@ enum Verb {
     Demo(demo::Options),
     Render(render::Options),
     Headroom(headroom::Options),
+    Report(report::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -57,6 +59,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
         Verb::Headroom(options) => headroom::run(&options),
+        Verb::Report(options) => report::run(&options),
     }
 }
 
