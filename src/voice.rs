@@ -318,7 +318,8 @@ impl Voice {
             if let Some(onset) = row.onset {
                 scratch.out.collisions += 1;
                 if excitation != Excitation::Force {
-                    self.collide(slot, shared, &onset, sample);
+                    // An onset is dated within the step that ends at its row.
+                    self.collide(slot, shared, &onset, sample.saturating_sub(1));
                 }
             }
             let alternating_n = self.force_high_pass.tick(&shared.force_high_pass, row.contact_force_n).high;
