@@ -17,15 +17,19 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+mod bench_scene;
 mod build;
 mod csv;
 mod demo;
 mod error;
+mod headroom;
+mod measure;
 mod output;
 mod pixels;
 mod plot;
 mod progress;
 mod render;
+mod report;
 mod scene_file;
 mod texture;
 mod wav;
@@ -50,6 +54,8 @@ enum Verb {
     /// Make surfaces from pictures and from other surfaces
     #[command(subcommand)]
     Texture(texture::Verb),
+    Headroom(headroom::Options),
+    Report(report::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -57,6 +63,8 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
         Verb::Texture(verb) => texture::run(verb),
+        Verb::Headroom(options) => headroom::run(&options),
+        Verb::Report(options) => report::run(&options),
     }
 }
 
