@@ -13,7 +13,7 @@
 //! 5. *Refuse* scores below [`MERIT_LIMIT`], and lattices at whose half translations the picture fits nearly as well:
 //!    stripes fit themselves at any shift along them.
 //!
-//! Measured (`analysis_table lattice`): every row of the document-style stress table at 1.00.
+//! Measured (`analysis_table lattice`, five kinds, 256²): at least 0.98 in every row: noise to σ = 2, gradient, warp to 2 texels.
 
 use super::detrend::{decimated, detrended};
 use super::feature_matrix::feature_matrix;
@@ -39,11 +39,11 @@ const COARSER: [(f64, f64, f64); 7] = [
 ];
 
 /// The nodes outside every coarser lattice must fit at least this well, relative to those on it.
-const EVEN_LIMIT: f64 = 0.92;
+const EVEN_LIMIT: f64 = 0.89;
 
 /// Half translations that fit better than this share of the nodes mean that the pattern does not
-/// repeat in one of the directions, or on no scale we can see.
-const HALF_LIMIT: f64 = 0.93;
+/// repeat in one of the directions, or on no scale we can see. Above [`EVEN_LIMIT`]: what is too uneven to divide the cell must not refuse it.
+const HALF_LIMIT: f64 = 0.92;
 
 /// Shortest translation, texels of the (decimated) picture.
 const SHORTEST: f64 = 4.0;
@@ -55,8 +55,8 @@ const SEARCH_SIDE: usize = 384;
 pub const SMALLEST_SIDE: usize = 24;
 
 /// The merit at which a lattice is as likely as none, standard errors. Of 216 pictures without a pattern (Brownian
-/// surfaces, blobs, packed grains, stripes, white noise) all but one stay below 4.4; patterns with 7 periods or more
-/// reach 8.7 under any stress of the table, with 5 periods 5.4.
+/// surfaces, blobs, packed grains, stripes, white noise) none reaches 3.8; patterns with 7 periods or more
+/// reach 8.9 under any stress of the table, with 5 periods 5.4.
 pub const MERIT_LIMIT: f64 = 5.0;
 
 /// The lattice of a picture's pattern, or nothing if no pattern repeats along two directions. There is no
@@ -69,17 +69,35 @@ pub fn find_lattice(picture: &Raster) -> Option<Lattice> {
 /// The best lattice there is, however unlikely; nothing for pictures that are flat or small.
 #[must_use]
 pub fn best_lattice(picture: &Raster) -> Option<Lattice> {
-    if picture.width.min(picture.height) < SMALLEST_SIDE {
+    let side = picture.width.min(picture.height);
+    if side < SMALLEST_SIDE {
         return None;
     }
-    let factor = (picture.width.min(picture.height) / SEARCH_SIDE).max(1);
-    let fit = Fit::new(&feature_matrix(&detrended(&decimated(picture, factor))))?;
+    let factor = (side / SEARCH_SIDE).max(1);
+    let whole = search(&decimated(picture, factor), factor as f64);
+    if factor == 1 || whole.is_some_and(|lattice| lattice.confidence >= 0.5) {
+        return whole;
+    }
+    // Averaging may have washed a fine pattern out: look at the middle at full resolution.
+    let middle = search(&central(picture, 2 * SEARCH_SIDE), 1.0);
+    [whole, middle].into_iter().flatten().max_by(|a, b| a.confidence.total_cmp(&b.confidence))
+}
+
+/// The middle of a picture, at most `side` texels wide and high.
+fn central(picture: &Raster, side: usize) -> Raster {
+    let (width, height) = (picture.width.min(side), picture.height.min(side));
+    let (left, top) = ((picture.width - width) / 2, (picture.height - height) / 2);
+    Raster::from_fn(width, height, |x, y| picture.at(left + x, top + y))
+}
+
+/// The best lattice of a picture, its translations multiplied by `scale`.
+fn search(picture: &Raster, scale: f64) -> Option<Lattice> {
+    let fit = Fit::new(&feature_matrix(&detrended(picture)))?;
     let minima = fit.minima(SHORTEST);
     let scored = candidates(&fit, &minima);
     let best = scored.into_iter().filter(|c| c.even).max_by(|a, b| a.merit.total_cmp(&b.merit))?;
     let chosen = finest(&fit, &minima, best);
     let merit = if halves_fit(&fit, &chosen) { 0.0 } else { chosen.merit };
-    let scale = factor as f64;
     let [t1_px, t2_px] = chosen.basis.map(|t| [t[0] * scale, t[1] * scale]);
     Some(Lattice { t1_px, t2_px, confidence: confidence(merit) })
 }
@@ -117,7 +135,8 @@ fn candidates(fit: &Fit, minima: &[Minimum]) -> Vec<Candidate> {
                     continue;
                 }
                 tried.push(basis);
-                if let Some(candidate) = refined(fit, minima, basis).and_then(|refined| scored(fit, refined)) {
+                if let Some(candidate) = refined(fit, minima, basis).and_then(|refined| scored(fit, refined))
+                {
                     found.push(candidate);
                 }
             }
