@@ -3,8 +3,8 @@
 //! The document cuts the minima with a threshold its user tunes, and no threshold serves all pictures: the best fixed one moves
 //! from 0.3 to 0.85 between clean and noisy patterns. Ours has none:
 //!
-//! 1. *Sweep.* The deepest n minima, n in [`SWEEP`], each give candidates: all pairs of the
-//!    shortest among them, reduced.
+//! 1. *Sweep.* The deepest n minima, n in `SWEEP`, and those down to a share of the deepest, each give candidates:
+//!    all pairs of the shortest among them, reduced.
 //! 2. *Refine.* Each candidate is fitted to the minima near its nodes by least squares, outwards from the centre.
 //! 3. *Score.* Mean depth of the matrix over the nodes beyond the first ring, near ones counting more (a warped
 //!    pattern loses its far nodes first), in standard errors of as many random shifts. Chance minima propose, but do not predict others.
@@ -23,6 +23,9 @@ use crate::raster::Raster;
 
 /// Numbers of deepest minima that propose lattices.
 const SWEEP: [usize; 16] = [2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181, 256, 362];
+
+/// Depths, as a share of the deepest, down to which minima propose lattices.
+const DEPTH_SWEEP: [f64; 6] = [0.95, 0.9, 0.8, 0.65, 0.5, 0.35];
 
 /// Of each of them, this many shortest are paired.
 const PAIRED: usize = 7;
@@ -124,7 +127,10 @@ struct Candidate {
 fn candidates(fit: &Fit, minima: &[Minimum]) -> Vec<Candidate> {
     let mut found: Vec<Candidate> = Vec::new();
     let mut tried: Vec<[[f64; 2]; 2]> = Vec::new();
-    for count in SWEEP {
+    // By number, and by depth: where thousands of nodes are equally deep, no number of them holds the shortest.
+    let deepest = minima.first().map_or(0.0, |m| m.depth);
+    let by_depth = DEPTH_SWEEP.map(|share| minima.partition_point(|m| m.depth >= share * deepest));
+    for count in SWEEP.into_iter().filter(|n| *n < 2 * minima.len()).chain(by_depth) {
         let mut shortest: Vec<&Minimum> = minima.iter().take(count).collect();
         shortest.sort_by(|a, b| length(a.shift).total_cmp(&length(b.shift)));
         shortest.truncate(PAIRED);
@@ -140,9 +146,6 @@ fn candidates(fit: &Fit, minima: &[Minimum]) -> Vec<Candidate> {
                     found.push(candidate);
                 }
             }
-        }
-        if count >= minima.len() {
-            break;
         }
     }
     found
