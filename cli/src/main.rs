@@ -24,6 +24,8 @@ mod plot;
 mod progress;
 mod render;
 mod scene_file;
+#[allow(dead_code)]
+mod texture_analyze;
 mod wav;
 
 use clap::{Parser, Subcommand, error::ErrorKind};

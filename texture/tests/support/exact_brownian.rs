@@ -80,7 +80,7 @@ pub fn quantise(surface: &Raster, levels: u32) -> Raster {
 }
 
 fn strip(mut n: usize, factor: usize) -> usize {
-    while n % factor == 0 {
+    while n.is_multiple_of(factor) {
         n /= factor;
     }
     n
