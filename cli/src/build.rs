@@ -10,8 +10,14 @@ use asperity::{
     ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent, Integrator, Material,
     ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
 };
+use asperity_texture::brownian::BrownianDesign;
+use asperity_texture::height_field::HeightField;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
+use asperity_texture::lattice::Lattice;
+use asperity_texture::raster::Raster;
+use asperity_texture::solid_materials::SolidMaterial;
+use asperity_texture::solid_noise::SolidNoise;
 
 /// What the command line may set, whatever the scene file says.
 #[derive(Debug, Clone, Copy, Default)]
@@ -51,7 +57,7 @@ const DEVICES: [(&str, DeviceProfile); 4] = [
 pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError> {
     let at = |error: CliError| error.within(file.path.display());
     let config = config(file, overrides).map_err(at)?;
-    let seed = config.seed;
+    let (seed, rate_hz) = (config.seed, config.sample_rate_hz);
     let (mut scene, renderer) = config.build().map_err(|error| at(CliError::told(error)))?;
     let mut names = Names::default();
     for body in &file.bodies {
@@ -70,7 +76,7 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
     for entry in &file.surfaces {
         let place = |error: CliError| at(error.within(format!("surface \"{}\"", entry.name)));
         let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
-        let surface = surface(entry, body, seed).map_err(place)?;
+        let surface = surface(entry, body, seed, rate_hz).map_err(place)?;
         let id = scene.add_surface(surface).map_err(|error| place(CliError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
@@ -155,22 +161,37 @@ fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
     }
 }
 
-fn surface(entry: &SurfaceEntry, body: Option<BodyId>, seed: u64) -> Result<Surface, CliError> {
-    let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
+/// What every source of a scene shares.
+#[derive(Clone, Copy)]
+struct Ground {
+    extent: Extent,
+    wrap: Wrap,
+    seed: u64,
+    sample_rate_hz: f64,
+}
+
+fn surface(
+    entry: &SurfaceEntry,
+    body: Option<BodyId>,
+    seed: u64,
+    sample_rate_hz: f64,
+) -> Result<Surface, CliError> {
     let wrap = match entry.wrap {
         WrapEntry::Repeat => Wrap::Repeat,
         WrapEntry::Clamp => Wrap::Clamp,
         WrapEntry::Mirror => Wrap::Mirror,
     };
-    let mut surface = source(&entry.source, extent, wrap, seed)?.wraps(wrap == Wrap::Repeat);
+    let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
+    let ground = Ground { extent, wrap, seed, sample_rate_hz };
+    let mut surface = source(&entry.source, ground)?;
     surface = match &entry.roughness {
         RoughnessEntry::Number(None) => surface,
         RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),
         RoughnessEntry::Map { image, gloss } => {
             let raster = pixels(image)?.raster;
             let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
-            let flat = HeightMap::flat(extent, 0.5).and_then(|map| map.with_roughness_map(&raster));
-            let map = flat.map_err(|error| CliError::told(error).within(image.path.display()))?;
+            let map = HeightMap::new(&raster, extent, wrap)
+                .map_err(|error| CliError::told(error).within(image.path.display()))?;
             surface.roughness(Roughness::Map(Box::new(map)))
         }
     };
@@ -193,28 +214,63 @@ fn surface(entry: &SurfaceEntry, body: Option<BodyId>, seed: u64) -> Result<Surf
     })
 }
 
-fn source(source: &Source, extent: Extent, wrap: Wrap, _seed: u64) -> Result<Surface, CliError> {
-    let (width_m, height_m) = (extent.width_m, extent.height_m);
-    let surface = match source {
+fn source(source: &Source, ground: Ground) -> Result<Surface, CliError> {
+    let Ground { extent, wrap, seed, sample_rate_hz } = ground;
+    let repeats = wrap == Wrap::Repeat;
+    match source {
         Source::Flat => {
-            Surface::new(HeightMap::flat(extent, 0.5).map_err(CliError::told)?, width_m, height_m)
+            let plane = HeightMap::flat(extent, asperity::DEFAULT_ROUGHNESS).map_err(CliError::told)?;
+            finish(Box::new(plane), extent, repeats)
         }
         Source::Map { image, relief_m, invert } => {
-            let heights = pixels(image)?.debanded(wrap);
-            let heights = if *invert { heights.map(|height| 1.0 - height) } else { heights };
+            let heights = upright(pixels(image)?.debanded(wrap), *invert);
             let map = HeightMap::new(&heights, Extent { relief_m: *relief_m, ..extent }, wrap)
                 .map_err(|error| CliError::told(error).within(image.path.display()))?;
-            Surface::new(map, width_m, height_m)
+            finish(Box::new(map), extent, repeats)
         }
-        other => {
-            return Err(CliError::new(
-                "surface",
-                format!("{other:?} cannot be built"),
-                "use a displacement map",
-            ));
+        Source::Solid(solid) => {
+            let material = SolidMaterial::from_name(&solid.preset).ok_or_else(|| {
+                let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ");
+                CliError::new(
+                    "solid",
+                    format!("\"{}\" is unknown", solid.preset),
+                    format!("must be one of: {known}"),
+                )
+            })?;
+            let noise =
+                SolidNoise::new(material.parameters(), seed, sample_rate_hz).map_err(CliError::told)?;
+            finish(Box::new(noise), extent, false)
         }
-    };
-    surface.map_err(CliError::told)
+        Source::Brownian { hurst, rms_m, seed: own, cells } => {
+            let mut design = BrownianDesign::new(*hurst, *rms_m, own.unwrap_or(seed));
+            design.size = cells.map_or(design.size, |cells| cells as usize);
+            let relief = design.surface().map_err(CliError::told)?;
+            // The relief is isotropic and repeats in a square; a surface of another shape is cut from it.
+            let side_m = extent.width_m.max(extent.height_m);
+            let square = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
+            let map = HeightMap::new(&relief, square, Wrap::Repeat).map_err(CliError::told)?;
+            finish(Box::new(map), extent, extent.width_m == extent.height_m)
+        }
+        Source::Lattice(lattice) => {
+            let relief_m = lattice.relief_m;
+            let cell = upright(pixels(&lattice.cell)?.debanded(Wrap::Repeat), lattice.invert);
+            let lattice = Lattice::new(&cell.map(|height| height * relief_m), lattice.t1_m, lattice.t2_m)
+                .map_err(|error| CliError::told(error).within("lattice"))?;
+            finish(Box::new(lattice), extent, false)
+        }
+        Source::Sand(_) => Err(CliError::new("sand", "cannot be built", "use another source")),
+    }
+}
+
+/// A depth map holds what a height map lacks.
+fn upright(heights: Raster, invert: bool) -> Raster {
+    if invert { heights.map(|height| 1.0 - height) } else { heights }
+}
+
+/// `repeats`: a jump of uv by a whole tile is no movement.
+fn finish(source: Box<dyn HeightField>, extent: Extent, repeats: bool) -> Result<Surface, CliError> {
+    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
+    Ok(surface.wraps(repeats))
 }
 
 fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {

@@ -63,8 +63,9 @@ fn c_peer() -> Option<PathBuf> {
     built.is_ok_and(|s| s.success()).then_some(binary)
 }
 
-fn c_segment(peer: &PathBuf, modes: usize) -> Option<Vec<f64>> {
-    let run = Command::new(peer).args([modes.to_string(), "8".into()]).output().ok()?;
+fn c_segment(peer: &PathBuf, modes: usize, phase: bool) -> Option<Vec<f64>> {
+    let arguments = [modes.to_string(), "8".into(), "phase".into()];
+    let run = Command::new(peer).args(&arguments[..if phase { 3 } else { 2 }]).output().ok()?;
     String::from_utf8(run.stdout).ok()?.split_whitespace().map(|x| x.parse().ok()).collect()
 }
 
@@ -89,14 +90,14 @@ fn main() {
     for kernel in &kernels {
         print!("  {:>14}  {:>14}", format!("{:?}", kernel.isa()), "2 gained inputs");
     }
-    println!("  {:>14}", "C -ffast-math");
+    println!("  {:>14}  {:>14}", "C -ffast-math", "C with phase");
     let mut sizes: Vec<usize> = std::env::args().skip(2).filter_map(|a| a.parse().ok()).collect();
     if sizes.is_empty() {
         sizes = vec![16, 32, 64, 100, 256, 1024, 4096];
     }
     let mut rng = Rng::new(1);
     for modes in sizes {
-        let mut columns = vec![Vec::new(); 2 * kernels.len() + 1];
+        let mut columns = vec![Vec::new(); 2 * kernels.len() + 2];
         for _ in 0..rounds {
             for (k, kernel) in kernels.iter().enumerate() {
                 for (j, inputs) in [0, 2].into_iter().enumerate() {
@@ -105,8 +106,10 @@ fn main() {
                     }
                 }
             }
-            if let Some(rates) = peer.as_ref().and_then(|p| c_segment(p, modes)) {
-                columns[2 * kernels.len()].extend(rates);
+            for (j, phase) in [false, true].into_iter().enumerate() {
+                if let Some(rates) = peer.as_ref().and_then(|p| c_segment(p, modes, phase)) {
+                    columns[2 * kernels.len() + j].extend(rates);
+                }
             }
         }
         print!("{modes:>6}");

@@ -98,3 +98,75 @@ fn in_cell(column: u32, row: u32, x: f32, y: f32, key: u32) -> f32 {
     let lower = c + fx * (d - c);
     upper + fy * (lower - upper)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    fn at(x: f64, y: f64, key: u32) -> f64 {
+        let cells = |t: f64| (t * 4_294_967_296.0) as i64 as u64;
+        f64::from(gradient_noise::<1>(&[cells(x)], &[cells(y)], key)[0])
+    }
+
+    #[test]
+    fn the_noise_vanishes_on_its_lattice_points() {
+        for (x, y) in [(0.0, 0.0), (3.0, -7.0), (-1e6, 5.0)] {
+            assert_eq!(at(x, y, 9), 0.0);
+        }
+    }
+
+    #[test]
+    fn height_and_slope_are_continuous_across_cells() {
+        for y in [0.1, 0.5, 0.93] {
+            let d = 1e-3;
+            let (before, after) = (at(4.0 - d, y, 2), at(4.0 + d, y, 2));
+            let (slope_before, slope_after) =
+                (before - at(4.0 - 2.0 * d, y, 2), at(4.0 + 2.0 * d, y, 2) - after);
+            assert!((after - before).abs() < 4.0 * d);
+            assert!((slope_after - slope_before).abs() < 0.02 * d, "{slope_before} {slope_after}");
+        }
+    }
+
+    #[test]
+    fn its_variance_is_the_one_of_the_equation_and_its_mean_is_zero() {
+        let (mut mean, mut square, mut count) = (0.0, 0.0, 0.0);
+        for n in 0..200_000 {
+            let value = at(f64::from(n) * 0.737, f64::from(n % 1013) * 1.371, 77);
+            mean += value;
+            square += value * value;
+            count += 1.0;
+        }
+        assert!((mean / count).abs() < 2e-3, "{}", mean / count);
+        assert!((square / count / VARIANCE - 1.0).abs() < 0.02, "{}", square / count);
+    }
+
+    /// Signs of 128 × 128 corners against each other at every small distance: 5 sigma of chance.
+    #[test]
+    fn neighbouring_gradients_are_unrelated() {
+        const N: usize = 128;
+        for key in [1, 0x1234_5678, 0x8000_0000] {
+            let sign = |x: usize, y: usize, finish: u32| {
+                let column = (x as u32).wrapping_mul(SPREAD_X).wrapping_add(key);
+                let h = corner(column, (y as u32).wrapping_mul(SPREAD_Y)).wrapping_mul(finish);
+                1 - 2 * (h >> 31) as i32
+            };
+            let field = |finish| -> Vec<i32> { (0..N * N).map(|i| sign(i % N, i / N, finish)).collect() };
+            let (a, b) = (field(FINISH_X), field(FINISH_Y));
+            for (dx, dy) in (0..6).flat_map(|dx| (0..6).map(move |dy| (dx, dy))) {
+                for (from, to) in [(&a, &a), (&b, &b), (&a, &b)] {
+                    if dx == 0 && dy == 0 && core::ptr::eq(from, to) {
+                        continue;
+                    }
+                    let pairs = (0..N - dy).flat_map(|y| (0..N - dx).map(move |x| (x, y)));
+                    let sum: i32 = pairs.map(|(x, y)| from[y * N + x] * to[(y + dy) * N + x + dx]).sum();
+                    let chance = ((N - dx) * (N - dy)) as f64;
+                    assert!(
+                        f64::from(sum).abs() < 5.0 * libm::sqrt(chance),
+                        "key {key}, ({dx}, {dy}): {sum}"
+                    );
+                }
+            }
+        }
+    }
+}

@@ -8,11 +8,12 @@
 //!
 //! | file | from → to |
 //! |---|---|
+//! | [`trajectory`] | sparse contact events → position, velocity and force a sample |
 //! | [`butterworth`] | positions → smooth positions |
-//! | [`gradient_noise_3d`] | a point in space → solid noise and its gradient |
 //! | [`trajectory`] | sparse contact events → path, velocity and force at every sample |
 //! | [`butterworth`] | the path's smoothing filter, and every high-pass |
 //! | [`fractal_noise`], [`gradient_noise_2d`] | path → 1/f^α micro-relief |
+//! | [`gradient_noise_3d`] | a point in space → solid noise and its gradient |
 //! | [`micro_contact`] | profile heights and normal force → pad, contact force, collisions |
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
 //! | [`mode`], [`modal_bank`] | impulses → sound |

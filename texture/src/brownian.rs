@@ -78,7 +78,7 @@ impl BrownianDesign {
         self.check(if self.periodic { MAX_PERIODIC_SIZE } else { MAX_OPEN_SIZE })?;
         let mut rng = Rng::new(self.seed);
         let values = match (self.method, self.periodic) {
-            (Method::Midpoint, _) => midpoint::surface(self.hurst, self.size, &mut rng),
+            (Method::Midpoint, _) => midpoint::raw_surface(self.hurst, self.size, &mut rng),
             (Method::Exact, true) => torus(self.hurst, self.size, &mut rng),
             (Method::Exact, false) => plane(self.hurst, self.size, &mut rng),
         };

@@ -1,5 +1,6 @@
 //! Messages that change a surface while it is touched.
 
+use crate::sand::SandLaw;
 use crate::solid_noise::SolidNoiseParameters;
 
 /// A change of a surface: plain data, sent from the game half and applied by the audio half at an
@@ -16,4 +17,6 @@ pub enum SurfaceChange {
     Crossfade(f64),
     /// New weights of a [`crate::combine::BandSplit`]: below and above its wavelength.
     BandSplit([f64; 2]),
+    /// Another force law for sand.
+    Sand(SandLaw),
 }

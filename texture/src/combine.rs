@@ -16,6 +16,7 @@
 use crate::change::SurfaceChange;
 use crate::fade::Fade;
 use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand};
+use crate::sand::SandSource;
 use asperity_dsp::DesignError;
 
 /// A surface of any kind.
@@ -65,6 +66,10 @@ impl HeightField for Sum {
     fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
         self.sources.iter_mut().fold(false, |done, s| s.change(change, sample) | done)
     }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.sources.iter_mut().find_map(|s| s.sand())
+    }
 }
 
 /// A source whose relief is multiplied by a factor that may change.
@@ -111,6 +116,10 @@ impl HeightField for Scale {
             SurfaceChange::Scale(factor) => check_factor(*factor).map(|f| self.factor.set(f, sample)).is_ok(),
             other => self.source.change(other, sample),
         }
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.source.sand()
     }
 }
 
@@ -172,6 +181,10 @@ impl HeightField for Mask {
         let inside = self.inside.change(change, sample);
         self.outside.change(change, sample) | inside | mask
     }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.inside.sand().or_else(|| self.outside.sand())
+    }
 }
 
 /// From one source to another at run time.
@@ -223,6 +236,10 @@ impl HeightField for Crossfade {
             return accepted;
         }
         self.sources.iter_mut().fold(false, |done, s| s.change(change, sample) | done)
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.sources.iter_mut().find_map(|s| s.sand())
     }
 }
 
@@ -311,6 +328,10 @@ impl HeightField for BandSplit {
         }
         let coarse = self.coarse.change(change, sample);
         self.fine.change(change, sample) | coarse
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.coarse.sand().or_else(|| self.fine.sand())
     }
 }
 

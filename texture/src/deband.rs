@@ -9,7 +9,7 @@
 //! takes its place; elsewhere the smaller radius (or q) stays. The largest radius that explains the
 //! numbers wins. A busy texture contradicts even the smallest and is left as it is.
 //!
-//! Measured (`tests/debanding.rs`): ramps of 4 to 100 texels a step fall from 0.9 µm to below 0.01 µm in
+//! Measured (`tests/height_map_figures.rs`): ramps of 3 to 40 texels a step fall from 2–4 µm to below 0.004 µm in
 //! the band.
 
 use crate::raster::Raster;

@@ -6,6 +6,7 @@
 //! bits. The path's positions are finite; they may be any number of periods away from the origin.
 
 use crate::change::SurfaceChange;
+use crate::sand::SandSource;
 
 /// Longest block a source is ever asked for, samples.
 pub const MAX_BLOCK: usize = 64;
@@ -147,5 +148,10 @@ pub trait HeightField: Send {
     /// for this source and acceptable.
     fn change(&mut self, _change: &SurfaceChange, _sample: u64) -> bool {
         false
+    }
+
+    /// The sand, if this is some: whoever takes a surface back reads its figures and its picture.
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        None
     }
 }

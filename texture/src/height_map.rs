@@ -223,10 +223,24 @@ impl Pyramid {
             return Sample { value: self.constant, gradient: [0.0; 2] };
         };
         let [u, v] = finest.texels_per_metre();
-        if 2.0 * footprint_m * u.max(v) <= 1.0 {
+        if is_sharp(footprint_m, [u, v]) {
             return finest.sample(position_m);
         }
         self.sample_blurred(position_m, 2.0 * footprint_m * along(velocity_m_s, [u, v]))
+    }
+
+    /// The map along a path; `take` is given every sample.
+    fn sample_block(&self, path: &PathBlock<'_>, mut take: impl FnMut(usize, Sample)) {
+        match self.levels.first() {
+            Some(finest) if path.footprint_m.iter().all(|&f| is_sharp(f, finest.texels_per_metre())) => {
+                finest.sample_block(path.position_m, take);
+            }
+            _ => {
+                for n in 0..path.len() {
+                    take(n, self.sample(path.position_m[n], path.velocity_m_s[n], path.footprint_m[n]));
+                }
+            }
+        }
     }
 
     /// `samples` = 2 · footprint in texels of the finest level.
@@ -251,6 +265,12 @@ impl Pyramid {
     }
 }
 
+/// Whether the finest level needs no blur in any direction.
+#[inline]
+fn is_sharp(footprint_m: f64, texels_per_metre: [f64; 2]) -> bool {
+    2.0 * footprint_m * texels_per_metre[0].max(texels_per_metre[1]) <= 1.0
+}
+
 /// Texels per metre along the direction of movement.
 fn along(velocity_m_s: [f64; 2], texels_per_metre: [f64; 2]) -> f64 {
     let [x, y] = velocity_m_s;
@@ -268,19 +288,17 @@ impl HeightField for HeightMap {
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        for n in 0..path.len() {
-            let (position, velocity) = (path.position_m[n], path.velocity_m_s[n]);
-            let height = self.heights.sample(position, velocity, path.footprint_m[n]);
-            out.height_m[n] = height.value;
-            out.gradient[n] = height.gradient;
-            out.roughness[n] = match &self.roughness {
-                Roughness::Constant(roughness) => *roughness,
-                Roughness::Map(map) => {
-                    map.sample(position, velocity, path.footprint_m[n]).value.clamp(0.0, 1.0)
-                }
-            };
-            out.friction[n] = self.friction;
-            out.compliance_m_n[n] = 0.0;
+        self.heights.sample_block(path, |n, sample| {
+            out.height_m[n] = sample.value;
+            out.gradient[n] = sample.gradient;
+        });
+        match &self.roughness {
+            Roughness::Constant(roughness) => out.roughness[..path.len()].fill(*roughness),
+            Roughness::Map(map) => {
+                map.sample_block(path, |n, sample| out.roughness[n] = sample.value.clamp(0.0, 1.0));
+            }
         }
+        out.friction[..path.len()].fill(self.friction);
+        out.compliance_m_n[..path.len()].fill(0.0);
     }
 }

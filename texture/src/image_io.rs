@@ -91,6 +91,11 @@ pub enum Problem {
         /// Rows, as the header claims.
         height: u32,
     },
+    /// Decoding would take more memory than we grant.
+    #[error(
+        "asks for more memory than is granted; at most {MAX_SIDE} texels a side and {MAX_TEXELS} in all are read"
+    )]
+    TooMuchMemory,
     /// The file itself is too long.
     #[error("{0} bytes are too many; at most {MAX_FILE_BYTES} are read")]
     TooLong(u64),
@@ -165,12 +170,20 @@ fn load(path: &Path, channel: Channel) -> Result<ChannelImage, Problem> {
 fn translate(error: image::ImageError) -> Problem {
     match error {
         image::ImageError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
-            Problem::Damaged(e.to_string())
+            Problem::Damaged(one_line(&e))
         }
         image::ImageError::IoError(e) => Problem::Io(e),
-        image::ImageError::Unsupported(e) => Problem::Unsupported(e.to_string()),
-        other => Problem::Damaged(other.to_string()),
+        image::ImageError::Unsupported(e) => Problem::Unsupported(one_line(&e)),
+        image::ImageError::Limits(_) => Problem::TooMuchMemory,
+        other => Problem::Damaged(one_line(&other)),
     }
+}
+
+/// A message of the decoder without its line breaks and its full stop.
+fn one_line(error: &impl std::fmt::Display) -> String {
+    let text = error.to_string();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.join(" ").trim_end_matches('.').to_string()
 }
 
 /// One channel of a decoded picture, as 0–1.

@@ -13,6 +13,8 @@ pub mod fade;
 pub mod height_field;
 pub mod height_map;
 pub mod lattice;
+pub mod raster;
+pub mod sand;
 pub mod solid_materials;
 pub mod solid_noise;
 
@@ -20,7 +22,6 @@ pub mod solid_noise;
 pub mod deband;
 #[cfg(feature = "image")]
 pub mod image_io;
-pub mod raster;
 mod resample;
 mod spline;
 pub mod wrap;

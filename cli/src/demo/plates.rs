@@ -28,6 +28,8 @@ pub struct Plate {
     pub title: &'static str,
     /// What to listen to and look at.
     pub notice: &'static str,
+    /// Pad displacement at sample value 1 of the haptic file, m.
+    pub full_scale_m: f64,
     height_m: fn(f64, f64) -> f64,
     roughness: fn(f64, f64) -> f64,
 }
@@ -39,6 +41,7 @@ pub const PLATES: [Plate; 6] = [
         title: "Matte, then shiny",
         notice: "No relief at all, only the roughness map: the first half hisses and tingles, the second half is \
                  calm. On the way back the order is reversed.",
+        full_scale_m: 5e-5,
         height_m: |_, _| 0.0,
         roughness: |x, _| if x < SIDE_M / 2.0 { MATTE } else { SHINY },
     },
@@ -46,6 +49,7 @@ pub const PLATES: [Plate; 6] = [
         name: "shiny-matte",
         title: "Shiny, then matte",
         notice: "The mirror image: only where the finger is tells the two apart.",
+        full_scale_m: 5e-5,
         height_m: |_, _| 0.0,
         roughness: |x, _| if x < SIDE_M / 2.0 { SHINY } else { MATTE },
     },
@@ -53,6 +57,7 @@ pub const PLATES: [Plate; 6] = [
         name: "ridge",
         title: "A single ridge",
         notice: "One soft bump of 4 mm in the middle of a smooth plate, crossed once slowly and once fast.",
+        full_scale_m: 0.002,
         height_m: |x, _| {
             let across = (x - SIDE_M / 2.0) / 0.009;
             if across.abs() < 1.0 { RELIEF_M * (0.5 + 0.5 * (PI * across).cos()) } else { 0.0 }
@@ -63,6 +68,7 @@ pub const PLATES: [Plate; 6] = [
         name: "bumps",
         title: "Bumps",
         notice: "Round bumps of 1 mm on a 7 mm grid: rhythm rises with the speed of the finger.",
+        full_scale_m: 0.001,
         height_m: |x, y| {
             let pitch = 0.007;
             let (u, v) = ((x / pitch).fract() - 0.5, (y / pitch).fract() - 0.5);
@@ -75,6 +81,7 @@ pub const PLATES: [Plate; 6] = [
         name: "sine",
         title: "Sine wave",
         notice: "1 mm waves of 7 mm length. The lowest line of the haptic spectrogram is speed over wavelength.",
+        full_scale_m: 0.001,
         height_m: |x, _| 0.0005 * (1.0 - (2.0 * PI * x / 0.007).cos()),
         roughness: |_, _| PLASTIC,
     },
@@ -83,6 +90,7 @@ pub const PLATES: [Plate; 6] = [
         title: "Sawtooth",
         notice: "1 mm teeth, 7 mm apart: the finger falls off each one, and each fall is a click. Against the \
                  teeth, on the way back, it climbs them instead.",
+        full_scale_m: 0.001,
         height_m: |x, _| {
             let phase = (x / 0.007).fract();
             let fall = 0.06;

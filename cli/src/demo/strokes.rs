@@ -5,76 +5,20 @@
 //! presses with a force that wanders by a few percent. Speeds and forces are those of people exploring
 //! textures: 80–200 mm/s, 0.5–0.6 N (Smith 2002; Greenspon 2019).
 
-use serde::Serialize;
+use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use std::f64::consts::PI;
 
 /// Events a second.
 const EVENT_RATE_HZ: f64 = 60.0;
+/// Rest at the end of a stroke, s.
+const PAUSE_S: f64 = 0.12;
+/// Speed at which the finger lands, m/s.
+const LANDING_M_S: f64 = 0.04;
 /// Time to reach the stroke's speed, and to stop, s.
 const RAMP_S: f64 = 0.16;
 /// Physiological tremor: amplitude, m, and frequency, Hz.
 const TREMOR_M: f64 = 3e-5;
 const TREMOR_HZ: f64 = 9.0;
-
-/// One line of a contact log.
-#[derive(Debug, Clone, Serialize)]
-#[serde(tag = "event", rename_all = "lowercase")]
-pub enum Event {
-    /// A finger lands.
-    Begin {
-        /// Seconds.
-        t: f64,
-        /// Which contact.
-        contact: u64,
-        /// Which surface.
-        surface: String,
-        /// Which haptic channel.
-        actuator: usize,
-        /// Place.
-        uv: [f64; 2],
-        /// Tangential velocity.
-        velocity_m_s: [f64; 2],
-        /// Normal force.
-        normal_force_n: f64,
-        /// Speed of landing.
-        closing_m_s: f64,
-    },
-    /// It moves on.
-    Move {
-        /// Seconds.
-        t: f64,
-        /// Which contact.
-        contact: u64,
-        /// Place.
-        uv: [f64; 2],
-        /// Tangential velocity.
-        velocity_m_s: [f64; 2],
-        /// Normal force.
-        normal_force_n: f64,
-    },
-    /// It leaves.
-    End {
-        /// Seconds.
-        t: f64,
-        /// Which contact.
-        contact: u64,
-    },
-    /// Something strikes a body.
-    Impact {
-        /// Seconds.
-        t: f64,
-        /// Which body.
-        body: String,
-        /// Approach speed.
-        speed_m_s: f64,
-        /// Mass of the striker.
-        mass_kg: f64,
-        /// Radius of the striker.
-        radius_m: f64,
-        /// Its material.
-        striker: String,
-    },
-}
 
 /// Where a finger strokes, and how.
 #[derive(Debug, Clone)]
@@ -84,7 +28,7 @@ pub struct Finger<'a> {
     /// Surface touched.
     pub surface: &'a str,
     /// Haptic channel.
-    pub actuator: usize,
+    pub actuator: u16,
     /// Extent of the surface, m.
     pub extent_m: [f64; 2],
     /// Time of landing, s.
@@ -100,49 +44,41 @@ pub struct Finger<'a> {
 impl Finger<'_> {
     /// The events from landing to lifting off.
     #[must_use]
-    pub fn events(&self) -> Vec<Event> {
-        let pause_s = 0.12;
-        let mut events = Vec::new();
+    pub fn lines(&self) -> Vec<LogLine> {
+        let mut lines = Vec::new();
         let mut t = self.start_s;
         let mut from = self.from_m;
         for &(to, speed_m_s) in &self.strokes {
             let stroke = Stroke::new(from, to, speed_m_s);
-            let end = t + stroke.duration_s() + pause_s;
+            let end = t + stroke.duration_s() + PAUSE_S;
             let start = t;
             while t < end {
-                events.push(self.event(events.is_empty(), t, stroke.at(t - start)));
+                let event = self.event(lines.is_empty(), t, stroke.at(t - start));
+                lines.push(LogLine { t: rounded(t), event });
                 t += 1.0 / EVENT_RATE_HZ;
             }
             from = to;
         }
-        events.push(Event::End { t: rounded(t), contact: self.contact });
-        events
+        lines.push(LogLine { t: rounded(t), event: LogEvent::End { contact: self.contact } });
+        lines
     }
 
-    fn event(&self, first: bool, t: f64, (place, velocity): ([f64; 2], [f64; 2])) -> Event {
+    fn event(&self, first: bool, t: f64, (place, velocity): ([f64; 2], [f64; 2])) -> LogEvent {
         let since = t - self.start_s;
         let tremor = TREMOR_M * (2.0 * PI * TREMOR_HZ * since).sin();
         let wander =
             1.0 + 0.04 * (2.0 * PI * 1.7 * since).sin() + 0.02 * (2.0 * PI * 4.1 * since + 1.0).sin();
-        let uv = [rounded(place[0] / self.extent_m[0]), rounded((place[1] + tremor) / self.extent_m[1])];
-        let velocity_m_s = velocity.map(rounded);
-        let normal_force_n = rounded(self.normal_force_n * wander);
-        let (t, contact) = (rounded(t), self.contact);
+        let sample = LogSample {
+            uv: [rounded(place[0] / self.extent_m[0]), rounded((place[1] + tremor) / self.extent_m[1])],
+            velocity_m_s: Some(velocity.map(rounded)),
+            normal_force_n: rounded(self.normal_force_n * wander),
+            closing_m_s: if first { LANDING_M_S } else { 0.0 },
+        };
         if first {
             let surface = self.surface.to_owned();
-            let closing_m_s = 0.04;
-            Event::Begin {
-                t,
-                contact,
-                surface,
-                actuator: self.actuator,
-                uv,
-                velocity_m_s,
-                normal_force_n,
-                closing_m_s,
-            }
+            LogEvent::Begin { contact: self.contact, surface, actuator: self.actuator, sample }
         } else {
-            Event::Move { t, contact, uv, velocity_m_s, normal_force_n }
+            LogEvent::Move { contact: self.contact, sample }
         }
     }
 }
@@ -205,21 +141,11 @@ fn rounded(value: f64) -> f64 {
     (value * 1e7).round() / 1e7
 }
 
-/// The log as JSON lines, in time order.
+/// A log of several fingers and strikes, in time order.
 #[must_use]
-pub fn json_lines(events: &mut [Event]) -> String {
-    let time = |event: &Event| match event {
-        Event::Begin { t, .. } | Event::Move { t, .. } | Event::End { t, .. } | Event::Impact { t, .. } => *t,
-    };
-    events.sort_by(|a, b| time(a).total_cmp(&time(b)));
-    events.iter().filter_map(|event| serde_json::to_string(event).ok()).fold(
-        String::new(),
-        |mut text, line| {
-            text.push_str(&line);
-            text.push('\n');
-            text
-        },
-    )
+pub fn log(mut lines: Vec<LogLine>) -> ContactLog {
+    lines.sort_by(|a, b| a.t.total_cmp(&b.t));
+    ContactLog { lines }
 }
 
 #[cfg(test)]
@@ -254,16 +180,13 @@ mod tests {
             from_m: [0.02, 0.07],
             strokes: vec![([0.12, 0.07], 0.08), ([0.02, 0.07], 0.2)],
         };
-        let mut events = finger.events();
-        let text = json_lines(&mut events);
-        let lines: Vec<serde_json::Value> =
-            text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-        assert_eq!(lines[0]["event"], "begin");
-        assert_eq!(lines.last().unwrap()["event"], "end");
-        let times: Vec<f64> = lines.iter().map(|line| line["t"].as_f64().unwrap()).collect();
-        assert!(times.windows(2).all(|pair| pair[1] > pair[0]));
-        assert!((2.0..3.5).contains(times.last().unwrap()), "{times:?}");
-        let uv = lines[60]["uv"][0].as_f64().unwrap();
-        assert!((0.14..0.9).contains(&uv));
+        let lines = finger.lines();
+        assert!(matches!(&lines[0].event, LogEvent::Begin { surface, .. } if surface == "plate"));
+        assert!(matches!(lines.last().unwrap().event, LogEvent::End { contact: 1 }));
+        assert!(lines.windows(2).all(|pair| pair[1].t > pair[0].t));
+        assert!((2.0..3.5).contains(&lines.last().unwrap().t));
+        assert!(
+            matches!(&lines[60].event, LogEvent::Move { sample, .. } if (0.14..0.9).contains(&sample.uv[0]))
+        );
     }
 }

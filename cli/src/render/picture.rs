@@ -3,7 +3,7 @@
 //! From top to bottom: the finger's speed and force; the surface as it passed below with the pad on it;
 //! the impulses sent to the body; the busiest instant enlarged; and both outputs as waves and spectra.
 
-use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, quantity, spectrogram};
+use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram};
 
 /// Contacts drawn one by one; more would cover each other.
 pub const DRAWN_CONTACTS: usize = 4;
@@ -77,6 +77,9 @@ pub fn draw(take: &Take<'_>) -> String {
         figure.row(190.0, zoom_panels(take));
     }
     for (index, channel) in take.haptic.iter().enumerate() {
+        if channel.samples.iter().all(|&sample| sample == 0.0) {
+            continue;
+        }
         haptic_rows(&mut figure, take, index, channel);
     }
     audio_rows(&mut figure, take);
@@ -96,7 +99,11 @@ fn drawn<'a>(take: &'a Take<'_>) -> impl Iterator<Item = (&'a ContactCurve, &'st
 }
 
 fn speed_panel(take: &Take<'_>) -> Panel {
-    let mut panel = Panel::new("how fast the finger slides", time(take), Axis::new("speed", "m/s"));
+    let mut panel = Panel::new(
+        "how fast the finger slides",
+        time(take),
+        Axis::new("speed", "m/s").from_zero(highest(take, |c| &c.speed_m_s)),
+    );
     for (contact, colour) in drawn(take) {
         let data = Series::signal(contact.speed_m_s.iter().copied(), take.sample_rate_hz, contact.start_s);
         panel = panel.with(Layer::line(legend(take, contact), colour, data));
@@ -105,13 +112,22 @@ fn speed_panel(take: &Take<'_>) -> Panel {
 }
 
 fn force_panel(take: &Take<'_>) -> Panel {
-    let mut panel = Panel::new("how hard it presses", time(take), Axis::new("force", "N"));
+    let mut panel = Panel::new(
+        "how hard it presses",
+        time(take),
+        Axis::new("force", "N").from_zero(highest(take, |c| &c.normal_force_n)),
+    );
     for (contact, colour) in drawn(take) {
         let data =
             Series::signal(contact.normal_force_n.iter().copied(), take.sample_rate_hz, contact.start_s);
         panel = panel.with(Layer::line(legend(take, contact), colour, data));
     }
     panel
+}
+
+/// The largest value of one curve over the contacts drawn.
+fn highest(take: &Take<'_>, values: impl Fn(&ContactCurve) -> &Vec<f64>) -> f64 {
+    drawn(take).flat_map(|(contact, _)| values(contact)).copied().fold(0.0, f64::max)
 }
 
 /// A label in the legend where there is more than one contact to tell apart.
@@ -162,12 +178,13 @@ fn impulse_panel(take: &Take<'_>) -> Panel {
     .with(Layer::Stems { label: String::new(), colour: palette::IMPACT.to_owned(), points })
 }
 
-/// The window with the most momentum, on the contact it belongs to.
+/// The window with the most collisions, or else the most momentum, on the contact it belongs to.
 fn busiest(take: &Take<'_>) -> Option<(usize, f64)> {
     let mut best: Option<(f64, usize, f64)> = None;
     for (index, contact) in take.contacts.iter().enumerate() {
-        let events = if contact.collisions.is_empty() { &contact.impulses } else { &contact.collisions };
-        let strength = |at: usize| events[at][1].abs();
+        let collides = !contact.collisions.is_empty();
+        let events = if collides { &contact.collisions } else { &contact.impulses };
+        let strength = |at: usize| if collides { 1.0 } else { events[at][1].abs() };
         let (mut first, mut sum) = (0, 0.0);
         for last in 0..events.len() {
             sum += strength(last);
@@ -207,25 +224,24 @@ fn zoom_panels(take: &Take<'_>) -> Vec<Panel> {
     let collisions = inside(&contact.collisions);
     let label = if collisions.is_empty() { "" } else { "collision" };
     let axis = Axis::new("time", "s").range(from_s, from_s + ZOOM_S);
-    let zoom =
-        Panel::new(format!("{} of it, enlarged", quantity(ZOOM_S, "s")), axis, Axis::new("height", "m"))
-            .weight(2.0)
-            .with(Layer::ground("surface", part(&contact.height_m)))
-            .with(Layer::Line {
-                label: "pad".to_owned(),
-                colour: palette::PAD.to_owned(),
-                width_px: 1.8,
-                fill: None,
-                dashed: false,
-                data: part(&contact.pad_m),
-            })
-            .with(Layer::Dots {
-                label: label.to_owned(),
-                colour: palette::IMPACT.to_owned(),
-                points: collisions,
-                radius_px: vec![3.5],
-                names: Vec::new(),
-            });
+    let zoom = Panel::new(format!("{:.0} ms of it, enlarged", ZOOM_S * 1e3), axis, Axis::new("height", "m"))
+        .weight(2.0)
+        .with(Layer::ground("surface", part(&contact.height_m)))
+        .with(Layer::Line {
+            label: "pad".to_owned(),
+            colour: palette::PAD.to_owned(),
+            width_px: 1.8,
+            fill: None,
+            dashed: false,
+            data: part(&contact.pad_m),
+        })
+        .with(Layer::Dots {
+            label: label.to_owned(),
+            colour: palette::IMPACT.to_owned(),
+            points: collisions,
+            radius_px: vec![3.5],
+            names: Vec::new(),
+        });
     vec![zoom, levels_panel(take)]
 }
 

@@ -78,12 +78,10 @@ pub struct Pixels {
 }
 
 /// Solid noise under the finger.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SolidNoise {
-    /// Name of the preset.
+    /// Name of the preset, which holds its own heights in metres.
     pub preset: String,
-    /// Height of the relief, m; none = the preset's.
-    pub relief_m: Option<f64>,
 }
 
 /// A repeated cell.
@@ -193,6 +191,7 @@ fn read_source(fields: &mut Fields, folder: &Path) -> Result<Source, CliError> {
         let right = format!("write one of {}", SOURCES.join(", "));
         return Err(fields.refuse(second, format!("stands beside {first}"), right));
     }
+    // `channel`, `invert` and `relief_m` speak of images; beside another source they say nothing.
     let channel = read_channel(fields, "channel")?;
     let invert = fields.flag("invert")?.unwrap_or(false);
     let relief_m = fields.number("relief_m", RELIEF_M)?;
@@ -205,7 +204,7 @@ fn read_source(fields: &mut Fields, folder: &Path) -> Result<Source, CliError> {
             relief_m: needed_relief(fields)?,
             invert,
         }),
-        Some("solid") => Ok(Source::Solid(SolidNoise { preset: fields.needed_text("solid")?, relief_m })),
+        Some("solid") => Ok(Source::Solid(SolidNoise { preset: fields.needed_text("solid")? })),
         Some("brownian") => match fields.table("brownian")? {
             Some(table) => read_brownian(table),
             None => Ok(Source::Flat),
@@ -232,7 +231,7 @@ fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Option<char>, 
 fn read_brownian(mut table: Fields) -> Result<Source, CliError> {
     let source = Source::Brownian {
         hurst: table.needed_number("hurst", Allowed::between(0.01, 0.99, ""))?,
-        rms_m: table.needed_number("rms_m", Allowed::between(0.0, 1.0, "m"))?,
+        rms_m: table.needed_number("rms_m", Allowed::between(0.0, 0.1, "m"))?,
         seed: table.whole("seed", 0, u64::MAX)?,
         cells: table.whole("cells", 16, 4096)?,
     };

@@ -12,6 +12,9 @@ pub const GAIN_RAMP_S: f64 = 0.02;
 /// Samples below this are written as zero: 300 dB below full scale.
 const SMALLEST_SAMPLE: f64 = 1e-15;
 
+/// Inputs are clamped to this many times full scale, so that a broken one does not ring for seconds.
+const LARGEST_INPUT: f64 = 1e6;
+
 /// Samples of silence after which the filters are exactly at rest.
 const QUIET_SAMPLES: u32 = 64;
 
@@ -129,7 +132,7 @@ impl ChannelState {
                 *y = 0.0;
                 continue;
             }
-            let mut drive = x * design.scale;
+            let mut drive = (x * design.scale).clamp(-LARGEST_INPUT, LARGEST_INPUT);
             if let Some(equaliser) = &design.equaliser {
                 drive = self.equaliser.tick(equaliser, drive);
             }

@@ -52,11 +52,10 @@ impl<const N: usize> Lanes<N> {
             lanes.samples_per_metre[n] = 1.0 / (step[n] + f32::MIN_POSITIVE);
         }
         (lanes.shortest_footprint_m, lanes.longest_footprint_m) = range(step);
-        for n in 0..N {
-            let r = within_0_1(roughness[n] as f32);
-            lanes.finest_gain[n] = finest_gain(r);
-            lanes.coarser[n] = inverse_octave_ratio(r);
-            lanes.boost[n] = tail_boost(r);
+        let gains = lanes.finest_gain.iter_mut().zip(&mut lanes.coarser).zip(&mut lanes.boost);
+        for (((finest, coarser), boost), &r) in gains.zip(roughness) {
+            let r = within_0_1(r as f32);
+            (*finest, *coarser, *boost) = (finest_gain(r), inverse_octave_ratio(r), tail_boost(r));
         }
         lanes
     }
@@ -73,8 +72,8 @@ impl<const N: usize> Lanes<N> {
             let whole = octave.cell_m >= 4.0 * self.longest_footprint_m;
             let mut weight = [1.0; N];
             if !whole {
-                for n in 0..N {
-                    weight[n] = footprint_weight(octave.cell_m * self.samples_per_metre[n]);
+                for (weight, samples) in weight.iter_mut().zip(&self.samples_per_metre) {
+                    *weight = footprint_weight(octave.cell_m * samples);
                 }
             }
             if !gone && band[i] != 0.0 {
@@ -95,8 +94,8 @@ impl<const N: usize> Lanes<N> {
                     sum[n] += gain[n] * scale[n] * value[n];
                 }
             }
-            for n in 0..N {
-                gain[n] *= self.coarser[n];
+            for (gain, coarser) in gain.iter_mut().zip(self.coarser) {
+                *gain *= coarser;
             }
             finer = weight;
             all_finer = whole;

@@ -22,6 +22,20 @@
 //! - collisions as timed events with their closing speed, and the mean contact force of each step, so
 //!   that force × step is the impulse;
 //! - hostile input is repaired and counted (table in the module `guard`).
+//!
+//! Measured at 44.1 kHz with the default probe (`tests/micro_contact_accuracy.rs`: RMS error over the AC
+//! RMS of a 64 times oversampled reference that agrees with scipy's DOP853 to 1e-5; geometric mean of
+//! 12 profiles / of 12 held-out ones; `tests/micro_contact_passivity.rs`: undamped bouncing, 10 s):
+//!
+//! | integrator | pad position | spring force | energy gain | latency |
+//! |---|---|---|---|---|
+//! | semi-implicit Euler, damper centred | 9.6e-4 / 5.4e-4 | 6.0e-3 / 4.1e-3 | random | 0 |
+//! | the same, damper explicit | 7.7e-3 / 8.7e-3 | 5.3e-2 / 6.4e-2 | random | 0 |
+//! | exact events (default) | 2.3e-5 / 1.4e-5 | 1.5e-4 / 9.4e-5 | < 1e-6 to 5e6 N/m | 1 sample |
+//! | energy-conserving | 1.1e-3 / 7.3e-4 | 7.2e-3 / 5.4e-3 | < 1e-10 to 9e7 N/m | 0 |
+//!
+//! A row of Euler holds the force at the row's time (the mean over the step centred on it); the other
+//! two give the mean over the step that ends at the row.
 mod choice;
 mod dispatch;
 mod energy_conserving;

@@ -14,7 +14,7 @@ pub struct GroupOptions {
     /// The bank is fed from an impulse ring ([`crate::hertz`]): each mode is divided by the ring's
     /// cubic kernel at the mode's own complex frequency, and advanced by the kernel's latency.
     pub impulse_kernel_compensation: bool,
-    /// Undo on the 64-sample grid what rounding R² to `f32` did to the decay.
+    /// Undo on the 64-sample grid what rounding R² and m to `f32` did to decay and pitch.
     pub true_t60: bool,
 }
 
@@ -25,7 +25,7 @@ impl Default for GroupOptions {
 }
 
 impl GroupOptions {
-    /// For a bank that listens to an impulse ring: compensated, with true decays.
+    /// For a bank that listens to an impulse ring: compensated and trimmed.
     pub const IMPULSE_RING: Self = Self { impulse_kernel_compensation: true, true_t60: true };
 }
 
@@ -41,8 +41,12 @@ pub struct ModeGroup {
     pub(super) out_y: [f32; LANES],
     /// Output gain of d.
     pub(super) out_d: [f32; LANES],
-    /// Relative correction of the state once in [`GRID_SAMPLES`].
-    pub(super) trim: [f32; LANES],
+    /// Once in [`GRID_SAMPLES`]: y gains `trim_yy` · y + `trim_yd` · d.
+    pub(super) trim_yy: [f32; LANES],
+    pub(super) trim_yd: [f32; LANES],
+    /// And d gains `trim_dy` · y + `trim_dd` · d.
+    pub(super) trim_dy: [f32; LANES],
+    pub(super) trim_dd: [f32; LANES],
     /// a sin θ: one component of the lane's amplitude in output units is this · y.
     pub(super) level: [f32; LANES],
     /// a (cos θ − R): the other component is this · y + `quad_d` · d.
@@ -130,7 +134,10 @@ impl ModeGroup {
         m: [1.0; LANES],
         out_y: [0.0; LANES],
         out_d: [0.0; LANES],
-        trim: [0.0; LANES],
+        trim_yy: [0.0; LANES],
+        trim_yd: [0.0; LANES],
+        trim_dy: [0.0; LANES],
+        trim_dd: [0.0; LANES],
         level: [0.0; LANES],
         quad_y: [0.0; LANES],
         quad_d: [0.0; LANES],
@@ -148,14 +155,62 @@ impl ModeGroup {
         self.m[lane] = (gap * gap + 4.0 * radius * half * half) as f32;
         self.out_y[lane] = (b0 + b1) as f32;
         self.out_d[lane] = -b1 as f32;
-        if options.true_t60 && stored > 0.0 {
-            let drift = -pole.decay - 0.5 * libm::log(stored);
-            self.trim[lane] = libm::expm1(GRID_SAMPLES as f64 * drift) as f32;
+        if options.true_t60 {
+            self.set_trim(lane, pole);
         }
         let a = pole.amplitude.abs();
         self.level[lane] = (a * libm::sin(pole.theta)) as f32;
         self.quad_y[lane] = (a * (gap - 2.0 * half * half)) as f32;
         self.quad_d[lane] = (a * radius) as f32;
+    }
+}
+
+impl ModeGroup {
+    /// The turn e^((λ − λ stored) · 64 samples) − 1 that the stored pole lacks, for the pair (y, d).
+    fn set_trim(&mut self, lane: usize, pole: &Pole) {
+        let Some(stored) = StoredPole::read(self.r2[lane], self.m[lane]) else { return };
+        let grid = GRID_SAMPLES as f64;
+        let grow = libm::expm1(grid * (-pole.decay - libm::log(stored.radius)));
+        let turn = grid * (pole.theta - stored.theta);
+        let (half, sin) = (libm::sin(0.5 * turn), libm::sin(turn));
+        // (1 + grow) e^(i turn) − 1
+        let a = grow - 2.0 * (1.0 + grow) * half * half;
+        let b = (1.0 + grow) * sin;
+        // q = k y + l d is the quadrature of y.
+        let (k, l) = (stored.cos_less_radius / stored.sin, stored.radius / stored.sin);
+        self.trim_yy[lane] = (a + b * k) as f32;
+        self.trim_yd[lane] = (b * l) as f32;
+        self.trim_dy[lane] = (-b * (1.0 + k * k) / l) as f32;
+        self.trim_dd[lane] = (a - b * k) as f32;
+    }
+}
+
+/// The pole pair that a lane's two stored numbers stand for.
+pub(super) struct StoredPole {
+    pub radius: f64,
+    pub theta: f64,
+    /// cos θ − R, without cancellation.
+    pub cos_less_radius: f64,
+    pub sin: f64,
+}
+
+impl StoredPole {
+    /// `None` for a silent lane.
+    pub fn read(r2: f32, m: f32) -> Option<Self> {
+        let radius = libm::sqrt(f64::from(r2));
+        let gap = 1.0 - radius;
+        let half_square = (f64::from(m) - gap * gap) / (4.0 * radius);
+        // False for the silent lane's 1/0 as well.
+        if !(half_square > 0.0 && half_square < 1.0) {
+            return None;
+        }
+        let half = libm::sqrt(half_square);
+        Some(Self {
+            radius,
+            theta: 2.0 * libm::asin(half),
+            cos_less_radius: gap - 2.0 * half_square,
+            sin: 2.0 * libm::sqrt(half_square * (1.0 - half_square)),
+        })
     }
 }
 

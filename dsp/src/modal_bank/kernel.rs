@@ -111,7 +111,8 @@ impl Kernel {
         if feed.inputs.is_empty() || count == 0 || samples == 0 {
             return;
         }
-        let mut job = Job { groups: &groups[..count], states: &mut states[..count], feed };
+        let mut job =
+            Job { groups: &groups[..count], states: &mut states[..count], feed, ends_on_grid: false };
         let out = &mut out[..samples];
         match self.0 {
             // SAFETY: the plain vector needs no instruction beyond the baseline.
@@ -174,6 +175,8 @@ struct Job<'a> {
     groups: &'a [ModeGroup],
     states: &'a mut [GroupState],
     feed: Feed<'a>,
+    /// The present chunk ends on the grid, where states are trimmed.
+    ends_on_grid: bool,
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -210,35 +213,30 @@ unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
         let now = first_sample.wrapping_add(at as u64);
         let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
         let rows = &mut sums[..len];
+        job.ends_on_grid = now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES);
         // SAFETY: the caller has the instructions of V; `at + len` is inside every input. The first set
-        // writes every row, and there is one: `walk` is not called without groups.
+        // writes every row, and there is one: `walk` is not called without groups. So the rows may be read
+        // as what they are, in the same memory.
         unsafe {
             sets::<V, P, MAX>(job, at, rows);
-            V::add_sums(rows.assume_init_ref(), &mut out[at..at + len]);
-        }
-        if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
-            for (group, state) in job.groups.iter().zip(job.states.iter_mut()) {
-                // SAFETY: the caller has the instructions of V.
-                unsafe { trim::<V, P>(group, state) };
-            }
+            let written = core::slice::from_raw_parts(rows.as_ptr().cast::<Row>(), len);
+            V::add_sums(written, &mut out[at..at + len]);
         }
         at += len;
     }
 }
 
-/// Gives every lane the decay that `f32` could not store.
+/// Gives every lane the decay and the phase that `f32` could not store.
 #[inline(always)]
-unsafe fn trim<V: Vector, const P: usize>(group: &ModeGroup, state: &mut GroupState) {
-    for p in 0..P {
-        // SAFETY: lane p · LEN and the LEN − 1 after it are inside arrays of LANES = P · LEN values.
-        unsafe {
-            let by = V::load(group.trim.as_ptr().add(p * V::LEN));
-            for lanes in [&mut state.y, &mut state.d] {
-                let at = lanes.as_mut_ptr().add(p * V::LEN);
-                let x = V::load(at);
-                x.mul_add(by, x).store(at);
-            }
-        }
+unsafe fn trim<V: Vector>(group: &ModeGroup, lane: usize, y: &mut V, d: &mut V) {
+    // SAFETY: the caller has the instructions of V; `lane` + LEN is at most LANES.
+    unsafe {
+        let read = |lanes: &[f32; LANES]| V::load(lanes.as_ptr().add(lane));
+        // The small parts are added up before they meet the large one.
+        let nothing = V::splat(0.0);
+        let to_y = y.mul_add(read(&group.trim_yy), d.mul_add(read(&group.trim_yd), nothing));
+        let to_d = y.mul_add(read(&group.trim_dy), d.mul_add(read(&group.trim_dd), nothing));
+        (*y, *d) = (y.add(to_y), d.add(to_d));
     }
 }
 
@@ -359,6 +357,9 @@ unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usize>(
         for s in 0..S {
             let state = &mut job.states[from + s];
             for p in 0..P {
+                if job.ends_on_grid {
+                    trim(&groups[s], p * V::LEN, &mut y[s][p], &mut d[s][p]);
+                }
                 y[s][p].store(state.y.as_mut_ptr().add(p * V::LEN));
                 d[s][p].store(state.d.as_mut_ptr().add(p * V::LEN));
             }

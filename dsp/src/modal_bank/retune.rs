@@ -6,14 +6,11 @@
 //! Kept as they are, the bare states (y, d) gain 58 dB when the frequency jumps by 1.5 every 64 samples.
 
 use super::LANES;
-use super::design::{GroupState, ModeGroup};
+use super::design::{GroupState, ModeGroup, StoredPole};
 
 /// The pole and the output phasor that a lane's coefficients stand for.
 struct Lane {
-    radius: f64,
-    /// cos θ − R, without cancellation.
-    cos_less_radius: f64,
-    sin: f64,
+    pole: StoredPole,
     /// Output = `of_y` · Im z + `of_q` · Re z.
     of_y: f64,
     of_q: f64,
@@ -21,19 +18,11 @@ struct Lane {
 
 impl Lane {
     fn read(group: &ModeGroup, lane: usize) -> Option<Self> {
-        let radius = libm::sqrt(f64::from(group.r2[lane]));
-        let gap = 1.0 - radius;
-        let half_square = (f64::from(group.m[lane]) - gap * gap) / (4.0 * radius);
-        // False for the silent lane's 0/0 as well.
-        if !(half_square > 0.0 && half_square < 1.0) {
-            return None;
-        }
-        let sin = 2.0 * libm::sqrt(half_square * (1.0 - half_square));
-        let cos_less_radius = gap - 2.0 * half_square;
+        let pole = StoredPole::read(group.r2[lane], group.m[lane])?;
         let (out_y, out_d) = (f64::from(group.out_y[lane]), f64::from(group.out_d[lane]));
-        let of_y = out_y - out_d * cos_less_radius / radius;
-        let of_q = out_d * sin / radius;
-        (of_y * of_y + of_q * of_q > 0.0).then_some(Self { radius, cos_less_radius, sin, of_y, of_q })
+        let of_y = out_y - out_d * pole.cos_less_radius / pole.radius;
+        let of_q = out_d * pole.sin / pole.radius;
+        (of_y * of_y + of_q * of_q > 0.0).then_some(Self { pole, of_y, of_q })
     }
 }
 
@@ -51,11 +40,11 @@ pub fn retune(old: &ModeGroup, new: &ModeGroup, state: &mut GroupState) {
 }
 
 fn carry(from: &Lane, to: &Lane, y: f64, d: f64) -> (f64, f64) {
-    let q = (y * from.cos_less_radius + from.radius * d) / from.sin;
+    let q = (y * from.pole.cos_less_radius + from.pole.radius * d) / from.pole.sin;
     // The output's phasor: its imaginary part is heard now, its real part a quarter period later.
     let (re, im) = (from.of_y * q - from.of_q * y, from.of_y * y + from.of_q * q);
     let norm = to.of_y * to.of_y + to.of_q * to.of_q;
     let y = (to.of_y * im - to.of_q * re) / norm;
     let q = (to.of_y * re + to.of_q * im) / norm;
-    (y, (q * to.sin - y * to.cos_less_radius) / to.radius)
+    (y, (q * to.pole.sin - y * to.pole.cos_less_radius) / to.pole.radius)
 }

@@ -44,3 +44,4 @@ uu, ww = np.polynomial.legendre.leggauss(400)
 uu, ww = (uu + 1) / 2, ww / 2
 pp = np.array([force(v) for v in uu])
 print("spectrum at f tau =", f, [f"{np.sum(ww * pp * np.cos(2 * np.pi * x * (uu - 0.5))):.8f}" for x in f])
+print("variance of the shape over u:", f"{quad(lambda x: force(x) * (x - 0.5) ** 2, 0, 1, epsabs=1e-12, limit=200)[0]:.8f}")

@@ -9,7 +9,7 @@
 //! path, both ends at d/2           d^{2H} (2^{−2H} − ¼)
 //! centre of a square of edge d     d^{2H} (2^{−H} − ¼ − 2^{H−3})
 //! middle of an edge d, four        the same with d/√2 (two ends, two centres)
-//! middle of a border edge, three   d^{2H} (2^{−2H} − (1 + 2^{1−H})/9)
+//! middle of a border edge          as on a path, from its two ends
 //! ```
 //!
 //! Source: the texture-analysis thesis §6.3.2. What we changed: its variances 2^{−jH} and 2^{−(i+j)H}
@@ -39,8 +39,10 @@ pub(super) fn path(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     values
 }
 
-/// A square of n × n samples, cut from one of (2^k + 1)².
-pub(super) fn surface(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
+/// X itself on a square of n × n samples, cut from one of (2^k + 1)², before it is brought to an rms:
+/// X(0, 0) = 0, and variances are those of an edge of length 1.
+#[must_use]
+pub fn raw_surface(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     let span = (n - 1).next_power_of_two();
     let mut square = Square { width: span + 1, values: vec![0.0; (span + 1) * (span + 1)] };
     // Corners (0,0), (1,0), (0,1), (1,1) of the unit square: variances 0, 1, 1, 2^H; the two near ones
@@ -97,25 +99,22 @@ impl Square {
     fn edges(&mut self, step: usize, hurst: f64, rng: &mut Rng) {
         let open = 2.0_f64.powf(-hurst) - 0.25 - 2.0_f64.powf(hurst - 3.0);
         let inside = (self.law(step as f64 * core::f64::consts::FRAC_1_SQRT_2, hurst) * open).sqrt();
-        let open = 2.0_f64.powf(-2.0 * hurst) - (1.0 + 2.0_f64.powf(1.0 - hurst)) / 9.0;
-        let border = (self.law(step as f64, hurst) * open).sqrt();
+        let border = (self.law(step as f64, hurst) * (2.0_f64.powf(-2.0 * hurst) - 0.25)).sqrt();
         let (half, last) = (step / 2, self.width - 1);
         for y in (0..self.width).step_by(half) {
             let first = if (y / half).is_multiple_of(2) { half } else { 0 };
             for x in (first..self.width).step_by(step) {
-                let (mut sum, mut count) = (0.0, 0.0);
-                let mut neighbour = |inside: bool, x: usize, y: usize| {
-                    if inside {
-                        sum += self.values[y * self.width + x];
-                        count += 1.0;
-                    }
+                let across = || (x > 0 && x < last).then(|| [(x - half, y), (x + half, y)]);
+                let along = || (y > 0 && y < last).then(|| [(x, y - half), (x, y + half)]);
+                let mean = |pair: [(usize, usize); 2]| {
+                    0.5 * pair.iter().map(|&(x, y)| self.values[y * self.width + x]).sum::<f64>()
                 };
-                neighbour(x > 0, x.wrapping_sub(half), y);
-                neighbour(x < last, x + half, y);
-                neighbour(y > 0, x, y.wrapping_sub(half));
-                neighbour(y < last, x, y + half);
-                let deviation = if count > 3.5 { inside } else { border };
-                *self.at(x, y) = sum / count + deviation * rng.normal();
+                let (mean, deviation) = match (across().map(mean), along().map(mean)) {
+                    (Some(a), Some(b)) => (0.5 * (a + b), inside),
+                    (Some(a), None) | (None, Some(a)) => (a, border),
+                    (None, None) => continue,
+                };
+                *self.at(x, y) = mean + deviation * rng.normal();
             }
         }
     }
