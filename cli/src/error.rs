@@ -22,6 +22,14 @@ impl CliError {
         Self::new(path.display(), what, right)
     }
 
+    /// An error that another crate has put into words: `WHERE: WHAT; RIGHT`, or as much of it as it says.
+    pub fn told(text: impl fmt::Display) -> Self {
+        let text = text.to_string();
+        let (front, right) = text.rsplit_once("; ").unwrap_or((&text, "see `asperity --help`"));
+        let (at, what) = front.split_once(": ").unwrap_or(("asperity", front));
+        Self::new(at, what, right)
+    }
+
     /// Puts an error of a field into its file or table: `WHERE: ` is written before what it names.
     #[must_use]
     pub fn within(mut self, outer: impl fmt::Display) -> Self {
@@ -96,6 +104,13 @@ mod tests {
     fn an_error_is_one_line_whatever_the_names_in_it() {
         let line = CliError::new("a\nb\x1b[31m", "is\r\nwrong", "do this").to_string();
         assert_eq!(line, "error: a b [31m: is wrong; do this");
+    }
+
+    #[test]
+    fn errors_of_other_crates_keep_their_words() {
+        let line = CliError::told("gain: 3 is refused; must be 0 to 1").within("audio").to_string();
+        assert_eq!(line, "error: audio: gain: 3 is refused; must be 0 to 1");
+        assert_eq!(CliError::told("broken").to_string(), "error: asperity: broken; see `asperity --help`");
     }
 
     #[test]

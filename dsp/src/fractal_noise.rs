@@ -168,7 +168,7 @@ fn octave_ratio(roughness: f32) -> f32 {
 /// 1/r, within 1e-6.
 #[inline(always)]
 fn inverse_octave_ratio(roughness: f32) -> f32 {
-    const C: [f32; 5] = [1.681_791_9, -0.874_248_97, 0.226_884_53, -0.038_360_09, 0.003_933_027_4];
+    const C: [f32; 5] = [1.681_791_9, -0.874_249, 0.226_884_53, -0.038_360_09, 0.003_933_027_4];
     C[0] + roughness * (C[1] + roughness * (C[2] + roughness * (C[3] + roughness * C[4])))
 }
 
@@ -182,16 +182,21 @@ fn level(roughness: f32) -> f32 {
 /// What the finest living octave gains beyond 1 to stand in for the tails of all finer ones.
 #[inline(always)]
 fn tail_boost(roughness: f32) -> f32 {
-    const C: [f32; 4] = [0.092_212_49, 0.124_280_165, -0.010_080_097, 0.167_875_61];
+    const C: [f32; 4] = [0.092_212_5, 0.124_280_17, -0.010_080_097, 0.167_875_62];
     C[0] + roughness * (C[1] + roughness * (C[2] + roughness * C[3]))
+}
+
+/// The nearest number within 0–1; two vector instructions, and 0 for a NaN.
+#[inline(always)]
+fn within_0_1(x: f32) -> f32 {
+    let x = if x > 0.0 { x } else { 0.0 };
+    if x < 1.0 { x } else { 1.0 }
 }
 
 /// Smooth fade from 1 at 4 samples a cell to 0 at 2; exactly 1 above and 0 below.
 #[inline(always)]
 fn footprint_weight(samples_per_cell: f32) -> f32 {
-    let s = 0.5 * samples_per_cell - 1.0;
-    let s = if s < 1.0 { s } else { 1.0 };
-    let s = if s > 0.0 { s } else { 0.0 };
+    let s = within_0_1(0.5 * samples_per_cell - 1.0);
     s * s * (3.0 - 2.0 * s)
 }
 

@@ -35,6 +35,13 @@ impl Axis {
         self
     }
 
+    /// Starts at zero and leaves room above `high`, for things that are never negative.
+    #[must_use]
+    pub fn from_zero(self, high: f64) -> Self {
+        let high = if high.is_finite() && high > 0.0 { high } else { 1.0 };
+        self.range(0.0, high * 1.15)
+    }
+
     /// Leaves the numbers to the panel below, which has the same axis.
     #[must_use]
     pub fn without_numbers(mut self) -> Self {
@@ -122,11 +129,18 @@ impl Ruler {
     fn linear(axis: &Axis, low: f64, high: f64, count: usize) -> Self {
         let [from, to] = axis.range.unwrap_or_else(|| padded(low, high));
         let (factor, name) = prefix(from.abs().max(to.abs()), &axis.unit);
-        let step = nice_step((to - from) / factor, count);
+        let inside = |step: f64| {
+            let first = (from / factor / step - 1e-9).ceil() as i64;
+            let last = (to / factor / step + 1e-9).floor() as i64;
+            first..=last.min(first + 50)
+        };
+        // One number says nothing about a scale.
+        let step = (count..count + 8)
+            .map(|count| nice_step((to - from) / factor, count))
+            .find(|step| inside(*step).count() > 1)
+            .unwrap_or_else(|| nice_step((to - from) / factor, count));
         let digits = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
-        let first = (from / factor / step - 1e-9).ceil() as i64;
-        let last = (to / factor / step + 1e-9).floor() as i64;
-        let ticks = (first..=last.min(first + 50))
+        let ticks = inside(step)
             .map(|index| {
                 let value = index as f64 * step;
                 Tick { at: value * factor, text: minus(&format!("{value:.digits$}")) }
@@ -140,7 +154,8 @@ impl Ruler {
         let usable = from.is_finite() && to.is_finite() && from > 0.0 && to > from;
         let (from, to) = if usable { (from, to) } else { (1.0, 10.0) };
         let decades = (to / from).log10();
-        let every = (decades / count.max(1) as f64).ceil().max(1.0) as i64;
+        // `1k` is half as wide as `1.75`.
+        let every = (decades / (2 * count).max(1) as f64).ceil().max(1.0) as i64;
         let numbered: &[i64] = if decades * 3.0 <= count as f64 { &[1, 2, 5] } else { &[1] };
         let mut ticks = Vec::new();
         for decade in from.log10().floor() as i64..=to.log10().ceil() as i64 {

@@ -4,6 +4,7 @@ use super::axis::Ruler;
 use super::decimate::{polylines, tallest};
 use super::svg::{Svg, TextStyle};
 use super::{Axis, Figure, Layer, Panel, Picture, Row, Series};
+use crate::pixels::png_rgb;
 
 const LEFT_PX: f64 = 72.0;
 const RIGHT_PX: f64 = 22.0;
@@ -253,9 +254,7 @@ fn draw_bar(svg: &mut Svg, picture: &Picture, [left, top, width, height]: [f64; 
     let Some(bar) = &picture.bar else { return };
     let x = left + width + 10.0;
     let steps: Vec<u8> = (0..64).rev().flat_map(|row| picture.scale.at(row as f32 / 63.0)).collect();
-    if let Some(png) = png(&steps, 1, 64) {
-        svg.png([x, top, 9.0, height], &png, true);
-    }
+    svg.png([x, top, 9.0, height], &png_rgb(1, 64, &steps), true);
     svg.rect([x, top, 9.0, height], "", FRAME);
     let small = TextStyle { size: 10.0, colour: FAINT, ..Default::default() };
     let ruler = Ruler::new(
@@ -288,7 +287,15 @@ fn draw_layer(svg: &mut Svg, layer: &Layer, place: &Place) {
                 .into_iter()
                 .map(|[x, value]| (x, place.bottom(), place.y(value)))
                 .collect();
-            svg.verticals(&stems, colour, if stems.len() > 200 { 0.8 } else { 1.6 }, 0.85);
+            // Dense stems become a field whose upper edge is what counts.
+            let (width, opacity) = if stems.len() > 600 {
+                (0.6, 0.6)
+            } else if stems.len() > 200 {
+                (0.8, 0.85)
+            } else {
+                (1.6, 0.9)
+            };
+            svg.verticals(&stems, colour, width, opacity);
         }
         Layer::Rules { colour, x, .. } => {
             let points: Vec<[f64; 2]> = x.iter().map(|&x| [x, 1.0]).collect();
@@ -357,23 +364,8 @@ fn draw_names(svg: &mut Svg, points: &[[f64; 2]], names: &[String], place: &Plac
 
 fn draw_picture(svg: &mut Svg, picture: &Picture, place: &Place) {
     let colours: Vec<u8> = picture.values.iter().flat_map(|&value| picture.scale.at(value)).collect();
-    if let Some(png) = png(&colours, picture.width, picture.height) {
-        let (left, right) = (place.x(picture.x[0]), place.x(picture.x[1]));
-        let (bottom, top) = (place.y(picture.y[0]), place.y(picture.y[1]));
-        let rect = [left.min(right), top.min(bottom), (right - left).abs(), (bottom - top).abs()];
-        svg.png(rect, &png, true);
-    }
-}
-
-/// An RGB picture as PNG; none when the sizes do not agree.
-fn png(rgb: &[u8], width: usize, height: usize) -> Option<Vec<u8>> {
-    use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-    let mut bytes = Vec::new();
-    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::NoFilter);
-    let (width, height) = (u32::try_from(width).ok()?, u32::try_from(height).ok()?);
-    if rgb.len() as u64 != u64::from(width) * u64::from(height) * 3 {
-        return None;
-    }
-    image::ImageEncoder::write_image(encoder, rgb, width, height, image::ExtendedColorType::Rgb8).ok()?;
-    Some(bytes)
+    let (left, right) = (place.x(picture.x[0]), place.x(picture.x[1]));
+    let (bottom, top) = (place.y(picture.y[0]), place.y(picture.y[1]));
+    let rect = [left.min(right), top.min(bottom), (right - left).abs(), (bottom - top).abs()];
+    svg.png(rect, &png_rgb(picture.width, picture.height, &colours), true);
 }

@@ -23,7 +23,7 @@ mod svg;
 
 pub use axis::{Axis, quantity};
 pub use colour::palette;
-pub use spectrogram::{SpectrogramOptions, spectrogram};
+pub use spectrogram::{SpectrogramOptions, spectrogram, third_octaves};
 
 /// One picture.
 #[derive(Debug, Clone)]

@@ -167,6 +167,44 @@ fn level(amplitude: &[f64], from: f64, to: f64) -> f64 {
     (20.0 * strongest.max(1e-30).log10()).max(SILENCE_DB)
 }
 
+/// Power in third-octave bands from 12.5 Hz on: `[centre, level]`, dB re mean square 1.
+#[must_use]
+pub fn third_octaves<S: Copy + Into<f64>>(samples: &[S], rate_hz: f64) -> Vec<[f64; 2]> {
+    let window_len = ((0.2 * rate_hz) as usize).next_power_of_two();
+    let window: Vec<f64> = (0..window_len)
+        .map(|n| 0.5 - 0.5 * (2.0 * std::f64::consts::PI * (n as f64 + 0.5) / window_len as f64).cos())
+        .collect();
+    let weight: f64 = window.iter().map(|w| w * w).sum();
+    let fft = FftPlanner::new().plan_fft_forward(window_len);
+    let mut scratch = vec![Complex::default(); fft.get_inplace_scratch_len()];
+    let mut power = vec![0.0_f64; window_len / 2];
+    let windows = (samples.len() * 2 / window_len).clamp(1, 200);
+    for index in 0..windows {
+        let first = index * samples.len().saturating_sub(window_len) / windows.max(2).saturating_sub(1);
+        let mut buffer: Vec<Complex<f64>> = window
+            .iter()
+            .enumerate()
+            .map(|(n, w)| Complex::new(samples.get(first + n).map_or(0.0, |&sample| sample.into() * w), 0.0))
+            .collect();
+        fft.process_with_scratch(&mut buffer, &mut scratch);
+        for (sum, bin) in power.iter_mut().zip(&buffer) {
+            *sum += 2.0 * bin.norm_sqr() / (weight * window_len as f64 * windows as f64);
+        }
+    }
+    let bin_hz = rate_hz / window_len as f64;
+    (-19..=13)
+        .map(|band| 1000.0 * 2f64.powf(f64::from(band) / 3.0))
+        .filter(|centre| centre * 1.13 < rate_hz / 2.0)
+        .filter_map(|centre| {
+            let edge = 2f64.powf(1.0 / 6.0);
+            let from = (centre / edge / bin_hz).ceil() as usize;
+            let to = ((centre * edge / bin_hz).ceil() as usize).clamp(from + 1, power.len());
+            let sum: f64 = power.get(from..to)?.iter().sum();
+            (sum > 0.0).then(|| [centre, 10.0 * sum.log10()])
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,5 +238,17 @@ mod tests {
             assert!(picture.values.iter().all(|&value| value == 0.0));
             assert_eq!(picture.values.len(), picture.width * picture.height);
         }
+    }
+
+    #[test]
+    fn a_third_octave_holds_the_power_of_its_tone() {
+        let rate_hz = 44_100.0;
+        let tone: Vec<f64> = (0..88_200)
+            .map(|n| (2.0 * std::f64::consts::PI * 1_000.0 * f64::from(n) / rate_hz).sin())
+            .collect();
+        let bands = third_octaves(&tone, rate_hz);
+        let strongest = bands.iter().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
+        assert_eq!(strongest[0], 1_000.0);
+        assert!((strongest[1] + 3.01).abs() < 0.05, "{} dB", strongest[1]);
     }
 }

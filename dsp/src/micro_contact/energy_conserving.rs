@@ -22,6 +22,7 @@
 
 use super::flow::Regime;
 use super::guard::{CleanBlock, rescue};
+use super::quad::Quad;
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 
 /// Coefficients of the scheme.
@@ -30,6 +31,8 @@ pub(super) struct EnergyConserving {
     free: Regime,
     /// k_m/2, N/m.
     half_stiffness_n_m: f64,
+    /// k_m/2 / (1 + K): f = this · (b + g₀) while pressed at both ends.
+    pressed_stiffness_n_m: f64,
     /// K = κ k_m/2.
     ratio: f64,
     rate_hz: f64,
@@ -39,12 +42,14 @@ impl EnergyConserving {
     pub fn new(probe: &Probe, step_s: f64) -> Self {
         let free = Regime::new(probe, 0.0, step_s);
         let half_stiffness_n_m = 0.5 * probe.contact_stiffness_n_m;
-        Self { free, half_stiffness_n_m, ratio: free.push[0] * half_stiffness_n_m, rate_hz: 1.0 / step_s }
+        let ratio = free.push[0] * half_stiffness_n_m;
+        let pressed_stiffness_n_m = half_stiffness_n_m / (1.0 + ratio);
+        Self { free, half_stiffness_n_m, pressed_stiffness_n_m, ratio, rate_hz: 1.0 / step_s }
     }
 
     /// Runs one clean block; row n describes input n.
     #[inline(always)]
-    pub fn run(
+    pub fn run<Q: Quad>(
         &self,
         design: &MicroContact,
         state: &mut ContactState,
@@ -52,28 +57,32 @@ impl EnergyConserving {
         out: &mut [ContactSample],
     ) {
         let (mut h_old, mut f_old) = (state.heights_m[2], state.forces_n[1]);
-        let mut y = state.y;
+        let mut y = Q::load(&state.y);
+        let mut before = state.y[0];
         for ((out, &height_m), &force_n) in out.iter_mut().zip(&block.height_m).zip(&block.force_n) {
             let rise = height_m - h_old;
-            let free = self.free.maps[0].apply(y, [rise, 0.0, 0.0], 0.5 * (f_old + force_n));
-            let contact_force_n = self.force(-y[0], -free[0]);
-            let onset = if y[0] >= 0.0 && free[0] < 0.0 { Some(self.onset(y[0], free[0])) } else { None };
-            for (next, (&free, &push)) in y.iter_mut().zip(free.iter().zip(&self.free.push)) {
-                *next = free + push * contact_force_n;
-            }
-            if !(y[0] <= design.leash_m && y[0] >= -design.max_penetration_m) {
-                let gap_m = y[0];
-                if rescue(design, &mut y, gap_m, force_n) {
+            let free = self.free.maps[0].apply_straight(y, rise, 0.5 * (f_old + force_n));
+            let after = free.first();
+            let contact_force_n = self.force(-before, -after);
+            let onset = if before >= 0.0 && after < 0.0 { Some(self.onset(before, after)) } else { None };
+            y = Q::load(&self.free.push).times_plus(Q::splat(contact_force_n), free);
+            let gap_m = y.first();
+            if !(gap_m <= design.leash_m && gap_m >= -design.max_penetration_m) {
+                let mut lost = y.array();
+                if rescue(design, &mut lost, gap_m, force_n) {
                     state.resets = state.resets.saturating_add(1);
                 }
+                y = Q::load(&lost);
             }
-            let pad_m = height_m + y[0];
+            before = y.first();
+            let [gap_m, stretch_m, pad_velocity_m_s, _] = y.array();
+            let pad_m = height_m + gap_m;
             *out = ContactSample {
                 height_m,
                 normal_force_n: force_n,
                 pad_m,
-                pad_velocity_m_s: y[2],
-                finger_m: pad_m - y[1],
+                pad_velocity_m_s,
+                finger_m: pad_m - stretch_m,
                 contact_force_n,
                 onset,
             };
@@ -82,8 +91,8 @@ impl EnergyConserving {
         // The profile is linear here: the last input is all that counts.
         state.heights_m = [h_old; 3];
         state.forces_n = [f_old; 2];
-        state.y = y;
-        state.gap_m = y[0];
+        state.y = y.array();
+        state.gap_m = before;
     }
 
     /// The discrete-gradient force for penetration g₀ before and b after a free step.
@@ -92,7 +101,7 @@ impl EnergyConserving {
         let k = self.ratio;
         if g0 >= 0.0 && b >= k * g0 {
             // In, in.
-            return self.half_stiffness_n_m * (g0 + (b - k * g0) / (1.0 + k));
+            return self.pressed_stiffness_n_m * (b + g0);
         }
         if g0 <= 0.0 && b <= 0.0 {
             return 0.0;

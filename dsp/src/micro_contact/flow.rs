@@ -11,6 +11,7 @@
 //! unit is never squared, which keeps the undamped flow conservative to 1e-16 a sample.
 
 use super::Probe;
+use super::quad::Quad;
 
 /// Rows and columns of the augmented vector.
 const N: usize = 9;
@@ -29,14 +30,30 @@ pub(super) struct Map {
 impl Map {
     /// Applies the map. The profile and force terms are summed first: they are known early.
     #[inline(always)]
-    pub fn apply(&self, y: [f64; 4], c: [f64; 3], force_n: f64) -> [f64; 4] {
-        let m = &self.columns;
-        let mut next = [0.0; 4];
-        for (i, next) in next.iter_mut().enumerate() {
-            let inputs = (m[4][i] * c[0] + m[5][i] * c[1]) + (m[6][i] * c[2] + m[7][i] * force_n);
-            *next = ((m[0][i] * y[0] + inputs) + m[1][i] * y[1]) + (m[2][i] * y[2] + m[3][i] * y[3]);
-        }
-        next
+    pub fn apply<Q: Quad>(&self, y: Q, c: [f64; 3], force_n: f64) -> Q {
+        let [_, _, _, _, slope, bend, twist, force] = &self.columns;
+        let inputs = Q::load(slope).mul(Q::splat(c[0]));
+        let inputs = Q::load(bend).times_plus(Q::splat(c[1]), inputs);
+        let inputs = Q::load(twist).times_plus(Q::splat(c[2]), inputs);
+        let inputs = Q::load(force).times_plus(Q::splat(force_n), inputs);
+        self.apply_with(y, inputs)
+    }
+
+    /// The same for a straight profile: it rises by `rise_m` within the sample.
+    #[inline(always)]
+    pub fn apply_straight<Q: Quad>(&self, y: Q, rise_m: f64, force_n: f64) -> Q {
+        let inputs = Q::load(&self.columns[4]).mul(Q::splat(rise_m));
+        self.apply_with(y, Q::load(&self.columns[7]).times_plus(Q::splat(force_n), inputs))
+    }
+
+    #[inline(always)]
+    fn apply_with<Q: Quad>(&self, y: Q, inputs: Q) -> Q {
+        let [gap, stretch, pad, finger, ..] = &self.columns;
+        let positions = Q::load(gap).times_plus(y.spread::<0>(), inputs);
+        let positions = Q::load(stretch).times_plus(y.spread::<1>(), positions);
+        let velocities = Q::load(pad).mul(y.spread::<2>());
+        let velocities = Q::load(finger).times_plus(y.spread::<3>(), velocities);
+        positions.add(velocities)
     }
 }
 
@@ -170,5 +187,55 @@ impl Units {
             *column = self.column(excess, j);
         }
         Map { columns }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::quad::Plain;
+    use super::*;
+
+    const STEP_S: f64 = 1.0 / 44_100.0;
+
+    fn apply(map: &Map, y: [f64; 4], c: [f64; 3], force_n: f64) -> [f64; 4] {
+        map.apply(Plain::load(&y), c, force_n).array()
+    }
+
+    #[test]
+    fn a_free_unloaded_pad_flies_straight() {
+        let free = Regime::new(&Probe::default(), 0.0, STEP_S);
+        let next = apply(&free.maps[0], [1e-3, 0.0, 0.2, 0.2], [0.0; 3], 0.0);
+        assert_eq!((next[1], next[2], next[3]), (0.0, 0.2, 0.2));
+        assert!((next[0] - 1e-3 - 0.2 * STEP_S).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_pressed_skin_without_damper_turns_as_a_harmonic_oscillator() {
+        let probe = Probe { pad_stiffness_n_m: 1e-3, pad_damping_n_s_m: 0.0, ..Probe::default() };
+        let pressed = Regime::new(&probe, 5e4, STEP_S);
+        let omega = libm::sqrt(5e4 / probe.pad_mass_kg);
+        let next = apply(&pressed.maps[0], [-1e-5, 0.0, 0.1, 0.0], [0.0; 3], 0.0);
+        let (sin, cos) = (libm::sin(omega * STEP_S), libm::cos(omega * STEP_S));
+        assert!((next[0] - (-1e-5 * cos + 0.1 / omega * sin)).abs() < 5e-14, "{next:?}");
+        assert!((next[2] - (1e-5 * omega * sin + 0.1 * cos)).abs() < 1e-9, "{next:?}");
+    }
+
+    #[test]
+    fn two_half_steps_make_a_whole_one_at_every_level() {
+        for stiffness in [0.0, 5e4, 1e8] {
+            let regime = Regime::new(&Probe::default(), stiffness, STEP_S);
+            for level in 1..=MAX_LEVEL {
+                let (y, c) = ([1e-5, -2e-5, 0.03, -0.04], [3e-6, -2e-6, 1e-6]);
+                // A level-k map takes its cubic over a whole sample and covers the first 2⁻ᵏ of it.
+                let t = libm::exp2(-(level as f64));
+                let half = apply(&regime.maps[level], y, c, 0.5);
+                let later = [c[0] + t * (2.0 * c[1] + 3.0 * t * c[2]), c[1] + 3.0 * t * c[2], c[2]];
+                let twice = apply(&regime.maps[level], half, later, 0.5);
+                let once = apply(&regime.maps[level - 1], y, c, 0.5);
+                for (a, b) in twice.iter().zip(&once) {
+                    assert!((a - b).abs() <= 1e-12 * (1.0 + b.abs()), "level {level}: {twice:?} {once:?}");
+                }
+            }
+        }
     }
 }

@@ -14,13 +14,13 @@ use super::{ContactState, MicroContact};
 /// Rows between two looks at vanishing magnitudes, on the contact's own clock.
 pub(super) const GRID: usize = 64;
 /// Heights beyond this are not a surface, m.
-const MAX_HEIGHT_M: f64 = 1.0;
+pub(super) const MAX_HEIGHT_M: f64 = 1.0;
 /// Forces beyond this are not a finger, N.
 pub(super) const MAX_FORCE_N: f64 = 1000.0;
 /// Gap beyond which the contact has lost its surface, m.
 pub(super) const MAX_GAP_M: f64 = 0.1;
 /// Magnitudes below this are zero.
-const VANISHING: f64 = 1e-100;
+pub(super) const VANISHING: f64 = 1e-100;
 
 /// Inputs of up to [`GRID`] rows that a kernel can trust.
 pub(super) struct CleanBlock {

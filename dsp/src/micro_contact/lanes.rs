@@ -1,10 +1,11 @@
 //! Eight contacts of one design side by side, one vector lane each (semi-implicit Euler).
 //!
 //! The arithmetic is that of one contact, operation for operation: a lane gives the bits that
-//! [`MicroContact::run`] gives. Rows keep the gaps instead of ready-made onsets, so that only a row
-//! somebody asks about pays for a division.
+//! [`MicroContact::run`] gives. Rows keep what cannot be computed afterwards; contact forces and
+//! onsets are worked out for the rows somebody asks about.
 
 use super::guard::{self, GRID};
+use super::quad::Quad;
 use super::semi_implicit::SemiImplicit;
 use super::{ContactSample, ContactState, MicroContact, Onset, dispatch};
 
@@ -14,22 +15,16 @@ pub const LANES: usize = 8;
 /// One value a contact.
 pub type Lanes = [f64; LANES];
 
-/// One row of eight contacts; fields as in [`ContactSample`].
+/// One row of eight contacts; [`EulerLanes::sample`] turns a lane into a [`ContactSample`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(align(64))]
 pub struct LaneRow {
-    /// x_m used, m.
-    pub height_m: Lanes,
-    /// F_n used, N.
-    pub normal_force_n: Lanes,
     /// x_s, m.
     pub pad_m: Lanes,
     /// v_s, m/s.
     pub pad_velocity_m_s: Lanes,
     /// x_f, m.
     pub finger_m: Lanes,
-    /// Contact force, N.
-    pub contact_force_n: Lanes,
     /// x_s − x_m at the row before, m.
     pub gap_before_m: Lanes,
     /// x_s − x_m at this row, m; negative in contact.
@@ -43,12 +38,23 @@ pub struct EulerLanes<'a> {
     pub(super) scheme: &'a SemiImplicit,
 }
 
-/// The recurrent part, one array a component.
-struct Bundle {
-    y: [Lanes; 4],
-    gap_m: Lanes,
-    height_m: Lanes,
-    force_n: Lanes,
+/// Four contacts: what recurs from row to row. Plain fields, so that it lives in registers.
+#[derive(Clone, Copy)]
+struct Four<Q> {
+    gap_ahead_m: Q,
+    stretch_m: Q,
+    pad_m_s: Q,
+    finger_m_s: Q,
+    gap_m: Q,
+    height_m: Q,
+    force_n: Q,
+}
+
+/// What one row of four contacts gives away.
+struct FourRow<Q> {
+    pad_m: Q,
+    pad_velocity_m_s: Q,
+    finger_m: Q,
 }
 
 impl EulerLanes<'_> {
@@ -63,6 +69,12 @@ impl EulerLanes<'_> {
         dispatch::run_lanes(self, states, height_m, normal_force_n, out);
     }
 
+    /// Contact force of one contact in a row, N; `lane` modulo [`LANES`].
+    #[must_use]
+    pub fn contact_force_n(&self, row: &LaneRow, lane: usize) -> f64 {
+        (-row.gap_m[lane % LANES]).max(0.0) * self.scheme.contact_stiffness_n_m
+    }
+
     /// The touch of one contact in a row; `lane` modulo [`LANES`].
     #[must_use]
     pub fn onset(&self, row: &LaneRow, lane: usize) -> Option<Onset> {
@@ -70,180 +82,215 @@ impl EulerLanes<'_> {
         if before >= 0.0 && now < 0.0 { Some(self.scheme.first_onset(before, now)) } else { None }
     }
 
-    /// One contact's row in full; `lane` modulo [`LANES`].
+    /// One contact's row in full, given the inputs it was computed from; `lane` modulo [`LANES`].
     #[must_use]
-    pub fn sample(&self, row: &LaneRow, lane: usize) -> ContactSample {
+    pub fn sample(&self, row: &LaneRow, lane: usize, height_m: f64, normal_force_n: f64) -> ContactSample {
         let i = lane % LANES;
         ContactSample {
-            height_m: row.height_m[i],
-            normal_force_n: row.normal_force_n[i],
+            height_m,
+            normal_force_n: normal_force_n.max(0.0),
             pad_m: row.pad_m[i],
             pad_velocity_m_s: row.pad_velocity_m_s[i],
             finger_m: row.finger_m[i],
-            contact_force_n: row.contact_force_n[i],
+            contact_force_n: self.contact_force_n(row, i),
             onset: self.onset(row, i),
         }
     }
 
     /// Cuts a run where any contact's clock meets its grid.
     #[inline(always)]
-    pub(super) fn run_blocks(
+    pub(super) fn run_blocks<Q: Quad>(
         &self,
         states: &mut [ContactState; LANES],
         mut height_m: &[Lanes],
         mut force_n: &[Lanes],
         mut out: &mut [LaneRow],
     ) {
-        let mut bundle = Bundle::gather(states);
         loop {
             let left = states.iter().map(|s| GRID - s.clock as usize % GRID).min().unwrap_or(GRID);
             let count = left.min(height_m.len()).min(force_n.len()).min(out.len());
             if count == 0 {
-                break;
+                return;
             }
             let (heights, later_heights) = height_m.split_at(count);
             let (forces, later_forces) = force_n.split_at(count);
             let (rows, later_rows) = out.split_at_mut(count);
-            for ((row, height_m), force_n) in rows.iter_mut().zip(heights).zip(forces) {
-                self.step(&mut bundle, states, height_m, force_n, row);
-            }
-            for (lane, state) in states.iter_mut().enumerate() {
+            self.run_rows::<Q>(states, heights, forces, rows);
+            for state in states.iter_mut() {
                 state.clock = state.clock.wrapping_add(count as u32);
                 if (state.clock as usize).is_multiple_of(GRID) {
-                    bundle.flush(lane);
+                    guard::flush(state);
                 }
             }
             (height_m, force_n, out) = (later_heights, later_forces, later_rows);
         }
-        bundle.scatter(states);
     }
 
     #[inline(always)]
-    fn step(
+    fn run_rows<Q: Quad>(
         &self,
-        bundle: &mut Bundle,
         states: &mut [ContactState; LANES],
-        height_m: &Lanes,
-        force_n: &Lanes,
-        row: &mut LaneRow,
+        height_m: &[Lanes],
+        force_n: &[Lanes],
+        out: &mut [LaneRow],
     ) {
-        let (mut height, mut force) = (*height_m, *force_n);
-        let mut good = true;
-        for i in 0..LANES {
-            good &= guard::is_height(height[i]) & guard::is_force(force[i]);
-            (height[i], force[i]) = guard::tidy(height[i], force[i]);
-        }
-        if !good {
-            repair(bundle, states, height_m, force_n, &mut height, &mut force);
-        }
-        let s = self.scheme;
-        let y = &mut bundle.y;
-        let mut held = true;
-        for i in 0..LANES {
-            let d = y[0][i] - (height[i] - bundle.height_m[i]);
-            let (stretch, pad, finger) = (y[1][i], y[2][i], y[3][i]);
-            let penetration = if d < 0.0 { -d } else { 0.0 };
-            let next = |k: usize, gap: f64| {
-                let springs = s.stretch[k] * stretch + s.force[k] * force[i];
-                let dampers = s.pad_velocity[k] * pad + s.finger_velocity[k] * finger;
-                ((springs + dampers) + gap) + s.contact[k] * penetration
+        let (low, high) = (-self.design.max_penetration_m, self.design.leash_m);
+        let (mut a, mut b) = gather::<Q>(states);
+        for ((row, height_m), force_n) in out.iter_mut().zip(height_m).zip(force_n) {
+            let (mut height, mut force) = (*height_m, *force_n);
+            if !inputs_are_good::<Q>(height_m, force_n) {
+                (height, force) = repaired(
+                    states,
+                    height_m,
+                    force_n,
+                    halves(a.height_m, b.height_m),
+                    halves(a.force_n, b.force_n),
+                );
+            }
+            let before = halves(a.gap_m, b.gap_m);
+            let ra = self.step(&mut a, lower(&height), lower(&force));
+            let rb = self.step(&mut b, upper(&height), upper(&force));
+            *row = LaneRow {
+                pad_m: halves(ra.pad_m, rb.pad_m),
+                pad_velocity_m_s: halves(ra.pad_velocity_m_s, rb.pad_velocity_m_s),
+                finger_m: halves(ra.finger_m, rb.finger_m),
+                gap_before_m: before,
+                gap_m: halves(a.gap_m, b.gap_m),
             };
-            (y[0][i], y[1][i], y[2][i], y[3][i]) = (next(0, d), next(1, 0.0), next(2, 0.0), next(3, 0.0));
-            let pad_m = height[i] + d;
-            row.pad_m[i] = pad_m;
-            row.finger_m[i] = pad_m - stretch;
-            row.pad_velocity_m_s[i] = 0.5 * (pad + y[2][i]);
-            row.contact_force_n[i] = penetration * s.contact_stiffness_n_m;
-            row.gap_before_m[i] = bundle.gap_m[i];
-            row.gap_m[i] = d;
-            bundle.gap_m[i] = d;
-            held &= (y[0][i] <= self.design.leash_m) & (y[0][i] >= -self.design.max_penetration_m);
+            if !(a.gap_ahead_m.within(low, high) & b.gap_ahead_m.within(low, high)) {
+                scatter(a, b, states);
+                self.rescue(states);
+                (a, b) = gather(states);
+            }
         }
-        row.height_m = height;
-        row.normal_force_n = force;
-        bundle.height_m = height;
-        bundle.force_n = force;
-        if !held {
-            self.rescue(bundle, states);
-        }
+        scatter(a, b, states);
+    }
+
+    /// The sums of the single contact, in its order.
+    #[inline(always)]
+    fn step<Q: Quad>(&self, four: &mut Four<Q>, height_m: Q, force_n: Q) -> FourRow<Q> {
+        let s = self.scheme;
+        let tiny = Q::splat(guard::VANISHING);
+        let height_m = height_m.add(tiny).sub(tiny);
+        let force_n = force_n.positive().add(tiny).sub(tiny);
+        let short = height_m.sub(four.height_m).sub(four.gap_ahead_m);
+        let (gap_m, penetration) = (Q::splat(0.0).sub(short), short.positive());
+        let (stretch, pad, finger) = (four.stretch_m, four.pad_m_s, four.finger_m_s);
+        let next = |k: usize, gap: Q| {
+            let springs = Q::splat(s.force[k]).times_plus(force_n, gap);
+            let springs = Q::splat(s.stretch[k]).times_plus(stretch, springs);
+            let dampers = Q::splat(s.pad_velocity[k]).mul(pad);
+            let dampers = Q::splat(s.finger_velocity[k]).times_plus(finger, dampers);
+            Q::splat(s.contact[k]).times_plus(penetration, springs.add(dampers))
+        };
+        four.gap_ahead_m = next(0, gap_m);
+        four.stretch_m = next(1, Q::splat(0.0));
+        four.pad_m_s = next(2, Q::splat(0.0));
+        four.finger_m_s = next(3, Q::splat(0.0));
+        (four.gap_m, four.height_m, four.force_n) = (gap_m, height_m, force_n);
+        let pad_m = height_m.add(gap_m);
+        let pad_velocity_m_s = Q::splat(0.5).mul(pad.add(four.pad_m_s));
+        FourRow { pad_m, pad_velocity_m_s, finger_m: pad_m.sub(stretch) }
     }
 
     #[cold]
     #[inline(never)]
-    fn rescue(&self, bundle: &mut Bundle, states: &mut [ContactState; LANES]) {
-        for (lane, state) in states.iter_mut().enumerate() {
-            let mut y = [0, 1, 2, 3].map(|k| bundle.y[k][lane]);
-            let carried = y[0];
+    fn rescue(&self, states: &mut [ContactState; LANES]) {
+        for state in states {
+            let carried = state.y[0];
             if carried <= self.design.leash_m && carried >= -self.design.max_penetration_m {
                 continue;
             }
-            if guard::rescue(self.design, &mut y, carried, bundle.force_n[lane]) {
-                bundle.gap_m[lane] = y[0];
+            if guard::rescue(self.design, &mut state.y, carried, state.forces_n[1]) {
+                state.gap_m = state.y[0];
                 state.resets = state.resets.saturating_add(1);
-            }
-            for (component, y) in bundle.y.iter_mut().zip(y) {
-                component[lane] = y;
             }
         }
     }
 }
 
+#[inline(always)]
+fn lower<Q: Quad>(lanes: &Lanes) -> Q {
+    Q::load(&[lanes[0], lanes[1], lanes[2], lanes[3]])
+}
+
+#[inline(always)]
+fn upper<Q: Quad>(lanes: &Lanes) -> Q {
+    Q::load(&[lanes[4], lanes[5], lanes[6], lanes[7]])
+}
+
+#[inline(always)]
+fn halves<Q: Quad>(lower: Q, upper: Q) -> Lanes {
+    let ([a, b, c, d], [e, f, g, h]) = (lower.array(), upper.array());
+    [a, b, c, d, e, f, g, h]
+}
+
+#[inline(always)]
+fn inputs_are_good<Q: Quad>(height_m: &Lanes, force_n: &Lanes) -> bool {
+    let height = |q: Q| q.within(-guard::MAX_HEIGHT_M, guard::MAX_HEIGHT_M);
+    let force = |q: Q| q.within(-guard::MAX_FORCE_N, guard::MAX_FORCE_N);
+    height(lower(height_m)) & height(upper(height_m)) & force(lower(force_n)) & force(upper(force_n))
+}
+
+/// Holds the last good input where a lane's is bad, and counts.
 #[cold]
 #[inline(never)]
-fn repair(
-    bundle: &Bundle,
+fn repaired(
     states: &mut [ContactState; LANES],
-    raw_height_m: &Lanes,
-    raw_force_n: &Lanes,
-    height_m: &mut Lanes,
-    force_n: &mut Lanes,
-) {
+    height_m: &Lanes,
+    force_n: &Lanes,
+    last_height_m: Lanes,
+    last_force_n: Lanes,
+) -> (Lanes, Lanes) {
+    let (mut heights, mut forces) = (*height_m, *force_n);
     for (i, state) in states.iter_mut().enumerate() {
-        let (good_height, good_force) = (guard::is_height(raw_height_m[i]), guard::is_force(raw_force_n[i]));
+        let (good_height, good_force) = (guard::is_height(height_m[i]), guard::is_force(force_n[i]));
         if !good_height {
-            height_m[i] = bundle.height_m[i];
+            heights[i] = last_height_m[i];
         }
         if !good_force {
-            force_n[i] = bundle.force_n[i];
+            forces[i] = last_force_n[i];
         }
         if !(good_height && good_force) {
             state.resets = state.resets.saturating_add(1);
         }
     }
+    (heights, forces)
 }
 
-impl Bundle {
-    #[inline(always)]
-    fn gather(states: &[ContactState; LANES]) -> Self {
-        let mut b = Self { y: [[0.0; 8]; 4], gap_m: [0.0; 8], height_m: [0.0; 8], force_n: [0.0; 8] };
-        for (i, state) in states.iter().enumerate() {
-            for (component, &y) in b.y.iter_mut().zip(&state.y) {
-                component[i] = y;
-            }
-            b.gap_m[i] = state.gap_m;
-            b.height_m[i] = state.heights_m[2];
-            b.force_n[i] = state.forces_n[1];
+#[inline(always)]
+fn gather<Q: Quad>(states: &[ContactState; LANES]) -> (Four<Q>, Four<Q>) {
+    let four = |from: usize| {
+        let take = |value: fn(&ContactState) -> f64| {
+            Q::load(&core::array::from_fn(|i| value(&states[(from + i) % LANES])))
+        };
+        Four {
+            gap_ahead_m: take(|s| s.y[0]),
+            stretch_m: take(|s| s.y[1]),
+            pad_m_s: take(|s| s.y[2]),
+            finger_m_s: take(|s| s.y[3]),
+            gap_m: take(|s| s.gap_m),
+            height_m: take(|s| s.heights_m[2]),
+            force_n: take(|s| s.forces_n[1]),
         }
-        b
-    }
+    };
+    (four(0), four(4))
+}
 
-    #[inline(always)]
-    fn scatter(&self, states: &mut [ContactState; LANES]) {
+#[inline(always)]
+fn scatter<Q: Quad>(a: Four<Q>, b: Four<Q>, states: &mut [ContactState; LANES]) {
+    let (lower, upper) = states.split_at_mut(LANES / 2);
+    for (four, states) in [(a, lower), (b, upper)] {
+        let (gaps_ahead, stretches) = (four.gap_ahead_m.array(), four.stretch_m.array());
+        let (pads, fingers) = (four.pad_m_s.array(), four.finger_m_s.array());
+        let (gaps, heights, forces) = (four.gap_m.array(), four.height_m.array(), four.force_n.array());
         for (i, state) in states.iter_mut().enumerate() {
-            for (y, component) in state.y.iter_mut().zip(&self.y) {
-                *y = component[i];
-            }
-            state.gap_m = self.gap_m[i];
+            let i = i % 4;
+            state.y = [gaps_ahead[i], stretches[i], pads[i], fingers[i]];
+            state.gap_m = gaps[i];
             // The Euler scheme looks at the last input only.
-            state.heights_m = [self.height_m[i]; 3];
-            state.forces_n = [self.force_n[i]; 2];
-        }
-    }
-
-    #[inline(always)]
-    fn flush(&mut self, lane: usize) {
-        for component in &mut self.y {
-            component[lane] = guard::flushed(component[lane]);
+            state.heights_m = [heights[i]; 3];
+            state.forces_n = [forces[i]; 2];
         }
     }
 }

@@ -12,6 +12,7 @@
 //! velocity is the mean of the two half-step velocities around it.
 
 use super::guard::{CleanBlock, rescue};
+use super::quad::Quad;
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 
 /// Columns of one (sub-)step.
@@ -45,23 +46,20 @@ impl SemiImplicit {
         }
     }
 
-    /// y⁺ for the gap `d` at the row's time; y[0] itself is not used.
+    /// y⁺ for the gap `d` at the row's time; lane 0 of y is not used. The sums are grouped so that
+    /// what is known late is added last.
     #[inline(always)]
-    fn advance(&self, d: f64, y: [f64; 4], force_n: f64) -> [f64; 4] {
-        let penetration = if d < 0.0 { -d } else { 0.0 };
-        let gap = [d, 0.0, 0.0, 0.0];
-        let mut next = [0.0; 4];
-        for (i, next) in next.iter_mut().enumerate() {
-            let springs = self.stretch[i] * y[1] + self.force[i] * force_n;
-            let dampers = self.pad_velocity[i] * y[2] + self.finger_velocity[i] * y[3];
-            *next = ((springs + dampers) + gap[i]) + self.contact[i] * penetration;
-        }
-        next
+    fn advance<Q: Quad>(&self, d: f64, penetration: f64, y: Q, force_n: f64) -> Q {
+        let springs = Q::load(&self.force).times_plus(Q::splat(force_n), Q::load(&[d, 0.0, 0.0, 0.0]));
+        let springs = Q::load(&self.stretch).times_plus(y.spread::<1>(), springs);
+        let dampers = Q::load(&self.pad_velocity).mul(y.spread::<2>());
+        let dampers = Q::load(&self.finger_velocity).times_plus(y.spread::<3>(), dampers);
+        Q::load(&self.contact).times_plus(Q::splat(penetration), springs.add(dampers))
     }
 
     /// Runs one clean block; row n describes input n.
     #[inline(always)]
-    pub fn run(
+    pub fn run<Q: Quad>(
         &self,
         design: &MicroContact,
         state: &mut ContactState,
@@ -69,14 +67,14 @@ impl SemiImplicit {
         out: &mut [ContactSample],
     ) {
         if self.substeps > 1 {
-            self.run_steps(design, state, block, out, self.substeps);
+            self.run_steps::<Q>(design, state, block, out, self.substeps);
         } else {
-            self.run_steps(design, state, block, out, 1);
+            self.run_steps::<Q>(design, state, block, out, 1);
         }
     }
 
     #[inline(always)]
-    fn run_steps(
+    fn run_steps<Q: Quad>(
         &self,
         design: &MicroContact,
         state: &mut ContactState,
@@ -86,23 +84,22 @@ impl SemiImplicit {
     ) {
         let share = 1.0 / substeps as f64;
         let (mut h_old, mut f_old) = (state.heights_m[2], state.forces_n[1]);
-        let (mut y, mut gap) = (state.y, state.gap_m);
+        let (mut y, mut gap) = (Q::load(&state.y), state.gap_m);
         for ((out, &height_m), &force_n) in out.iter_mut().zip(&block.height_m).zip(&block.force_n) {
             let rise = (height_m - h_old) * share;
             let (mut mean, mut onset) = (0.0, None);
             for k in 1..=substeps {
                 let force =
                     if k == substeps { force_n } else { f_old + (force_n - f_old) * share * k as f64 };
-                let d = y[0] - rise;
-                if d < 0.0 {
-                    mean -= d;
-                    if gap >= 0.0 {
-                        onset = self.onset(onset, gap, d, (k - 1) as f64, share);
-                    }
+                let short = rise - y.first();
+                let (d, penetration) = (0.0 - short, if short > 0.0 { short } else { 0.0 });
+                mean += penetration;
+                if (d < 0.0) & (gap >= 0.0) {
+                    onset = self.onset(onset, gap, d, (k - 1) as f64, share);
                 }
                 gap = d;
-                let next = self.advance(d, y, force);
-                let (velocity, stretch) = (0.5 * (y[2] + next[2]), y[1]);
+                let next = self.advance(d, penetration, y, force);
+                let (velocity, stretch) = (0.5 * (y.array()[2] + next.array()[2]), y.array()[1]);
                 y = next;
                 if k == substeps {
                     let pad_m = height_m + d;
@@ -117,19 +114,21 @@ impl SemiImplicit {
                     };
                 }
             }
-            if !(y[0] <= design.leash_m && y[0] >= -design.max_penetration_m) {
-                let carried = y[0];
-                if rescue(design, &mut y, carried, force_n) {
-                    gap = y[0];
+            let carried = y.first();
+            if !(carried <= design.leash_m && carried >= -design.max_penetration_m) {
+                let mut lost = y.array();
+                if rescue(design, &mut lost, carried, force_n) {
+                    gap = lost[0];
                     state.resets = state.resets.saturating_add(1);
                 }
+                y = Q::load(&lost);
             }
             (h_old, f_old) = (height_m, force_n);
         }
         // The Euler scheme looks at the last input only.
         state.heights_m = [h_old; 3];
         state.forces_n = [f_old; 2];
-        state.y = y;
+        state.y = y.array();
         state.gap_m = gap;
     }
 

@@ -1,0 +1,47 @@
+//! Fits WAV files and prints a table: `recordings MAX_MODES FILE…`; the baseline is STFT peaks.
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use asperity_fit::{ChannelChoice, FitOptions, fit, load};
+
+fn main() {
+    let mut args = std::env::args().skip(1);
+    let max_modes = args.next().and_then(|n| n.parse().ok()).unwrap_or(60);
+    println!("file                               modes offset_ms  snr  from_onset  noise_db  s  strongest");
+    for path in args {
+        let recording = match load(&path, ChannelChoice::Loudest) {
+            Ok(recording) => recording,
+            Err(error) => {
+                println!("error: {error}");
+                continue;
+            }
+        };
+        let clock = std::time::Instant::now();
+        let options = FitOptions { max_modes, threads: 1, ..FitOptions::default() };
+        match fit(&recording, &options, &mut |_| {}) {
+            Err(error) => println!("error: {error}"),
+            Ok(fit) => {
+                let top: Vec<String> = fit
+                    .modes
+                    .iter()
+                    .take(3)
+                    .map(|m| format!("{:.2}/{:.2}", m.frequency_hz, m.decay_per_s))
+                    .collect();
+                println!(
+                    "{:36} {:4} {:6.2} {:7.2} {:7.2} {:7.1} {:6.2}  {}",
+                    fit.source,
+                    fit.modes.len(),
+                    1e3 * fit.start_offset_s,
+                    fit.resynthesis_snr_db,
+                    fit.snr_from_onset_db,
+                    fit.noise_floor_db,
+                    clock.elapsed().as_secs_f64(),
+                    top.join(" ")
+                );
+                for warning in &fit.warnings {
+                    println!("      {warning}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Prints the synthetic table of the fit: misses, spurious modes, errors over the bound, time.
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use asperity_dsp::mode::Mode;
+use asperity_fit::analysis::{Limits, analyse};
+use asperity_fit::partial::Partial;
+use asperity_fit::refinement::Bounds;
+use common::*;
+use std::f64::consts::PI;
+
+fn to_mode(p: &Partial, rate: f64) -> Mode {
+    Mode {
+        frequency_hz: p.omega * rate / (2.0 * PI),
+        decay_per_s: p.delta * rate,
+        amplitude: p.c.norm(),
+        phase_rad: p.c.arg() + 0.5 * PI,
+    }
+}
+
+/// Time this thread has run, which other work on the machine does not lengthen much.
+fn cpu_seconds() -> f64 {
+    std::fs::read_to_string("/proc/thread-self/schedstat")
+        .ok()
+        .and_then(|text| text.split(' ').next()?.parse::<f64>().ok())
+        .map_or_else(
+            || {
+                let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+                now.map_or(0.0, |now| now.as_secs_f64())
+            },
+            |ns| ns * 1e-9,
+        )
+}
+
+fn main() {
+    let args: Vec<String> = std::env::args().collect();
+    let seeds: u64 = args.get(1).and_then(|s| s.parse().ok()).unwrap_or(3);
+    let first: u64 = args.get(2).and_then(|s| s.parse().ok()).unwrap_or(1);
+    let only: Option<usize> = args.get(3).and_then(|s| s.parse().ok());
+    let verbose = args.iter().any(|a| a == "-v");
+    println!("   K  SNR  missed     spurious  f/CRB  d/CRB  in4    below limit dB  s (median)");
+    for modes in [10, 30, 100] {
+        if only.is_some_and(|k| k != modes) {
+            continue;
+        }
+        for snr in [60.0, 40.0, 20.0] {
+            let (mut missed, mut spurious, mut total, mut f, mut d, mut below, mut times) =
+                (0, 0, 0, vec![], vec![], vec![], vec![]);
+            for seed in first..first + seeds {
+                let impact = impact(modes, snr, seed, 44_100.0, 2.0);
+                let bounds = cramer_rao(&impact.truth, 44_100.0, impact.clean.len(), impact.noise_std);
+                let limits = Limits {
+                    bounds: Bounds {
+                        omega_low: 2.0 * PI * 20.0 / 44_100.0,
+                        omega_high: 0.98 * PI,
+                        delta_low: 0.115 / 44_100.0,
+                        delta_high: 1500.0 / 44_100.0,
+                        amplitude_high: 8.0 * impact.noisy.iter().fold(0.0, |a: f64, x| a.max(x.abs())),
+                    },
+                    max_partials: 200,
+                    least_energy: 1e-9,
+                    threads: 1,
+                    rate_hz: 44_100.0,
+                    least_noise: 1e-14,
+                };
+                let clock = cpu_seconds();
+                let found = analyse(&impact.noisy, &limits, &mut |_| {});
+                times.push(cpu_seconds() - clock);
+                let found: Vec<Mode> = found.partials.iter().map(|p| to_mode(p, 44_100.0)).collect();
+                let score = score(&impact, &bounds, &found);
+                missed += score.missed;
+                spurious += score.spurious;
+                total += score.identifiable;
+                if verbose {
+                    println!("seed {seed}: {} found", found.len());
+                    for (mode, bound) in &score.missed_modes {
+                        println!("  missed {mode:?} {bound:?}");
+                    }
+                    for mode in &score.spurious_modes {
+                        println!("  spurious {mode:?}");
+                    }
+                }
+                f.extend(score.f_ratio.clone());
+                d.extend(score.d_ratio.clone());
+                below.push(score.limit_db - score.snr_db);
+            }
+            let in4 = f.iter().zip(&d).filter(|(f, d): &(&f64, &f64)| f.abs() < 4.0 && d.abs() < 4.0).count();
+            times.sort_by(f64::total_cmp);
+            below.sort_by(f64::total_cmp);
+            println!(
+                "{modes:4} {snr:4} {missed:4}/{total:<4} {spurious:6}    {:6.2} {:6.2} {:6.3}  {:6.2} .. {:5.2}    {:.2}",
+                robust_rms(&f),
+                robust_rms(&d),
+                in4 as f64 / f.len().max(1) as f64,
+                below[0],
+                below[below.len() - 1],
+                times[times.len() / 2],
+            );
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! The whole analysis of one segment: levels from long to short, joint refinement, proof, once more.
+//!
+//! 1. Levels D = 512, 128, 32, 8, 2 (at 2 s and 44.1 kHz; the first leaves about 170 samples a band).
+//!    At each: split what is unexplained into bands, take the poles of every band whose gate opens,
+//!    join them to what is known, refit all jointly on the part of the segment after the level's span,
+//!    and remove what is not proven. Long modes are thus known before short ones are looked for, and
+//!    one window never has to suit both.
+//! 2. Joint refinement over the whole segment, proof, refinement.
+//! 3. The same on the residual, with the noise measured again in the residual, until nothing is added.
+
+use crate::amplitudes::fit_amplitudes;
+use crate::esprit::poles;
+use crate::model_order::{Gate, KEPT_HALF_WIDTH};
+use crate::noise_floor::NoiseFloor;
+use crate::partial::Partial;
+use crate::projection::synthesise;
+use crate::pruning::{prune, prune_missed_by_nobody};
+use crate::refinement::{Bounds, refine};
+use crate::sub_band::{Bands, Level, split};
+use nalgebra::Complex;
+use std::f64::consts::PI;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Most passes over the levels.
+const PASSES: usize = 3;
+/// Nepers by which a mode may have decayed within a level's span and still be that level's business.
+const SPAN_NEPERS: f64 = 3.0;
+/// Accepted steps of a refinement within a level, after removals, and at the end.
+const LEVEL_STEPS: usize = 3;
+/// Most rounds of one level.
+const LEVEL_ROUNDS: usize = 3;
+const FINAL_STEPS: usize = 12;
+
+/// What bounds an analysis, in units of samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Bounds of every parameter.
+    pub bounds: Bounds,
+    /// Most partials.
+    pub max_partials: usize,
+    /// Partials whose energy lies further than this below the strongest are dropped, as a ratio.
+    pub least_energy: f64,
+    /// Threads to use.
+    pub threads: usize,
+    /// Sample rate, for the width of the noise estimate.
+    pub rate_hz: f64,
+    /// Least noise variance (quantisation, rounding).
+    pub least_noise: f64,
+}
+
+/// What an analysis found.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// The partials, amplitudes at the first sample of the segment.
+    pub partials: Vec<Partial>,
+    /// Noise measured in the residual.
+    pub noise: NoiseFloor,
+    /// Segment minus partials.
+    pub residual: Vec<f64>,
+    /// Whether more was there than `max_partials` allowed.
+    pub capped: bool,
+}
+
+/// Analyses `segment`; `progress` hears the part done, 0 to 1.
+pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
+    let mut work = Work {
+        segment,
+        limits,
+        noise: NoiseFloor::estimate(segment, limits.rate_hz, limits.least_noise),
+        partials: Vec::new(),
+        capped: false,
+    };
+    let levels = Level::ladder(segment.len());
+    for pass in 0..PASSES {
+        let known = work.partials.clone();
+        let mut added = 0;
+        for (i, &level) in levels.iter().enumerate() {
+            progress(0.9 * (pass * levels.len() + i) as f64 / (PASSES * levels.len()) as f64);
+            added += work.level(level, pass > 0);
+        }
+        if pass > 0 && added == 0 {
+            break;
+        }
+        work.settle(FINAL_STEPS);
+        let residual = subtract(segment, &work.partials);
+        work.noise = NoiseFloor::estimate(&residual, limits.rate_hz, limits.least_noise);
+        while prune_missed_by_nobody(segment, &mut work.partials, &work.noise, &limits.bounds) > 0 {
+            work.settle(LEVEL_STEPS);
+        }
+        if pass > 0 && work.partials.len() <= known.len() {
+            break;
+        }
+    }
+    work.settle(FINAL_STEPS);
+    let residual = subtract(segment, &work.partials);
+    progress(1.0);
+    Analysis { partials: work.partials, noise: work.noise, residual, capped: work.capped }
+}
+
+/// `signal` minus `partials`.
+#[must_use]
+pub fn subtract(signal: &[f64], partials: &[Partial]) -> Vec<f64> {
+    let mut residual = synthesise(partials, signal.len());
+    residual.iter_mut().zip(signal).for_each(|(r, s)| *r = s - *r);
+    residual
+}
+
+struct Work<'a> {
+    segment: &'a [f64],
+    limits: &'a Limits,
+    noise: NoiseFloor,
+    partials: Vec<Partial>,
+    capped: bool,
+}
+
+impl Work<'_> {
+    /// Looks for new partials at one level and refits, again while strong ones hid weak ones; says how
+    /// many it proposed. `whole`: refit over the whole segment, not only after the level's span.
+    fn level(&mut self, level: Level, whole: bool) -> usize {
+        let mut proposed = 0;
+        for _ in 0..LEVEL_ROUNDS {
+            let residual = subtract(self.segment, &self.partials);
+            let (found, hidden) = self.candidates(level, &residual);
+            if found.is_empty() {
+                break;
+            }
+            proposed += found.len();
+            self.join(found, level.span(), if whole { 0 } else { level.span() });
+            if !hidden {
+                break;
+            }
+        }
+        proposed
+    }
+
+    /// Refits what is known together with `found` (amplitudes unknown) from sample `start` on.
+    fn join(&mut self, found: Vec<Partial>, span: usize, start: usize) {
+        let offset = start as f64;
+        let (alive, frozen): (Vec<Partial>, Vec<Partial>) =
+            self.partials.iter().partition(|p| p.delta * offset < SPAN_NEPERS);
+        let frozen_late: Vec<Partial> = frozen.iter().map(|p| p.moved(offset)).collect();
+        let target = subtract(&self.segment[start..], &frozen_late);
+        let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(offset)).collect();
+        active.extend(found);
+        fit_amplitudes(&target, &mut active);
+        self.drop_faint(&mut active, target.len());
+        let mut bounds = self.limits.bounds;
+        if start > 0 {
+            bounds.amplitude_high = f64::INFINITY;
+            bounds.delta_high = bounds.delta_high.min(1.5 * SPAN_NEPERS / span as f64);
+        }
+        refine(&target, &mut active, &bounds, LEVEL_STEPS);
+        while if start > 0 {
+            prune(&mut active, &self.noise, target.len())
+        } else {
+            prune_missed_by_nobody(&target, &mut active, &self.noise, &bounds)
+        } > 0
+        {
+            refine(&target, &mut active, &bounds, LEVEL_STEPS);
+        }
+        self.partials = frozen;
+        // What would have been absurdly loud at the start was over before the window.
+        let early = active.iter().map(|p| p.moved(-offset));
+        self.partials.extend(early.filter(|p| p.c.norm() <= self.limits.bounds.amplitude_high));
+    }
+
+    /// Joint refinement over the whole segment.
+    fn settle(&mut self, steps: usize) {
+        refine(self.segment, &mut self.partials, &self.limits.bounds, steps);
+        let mut partials = std::mem::take(&mut self.partials);
+        if self.drop_faint(&mut partials, self.segment.len()) > 0 {
+            refine(self.segment, &mut partials, &self.limits.bounds, steps);
+        }
+        self.partials = partials;
+    }
+
+    /// Keeps the strongest by energy, within the cap and the level limit; says how many went.
+    fn drop_faint(&mut self, partials: &mut Vec<Partial>, count: usize) -> usize {
+        let before = partials.len();
+        partials.sort_by(|a, b| b.energy(count).total_cmp(&a.energy(count)));
+        if partials.len() > self.limits.max_partials {
+            self.capped = true;
+            partials.truncate(self.limits.max_partials);
+        }
+        if let Some(strongest) = partials.first().map(|p| p.energy(count)) {
+            partials.retain(|p| p.energy(count) >= strongest * self.limits.least_energy);
+        }
+        partials.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        before - partials.len()
+    }
+
+    /// Poles of all bands of a level, as partials without amplitudes, and whether bands were left out
+    /// because what they hold may have leaked from stronger ones.
+    fn candidates(&self, level: Level, residual: &[f64]) -> (Vec<Partial>, bool) {
+        let bands = split(residual, level);
+        let samples = bands.bands[0].len();
+        if samples < 8 {
+            return (Vec::new(), false);
+        }
+        let gate = Gate::new(samples);
+        let real = level.decimation == 1;
+        let peaks = self.on_threads(bands.bands.len(), &|k| gate.peaks(&bands.bands[k], real));
+        let leak = strongest(&peaks);
+        let mut open = Vec::new();
+        let mut hidden = false;
+        for (k, peaks) in peaks.iter().enumerate() {
+            if !self.within_limits(level, k) {
+                continue;
+            }
+            let noise_std = self.noise_std(level, &bands, k);
+            if gate.opens(peaks, noise_std, &leak) {
+                open.push(k);
+            } else {
+                hidden |= gate.opens(peaks, noise_std, &[0.0; 4]);
+            }
+        }
+        let found = self.on_threads(open.len(), &|i| (open[i], self.band_partials(level, &bands, open[i])));
+        (without_doubles(found, level, samples), hidden)
+    }
+
+    /// `work(0 .. count)` in order, shared among the threads allowed.
+    fn on_threads<T: Send>(&self, count: usize, work: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
+        let threads = self.limits.threads.clamp(1, count.max(1));
+        if threads == 1 {
+            return (0..count).map(work).collect();
+        }
+        let next = AtomicUsize::new(0);
+        let take = || {
+            let mut mine = Vec::new();
+            loop {
+                let i = next.fetch_add(1, Ordering::Relaxed);
+                if i >= count {
+                    break mine;
+                }
+                mine.push((i, work(i)));
+            }
+        };
+        let mut all = std::thread::scope(|scope| {
+            let others: Vec<_> = (1..threads).map(|_| scope.spawn(take)).collect();
+            let mut all = take();
+            for other in others {
+                match other.join() {
+                    Ok(results) => all.extend(results),
+                    Err(panic) => std::panic::resume_unwind(panic),
+                }
+            }
+            all
+        });
+        all.sort_by_key(|(i, _)| *i);
+        all.into_iter().map(|(_, result)| result).collect()
+    }
+
+    fn reach(level: Level) -> f64 {
+        if level.decimation == 1 { PI } else { 2.0 * PI * KEPT_HALF_WIDTH / level.decimation as f64 }
+    }
+
+    fn within_limits(&self, level: Level, k: usize) -> bool {
+        let (centre, reach) = (level.centre(k), Self::reach(level));
+        centre + reach >= self.limits.bounds.omega_low && centre - reach <= self.limits.bounds.omega_high
+    }
+
+    fn noise_std(&self, level: Level, bands: &Bands, k: usize) -> f64 {
+        (self.noise.variance_at(level.centre(k)) * bands.noise_gain).sqrt()
+    }
+
+    fn band_partials(&self, level: Level, bands: &Bands, k: usize) -> Vec<Partial> {
+        let (centre, reach) = (level.centre(k), Self::reach(level));
+        let bounds = &self.limits.bounds;
+        let d = level.decimation as f64;
+        let band = &bands.bands[k];
+        let noise_std = self.noise_std(level, bands, k);
+        let longest_delta = SPAN_NEPERS / (level.span() as f64).max(1.0);
+        poles(band, noise_std)
+            .into_iter()
+            .filter_map(|z| {
+                let omega = centre + z.arg() / d;
+                let delta = -z.norm().ln() / d;
+                let growth = -delta * d * band.len() as f64;
+                let kept = (omega - centre).abs() <= reach
+                    && (bounds.omega_low..=bounds.omega_high).contains(&omega)
+                    && delta <= bounds.delta_high.min(longest_delta)
+                    && growth < 1.0;
+                kept.then(|| Partial { omega, delta: delta.max(bounds.delta_low), c: Complex::new(0.0, 0.0) })
+            })
+            .collect()
+    }
+}
+
+/// The largest peak of every window over all bands.
+fn strongest(peaks: &[[f64; 4]]) -> [f64; 4] {
+    peaks.iter().fold([0.0; 4], |most, peaks| std::array::from_fn(|w| most[w].max(peaks[w])))
+}
+
+/// Joins the bands' partials; a pole that two neighbouring bands saw is kept once, from the band whose
+/// centre is nearer.
+fn without_doubles(found: Vec<(usize, Vec<Partial>)>, level: Level, samples: usize) -> Vec<Partial> {
+    let tolerance = 1.0 / (samples * level.decimation) as f64;
+    let mut kept: Vec<(usize, Partial)> = Vec::new();
+    for (k, partials) in found {
+        for partial in partials {
+            let double = kept.iter().rposition(|(other, p)| {
+                *other + 1 == k && (p.omega - partial.omega).abs() < tolerance + 0.2 * partial.delta
+            });
+            match double {
+                None => kept.push((k, partial)),
+                Some(i) => {
+                    let distance = |k: usize| (partial.omega - level.centre(k)).abs();
+                    if distance(k) < distance(kept[i].0) {
+                        kept[i] = (k, partial);
+                    }
+                }
+            }
+        }
+    }
+    kept.into_iter().map(|(_, partial)| partial).collect()
+}

@@ -1,0 +1,192 @@
+//! The noise under a recording, per frequency, estimated although modes still ring in it.
+//!
+//! Blackman–Harris frames over the quieter half of the recording; median over time in every bin (a
+//! click or a decaying mode touches few frames), then the 30th percentile over 1.5 kHz (modes touch
+//! few bins). Both order statistics of exponentially distributed powers are calibrated: the k-th of M
+//! is Σ E_i/(M − i), whose cumulants are sums of powers of 1/i, and the percentile follows from them by
+//! Cornish and Fisher's expansion. Edges of the spectrum are mirrored; the bins beside 0 Hz carry the
+//! removed mean and are replaced.
+
+use nalgebra::Complex;
+use rustfft::FftPlanner;
+use std::f64::consts::PI;
+
+/// Width over which the percentile is taken, Hz.
+const SMOOTHING_HZ: f64 = 1500.0;
+/// The percentile over frequency, and its normal deviate.
+const PERCENTILE: f64 = 0.3;
+const DEVIATE: f64 = -0.524_4;
+/// Bins beside 0 Hz and half the rate that the window's main lobe reaches.
+const EDGE_BINS: usize = 5;
+
+/// Noise variance per frequency, as if the noise at that frequency were white.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseFloor {
+    variance: Vec<f64>,
+}
+
+impl NoiseFloor {
+    /// Estimates from `samples`; `least` is a variance the answer never goes below.
+    #[must_use]
+    pub fn estimate(samples: &[f64], rate_hz: f64, least: f64) -> Self {
+        let part = &samples[samples.len() / 2..];
+        let length = previous_power_of_two(part.len() / 4).clamp(16, 1 << 15);
+        if part.len() < length {
+            return Self { variance: vec![least.max(mean_square(part)); 2] };
+        }
+        let frames = 1 + (part.len() - length) / (length / 2);
+        // At most a few hundred frames, spread evenly: enough for a steady median.
+        let stride = frames.div_ceil(300);
+        let starts: Vec<usize> = (0..frames).step_by(stride).map(|f| f * (length / 2)).collect();
+        let medians = medians(part, length, &starts);
+        let half = (0.5 * SMOOTHING_HZ / rate_hz * length as f64).ceil() as usize;
+        let scale = 1.0 / percentile_of_median(starts.len());
+        let variance = percentiles(&medians, half.max(4)).iter().map(|v| (v * scale).max(least)).collect();
+        Self { variance }
+    }
+
+    /// Variance at an angular frequency in radians a sample.
+    #[must_use]
+    pub fn variance_at(&self, omega: f64) -> f64 {
+        let position = (omega / PI).clamp(0.0, 1.0) * (self.variance.len() - 1) as f64;
+        let low = position.floor() as usize;
+        let high = (low + 1).min(self.variance.len() - 1);
+        let part = position - low as f64;
+        self.variance[low] * (1.0 - part) + self.variance[high] * part
+    }
+
+    /// Mean variance over all frequencies: the noise power of the recording.
+    #[must_use]
+    pub fn mean_variance(&self) -> f64 {
+        self.variance.iter().sum::<f64>() / self.variance.len() as f64
+    }
+}
+
+fn previous_power_of_two(n: usize) -> usize {
+    if n == 0 { 1 } else { 1 << n.ilog2() }
+}
+
+fn mean_square(samples: &[f64]) -> f64 {
+    samples.iter().map(|x| x * x).sum::<f64>() / samples.len().max(1) as f64
+}
+
+/// Median over time of the normalised power in every bin from 0 Hz to half the rate.
+fn medians(samples: &[f64], length: usize, starts: &[usize]) -> Vec<f64> {
+    let window: Vec<f64> = (0..length).map(|i| blackman_harris(i as f64 / length as f64)).collect();
+    let norm: f64 = window.iter().map(|w| w * w).sum();
+    let fft = FftPlanner::new().plan_fft_forward(length);
+    let mut powers = vec![Vec::with_capacity(starts.len()); length / 2 + 1];
+    let mut frame = vec![Complex::new(0.0, 0.0); length];
+    for &start in starts {
+        for ((value, x), w) in frame.iter_mut().zip(&samples[start..]).zip(&window) {
+            *value = Complex::new(x * w, 0.0);
+        }
+        fft.process(&mut frame);
+        for (bin, value) in powers.iter_mut().zip(&frame) {
+            bin.push(value.norm_sqr() / norm);
+        }
+    }
+    let middle = median_rank(starts.len()) - 1;
+    let mut medians: Vec<f64> =
+        powers.iter_mut().map(|bin| *bin.select_nth_unstable_by(middle, f64::total_cmp).1).collect();
+    let last = medians.len() - 1;
+    for bin in 0..EDGE_BINS.min(last / 4) {
+        medians[bin] = medians[2 * EDGE_BINS.min(last / 4) - bin];
+        medians[last - bin] = medians[last - (2 * EDGE_BINS.min(last / 4) - bin)];
+    }
+    medians
+}
+
+fn blackman_harris(x: f64) -> f64 {
+    let c = |k: f64| (2.0 * PI * k * x).cos();
+    0.358_75 - 0.488_29 * c(1.0) + 0.141_28 * c(2.0) - 0.011_68 * c(3.0)
+}
+
+/// The rank (from 1) taken as the median of `count` values.
+fn median_rank(count: usize) -> usize {
+    count.div_ceil(2)
+}
+
+/// Running percentile over ± `half` bins with mirrored edges, evaluated on a coarse grid.
+fn percentiles(values: &[f64], half: usize) -> Vec<f64> {
+    let last = values.len() as isize - 1;
+    let mirrored = |i: isize| {
+        values[(if i < 0 {
+            -i
+        } else if i > last {
+            2 * last - i
+        } else {
+            i
+        })
+        .clamp(0, last) as usize]
+    };
+    let points = (values.len() / (half / 4).max(1)).clamp(2, values.len());
+    (0..points)
+        .map(|p| {
+            let centre = (p as f64 / (points - 1) as f64 * last as f64).round() as isize;
+            let mut near: Vec<f64> =
+                (centre - half as isize..=centre + half as isize).map(mirrored).collect();
+            let rank = (PERCENTILE * (near.len() - 1) as f64).round() as usize;
+            *near.select_nth_unstable_by(rank, f64::total_cmp).1
+        })
+        .collect()
+}
+
+/// The 30th percentile of the median of `count` unit exponentials.
+fn percentile_of_median(count: usize) -> f64 {
+    let (mut k1, mut k2, mut k3) = (0.0, 0.0, 0.0);
+    for i in 0..median_rank(count) {
+        let e = 1.0 / (count - i) as f64;
+        k1 += e;
+        k2 += e * e;
+        k3 += 2.0 * e * e * e;
+    }
+    let spread = k2.sqrt();
+    let skew = k3 / (k2 * spread);
+    let (z, z2) = (DEVIATE, DEVIATE * DEVIATE);
+    let bent = z + skew * (z2 - 1.0) / 6.0 - skew * skew * (2.0 * z2 - 5.0) * z / 36.0;
+    (k1 + spread * bent).max(0.05)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::partial::Partial;
+    use crate::projection::synthesise;
+    use asperity_dsp::rng::Rng;
+
+    fn noise(seed: u64, count: usize) -> Vec<f64> {
+        let mut rng = Rng::new(seed);
+        (0..count).map(|_| 0.1 * rng.normal()).collect()
+    }
+
+    #[test]
+    fn white_noise_is_measured_within_two_decibels_at_every_frequency() {
+        for (seed, count) in [(1, 88_200), (2, 20_000), (3, 200_000)] {
+            let floor = NoiseFloor::estimate(&noise(seed, count), 44_100.0, 0.0);
+            for i in 1..100 {
+                let db = 10.0 * (floor.variance_at(PI * f64::from(i) / 100.0) / 0.01).log10();
+                assert!(db.abs() < 2.0, "{count}: {i} {db}");
+            }
+            assert!((10.0 * (floor.mean_variance() / 0.01).log10()).abs() < 0.6);
+        }
+    }
+
+    #[test]
+    fn ringing_modes_do_not_raise_the_floor() {
+        let modes: Vec<Partial> = (0..30)
+            .map(|k| Partial {
+                omega: 0.01 * 1.2_f64.powi(k),
+                delta: 2e-5 * f64::from(k + 1),
+                c: Complex::new(1.0, 0.0),
+            })
+            .collect();
+        let mut signal = noise(4, 88_200);
+        signal.iter_mut().zip(synthesise(&modes, 88_200)).for_each(|(s, m)| *s += m);
+        let floor = NoiseFloor::estimate(&signal, 44_100.0, 0.0);
+        for i in 0..100 {
+            let db = 10.0 * (floor.variance_at(PI * f64::from(i) / 100.0) / 0.01).log10();
+            assert!(db.abs() < 3.0, "{i} {db}");
+        }
+    }
+}

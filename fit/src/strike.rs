@@ -1,0 +1,339 @@
+//! From a recording to modes: the whole way, with the traps of real recordings.
+//!
+//! mean removed → strike found ([`crate::onset`]) → analysed ([`crate::analysis`]) from the onset, and
+//! again from later when the first milliseconds are no sum of modes (the striker still pushes) → hum
+//! and non-exponential decays named → residual.
+
+use crate::analysis::{Analysis, Limits, analyse};
+use crate::fitted::{Fit, FittedMode, Warning};
+use crate::onset;
+use crate::partial::Partial;
+use crate::pruning::uncertainties;
+use crate::recording::{FEWEST_SAMPLES, Recording};
+use crate::refinement::Bounds;
+use crate::residual::{Residual, ratio_db};
+use std::f64::consts::PI;
+
+/// Offsets after the onset that are tried, s (1 ms of half-sine force: 27 dB with the contact in the
+/// analysed part, 75 dB without).
+const START_OFFSETS_S: [f64; 4] = [0.0, 0.001, 0.0025, 0.005];
+/// The attack is modal when its first 5 ms leave at most this many times what later 5 ms leave.
+const ATTACK_EXCESS: f64 = 4.0;
+/// Sound shorter than this is warned of, s.
+const SHORT_S: f64 = 0.05;
+/// Longest analysed part, s; recordings above `UNTRIMMED_S` are trimmed where they reach their noise.
+const LONGEST_S: f64 = 40.0;
+const UNTRIMMED_S: f64 = 5.0;
+/// Longest decay a mode may have: T60 = 60 s.
+const LEAST_DECAY_PER_S: f64 = 0.115;
+/// Largest amplitude of a mode, in peaks of the recording.
+const LARGEST_AMPLITUDE: f64 = 8.0;
+
+/// What a fit may find and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitOptions {
+    /// Most modes.
+    pub max_modes: usize,
+    /// Lowest and highest frequency, Hz; the upper one is also bounded by 0.49 of the rate.
+    pub band_hz: (f64, f64),
+    /// Modes whose energy lies further than this below the strongest one's are dropped, dB (negative).
+    pub least_level_db: f64,
+    /// Fastest decay, 1/s.
+    pub fastest_decay_per_s: f64,
+    /// From the onset to where modes are fitted, s; `None` finds out.
+    pub start_offset_s: Option<f64>,
+    /// Threads for the bands; 0 takes what the machine has, up to 8.
+    pub threads: usize,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self {
+            max_modes: 150,
+            band_hz: (20.0, f64::INFINITY),
+            least_level_db: -80.0,
+            fastest_decay_per_s: 1500.0,
+            start_offset_s: None,
+            threads: 0,
+        }
+    }
+}
+
+/// Why a recording cannot be fitted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// An option outside its range.
+    #[error("{field}: {value} is refused; {right}")]
+    Option {
+        /// Which.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What would be right.
+        right: &'static str,
+    },
+    /// Nothing is left to analyse.
+    #[error("{name}: only {samples} samples follow the onset; {FEWEST_SAMPLES} or more are needed")]
+    NothingAfterOnset {
+        /// The recording.
+        name: String,
+        /// How many follow.
+        samples: usize,
+    },
+}
+
+impl FitOptions {
+    fn check(&self, rate_hz: f64) -> Result<(), FitError> {
+        let refuse = |field, value, right| Err(FitError::Option { field, value, right });
+        if self.max_modes == 0 || self.max_modes > 1000 {
+            return refuse("max_modes", self.max_modes as f64, "1 to 1000 would do");
+        }
+        let (low, high) = self.band_hz;
+        if !(low >= 0.0 && low < 0.49 * rate_hz) {
+            return refuse("band_hz", low, "a lower edge from 0 to 0.49 of the sample rate would do");
+        }
+        if high.is_nan() || high <= low {
+            return refuse("band_hz", high, "an upper edge above the lower one would do");
+        }
+        if self.least_level_db.is_nan() || self.least_level_db >= 0.0 {
+            return refuse("least_level_db", self.least_level_db, "a negative number of decibels would do");
+        }
+        if !(self.fastest_decay_per_s > LEAST_DECAY_PER_S && self.fastest_decay_per_s <= 1e5) {
+            return refuse("fastest_decay_per_s", self.fastest_decay_per_s, "1 to 100000 would do");
+        }
+        if let Some(offset) = self.start_offset_s
+            && !(0.0..=0.1).contains(&offset)
+        {
+            return refuse("start_offset_s", offset, "0 to 0.1 s would do");
+        }
+        Ok(())
+    }
+}
+
+/// Fits the first strike of `recording`; `progress` hears the part done, 0 to 1.
+///
+/// # Errors
+/// Options out of range, or next to nothing after the onset.
+pub fn fit(
+    recording: &Recording,
+    options: &FitOptions,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Fit, FitError> {
+    let rate = recording.sample_rate_hz;
+    options.check(rate)?;
+    let mut warnings = Vec::new();
+    let samples = without_mean(&recording.samples, &mut warnings);
+    let strike = onset::find(&samples, rate);
+    let end = trimmed_end(&samples, strike.onset, strike.end, rate);
+    if end - strike.onset < FEWEST_SAMPLES {
+        return Err(FitError::NothingAfterOnset {
+            name: recording.name.clone(),
+            samples: end - strike.onset,
+        });
+    }
+    let found = Found { onset: strike.onset, end };
+    warn_of_recording(recording, &strike.others, &found, &mut warnings);
+    let clipped = clipped_offset(recording, &found);
+    let offsets: Vec<usize> = match (options.start_offset_s, clipped) {
+        (Some(offset), _) => vec![(offset * rate).round() as usize],
+        (None, Some(after)) => vec![after],
+        (None, None) => START_OFFSETS_S.iter().map(|s| (s * rate).round() as usize).collect(),
+    };
+    let (offset, analysis) = analyse_from(&samples, &found, &offsets, recording, options, progress);
+    Ok(assemble(recording, &samples, &found, offset, analysis, options, warnings))
+}
+
+/// The analysed part, in samples of the recording.
+struct Found {
+    onset: usize,
+    end: usize,
+}
+
+/// The samples less the mean of their last quarter (where a strike is no more).
+fn without_mean(samples: &[f64], warnings: &mut Vec<Warning>) -> Vec<f64> {
+    let tail = &samples[samples.len() * 3 / 4..];
+    let mean = tail.iter().sum::<f64>() / tail.len() as f64;
+    let peak = samples.iter().fold(0.0_f64, |peak, x| peak.max((x - mean).abs()));
+    if mean.abs() > 0.01 * peak && mean.abs() > 1e-3 {
+        warnings.push(Warning::Offset { mean });
+    }
+    samples.iter().map(|x| x - mean).collect()
+}
+
+/// Where the sound has gone down in the noise for good, and a little after.
+fn trimmed_end(samples: &[f64], onset: usize, end: usize, rate: f64) -> usize {
+    let end = end.min(onset + (LONGEST_S * rate) as usize);
+    if ((end - onset) as f64) < UNTRIMMED_S * rate {
+        return end;
+    }
+    let block = (0.1 * rate) as usize;
+    let powers: Vec<f64> = samples[onset..end]
+        .chunks_exact(block)
+        .map(|c| c.iter().map(|x| x * x).sum::<f64>() / block as f64)
+        .collect();
+    let mut sorted = powers.clone();
+    sorted.sort_by(f64::total_cmp);
+    let quiet = sorted[sorted.len() / 10];
+    let last = powers.iter().rposition(|&p| p > 1.5 * quiet).unwrap_or(0);
+    let kept = (((last + 1) * block) as f64 * 1.2 + 0.5 * rate).max(UNTRIMMED_S * rate) as usize;
+    end.min(onset + kept)
+}
+
+fn warn_of_recording(recording: &Recording, others: &[usize], found: &Found, warnings: &mut Vec<Warning>) {
+    let rate = recording.sample_rate_hz;
+    let runs = recording.clipped_runs();
+    if !runs.is_empty() {
+        warnings.push(Warning::Clipped { samples: runs.iter().map(|(a, b)| b - a).sum() });
+    }
+    if recording.truncated {
+        warnings.push(Warning::Truncated);
+    }
+    for &other in others {
+        warnings.push(Warning::SecondStrike { at_s: recording.starts_at_s + other as f64 / rate });
+    }
+    let length_s = (found.end - found.onset) as f64 / rate;
+    if length_s < SHORT_S {
+        warnings.push(Warning::TooShort { length_s });
+    }
+    let kept_s = recording.samples.len() as f64 / rate;
+    if recording.file_s > kept_s + 1e-3 || kept_s - found.onset as f64 / rate > LONGEST_S {
+        let from_s = recording.starts_at_s + found.onset as f64 / rate;
+        warnings.push(Warning::PartOfFile { from_s, to_s: from_s + length_s });
+    }
+}
+
+/// From the onset to the end of the clipping, when it is over soon.
+fn clipped_offset(recording: &Recording, found: &Found) -> Option<usize> {
+    let soon = found.onset + (0.1 * recording.sample_rate_hz) as usize;
+    let runs = recording.clipped_runs();
+    let last = runs.iter().rev().find(|run| run.0 >= found.onset && run.1 < soon.min(found.end))?;
+    let offset = last.1 + 2 - found.onset;
+    (offset + FEWEST_SAMPLES < found.end - found.onset).then_some(offset)
+}
+
+/// The earliest offset from which the attack is modal; when there is none, the one that explains most
+/// of the sound from the onset on.
+fn analyse_from(
+    samples: &[f64],
+    found: &Found,
+    offsets: &[usize],
+    recording: &Recording,
+    options: &FitOptions,
+    progress: &mut dyn FnMut(f64),
+) -> (usize, Analysis) {
+    let rate = recording.sample_rate_hz;
+    let strike = &samples[found.onset..found.end];
+    let usable: Vec<usize> =
+        offsets.iter().copied().filter(|&o| o == 0 || o + FEWEST_SAMPLES <= strike.len()).collect();
+    let mut best: Option<(f64, usize, Analysis)> = None;
+    for (i, &offset) in usable.iter().enumerate() {
+        let segment = &strike[offset..];
+        let limits = limits(segment, recording, options);
+        let part = usable.len() as f64;
+        let analysis = analyse(segment, &limits, &mut |done| progress((i as f64 + done) / part));
+        let modal = attack_excess(&analysis, segment, rate) <= ATTACK_EXCESS;
+        let early: Vec<Partial> = analysis.partials.iter().map(|p| p.moved(-(offset as f64))).collect();
+        let left = ratio_db(&crate::analysis::subtract(strike, &early), strike);
+        if modal {
+            return (offset, analysis);
+        }
+        if best.as_ref().is_none_or(|(least, _, _)| left < *least) {
+            best = Some((left, offset, analysis));
+        }
+    }
+    match best {
+        Some((_, offset, analysis)) => (offset, analysis),
+        None => (0, analyse(strike, &limits(strike, recording, options), progress)),
+    }
+}
+
+/// Residual energy of the first 5 ms over that of typical later 5 ms (or the noise).
+fn attack_excess(analysis: &Analysis, segment: &[f64], rate: f64) -> f64 {
+    let step = ((0.005 * rate) as usize).max(8);
+    let energies: Vec<f64> =
+        analysis.residual.chunks_exact(step).map(|c| c.iter().map(|x| x * x).sum::<f64>()).collect();
+    let Some((&first, later)) = energies.split_first() else { return 0.0 };
+    let mut later: Vec<f64> = later.iter().take(20).copied().collect();
+    later.sort_by(f64::total_cmp);
+    let typical = later.get(later.len() / 2).copied().unwrap_or(0.0);
+    let noise = analysis.noise.mean_variance() * step as f64;
+    // A residual 50 dB down is nobody's attack.
+    let unheard = 1e-5 * segment[..step.min(segment.len())].iter().map(|x| x * x).sum::<f64>();
+    first / typical.max(noise).max(unheard)
+}
+
+fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limits {
+    let rate = recording.sample_rate_hz;
+    let peak = segment.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+    let (low, high) = options.band_hz;
+    Limits {
+        bounds: Bounds {
+            omega_low: 2.0 * PI * low.max(1.0) / rate,
+            omega_high: 2.0 * PI * high.min(0.49 * rate) / rate,
+            delta_low: LEAST_DECAY_PER_S / rate,
+            delta_high: options.fastest_decay_per_s / rate,
+            amplitude_high: LARGEST_AMPLITUDE * peak,
+        },
+        max_partials: options.max_modes,
+        least_energy: 10.0_f64.powf(0.1 * options.least_level_db),
+        threads: match options.threads {
+            0 => std::thread::available_parallelism().map_or(1, |n| n.get().min(8)),
+            n => n,
+        },
+        rate_hz: rate,
+        // Rounding of the file, and of what rendered it: 120 dB under the peak.
+        least_noise: (recording.quantum.powi(2) / 12.0).max(1e-12 * peak * peak),
+    }
+}
+
+fn assemble(
+    recording: &Recording,
+    samples: &[f64],
+    found: &Found,
+    offset: usize,
+    analysis: Analysis,
+    options: &FitOptions,
+    mut warnings: Vec<Warning>,
+) -> Fit {
+    let rate = recording.sample_rate_hz;
+    let (onset, end) = (found.onset, found.end);
+    let mut partials = analysis.partials;
+    let count = end - onset - offset;
+    warnings.extend(crate::suspicion::take_hum(&mut partials, count, rate));
+    warnings.extend(crate::suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
+    let mut modes: Vec<FittedMode> = uncertainties(&partials, &analysis.noise, count)
+        .iter()
+        .zip(&partials)
+        .map(|(uncertainty, partial)| FittedMode::new(partial, uncertainty, offset, count, rate))
+        .collect();
+    modes.sort_by(|a, b| b.energy.total_cmp(&a.energy));
+    if modes.is_empty() {
+        warnings.push(Warning::NoModes);
+    }
+    if analysis.capped {
+        warnings.push(Warning::ModesCapped { limit: options.max_modes });
+    }
+    let early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
+    let mut left = samples[..onset].to_vec();
+    left.extend(crate::analysis::subtract(&samples[onset..], &early));
+    let snr = |from: usize| -ratio_db(&left[from..end], &samples[from..end]);
+    let resynthesis_snr_db = snr(onset + offset);
+    let snr_from_onset_db = snr(onset);
+    if !modes.is_empty() && resynthesis_snr_db < 6.0 {
+        warnings.push(Warning::PoorFit { snr_db: resynthesis_snr_db });
+    }
+    Fit {
+        modes,
+        source: recording.name.clone(),
+        sample_rate_hz: rate,
+        onset_s: recording.starts_at_s + onset as f64 / rate,
+        onset_sample: onset,
+        start_offset_s: offset as f64 / rate,
+        end_s: recording.starts_at_s + end as f64 / rate,
+        noise_floor_db: 10.0 * analysis.noise.mean_variance().max(1e-30).log10(),
+        resynthesis_snr_db,
+        snr_from_onset_db,
+        residual: Residual::new(left, samples, onset, end, rate),
+        warnings,
+    }
+}
