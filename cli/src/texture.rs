@@ -2,6 +2,8 @@
 //!
 //! What the verbs share is here: pictures in, refusals in words, a bar for a fraction done.
 
+mod abx;
+pub mod compare;
 pub mod from_normals;
 pub mod from_photo;
 pub mod metamer;
@@ -17,6 +19,7 @@ use std::path::Path;
 /// What to do with a texture.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
+    Compare(compare::Options),
     FromNormals(from_normals::Options),
     FromPhoto(from_photo::Options),
     Metamer(metamer::Options),
@@ -28,6 +31,7 @@ pub enum Verb {
 /// When an input is bad or an output cannot be written.
 pub fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
+        Verb::Compare(options) => compare::run(&options),
         Verb::FromNormals(options) => from_normals::run(&options),
         Verb::FromPhoto(options) => from_photo::run(&options),
         Verb::Metamer(options) => metamer::run(&options),
