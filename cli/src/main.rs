@@ -23,6 +23,7 @@ mod demo;
 mod error;
 mod output;
 mod pixels;
+mod play;
 mod plot;
 mod progress;
 mod render;
@@ -46,12 +47,14 @@ struct Arguments {
 enum Verb {
     Demo(demo::Options),
     Render(render::Options),
+    Play(play::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
+        Verb::Play(options) => play::run(&options),
     }
 }
 
