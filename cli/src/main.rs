@@ -17,17 +17,24 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+mod bench_scene;
 mod build;
 mod csv;
 mod demo;
 mod error;
+mod headroom;
+mod measure;
 mod output;
 mod pixels;
 mod play;
 mod plot;
 mod progress;
 mod render;
+mod report;
 mod scene_file;
+mod texture;
+#[allow(dead_code)]
+mod texture_analyze;
 mod wav;
 
 use clap::{Parser, Subcommand, error::ErrorKind};
@@ -48,6 +55,11 @@ enum Verb {
     Demo(demo::Options),
     Render(render::Options),
     Play(play::Options),
+    /// Make surfaces from pictures and from other surfaces
+    #[command(subcommand)]
+    Texture(texture::Verb),
+    Headroom(headroom::Options),
+    Report(report::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -55,6 +67,9 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
         Verb::Play(options) => play::run(&options),
+        Verb::Texture(verb) => texture::run(verb),
+        Verb::Headroom(options) => headroom::run(&options),
+        Verb::Report(options) => report::run(&options),
     }
 }
 
