@@ -26,6 +26,7 @@ mod headroom;
 mod measure;
 mod output;
 mod pixels;
+mod play;
 mod plot;
 mod progress;
 mod render;
@@ -53,6 +54,7 @@ struct Arguments {
 enum Verb {
     Demo(demo::Options),
     Render(render::Options),
+    Play(play::Options),
     /// Make surfaces from pictures and from other surfaces
     #[command(subcommand)]
     Texture(texture::Verb),
@@ -64,6 +66,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
+        Verb::Play(options) => play::run(&options),
         Verb::Texture(verb) => texture::run(verb),
         Verb::Headroom(options) => headroom::run(&options),
         Verb::Report(options) => report::run(&options),
