@@ -42,6 +42,9 @@ impl Light {
     /// From straight above the surface.
     pub const OVERHEAD: Self = Self { direction: [0.0, 0.0, 1.0] };
 
+    /// From above left at 45°: what viewers assume, and the last resort where a light is needed.
+    pub const ABOVE_LEFT: Self = Self { direction: [-0.5, -0.5, std::f64::consts::FRAC_1_SQRT_2] };
+
     /// A light in this direction (of any length): x along u, y along v (downwards), z out of the surface.
     ///
     /// # Errors
