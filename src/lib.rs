@@ -10,6 +10,11 @@
 //!                                                               └─► impulses ─► modal bank ─► audio
 //! ```
 
+/// Compiles and runs the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod body;
 pub mod channel_map;
 mod clock;
@@ -55,5 +60,7 @@ pub use tap::{ContactBlock, NoTap, Tap};
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
 pub use asperity_dsp::mode::Mode;
 pub use asperity_dsp::trajectory::PathMode;
+/// Sources of surfaces, and maps.
+pub use asperity_texture as texture;
 pub use asperity_texture::height_map::Extent;
 pub use asperity_texture::wrap::Wrap;

@@ -2,10 +2,12 @@
 
 use crate::contact_log::{ContactLog, LogError, Names};
 use crate::error::ReportError;
+use crate::event::SurfaceId;
 use crate::renderer::Renderer;
 use crate::scene::Scene;
 use crate::stats::Stats;
 use crate::tap::{NoTap, Tap};
+use asperity_texture::sand::{SandFigures, SandPicture};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -35,8 +37,21 @@ pub struct Render {
     pub haptic: Vec<Vec<f32>>,
     /// What happened.
     pub stats: Stats,
+    /// Surfaces of sand as they lie after the last contact, settled.
+    pub sand: Vec<SandAfter>,
     /// Time spent in the renderer alone.
     pub processing: Duration,
+}
+
+/// A surface of sand after a render.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SandAfter {
+    /// Which surface.
+    pub surface: SurfaceId,
+    /// Volume before and after, steepest slope.
+    pub figures: SandFigures,
+    /// Its height as a 16-bit picture.
+    pub picture: SandPicture,
 }
 
 /// Renders a log. Events with bad numbers are left out and counted in
@@ -144,11 +159,13 @@ impl Take {
         for channel in self.haptic.iter_mut().chain([&mut self.audio]) {
             channel.drain(..latency);
         }
+        let sand = self.renderer.finish_sand().into_iter();
         Render {
             sample_rate_hz: self.renderer.sample_rate_hz(),
             audio: self.audio,
             haptic: self.haptic,
             stats: self.scene.stats(),
+            sand: sand.map(|(surface, figures, picture)| SandAfter { surface, figures, picture }).collect(),
             processing: self.processing,
         }
     }

@@ -6,6 +6,7 @@ use crate::body::BodySlot;
 use crate::event::ContactEvent;
 use crate::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
+use asperity_texture::change::SurfaceChange;
 
 /// Game thread → audio thread, in order.
 pub(crate) enum Message {
@@ -15,6 +16,8 @@ pub(crate) enum Message {
     Strike { sample: u64, body: usize, other: Option<usize>, pulse: HertzPulse },
     /// A surface for a new or used slot.
     SetSurface { slot: usize, surface: Box<SurfaceSlot> },
+    /// Parameters of a surface change while it is touched.
+    ChangeSurface { slot: usize, change: SurfaceChange },
     /// A slot falls empty; contacts on it fade.
     RemoveSurface { slot: usize },
     /// A body for a new or used slot.

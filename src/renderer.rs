@@ -6,7 +6,7 @@
 
 use crate::body::BodySeat;
 use crate::config::{ActuatorSettings, AudioSettings, Config};
-use crate::event::{ContactEvent, ContactId, ContactSample};
+use crate::event::{ContactEvent, ContactId, ContactSample, SurfaceId};
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::seat::{Change, Seat};
 use crate::stats::Counters;
@@ -17,18 +17,14 @@ use asperity_dsp::actuator::{
     self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
     Quantity, RELEASE_S,
 };
-use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::micro_contact::{MicroContact, Probe};
 use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
+use asperity_texture::sand::{SandFigures, SandPicture};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
-
-/// The contact force above this frequency excites the body, Hz; slower force is the hand, not the
-/// surface.
-const FORCE_HIGH_PASS_HZ: f64 = 30.0;
 
 /// Where the audio limiter holds the peaks: full scale.
 const AUDIO_CEILING: f64 = 1.0;
@@ -97,7 +93,6 @@ impl Renderer {
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
             micro_contact,
             noise: FractalNoise::new(config.seed),
-            force_high_pass: Butterworth::new(FORCE_HIGH_PASS_HZ, rate)?,
             fade_samples: (RELEASE_S * rate).ceil() as u32,
         };
         // Spare voices let stolen and ended contacts fade while new ones sound.
@@ -195,6 +190,17 @@ impl Renderer {
         self.counters.position.store(self.position, Relaxed);
     }
 
+    /// Figures and pictures of the surfaces that are sand, settled; for the end of an offline render.
+    pub(crate) fn finish_sand(&mut self) -> Vec<(SurfaceId, SandFigures, SandPicture)> {
+        let seats = self.seats.iter_mut().enumerate();
+        seats
+            .filter_map(|(slot, seat)| {
+                let (figures, picture) = seat.source()?.sand()?.finish()?;
+                Some((SurfaceId(slot as u32), figures, picture))
+            })
+            .collect()
+    }
+
     /// How many samples can be rendered before the next event, the grid or the end of the block.
     fn stretch(&mut self, wanted: usize) -> usize {
         let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
@@ -240,6 +246,13 @@ impl Renderer {
                 }
             }
             Message::SetSurface { slot, surface } => self.set_surface(slot, surface),
+            Message::ChangeSurface { slot, change } => {
+                if !self.seats[slot].change(&change, self.position) {
+                    Counters::add(&self.counters.quarantined, 1);
+                }
+                // A resting finger feels the change.
+                self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(Voice::wake);
+            }
             Message::RemoveSurface { slot } => {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);

@@ -14,8 +14,10 @@ use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::recording::Recording;
 use crate::stats::{Counters, Stats};
 use crate::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M, Surface, SurfaceSlot};
+use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::hertz::{Elastic, HertzContact, HertzPulse};
 use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_texture::change::SurfaceChange;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -25,7 +27,7 @@ pub struct Scene {
     clock: Clock,
     last_time_s: f64,
     surfaces: Vec<bool>,
-    bodies: Vec<Option<Material>>,
+    bodies: Vec<Option<KnownBody>>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(u64, ContactId, ContactEvent)>,
     to_audio: Sender<Message>,
@@ -34,8 +36,22 @@ pub struct Scene {
     recording: Option<Recording>,
 }
 
-/// A body that surfaces can be on before its material matters.
+/// What the game half remembers of a body.
+#[derive(Clone, Copy)]
+struct KnownBody {
+    material: Material,
+    lowest_mode_hz: f64,
+}
+
+/// What a body, or a surface without one, is made of unless told otherwise.
 const DEFAULT_MATERIAL: Material = Material::PLA;
+
+/// A sliding contact excites a body only above this share of its lowest mode. Below it the modes
+/// follow the force like springs: a rumble that neither the recording nor a real radiating body has,
+/// and that would bury the ringing under the grating's own fundamental.
+const FORCE_HIGH_PASS_SHARE: f64 = 0.5;
+/// Bounds of that cutoff, Hz; the upper one keeps a body of high modes audible when it is scraped slowly.
+const FORCE_HIGH_PASS_HZ: (f64, f64) = (20.0, 500.0);
 
 impl Scene {
     pub(crate) fn new(
@@ -103,7 +119,9 @@ impl Scene {
         let material = material.checked()?;
         let body = Box::new(BodySlot::new(model, self.config.sample_rate_hz)?);
         self.send(Message::SetBody { slot, body })?;
-        self.bodies[slot] = Some(material);
+        let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
+        let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
+        self.bodies[slot] = Some(KnownBody { material, lowest_mode_hz });
         Ok(())
     }
 
@@ -141,25 +159,36 @@ impl Scene {
 
     fn set_surface(&mut self, slot: usize, surface: Surface) -> Result<(), AddError> {
         let surface = surface.checked()?;
-        let material = match surface.body {
-            Some(body) => self.known_body(body)?,
-            None => DEFAULT_MATERIAL,
-        };
+        let silent = KnownBody { material: DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
+        let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
+        let (low, high) = FORCE_HIGH_PASS_HZ;
+        let cutoff_hz = (FORCE_HIGH_PASS_SHARE * body.lowest_mode_hz).clamp(low, high);
+        let force_high_pass = Butterworth::new(cutoff_hz, self.config.sample_rate_hz)?;
         let config = &self.config;
         let period_m = surface.wrap_period_m();
         let trajectory =
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.sample_rate_hz, period_m)?;
         let hertz = HertzContact::new(
             &elastic(EXCITER_MATERIAL),
-            &elastic(material),
+            &elastic(body.material),
             EXCITER_RADIUS_M,
             config.probe.pad_mass_kg,
         )?;
         let noise_longest_m = surface.source.band().shortest_m;
-        let surface = Box::new(SurfaceSlot { surface, trajectory, hertz, noise_longest_m });
+        let surface = Box::new(SurfaceSlot { surface, trajectory, hertz, force_high_pass, noise_longest_m });
         self.send(Message::SetSurface { slot, surface })?;
         self.surfaces[slot] = true;
         Ok(())
+    }
+
+    /// Changes parameters of a surface's source while it is touched, without a click. A change the
+    /// source does not take (another kind, or impossible numbers) is counted as quarantined.
+    ///
+    /// # Errors
+    /// When the surface is not in this scene or the queue is full.
+    pub fn change_surface(&mut self, id: SurfaceId, change: SurfaceChange) -> Result<(), AddError> {
+        self.known_surface(id)?;
+        self.send(Message::ChangeSurface { slot: id.0 as usize, change })
     }
 
     /// Takes a surface away; contacts on it fade.
@@ -285,7 +314,8 @@ impl Scene {
     }
 
     fn send_impact(&mut self, sample: u64, impact: &Impact) -> Result<(), Refusal> {
-        let material = self.bodies[impact.body.0 as usize].unwrap_or(DEFAULT_MATERIAL);
+        let known = self.bodies[impact.body.0 as usize];
+        let material = known.map_or(DEFAULT_MATERIAL, |body| body.material);
         let contact =
             HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg)
                 .map_err(|_| Refusal::UnknownBody)?;
@@ -342,7 +372,7 @@ impl Scene {
         known.then_some(()).ok_or(AddError::Unknown("surface"))
     }
 
-    fn known_body(&self, id: BodyId) -> Result<Material, AddError> {
+    fn known_body(&self, id: BodyId) -> Result<KnownBody, AddError> {
         self.bodies.get(id.0 as usize).copied().flatten().ok_or(AddError::Unknown("body"))
     }
 }

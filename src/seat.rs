@@ -7,6 +7,7 @@ use crate::queue::{Dead, Sender};
 use crate::surface::{DEFAULT_ROUGHNESS, Roughness, SurfaceSlot};
 
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
+use asperity_texture::change::SurfaceChange;
 use asperity_texture::height_field::{HeightField, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
 
@@ -121,6 +122,19 @@ impl Seat {
             blend(&mut out.roughness[i], old.roughness[i]);
             blend(&mut out.friction[i], old.friction[i]);
             blend(&mut out.compliance_m_n[i], old.compliance_m_n[i]);
+        }
+    }
+
+    /// Changes parameters of the source; tells whether it took the change.
+    pub(crate) fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        self.source().is_some_and(|source| source.change(change, sample))
+    }
+
+    /// What heights come from.
+    pub(crate) fn source(&mut self) -> Option<&mut (dyn HeightField + '_)> {
+        match &mut self.current {
+            Some(slot) => Some(&mut *slot.surface.source),
+            None => None,
         }
     }
 

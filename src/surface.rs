@@ -2,6 +2,7 @@
 
 use crate::event::{BadValue, BodyId, within};
 use crate::material::Material;
+use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::hertz::HertzContact;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::HeightField;
@@ -190,6 +191,8 @@ pub(crate) struct SurfaceSlot {
     pub(crate) surface: Surface,
     pub(crate) trajectory: TrajectoryDesign,
     pub(crate) hertz: HertzContact,
+    /// Keeps the part of the contact force that the body answers.
+    pub(crate) force_high_pass: Butterworth,
     /// Micro-noise is added only below this wavelength.
     pub(crate) noise_longest_m: f64,
 }

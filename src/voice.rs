@@ -7,7 +7,7 @@ use crate::seat::Seat;
 use crate::surface::{Excitation, SurfaceSlot};
 use crate::tap::{ContactBlock, Tap};
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
-use asperity_dsp::butterworth::{self, Butterworth};
+use asperity_dsp::butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::{self, HertzPulse, OnsetMerge};
 use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact, Onset};
@@ -41,8 +41,6 @@ pub(crate) struct Shared {
     pub(crate) sample_rate_hz: f64,
     pub(crate) micro_contact: MicroContact,
     pub(crate) noise: FractalNoise,
-    /// Keeps the alternating part of the contact force.
-    pub(crate) force_high_pass: Butterworth,
     /// Momentum of a micro-collision per closing speed, kg: pad mass × (1 + restitution).
     pub(crate) collision_mass_kg: f64,
     pub(crate) fade_samples: u32,
@@ -206,6 +204,11 @@ impl Voice {
         let _: Moved = self.trajectory.moved(&slot.trajectory, &event);
     }
 
+    /// Something changed under a resting contact.
+    pub(crate) fn wake(&mut self) {
+        self.asleep = false;
+    }
+
     /// Starts to fade, if it has not yet.
     pub(crate) fn fade(&mut self, shared: &Shared) {
         if self.phase == Phase::Sounding {
@@ -279,6 +282,12 @@ impl Voice {
             contact: self.slot,
         };
         seat.sample(&path, &shared.noise, &mut scratch.surface, &mut scratch.rough);
+        // A surface that gives way lies lower by as much as the force presses it in.
+        let surface = &mut scratch.surface;
+        let give = surface.compliance_m_n[..n].iter().zip(&scratch.force_n);
+        for (height_m, (compliance_m_n, force_n)) in surface.height_m.iter_mut().zip(give) {
+            *height_m -= compliance_m_n * force_n;
+        }
     }
 
     /// Tells the source how it is touched, and hears what it does back.
@@ -322,7 +331,7 @@ impl Voice {
                     self.collide(slot, shared, &onset, sample.saturating_sub(1));
                 }
             }
-            let alternating_n = self.force_high_pass.tick(&shared.force_high_pass, row.contact_force_n).high;
+            let alternating_n = self.force_high_pass.tick(&slot.force_high_pass, row.contact_force_n).high;
             let moves = alternating_n.abs() >= ROUNDING_N;
             scratch.force_impulse_n_s[i] = if moves { alternating_n / rate } else { 0.0 };
             if self.reaction.grain_rate_per_s > 0.0 {

@@ -17,16 +17,23 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+mod bench_scene;
 mod build;
 mod csv;
 mod demo;
 mod error;
+mod headroom;
+mod measure;
 mod output;
 mod pixels;
 mod plot;
 mod progress;
 mod render;
+mod report;
 mod scene_file;
+mod texture;
+#[allow(dead_code)]
+mod texture_analyze;
 mod wav;
 
 use clap::{Parser, Subcommand, error::ErrorKind};
@@ -46,12 +53,20 @@ struct Arguments {
 enum Verb {
     Demo(demo::Options),
     Render(render::Options),
+    /// Make surfaces from pictures and from other surfaces
+    #[command(subcommand)]
+    Texture(texture::Verb),
+    Headroom(headroom::Options),
+    Report(report::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
         Verb::Render(options) => render::run(&options),
+        Verb::Texture(verb) => texture::run(verb),
+        Verb::Headroom(options) => headroom::run(&options),
+        Verb::Report(options) => report::run(&options),
     }
 }
 

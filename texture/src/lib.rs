@@ -34,6 +34,8 @@ pub mod fft2;
 #[cfg(feature = "offline")]
 pub mod fractal_dimension;
 #[cfg(feature = "offline")]
+pub mod from_photo;
+#[cfg(feature = "offline")]
 pub mod gradient_field;
 #[cfg(feature = "offline")]
 pub mod histogram;

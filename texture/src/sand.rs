@@ -30,6 +30,6 @@ pub mod tool;
 
 pub use grid::{SandGrid, SandPicture};
 pub use law::{Layer, SandLaw};
-pub use simulation::{SandDesign, SandSimulation};
+pub use simulation::{SandDesign, SandFigures, SandSimulation};
 pub use source::{SandSource, SandThread, SandWorker};
 pub use tool::Tool;

@@ -2,18 +2,22 @@
 //!
 //! ```text
 //! e_i = (h − h_i) − d_i tan θ > 0      d_i = dx or √2 dx, eight neighbours
-//! Δm  = c · max e_i                     c = ½, cells taken one after another
+//! Δm  = c · max e_i                     c = 1 / (1 + max e_i / Σ e), cells taken one after another
 //! Δm_i = Δm · e_i / Σ e
 //! ```
 //!
 //! Source: the sand paper §3.2. What we read differently: the printed "m_i" in the share is the
-//! difference to the neighbour, not its height; diagonal neighbours are √2 further away. What we
-//! changed: sand is cut into tiles of 32 × 32 cells, and a tile is looked at only while something
+//! difference to the neighbour, not its height; diagonal neighbours are √2 further away. The paper
+//! leaves c open; ours brings the lowest neighbour exactly to the talus angle, ½ with one neighbour
+//! and up to 8/9 with eight, and makes cones rounder than ½ does (4 % against 2.5 % along a diagonal).
+//! What we changed: sand is cut into tiles of 32 × 32 cells, and a tile is looked at only while something
 //! moved in it or next to it; whole rows are first tested without branches, and only the cells
 //! that are too steep are worked on; the order of rows and cells turns with every pass, so that
 //! sequential work has no preferred direction. A slope counts as settled at θ + ¼°, where
-//! another hundred passes would only creep. All arithmetic is in whole numbers or single roundings:
-//! the same sand gives the same sand everywhere.
+//! another hundred passes would only creep. All arithmetic is in whole numbers:
+//! the same sand gives the same sand everywhere. On x86 the pass over a tile is compiled a second time
+//! for AVX2 (the same operations, eight cells at once) and chosen at run time.
+#![allow(unsafe_code)]
 
 use super::grid::{SandGrid, UNITS_PER_M, WALL};
 use asperity_dsp::DesignError;
@@ -35,6 +39,7 @@ pub struct Erosion {
     active: Vec<bool>,
     next: Vec<bool>,
     pass: u32,
+    wide: bool,
 }
 
 impl Erosion {
@@ -57,7 +62,14 @@ impl Erosion {
             active: vec![false; tiles],
             next: vec![false; tiles],
             pass: 0,
+            wide: wide_available(),
         })
+    }
+
+    /// The same with the instructions every processor has: for tests, the sand is the same.
+    #[must_use]
+    pub fn portable(self) -> Self {
+        Self { wide: false, ..self }
     }
 
     /// Looks at everything in the next pass.
@@ -96,7 +108,8 @@ impl Erosion {
         for n in 0..tiles {
             let tile = if self.pass & 1 == 0 { n } else { tiles - 1 - n };
             if self.active[tile] {
-                cells += self.tile(grid, tile % self.tile_columns, tile / self.tile_columns);
+                let (tx, ty) = (tile % self.tile_columns, tile / self.tile_columns);
+                cells += self.dispatch(grid, tx, ty);
             }
         }
         core::mem::swap(&mut self.active, &mut self.next);
@@ -115,6 +128,23 @@ impl Erosion {
         passes
     }
 
+    /// One tile with the widest instructions there are.
+    fn dispatch(&mut self, grid: &mut SandGrid, tx: usize, ty: usize) -> usize {
+        #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
+        if self.wide {
+            // SAFETY: `wide` is true only where the processor was found to have AVX2.
+            return unsafe { self.tile_wide(grid, tx, ty) };
+        }
+        self.tile(grid, tx, ty)
+    }
+
+    #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
+    #[target_feature(enable = "avx2")]
+    fn tile_wide(&mut self, grid: &mut SandGrid, tx: usize, ty: usize) -> usize {
+        self.tile(grid, tx, ty)
+    }
+
+    #[inline(always)]
     fn tile(&mut self, grid: &mut SandGrid, tx: usize, ty: usize) -> usize {
         let columns = (tx * TILE)..((tx + 1) * TILE).min(grid.columns());
         let rows = (ty * TILE)..((ty + 1) * TILE).min(grid.rows());
@@ -123,17 +153,26 @@ impl Erosion {
         let mut moved = [false; 5];
         for n in 0..count {
             let y = if self.pass & 2 == 0 { rows.start + n } else { rows.end - 1 - n };
-            let mut steep = self.steep_cells(grid, grid.index(columns.start, y), columns.len());
-            while steep != 0 {
-                let x = if self.pass & 1 == 0 { steep.trailing_zeros() } else { 31 - steep.leading_zeros() };
-                steep &= !(1 << x);
-                let at = grid.index(columns.start + x as usize, y);
-                if self.slide(grid, at) {
-                    moved[0] |= x == 0;
-                    moved[1] |= x as usize + 1 == columns.len();
-                    moved[2] |= y == rows.start;
-                    moved[3] |= y + 1 == rows.end;
-                    moved[4] = true;
+            let steep = self.steep_cells(grid, grid.index(columns.start, y), columns.len());
+            if steep == 0 {
+                continue;
+            }
+            // Every third cell: what they touch does not overlap, so that the processor works on
+            // several at once.
+            for n in 0..3 {
+                let third = if self.pass & 1 == 0 { n } else { 2 - n };
+                let mut steep = steep & (0x4924_9249 << third);
+                while steep != 0 {
+                    let x = steep.trailing_zeros();
+                    steep &= steep - 1;
+                    let at = grid.index(columns.start + x as usize, y);
+                    if self.slide(grid, at) {
+                        moved[0] |= x == 0;
+                        moved[1] |= x as usize + 1 == columns.len();
+                        moved[2] |= y == rows.start;
+                        moved[3] |= y + 1 == rows.end;
+                        moved[4] = true;
+                    }
                 }
             }
         }
@@ -157,59 +196,91 @@ impl Erosion {
     }
 
     /// Which of up to 32 cells of a row are too steep, one bit a cell, without branches.
+    #[inline(always)]
     fn steep_cells(&self, grid: &SandGrid, at: usize, count: usize) -> u32 {
         let stride = grid.stride();
-        let row = |offset: usize| &grid.heights[offset..offset + count + 2];
+        let row = |offset: usize| {
+            let cells = &grid.heights[offset..offset + count + 2];
+            // At the right border a row is shorter: walls stand where it ends.
+            cells.first_chunk::<{ TILE + 2 }>().copied().unwrap_or_else(|| {
+                let mut padded = [WALL; TILE + 2];
+                padded[..cells.len()].copy_from_slice(cells);
+                padded
+            })
+        };
         let (above, here, below) = (row(at - stride - 1), row(at - 1), row(at + stride - 1));
         let axis_limit = self.limit[0] + self.tolerance[0];
         let diagonal_limit = self.limit[1] + self.tolerance[1];
         let mut flags = [0_u8; TILE];
-        for (i, flag) in flags.iter_mut().enumerate().take(count) {
+        for i in 0..TILE {
             let axis = here[i].min(here[i + 2]).min(above[i + 1].min(below[i + 1]));
             let diagonal = above[i].min(above[i + 2]).min(below[i].min(below[i + 2]));
             let h = here[i + 1];
             let steep = (h - axis > axis_limit) | (h - diagonal > diagonal_limit);
-            *flag = u8::from(steep & (h < WALL));
+            flags[i] = u8::from(steep & (h < WALL));
         }
-        let mut bits = 0;
-        for (i, flag) in flags.iter().enumerate() {
-            bits |= u32::from(*flag) << i;
-        }
-        bits
+        // Eight flags to eight bits: the product brings flag k to bit 56 + k.
+        let (eights, _) = flags.as_chunks::<8>();
+        eights.iter().rev().fold(0, |bits, eight| {
+            let gathered = u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+            (bits << 8) | gathered as u32
+        })
     }
 
     /// Lets one cell slide; tells whether anything moved.
+    #[inline(always)]
     fn slide(&self, grid: &mut SandGrid, at: usize) -> bool {
         let stride = grid.stride();
-        let neighbours = [
-            at - 1,
-            at + 1,
-            at - stride,
-            at + stride,
-            at - stride - 1,
-            at - stride + 1,
-            at + stride - 1,
-            at + stride + 1,
+        let Some(window) = grid.heights.get_mut(at - stride - 1..=at + stride + 1) else { return false };
+        let (above, rest) = window.split_at_mut(stride);
+        let (here, below) = rest.split_at_mut(stride);
+        let (Some(above), Some(here), Some(below)) =
+            (above.first_chunk_mut::<3>(), here.first_chunk_mut::<3>(), below.first_chunk_mut::<3>())
+        else {
+            return false;
+        };
+        let h = here[1];
+        let [axis, diagonal] = self.limit;
+        let drop = |other: i32, limit: i32| (h - other - limit).max(0);
+        let excess = [
+            drop(above[0], diagonal),
+            drop(above[1], axis),
+            drop(above[2], diagonal),
+            drop(here[0], axis),
+            drop(here[2], axis),
+            drop(below[0], diagonal),
+            drop(below[1], axis),
+            drop(below[2], diagonal),
         ];
-        let h = grid.heights[at];
-        let (mut most, mut sum) = (0, 0.0_f64);
-        let excess: [i32; 8] = core::array::from_fn(|i| {
-            let e = (h - grid.heights[neighbours[i]] - self.limit[i / 4]).max(0);
-            most = most.max(e);
-            sum += f64::from(e);
-            e
-        });
-        if most <= self.tolerance[0].min(self.tolerance[1]) {
+        let most = excess.iter().fold(0, |most, &e| most.max(e));
+        if most <= self.tolerance[0] {
             return false;
         }
-        let share = 0.5 * f64::from(most) / sum;
-        let mut given = 0;
-        for (i, &e) in excess.iter().enumerate() {
-            let part = (share * f64::from(e)) as i32;
-            grid.heights[neighbours[i]] += part;
-            given += part;
-        }
-        grid.heights[at] = h - given;
+        // c / Σ e in units of 2⁻³²; every excess is below 2³¹, so that no product overflows.
+        let sum: u64 = excess.iter().map(|&e| u64::from(e.unsigned_abs())).sum();
+        let most = u64::from(most.unsigned_abs());
+        let share = (most << 32) / (sum + most);
+        let part = excess.map(|e| ((u64::from(e.unsigned_abs()) * share) >> 32) as i32);
+        above[0] += part[0];
+        above[1] += part[1];
+        above[2] += part[2];
+        here[0] += part[3];
+        here[2] += part[4];
+        below[0] += part[5];
+        below[1] += part[6];
+        below[2] += part[7];
+        let given: i32 = part.iter().sum();
+        here[1] = h - given;
         given > 0
     }
+}
+
+#[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
+fn wide_available() -> bool {
+    std::arch::is_x86_feature_detected!("avx2")
+}
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "x86")))]
+fn wide_available() -> bool {
+    false
 }

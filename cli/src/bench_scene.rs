@@ -1,0 +1,125 @@
+//! Scenes made in memory for measuring: fingers that stroke plates whose bodies ring.
+
+use asperity::{
+    Actuator, Config, ContactEvent, ContactId, ContactSample, Extent, Material, ModalModel, Mode, Renderer,
+    Scene, Surface, SurfaceId, Wrap,
+};
+use asperity_texture::height_map::HeightMap;
+use asperity_texture::raster::Raster;
+use std::f64::consts::PI;
+use std::time::Instant;
+
+/// Events a second and finger, as games report them.
+const EVENT_RATE_HZ: f64 = 60.0;
+
+/// What is to be measured.
+#[derive(Debug, Clone, Copy)]
+pub struct Load {
+    /// Fingers stroking at once.
+    pub contacts: usize,
+    /// Bodies, each under its share of the fingers.
+    pub bodies: usize,
+    /// Modes of each body.
+    pub modes_per_body: usize,
+    /// Whether the fingers lift after a tenth of a second, so that everything rings out.
+    pub lift: bool,
+}
+
+/// A scene under load, rendered block by block.
+pub struct Bench {
+    scene: Scene,
+    renderer: Renderer,
+    surfaces: Vec<SurfaceId>,
+    load: Load,
+    rate_hz: f64,
+    next_event: u64,
+    event: u64,
+}
+
+/// Modes between 100 Hz and 12 kHz with T60 of 0.2–2 s.
+pub fn modes(count: usize) -> ModalModel {
+    let modes = (0..count)
+        .map(|index| {
+            let part = (index as f64 + 0.5) / count as f64;
+            Mode {
+                frequency_hz: 100.0 * 120f64.powf(part),
+                decay_per_s: 6.9 / (2.0 * 0.1f64.powf(part)),
+                amplitude: 0.3 / (1.0 + index as f64).sqrt(),
+                phase_rad: 0.0,
+            }
+        })
+        .collect();
+    ModalModel { source: "made for measuring".to_owned(), impulse_n_s: 0.01, modes }
+}
+
+fn plate() -> Option<HeightMap> {
+    let waves = Raster::from_fn(512, 512, |x, y| {
+        let (u, v) = (x as f64 / 512.0, y as f64 / 512.0);
+        0.5 + 0.25 * (2.0 * PI * 40.0 * u).sin() + 0.25 * (2.0 * PI * 23.0 * (u + v)).cos()
+    });
+    let rough = Raster::from_fn(256, 256, |x, _| if x < 128 { 0.2 } else { 0.8 });
+    let extent = Extent { width_m: 0.14, height_m: 0.14, relief_m: 2e-4 };
+    HeightMap::new(&waves, extent, Wrap::Repeat).ok()?.with_roughness_map(&rough).ok()
+}
+
+impl Bench {
+    /// Builds the scene; none only if the engine refuses what it should accept.
+    pub fn new(load: Load, config: Config) -> Option<Self> {
+        let rate_hz = config.sample_rate_hz;
+        let (mut scene, renderer) = config.build().ok()?;
+        let map = plate()?;
+        let mut surfaces = Vec::new();
+        for _ in 0..load.bodies.max(1) {
+            let surface = Surface::new(map.clone(), 0.14, 0.14).ok()?;
+            let surface = if load.modes_per_body > 0 {
+                surface.on(scene.add_body_of(modes(load.modes_per_body), Material::CERAMIC).ok()?)
+            } else {
+                surface
+            };
+            surfaces.push(scene.add_surface(surface).ok()?);
+        }
+        Some(Self { scene, renderer, surfaces, load, rate_hz, next_event: 0, event: 0 })
+    }
+
+    /// Renders `audio.len()` samples and returns how long the audio half took, s.
+    pub fn block(&mut self, haptic: &mut [f32], audio: &mut [f32]) -> f64 {
+        while self.next_event < self.renderer.position() + audio.len() as u64 {
+            self.report();
+            self.event += 1;
+            self.next_event = (self.event as f64 / EVENT_RATE_HZ * self.rate_hz).ceil() as u64;
+        }
+        let began = Instant::now();
+        self.renderer.render(&mut [haptic], &mut [audio]);
+        began.elapsed().as_secs_f64()
+    }
+
+    /// What every finger did since the last report.
+    fn report(&mut self) {
+        let t = self.event as f64 / EVENT_RATE_HZ;
+        let lift = self.load.lift && t > 0.1;
+        if self.load.lift && t > 0.1 + 1.5 / EVENT_RATE_HZ {
+            return;
+        }
+        for contact in 0..self.load.contacts {
+            let id = ContactId(contact as u64);
+            let phase = contact as f64 * 0.37;
+            let speed_m_s = 0.1 + 0.002 * contact as f64;
+            let sample = ContactSample {
+                uv: [(phase + speed_m_s * t) / 0.14, 0.3 + phase],
+                velocity_m_s: Some([speed_m_s, 0.0]),
+                normal_force_n: 0.5,
+                closing_m_s: 0.0,
+            };
+            let event = match (self.event, lift) {
+                (_, true) => ContactEvent::end(id),
+                (0, _) => {
+                    let surface = self.surfaces[contact % self.surfaces.len()];
+                    ContactEvent::begin(id, surface, Actuator(0), sample)
+                }
+                _ => ContactEvent::moved(id, sample),
+            };
+            // The queue holds thousands of events and is emptied with every block.
+            let _ = self.scene.report(t, event);
+        }
+    }
+}

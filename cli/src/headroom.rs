@@ -1,0 +1,225 @@
+//! `asperity headroom`: how many fingers and modes fit on this machine.
+//!
+//! One thread. A scene is rendered in blocks of 64 frames with events at 60 Hz, as a game drives it, and
+//! every block is timed; the kernels are timed alone. Figures are medians.
+
+use crate::bench_scene::{Bench, Load, modes};
+use crate::error::CliError;
+use crate::measure::{cpu_name, ns_per_item, quantile};
+use crate::output;
+use crate::progress::Progress;
+use asperity::{Config, Integrator, Probe};
+use asperity_dsp::micro_contact::{ContactSample, MicroContact};
+use asperity_dsp::modal_bank::{GroupOptions, GroupState, Kernel, LANES, design_group, sort_by_decay};
+use asperity_dsp::rng::Rng;
+use clap::Args;
+use serde::Serialize;
+
+const SAMPLE_RATE_HZ: f64 = 44_100.0;
+const BLOCK_FRAMES: usize = 64;
+/// Signal rendered of each scene, s: enough blocks for a 99.9 % quantile.
+const SCENE_S: f64 = 12.0;
+/// Rows of the modal bank.
+const BANKS: [usize; 5] = [16, 64, 256, 1024, 4096];
+
+/// Measure how many fingers and modes this machine renders in real time
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    sample_rate_hz: f64,
+    block_frames: usize,
+    cpu: String,
+    instruction_set: String,
+    scenes: Vec<SceneRow>,
+    modal_bank: Vec<BankRow>,
+    contact: Vec<ContactRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct SceneRow {
+    name: String,
+    contacts: usize,
+    modes: usize,
+    real_time_factor: f64,
+    block_p50_us: f64,
+    block_p99_9_us: f64,
+    ns_per_sample: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct BankRow {
+    modes: usize,
+    mode_samples_per_s: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ContactRow {
+    integrator: &'static str,
+    ns_per_sample: f64,
+}
+
+const SCENES: [(&str, Load); 11] = [
+    ("nothing touched", Load { contacts: 0, bodies: 1, modes_per_body: 100, lift: false }),
+    ("one finger, silent plate", Load { contacts: 1, bodies: 1, modes_per_body: 0, lift: false }),
+    ("one finger, one body", Load { contacts: 1, bodies: 1, modes_per_body: 100, lift: false }),
+    ("ten fingers on ten bodies", Load { contacts: 10, bodies: 10, modes_per_body: 100, lift: false }),
+    ("ten bodies rung out", Load { contacts: 10, bodies: 10, modes_per_body: 100, lift: true }),
+    ("4 fingers, one body", Load { contacts: 4, bodies: 1, modes_per_body: 100, lift: false }),
+    ("16 fingers, one body", Load { contacts: 16, bodies: 1, modes_per_body: 100, lift: false }),
+    ("64 fingers, one body", Load { contacts: 64, bodies: 1, modes_per_body: 100, lift: false }),
+    ("one finger, 16 modes", Load { contacts: 1, bodies: 1, modes_per_body: 16, lift: false }),
+    ("one finger, 256 modes", Load { contacts: 1, bodies: 1, modes_per_body: 256, lift: false }),
+    ("one finger, 4096 modes", Load { contacts: 1, bodies: 1, modes_per_body: 4096, lift: false }),
+];
+
+/// Runs the verb.
+///
+/// # Errors
+/// When the engine refuses a scene made for measuring.
+pub fn run(options: &Options) -> Result<(), CliError> {
+    let mut progress = Progress::new("measuring", (SCENES.len() + BANKS.len() + 3) as u64);
+    let mut scenes = Vec::new();
+    for (name, load) in SCENES {
+        scenes.push(scene(name, load)?);
+        progress.advance(1);
+    }
+    let mut modal_bank = Vec::new();
+    for count in BANKS {
+        modal_bank.push(bank(count)?);
+        progress.advance(1);
+    }
+    let mut contact = Vec::new();
+    for integrator in [Integrator::SemiImplicitEuler, Integrator::ExactEvent, Integrator::EnergyConserving] {
+        contact.push(contact_alone(integrator)?);
+        progress.advance(1);
+    }
+    drop(progress);
+    let report = Report {
+        sample_rate_hz: SAMPLE_RATE_HZ,
+        block_frames: BLOCK_FRAMES,
+        cpu: cpu_name(),
+        instruction_set: format!("{:?}", Kernel::detect().isa()),
+        scenes,
+        modal_bank,
+        contact,
+    };
+    if options.json {
+        return output::say_json(&report);
+    }
+    output::say(&table(&report));
+    Ok(())
+}
+
+fn refused(error: impl std::fmt::Display) -> CliError {
+    CliError::told(error).within("headroom")
+}
+
+fn scene(name: &str, load: Load) -> Result<SceneRow, CliError> {
+    let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
+    let mut bench =
+        Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
+    let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
+    let blocks = (SCENE_S * SAMPLE_RATE_HZ) as usize / BLOCK_FRAMES;
+    // The first half second lands the fingers, or lets everything ring out before it is timed.
+    let warm_up = if load.lift { 6.0 } else { 0.5 };
+    for _ in 0..(warm_up * SAMPLE_RATE_HZ) as usize / BLOCK_FRAMES {
+        bench.block(&mut haptic, &mut audio);
+    }
+    let mut times_s: Vec<f64> = (0..blocks).map(|_| bench.block(&mut haptic, &mut audio)).collect();
+    let total_s: f64 = times_s.iter().sum();
+    times_s.sort_by(f64::total_cmp);
+    let signal_s = (blocks * BLOCK_FRAMES) as f64 / SAMPLE_RATE_HZ;
+    Ok(SceneRow {
+        name: name.to_owned(),
+        contacts: if load.lift { 0 } else { load.contacts },
+        modes: load.bodies * load.modes_per_body,
+        real_time_factor: signal_s / total_s.max(1e-9),
+        block_p50_us: quantile(&times_s, 0.5) * 1e6,
+        block_p99_9_us: quantile(&times_s, 0.999) * 1e6,
+        ns_per_sample: total_s * 1e9 / (blocks * BLOCK_FRAMES) as f64,
+    })
+}
+
+/// The bank alone, force in every sample.
+fn bank(count: usize) -> Result<BankRow, CliError> {
+    let mut modes = modes(count).modes;
+    sort_by_decay(&mut modes);
+    let groups = modes
+        .chunks(LANES)
+        .map(|chunk| design_group(chunk, SAMPLE_RATE_HZ, &GroupOptions::IMPULSE_RING))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(refused)?;
+    let mut states = vec![GroupState::default(); groups.len()];
+    let mut rng = Rng::new(1);
+    let force: Vec<f32> = (0..BLOCK_FRAMES).map(|_| 1e-6 * (rng.uniform() as f32 - 0.5)).collect();
+    let mut out = [0.0f32; BLOCK_FRAMES];
+    let kernel = Kernel::detect();
+    let mut at = 0;
+    let ns = ns_per_item(BLOCK_FRAMES * count, || {
+        out.fill(0.0);
+        kernel.render(at, &groups, &mut states, &force, &mut out);
+        at += BLOCK_FRAMES as u64;
+        std::hint::black_box(&out);
+    });
+    Ok(BankRow { modes: count, mode_samples_per_s: 1e9 / ns })
+}
+
+/// The contact model alone on a smooth profile.
+fn contact_alone(integrator: Integrator) -> Result<ContactRow, CliError> {
+    let model = MicroContact::new(&Probe::default(), integrator, SAMPLE_RATE_HZ).map_err(refused)?;
+    let length = 4410;
+    let height_m: Vec<f64> = (0..length)
+        .map(|n| 2e-5 * (2.0 * std::f64::consts::PI * 100.0 * f64::from(n) / SAMPLE_RATE_HZ).sin())
+        .collect();
+    let force_n = vec![0.5; height_m.len()];
+    let mut rows = vec![ContactSample::default(); height_m.len()];
+    let mut state = model.at_rest(0.0, 0.5);
+    let ns_per_sample = ns_per_item(height_m.len(), || {
+        for begin in (0..height_m.len()).step_by(BLOCK_FRAMES) {
+            let part = begin..(begin + BLOCK_FRAMES).min(height_m.len());
+            model.run(&mut state, &height_m[part.clone()], &force_n[part.clone()], &mut rows[part]);
+        }
+        std::hint::black_box(&rows);
+    });
+    Ok(ContactRow { integrator: integrator.name(), ns_per_sample })
+}
+
+fn table(report: &Report) -> String {
+    use std::fmt::Write;
+    let mut text = format!(
+        "{} ({}), one thread, {} Hz, blocks of {} frames ({:.0} µs)\n\n",
+        report.cpu,
+        report.instruction_set,
+        report.sample_rate_hz,
+        report.block_frames,
+        report.block_frames as f64 / report.sample_rate_hz * 1e6
+    );
+    let _ = writeln!(
+        text,
+        "{:<28}{:>9}{:>7}{:>12}{:>11}{:>12}",
+        "scene", "contacts", "modes", "× real time", "p50 µs", "p99.9 µs"
+    );
+    for row in &report.scenes {
+        let _ = writeln!(
+            text,
+            "{:<28}{:>9}{:>7}{:>12.0}{:>11.1}{:>12.1}",
+            row.name, row.contacts, row.modes, row.real_time_factor, row.block_p50_us, row.block_p99_9_us
+        );
+    }
+    let _ = writeln!(text, "\n{:<28}{:>28}", "modal bank", "mode-samples a second");
+    for row in &report.modal_bank {
+        let _ =
+            writeln!(text, "{:<28}{:>24.2} G", format!("{} modes", row.modes), row.mode_samples_per_s / 1e9);
+    }
+    let _ = writeln!(text, "\n{:<28}{:>28}", "contact model", "ns a sample");
+    for row in &report.contact {
+        let _ = writeln!(text, "{:<28}{:>26.2}", row.integrator, row.ns_per_sample);
+    }
+    text.trim_end().to_owned()
+}

@@ -1,0 +1,45 @@
+//! Frames a block: the whole engine, one finger on a body of 100 modes.
+
+use super::{Row, SAMPLE_RATE_HZ, refused};
+use crate::bench_scene::{Bench, Load};
+use crate::error::CliError;
+use crate::measure::relative_error;
+use asperity::Config;
+
+const SECONDS: f64 = 2.0;
+const REFERENCE: &str = "the same scene in blocks of 64 frames, audio";
+const LOAD: Load = Load { contacts: 1, bodies: 1, modes_per_body: 100, lift: false };
+/// Each block size is timed so often; the quickest counts.
+const ROUNDS: usize = 5;
+
+fn render(block: usize) -> Result<(Vec<f32>, f64), CliError> {
+    let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
+    let mut bench =
+        Bench::new(LOAD, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
+    let mut audio = vec![0.0; (SECONDS * SAMPLE_RATE_HZ) as usize / 4096 * 4096];
+    let mut haptic = vec![0.0; block];
+    let total_s: f64 = audio.chunks_mut(block).map(|part| bench.block(&mut haptic[..part.len()], part)).sum();
+    let count = audio.len() as f64;
+    Ok((audio, total_s * 1e9 / count))
+}
+
+/// Measures the axis.
+pub fn rows() -> Result<Vec<Row>, CliError> {
+    let reference: Vec<f64> = render(64)?.0.into_iter().map(f64::from).collect();
+    [1, 16, 64, 256, 1024, 4096]
+        .into_iter()
+        .map(|block| {
+            let mut best = render(block)?;
+            for _ in 1..ROUNDS {
+                best.1 = best.1.min(render(block)?.1);
+            }
+            Ok(Row {
+                axis: "block size",
+                choice: format!("{block} frames"),
+                ns_per_sample: best.1,
+                error: relative_error(best.0.into_iter().map(f64::from), &reference),
+                reference: REFERENCE,
+            })
+        })
+        .collect()
+}

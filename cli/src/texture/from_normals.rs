@@ -1,0 +1,120 @@
+//! `asperity texture from-normals NORMAL.png -o OUT.png`: a normal map becomes a height map.
+
+use super::{channel, positive, refused};
+use crate::error::CliError;
+use crate::output::{self, Outputs};
+use asperity_texture::gradient_field::Derivative;
+use asperity_texture::image_io::{self, Channel};
+use asperity_texture::normal_map::{Green, NormalMapOptions, heights_from_normals};
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Make a 16-bit height map of a normal map
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Normal map, tangent space
+    #[arg(value_name = "NORMAL.png")]
+    pub normals: PathBuf,
+    /// 16-bit PNG to write
+    #[arg(short, long = "output", value_name = "OUT.png")]
+    pub output: PathBuf,
+    /// Which way green points; found out unless given
+    #[arg(long, value_name = "WAY")]
+    pub green: Option<GreenName>,
+    /// Keep the mean slope of a map that does not tile
+    #[arg(long)]
+    pub keep_tilt: bool,
+    /// What the map's width is on the surface, m: adds relief_m to the report
+    #[arg(long, value_name = "M", value_parser = positive)]
+    pub width_m: Option<f64>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Conventions of the green channel.
+#[derive(Debug, Clone, Copy, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum GreenName {
+    /// Green brightens towards slopes facing up the image.
+    #[value(name = "opengl")]
+    OpenGl,
+    /// Green brightens towards slopes facing down the image.
+    #[value(name = "directx")]
+    DirectX,
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    width: usize,
+    height: usize,
+    /// Height of white over black in texels: times the size of a texel it is `relief_m`.
+    relief_per_px: f64,
+    relief_m: Option<f64>,
+    green: GreenName,
+    green_is_certain: bool,
+    derivative: &'static str,
+    tileable: bool,
+    /// What no surface has of the map's slopes, 0–1.
+    curl: f64,
+    files: Vec<PathBuf>,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// When the map cannot be read or the output cannot be written.
+pub fn run(options: &Options) -> Result<(), CliError> {
+    output::check_destination(&options.output)?;
+    let [red, green, blue] = [Channel::R, Channel::G, Channel::B];
+    let (red, green, blue) = (
+        channel(&options.normals, red)?,
+        channel(&options.normals, green)?,
+        channel(&options.normals, blue)?,
+    );
+    let settings = NormalMapOptions {
+        green: match options.green {
+            None => Green::Detect,
+            Some(GreenName::OpenGl) => Green::OpenGl,
+            Some(GreenName::DirectX) => Green::DirectX,
+        },
+        keep_tilt: options.keep_tilt,
+        ..NormalMapOptions::default()
+    };
+    let found = heights_from_normals(&red, &green, &blue, &settings)
+        .map_err(|error| refused(&options.normals, &error))?;
+    let (low, high) = found.height_px.range();
+    let relief_per_px = high - low;
+    let scaled = found.height_px.map(|z| if relief_per_px > 0.0 { (z - low) / relief_per_px } else { 0.5 });
+    let mut outputs = Outputs::new();
+    outputs.write_at(&options.output, |path| image_io::save_gray16(path, &scaled).map_err(CliError::told))?;
+    let report = Report {
+        width: scaled.width,
+        height: scaled.height,
+        relief_per_px,
+        relief_m: options.width_m.map(|width_m| relief_per_px * width_m / scaled.width as f64),
+        green: if found.green == Green::DirectX { GreenName::DirectX } else { GreenName::OpenGl },
+        green_is_certain: found.green_is_certain,
+        derivative: match found.derivative {
+            Derivative::Exact => "exact",
+            Derivative::Central => "central",
+            Derivative::Sobel => "sobel",
+        },
+        tileable: found.tileable,
+        curl: found.curl,
+        files: outputs.commit()?,
+    };
+    if options.json {
+        return output::say_json(&report);
+    }
+    output::say(&format!(
+        "{} × {} texels; white is {relief_per_px:.2} texels above black; {:?} green{}\nwrote {}",
+        report.width,
+        report.height,
+        report.green,
+        if report.green_is_certain { "" } else { " (the map does not tell)" },
+        options.output.display()
+    ));
+    Ok(())
+}

@@ -1,0 +1,59 @@
+//! Wrong usage: status 2, one line, nothing on stdout, nothing written.
+
+mod support;
+
+use std::path::Path;
+use support::{Scene, asperity, told};
+
+#[test]
+fn wrong_usage_is_one_line_and_status_2() {
+    let scene = Scene::new();
+    for arguments in [
+        &[][..],
+        &["dance"],
+        &["render"],
+        &["render", "scene.toml"],
+        &["render", "scene.toml", "-o"],
+        &["render", "scene.toml", "-o", "out", "--block", "0"],
+        &["render", "scene.toml", "-o", "out", "--block", "4097"],
+        &["render", "scene.toml", "-o", "out", "--rate", "nan"],
+        &["render", "scene.toml", "-o", "out", "--rate", "1e300"],
+        &["render", "scene.toml", "-o", "out", "--rate", "100"],
+        &["render", "scene.toml", "-o", "out", "--seed", "-3"],
+        &["render", "scene.toml", "-o", "out", "--integrator", "magic"],
+        &["render", "scene.toml", "-o", "out", "--path", "scenic"],
+        &["render", "scene.toml", "-o", "out", "--colour"],
+        &["demo", "extra"],
+    ] {
+        let (status, out, err) = told(&asperity(scene.folder.path(), arguments));
+        assert_eq!(status, 2, "{arguments:?}: {err}");
+        assert_eq!(out, "", "{arguments:?}");
+        assert_eq!(err.lines().count(), 1, "{arguments:?}: {err}");
+        assert!(err.starts_with("error: "), "{err}");
+    }
+    assert!(scene.outputs().is_empty());
+}
+
+#[test]
+fn a_misspelt_choice_is_answered_with_the_choices() {
+    let scene = Scene::new();
+    let (_, _, err) = told(&scene.render(&["--integrator", "euler"]));
+    for name in ["semi-implicit-euler", "exact-event", "energy-conserving"] {
+        assert!(err.contains(name), "{err}");
+    }
+}
+
+#[test]
+fn help_and_version_go_to_stdout() {
+    for argument in ["--help", "--version"] {
+        let (status, out, err) = told(&asperity(Path::new("."), &[argument]));
+        assert_eq!((status, err.as_str()), (0, ""));
+        assert!(out.contains("asperity"));
+    }
+    let (_, out, _) = told(&asperity(Path::new("."), &["render", "--help"]));
+    for option in
+        ["--rate", "--block", "--seed", "--integrator", "--path", "--trace", "--plot", "--force", "--json"]
+    {
+        assert!(out.contains(option), "{out}");
+    }
+}
