@@ -152,14 +152,14 @@ impl Work<'_> {
             let known = self.partials.clone();
             self.join(&found, level.span(), if whole { 0 } else { level.span() });
             let mut after = square_sum(&subtract(self.segment, &self.partials));
-            if after > before && !whole {
+            if self.capped && after > before && !whole {
                 // What fits late does not fit early: fit all of it.
                 self.partials.clone_from(&known);
                 let early: Vec<Partial> = found.iter().map(|p| p.moved(-(level.span() as f64))).collect();
                 self.join(&early, level.span(), 0);
                 after = square_sum(&subtract(self.segment, &self.partials));
             }
-            if after > before {
+            if self.capped && after > before {
                 self.partials = known;
                 break;
             }
