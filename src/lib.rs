@@ -1,1 +1,59 @@
-//! The engine.
+//! **asperity** turns touch into signal.
+//!
+//! A game or VR physics step reports sparse [contact events](ContactEvent); a [`Renderer`] turns them,
+//! at audio rate and in hard real time, into what a finger feels (haptic channels) and what the object
+//! sounds like (modal audio), from the displacement and roughness maps the scene already has.
+//!
+//! ```text
+//! game thread                         audio thread
+//! Scene::report ──► queue ──► path ─► profile ─► micro-contact ─┬─► actuator stage ─► haptic channels
+//!                                                               └─► impulses ─► modal bank ─► audio
+//! ```
+
+mod body;
+pub mod channel_map;
+mod clock;
+mod config;
+pub mod contact_log;
+#[cfg(feature = "device")]
+pub mod device;
+pub mod drift;
+mod error;
+mod event;
+mod material;
+mod modal_model;
+pub mod null_sink;
+pub mod offline;
+mod queue;
+mod recording;
+mod renderer;
+mod scene;
+mod seat;
+mod stats;
+mod surface;
+mod tap;
+mod voice;
+
+pub use clock::ClockMode;
+pub use config::{ActuatorSettings, AudioSettings, Config, DeviceProfile, Quantity};
+pub use error::{AddError, ConfigError, Refusal, ReportError};
+pub use event::{
+    Actuator, BadValue, BodyId, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S,
+    MAX_UV, SurfaceId,
+};
+pub use material::Material;
+pub use modal_model::{ModalModel, ModalModelError};
+pub use renderer::Renderer;
+pub use scene::Scene;
+pub use stats::Stats;
+pub use surface::{
+    DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,
+    Surface, SurfaceError,
+};
+pub use tap::{ContactBlock, NoTap, Tap};
+
+pub use asperity_dsp::micro_contact::{Integrator, Probe};
+pub use asperity_dsp::mode::Mode;
+pub use asperity_dsp::trajectory::PathMode;
+pub use asperity_texture::height_map::Extent;
+pub use asperity_texture::wrap::Wrap;

@@ -83,6 +83,14 @@ impl State {
         Self { band: 0.0, low: value }
     }
 
+    /// The state of a filter that has followed a straight line for ever, the line being at `value` at
+    /// the first sample: the low-pass gives the line, one group delay late, from that sample on.
+    pub fn settled_on_ramp(filter: &Butterworth, value: f64, rise_per_sample: f64) -> Self {
+        let g = filter.a2 / filter.a1;
+        let band = rise_per_sample / (2.0 * g);
+        Self { band, low: value - band * (g + SQRT_2) }
+    }
+
     /// Filters one sample.
     #[inline]
     pub fn tick(&mut self, filter: &Butterworth, input: f64) -> Output {
@@ -156,6 +164,19 @@ mod tests {
         let filter = Butterworth::new(30.0, 44_100.0).unwrap();
         let out = State::settled_at(0.3).tick(&filter, 0.3);
         assert_eq!((out.low, out.band, out.high), (0.3, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_state_settled_on_a_ramp_gives_the_ramp_one_group_delay_late_from_the_first_sample() {
+        let (rate, slope) = (44_100.0, 0.1);
+        let filter = Butterworth::new(30.0, rate).unwrap();
+        let mut state = State::settled_on_ramp(&filter, 0.5, slope / rate);
+        for n in 0..2000 {
+            let line = 0.5 + slope * f64::from(n) / rate;
+            let out = state.tick(&filter, line);
+            assert!((line - out.low - slope * filter.group_delay_s()).abs() < 1e-8, "sample {n}");
+            assert!((out.band * filter.angular_cutoff_per_s() / slope - 1.0).abs() < 1e-5, "sample {n}");
+        }
     }
 
     #[test]

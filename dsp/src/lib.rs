@@ -8,15 +8,33 @@
 //!
 //! | file | from → to |
 //! |---|---|
+//! | [`trajectory`] | sparse contact events → position, velocity and force a sample |
 //! | [`butterworth`] | positions → smooth positions |
+//! | [`trajectory`] | sparse contact events → path, velocity and force at every sample |
+//! | [`butterworth`] | the path's smoothing filter, and every high-pass |
+//! | [`fractal_noise`], [`gradient_noise_2d`] | path → 1/f^α micro-relief |
+//! | [`gradient_noise_3d`] | a point in space → solid noise and its gradient |
+//! | [`micro_contact`] | profile heights and normal force → pad, contact force, collisions |
+//! | [`hertz`] | impacts → force pulses → impulses a sample |
+//! | [`mode`], [`modal_bank`] | impulses → sound |
+//! | [`actuator`] | pad motion → haptic samples |
+//! | [`rng`] | seeded numbers for all of them |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]
 extern crate std;
 
+pub mod actuator;
 pub mod butterworth;
 mod error;
+pub mod fractal_noise;
+pub mod gradient_noise_2d;
+pub mod gradient_noise_3d;
+pub mod hertz;
+pub mod micro_contact;
+pub mod modal_bank;
 pub mod mode;
 pub mod rng;
+pub mod trajectory;
 
 pub use error::DesignError;

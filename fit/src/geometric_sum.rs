@@ -40,8 +40,7 @@ fn doubled(w: C, count: usize) -> [C; 3] {
     let mut length = 0.0;
     for bit in (0..usize::BITS - count.leading_zeros()).rev() {
         // Σ over [M, 2M): n = M + m, so n² = M² + 2Mm + m².
-        let (t0, t1, t2) =
-            (s0, s1 + s0 * length, s2 + s1 * (2.0 * length) + s0 * (length * length));
+        let (t0, t1, t2) = (s0, s1 + s0 * length, s2 + s1 * (2.0 * length) + s0 * (length * length));
         s0 += power * t0;
         s1 += power * t1;
         s2 += power * t2;

@@ -129,7 +129,16 @@ fn median_rank(count: usize) -> usize {
 /// Running percentile over ± `half` bins with mirrored edges, evaluated on a coarse grid.
 fn percentiles(values: &[f64], half: usize) -> Vec<f64> {
     let last = values.len() as isize - 1;
-    let mirrored = |i: isize| values[(if i < 0 { -i } else if i > last { 2 * last - i } else { i }).clamp(0, last) as usize];
+    let mirrored = |i: isize| {
+        values[(if i < 0 {
+            -i
+        } else if i > last {
+            2 * last - i
+        } else {
+            i
+        })
+        .clamp(0, last) as usize]
+    };
     let points = (values.len() / (half / 4).max(1)).clamp(2, values.len());
     (0..points)
         .map(|p| {

@@ -11,8 +11,8 @@
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::refinement::{Bounds, Scaled, gradient, gram_matrix, refine};
-use std::f64::consts::PI;
 use nalgebra::{DMatrix, Matrix2, Vector2};
+use std::f64::consts::PI;
 
 /// Chance of one false mode in a recording.
 pub const FALSE_ALARM: f64 = 0.01;
@@ -191,9 +191,7 @@ fn unproven(partials: &[Partial], noise: &NoiseFloor, count: usize) -> Vec<usize
     (0..partials.len())
         .filter(|&k| {
             wald[k] < least
-                && neighbours(partials, k, count)
-                    .into_iter()
-                    .all(|j| j == k || (wald[j], j) > (wald[k], k))
+                && neighbours(partials, k, count).into_iter().all(|j| j == k || (wald[j], j) > (wald[k], k))
         })
         .collect()
 }

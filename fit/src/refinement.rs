@@ -67,8 +67,10 @@ pub fn gram_matrix(partials: &[Partial], count: usize) -> DMatrix<f64> {
     let size = 4 * partials.len();
     let mut gram = DMatrix::zeros(size, size);
     let poles: Vec<(C, C)> = partials.iter().map(|p| (p.pole(), p.power(count as f64))).collect();
-    let gains: Vec<[C; 4]> =
-        partials.iter().map(|p| [C::new(1.0, 0.0), C::new(0.0, 1.0), C::new(-p.c.im, p.c.re), -p.c]).collect();
+    let gains: Vec<[C; 4]> = partials
+        .iter()
+        .map(|p| [C::new(1.0, 0.0), C::new(0.0, 1.0), C::new(-p.c.im, p.c.re), -p.c])
+        .collect();
     for j in 0..partials.len() {
         for i in 0..=j {
             let (zi, zi_n) = poles[i];

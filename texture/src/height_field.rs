@@ -5,6 +5,9 @@
 //! is anchored to the absolute sample index), so that any split of time into blocks gives the same
 //! bits. The path's positions are finite; they may be any number of periods away from the origin.
 
+use crate::change::SurfaceChange;
+use crate::sand::SandSource;
+
 /// Longest block a source is ever asked for, samples.
 pub const MAX_BLOCK: usize = 64;
 
@@ -51,6 +54,18 @@ pub struct SurfaceBlock {
     pub friction: [f64; MAX_BLOCK],
     /// Extra compliance of the surface in series with the contact spring, m/N; 0 = rigid.
     pub compliance_m_n: [f64; MAX_BLOCK],
+}
+
+impl SurfaceBlock {
+    /// Makes the first `n` entries a flat, smooth, frictionless, rigid surface.
+    pub fn clear(&mut self, n: usize) {
+        let n = n.min(MAX_BLOCK);
+        self.height_m[..n].fill(0.0);
+        self.gradient[..n].fill([0.0; 2]);
+        self.roughness[..n].fill(0.0);
+        self.friction[..n].fill(0.0);
+        self.compliance_m_n[..n].fill(0.0);
+    }
 }
 
 impl Default for SurfaceBlock {
@@ -127,5 +142,16 @@ pub trait HeightField: Send {
     /// Tells the source how it is touched; a source that gives way answers with a force.
     fn react(&mut self, _touch: &Touch) -> Reaction {
         Reaction::default()
+    }
+
+    /// Changes the source at an absolute sample, without a click; tells whether the change was meant
+    /// for this source and acceptable.
+    fn change(&mut self, _change: &SurfaceChange, _sample: u64) -> bool {
+        false
+    }
+
+    /// The sand, if this is some: whoever takes a surface back reads its figures and its picture.
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        None
     }
 }

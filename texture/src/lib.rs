@@ -4,4 +4,50 @@
 //! contact path; the other real-time files implement it.
 //! *Offline* (feature `offline`): tools that make surfaces from pictures and from other surfaces.
 
+// Real time.
+#[cfg(feature = "brownian")]
+pub mod brownian;
+pub mod change;
+pub mod combine;
+pub mod fade;
 pub mod height_field;
+pub mod height_map;
+pub mod lattice;
+pub mod raster;
+pub mod sand;
+pub mod solid_materials;
+pub mod solid_noise;
+
+// Maps in and out.
+pub mod deband;
+#[cfg(feature = "image")]
+pub mod image_io;
+mod resample;
+mod spline;
+pub mod wrap;
+
+// Offline.
+#[cfg(feature = "offline")]
+pub mod borders;
+#[cfg(feature = "offline")]
+pub mod fft2;
+#[cfg(feature = "offline")]
+pub mod fractal_dimension;
+#[cfg(feature = "offline")]
+pub mod gradient_field;
+#[cfg(feature = "offline")]
+pub mod histogram;
+#[cfg(feature = "offline")]
+pub mod light;
+#[cfg(feature = "offline")]
+pub mod metamer;
+#[cfg(feature = "offline")]
+pub mod normal_map;
+#[cfg(feature = "offline")]
+pub mod pyramid;
+#[cfg(feature = "offline")]
+pub mod shape_from_shading;
+#[cfg(feature = "offline")]
+pub mod spectral_resample;
+#[cfg(feature = "offline")]
+pub mod symmetry;

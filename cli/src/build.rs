@@ -1,0 +1,285 @@
+//! From a scene file to a running engine.
+
+use crate::error::CliError;
+use crate::scene_file::{
+    ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MaterialEntry, Pixels, ProbeEntry,
+    Roughness as RoughnessEntry, SceneFile, Source, SurfaceEntry, Wrap as WrapEntry,
+};
+use asperity::contact_log::Names;
+use asperity::{
+    ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent, Integrator, Material,
+    ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
+};
+use asperity_texture::brownian::BrownianDesign;
+use asperity_texture::height_field::HeightField;
+use asperity_texture::height_map::HeightMap;
+use asperity_texture::image_io::{self, Channel};
+use asperity_texture::lattice::Lattice;
+use asperity_texture::raster::Raster;
+use asperity_texture::solid_materials::SolidMaterial;
+use asperity_texture::solid_noise::SolidNoise;
+
+/// What the command line may set, whatever the scene file says.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Overrides {
+    /// Rate of the outputs, Hz.
+    pub sample_rate_hz: Option<f64>,
+    /// Seed of every random number.
+    pub seed: Option<u64>,
+    /// Integrator of the contact model.
+    pub integrator: Option<Integrator>,
+    /// How sparse positions become a path.
+    pub path: Option<PathMode>,
+}
+
+/// A scene ready to be rendered.
+pub struct Built {
+    /// Game half.
+    pub scene: Scene,
+    /// Audio half.
+    pub renderer: Renderer,
+    /// Ids by the names of the scene file.
+    pub names: Names,
+}
+
+/// Device profiles by the names that `equalise` and `limit` use.
+const DEVICES: [(&str, DeviceProfile); 4] = [
+    ("lra-170", DeviceProfile::LRA_170),
+    ("console-voice-coil", DeviceProfile::CONSOLE_VOICE_COIL),
+    ("haptuator", DeviceProfile::HAPTUATOR),
+    ("vr-controller", DeviceProfile::VR_CONTROLLER),
+];
+
+/// Loads every file that a scene names and builds the engine.
+///
+/// # Errors
+/// When a file cannot be used or the engine refuses a number; the message names file and field.
+pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError> {
+    let at = |error: CliError| error.within(file.path.display());
+    let config = config(file, overrides).map_err(at)?;
+    let (seed, rate_hz) = (config.seed, config.sample_rate_hz);
+    let (mut scene, renderer) = config.build().map_err(|error| at(CliError::told(error)))?;
+    let mut names = Names::default();
+    for body in &file.bodies {
+        let place = |error: CliError| at(error.within(format!("body \"{}\"", body.name)));
+        let model = match &body.modes {
+            Some(path) => ModalModel::load(path).map_err(CliError::told)?,
+            None => ModalModel { source: String::new(), impulse_n_s: 1.0, modes: Vec::new() },
+        };
+        let material = body.material.as_ref().map(material).transpose().map_err(place)?;
+        let id = match material {
+            Some(material) => scene.add_body_of(model, material),
+            None => scene.add_body(model),
+        };
+        names.bodies.insert(body.name.clone(), id.map_err(|error| place(CliError::told(error)))?);
+    }
+    for entry in &file.surfaces {
+        let place = |error: CliError| at(error.within(format!("surface \"{}\"", entry.name)));
+        let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
+        let surface = surface(entry, body, seed, rate_hz).map_err(place)?;
+        let id = scene.add_surface(surface).map_err(|error| place(CliError::told(error)))?;
+        names.surfaces.insert(entry.name.clone(), id);
+    }
+    Ok(Built { scene, renderer, names })
+}
+
+fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
+    let default = Config::default();
+    Ok(Config {
+        sample_rate_hz: overrides.sample_rate_hz.or(file.sample_rate_hz).unwrap_or(default.sample_rate_hz),
+        seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
+        path: overrides.path.unwrap_or(default.path),
+        integrator: overrides.integrator.unwrap_or(default.integrator),
+        probe: probe(&file.probe)?,
+        actuators: file.actuators.iter().map(actuator).collect::<Result<_, _>>()?,
+        audio: AudioSettings { gain: file.audio.gain, limit: file.audio.limit },
+        max_surfaces: default.max_surfaces.max(file.surfaces.len()),
+        max_bodies: default.max_bodies.max(file.bodies.len()),
+        // A scene is loaded whole before the first block is rendered.
+        queue_capacity: default.queue_capacity.max(2 * (file.surfaces.len() + file.bodies.len())),
+        ..default
+    })
+}
+
+fn probe(entry: &ProbeEntry) -> Result<Probe, CliError> {
+    let preset = match entry.preset.as_deref() {
+        None | Some("fingertip") => Probe::default(),
+        Some(other) => {
+            let what = format!("\"{other}\" is unknown");
+            return Err(CliError::new("probe: preset", what, "must be \"fingertip\", or write the fields"));
+        }
+    };
+    Ok(Probe {
+        pad_mass_kg: entry.pad_mass_kg.unwrap_or(preset.pad_mass_kg),
+        pad_stiffness_n_m: entry.pad_stiffness_n_m.unwrap_or(preset.pad_stiffness_n_m),
+        pad_damping_n_s_m: entry.pad_damping_n_s_m.unwrap_or(preset.pad_damping_n_s_m),
+        finger_mass_kg: entry.finger_mass_kg.unwrap_or(preset.finger_mass_kg),
+        contact_stiffness_n_m: entry.contact_stiffness_n_m.unwrap_or(preset.contact_stiffness_n_m),
+        leash_m: entry.leash_m.unwrap_or(preset.leash_m),
+    })
+}
+
+fn actuator(entry: &ActuatorEntry) -> Result<ActuatorSettings, CliError> {
+    Ok(ActuatorSettings {
+        output: match entry.output {
+            ActuatorOutput::Displacement => Quantity::Displacement,
+            ActuatorOutput::Acceleration => Quantity::Acceleration,
+        },
+        full_scale: entry.full_scale,
+        highpass_hz: entry.highpass_hz,
+        equalise: device("equalise", entry.equalise.as_deref())?,
+        limit: device("limit", entry.limit.as_deref())?,
+        ..ActuatorSettings::default()
+    })
+}
+
+fn device(field: &str, name: Option<&str>) -> Result<Option<DeviceProfile>, CliError> {
+    let Some(name) = name else { return Ok(None) };
+    match DEVICES.iter().find(|(known, _)| *known == name) {
+        Some((_, profile)) => Ok(Some(*profile)),
+        None => {
+            let known = DEVICES.map(|(name, _)| name).join(", ");
+            let at = format!("actuator: {field}");
+            Err(CliError::new(
+                at,
+                format!("\"{name}\" is unknown"),
+                format!("must be none or one of: {known}"),
+            ))
+        }
+    }
+}
+
+fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
+    match entry {
+        MaterialEntry::Constants { young_pa, poisson, density_kg_m3 } => {
+            Ok(Material { young_pa: *young_pa, poisson: *poisson, density_kg_m3: *density_kg_m3 })
+        }
+        MaterialEntry::Preset(name) => Material::by_name(name).ok_or_else(|| {
+            let right = format!("must be one of: {}, or a table of constants", Material::names());
+            CliError::new("material", format!("\"{name}\" is unknown"), right)
+        }),
+    }
+}
+
+/// What every source of a scene shares.
+#[derive(Clone, Copy)]
+struct Ground {
+    extent: Extent,
+    wrap: Wrap,
+    seed: u64,
+    sample_rate_hz: f64,
+}
+
+fn surface(
+    entry: &SurfaceEntry,
+    body: Option<BodyId>,
+    seed: u64,
+    sample_rate_hz: f64,
+) -> Result<Surface, CliError> {
+    let wrap = match entry.wrap {
+        WrapEntry::Repeat => Wrap::Repeat,
+        WrapEntry::Clamp => Wrap::Clamp,
+        WrapEntry::Mirror => Wrap::Mirror,
+    };
+    let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
+    let ground = Ground { extent, wrap, seed, sample_rate_hz };
+    let mut surface = source(&entry.source, ground)?;
+    surface = match &entry.roughness {
+        RoughnessEntry::Number(None) => surface,
+        RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),
+        RoughnessEntry::Map { image, gloss } => {
+            let raster = pixels(image)?.raster;
+            let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
+            let map = HeightMap::new(&raster, extent, wrap)
+                .map_err(|error| CliError::told(error).within(image.path.display()))?;
+            surface.roughness(Roughness::Map(Box::new(map)))
+        }
+    };
+    if let Some(rms_m) = entry.micro_relief_m {
+        surface = surface.micro_relief_m(rms_m);
+    }
+    if let Some(friction) = entry.friction {
+        surface = surface.friction(friction);
+    }
+    if let Some(excitation) = entry.excitation {
+        surface = surface.excitation(match excitation {
+            ExcitationEntry::Collisions => Excitation::Collisions,
+            ExcitationEntry::Force => Excitation::Force,
+            ExcitationEntry::Both => Excitation::Both,
+        });
+    }
+    Ok(match body {
+        Some(body) => surface.on(body),
+        None => surface,
+    })
+}
+
+fn source(source: &Source, ground: Ground) -> Result<Surface, CliError> {
+    let Ground { extent, wrap, seed, sample_rate_hz } = ground;
+    let repeats = wrap == Wrap::Repeat;
+    match source {
+        Source::Flat => {
+            let plane = HeightMap::flat(extent, asperity::DEFAULT_ROUGHNESS).map_err(CliError::told)?;
+            finish(Box::new(plane), extent, repeats)
+        }
+        Source::Map { image, relief_m, invert } => {
+            let heights = upright(pixels(image)?.debanded(wrap), *invert);
+            let map = HeightMap::new(&heights, Extent { relief_m: *relief_m, ..extent }, wrap)
+                .map_err(|error| CliError::told(error).within(image.path.display()))?;
+            finish(Box::new(map), extent, repeats)
+        }
+        Source::Solid(solid) => {
+            let material = SolidMaterial::from_name(&solid.preset).ok_or_else(|| {
+                let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ");
+                CliError::new(
+                    "solid",
+                    format!("\"{}\" is unknown", solid.preset),
+                    format!("must be one of: {known}"),
+                )
+            })?;
+            let noise =
+                SolidNoise::new(material.parameters(), seed, sample_rate_hz).map_err(CliError::told)?;
+            finish(Box::new(noise), extent, false)
+        }
+        Source::Brownian { hurst, rms_m, seed: own, cells } => {
+            let mut design = BrownianDesign::new(*hurst, *rms_m, own.unwrap_or(seed));
+            design.size = cells.map_or(design.size, |cells| cells as usize);
+            let relief = design.surface().map_err(CliError::told)?;
+            // The relief is isotropic and repeats in a square; a surface of another shape is cut from it.
+            let side_m = extent.width_m.max(extent.height_m);
+            let square = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
+            let map = HeightMap::new(&relief, square, Wrap::Repeat).map_err(CliError::told)?;
+            finish(Box::new(map), extent, extent.width_m == extent.height_m)
+        }
+        Source::Lattice(lattice) => {
+            let relief_m = lattice.relief_m;
+            let cell = upright(pixels(&lattice.cell)?.debanded(Wrap::Repeat), lattice.invert);
+            let lattice = Lattice::new(&cell.map(|height| height * relief_m), lattice.t1_m, lattice.t2_m)
+                .map_err(|error| CliError::told(error).within("lattice"))?;
+            finish(Box::new(lattice), extent, false)
+        }
+        Source::Sand(_) => Err(CliError::new("sand", "cannot be built", "use another source")),
+    }
+}
+
+/// A depth map holds what a height map lacks.
+fn upright(heights: Raster, invert: bool) -> Raster {
+    if invert { heights.map(|height| 1.0 - height) } else { heights }
+}
+
+/// `repeats`: a jump of uv by a whole tile is no movement.
+fn finish(source: Box<dyn HeightField>, extent: Extent, repeats: bool) -> Result<Surface, CliError> {
+    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
+    Ok(surface.wraps(repeats))
+}
+
+fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {
+    let channel = match image.channel {
+        Some('r') => Channel::R,
+        Some('g') => Channel::G,
+        Some('b') => Channel::B,
+        Some('a') => Channel::A,
+        _ => Channel::Luma,
+    };
+    image_io::load_channel(&image.path, channel).map_err(CliError::told)
+}

@@ -1,0 +1,120 @@
+//! The page that says what each file of the demo is.
+
+use super::scenes::DemoScene;
+use crate::plot::quantity;
+use crate::render::Report;
+use std::fmt::Write;
+use std::path::Path;
+
+/// What to do with the files, in one paragraph.
+const HOW: &str = "NAME.audio.wav is what is heard; NAME.haptic.wav is what a vibration actuator at the fingertip \
+                   would play (through headphones it is a low rumble); NAME.svg is a picture of both: the surface \
+                   passing under the finger, the pad on it, the impulses sent to the body, and the spectra. \
+                   NAME.toml and NAME.jsonl are the scene and the contact log it was made from; change them and \
+                   run `asperity render NAME.toml -o NAME --plot` again.";
+
+fn level(report: &Report) -> String {
+    quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB")
+}
+
+/// What is printed at the end.
+#[must_use]
+pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report]) -> String {
+    let mut text = format!("{} scenes in {}\n\n", scenes.len(), folder.display());
+    for (scene, report) in scenes.iter().zip(reports) {
+        let _ = writeln!(
+            text,
+            "  {:<12} {:>6}  {:>4.0}× real time  {}",
+            scene.name,
+            quantity(report.duration_s, "s"),
+            report.real_time_factor,
+            scene.title
+        );
+    }
+    let page = folder.join("index.html");
+    let _ = write!(
+        text,
+        "\nOpen {} in a browser to listen and look. Without one: play NAME.audio.wav (heard) and \
+         NAME.haptic.wav (felt),\nlook at NAME.svg, and read README.txt for what to notice.",
+        page.display()
+    );
+    text
+}
+
+/// `README.txt`.
+#[must_use]
+pub fn text(scenes: &[DemoScene], reports: &[Report]) -> String {
+    let mut text = format!("asperity demo\n=============\n\n{}\n", wrapped(HOW));
+    for (scene, report) in scenes.iter().zip(reports) {
+        let _ = write!(
+            text,
+            "\n{}: {}\n{}\n{}{} long, {} micro-collisions, {} impacts, audio peak {}\n",
+            scene.name,
+            scene.title,
+            "-".repeat(scene.name.len() + 2 + scene.title.chars().count()),
+            wrapped(scene.notice),
+            quantity(report.duration_s, "s"),
+            report.micro_collisions,
+            report.impacts,
+            level(report)
+        );
+    }
+    text
+}
+
+/// Lines of at most 90 letters.
+fn wrapped(text: &str) -> String {
+    let mut out = String::new();
+    let mut length = 0;
+    for word in text.split_whitespace() {
+        if length > 0 && length + word.chars().count() + 1 > 90 {
+            out.push('\n');
+            length = 0;
+        } else if length > 0 {
+            out.push(' ');
+            length += 1;
+        }
+        out.push_str(word);
+        length += word.chars().count();
+    }
+    out.push('\n');
+    out
+}
+
+/// `index.html`: players and pictures, no script, no network.
+#[must_use]
+pub fn html(scenes: &[DemoScene], reports: &[Report]) -> String {
+    let mut page = format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>asperity demo</title>\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n<style>\n\
+         body {{ font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 1200px; margin: 2rem auto; padding: 0 1rem }}\n\
+         section {{ margin: 3rem 0 }} h2 {{ margin: 0 }} img {{ width: 100%; border: 1px solid #e4e6ea }}\n\
+         .players {{ display: flex; flex-wrap: wrap; gap: 1rem; margin: .6rem 0 }}\n\
+         label {{ display: flex; align-items: center; gap: .5rem; color: #667 }}\n\
+         </style></head><body>\n<h1>asperity demo</h1>\n<p>{HOW}</p>\n<p>"
+    );
+    for scene in scenes {
+        let _ = write!(page, "<a href=\"#{0}\">{1}</a> · ", scene.name, scene.title);
+    }
+    page.push_str("</p>\n");
+    for (scene, report) in scenes.iter().zip(reports) {
+        let name = scene.name;
+        let _ = write!(
+            page,
+            "<section id=\"{name}\"><h2>{}</h2>\n<p>{}</p>\n<div class=\"players\">\
+             <label>heard <audio controls preload=\"none\" src=\"{name}.audio.wav\"></audio></label>\
+             <label>felt <audio controls preload=\"none\" src=\"{name}.haptic.wav\"></audio></label></div>\n\
+             <p>{} · {} micro-collisions · {} impacts · audio peak {} · <a href=\"{name}.toml\">scene</a> · \
+             <a href=\"{name}.jsonl\">contact log</a></p>\n<img src=\"{name}.svg\" alt=\"profile, pad, impulses and \
+             spectra of {name}\"></section>\n",
+            scene.title,
+            scene.notice,
+            quantity(report.duration_s, "s"),
+            report.micro_collisions,
+            report.impacts,
+            level(report)
+        );
+    }
+    page.push_str("</body></html>\n");
+    page
+}

@@ -1,0 +1,204 @@
+//! Files that appear complete, together, or not at all; and the one JSON object on stdout.
+//!
+//! Every file is written beside its final name under a temporary one. [`Outputs::commit`] gives all of
+//! them their names at the end of the verb; an error or a panic before that leaves nothing behind.
+
+use crate::error::CliError;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// The files of one verb.
+#[derive(Debug, Default)]
+pub struct Outputs {
+    pending: Vec<Pending>,
+}
+
+#[derive(Debug)]
+struct Pending {
+    temporary: PathBuf,
+    path: PathBuf,
+}
+
+impl Outputs {
+    /// No file yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Opens a file that will be called `path` after [`Self::commit`].
+    ///
+    /// # Errors
+    /// When the folder is missing or cannot be written, or `path` is a folder.
+    pub fn create(&mut self, path: &Path) -> Result<BufWriter<File>, CliError> {
+        check_destination(path)?;
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let temporary = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
+        let file = File::create(&temporary).map_err(|error| CliError::write(path, &error))?;
+        self.pending.push(Pending { temporary, path: path.to_owned() });
+        Ok(BufWriter::with_capacity(1 << 18, file))
+    }
+
+    /// Writes a whole file.
+    ///
+    /// # Errors
+    /// As [`Self::create`], or when the disk is full.
+    pub fn write(&mut self, path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+        self.write_with(path, |file| file.write_all(bytes))
+    }
+
+    /// Writes a file by a function.
+    ///
+    /// # Errors
+    /// As [`Self::create`], or when the disk is full.
+    pub fn write_with(
+        &mut self,
+        path: &Path,
+        fill: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
+    ) -> Result<(), CliError> {
+        let mut file = self.create(path)?;
+        fill(&mut file).and_then(|()| file.flush()).map_err(|error| CliError::write(path, &error))
+    }
+
+    /// Lets a writer that insists on a path of its own write a file; it gets the temporary one.
+    ///
+    /// # Errors
+    /// As [`Self::create`], and what the writer reports.
+    pub fn write_at(
+        &mut self,
+        path: &Path,
+        fill: impl FnOnce(&Path) -> Result<(), CliError>,
+    ) -> Result<(), CliError> {
+        drop(self.create(path)?);
+        match self.pending.last() {
+            Some(pending) => fill(&pending.temporary),
+            None => Ok(()),
+        }
+    }
+
+    /// Gives every file its name.
+    ///
+    /// # Errors
+    /// When a file cannot be renamed; then the files renamed before it are removed again.
+    pub fn commit(mut self) -> Result<Vec<PathBuf>, CliError> {
+        for pending in &self.pending {
+            check_destination(&pending.path)?;
+        }
+        let mut done: Vec<PathBuf> = Vec::new();
+        for pending in std::mem::take(&mut self.pending) {
+            if let Err(error) = fs::rename(&pending.temporary, &pending.path) {
+                let _ = fs::remove_file(&pending.temporary);
+                for path in done {
+                    let _ = fs::remove_file(path);
+                }
+                return Err(CliError::write(&pending.path, &error));
+            }
+            done.push(pending.path);
+        }
+        Ok(done)
+    }
+}
+
+impl Drop for Outputs {
+    fn drop(&mut self) {
+        for pending in &self.pending {
+            let _ = fs::remove_file(&pending.temporary);
+        }
+    }
+}
+
+/// Refuses a path that cannot become a file, before any work is done for it.
+///
+/// # Errors
+/// When the path has no file name, is a folder, or lies in a folder that does not exist.
+pub fn check_destination(path: &Path) -> Result<(), CliError> {
+    if path.file_name().is_none() {
+        return Err(CliError::file(path, "is not a file name", "name the file to write"));
+    }
+    if path.is_dir() {
+        return Err(CliError::file(path, "is a folder", "name the file to write"));
+    }
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => Err(CliError::file(
+            path,
+            format!("the folder {} does not exist", folder.display()),
+            "create it, or write somewhere else",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Makes sure that a folder exists, for the verbs that fill one.
+///
+/// # Errors
+/// When it cannot be made, or a file has its name.
+pub fn ensure_folder(path: &Path) -> Result<(), CliError> {
+    if path.exists() && !path.is_dir() {
+        return Err(CliError::file(path, "is a file", "name a folder"));
+    }
+    fs::create_dir_all(path).map_err(|error| CliError::write(path, &error))
+}
+
+/// `STEM` + `.suffix`, keeping whatever dots the stem has.
+#[must_use]
+pub fn with_suffix(stem: &Path, suffix: &str) -> PathBuf {
+    let mut name = stem.as_os_str().to_owned();
+    name.push(".");
+    name.push(suffix);
+    PathBuf::from(name)
+}
+
+/// Writes text to stdout; a closed pipe is the reader's choice, not an error.
+pub fn say(text: &str) {
+    let mut out = std::io::stdout().lock();
+    let _ = writeln!(out, "{text}").and_then(|()| out.flush());
+}
+
+/// Prints one JSON object to stdout.
+///
+/// # Errors
+/// When the value cannot be written as JSON.
+pub fn say_json(value: &impl serde::Serialize) -> Result<(), CliError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| CliError::new("--json", error, "please report it with the input"))?;
+    say(&text);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_left_behind_when_the_verb_fails() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut outputs = Outputs::new();
+        outputs.write(&folder.path().join("a.txt"), b"half").unwrap();
+        drop(outputs);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn files_get_their_names_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut outputs = Outputs::new();
+        outputs.write(&folder.path().join("a"), b"1").unwrap();
+        outputs.write(&folder.path().join("b"), b"2").unwrap();
+        assert!(!folder.path().join("a").exists());
+        assert_eq!(outputs.commit().unwrap().len(), 2);
+        assert_eq!(fs::read(folder.path().join("b")).unwrap(), b"2");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_missing_folder_is_named_before_work_begins() {
+        let error = check_destination(Path::new("nowhere/at/all/x.wav")).unwrap_err().to_string();
+        assert!(error.contains("nowhere/at/all does not exist"), "{error}");
+    }
+
+    #[test]
+    fn a_suffix_keeps_the_dots_of_the_stem() {
+        assert_eq!(with_suffix(Path::new("out/v1.2"), "audio.wav"), Path::new("out/v1.2.audio.wav"));
+    }
+}

@@ -1,0 +1,255 @@
+//! Pictures a person understands at a glance, as SVG that needs no font and no viewer but a browser.
+//!
+//! A [`Figure`] is rows of [`Panel`]s; a panel is two [`Axis`] and [`Layer`]s drawn in order. Units
+//! stand on the axes with the prefix that fits (µm, ms, kHz). A line of any length is drawn by its
+//! smallest and largest value a pixel column, so that no click is lost and a minute costs no more
+//! than a second.
+//!
+//! ```text
+//! let mut figure = Figure::new("tile.wav");
+//! let panel = Panel::new("recording", Axis::new("time", "s"), Axis::log("frequency", "Hz"));
+//! figure.row(220.0, [panel.with(plot::spectrogram(&samples, rate_hz, &SpectrogramOptions::default()))]);
+//! outputs.write(path, figure.svg().as_bytes())?;
+//! ```
+//!
+//! The SVG is written by hand: a plotting library brings four packages and cannot place a picture.
+
+mod axis;
+pub mod colour;
+mod decimate;
+mod draw;
+mod spectrogram;
+mod svg;
+
+pub use axis::{Axis, quantity};
+pub use colour::palette;
+pub use spectrogram::{SpectrogramOptions, spectrogram, third_octaves};
+
+/// One picture.
+#[derive(Debug, Clone)]
+pub struct Figure {
+    /// First line, large.
+    pub title: String,
+    /// Lines below it, small.
+    pub subtitle: Vec<String>,
+    /// Width of the whole picture.
+    pub width_px: f64,
+    rows: Vec<Row>,
+}
+
+#[derive(Debug, Clone)]
+struct Row {
+    height_px: f64,
+    panels: Vec<Panel>,
+}
+
+impl Figure {
+    /// A figure without panels, 1200 pixels wide.
+    #[must_use]
+    pub fn new(title: impl Into<String>) -> Self {
+        Self { title: title.into(), subtitle: Vec::new(), width_px: 1200.0, rows: Vec::new() }
+    }
+
+    /// Adds a line below the title.
+    #[must_use]
+    pub fn subtitle(mut self, line: impl Into<String>) -> Self {
+        self.subtitle.push(line.into());
+        self
+    }
+
+    /// Adds a row of panels side by side, each as wide as its weight asks, with plots `height_px` high.
+    pub fn row(&mut self, height_px: f64, panels: impl IntoIterator<Item = Panel>) {
+        self.rows.push(Row { height_px, panels: panels.into_iter().collect() });
+    }
+
+    /// The picture.
+    #[must_use]
+    pub fn svg(&self) -> String {
+        draw::figure(self)
+    }
+}
+
+/// One coordinate system.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    /// Short; what is seen.
+    pub title: String,
+    /// Share of the row's width.
+    pub weight: f64,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Back to front.
+    pub layers: Vec<Layer>,
+}
+
+impl Panel {
+    /// A panel without layers.
+    #[must_use]
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
+        Self { title: title.into(), weight: 1.0, x, y, layers: Vec::new() }
+    }
+
+    /// Sets the share of the row's width.
+    #[must_use]
+    pub fn weight(mut self, weight: f64) -> Self {
+        self.weight = weight;
+        self
+    }
+
+    /// Adds a layer in front.
+    #[must_use]
+    pub fn with(mut self, layer: impl Into<Layer>) -> Self {
+        self.layers.push(layer.into());
+        self
+    }
+}
+
+/// Values to draw.
+#[derive(Debug, Clone)]
+pub enum Series {
+    /// `y[i]` at `start + i · step`; the fastest for signals.
+    Uniform {
+        /// Abscissa of the first value.
+        start: f64,
+        /// Distance of two values.
+        step: f64,
+        /// The values; anything not finite is a gap.
+        y: Vec<f64>,
+    },
+    /// Any points.
+    Points(Vec<[f64; 2]>),
+}
+
+impl Series {
+    /// A signal sampled at `rate_hz` from `start_s` on.
+    #[must_use]
+    pub fn signal(samples: impl IntoIterator<Item = f64>, rate_hz: f64, start_s: f64) -> Self {
+        Self::Uniform { start: start_s, step: 1.0 / rate_hz, y: samples.into_iter().collect() }
+    }
+}
+
+/// What a panel shows.
+#[derive(Debug, Clone)]
+pub enum Layer {
+    /// A line, and the area below it when `fill` holds a colour.
+    Line {
+        /// In the legend; empty = not there.
+        label: String,
+        /// Stroke colour; empty = no stroke.
+        colour: String,
+        /// Stroke width.
+        width_px: f64,
+        /// Colour of the area between the line and the panel's bottom.
+        fill: Option<String>,
+        /// Stroke of dashes.
+        dashed: bool,
+        /// Values.
+        data: Series,
+    },
+    /// Vertical lines from the bottom up to each value: impulses, mode amplitudes.
+    Stems {
+        /// In the legend; empty = not there.
+        label: String,
+        /// Stroke colour.
+        colour: String,
+        /// `[x, height]`.
+        points: Vec<[f64; 2]>,
+    },
+    /// Dots, each with an area and perhaps a name.
+    Dots {
+        /// In the legend; empty = not there.
+        label: String,
+        /// Fill colour.
+        colour: String,
+        /// `[x, y]`.
+        points: Vec<[f64; 2]>,
+        /// Radius of each dot; one entry serves all.
+        radius_px: Vec<f64>,
+        /// Written beside the dots; empty = none.
+        names: Vec<String>,
+    },
+    /// Full-height vertical rules: events.
+    Rules {
+        /// In the legend; empty = not there.
+        label: String,
+        /// Stroke colour.
+        colour: String,
+        /// Where.
+        x: Vec<f64>,
+    },
+    /// A picture over a rectangle of the plane.
+    Picture(Picture),
+    /// Words at a place.
+    Words {
+        /// Where, in the panel's units.
+        at: [f64; 2],
+        /// What.
+        text: String,
+        /// Text colour.
+        colour: String,
+    },
+}
+
+impl Layer {
+    /// A line of 1.2 pixels.
+    #[must_use]
+    pub fn line(label: impl Into<String>, colour: &str, data: Series) -> Self {
+        Self::Line {
+            label: label.into(),
+            colour: colour.to_owned(),
+            width_px: 1.2,
+            fill: None,
+            dashed: false,
+            data,
+        }
+    }
+
+    /// A line with the area below it filled, as a surface is drawn.
+    #[must_use]
+    pub fn ground(label: impl Into<String>, data: Series) -> Self {
+        Self::Line {
+            label: label.into(),
+            colour: palette::GROUND_EDGE.to_owned(),
+            width_px: 1.0,
+            fill: Some(palette::GROUND.to_owned()),
+            dashed: false,
+            data,
+        }
+    }
+}
+
+/// Colours over a rectangle; rows from the top.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    /// Left and right edge.
+    pub x: [f64; 2],
+    /// Bottom and top edge.
+    pub y: [f64; 2],
+    /// Pixels a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Position of each pixel on the colour scale, 0–1.
+    pub values: Vec<f32>,
+    /// Colour scale.
+    pub scale: colour::Scale,
+    /// Legend of the scale: its ends and its unit; none = no colour bar.
+    pub bar: Option<ColourBar>,
+}
+
+impl From<Picture> for Layer {
+    fn from(picture: Picture) -> Self {
+        Self::Picture(picture)
+    }
+}
+
+/// What the ends of a colour scale mean.
+#[derive(Debug, Clone)]
+pub struct ColourBar {
+    /// Values at 0 and 1.
+    pub range: [f64; 2],
+    /// Written above the bar.
+    pub unit: String,
+}

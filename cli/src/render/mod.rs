@@ -1,0 +1,347 @@
+//! `asperity render SCENE.toml -o STEM`: a scene and its contact log become WAV files.
+
+pub mod picture;
+mod recorder;
+
+use crate::build::{self, Built, Overrides};
+use crate::error::CliError;
+use crate::output::{self, Outputs, check_destination, with_suffix};
+use crate::scene_file::{ActuatorOutput, SceneFile};
+use crate::{plot, wav};
+use asperity::contact_log::{ContactLog, LogEvent};
+use asperity::offline::{self, Render};
+use asperity::{Integrator, PathMode};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use picture::{ContactCurve, HapticChannel, Take};
+use recorder::Recorder;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Renders longer than this show a progress bar even when nothing else watches the contacts, s.
+const LONG_S: f64 = 60.0;
+/// Most samples of all channels together: 2 GiB of memory.
+const MAX_SAMPLES: f64 = (1u64 << 29) as f64;
+
+/// Render a scene and its contact log to WAV files
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Scene file
+    #[arg(value_name = "SCENE.toml")]
+    pub scene: PathBuf,
+    /// Writes STEM.audio.wav, STEM.haptic.wav, and what else is asked for
+    #[arg(short, long = "output", value_name = "STEM")]
+    pub output: PathBuf,
+    /// Sample rate, whatever the scene says
+    #[arg(long, value_name = "HZ", value_parser = sample_rate)]
+    pub rate: Option<f64>,
+    /// Frames a block; the result does not depend on it
+    #[arg(long, value_name = "FRAMES", default_value_t = 256, value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub block: u16,
+    /// Seed of every random number, whatever the scene says
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// How the contact model is integrated
+    #[arg(long, value_name = "NAME", value_parser = integrators())]
+    pub integrator: Option<Integrator>,
+    /// How sparse positions become a path
+    #[arg(long, value_name = "NAME", value_parser = paths())]
+    pub path: Option<PathMode>,
+    /// Write STEM.trace.csv, one row a sample and contact
+    #[arg(long)]
+    pub trace: bool,
+    /// Write STEM.force.csv, the 3-D force once a millisecond
+    #[arg(long)]
+    pub force: bool,
+    /// Write STEM.svg, a picture of what happened
+    #[arg(long)]
+    pub plot: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn sample_rate(text: &str) -> Result<f64, String> {
+    let rate: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (8_000.0..=192_000.0).contains(&rate) && rate.fract() == 0.0 {
+        Ok(rate)
+    } else {
+        Err("must be a whole number from 8000 to 192000".to_owned())
+    }
+}
+
+fn integrators() -> impl TypedValueParser<Value = Integrator> {
+    PossibleValuesParser::new(Integrator::ALL.map(Integrator::name))
+        .map(|name| Integrator::from_name(&name).unwrap_or_default())
+}
+
+fn paths() -> impl TypedValueParser<Value = PathMode> {
+    PossibleValuesParser::new(["extrapolate", "hold", "hermite"]).map(|name| match name.as_str() {
+        "hold" => PathMode::Hold,
+        "hermite" => PathMode::Hermite,
+        _ => PathMode::Extrapolate,
+    })
+}
+
+/// What `--json` prints.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Length of both WAV files.
+    pub duration_s: f64,
+    /// Seconds of signal per second of signal processing, without loading and writing.
+    pub real_time_factor: f64,
+    /// Events applied.
+    pub events: u64,
+    /// Onsets of contact within strokes.
+    pub micro_collisions: u64,
+    /// Strikes by rigid bodies.
+    pub impacts: u64,
+    /// Events lost because the queue was full.
+    pub dropped: u64,
+    /// Events refused for a bad number, and contacts reset after their numbers went bad.
+    pub quarantined: u64,
+    /// Contacts silenced because a more important one needed their voice.
+    pub stolen: u64,
+    /// Largest sample of the audio channel, absolute.
+    pub audio_peak: f32,
+    /// Largest sample of each haptic channel, absolute.
+    pub haptic_peak: Vec<f32>,
+    /// Events of contacts that nobody began, or whose voice was stolen.
+    pub orphaned: u64,
+    /// Contacts faded because nothing was heard of them.
+    pub lapsed: u64,
+    /// Rate of both WAV files.
+    pub sample_rate_hz: f64,
+    /// Every file written.
+    pub files: Vec<PathBuf>,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// When an input is bad or an output cannot be written.
+pub fn run(options: &Options) -> Result<(), CliError> {
+    let report = render(options)?;
+    if options.json {
+        return output::say_json(&report);
+    }
+    let files: Vec<String> = report.files.iter().map(|path| path.display().to_string()).collect();
+    output::say(&format!(
+        "{} of signal at {:.0}× real time: {} events, {} micro-collisions, {} impacts; audio peak {:.3}\nwrote {}",
+        plot::quantity(report.duration_s, "s"),
+        report.real_time_factor,
+        report.events,
+        report.micro_collisions,
+        report.impacts,
+        report.audio_peak,
+        files.join(", "),
+    ));
+    if report.audio_peak > 1.0 {
+        output::say("the audio exceeds full scale: lower [audio] gain, or set limit = true");
+    }
+    Ok(())
+}
+
+/// Renders, writes the files and reports; `demo` uses it too.
+///
+/// # Errors
+/// As [`run`].
+pub fn render(options: &Options) -> Result<Report, CliError> {
+    let stem = &options.output;
+    if stem.file_name().is_none() {
+        return Err(CliError::file(stem, "is not a file name", "write -o FOLDER/NAME"));
+    }
+    check_destination(&with_suffix(stem, "audio.wav"))?;
+    let file = SceneFile::load(&options.scene)?;
+    let log = load_log(&file)?;
+    let overrides = Overrides {
+        sample_rate_hz: options.rate,
+        seed: options.seed,
+        integrator: options.integrator,
+        path: options.path,
+    };
+    let built = build::build(&file, &overrides)?;
+    let rate_hz = built.renderer.sample_rate_hz();
+    let duration_s = log.end_s() + file.tail_s;
+    check_length(&file, duration_s, rate_hz)?;
+
+    let mut outputs = Outputs::new();
+    let recorder = start_recorder(options, &mut outputs, rate_hz, duration_s)?;
+    let (render, curves, watching) = play(built, &log, &file, options, recorder)?;
+    check_finite(&render)?;
+
+    wav::write(&mut outputs, &with_suffix(stem, "audio.wav"), &[&render.audio], rate_hz)?;
+    let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
+    wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
+    let mut report = report(&render, watching);
+    if options.plot {
+        let svg = picture(&file, &log, &render, &curves, &report);
+        outputs.write(&with_suffix(stem, "svg"), svg.as_bytes())?;
+    }
+    report.files = outputs.commit()?;
+    Ok(report)
+}
+
+fn load_log(file: &SceneFile) -> Result<ContactLog, CliError> {
+    let path = file.contacts.as_ref().ok_or_else(|| {
+        CliError::new(
+            format!("{}: contacts", file.path.display()),
+            "is missing",
+            "write contacts = \"NAME.jsonl\", the events to render",
+        )
+    })?;
+    ContactLog::load(path).map_err(CliError::told)
+}
+
+fn check_length(file: &SceneFile, duration_s: f64, rate_hz: f64) -> Result<(), CliError> {
+    let samples = duration_s * rate_hz * (1 + file.actuators.len()) as f64;
+    if samples <= MAX_SAMPLES {
+        return Ok(());
+    }
+    let most = MAX_SAMPLES / rate_hz / (1 + file.actuators.len()) as f64;
+    let at = file.contacts.as_deref().unwrap_or(&file.path).display().to_string();
+    let what = format!("lasts {duration_s:.0} s with its tail");
+    Err(CliError::new(at, what, format!("at most {most:.0} s are rendered at once; split the log")))
+}
+
+fn start_recorder(
+    options: &Options,
+    outputs: &mut Outputs,
+    rate_hz: f64,
+    duration_s: f64,
+) -> Result<Recorder, CliError> {
+    let mut recorder = Recorder::new(rate_hz);
+    if options.trace {
+        let path = with_suffix(&options.output, "trace.csv");
+        recorder.trace(outputs.create(&path)?).map_err(|error| CliError::write(&path, &error))?;
+    }
+    if options.force {
+        let path = with_suffix(&options.output, "force.csv");
+        recorder.force(outputs.create(&path)?).map_err(|error| CliError::write(&path, &error))?;
+    }
+    if options.plot {
+        recorder.curves();
+    }
+    if options.trace || options.force || options.plot || duration_s > LONG_S {
+        recorder.progress((duration_s * rate_hz) as u64);
+    }
+    Ok(recorder)
+}
+
+type Played = (Render, Vec<ContactCurve>, Duration);
+
+fn play(
+    built: Built,
+    log: &ContactLog,
+    file: &SceneFile,
+    options: &Options,
+    mut recorder: Recorder,
+) -> Result<Played, CliError> {
+    let settings = offline::Options { block_frames: usize::from(options.block), tail_s: file.tail_s };
+    let Built { scene, renderer, names } = built;
+    let at = |error| {
+        let path = file.contacts.as_deref().unwrap_or(&file.path);
+        CliError::told(error).within(path.display())
+    };
+    let render =
+        offline::render_tapped(scene, renderer, log, &names, &settings, &mut recorder).map_err(at)?;
+    let (curves, watching) =
+        recorder.finish().map_err(|error| CliError::write(&with_suffix(&options.output, "…"), &error))?;
+    let labelled = curves.into_iter().map(|(contact, curve)| {
+        let surface = log.lines.iter().rev().find_map(|line| match &line.event {
+            LogEvent::Begin { contact: begun, surface, .. }
+                if *begun == contact.0 && line.t <= curve.start_s + 1e-3 =>
+            {
+                Some(surface.as_str())
+            }
+            _ => None,
+        });
+        ContactCurve { label: format!("{} on {}", contact.0, surface.unwrap_or("?")), ..curve }
+    });
+    Ok((render, labelled.collect(), watching))
+}
+
+/// The engine promises finite samples; a promise that a WAV file depends on is checked.
+fn check_finite(render: &Render) -> Result<(), CliError> {
+    let channels = render.haptic.iter().chain([&render.audio]);
+    if channels.flatten().all(|sample| sample.is_finite()) {
+        Ok(())
+    } else {
+        Err(CliError::new(
+            "asperity",
+            "the render holds samples that are not finite",
+            "please report the scene",
+        ))
+    }
+}
+
+fn peak(samples: &[f32]) -> f32 {
+    samples.iter().fold(0.0, |peak, sample| sample.abs().max(peak))
+}
+
+fn report(render: &Render, watching: Duration) -> Report {
+    let stats = &render.stats;
+    let processing_s = render.processing.saturating_sub(watching).as_secs_f64().max(1e-9);
+    Report {
+        duration_s: render.duration_s(),
+        real_time_factor: render.duration_s() / processing_s,
+        events: stats.events,
+        micro_collisions: stats.micro_collisions,
+        impacts: stats.impacts,
+        dropped: stats.dropped,
+        quarantined: stats.quarantined + stats.refused,
+        stolen: stats.stolen,
+        audio_peak: peak(&render.audio),
+        haptic_peak: render.haptic.iter().map(|channel| peak(channel)).collect(),
+        orphaned: stats.orphaned,
+        lapsed: stats.lapsed,
+        sample_rate_hz: render.sample_rate_hz,
+        files: Vec::new(),
+    }
+}
+
+fn picture(
+    file: &SceneFile,
+    log: &ContactLog,
+    render: &Render,
+    curves: &[ContactCurve],
+    report: &Report,
+) -> String {
+    let haptic = file.actuators.iter().zip(&render.haptic).map(|(actuator, samples)| {
+        let (quantity, unit) = match actuator.output {
+            ActuatorOutput::Displacement => ("displacement", "m"),
+            ActuatorOutput::Acceleration => ("acceleration", "m/s²"),
+        };
+        HapticChannel { quantity, unit, full_scale: actuator.full_scale, samples }
+    });
+    let impacts_s = log
+        .lines
+        .iter()
+        .filter(|line| matches!(line.event, LogEvent::Impact { .. }))
+        .map(|line| line.t)
+        .collect();
+    let surfaces: Vec<&str> = file.surfaces.iter().map(|surface| surface.name.as_str()).collect();
+    picture::draw(&Take {
+        title: title(&file.path),
+        summary: vec![format!(
+            "{} at {} Hz · {} · {} events, {} micro-collisions, {} impacts · audio peak {}",
+            plot::quantity(report.duration_s, "s"),
+            report.sample_rate_hz,
+            if surfaces.is_empty() { "no surface".to_owned() } else { surfaces.join(", ") },
+            report.events,
+            report.micro_collisions,
+            report.impacts,
+            plot::quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB"),
+        )],
+        sample_rate_hz: render.sample_rate_hz,
+        audio: &render.audio,
+        haptic: haptic.collect(),
+        contacts: curves,
+        impacts_s,
+    })
+}
+
+fn title(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "render".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}

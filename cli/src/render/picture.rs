@@ -1,0 +1,307 @@
+//! `render --plot`: what happened, at a glance.
+//!
+//! From top to bottom: the finger's speed and force; the surface as it passed below with the pad on it;
+//! the impulses sent to the body; the busiest instant enlarged; and both outputs as waves and spectra.
+
+use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram};
+
+/// Contacts drawn one by one; more would cover each other.
+pub const DRAWN_CONTACTS: usize = 4;
+/// Length of the enlarged instant, s.
+const ZOOM_S: f64 = 0.03;
+
+/// What one contact did, sample by sample.
+#[derive(Debug, Clone, Default)]
+pub struct ContactCurve {
+    /// `finger on tiles`.
+    pub label: String,
+    /// Time of the first sample, s.
+    pub start_s: f64,
+    /// How many samples it lasted.
+    pub samples: u64,
+    /// Profile under the contact, m.
+    pub height_m: Vec<f64>,
+    /// Pad, m.
+    pub pad_m: Vec<f64>,
+    /// Tangential speed, m/s.
+    pub speed_m_s: Vec<f64>,
+    /// Normal force, N.
+    pub normal_force_n: Vec<f64>,
+    /// Times, s, and momenta, N·s, sent to the body.
+    pub impulses: Vec<[f64; 2]>,
+    /// Times, s, and pad heights, m, of micro-collisions.
+    pub collisions: Vec<[f64; 2]>,
+}
+
+/// A haptic channel.
+#[derive(Debug, Clone)]
+pub struct HapticChannel<'a> {
+    /// `displacement` or `acceleration`.
+    pub quantity: &'a str,
+    /// Its unit.
+    pub unit: &'a str,
+    /// What sample value 1 means.
+    pub full_scale: f64,
+    /// The samples.
+    pub samples: &'a [f32],
+}
+
+/// Everything the picture shows.
+#[derive(Debug)]
+pub struct Take<'a> {
+    /// Headline.
+    pub title: String,
+    /// Lines below it.
+    pub summary: Vec<String>,
+    /// Rate of both outputs, Hz.
+    pub sample_rate_hz: f64,
+    /// What is heard.
+    pub audio: &'a [f32],
+    /// What is felt.
+    pub haptic: Vec<HapticChannel<'a>>,
+    /// What touched.
+    pub contacts: &'a [ContactCurve],
+    /// Times of impacts, s.
+    pub impacts_s: Vec<f64>,
+}
+
+/// Draws the picture.
+#[must_use]
+pub fn draw(take: &Take<'_>) -> String {
+    let mut figure = Figure::new(take.title.clone());
+    figure.subtitle.extend(take.summary.iter().cloned());
+    if take.contacts.iter().any(|contact| !contact.height_m.is_empty()) {
+        figure.row(80.0, [force_panel(take), speed_panel(take)]);
+        figure.row(120.0, [profile_panel(take)]);
+        figure.row(70.0, [impulse_panel(take)]);
+        figure.row(190.0, zoom_panels(take));
+    }
+    for (index, channel) in take.haptic.iter().enumerate() {
+        if channel.samples.iter().all(|&sample| sample == 0.0) {
+            continue;
+        }
+        haptic_rows(&mut figure, take, index, channel);
+    }
+    audio_rows(&mut figure, take);
+    figure.svg()
+}
+
+fn duration_s(take: &Take<'_>) -> f64 {
+    take.audio.len() as f64 / take.sample_rate_hz
+}
+
+fn time(take: &Take<'_>) -> Axis {
+    Axis::new("time", "s").range(0.0, duration_s(take).max(1e-3))
+}
+
+fn drawn<'a>(take: &'a Take<'_>) -> impl Iterator<Item = (&'a ContactCurve, &'static str)> {
+    take.contacts.iter().take(DRAWN_CONTACTS).zip(palette::SERIES)
+}
+
+fn speed_panel(take: &Take<'_>) -> Panel {
+    let mut panel = Panel::new(
+        "how fast the finger slides",
+        time(take),
+        Axis::new("speed", "m/s").from_zero(highest(take, |c| &c.speed_m_s)),
+    );
+    for (contact, colour) in drawn(take) {
+        let data = Series::signal(contact.speed_m_s.iter().copied(), take.sample_rate_hz, contact.start_s);
+        panel = panel.with(Layer::line(legend(take, contact), colour, data));
+    }
+    panel
+}
+
+fn force_panel(take: &Take<'_>) -> Panel {
+    let mut panel = Panel::new(
+        "how hard it presses",
+        time(take),
+        Axis::new("force", "N").from_zero(highest(take, |c| &c.normal_force_n)),
+    );
+    for (contact, colour) in drawn(take) {
+        let data =
+            Series::signal(contact.normal_force_n.iter().copied(), take.sample_rate_hz, contact.start_s);
+        panel = panel.with(Layer::line(legend(take, contact), colour, data));
+    }
+    panel
+}
+
+/// The largest value of one curve over the contacts drawn.
+fn highest(take: &Take<'_>, values: impl Fn(&ContactCurve) -> &Vec<f64>) -> f64 {
+    drawn(take).flat_map(|(contact, _)| values(contact)).copied().fold(0.0, f64::max)
+}
+
+/// A label in the legend where there is more than one contact to tell apart.
+fn legend(take: &Take<'_>, contact: &ContactCurve) -> String {
+    if take.contacts.len() > 1 { contact.label.clone() } else { String::new() }
+}
+
+fn profile_panel(take: &Take<'_>) -> Panel {
+    let hidden = take.contacts.len().saturating_sub(DRAWN_CONTACTS);
+    let title = if hidden > 0 {
+        format!(
+            "surface passing below, and the pad on it (first {DRAWN_CONTACTS} of {} contacts)",
+            take.contacts.len()
+        )
+    } else {
+        "surface passing below, and the pad on it".to_owned()
+    };
+    let mut panel = Panel::new(title, time(take).without_numbers(), Axis::new("height", "m"));
+    for (index, (contact, colour)) in drawn(take).enumerate() {
+        let surface = Series::signal(contact.height_m.iter().copied(), take.sample_rate_hz, contact.start_s);
+        let pad = Series::signal(contact.pad_m.iter().copied(), take.sample_rate_hz, contact.start_s);
+        let label = if index == 0 { "surface" } else { "" };
+        panel = panel.with(Layer::ground(label, surface));
+        let label = if take.contacts.len() > 1 { contact.label.clone() } else { "pad".to_owned() };
+        panel = panel.with(Layer::line(label, colour, pad));
+    }
+    panel.with(impact_rules(take))
+}
+
+fn impact_rules(take: &Take<'_>) -> Layer {
+    let label = if take.impacts_s.is_empty() { "" } else { "impact" };
+    Layer::Rules { label: label.to_owned(), colour: palette::IMPACT.to_owned(), x: take.impacts_s.clone() }
+}
+
+fn impulse_panel(take: &Take<'_>) -> Panel {
+    let points: Vec<[f64; 2]> = take
+        .contacts
+        .iter()
+        .flat_map(|contact| contact.impulses.iter().map(|[time, impulse]| [*time, impulse.abs()]))
+        .filter(|point| point[1] > 0.0)
+        .collect();
+    let top = points.iter().map(|point| point[1]).fold(1e-12, f64::max);
+    Panel::new(
+        "momentum sent to the body",
+        time(take),
+        Axis::log("impulse", "N·s").range(top * 1e-4, top * 1.5),
+    )
+    .with(Layer::Stems { label: String::new(), colour: palette::IMPACT.to_owned(), points })
+}
+
+/// The window with the most collisions, or else the most momentum, on the contact it belongs to.
+fn busiest(take: &Take<'_>) -> Option<(usize, f64)> {
+    let mut best: Option<(f64, usize, f64)> = None;
+    for (index, contact) in take.contacts.iter().enumerate() {
+        let collides = !contact.collisions.is_empty();
+        let events = if collides { &contact.collisions } else { &contact.impulses };
+        let strength = |at: usize| if collides { 1.0 } else { events[at][1].abs() };
+        let (mut first, mut sum) = (0, 0.0);
+        for last in 0..events.len() {
+            sum += strength(last);
+            while events[last][0] - events[first][0] > ZOOM_S {
+                sum -= strength(first);
+                first += 1;
+            }
+            // The landing itself is an event of its own kind; the stroke is what is to be seen.
+            let settled = events[first][0] > contact.start_s + 0.08;
+            if settled && best.is_none_or(|(most, _, _)| sum > most) {
+                best = Some((sum, index, (events[first][0] + events[last][0]) / 2.0));
+            }
+        }
+    }
+    best.map(|(_, index, middle)| (index, middle)).or_else(|| {
+        let index = take.contacts.iter().position(|contact| !contact.height_m.is_empty())?;
+        let contact = &take.contacts[index];
+        Some((index, contact.start_s + contact.height_m.len() as f64 / take.sample_rate_hz / 2.0))
+    })
+}
+
+fn zoom_panels(take: &Take<'_>) -> Vec<Panel> {
+    let Some((index, middle)) = busiest(take) else { return Vec::new() };
+    let contact = &take.contacts[index];
+    let rate_hz = take.sample_rate_hz;
+    let end_s = contact.start_s + contact.height_m.len() as f64 / rate_hz;
+    let from_s = (middle - ZOOM_S / 2.0).min(end_s - ZOOM_S).max(contact.start_s);
+    let first = ((from_s - contact.start_s) * rate_hz) as usize;
+    let last = (first + (ZOOM_S * rate_hz) as usize).min(contact.height_m.len());
+    let part = |values: &[f64]| {
+        let cut = values.get(first..last).unwrap_or(&[]);
+        Series::signal(cut.iter().copied(), rate_hz, contact.start_s + first as f64 / rate_hz)
+    };
+    let inside = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        points.iter().filter(|[t, _]| (from_s..from_s + ZOOM_S).contains(t)).copied().collect()
+    };
+    let collisions = inside(&contact.collisions);
+    let label = if collisions.is_empty() { "" } else { "collision" };
+    let axis = Axis::new("time", "s").range(from_s, from_s + ZOOM_S);
+    let zoom = Panel::new(format!("{:.0} ms of it, enlarged", ZOOM_S * 1e3), axis, Axis::new("height", "m"))
+        .weight(2.0)
+        .with(Layer::ground("surface", part(&contact.height_m)))
+        .with(Layer::Line {
+            label: "pad".to_owned(),
+            colour: palette::PAD.to_owned(),
+            width_px: 1.8,
+            fill: None,
+            dashed: false,
+            data: part(&contact.pad_m),
+        })
+        .with(Layer::Dots {
+            label: label.to_owned(),
+            colour: palette::IMPACT.to_owned(),
+            points: collisions,
+            radius_px: vec![3.5],
+            names: Vec::new(),
+        });
+    vec![zoom, levels_panel(take)]
+}
+
+/// Third-octave levels of what is felt and what is heard, each relative to its strongest band.
+fn levels_panel(take: &Take<'_>) -> Panel {
+    let frequency = Axis::log("frequency", "Hz").range(10.0, 20_000.0);
+    let mut panel = Panel::new("third octaves", frequency, Axis::new("level", "dB").range(-70.0, 3.0));
+    let curves = take
+        .haptic
+        .first()
+        .map(|channel| ("felt", palette::HAPTIC, channel.samples))
+        .into_iter()
+        .chain([("heard", palette::AUDIO, take.audio)]);
+    for (label, colour, samples) in curves {
+        let bands = crate::plot::third_octaves(samples, take.sample_rate_hz);
+        let top = bands.iter().map(|band| band[1]).fold(f64::NEG_INFINITY, f64::max);
+        if top.is_finite() {
+            let points = bands.iter().map(|[hz, db]| [*hz, db - top]).collect();
+            panel = panel.with(Layer::line(label, colour, Series::Points(points)));
+        }
+    }
+    panel
+}
+
+fn haptic_rows(figure: &mut Figure, take: &Take<'_>, index: usize, channel: &HapticChannel<'_>) {
+    let number = if take.haptic.len() > 1 { format!(" {index}") } else { String::new() };
+    let values = channel.samples.iter().map(|&sample| f64::from(sample) * channel.full_scale);
+    let wave = Panel::new(
+        format!("haptic channel{number}: pad {}", channel.quantity),
+        time(take).without_numbers(),
+        Axis::new(channel.quantity, channel.unit),
+    )
+    .with(Layer::line("", palette::HAPTIC, Series::signal(values, take.sample_rate_hz, 0.0)))
+    .with(impact_rules(take));
+    // 0 dB is 1 µm or 1 m/s².
+    let (unit, reference) = if channel.unit == "m" { ("dB re 1 µm", 1e-6) } else { ("dB re 1 m/s²", 1.0) };
+    let options = SpectrogramOptions {
+        window_s: 0.09,
+        from_hz: 5.0,
+        to_hz: 1_000.0,
+        range_db: 70.0,
+        unit: unit.to_owned(),
+        offset_db: 20.0 * (channel.full_scale / reference).log10(),
+        rows: 150,
+        ..SpectrogramOptions::default()
+    };
+    let spectrum = Panel::new("felt, by frequency", time(take), Axis::log("frequency", "Hz"))
+        .with(spectrogram(channel.samples, take.sample_rate_hz, &options));
+    figure.row(70.0, [wave]);
+    figure.row(140.0, [spectrum]);
+}
+
+fn audio_rows(figure: &mut Figure, take: &Take<'_>) {
+    let values = take.audio.iter().map(|&sample| f64::from(sample));
+    let wave = Panel::new("audio", time(take).without_numbers(), Axis::new("sample value", ""))
+        .with(Layer::line("", palette::AUDIO, Series::signal(values, take.sample_rate_hz, 0.0)))
+        .with(impact_rules(take));
+    let options = SpectrogramOptions { unit: "dB re 1".to_owned(), ..SpectrogramOptions::default() };
+    let spectrum = Panel::new("heard, by frequency", time(take), Axis::log("frequency", "Hz"))
+        .with(spectrogram(take.audio, take.sample_rate_hz, &options));
+    figure.row(70.0, [wave]);
+    figure.row(190.0, [spectrum]);
+}

@@ -1,0 +1,252 @@
+//! Reads a TOML table key by key, so that every refusal can name the place, the value and the remedy.
+
+use crate::error::CliError;
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
+
+/// What a number may be.
+#[derive(Debug, Clone, Copy)]
+pub struct Allowed {
+    low: f64,
+    high: f64,
+    above: bool,
+    unit: &'static str,
+}
+
+impl Allowed {
+    /// From `low` to `high`, both included.
+    pub const fn between(low: f64, high: f64, unit: &'static str) -> Self {
+        Self { low, high, above: false, unit }
+    }
+
+    /// Above `low`, up to `high`.
+    pub const fn above(low: f64, high: f64, unit: &'static str) -> Self {
+        Self { low, high, above: true, unit }
+    }
+
+    /// Whether a value is allowed; nothing that is not finite is.
+    fn holds(&self, value: f64) -> bool {
+        value.is_finite()
+            && value <= self.high
+            && if self.above { value > self.low } else { value >= self.low }
+    }
+}
+
+impl std::fmt::Display for Allowed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { low, high, above, unit } = self;
+        let space = if unit.is_empty() { "" } else { " " };
+        if *above {
+            write!(f, "must be above {low} and at most {high}{space}{unit}")
+        } else {
+            write!(f, "must be {low} to {high}{space}{unit}")
+        }
+    }
+}
+
+/// A table being read. Every key asked for becomes an accepted one; [`Fields::finish`] refuses the rest.
+#[derive(Debug)]
+pub struct Fields {
+    table: Table,
+    place: String,
+    accepted: Vec<&'static str>,
+}
+
+impl Fields {
+    /// Reads `table`, which errors call `place` (empty at the top of the file).
+    pub fn new(table: Table, place: impl Into<String>) -> Self {
+        Self { table, place: place.into(), accepted: Vec::new() }
+    }
+
+    /// Renames the place, once the table's own name is known.
+    pub fn rename(&mut self, place: impl Into<String>) {
+        self.place = place.into();
+    }
+
+    /// An error at a key of this table.
+    pub fn refuse(&self, key: &str, what: impl std::fmt::Display, right: impl std::fmt::Display) -> CliError {
+        let at = if self.place.is_empty() { key.to_owned() } else { format!("{}: {key}", self.place) };
+        CliError::new(at, what, right)
+    }
+
+    /// Whether a key is there; it counts as accepted.
+    pub fn has(&mut self, key: &'static str) -> bool {
+        self.accept(key);
+        self.table.contains_key(key)
+    }
+
+    fn accept(&mut self, key: &'static str) {
+        if !self.accepted.contains(&key) {
+            self.accepted.push(key);
+        }
+    }
+
+    /// Takes a key's value out.
+    pub fn take(&mut self, key: &'static str) -> Option<Value> {
+        self.accept(key);
+        self.table.remove(key)
+    }
+
+    fn wrong_kind(&self, key: &str, value: &Value, right: &str) -> CliError {
+        self.refuse(key, format!("{} is not {right}", shown(value)), format!("write {right}"))
+    }
+
+    /// A number.
+    pub fn number(&mut self, key: &'static str, allowed: Allowed) -> Result<Option<f64>, CliError> {
+        let Some(value) = self.take(key) else { return Ok(None) };
+        let number = as_number(&value).ok_or_else(|| self.wrong_kind(key, &value, "a number"))?;
+        if allowed.holds(number) {
+            Ok(Some(number))
+        } else {
+            Err(self.refuse(key, format!("{} is refused", shown(&value)), allowed))
+        }
+    }
+
+    /// A number that must be there.
+    pub fn needed_number(&mut self, key: &'static str, allowed: Allowed) -> Result<f64, CliError> {
+        self.number(key, allowed)?.ok_or_else(|| self.missing(key, "a number"))
+    }
+
+    /// A number, or the default.
+    pub fn number_or(&mut self, key: &'static str, default: f64, allowed: Allowed) -> Result<f64, CliError> {
+        Ok(self.number(key, allowed)?.unwrap_or(default))
+    }
+
+    /// A whole number.
+    pub fn whole(&mut self, key: &'static str, low: u64, high: u64) -> Result<Option<u64>, CliError> {
+        let Some(value) = self.take(key) else { return Ok(None) };
+        let whole = value.as_integer().and_then(|whole| u64::try_from(whole).ok());
+        match whole.filter(|whole| (low..=high).contains(whole)) {
+            Some(whole) => Ok(Some(whole)),
+            None => {
+                let right = format!("must be a whole number from {low} to {high}");
+                Err(self.refuse(key, format!("{} is refused", shown(&value)), right))
+            }
+        }
+    }
+
+    /// Text.
+    pub fn text(&mut self, key: &'static str) -> Result<Option<String>, CliError> {
+        match self.take(key) {
+            None => Ok(None),
+            Some(Value::String(text)) if !text.is_empty() => Ok(Some(text)),
+            Some(value) => Err(self.wrong_kind(key, &value, "text in quotes")),
+        }
+    }
+
+    /// Text that must be there.
+    pub fn needed_text(&mut self, key: &'static str) -> Result<String, CliError> {
+        self.text(key)?.ok_or_else(|| self.missing(key, "text in quotes"))
+    }
+
+    /// One of a few words; `None` when the key is missing.
+    pub fn word<T: Copy>(&mut self, key: &'static str, words: &[(&str, T)]) -> Result<Option<T>, CliError> {
+        let Some(text) = self.text(key)? else { return Ok(None) };
+        match words.iter().find(|(word, _)| *word == text) {
+            Some((_, meaning)) => Ok(Some(*meaning)),
+            None => {
+                let known: Vec<String> = words.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+                Err(self.refuse(key, format!("\"{text}\" is unknown"), format!("must be {}", any_of(&known))))
+            }
+        }
+    }
+
+    /// Yes or no.
+    pub fn flag(&mut self, key: &'static str) -> Result<Option<bool>, CliError> {
+        match self.take(key) {
+            None => Ok(None),
+            Some(Value::Boolean(flag)) => Ok(Some(flag)),
+            Some(value) => Err(self.wrong_kind(key, &value, "true or false")),
+        }
+    }
+
+    /// A file named relative to `folder`.
+    pub fn file(&mut self, key: &'static str, folder: &Path) -> Result<Option<PathBuf>, CliError> {
+        Ok(self.text(key)?.map(|name| folder.join(name)))
+    }
+
+    /// Two numbers.
+    pub fn pair(&mut self, key: &'static str, allowed: Allowed) -> Result<Option<[f64; 2]>, CliError> {
+        let Some(value) = self.take(key) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> =
+            value.as_array().and_then(|items| items.iter().map(as_number).collect());
+        match numbers.as_deref() {
+            Some([first, second]) if allowed.holds(*first) && allowed.holds(*second) => {
+                Ok(Some([*first, *second]))
+            }
+            Some([_, _]) => {
+                Err(self.refuse(key, format!("{} is refused", shown(&value)), format!("each {allowed}")))
+            }
+            _ => Err(self.wrong_kind(key, &value, "two numbers, [u, v]")),
+        }
+    }
+
+    /// A table.
+    pub fn table(&mut self, key: &'static str) -> Result<Option<Self>, CliError> {
+        match self.take(key) {
+            None => Ok(None),
+            Some(Value::Table(table)) => Ok(Some(Self::new(table, self.inner(key)))),
+            Some(value) => Err(self.wrong_kind(key, &value, "a table, { key = value }")),
+        }
+    }
+
+    /// An array of tables, `[[key]]`.
+    pub fn tables(&mut self, key: &'static str) -> Result<Vec<Self>, CliError> {
+        let Some(value) = self.take(key) else { return Ok(Vec::new()) };
+        let right = format!("a list of tables, each begun with [[{key}]]");
+        let Value::Array(items) = value else { return Err(self.wrong_kind(key, &value, &right)) };
+        let mut tables = Vec::with_capacity(items.len());
+        for (index, item) in items.into_iter().enumerate() {
+            match item {
+                Value::Table(table) => tables.push(Self::new(table, format!("{key} {}", index + 1))),
+                other => return Err(self.wrong_kind(key, &other, &right)),
+            }
+        }
+        Ok(tables)
+    }
+
+    /// The place of a table inside this one.
+    pub fn inner(&self, key: &str) -> String {
+        if self.place.is_empty() { key.to_owned() } else { format!("{}: {key}", self.place) }
+    }
+
+    /// An error for a key that must be there.
+    pub fn missing(&self, key: &str, right: &str) -> CliError {
+        self.refuse(key, "is missing", format!("write {key} = {right}"))
+    }
+
+    /// Refuses every key that was not asked for.
+    pub fn finish(mut self) -> Result<(), CliError> {
+        let unknown = self.table.keys().next().cloned();
+        match unknown {
+            None => Ok(()),
+            Some(key) => {
+                self.accepted.sort_unstable();
+                Err(self.refuse(&key, "unknown key", format!("accepted here: {}", self.accepted.join(", "))))
+            }
+        }
+    }
+}
+
+/// Integers and floats alike.
+pub fn as_number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
+/// A value as the user wrote it, cut when it is long.
+pub fn shown(value: &Value) -> String {
+    let text = value.to_string();
+    match text.char_indices().nth(60) {
+        Some((cut, _)) => format!("{}…", &text[..cut]),
+        None => text,
+    }
+}
+
+/// `a, b or c`.
+pub fn any_of(words: &[String]) -> String {
+    match words {
+        [] => "nothing".to_owned(),
+        [only] => only.clone(),
+        [most @ .., last] => format!("{} or {last}", most.join(", ")),
+    }
+}

@@ -1,0 +1,324 @@
+//! The scene file: one TOML table a thing, in SI units, every key checked and named when refused.
+//!
+//! This file and its neighbours hold what a user wrote, as plain data with paths already relative to the
+//! file. Nothing here opens an image or knows the engine; [`crate::build`] turns a [`SceneFile`] into
+//! engine calls.
+
+mod fields;
+mod surface;
+
+pub use surface::{Excitation, Lattice, Pixels, Roughness, Sand, SolidNoise, Source, SurfaceEntry, Wrap};
+
+use crate::error::CliError;
+use fields::{Allowed, Fields};
+use std::path::{Path, PathBuf};
+use toml::Value;
+
+/// Scene files larger than this are refused; a scene is a page, not a database.
+const MAX_BYTES: u64 = 16 << 20;
+/// Default ring-out after the last event, seconds.
+const TAIL_S: f64 = 1.0;
+/// Sample rates the engine is tested at, Hz.
+const SAMPLE_RATE_HZ: Allowed = Allowed::between(8_000.0, 192_000.0, "Hz");
+
+/// A whole scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// The file it was read from, for messages.
+    pub path: PathBuf,
+    /// Rate of the WAV files; none = the engine's default.
+    pub sample_rate_hz: Option<f64>,
+    /// Seed of every random number; none = the engine's default.
+    pub seed: Option<u64>,
+    /// Contact log to render; none where the events come from elsewhere.
+    pub contacts: Option<PathBuf>,
+    /// Ring-out after the last event, seconds.
+    pub tail_s: f64,
+    /// Things that ring.
+    pub bodies: Vec<BodyEntry>,
+    /// Things that are touched.
+    pub surfaces: Vec<SurfaceEntry>,
+    /// What touches.
+    pub probe: ProbeEntry,
+    /// Haptic channels, in order.
+    pub actuators: Vec<ActuatorEntry>,
+    /// The audio channel.
+    pub audio: AudioEntry,
+}
+
+/// A body: what an impact on it sounds like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyEntry {
+    /// Name that surfaces and impacts use.
+    pub name: String,
+    /// Modes file; none = silent.
+    pub modes: Option<PathBuf>,
+    /// What it is made of; none = the engine's default.
+    pub material: Option<MaterialEntry>,
+}
+
+/// A material by name or by constants.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MaterialEntry {
+    /// One of the engine's presets.
+    Preset(String),
+    /// Elastic constants.
+    Constants {
+        /// Young's modulus, Pa.
+        young_pa: f64,
+        /// Poisson ratio.
+        poisson: f64,
+        /// Density, kg/m³.
+        density_kg_m3: f64,
+    },
+}
+
+/// The finger or tool: a preset, and constants that differ from it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ProbeEntry {
+    /// Name of a preset; none = the engine's default.
+    pub preset: Option<String>,
+    /// Mass of the moving pad, kg.
+    pub pad_mass_kg: Option<f64>,
+    /// Stiffness between pad and finger, N/m.
+    pub pad_stiffness_n_m: Option<f64>,
+    /// Damping between pad and finger, N·s/m.
+    pub pad_damping_n_s_m: Option<f64>,
+    /// Mass of the finger, kg.
+    pub finger_mass_kg: Option<f64>,
+    /// Stiffness of pad against surface, N/m.
+    pub contact_stiffness_n_m: Option<f64>,
+    /// How far the finger may leave the surface, m.
+    pub leash_m: Option<f64>,
+}
+
+/// One haptic channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ActuatorEntry {
+    /// What the channel carries.
+    pub output: ActuatorOutput,
+    /// Metres or m/s² at sample value 1.
+    pub full_scale: f64,
+    /// Cutoff of the high-pass about the mean surface, Hz; 0 = off.
+    pub highpass_hz: f64,
+    /// Name of a device profile whose response is inverted; none = no equaliser.
+    pub equalise: Option<String>,
+    /// Name of the device profile whose excursion and heat are kept within limits; none = no limit.
+    pub limit: Option<String>,
+}
+
+impl Default for ActuatorEntry {
+    fn default() -> Self {
+        Self {
+            output: ActuatorOutput::Displacement,
+            full_scale: 1e-4,
+            highpass_hz: 10.0,
+            equalise: None,
+            limit: None,
+        }
+    }
+}
+
+/// What a haptic channel carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ActuatorOutput {
+    /// Displacement of the pad, m.
+    Displacement,
+    /// Acceleration of the pad, m/s².
+    Acceleration,
+}
+
+/// The audio channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AudioEntry {
+    /// Linear gain.
+    pub gain: f64,
+    /// Keeps the channel within ±1.
+    pub limit: bool,
+}
+
+impl SceneFile {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// When the file is missing, is not TOML, or a key is unknown, missing or out of its range.
+    pub fn load(path: &Path) -> Result<Self, CliError> {
+        let size = std::fs::metadata(path).map_err(|error| CliError::read(path, &error))?.len();
+        if size > MAX_BYTES {
+            let right = format!("a scene file has at most {} MB", MAX_BYTES >> 20);
+            return Err(CliError::file(path, format!("is {} MB long", size >> 20), right));
+        }
+        let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
+        Self::parse(&text, path)
+    }
+
+    /// Checks the text of a scene file that lies at `path`.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, CliError> {
+        let table: toml::Table = text.parse().map_err(|error: toml::de::Error| {
+            let line =
+                error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
+            CliError::file(path, format!("line {line}: {}", error.message()), "a scene file is TOML")
+        })?;
+        read(Fields::new(table, ""), path).map_err(|error| error.within(path.display()))
+    }
+}
+
+fn read(mut top: Fields, path: &Path) -> Result<SceneFile, CliError> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut bodies = Vec::new();
+    for fields in top.tables("body")? {
+        bodies.push(read_body(fields, folder)?);
+    }
+    let mut surfaces = Vec::new();
+    for fields in top.tables("surface")? {
+        surfaces.push(surface::read(fields, folder)?);
+    }
+    let mut actuators = Vec::new();
+    for fields in top.tables("actuator")? {
+        actuators.push(read_actuator(fields)?);
+    }
+    if actuators.is_empty() {
+        actuators.push(ActuatorEntry::default());
+    }
+    let probe = top.table("probe")?.map(read_probe).transpose()?.unwrap_or_default();
+    let audio =
+        top.table("audio")?.map(read_audio).transpose()?.unwrap_or(AudioEntry { gain: 1.0, limit: false });
+    let scene = SceneFile {
+        path: path.to_owned(),
+        sample_rate_hz: top.number("sample_rate_hz", SAMPLE_RATE_HZ)?,
+        seed: top.whole("seed", 0, u64::MAX)?,
+        contacts: top.file("contacts", folder)?,
+        tail_s: top.number_or("tail_s", TAIL_S, Allowed::between(0.0, 600.0, "s"))?,
+        bodies,
+        surfaces,
+        probe,
+        actuators,
+        audio,
+    };
+    top.finish()?;
+    check_names(&scene)?;
+    Ok(scene)
+}
+
+/// Names are unique, and every name that is used exists.
+fn check_names(scene: &SceneFile) -> Result<(), CliError> {
+    let bodies: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
+    let surfaces: Vec<&str> = scene.surfaces.iter().map(|surface| surface.name.as_str()).collect();
+    for (what, names) in [("body", &bodies), ("surface", &surfaces)] {
+        for (index, name) in names.iter().enumerate() {
+            if names[..index].contains(name) {
+                let at = format!("{what} {} \"{name}\": name", index + 1);
+                return Err(CliError::new(at, "is used twice", "give each a name of its own"));
+            }
+        }
+    }
+    for (index, surface) in scene.surfaces.iter().enumerate() {
+        if let Some(body) = surface.body.as_deref().filter(|body| !bodies.contains(body)) {
+            let at = format!("surface {} \"{}\": body", index + 1, surface.name);
+            let known: Vec<String> = bodies.iter().map(|name| format!("\"{name}\"")).collect();
+            let right = format!("bodies of this scene: {}", fields::any_of(&known));
+            return Err(CliError::new(at, format!("\"{body}\" is unknown"), right));
+        }
+    }
+    Ok(())
+}
+
+fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, CliError> {
+    let name = fields.needed_text("name")?;
+    let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
+    fields.rename(place);
+    let modes = fields.file("modes", folder)?;
+    let material = match fields.take("material") {
+        None => None,
+        Some(Value::String(preset)) => Some(MaterialEntry::Preset(preset)),
+        Some(Value::Table(table)) => Some(read_material(Fields::new(table, fields.inner("material")))?),
+        Some(other) => {
+            let what = format!("{} is not a material", fields::shown(&other));
+            let right = "write a preset's name, or { young_pa = …, poisson = …, density_kg_m3 = … }";
+            return Err(fields.refuse("material", what, right));
+        }
+    };
+    fields.finish()?;
+    Ok(BodyEntry { name, modes, material })
+}
+
+fn read_material(mut fields: Fields) -> Result<MaterialEntry, CliError> {
+    let material = MaterialEntry::Constants {
+        young_pa: fields.needed_number("young_pa", Allowed::between(1e3, 2e12, "Pa"))?,
+        poisson: fields.needed_number("poisson", Allowed::between(0.0, 0.5, ""))?,
+        density_kg_m3: fields.needed_number("density_kg_m3", Allowed::between(1.0, 30_000.0, "kg/m³"))?,
+    };
+    fields.finish()?;
+    Ok(material)
+}
+
+fn read_probe(mut fields: Fields) -> Result<ProbeEntry, CliError> {
+    let probe = ProbeEntry {
+        preset: fields.text("preset")?,
+        pad_mass_kg: fields.number("pad_mass_kg", Allowed::between(1e-6, 1.0, "kg"))?,
+        pad_stiffness_n_m: fields.number("pad_stiffness_n_m", Allowed::between(1e-3, 1e7, "N/m"))?,
+        pad_damping_n_s_m: fields.number("pad_damping_n_s_m", Allowed::between(0.0, 1e4, "N·s/m"))?,
+        finger_mass_kg: fields.number("finger_mass_kg", Allowed::between(1e-5, 100.0, "kg"))?,
+        contact_stiffness_n_m: fields.number("contact_stiffness_n_m", Allowed::between(1.0, 1e9, "N/m"))?,
+        leash_m: fields.number("leash_m", Allowed::between(1e-6, 0.05, "m"))?,
+    };
+    fields.finish()?;
+    Ok(probe)
+}
+
+fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, CliError> {
+    let words =
+        [("displacement", ActuatorOutput::Displacement), ("acceleration", ActuatorOutput::Acceleration)];
+    let default = ActuatorEntry::default();
+    let output = fields.word("output", &words)?.unwrap_or(default.output);
+    let equalise = fields.text("equalise")?.filter(|name| name != "none");
+    let limit = match fields.take("limit") {
+        None | Some(Value::Boolean(false)) => None,
+        Some(Value::Boolean(true)) => match &equalise {
+            Some(device) => Some(device.clone()),
+            None => {
+                let right = "write the device as equalise = \"…\" or as limit = \"…\"";
+                return Err(fields.refuse("limit", "true names no device", right));
+            }
+        },
+        Some(Value::String(device)) => Some(device),
+        Some(other) => {
+            let what = format!("{} is refused", fields::shown(&other));
+            return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
+        }
+    };
+    let actuator = ActuatorEntry {
+        output,
+        full_scale: match fields.number("full_scale", Allowed::between(1e-12, 1e12, "m (or m/s²)"))? {
+            Some(full_scale) => full_scale,
+            None if output == ActuatorOutput::Displacement => default.full_scale,
+            None => {
+                return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0"));
+            }
+        },
+        highpass_hz: fields.number_or(
+            "highpass_hz",
+            default.highpass_hz,
+            Allowed::between(0.0, 1_000.0, "Hz, 0 = off"),
+        )?,
+        equalise,
+        limit,
+    };
+    fields.finish()?;
+    Ok(actuator)
+}
+
+fn read_audio(mut fields: Fields) -> Result<AudioEntry, CliError> {
+    let audio = AudioEntry {
+        gain: fields.number_or("gain", 1.0, Allowed::between(0.0, 1e9, ""))?,
+        limit: fields.flag("limit")?.unwrap_or(false),
+    };
+    fields.finish()?;
+    Ok(audio)
+}
+
+#[cfg(test)]
+mod tests;

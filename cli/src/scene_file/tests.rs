@@ -1,0 +1,146 @@
+use super::*;
+
+fn parse(text: &str) -> Result<SceneFile, String> {
+    SceneFile::parse(text, Path::new("dir/scene.toml")).map_err(|error| error.to_string())
+}
+
+fn refusal(text: &str) -> String {
+    parse(text).unwrap_err()
+}
+
+const SURFACE: &str = "[[surface]]\nname = \"tiles\"\nwidth_m = 0.14\nheight_m = 0.14\n";
+
+#[test]
+fn the_scene_of_the_interface_is_read_as_written() {
+    let scene = parse(
+        r#"
+sample_rate_hz = 44100
+seed = 1
+contacts = "stroke.jsonl"
+tail_s = 1.0
+[[body]]
+name = "tile"
+modes = "tile.modes.json"
+material = "ceramic"
+[[surface]]
+name = "tiles"
+body = "tile"
+displacement = "tiles_disp.png"
+roughness = "tiles_rough.png"
+width_m = 0.14
+height_m = 0.14
+relief_m = 0.004
+micro_relief_m = 2e-6
+wrap = "repeat"
+excitation = "both"
+[probe]
+preset = "fingertip"
+[[actuator]]
+output = "displacement"
+full_scale = 1e-4
+highpass_hz = 10.0
+equalise = "none"
+[audio]
+gain = 1.0
+limit = false
+"#,
+    )
+    .unwrap();
+    assert_eq!(scene.sample_rate_hz, Some(44_100.0));
+    assert_eq!(scene.contacts.as_deref(), Some(Path::new("dir/stroke.jsonl")));
+    assert_eq!(scene.bodies[0].material, Some(MaterialEntry::Preset("ceramic".to_owned())));
+    let surface = &scene.surfaces[0];
+    assert_eq!((surface.width_m, surface.micro_relief_m), (0.14, Some(2e-6)));
+    assert!(matches!(&surface.source, Source::Map { image, relief_m, invert: false }
+        if image.path == Path::new("dir/tiles_disp.png") && *relief_m == 0.004));
+    assert_eq!(surface.excitation, Some(Excitation::Both));
+    assert_eq!(scene.actuators, [ActuatorEntry::default()]);
+}
+
+#[test]
+fn every_source_of_the_interface_is_read() {
+    let source = |line: &str| parse(&format!("{SURFACE}{line}")).unwrap().surfaces[0].source.clone();
+    assert_eq!(source(""), Source::Flat);
+    assert!(matches!(source("solid = \"gravel\""), Source::Solid(solid) if solid.preset == "gravel"));
+    assert!(matches!(
+        source("brownian = { hurst = 0.5, rms_m = 1e-4 }"),
+        Source::Brownian { hurst: 0.5, .. }
+    ));
+    let lattice = "relief_m = 0.001\nlattice = { cell = \"cell.png\", t1_m = [0.01, 0.0], t2_m = [0, 0.01] }";
+    assert!(matches!(source(lattice), Source::Lattice(lattice) if lattice.t2_m == [0.0, 0.01]));
+    let sand = "sand = { cells = 512, depth_m = 0.05, talus_deg = 30.0, stiffness_n = 1000.0, \
+                exponent_per_m = 1.0, drag_s_per_m = 20.0, tool_radius_m = 0.005 }";
+    let Source::Sand(written) = source(sand) else { panic!("not sand") };
+    let Source::Sand(default) = source("sand = {}") else { panic!("not sand") };
+    assert_eq!(written, default);
+}
+
+#[test]
+fn roughness_is_a_number_a_map_or_gloss() {
+    let roughness = |line: &str| parse(&format!("{SURFACE}{line}")).unwrap().surfaces[0].roughness.clone();
+    assert_eq!(roughness("roughness = 0.25"), Roughness::Number(Some(0.25)));
+    assert_eq!(roughness("gloss = 1"), Roughness::Number(Some(0.0)));
+    assert!(matches!(roughness("gloss = \"g.png\""), Roughness::Map { gloss: true, .. }));
+    assert_eq!(roughness(""), Roughness::Number(None));
+}
+
+#[test]
+fn an_unknown_key_is_refused_with_its_place_and_the_accepted_ones() {
+    assert_eq!(
+        refusal("[audio]\ngian = 2.0"),
+        "error: dir/scene.toml: audio: gian: unknown key; accepted here: gain, limit"
+    );
+    let line = refusal(&format!("{SURFACE}colour = 1"));
+    assert!(line.starts_with("error: dir/scene.toml: surface 1 \"tiles\": colour: unknown key;"), "{line}");
+    assert!(line.contains("displacement") && line.contains("width_m") && line.contains("roughness_channel"));
+}
+
+#[test]
+fn numbers_out_of_range_are_named_with_what_would_be_right() {
+    for (text, part) in [
+        ("tail_s = nan", "tail_s: nan is refused; must be 0 to 600 s"),
+        ("tail_s = \"long\"", "tail_s: \"long\" is not a number; write a number"),
+        ("sample_rate_hz = 1e300", "sample_rate_hz: 1"),
+        ("seed = -1", "seed: -1 is refused; must be a whole number from 0 to"),
+        ("[probe]\npad_mass_kg = inf", "probe: pad_mass_kg: inf is refused"),
+        ("[[actuator]]\nfull_scale = 0.0", "actuator 1: full_scale: 0.0 is refused"),
+        (
+            "[[actuator]]\noutput = \"smell\"",
+            "\"smell\" is unknown; must be \"displacement\" or \"acceleration\"",
+        ),
+        ("[[actuator]]\noutput = \"acceleration\"", "full_scale: is missing"),
+        ("[[body]]\nname = \"b\"\nmaterial = 3", "body 1 \"b\": material: 3 is not a material"),
+        (
+            "[[body]]\nname = \"b\"\nmaterial = { young_pa = 1e9 }",
+            "body 1 \"b\": material: poisson: is missing",
+        ),
+        ("[[surface]]\nwidth_m = 1", "surface 1: name: is missing"),
+        ("surface = 3", "surface: 3 is not a list of tables"),
+    ] {
+        let line = refusal(text);
+        assert!(line.contains(part), "{line}\nlacks\n{part}");
+        assert_eq!(line.lines().count(), 1);
+    }
+}
+
+#[test]
+fn surfaces_that_contradict_themselves_are_refused() {
+    for (lines, part) in [
+        ("solid = \"gravel\"\nsand = {}", "sand: stands beside solid; write one of"),
+        ("roughness = 0.5\ngloss = 0.5", "gloss: stands beside roughness"),
+        ("roughness = 2", "roughness: 2 is refused; must be 0 to 1, or name an image"),
+        ("displacement = \"d.png\"", "relief_m: is missing"),
+        ("relief_m = 0.1\nlattice = { cell = \"c.png\", t1_m = [1, 1], t2_m = [2, 2] }", "spans no cell"),
+        ("body = \"ghost\"", "body: \"ghost\" is unknown; bodies of this scene: nothing"),
+    ] {
+        let line = refusal(&format!("{SURFACE}{lines}"));
+        assert!(line.contains(part), "{line}\nlacks\n{part}");
+    }
+    assert!(refusal(&format!("{SURFACE}{SURFACE}")).contains("surface 2 \"tiles\": name: is used twice"));
+}
+
+#[test]
+fn broken_toml_names_its_line() {
+    assert!(refusal("seed = 1\ntail_s = = 3").contains("line 2:"), "{}", refusal("seed = 1\ntail_s = = 3"));
+    assert!(refusal("\u{0}").starts_with("error: dir/scene.toml: line 1:"));
+}

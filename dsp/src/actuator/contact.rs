@@ -1,0 +1,108 @@
+//! What one contact sends to its actuator: the pad's motion, without the resting position.
+
+use crate::DesignError;
+use crate::butterworth::{Butterworth, State};
+use core::f64::consts::PI;
+
+/// Which quantity of the pad is played.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Displacement, m (the paper).
+    Displacement,
+    /// Acceleration, m/s².
+    Acceleration,
+}
+
+/// Time in which a contact that has ended fades, s (chosen: shorter than two 60 Hz events, and a fade this
+/// long has its energy below the band of touch).
+pub const RELEASE_S: f64 = 0.025;
+
+/// Design, shared by all contacts of one actuator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactOutput {
+    quantity: Quantity,
+    highpass: Option<Butterworth>,
+    sample_rate_hz: f64,
+}
+
+/// Memory of one contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactOutputState {
+    highpass: State,
+    velocity_m_s: f64,
+    last: f64,
+    /// 1 while in contact; falls to 0 in [`RELEASE_S`].
+    held: f64,
+}
+
+impl ContactOutput {
+    /// `highpass_hz` = 0 is off: the pad's own displacement or acceleration.
+    ///
+    /// # Errors
+    /// Names the field that is out of range.
+    pub fn new(quantity: Quantity, highpass_hz: f64, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let rate = DesignError::check("sample_rate_hz", sample_rate_hz, "above 0 Hz", |r| r > 0.0)?;
+        let highpass = if highpass_hz == 0.0 {
+            None
+        } else {
+            let named = |e: DesignError| DesignError { field: "highpass_hz", ..e };
+            Some(Butterworth::new(highpass_hz, rate).map_err(named)?)
+        };
+        Ok(Self { quantity, highpass, sample_rate_hz: rate })
+    }
+
+    /// Which quantity this design plays.
+    #[must_use]
+    pub const fn quantity(&self) -> Quantity {
+        self.quantity
+    }
+}
+
+impl ContactOutputState {
+    /// A contact that begins with the pad at `pad_m`: as if it had been there for ever, so the high-passed
+    /// output begins at zero.
+    #[must_use]
+    pub fn begin(design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> Self {
+        let settled = match design.quantity {
+            Quantity::Displacement => pad_m,
+            Quantity::Acceleration => 0.0,
+        };
+        Self { highpass: State::settled_at(settled), velocity_m_s: pad_velocity_m_s, last: 0.0, held: 1.0 }
+    }
+
+    /// One sample of the pad's motion → the output quantity, SI. Acceleration is the change of velocity over the
+    /// step that ends here.
+    #[inline]
+    pub fn tick(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
+        let value = match design.quantity {
+            Quantity::Displacement => pad_m,
+            Quantity::Acceleration => (pad_velocity_m_s - self.velocity_m_s) * design.sample_rate_hz,
+        };
+        self.velocity_m_s = pad_velocity_m_s;
+        self.last = match &design.highpass {
+            Some(filter) => self.highpass.tick(filter, value).high,
+            None => value,
+        };
+        self.last
+    }
+
+    /// One sample after the contact has ended: the last value along a raised cosine to exactly zero.
+    #[inline]
+    pub fn tick_released(&mut self, design: &ContactOutput) -> f64 {
+        self.held = (self.held - 1.0 / (RELEASE_S * design.sample_rate_hz)).max(0.0);
+        if self.held == 0.0 { 0.0 } else { self.last * 0.5 * (1.0 - libm::cos(PI * self.held)) }
+    }
+
+    /// True when the fade after the end is over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.held == 0.0
+    }
+
+    /// The pad's reference moves by `offset_m` without being felt (a path that wraps round on a slope).
+    pub fn shift(&mut self, design: &ContactOutput, offset_m: f64) {
+        if design.quantity == Quantity::Displacement && design.highpass.is_some() {
+            self.highpass.shift(offset_m);
+        }
+    }
+}

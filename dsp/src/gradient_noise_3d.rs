@@ -1,0 +1,266 @@
+//! Three-dimensional gradient noise with its exact gradient, one octave: what solid noise adds up.
+//!
+//! ```text
+//! n(p) = Σ_c w_c(f) · g_c · (f − c)         f = p − ⌊p⌋,  c ∈ {0,1}³,  w_c = Π s(f_a) or 1 − s(f_a)
+//! ∇n  = Σ_c w_c g_c + Σ_c ∇w_c (g_c · (f − c))          s(t) = t³ (t (6t − 15) + 10)
+//! ```
+//!
+//! | symbol | here |
+//! |---|---|
+//! | p | positions in lattice cells, `f64`: a cell index of 32 bits and a fraction rounded to `f32` |
+//! | g_c | one of the 12 vectors to the edges of a cube, (±1, ±1, 0) and its permutations, all equally likely |
+//! | n, ∇n | [`Noise3::value`], [`Noise3::gradient`] (per cell) |
+//!
+//! Source: the solid-noise paper takes its noise from libnoise, which is K. Perlin's of 1985; the
+//! twelve gradients and the quintic blend are those of K. Perlin, "Improving Noise" (2002), because
+//! the cubic blend's jump of curvature at cell borders is felt as a click per cell. What we changed:
+//! lattice hashing needs no table (three odd multipliers, exclusive or, one mixing multiplication),
+//! so that a batch runs in vector registers; the gradient is delivered with the value.
+//!
+//! Properties, all tested: exactly zero at lattice points; range ±1 and rms 0.27; a traverse has half
+//! of its power density left at 0.59 cycles per cell and 90 % of its energy below 0.66. Every path of
+//! evaluation (one point, portable batch, AVX2, AVX-512) performs the same `f32` operations in the
+//! same order, fused multiply–adds included, so that all give the same bits on every machine (a processor
+//! without that instruction computes it in software, several times slower).
+//!
+//! Cells are numbered with 32 bits. Beyond ±2³¹ cells (86 km at 0.04 mm) all cells get the same
+//! gradients: still finite, still continuous inside a cell, no longer a useful surface.
+
+use crate::rng::hash_u32;
+
+#[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
+mod simd;
+
+const PRIME: [u32; 3] = [0x9E37_79B1, 0x85EB_CA77, 0xC2B2_AE3D];
+const MIX: u32 = 0x27D4_EB2F;
+
+/// Half of the edge vectors; the other half are their opposites.
+const PAIRS: [[f32; 3]; 6] =
+    [[1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 1.0, 1.0], [0.0, 1.0, -1.0]];
+
+/// Noise at one point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Noise3 {
+    /// Value, about −1 to 1.
+    pub value: f32,
+    /// Derivatives along the three axes, per cell.
+    pub gradient: [f32; 3],
+}
+
+/// Noise along a path, one slice a quantity; see [`GradientNoise3d::batch`].
+#[derive(Debug)]
+pub struct Noise3Batch<'a> {
+    /// Values.
+    pub value: &'a mut [f32],
+    /// Derivatives along the first axis, per cell.
+    pub dx: &'a mut [f32],
+    /// Derivatives along the second axis, per cell.
+    pub dy: &'a mut [f32],
+    /// Derivatives along the third axis, per cell.
+    pub dz: &'a mut [f32],
+}
+
+/// Which instructions evaluate a batch. All give the same bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kernel {
+    /// Any processor.
+    Portable,
+    /// 8 points at once.
+    Avx2,
+    /// 16 points at once.
+    Avx512,
+}
+
+impl Kernel {
+    /// The fastest this processor can run.
+    #[must_use]
+    pub fn detect() -> Self {
+        [Self::Avx512, Self::Avx2].into_iter().find(|k| k.is_available()).unwrap_or(Self::Portable)
+    }
+
+    /// Whether this processor can run it.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Portable => true,
+            #[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
+            Self::Avx2 => {
+                std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+            }
+            #[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
+            Self::Avx512 => Self::Avx2.is_available() && std::arch::is_x86_feature_detected!("avx512f"),
+            #[cfg(not(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test))))]
+            Self::Avx2 | Self::Avx512 => false,
+        }
+    }
+}
+
+/// A noise lattice: a seed, and how batches are evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct GradientNoise3d {
+    seed: u32,
+    kernel: Kernel,
+}
+
+impl GradientNoise3d {
+    /// A lattice that depends on all 64 bits of the seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        let seed = hash_u32(seed as u32) ^ hash_u32((seed >> 32) as u32).rotate_left(16);
+        Self { seed, kernel: Kernel::detect() }
+    }
+
+    /// The same lattice evaluated with other instructions; those the processor lacks are replaced
+    /// by the portable ones.
+    #[must_use]
+    pub fn with_kernel(self, kernel: Kernel) -> Self {
+        Self { kernel: if kernel.is_available() { kernel } else { Kernel::Portable }, ..self }
+    }
+
+    /// How batches are evaluated.
+    #[must_use]
+    pub fn kernel(&self) -> Kernel {
+        self.kernel
+    }
+
+    /// Value and gradient at one point, given in cells.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, cells: [f64; 3]) -> Noise3 {
+        #[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
+        if self.kernel != Kernel::Portable {
+            return simd::single(self.seed, cells[0], cells[1], cells[2]);
+        }
+        self.portable(cells)
+    }
+
+    /// The definition: eight corners one after another.
+    fn portable(&self, cells: [f64; 3]) -> Noise3 {
+        let ((ix, fx), (iy, fy), (iz, fz)) = (split(cells[0]), split(cells[1]), split(cells[2]));
+        let ((sx, tx), (sy, ty), (sz, tz)) = (blend(fx), blend(fy), blend(fz));
+        let (x0, y0, z0) = (ix.wrapping_mul(PRIME[0]), iy.wrapping_mul(PRIME[1]), iz.wrapping_mul(PRIME[2]));
+        let x = [x0, x0.wrapping_add(PRIME[0])];
+        let y = [y0, y0.wrapping_add(PRIME[1])];
+        let z = [z0 ^ self.seed, z0.wrapping_add(PRIME[2]) ^ self.seed];
+        let (dx, dy, dz) = ([fx, fx - 1.0], [fy, fy - 1.0], [fz, fz - 1.0]);
+        let (wx, wy, wz) = ([1.0 - sx, sx], [1.0 - sy, sy], [1.0 - sz, sz]);
+
+        let mut dot = [0.0_f32; 8];
+        let mut weight = [0.0_f32; 8];
+        let mut pair = [&PAIRS[0]; 8];
+        for corner in 0..8 {
+            let (a, b, c) = (corner & 1, (corner >> 1) & 1, corner >> 2);
+            let (g, sign) = gradient(x[a] ^ (y[b] ^ z[c]));
+            dot[corner] = fma(g[2], dz[c], fma(g[1], dy[b], g[0] * dx[a])) * sign;
+            weight[corner] = wx[a] * (wy[b] * wz[c]) * sign;
+            pair[corner] = g;
+        }
+        let sum: [f32; 3] = core::array::from_fn(|i| {
+            let two = |c: usize| fma(weight[c + 1], pair[c + 1][i], weight[c] * pair[c][i]);
+            (two(0) + two(2)) + (two(4) + two(6))
+        });
+        let along_x = [dot[1] - dot[0], dot[3] - dot[2], dot[5] - dot[4], dot[7] - dot[6]];
+        let v: [f32; 4] = core::array::from_fn(|i| fma(sx, along_x[i], dot[2 * i]));
+        let along_y = [v[1] - v[0], v[3] - v[2]];
+        let (low, high) = (fma(sy, along_y[0], v[0]), fma(sy, along_y[1], v[2]));
+        let x_near = fma(sy, along_x[1] - along_x[0], along_x[0]);
+        let x_far = fma(sy, along_x[3] - along_x[2], along_x[2]);
+        let nx = fma(sz, x_far - x_near, x_near);
+        let ny = fma(sz, along_y[1] - along_y[0], along_y[0]);
+        let nz = high - low;
+        Noise3 {
+            value: fma(sz, nz, low),
+            gradient: [fma(tx, nx, sum[0]), fma(ty, ny, sum[1]), fma(tz, nz, sum[2])],
+        }
+    }
+
+    /// Value and gradient at many points, given in cells, one slice an axis. As many points are
+    /// evaluated as the shortest slice has entries.
+    pub fn batch(&self, x: &[f64], y: &[f64], z: &[f64], out: &mut Noise3Batch<'_>) {
+        let n = [x.len(), y.len(), z.len(), out.value.len(), out.dx.len(), out.dy.len(), out.dz.len()]
+            .into_iter()
+            .fold(usize::MAX, usize::min);
+        let mut points = Points {
+            x: &x[..n],
+            y: &y[..n],
+            z: &z[..n],
+            value: &mut out.value[..n],
+            dx: &mut out.dx[..n],
+            dy: &mut out.dy[..n],
+            dz: &mut out.dz[..n],
+        };
+        let done = self.vector_part(&mut points);
+        for i in done..n {
+            let noise = self.at([points.x[i], points.y[i], points.z[i]]);
+            points.value[i] = noise.value;
+            [points.dx[i], points.dy[i], points.dz[i]] = noise.gradient;
+        }
+    }
+
+    /// Evaluates whole vectors of points and returns how many points that were.
+    #[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
+    fn vector_part(&self, points: &mut Points<'_>) -> usize {
+        match self.kernel {
+            Kernel::Portable => 0,
+            Kernel::Avx2 => simd::run_avx2(self.seed, points),
+            Kernel::Avx512 => simd::run_avx512(self.seed, points),
+        }
+    }
+
+    #[cfg(not(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test))))]
+    fn vector_part(&self, _points: &mut Points<'_>) -> usize {
+        0
+    }
+}
+
+/// Equally long slices of one batch.
+struct Points<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+    z: &'a [f64],
+    value: &'a mut [f32],
+    dx: &'a mut [f32],
+    dy: &'a mut [f32],
+    dz: &'a mut [f32],
+}
+
+/// Cell index and fraction, the index as the vector instructions convert it (−2³¹ out of range).
+#[inline]
+fn split(x: f64) -> (u32, f32) {
+    const EDGE: f64 = 2_147_483_648.0;
+    if (-EDGE..EDGE).contains(&x) {
+        let toward_zero = x as i32;
+        let cell = toward_zero - i32::from(x < f64::from(toward_zero));
+        (cell as u32, (x - f64::from(cell)) as f32)
+    } else {
+        (i32::MIN as u32, (x - libm::floor(x)) as f32)
+    }
+}
+
+/// The gradient of a lattice point as one of [`PAIRS`] and its sign.
+#[inline]
+fn gradient(lattice: u32) -> (&'static [f32; 3], f32) {
+    let index = ((lattice.wrapping_mul(MIX) >> 16) * 12) >> 16;
+    (&PAIRS[(index >> 1) as usize], if index & 1 == 0 { 1.0 } else { -1.0 })
+}
+
+/// Quintic blend about the middle of the cell, ½ + c (15/8 − c² (5 − 6 c²)), and its slope
+/// 30 (c² − ¼)²: exact at both ends, and eight times closer to the true curve in `f32` than the usual
+/// form, whose 10 − 9 cancels.
+#[inline]
+fn blend(t: f32) -> (f32, f32) {
+    let c = t - 0.5;
+    let c2 = c * c;
+    let curve = fma(c2, fma(6.0, c2, -5.0), 1.875);
+    let rest = c2 - 0.25;
+    (fma(c, curve, 0.5), 30.0 * (rest * rest))
+}
+
+/// a · b + c, rounded once.
+#[inline]
+fn fma(a: f32, b: f32, c: f32) -> f32 {
+    #[cfg(any(feature = "std", test))]
+    return a.mul_add(b, c);
+    #[cfg(not(any(feature = "std", test)))]
+    return libm::fmaf(a, b, c);
+}

@@ -1,0 +1,118 @@
+//! What may enter a kernel, and what brings a lost contact back.
+//!
+//! | seen | done | counted |
+//! |---|---|---|
+//! | height not finite or beyond ±1 m | the last good height is held | yes |
+//! | force not finite or beyond ±1 kN | the last good force is held | yes |
+//! | force below zero | zero: a surface does not pull | no |
+//! | gap above the leash | upward velocities become zero | no |
+//! | gap or penetration absurd | the contact rests on the surface again | yes |
+//! | magnitudes below 1e-100 | zero, so that no denormal ever slows a kernel | no |
+
+use super::{ContactState, MicroContact};
+
+/// Rows between two looks at vanishing magnitudes, on the contact's own clock.
+pub(super) const GRID: usize = 64;
+/// Heights beyond this are not a surface, m.
+pub(super) const MAX_HEIGHT_M: f64 = 1.0;
+/// Forces beyond this are not a finger, N.
+pub(super) const MAX_FORCE_N: f64 = 1000.0;
+/// Gap beyond which the contact has lost its surface, m.
+pub(super) const MAX_GAP_M: f64 = 0.1;
+/// Magnitudes below this are zero.
+pub(super) const VANISHING: f64 = 1e-100;
+
+/// Inputs of up to [`GRID`] rows that a kernel can trust.
+pub(super) struct CleanBlock {
+    pub height_m: [f64; GRID],
+    pub force_n: [f64; GRID],
+}
+
+impl CleanBlock {
+    pub const EMPTY: Self = Self { height_m: [0.0; GRID], force_n: [0.0; GRID] };
+
+    /// Copies and repairs; at most [`GRID`] values.
+    #[inline(always)]
+    pub fn fill(&mut self, state: &mut ContactState, height_m: &[f64], force_n: &[f64]) {
+        let mut good = true;
+        let inputs = height_m.iter().zip(force_n);
+        for ((h, f), (&height, &force)) in self.height_m.iter_mut().zip(&mut self.force_n).zip(inputs) {
+            good &= is_height(height) & is_force(force);
+            (*h, *f) = tidy(height, force);
+        }
+        if !good {
+            self.repair(state, height_m, force_n);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn repair(&mut self, state: &mut ContactState, height_m: &[f64], force_n: &[f64]) {
+        let (mut last_height, mut last_force) = (state.heights_m[2], state.forces_n[1]);
+        let inputs = height_m.iter().zip(force_n);
+        for ((h, f), (&height, &force)) in self.height_m.iter_mut().zip(&mut self.force_n).zip(inputs) {
+            if !(is_height(height) && is_force(force)) {
+                state.resets = state.resets.saturating_add(1);
+            }
+            if !is_height(height) {
+                *h = last_height;
+            }
+            if !is_force(force) {
+                *f = last_force;
+            }
+            (last_height, last_force) = (*h, *f);
+        }
+    }
+}
+
+/// Height and force without denormals, force without its negative part.
+#[inline(always)]
+pub(super) fn tidy(height_m: f64, force_n: f64) -> (f64, f64) {
+    let force_n = if force_n > 0.0 { force_n } else { 0.0 };
+    ((height_m + VANISHING) - VANISHING, (force_n + VANISHING) - VANISHING)
+}
+
+#[inline(always)]
+pub(super) fn is_height(height_m: f64) -> bool {
+    height_m.abs() <= MAX_HEIGHT_M
+}
+
+#[inline(always)]
+pub(super) fn is_force(force_n: f64) -> bool {
+    force_n.abs() <= MAX_FORCE_N
+}
+
+/// A height or force that a contact can start from.
+pub(super) fn start_or_zero(value: f64, good: bool, resets: &mut u32) -> f64 {
+    if good {
+        return value;
+    }
+    *resets += 1;
+    0.0
+}
+
+/// Called when the gap is outside −max penetration … leash: pulls the leash, or puts a lost contact
+/// back at rest on the surface. Returns whether it was lost.
+#[cold]
+#[inline(never)]
+pub(super) fn rescue(design: &MicroContact, y: &mut [f64; 4], gap_m: f64, force_n: f64) -> bool {
+    if gap_m <= MAX_GAP_M && gap_m >= -design.max_penetration_m {
+        y[2] = y[2].min(0.0);
+        y[3] = y[3].min(0.0);
+        return false;
+    }
+    *y = design.resting(force_n);
+    true
+}
+
+/// Zero in place of what has decayed beyond any meaning.
+#[inline(always)]
+pub(super) fn flushed(x: f64) -> f64 {
+    if x.abs() < VANISHING { 0.0 } else { x }
+}
+
+/// Flushes a contact's state; called once a grid step.
+#[inline(always)]
+pub(super) fn flush(state: &mut ContactState) {
+    state.y = state.y.map(flushed);
+}

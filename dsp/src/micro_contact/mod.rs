@@ -1,0 +1,263 @@
+//! The micro-contact: finger, pad and skin sliding over a height profile (Hasti §III-C, Fig. 6).
+//!
+//! ```text
+//! m_f v_f' = k_s (x_s − x_f) + b_s (v_s − v_f) − F_n
+//! m_s v_s' = −k_s (x_s − x_f) − b_s (v_s − v_f) + k_m max(0, x_m − x_s)
+//! ```
+//! Positions are positive out of the surface; x_f is the finger's less the pad's unloaded thickness.
+//!
+//! | symbol | field | |
+//! |---|---|---|
+//! | m_s, k_s, b_s | [`Probe::pad_mass_kg`], [`Probe::pad_stiffness_n_m`], [`Probe::pad_damping_n_s_m`] | skin and pad |
+//! | m_f | [`Probe::finger_mass_kg`] | the floating finger |
+//! | k_m | [`Probe::contact_stiffness_n_m`] | one-sided spring, pushes only |
+//! | x_m, F_n | `height_m`, `normal_force_n` of [`MicroContact::run`] | one value a sample |
+//! | x_s, v_s, x_f | [`ContactSample::pad_m`], [`ContactSample::pad_velocity_m_s`], [`ContactSample::finger_m`] | |
+//!
+//! What we changed, and what it brings:
+//! - three integrators ([`Integrator`]) instead of one, chosen by a rule ([`Choice`]) that never runs an
+//!   unsafe one; the paper's own is one of them, with its damper centred in time;
+//! - a leash: beyond [`Probe::leash_m`] of separation nothing moves further up (an unloaded finger
+//!   drifts away in the paper's equations);
+//! - collisions as timed events with their closing speed, and the mean contact force of each step, so
+//!   that force × step is the impulse;
+//! - hostile input is repaired and counted (table in the module `guard`).
+mod choice;
+mod dispatch;
+mod energy_conserving;
+mod exact_event;
+mod flow;
+mod guard;
+mod lanes;
+mod probe;
+mod quad;
+mod semi_implicit;
+mod state;
+
+pub use choice::{
+    Choice, EULER_MAX_PHASE, EXACT_MAX_PHASE, EXACT_MAX_STIFFNESS_N_M, Integrator, SUBSTEP_MAX_PHASE,
+};
+pub use lanes::{EulerLanes, LANES, LaneRow, Lanes};
+pub use probe::{
+    CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG, PAD_STIFFNESS_N_M, Probe,
+};
+pub use state::{ContactSample, ContactState, Onset};
+
+use crate::DesignError;
+use energy_conserving::EnergyConserving;
+use exact_event::ExactEvent;
+use guard::{CleanBlock, GRID};
+use quad::Quad;
+use semi_implicit::SemiImplicit;
+
+/// A contact whose skin is nearer than this to its resting place is settled, m.
+pub const SETTLED_M: f64 = 1e-12;
+/// Velocities below this count as settled, m/s.
+pub const SETTLED_M_S: f64 = 1e-10;
+/// Fastest landing that is believed, m/s.
+const MAX_CLOSING_M_S: f64 = 20.0;
+
+/// The design of one probe at one rate; serves any number of contacts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MicroContact {
+    probe: Probe,
+    choice: Choice,
+    step_s: f64,
+    leash_m: f64,
+    max_penetration_m: f64,
+    scheme: Scheme,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(clippy::large_enum_variant)] // Few designs exist and none is moved at run time.
+enum Scheme {
+    SemiImplicit(SemiImplicit),
+    ExactEvent(ExactEvent),
+    EnergyConserving(EnergyConserving),
+}
+
+impl MicroContact {
+    /// Designs the contact; what runs may differ from `wanted` as [`Choice`] documents.
+    ///
+    /// # Errors
+    /// When a field of the probe is outside its range, or the rate outside 1 kHz to 20 MHz (oversampled references).
+    pub fn new(probe: &Probe, wanted: Integrator, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        probe.check()?;
+        let expected = "from 1 kHz to 20 MHz";
+        DesignError::check("sample_rate_hz", sample_rate_hz, expected, |r| (1e3..=2e7).contains(&r))?;
+        let step_s = 1.0 / sample_rate_hz;
+        let choice = Choice::new(probe, wanted, step_s);
+        let euler = |explicit| SemiImplicit::new(probe, explicit, step_s, choice.substeps);
+        let scheme = match choice.used {
+            Integrator::SemiImplicitEuler => Scheme::SemiImplicit(euler(false)),
+            Integrator::SemiImplicitEulerExplicitDamper => Scheme::SemiImplicit(euler(true)),
+            Integrator::ExactEvent => Scheme::ExactEvent(ExactEvent::new(probe, step_s)),
+            Integrator::EnergyConserving => Scheme::EnergyConserving(EnergyConserving::new(probe, step_s)),
+        };
+        let max_penetration_m = 0.02 + 2.0 * guard::MAX_FORCE_N / probe.contact_stiffness_n_m;
+        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, max_penetration_m, scheme })
+    }
+
+    /// The probe it was designed for.
+    #[must_use]
+    pub fn probe(&self) -> &Probe {
+        &self.probe
+    }
+
+    /// The integrator in use.
+    #[must_use]
+    pub fn integrator(&self) -> Integrator {
+        self.choice.used
+    }
+
+    /// Integration steps a sample.
+    #[must_use]
+    pub fn substeps(&self) -> usize {
+        self.choice.substeps
+    }
+
+    /// What was decided and why; prints as a sentence.
+    #[must_use]
+    pub fn choice(&self) -> Choice {
+        self.choice
+    }
+
+    /// Rows lag inputs by this much: 1 for the exact scheme, otherwise 0.
+    #[must_use]
+    pub fn latency_samples(&self) -> usize {
+        usize::from(self.choice.used == Integrator::ExactEvent)
+    }
+
+    /// A finger that has been pressing on this height for ever: it starts without a transient.
+    /// An impossible height or force counts as a reset and is taken as zero.
+    #[must_use]
+    pub fn at_rest(&self, height_m: f64, normal_force_n: f64) -> ContactState {
+        let mut resets = 0;
+        let height_m = guard::start_or_zero(height_m, guard::is_height(height_m), &mut resets);
+        let force_n = guard::start_or_zero(normal_force_n, guard::is_force(normal_force_n), &mut resets);
+        let force_n = force_n.max(0.0);
+        let mut state = ContactState::new(self.resting(force_n), height_m, force_n);
+        state.resets = resets;
+        state
+    }
+
+    /// An unloaded pad that meets this height at the closing speed (at most 20 m/s), one sample before
+    /// the first input: its onset is reported in the first rows. Without a closing speed above zero the finger is [`Self::at_rest`].
+    #[must_use]
+    pub fn landing(&self, height_m: f64, normal_force_n: f64, closing_m_s: f64) -> ContactState {
+        let mut state = self.at_rest(height_m, normal_force_n);
+        if closing_m_s > 0.0 {
+            let speed = closing_m_s.min(MAX_CLOSING_M_S);
+            let drift = speed * self.step_s;
+            // The exact state is one sample older, the Euler state one drift ahead.
+            let gap_m = match &self.scheme {
+                Scheme::ExactEvent(_) => drift,
+                Scheme::SemiImplicit(scheme) => -drift / scheme.substeps as f64,
+                Scheme::EnergyConserving(_) => 0.0,
+            };
+            state.y = [gap_m, 0.0, -speed, -speed];
+            state.gap_m = 0.0;
+        } else if closing_m_s.is_nan() {
+            state.resets += 1;
+        }
+        state
+    }
+
+    /// Runs the next `out.len()` samples (or as many as both inputs have). Row n describes input
+    /// n − [`Self::latency_samples`]; any split into calls gives the same rows.
+    pub fn run(
+        &self,
+        state: &mut ContactState,
+        height_m: &[f64],
+        normal_force_n: &[f64],
+        out: &mut [ContactSample],
+    ) {
+        dispatch::run(self, state, height_m, normal_force_n, out);
+    }
+
+    /// [`Self::run`] without vectors wider than the crate was compiled for: the same bits, slower.
+    pub fn run_portable(
+        &self,
+        state: &mut ContactState,
+        height_m: &[f64],
+        normal_force_n: &[f64],
+        out: &mut [ContactSample],
+    ) {
+        dispatch::run_portable(self, state, height_m, normal_force_n, out);
+    }
+
+    /// Eight contacts of this design at once; only where semi-implicit Euler runs in one step a sample.
+    #[must_use]
+    pub fn lanes(&self) -> Option<EulerLanes<'_>> {
+        match &self.scheme {
+            Scheme::SemiImplicit(scheme) if scheme.substeps == 1 => Some(EulerLanes { design: self, scheme }),
+            _ => None,
+        }
+    }
+
+    /// Whether the contact, if this height and force stay, no longer moves by more than
+    /// [`SETTLED_M`]: then its rows are those of [`Self::at_rest`], or of a finger hanging free
+    /// without load, and it may sleep.
+    #[must_use]
+    pub fn is_settled(&self, state: &ContactState, height_m: f64, normal_force_n: f64) -> bool {
+        let force_n = normal_force_n.max(0.0);
+        let near = |a: f64, b: f64| (a - b).abs() <= SETTLED_M;
+        let inputs_stay = state.heights_m.iter().all(|&h| near(h, height_m))
+            && state.forces_n.iter().all(|&f| (f - force_n).abs() <= 1e-9);
+        let still = state.y[2].abs() <= SETTLED_M_S && state.y[3].abs() <= SETTLED_M_S;
+        let rest = self.resting(force_n);
+        let hangs = force_n == 0.0 && state.y[0] >= 0.0;
+        inputs_stay && still && near(state.y[1], rest[1]) && (hangs || near(state.y[0], rest[0]))
+    }
+
+    /// Energy in masses and springs, J, at the last row (the Euler schemes: half a step off). Without
+    /// damper, surface motion and normal force it is conserved; the passivity tests hold it to that.
+    #[must_use]
+    pub fn energy_j(&self, state: &ContactState) -> f64 {
+        let Probe { pad_mass_kg, pad_stiffness_n_m, finger_mass_kg, contact_stiffness_n_m, .. } = self.probe;
+        let [gap, stretch, pad, finger] = state.y;
+        let penetration = gap.min(0.0);
+        0.5 * (pad_mass_kg * pad * pad
+            + finger_mass_kg * finger * finger
+            + pad_stiffness_n_m * stretch * stretch
+            + contact_stiffness_n_m * penetration * penetration)
+    }
+
+    /// (d, p, v_s, v_f) of static equilibrium.
+    fn resting(&self, force_n: f64) -> [f64; 4] {
+        [-force_n / self.probe.contact_stiffness_n_m, force_n / self.probe.pad_stiffness_n_m, 0.0, 0.0]
+    }
+
+    /// Cuts a run at the grid of the contact's clock.
+    #[inline(always)]
+    fn run_blocks<Q: Quad, E: Quad>(
+        &self,
+        state: &mut ContactState,
+        mut height_m: &[f64],
+        mut force_n: &[f64],
+        mut out: &mut [ContactSample],
+    ) {
+        let mut block = CleanBlock::EMPTY;
+        loop {
+            let left = GRID - state.clock as usize % GRID;
+            let count = left.min(height_m.len()).min(force_n.len()).min(out.len());
+            if count == 0 {
+                return;
+            }
+            let (heights, later_heights) = height_m.split_at(count);
+            let (forces, later_forces) = force_n.split_at(count);
+            let (rows, later_rows) = out.split_at_mut(count);
+            block.fill(state, heights, forces);
+            match &self.scheme {
+                Scheme::SemiImplicit(scheme) => scheme.run::<E>(self, state, &block, rows),
+                Scheme::ExactEvent(scheme) => scheme.run::<Q>(self, state, &block, rows),
+                Scheme::EnergyConserving(scheme) => scheme.run::<Q>(self, state, &block, rows),
+            }
+            state.clock = state.clock.wrapping_add(count as u32);
+            if count == left {
+                guard::flush(state);
+            }
+            (height_m, force_n, out) = (later_heights, later_forces, later_rows);
+        }
+    }
+}

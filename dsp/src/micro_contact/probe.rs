@@ -1,0 +1,73 @@
+//! What touches the surface: a fingertip as two masses, a spring, a damper and a leash.
+
+use crate::DesignError;
+
+/// Mass of the skin that moves with the surface, kg. Range 0.1–0.25 g: 0.1 g in a 2017 fingertip
+/// model (ROBOMECH Journal, table 1); 0.11–0.255 g recalled from Wiertlewski & Hayward 2012 (which
+/// Hasti §III-C cites, not opened by us: **recalled**).
+pub const PAD_MASS_KG: f64 = 0.15e-3;
+/// Stiffness of the pad between skin and bone, N/m. 1000 in the same table; range 600–1430 **recalled**.
+pub const PAD_STIFFNESS_N_M: f64 = 1000.0;
+/// Damping of the pad, N·s/m. 1.0 in the same table; 1.45–2.77 **recalled**.
+pub const PAD_DAMPING_N_S_M: f64 = 2.0;
+/// Mass of the finger behind the pad, kg. **Assumed**: only the order of magnitude is known.
+pub const FINGER_MASS_KG: f64 = 20e-3;
+/// Stiffness of skin on surface, N/m. **Design choice**: 50 times the pad, so that the skin follows
+/// the profile to 2.9 kHz.
+pub const CONTACT_STIFFNESS_N_M: f64 = 5e4;
+/// Longest gap between skin and surface that the finger's own motion may open, m. **Design choice**:
+/// an unloaded finger drifts 88 mm away in one second without it.
+pub const LEASH_M: f64 = 1e-3;
+
+/// The mechanical parameters of one probe (Hasti Fig. 6). All SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Probe {
+    /// m_s: skin mass, kg; 1e-6 to 1.
+    pub pad_mass_kg: f64,
+    /// k_s: pad spring between finger and skin, N/m; 1e-3 to 1e7.
+    pub pad_stiffness_n_m: f64,
+    /// b_s: pad damper, N·s/m; 0 to 1e4.
+    pub pad_damping_n_s_m: f64,
+    /// m_f: finger mass, kg; 1e-5 to 100.
+    pub finger_mass_kg: f64,
+    /// k_m: one-sided spring between skin and surface, N/m; 1 to 1e9.
+    pub contact_stiffness_n_m: f64,
+    /// Separation beyond which upward motion stops, m; 1e-6 to 0.05.
+    pub leash_m: f64,
+}
+
+impl Default for Probe {
+    /// The fingertip preset.
+    fn default() -> Self {
+        Self {
+            pad_mass_kg: PAD_MASS_KG,
+            pad_stiffness_n_m: PAD_STIFFNESS_N_M,
+            pad_damping_n_s_m: PAD_DAMPING_N_S_M,
+            finger_mass_kg: FINGER_MASS_KG,
+            contact_stiffness_n_m: CONTACT_STIFFNESS_N_M,
+            leash_m: LEASH_M,
+        }
+    }
+}
+
+impl Probe {
+    /// ω_c: the fastest rate of the pressed pad, 1/s: √((k_m + k_s)/m_s + k_s/m_f).
+    #[must_use]
+    pub fn contact_rate_per_s(&self) -> f64 {
+        let pad = (self.contact_stiffness_n_m + self.pad_stiffness_n_m) / self.pad_mass_kg;
+        libm::sqrt(pad + self.pad_stiffness_n_m / self.finger_mass_kg)
+    }
+
+    /// Refuses values outside the documented ranges.
+    pub(super) fn check(&self) -> Result<(), DesignError> {
+        let within = |field, value, low: f64, high: f64, expected| {
+            DesignError::check(field, value, expected, |x| x >= low && x <= high).map(|_| ())
+        };
+        within("pad_mass_kg", self.pad_mass_kg, 1e-6, 1.0, "from 1e-6 to 1 kg")?;
+        within("pad_stiffness_n_m", self.pad_stiffness_n_m, 1e-3, 1e7, "from 1e-3 to 1e7 N/m")?;
+        within("pad_damping_n_s_m", self.pad_damping_n_s_m, 0.0, 1e4, "from 0 to 1e4 N·s/m")?;
+        within("finger_mass_kg", self.finger_mass_kg, 1e-5, 100.0, "from 1e-5 to 100 kg")?;
+        within("contact_stiffness_n_m", self.contact_stiffness_n_m, 1.0, 1e9, "from 1 to 1e9 N/m")?;
+        within("leash_m", self.leash_m, 1e-6, 0.05, "from 1e-6 to 0.05 m")
+    }
+}

@@ -1,0 +1,290 @@
+//! The few vector operations the bank needs, for each instruction set.
+//!
+//! Every method is `unsafe` because it may only run on a processor that has the instructions of its
+//! type; `Kernel` makes sure of that once, when it is detected. All methods inline into a function that
+//! enables those instructions.
+#![allow(unsafe_code)]
+
+use super::LANES;
+
+/// The lane sums of one sample. Aligned, because a vector across two cache lines costs two.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Row(pub [f32; LANES]);
+
+/// A few `f32` side by side.
+pub(super) trait Vector: Copy {
+    /// `f32` in one vector; divides [`LANES`].
+    const LEN: usize;
+    /// All lanes `x`.
+    unsafe fn splat(x: f32) -> Self;
+    /// Reads `LEN` values.
+    unsafe fn load(from: *const f32) -> Self;
+    /// Writes `LEN` values.
+    unsafe fn store(self, to: *mut f32);
+    /// self + other.
+    unsafe fn add(self, other: Self) -> Self;
+    /// self · by + plus; one rounding where the processor has it.
+    unsafe fn mul_add(self, by: Self, plus: Self) -> Self;
+    /// plus − self · by.
+    unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self;
+    /// Adds the sum over the lanes of each row to `out`, in the order of [`sum_row`].
+    #[inline(always)]
+    unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
+        for (row, y) in rows.iter().zip(out) {
+            *y += sum_row(row);
+        }
+    }
+}
+
+/// The one order of summation: halves onto each other, then neighbours, then neighbours, then halves.
+#[inline(always)]
+pub(super) fn sum_row(row: &Row) -> f32 {
+    let half = |i: usize| row.0[i] + row.0[i + 8];
+    let low = (half(0) + half(1)) + (half(2) + half(3));
+    let high = (half(4) + half(5)) + (half(6) + half(7));
+    low + high
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::Sse as Baseline;
+
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) use Plain as Baseline;
+
+/// Four lanes in plain Rust.
+#[cfg(not(target_arch = "x86_64"))]
+#[derive(Clone, Copy)]
+#[repr(C, align(16))]
+pub(super) struct Plain([f32; 4]);
+
+#[cfg(not(target_arch = "x86_64"))]
+impl Vector for Plain {
+    const LEN: usize = 4;
+    #[inline(always)]
+    unsafe fn splat(x: f32) -> Self {
+        Self([x; 4])
+    }
+    #[inline(always)]
+    unsafe fn load(from: *const f32) -> Self {
+        // SAFETY: the caller hands LEN readable values; unaligned reads are allowed.
+        unsafe { from.cast::<[f32; 4]>().read_unaligned() }.into()
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut f32) {
+        // SAFETY: the caller hands LEN writable values; unaligned writes are allowed.
+        unsafe { to.cast::<[f32; 4]>().write_unaligned(self.0) }
+    }
+    #[inline(always)]
+    unsafe fn add(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+    #[inline(always)]
+    unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
+        // Two roundings: a fused multiply-add would be a library call on the baseline.
+        Self(core::array::from_fn(|i| self.0[i] * by.0[i] + plus.0[i]))
+    }
+    #[inline(always)]
+    unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
+        Self(core::array::from_fn(|i| plus.0[i] - self.0[i] * by.0[i]))
+    }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+impl From<[f32; 4]> for Plain {
+    #[inline(always)]
+    fn from(lanes: [f32; 4]) -> Self {
+        Self(lanes)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(super) mod x86 {
+    //! AVX2 with FMA, and AVX-512.
+    use super::{Row, Vector};
+    use core::arch::x86_64::*;
+
+    macro_rules! vector {
+        ($name:ident, $raw:ty, $len:literal, $set1:ident, $load:ident, $store:ident, $add:ident,
+         $fmadd:ident, $fnmadd:ident) => {
+            impl Vector for $name {
+                const LEN: usize = $len;
+                #[inline(always)]
+                unsafe fn splat(x: f32) -> Self {
+                    // SAFETY: the trait's contract: the processor has this instruction set.
+                    Self(unsafe { $set1(x) })
+                }
+                #[inline(always)]
+                unsafe fn load(from: *const f32) -> Self {
+                    // SAFETY: as above, and the caller hands LEN readable values.
+                    Self(unsafe { $load(from) })
+                }
+                #[inline(always)]
+                unsafe fn store(self, to: *mut f32) {
+                    // SAFETY: as above, and the caller hands LEN writable values.
+                    unsafe { $store(to, self.0) }
+                }
+                #[inline(always)]
+                unsafe fn add(self, other: Self) -> Self {
+                    // SAFETY: the trait's contract.
+                    Self(unsafe { $add(self.0, other.0) })
+                }
+                #[inline(always)]
+                unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
+                    // SAFETY: the trait's contract.
+                    Self(unsafe { $fmadd(self.0, by.0, plus.0) })
+                }
+                #[inline(always)]
+                unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
+                    // SAFETY: the trait's contract.
+                    Self(unsafe { $fnmadd(self.0, by.0, plus.0) })
+                }
+                #[inline(always)]
+                unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
+                    // SAFETY: both sets include AVX.
+                    unsafe { add_sums_avx(rows, out) }
+                }
+            }
+        };
+    }
+
+    /// Four lanes of the baseline, SSE2: two roundings where the others have one.
+    #[derive(Clone, Copy)]
+    pub(in super::super) struct Sse(__m128);
+
+    impl Vector for Sse {
+        const LEN: usize = 4;
+        #[inline(always)]
+        unsafe fn splat(x: f32) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_set1_ps(x) })
+        }
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            // SAFETY: as above, and the caller hands LEN readable values.
+            Self(unsafe { _mm_loadu_ps(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f32) {
+            // SAFETY: as above, and the caller hands LEN writable values.
+            unsafe { _mm_storeu_ps(to, self.0) }
+        }
+        #[inline(always)]
+        unsafe fn add(self, other: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_add_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_add_ps(_mm_mul_ps(self.0, by.0), plus.0) })
+        }
+        #[inline(always)]
+        unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_sub_ps(plus.0, _mm_mul_ps(self.0, by.0)) })
+        }
+    }
+
+    /// Eight lanes.
+    #[derive(Clone, Copy)]
+    pub(in super::super) struct Avx2(__m256);
+    vector!(
+        Avx2,
+        __m256,
+        8,
+        _mm256_set1_ps,
+        _mm256_loadu_ps,
+        _mm256_storeu_ps,
+        _mm256_add_ps,
+        _mm256_fmadd_ps,
+        _mm256_fnmadd_ps
+    );
+
+    /// Sixteen lanes.
+    #[derive(Clone, Copy)]
+    pub(in super::super) struct Avx512(__m512);
+    vector!(
+        Avx512,
+        __m512,
+        16,
+        _mm512_set1_ps,
+        _mm512_loadu_ps,
+        _mm512_storeu_ps,
+        _mm512_add_ps,
+        _mm512_fmadd_ps,
+        _mm512_fnmadd_ps
+    );
+
+    /// The upper eight lanes of a row onto its lower eight.
+    #[inline(always)]
+    unsafe fn halves(row: &Row) -> __m256 {
+        // SAFETY: a row holds 16 values; the processor has AVX.
+        unsafe { _mm256_add_ps(_mm256_loadu_ps(row.0.as_ptr()), _mm256_loadu_ps(row.0.as_ptr().add(8))) }
+    }
+
+    /// Four rows at a time through the horizontal adds, in the order of `sum_row`.
+    #[inline(always)]
+    unsafe fn add_sums_avx(rows: &[Row], out: &mut [f32]) {
+        let (four_rows, last_rows) = rows.as_chunks::<4>();
+        let (four_out, last_out) = out.as_chunks_mut::<4>();
+        for (rows, y) in four_rows.iter().zip(four_out) {
+            // SAFETY: `y` holds 4 values; the processor has AVX.
+            unsafe {
+                let first = _mm256_hadd_ps(halves(&rows[0]), halves(&rows[1]));
+                let second = _mm256_hadd_ps(halves(&rows[2]), halves(&rows[3]));
+                let quads = _mm256_hadd_ps(first, second);
+                let sums = _mm_add_ps(_mm256_castps256_ps128(quads), _mm256_extractf128_ps::<1>(quads));
+                _mm_storeu_ps(y.as_mut_ptr(), _mm_add_ps(_mm_loadu_ps(y.as_ptr()), sums));
+            }
+        }
+        for (row, y) in last_rows.iter().zip(last_out) {
+            *y += super::sum_row(row);
+        }
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+pub(super) mod neon {
+    //! NEON, which every 64-bit ARM has.
+    use super::Vector;
+    use core::arch::aarch64::*;
+
+    /// Four lanes.
+    #[derive(Clone, Copy)]
+    pub(in super::super) struct Neon(float32x4_t);
+
+    impl Vector for Neon {
+        const LEN: usize = 4;
+        #[inline(always)]
+        unsafe fn splat(x: f32) -> Self {
+            // SAFETY: NEON is part of the base of this architecture.
+            Self(unsafe { vdupq_n_f32(x) })
+        }
+        #[inline(always)]
+        unsafe fn load(from: *const f32) -> Self {
+            // SAFETY: as above, and the caller hands LEN readable values.
+            Self(unsafe { vld1q_f32(from) })
+        }
+        #[inline(always)]
+        unsafe fn store(self, to: *mut f32) {
+            // SAFETY: as above, and the caller hands LEN writable values.
+            unsafe { vst1q_f32(to, self.0) }
+        }
+        #[inline(always)]
+        unsafe fn add(self, other: Self) -> Self {
+            // SAFETY: NEON is part of the base of this architecture.
+            Self(unsafe { vaddq_f32(self.0, other.0) })
+        }
+        #[inline(always)]
+        unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
+            // SAFETY: NEON is part of the base of this architecture.
+            Self(unsafe { vfmaq_f32(plus.0, self.0, by.0) })
+        }
+        #[inline(always)]
+        unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
+            // SAFETY: NEON is part of the base of this architecture.
+            Self(unsafe { vfmsq_f32(plus.0, self.0, by.0) })
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Dead reckoning from the latest event, and how long to believe it.
+
+use super::{REST_SPEED_M_S, TrajectoryDesign};
+
+/// Event period assumed until two events are known, s.
+const FIRST_PERIOD_S: f64 = 1.0 / 60.0;
+/// Shortest and longest event period the running estimate may take, s.
+const PERIOD_RANGE_S: (f64, f64) = (0.001, 0.1);
+/// Weight of a new interval in the running estimate.
+const PERIOD_WEIGHT: f64 = 0.25;
+/// Event periods over which a reported velocity is believed.
+pub const BELIEVED_PERIODS: f64 = 1.5;
+/// Time constant with which it then decays, event periods.
+const DECAY_PERIODS: f64 = 0.5;
+
+/// The latest event, at the origin of the path's coordinates, and what follows from it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Reckoning {
+    sample: u64,
+    velocity_m_s: [f64; 2],
+    force_n: f64,
+    period_s: f64,
+    events: u32,
+    glide: Glide,
+}
+
+/// The path once the reported velocity is no longer believed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Glide {
+    /// Samples from the event for which the velocity is believed.
+    after_samples: i64,
+    position_m: [f64; 2],
+    velocity_m_s: [f64; 2],
+    /// What is left of the velocity after one sample.
+    keep: f64,
+    started: bool,
+}
+
+impl Reckoning {
+    pub fn begin(sample: u64, velocity_m_s: [f64; 2], force_n: f64) -> Self {
+        let glide = Glide {
+            after_samples: -1,
+            position_m: [0.0; 2],
+            velocity_m_s: [0.0; 2],
+            keep: 0.0,
+            started: false,
+        };
+        Self { sample, velocity_m_s, force_n, period_s: FIRST_PERIOD_S, events: 1, glide }
+    }
+
+    pub fn sample(&self) -> u64 {
+        self.sample
+    }
+
+    pub fn velocity(&self) -> [f64; 2] {
+        self.velocity_m_s
+    }
+
+    pub fn force_n(&self) -> f64 {
+        self.force_n
+    }
+
+    pub fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
+    /// Carries the event rate over a teleport.
+    pub fn set_period_s(&mut self, period_s: f64) {
+        self.period_s = period_s;
+        self.events = self.events.max(2);
+    }
+
+    /// Whether nothing moves the input until the next event.
+    pub fn is_at_rest(&self) -> bool {
+        self.velocity_m_s == [0.0; 2] || (self.glide.started && self.glide.velocity_m_s == [0.0; 2])
+    }
+
+    /// Forgets the velocity.
+    pub fn stop(&mut self) {
+        self.velocity_m_s = [0.0; 2];
+        self.glide.started = false;
+        self.glide.after_samples = -1;
+    }
+
+    /// Samples after an event for which its velocity is believed.
+    pub fn glide_limit_samples(&self, design: &TrajectoryDesign) -> i64 {
+        (BELIEVED_PERIODS * self.period_s / design.sample_period_s) as i64
+    }
+
+    /// Where the input will be `gap_s` after the latest event, relative to it.
+    pub fn expected(&self, design: &TrajectoryDesign, gap_s: f64) -> [f64; 2] {
+        let believed_s = self.glide_limit_samples(design) as f64 * design.sample_period_s;
+        let decay_s = DECAY_PERIODS * self.period_s;
+        let late_s = gap_s - believed_s;
+        let time_s =
+            if late_s > 0.0 { believed_s + decay_s * (1.0 - libm::exp(-late_s / decay_s)) } else { gap_s };
+        [self.velocity_m_s[0] * time_s, self.velocity_m_s[1] * time_s]
+    }
+
+    /// Takes a new event, `gap_s` after the latest; the origin has already been moved to it.
+    pub fn follow(
+        &mut self,
+        design: &TrajectoryDesign,
+        sample: u64,
+        gap_s: f64,
+        velocity_m_s: [f64; 2],
+        force_n: f64,
+    ) {
+        if gap_s > 0.0 {
+            // A dropped event doubles an interval; clamping keeps it from doubling the estimate.
+            let (low, high) =
+                if self.events == 1 { PERIOD_RANGE_S } else { (0.5 * self.period_s, 1.5 * self.period_s) };
+            let interval_s = gap_s.clamp(low, high).clamp(PERIOD_RANGE_S.0, PERIOD_RANGE_S.1);
+            let weight = if self.events == 1 { 1.0 } else { PERIOD_WEIGHT };
+            self.period_s += weight * (interval_s - self.period_s);
+            self.events = self.events.saturating_add(1);
+        }
+        let (period_s, events) = (self.period_s, self.events);
+        *self = Self { period_s, events, ..Self::begin(sample, velocity_m_s, force_n) };
+        self.glide.keep = libm::exp(-design.sample_period_s / (DECAY_PERIODS * period_s));
+        self.glide.after_samples = self.glide_limit_samples(design);
+    }
+
+    /// The input at `sample`, relative to the latest event. Once the velocity is no longer believed it
+    /// must be called for every sample in turn.
+    #[inline]
+    pub fn tick(&mut self, design: &TrajectoryDesign, sample: u64) -> [f64; 2] {
+        let age = sample.wrapping_sub(self.sample) as i64;
+        if self.glide.after_samples < 0 {
+            self.glide.after_samples = self.glide_limit_samples(design);
+            self.glide.keep = libm::exp(-design.sample_period_s / (DECAY_PERIODS * self.period_s));
+        }
+        if age <= self.glide.after_samples {
+            // An event stamped ahead of its sample is followed back no further than ahead.
+            let believed = age.max(-self.glide.after_samples) as f64 * design.sample_period_s;
+            return [self.velocity_m_s[0] * believed, self.velocity_m_s[1] * believed];
+        }
+        self.glide(design)
+    }
+
+    fn glide(&mut self, design: &TrajectoryDesign) -> [f64; 2] {
+        let glide = &mut self.glide;
+        if !glide.started {
+            let believed_s = glide.after_samples as f64 * design.sample_period_s;
+            glide.position_m = [self.velocity_m_s[0] * believed_s, self.velocity_m_s[1] * believed_s];
+            glide.velocity_m_s = self.velocity_m_s;
+            glide.started = true;
+        }
+        for axis in 0..2 {
+            glide.velocity_m_s[axis] *= glide.keep;
+            glide.position_m[axis] += glide.velocity_m_s[axis] * design.sample_period_s;
+        }
+        if libm::hypot(glide.velocity_m_s[0], glide.velocity_m_s[1]) < REST_SPEED_M_S {
+            glide.velocity_m_s = [0.0; 2];
+        }
+        glide.position_m
+    }
+}

@@ -1,0 +1,161 @@
+//! Error of each integrator against a 64 times oversampled reference, and of that reference against
+//! figures that scipy made (`independent/micro_contact_reference.py`).
+
+mod profiles;
+
+use asperity_dsp::micro_contact::{ContactSample, Integrator, MicroContact, Probe};
+use profiles::{HELD_OUT, Profile, SUITE};
+use std::sync::OnceLock;
+
+const RATE_HZ: f64 = 44_100.0;
+const OVERSAMPLING: usize = 64;
+/// Highest rate of a reference.
+const REFERENCE_HZ: f64 = RATE_HZ * OVERSAMPLING as f64;
+
+/// Rows aligned with the inputs: row n is input n.
+fn rows(profile: &Profile, integrator: Integrator, rate_hz: f64) -> Vec<ContactSample> {
+    let design = MicroContact::new(&Probe::default(), integrator, rate_hz).unwrap();
+    let (heights, forces) = (profile.heights_m(rate_hz), profile.forces_n(rate_hz));
+    let mut state = design.at_rest(heights[0], forces[0]);
+    let mut out = vec![ContactSample::default(); heights.len()];
+    design.run(&mut state, &heights, &forces, &mut out);
+    assert_eq!(state.resets(), 0);
+    out.drain(..design.latency_samples());
+    out
+}
+
+/// RMS of the difference over the AC RMS of the reference.
+fn error(value: impl Fn(&ContactSample) -> f64, rows: &[ContactSample], reference: &[ContactSample]) -> f64 {
+    let n = rows.len().min(reference.len());
+    let mean = reference[..n].iter().map(&value).sum::<f64>() / n as f64;
+    let pairs = rows.iter().zip(reference);
+    let (difference, power) = pairs.fold((0.0, 0.0), |(d, p), (a, r)| {
+        (d + (value(a) - value(r)).powi(2), p + (value(r) - mean).powi(2))
+    });
+    (difference / power).sqrt()
+}
+
+/// The oversampled reference at the times of `rate_hz`, its contact forces averaged over each step.
+fn reference(profile: &Profile, rate_hz: f64) -> Vec<ContactSample> {
+    let times = (REFERENCE_HZ / rate_hz).round() as usize;
+    let fine = rows(profile, Integrator::ExactEvent, rate_hz * times as f64);
+    let mut coarse: Vec<_> = fine.iter().copied().step_by(times).collect();
+    for (n, row) in coarse.iter_mut().enumerate().skip(1) {
+        let step = &fine[(n - 1) * times + 1..=n * times];
+        row.contact_force_n = step.iter().map(|s| s.contact_force_n).sum::<f64>() / times as f64;
+    }
+    coarse
+}
+
+/// The references at 44.1 kHz, suite first, computed once.
+fn references() -> &'static [Vec<ContactSample>] {
+    static ALL: OnceLock<Vec<Vec<ContactSample>>> = OnceLock::new();
+    ALL.get_or_init(|| SUITE.iter().chain(&HELD_OUT).map(|p| reference(p, RATE_HZ)).collect())
+}
+
+/// Force of the contact spring at the row's time.
+fn spring_force_n(row: &ContactSample) -> f64 {
+    (row.height_m - row.pad_m).max(0.0) * Probe::default().contact_stiffness_n_m
+}
+
+/// Geometric means of the errors of pad position, spring force and mean contact force.
+fn errors(
+    suite: &[Profile],
+    references: &[Vec<ContactSample>],
+    rate_hz: f64,
+    integrators: &[Integrator],
+) -> Vec<[f64; 3]> {
+    let mut logs = vec![[0.0; 3]; integrators.len()];
+    for (profile, reference) in suite.iter().zip(references) {
+        for (logs, &integrator) in logs.iter_mut().zip(integrators) {
+            let rows = rows(profile, integrator, rate_hz);
+            logs[0] += error(|s| s.pad_m, &rows, reference).ln();
+            logs[1] += error(spring_force_n, &rows, reference).ln();
+            logs[2] += error(|s| s.contact_force_n, &rows, reference).ln();
+        }
+    }
+    logs.iter().map(|l| l.map(|x| (x / suite.len() as f64).exp())).collect()
+}
+
+#[test]
+fn errors_stay_below_the_bars_on_the_suite_and_on_profiles_nobody_tuned_on() {
+    let (of_suite, of_held_out) = references().split_at(SUITE.len());
+    for (name, suite, references) in [("suite", SUITE, of_suite), ("held out", HELD_OUT, of_held_out)] {
+        let errors = errors(&suite, references, RATE_HZ, &Integrator::ALL);
+        for (integrator, [pad, spring, mean]) in Integrator::ALL.iter().zip(&errors) {
+            println!("{name} {:30} pad {pad:.2e} spring {spring:.2e} mean {mean:.2e}", integrator.name());
+        }
+        let [centred, explicit, exact, conserving] = [errors[0], errors[1], errors[2], errors[3]];
+        assert!(exact[0] <= 5e-4 && exact[1] <= 2e-3 && exact[2] <= 2e-3, "{name}: {exact:?}");
+        assert!(centred[0] <= 3e-3 && centred[1] <= 1e-2, "{name}: {centred:?}");
+        assert!(conserving[0] <= 3e-3, "{name}: {conserving:?}");
+        assert!(explicit[0] > 3.0 * centred[0], "{name}: centring the damper should pay, {explicit:?}");
+    }
+}
+
+#[test]
+fn errors_fall_with_the_rate_from_22_to_192_khz() {
+    let suite = [SUITE[0], SUITE[1], SUITE[6], SUITE[11]];
+    let mut last = f64::INFINITY;
+    for (rate_hz, bar) in
+        [(22_050.0, 5e-3), (44_100.0, 5e-4), (48_000.0, 5e-4), (96_000.0, 1e-4), (192_000.0, 1e-4)]
+    {
+        let references: Vec<_> = suite.iter().map(|p| reference(p, rate_hz)).collect();
+        let [pad, spring, mean] = errors(&suite, &references, rate_hz, &[Integrator::ExactEvent])[0];
+        println!("{rate_hz} Hz: pad {pad:.2e} spring {spring:.2e} mean {mean:.2e}");
+        assert!(pad <= bar && pad < last, "{rate_hz} Hz: {pad:e}");
+        last = pad;
+    }
+}
+
+#[test]
+fn the_reference_agrees_with_scipy() {
+    let table = include_str!("independent/micro_contact_reference.csv");
+    for (profile, fine) in SUITE.iter().chain(&HELD_OUT).zip(references()) {
+        let coarse = rows(profile, Integrator::ExactEvent, RATE_HZ);
+        let (mut count, mut worst) = (0, [0.0_f64; 4]);
+        let mean = fine.iter().map(|s| s.pad_m).sum::<f64>() / fine.len() as f64;
+        let rms = (fine.iter().map(|s| (s.pad_m - mean).powi(2)).sum::<f64>() / fine.len() as f64).sqrt();
+        for line in table.lines().filter(|l| l.starts_with(&format!("{},", profile.name))) {
+            let field = |i: usize| line.split(',').nth(i).unwrap().parse::<f64>().unwrap();
+            let n = (field(1) * RATE_HZ).round() as usize;
+            worst[0] = worst[0].max((fine[n].pad_m - field(2)).abs() / rms);
+            worst[1] = worst[1].max((fine[n].finger_m - field(3)).abs() / rms);
+            worst[2] = worst[2].max((coarse[n].pad_m - field(2)).abs() / rms);
+            worst[3] = worst[3].max((fine[n].pad_velocity_m_s - field(4)).abs());
+            count += 1;
+        }
+        println!(
+            "{:20} {count} 64x: pad {:.1e} finger {:.1e}; 44.1 kHz: pad {:.1e}",
+            profile.name, worst[0], worst[1], worst[2]
+        );
+        assert_eq!(count, 24, "{}", profile.name);
+        // The lightest finger bounces chaotically, everything else agrees to 1e-5 or far better.
+        let bar = if profile.name == "fractal 1 light" { 1e-3 } else { 1e-5 };
+        assert!(worst[0] <= bar && worst[1] <= bar, "{}: {worst:?}", profile.name);
+        assert!(worst[3] <= 1e3 * bar * rms, "{}: velocity {worst:?}", profile.name);
+        assert!(worst[2] <= 5e-2, "{}: {worst:?}", profile.name);
+    }
+}
+
+#[test]
+fn collisions_on_a_sine_at_1_m_s_are_all_found_and_timed_to_a_microsecond() {
+    let profile = &SUITE[1];
+    let times = |rows: &[ContactSample], rate_hz: f64| -> Vec<f64> {
+        let touch = |(n, row): (usize, &ContactSample)| {
+            row.onset.map(|onset| (n as f64 - 1.0 + onset.offset) / rate_hz)
+        };
+        rows.iter().enumerate().filter_map(touch).collect()
+    };
+    let fine_hz = REFERENCE_HZ;
+    let wanted = times(&rows(profile, Integrator::ExactEvent, fine_hz), fine_hz);
+    assert!(wanted.len() > 380, "one touch a period: {}", wanted.len());
+    for (integrator, bar_s) in [(Integrator::ExactEvent, 0.1e-6), (Integrator::SemiImplicitEuler, 5e-6)] {
+        let found = times(&rows(profile, integrator, RATE_HZ), RATE_HZ);
+        assert_eq!(found.len(), wanted.len(), "{}", integrator.name());
+        let square = found.iter().zip(&wanted).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let rms_s = (square / found.len() as f64).sqrt();
+        println!("{}: {} touches, {:.3} us rms", integrator.name(), found.len(), rms_s * 1e6);
+        assert!(rms_s <= bar_s, "{}: {rms_s:e} s", integrator.name());
+    }
+}

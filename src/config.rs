@@ -1,0 +1,150 @@
+//! Everything that is fixed when an engine is built: rates, capacities, model choices, channels.
+
+use crate::clock::{Clock, ClockMode};
+use crate::error::ConfigError;
+use crate::queue;
+use crate::renderer::Renderer;
+use crate::scene::Scene;
+use crate::stats::Counters;
+use asperity_dsp::DesignError;
+use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe};
+use asperity_dsp::trajectory::PathMode;
+use std::sync::Arc;
+
+pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
+
+/// One haptic channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActuatorSettings {
+    /// What the channel plays: the pad's displacement (the paper) or its acceleration.
+    pub output: Quantity,
+    /// m or m/s² at sample value 1.0; 1.0 gives SI units.
+    pub full_scale: f64,
+    /// Cutoff of the high-pass that turns pad positions into movement about the mean surface, Hz;
+    /// 0 = off.
+    pub highpass_hz: f64,
+    /// Time from silence to full level after the start, s.
+    pub soft_start_s: f64,
+    /// Device whose frequency response is inverted.
+    pub equalise: Option<DeviceProfile>,
+    /// Device whose excursion and heat are kept within limits.
+    pub limit: Option<DeviceProfile>,
+}
+
+impl Default for ActuatorSettings {
+    fn default() -> Self {
+        Self {
+            output: Quantity::Displacement,
+            full_scale: 1e-4,
+            highpass_hz: 10.0,
+            soft_start_s: 0.0,
+            equalise: None,
+            limit: None,
+        }
+    }
+}
+
+/// Settings of the audio bus.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AudioSettings {
+    /// Linear gain.
+    pub gain: f64,
+    /// Whether a peak limiter keeps the output within ±1.
+    pub limit: bool,
+}
+
+impl Default for AudioSettings {
+    fn default() -> Self {
+        Self { gain: 1.0, limit: false }
+    }
+}
+
+/// How an engine is built. `Config::default()` is one finger, one actuator, 44.1 kHz.
+#[derive(Debug, Clone)]
+pub struct Config {
+    /// Rate of every output, Hz; 8–384 kHz.
+    pub sample_rate_hz: f64,
+    /// Seed of the micro-noise: the same seed feels the same at the same place.
+    pub seed: u64,
+    /// How sparse contact positions become a path.
+    pub path: PathMode,
+    /// Cutoff of the path's Butterworth filter, Hz (Hasti §III-C: 30 Hz).
+    pub path_cutoff_hz: f64,
+    /// How the micro-contact model is integrated.
+    pub integrator: Integrator,
+    /// The fingertip, or another probe.
+    pub probe: Probe,
+    /// Haptic channels, in order.
+    pub actuators: Vec<ActuatorSettings>,
+    /// The audio bus.
+    pub audio: AudioSettings,
+    /// Most contacts that sound at once; more steal the least important.
+    pub max_contacts: usize,
+    /// Most surfaces at once.
+    pub max_surfaces: usize,
+    /// Most bodies at once.
+    pub max_bodies: usize,
+    /// Events that may wait between the threads.
+    pub queue_capacity: usize,
+    /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick.
+    pub contact_timeout_s: f64,
+    /// How game time becomes samples.
+    pub clock: ClockMode,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            sample_rate_hz: 44_100.0,
+            seed: 1,
+            path: PathMode::default(),
+            path_cutoff_hz: 30.0,
+            integrator: Integrator::default(),
+            probe: Probe::default(),
+            actuators: vec![ActuatorSettings::default()],
+            audio: AudioSettings::default(),
+            max_contacts: 64,
+            max_surfaces: 256,
+            max_bodies: 256,
+            queue_capacity: 4096,
+            contact_timeout_s: 0.25,
+            clock: ClockMode::default(),
+        }
+    }
+}
+
+impl Config {
+    /// Builds the two halves: [`Scene`] for the game thread, [`Renderer`] for the audio thread.
+    ///
+    /// # Errors
+    /// When a setting is outside its range; the message names the field.
+    pub fn build(self) -> Result<(Scene, Renderer), ConfigError> {
+        self.check()?;
+        let micro_contact = MicroContact::new(&self.probe, self.integrator, self.sample_rate_hz)?;
+        let counters = Arc::new(Counters::default());
+        let (to_audio, from_game) = queue::channel(self.queue_capacity);
+        // Every resource that can be alive, and as many that are being replaced.
+        let (to_game, from_audio) = queue::channel(2 * (self.max_surfaces + self.max_bodies));
+        let renderer = Renderer::new(&self, micro_contact, from_game, to_game, counters.clone())?;
+        let clock = Clock::new(self.clock, self.sample_rate_hz);
+        Ok((Scene::new(self, clock, to_audio, from_audio, counters), renderer))
+    }
+
+    fn check(&self) -> Result<(), DesignError> {
+        DesignError::check("sample_rate_hz", self.sample_rate_hz, "8000–384000 Hz", |r| {
+            (8e3..=384e3).contains(&r)
+        })?;
+        DesignError::check("contact_timeout_s", self.contact_timeout_s, "0.01–3600 s", |t| {
+            (0.01..=3600.0).contains(&t)
+        })?;
+        DesignError::check("audio.gain", self.audio.gain, "0–1e6", |g| (0.0..=1e6).contains(&g))?;
+        let count = |field, value: usize, most: usize, expected| {
+            DesignError::check(field, value as f64, expected, |v| v >= 1.0 && v <= most as f64).map(|_| ())
+        };
+        count("actuators", self.actuators.len(), 1024, "1–1024 channels")?;
+        count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;
+        count("max_surfaces", self.max_surfaces, 65_536, "1–65536 surfaces")?;
+        count("max_bodies", self.max_bodies, 65_536, "1–65536 bodies")?;
+        count("queue_capacity", self.queue_capacity, 1 << 24, "1–16777216 events")
+    }
+}

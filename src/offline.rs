@@ -1,0 +1,207 @@
+//! Rendering a contact log without a device: the same two halves, the same events, to memory or WAV.
+
+use crate::contact_log::{ContactLog, LogError, Names};
+use crate::error::ReportError;
+use crate::renderer::Renderer;
+use crate::scene::Scene;
+use crate::stats::Stats;
+use crate::tap::{NoTap, Tap};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// How a log is rendered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Frames a block, 1–4096; the result does not depend on it.
+    pub block_frames: usize,
+    /// How long bodies may ring after the last event, s.
+    pub tail_s: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { block_frames: 256, tail_s: 1.0 }
+    }
+}
+
+/// A finished render. Sample 0 is game time 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Render {
+    /// Rate of every channel, Hz.
+    pub sample_rate_hz: f64,
+    /// The mono audio bus.
+    pub audio: Vec<f32>,
+    /// One channel an actuator, in order.
+    pub haptic: Vec<Vec<f32>>,
+    /// What happened.
+    pub stats: Stats,
+    /// Time spent in the renderer alone.
+    pub processing: Duration,
+}
+
+/// Renders a log. Events with bad numbers are left out and counted in
+/// [`Stats::refused`](crate::Stats::refused).
+///
+/// # Errors
+/// When the log names a surface, body or striker that is not in `names`.
+pub fn render(
+    scene: Scene,
+    renderer: Renderer,
+    log: &ContactLog,
+    names: &Names,
+    options: &Options,
+) -> Result<Render, LogError> {
+    render_tapped(scene, renderer, log, names, options, &mut NoTap)
+}
+
+/// [`render`], with a view into every contact.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_tapped<T: Tap>(
+    scene: Scene,
+    renderer: Renderer,
+    log: &ContactLog,
+    names: &Names,
+    options: &Options,
+    tap: &mut T,
+) -> Result<Render, LogError> {
+    let rate = renderer.sample_rate_hz();
+    let frames = ((log.end_s() + options.tail_s.max(0.0)) * rate).ceil() as usize;
+    let events = log
+        .lines
+        .iter()
+        .map(|line| Ok((line.t, line.event.resolve(names)?)))
+        .collect::<Result<Vec<_>, LogError>>()?;
+    let mut take = Take::new(scene, renderer, frames, options.block_frames.clamp(1, 4096));
+    for (time_s, event) in events {
+        take.make_room((time_s * rate).round() as u64, tap);
+        // Refusals are counted by the scene; the rest of the log still renders.
+        let _: Result<(), ReportError> = take.scene.report(time_s, event);
+    }
+    take.render_to(take.end, tap);
+    Ok(take.finish())
+}
+
+/// A render in progress.
+struct Take {
+    scene: Scene,
+    renderer: Renderer,
+    block_frames: usize,
+    /// One past the last sample to render, the latency included.
+    end: u64,
+    audio: Vec<f32>,
+    haptic: Vec<Vec<f32>>,
+    processing: Duration,
+}
+
+impl Take {
+    fn new(scene: Scene, renderer: Renderer, frames: usize, block_frames: usize) -> Self {
+        let total = frames + renderer.latency_samples();
+        let haptic = vec![vec![0.0; total]; renderer.haptic_channels()];
+        Self {
+            scene,
+            block_frames,
+            end: total as u64,
+            audio: vec![0.0; total],
+            haptic,
+            processing: Duration::ZERO,
+            renderer,
+        }
+    }
+
+    /// Renders whole blocks that no coming event can touch, and more when the queue runs full. Where
+    /// the queue is flushed does not change the result, because every event carries its sample.
+    fn make_room<T: Tap>(&mut self, next_event: u64, tap: &mut T) {
+        while self.renderer.position() + self.block_frames as u64 <= next_event.min(self.end) {
+            self.render_block(self.block_frames, tap);
+        }
+        if self.scene.is_filling() {
+            let ahead = next_event.saturating_sub(self.renderer.position()).max(1);
+            self.render_to((self.renderer.position() + ahead).min(self.end), tap);
+        }
+    }
+
+    fn render_to<T: Tap>(&mut self, end: u64, tap: &mut T) {
+        while self.renderer.position() < end {
+            let left = (end - self.renderer.position()) as usize;
+            self.render_block(left.min(self.block_frames), tap);
+        }
+    }
+
+    fn render_block<T: Tap>(&mut self, frames: usize, tap: &mut T) {
+        let at = self.renderer.position() as usize;
+        let range = at..at + frames;
+        let mut haptic: Vec<_> = self.haptic.iter_mut().map(|channel| &mut channel[range.clone()]).collect();
+        let audio = &mut self.audio[range];
+        let began = Instant::now();
+        self.renderer.render_tapped(&mut haptic, &mut [audio], tap);
+        self.processing += began.elapsed();
+    }
+
+    fn finish(mut self) -> Render {
+        let latency = self.renderer.latency_samples();
+        for channel in self.haptic.iter_mut().chain([&mut self.audio]) {
+            channel.drain(..latency);
+        }
+        Render {
+            sample_rate_hz: self.renderer.sample_rate_hz(),
+            audio: self.audio,
+            haptic: self.haptic,
+            stats: self.scene.stats(),
+            processing: self.processing,
+        }
+    }
+}
+
+impl Render {
+    /// Duration, s.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.audio.len() as f64 / self.sample_rate_hz
+    }
+
+    /// Seconds of signal per second of signal processing.
+    #[must_use]
+    pub fn real_time_factor(&self) -> f64 {
+        self.duration_s() / self.processing.as_secs_f64().max(1e-9)
+    }
+
+    /// Writes the audio bus as a mono 32-bit float WAV file.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn write_audio_wav(&self, path: impl AsRef<Path>) -> Result<(), hound::Error> {
+        write_wav(path.as_ref(), &[&self.audio], self.sample_rate_hz)
+    }
+
+    /// Writes the haptic channels as one 32-bit float WAV file, in the order of the actuators.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn write_haptic_wav(&self, path: impl AsRef<Path>) -> Result<(), hound::Error> {
+        let channels: Vec<_> = self.haptic.iter().map(Vec::as_slice).collect();
+        write_wav(path.as_ref(), &channels, self.sample_rate_hz)
+    }
+}
+
+/// Writes equally long channels as a 32-bit float WAV file.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_wav(path: &Path, channels: &[&[f32]], sample_rate_hz: f64) -> Result<(), hound::Error> {
+    let spec = hound::WavSpec {
+        channels: channels.len() as u16,
+        sample_rate: sample_rate_hz.round() as u32,
+        bits_per_sample: 32,
+        sample_format: hound::SampleFormat::Float,
+    };
+    let mut writer = hound::WavWriter::create(path, spec)?;
+    let frames = channels.first().map_or(0, |channel| channel.len());
+    for frame in 0..frames {
+        for channel in channels {
+            writer.write_sample(channel[frame])?;
+        }
+    }
+    writer.finalize()
+}

@@ -1,0 +1,499 @@
+//! The audio half: applies events at their samples, runs the voices, rings the bodies, mixes.
+//!
+//! Everything here is infallible and free of allocation, locks, logging and clocks; all memory was
+//! made by [`Config::build`](crate::Config::build). Time is cut at events and on an absolute grid of
+//! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
+
+use crate::body::BodySeat;
+use crate::config::{ActuatorSettings, AudioSettings, Config};
+use crate::event::{ContactEvent, ContactId, ContactSample};
+use crate::queue::{Dead, Message, Receiver, Sender};
+use crate::seat::{Change, Seat};
+use crate::stats::Counters;
+use crate::tap::{NoTap, Tap};
+use crate::voice::{Phase, Scratch, Shared, Voice};
+use asperity_dsp::DesignError;
+use asperity_dsp::actuator::{
+    self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
+    Quantity, RELEASE_S,
+};
+use asperity_dsp::butterworth::Butterworth;
+use asperity_dsp::fractal_noise::FractalNoise;
+use asperity_dsp::micro_contact::{MicroContact, Probe};
+use asperity_dsp::modal_bank::Kernel;
+use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_texture::height_field::MAX_BLOCK;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// The contact force above this frequency excites the body, Hz; slower force is the hand, not the
+/// surface.
+const FORCE_HIGH_PASS_HZ: f64 = 30.0;
+
+/// Where the audio limiter holds the peaks: full scale.
+const AUDIO_CEILING: f64 = 1.0;
+
+/// The audio half of an engine.
+pub struct Renderer {
+    position: u64,
+    shared: Shared,
+    timeout_samples: u64,
+    max_contacts: usize,
+    voices: Vec<Voice>,
+    silent: Vec<SilentContact>,
+    seats: Vec<Seat>,
+    bodies: Vec<BodySeat>,
+    channels: Vec<HapticChannel>,
+    audio: AudioBus,
+    kernel: Kernel,
+    from_game: Receiver<Message>,
+    to_game: Sender<Dead>,
+    counters: Arc<Counters>,
+    scratch: Box<Scratch>,
+    mix: Box<Mix>,
+}
+
+struct HapticChannel {
+    output: ContactOutput,
+    design: actuator::Channel,
+    control: ChannelControl,
+    state: ChannelState,
+    /// Sum of the contacts, m or m/s².
+    sum: [f64; MAX_BLOCK],
+}
+
+struct AudioBus {
+    gain: f32,
+    limiter: Option<(PeakLimiter, PeakLimiterState)>,
+}
+
+struct Mix {
+    audio: [f32; MAX_BLOCK],
+    haptic: [f32; MAX_BLOCK],
+}
+
+/// A contact that goes on without a voice: it lapsed, or its voice was stolen. A later move revives it.
+#[derive(Clone, Copy)]
+struct SilentContact {
+    contact: ContactId,
+    surface: usize,
+    actuator: usize,
+    stolen: bool,
+}
+
+impl Renderer {
+    pub(crate) fn new(
+        config: &Config,
+        micro_contact: MicroContact,
+        from_game: Receiver<Message>,
+        to_game: Sender<Dead>,
+        counters: Arc<Counters>,
+    ) -> Result<Self, DesignError> {
+        let rate = config.sample_rate_hz;
+        let shared = Shared {
+            sample_rate_hz: rate,
+            collision_mass_kg: config.probe.pad_mass_kg * (1.0 + restitution(&config.probe)),
+            idle_path: TrajectoryDesign::new(config.path, config.path_cutoff_hz, rate, [f64::INFINITY; 2])?,
+            idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
+            micro_contact,
+            noise: FractalNoise::new(config.seed),
+            force_high_pass: Butterworth::new(FORCE_HIGH_PASS_HZ, rate)?,
+            fade_samples: (RELEASE_S * rate).ceil() as u32,
+        };
+        // Spare voices let stolen and ended contacts fade while new ones sound.
+        let voices = config.max_contacts + config.max_contacts.div_ceil(2).max(8);
+        Ok(Self {
+            position: 0,
+            timeout_samples: (config.contact_timeout_s * rate) as u64,
+            max_contacts: config.max_contacts,
+            voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
+            silent: Vec::with_capacity(config.max_contacts),
+            seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
+            bodies: (0..config.max_bodies).map(|_| BodySeat::default()).collect(),
+            channels: config
+                .actuators
+                .iter()
+                .map(|settings| HapticChannel::new(settings, rate))
+                .collect::<Result<_, _>>()?,
+            audio: AudioBus::new(&config.audio, rate)?,
+            kernel: Kernel::detect(),
+            from_game,
+            to_game,
+            counters,
+            scratch: Scratch::new(),
+            mix: Box::new(Mix { audio: [0.0; MAX_BLOCK], haptic: [0.0; MAX_BLOCK] }),
+            shared,
+        })
+    }
+
+    /// How many haptic channels there are.
+    #[must_use]
+    pub fn haptic_channels(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// Rate of every output, Hz.
+    #[must_use]
+    pub fn sample_rate_hz(&self) -> f64 {
+        self.shared.sample_rate_hz
+    }
+
+    /// By how many samples every output lags behind the stamps of its events, besides the delay of the
+    /// path filter: the look-ahead of the contact model.
+    #[must_use]
+    pub fn latency_samples(&self) -> usize {
+        self.shared.micro_contact.latency_samples()
+    }
+
+    /// Index of the next sample to be rendered.
+    #[must_use]
+    pub fn position(&self) -> u64 {
+        self.position
+    }
+
+    /// Tells the engine which share of its time budget the last block took (1 = all of it); the device
+    /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load).
+    pub fn report_load(&mut self, load: f32) {
+        self.counters.set_load(load);
+    }
+
+    /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
+    /// counts and the rest is silent). Haptic channels come in the order of the config; the mono audio
+    /// bus is copied to every audio channel.
+    pub fn render(&mut self, haptic: &mut [&mut [f32]], audio: &mut [&mut [f32]]) {
+        self.render_tapped(haptic, audio, &mut NoTap);
+    }
+
+    /// [`render`](Self::render), with a view into every contact.
+    pub fn render_tapped<T: Tap>(
+        &mut self,
+        haptic: &mut [&mut [f32]],
+        audio: &mut [&mut [f32]],
+        tap: &mut T,
+    ) {
+        let frames = shortest(haptic).min(shortest(audio));
+        let frames = if frames == usize::MAX { 0 } else { frames };
+        for channel in haptic.iter_mut() {
+            channel.fill(0.0);
+        }
+        for channel in audio.iter_mut() {
+            channel.fill(0.0);
+        }
+        let mut done = 0;
+        while done < frames {
+            self.apply_due();
+            let n = self.stretch(frames - done);
+            self.render_contacts(n, tap);
+            self.render_haptics(done, n, haptic);
+            self.render_bodies(done, n, audio);
+            done += n;
+            self.position += n as u64;
+            if self.position.is_multiple_of(MAX_BLOCK as u64) {
+                self.tidy();
+            }
+        }
+        self.counters.position.store(self.position, Relaxed);
+    }
+
+    /// How many samples can be rendered before the next event, the grid or the end of the block.
+    fn stretch(&mut self, wanted: usize) -> usize {
+        let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
+        let to_event = match self.from_game.peek() {
+            Some(Message::Event { sample, .. } | Message::Strike { sample, .. }) => {
+                usize::try_from(sample.saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
+            }
+            _ => usize::MAX,
+        };
+        wanted.min(to_grid).min(to_event)
+    }
+
+    fn apply_due(&mut self) {
+        while let Some(message) = self.from_game.peek() {
+            let due = match message {
+                Message::Event { sample, .. } | Message::Strike { sample, .. } => *sample <= self.position,
+                // Each of these may send something home; it waits until there is room.
+                Message::SetBody { slot, .. } => self.to_game.free() > 0 && self.bodies[*slot].can_change(),
+                _ => self.to_game.free() > 0,
+            };
+            if !due {
+                return;
+            }
+            if let Some(message) = self.from_game.receive() {
+                self.apply(message);
+            }
+        }
+    }
+
+    fn apply(&mut self, message: Message) {
+        match message {
+            Message::Event { sample, event } => {
+                Counters::add(&self.counters.events, 1);
+                Counters::add(&self.counters.late, u64::from(sample < self.position));
+                self.apply_event(&event, sample);
+            }
+            Message::Strike { sample, body, other, pulse } => {
+                Counters::add(&self.counters.events, 1);
+                Counters::add(&self.counters.impacts, 1);
+                Counters::add(&self.counters.late, u64::from(sample < self.position));
+                for body in [Some(body), other].into_iter().flatten() {
+                    self.strike(body, &pulse);
+                }
+            }
+            Message::SetSurface { slot, surface } => self.set_surface(slot, surface),
+            Message::RemoveSurface { slot } => {
+                self.seats[slot].remove();
+                self.fade_contacts_on(slot);
+            }
+            Message::SetBody { slot, body } => self.bodies[slot].set(body),
+            Message::RemoveBody { slot } => self.bodies[slot].remove(),
+            Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
+        }
+    }
+
+    fn apply_event(&mut self, event: &ContactEvent, stamp: u64) {
+        match *event {
+            ContactEvent::Begin { contact, surface, actuator, sample } => {
+                self.end(contact);
+                self.begin(contact, surface.0 as usize, usize::from(actuator.0), &sample);
+            }
+            ContactEvent::Moved { contact, sample } => self.moved(contact, &sample, stamp),
+            ContactEvent::End { contact } => {
+                if !self.end(contact) {
+                    Counters::add(&self.counters.orphaned, 1);
+                }
+            }
+            // The scene turns impacts into strikes before they are sent.
+            ContactEvent::Impact(_) => {}
+        }
+    }
+
+    fn begin(&mut self, contact: ContactId, surface: usize, actuator: usize, sample: &ContactSample) {
+        if !self.seats[surface].is_open() {
+            Counters::add(&self.counters.orphaned, 1);
+            return;
+        }
+        let voice = self.take_voice();
+        let voice = &mut self.voices[voice];
+        (voice.surface, voice.actuator) = (surface, actuator);
+        voice.begin(
+            contact,
+            sample,
+            &mut self.seats[surface],
+            &self.channels[actuator].output,
+            &self.shared,
+            self.position,
+            &mut self.scratch,
+        );
+    }
+
+    fn moved(&mut self, contact: ContactId, sample: &ContactSample, stamp: u64) {
+        if let Some(voice) = sounding(&mut self.voices, contact) {
+            if let Some(slot) = self.seats[voice.surface].current() {
+                voice.moved(sample, slot, stamp, self.position);
+            }
+            return;
+        }
+        let Some(index) = self.silent.iter().position(|silent| silent.contact == contact) else {
+            Counters::add(&self.counters.orphaned, 1);
+            return;
+        };
+        let silent = self.silent[index];
+        if silent.stolen && self.sounding_count() >= self.max_contacts {
+            Counters::add(&self.counters.orphaned, 1);
+            return;
+        }
+        self.silent.swap_remove(index);
+        let landed = ContactSample { closing_m_s: 0.0, ..*sample };
+        self.begin(contact, silent.surface, silent.actuator, &landed);
+    }
+
+    /// Whether there was such a contact.
+    fn end(&mut self, contact: ContactId) -> bool {
+        let known_silent = self.silent.iter().position(|silent| silent.contact == contact);
+        if let Some(index) = known_silent {
+            self.silent.swap_remove(index);
+        }
+        let sounding = sounding(&mut self.voices, contact).map(|voice| voice.fade(&self.shared));
+        sounding.is_some() || known_silent.is_some()
+    }
+
+    fn sounding_count(&self) -> usize {
+        self.voices.iter().filter(|voice| voice.phase == Phase::Sounding).count()
+    }
+
+    /// A voice for a new contact: a free one, after stealing the least important when all are taken.
+    fn take_voice(&mut self) -> usize {
+        if self.sounding_count() >= self.max_contacts {
+            let least = (0..self.voices.len())
+                .filter(|&i| self.voices[i].phase == Phase::Sounding)
+                .min_by(|&a, &b| self.voices[a].priority().total_cmp(&self.voices[b].priority()));
+            if let Some(least) = least {
+                Counters::add(&self.counters.stolen, 1);
+                self.silence(least, true);
+            }
+        }
+        let remaining = |voice: &Voice| match voice.phase {
+            Phase::Free => 0,
+            Phase::Fading { left } => left,
+            Phase::Sounding => u32::MAX,
+        };
+        (0..self.voices.len()).min_by_key(|&i| remaining(&self.voices[i])).unwrap_or(0)
+    }
+
+    /// Fades a contact but remembers it, so that its next move can revive it.
+    fn silence(&mut self, voice: usize, stolen: bool) {
+        let voice = &mut self.voices[voice];
+        voice.fade(&self.shared);
+        if self.silent.len() == self.silent.capacity() {
+            self.silent.swap_remove(0);
+        }
+        self.silent.push(SilentContact {
+            contact: voice.contact,
+            surface: voice.surface,
+            actuator: voice.actuator,
+            stolen,
+        });
+    }
+
+    fn set_surface(&mut self, slot: usize, surface: Box<crate::surface::SurfaceSlot>) {
+        let rate = self.shared.sample_rate_hz;
+        if self.seats[slot].set(surface, self.position, rate, &mut self.to_game) == Change::Restart {
+            for index in 0..self.voices.len() {
+                if self.voices[index].surface == slot && self.voices[index].phase == Phase::Sounding {
+                    self.silence(index, false);
+                }
+            }
+        }
+    }
+
+    fn fade_contacts_on(&mut self, slot: usize) {
+        for voice in self.voices.iter_mut().filter(|voice| voice.surface == slot) {
+            voice.fade(&self.shared);
+        }
+        self.silent.retain(|silent| silent.surface != slot);
+    }
+
+    fn strike(&mut self, body: usize, pulse: &asperity_dsp::hertz::HertzPulse) {
+        // Impacts pass the same look-ahead as contacts, so that both stay aligned.
+        let sample = self.position + self.latency_samples() as u64;
+        self.bodies[body].strike(pulse, sample, self.shared.sample_rate_hz);
+    }
+
+    fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
+        for channel in &mut self.channels {
+            channel.sum[..n].fill(0.0);
+        }
+        let (mut collisions, mut resets) = (0, 0);
+        for voice in self.voices.iter_mut().filter(|voice| voice.phase != Phase::Free) {
+            let seat = &mut self.seats[voice.surface];
+            let channel = &mut self.channels[voice.actuator];
+            voice.render(seat, &self.shared, &channel.output, self.position, n, &mut self.scratch, tap);
+            let out = &self.scratch.out;
+            collisions += out.collisions;
+            resets += out.resets;
+            for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
+                *sum += x;
+            }
+            let body = seat.current().and_then(|slot| slot.surface.body);
+            if let Some(body) = body.map(|id| &mut self.bodies[id.0 as usize]) {
+                body.touch(&out.impulse_n_s[..n]);
+            }
+        }
+        Counters::add(&self.counters.micro_collisions, collisions);
+        Counters::add(&self.counters.quarantined, resets);
+    }
+
+    fn render_haptics(&mut self, at: usize, n: usize, haptic: &mut [&mut [f32]]) {
+        for (index, channel) in self.channels.iter_mut().enumerate() {
+            let block = &mut self.mix.haptic[..n];
+            channel.state.run(&channel.design, &channel.control, &channel.sum[..n], block);
+            if let Some(out) = haptic.get_mut(index) {
+                out[at..at + n].copy_from_slice(&self.mix.haptic[..n]);
+            }
+        }
+    }
+
+    fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
+        let mix = &mut self.mix.audio[..n];
+        mix.fill(0.0);
+        for body in &mut self.bodies {
+            body.render(self.kernel, self.position, mix);
+        }
+        self.audio.finish(mix);
+        for out in audio {
+            out[at..at + n].copy_from_slice(mix);
+        }
+    }
+
+    /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
+    fn tidy(&mut self) {
+        for index in 0..self.voices.len() {
+            let voice = &self.voices[index];
+            let lapsed = self.position.saturating_sub(voice.refreshed) > self.timeout_samples;
+            if voice.phase == Phase::Sounding && lapsed {
+                Counters::add(&self.counters.lapsed, 1);
+                self.silence(index, false);
+            }
+        }
+        for (index, seat) in self.seats.iter_mut().enumerate() {
+            let in_use = || self.voices.iter().any(|v| v.surface == index && v.phase != Phase::Free);
+            seat.tidy(self.position, in_use, &mut self.to_game);
+        }
+        for body in &mut self.bodies {
+            body.tidy(self.position, &mut self.to_game);
+        }
+        self.counters.contacts.store(self.sounding_count() as u64, Relaxed);
+    }
+}
+
+/// Rebound over closing speed of the pad as a damped oscillator on the contact spring: e^(−πζ/√(1−ζ²)).
+fn restitution(probe: &Probe) -> f64 {
+    let critical = 2.0 * (probe.contact_stiffness_n_m * probe.pad_mass_kg).sqrt();
+    let damping = (probe.pad_damping_n_s_m / critical).min(0.999);
+    (-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt()).exp()
+}
+
+/// Length of the shortest channel; `usize::MAX` when there is none.
+fn shortest(channels: &[&mut [f32]]) -> usize {
+    channels.iter().map(|channel| channel.len()).min().unwrap_or(usize::MAX)
+}
+
+fn sounding(voices: &mut [Voice], contact: ContactId) -> Option<&mut Voice> {
+    voices.iter_mut().find(|voice| voice.contact == contact && voice.phase == Phase::Sounding)
+}
+
+impl HapticChannel {
+    fn new(settings: &ActuatorSettings, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let options = ChannelOptions {
+            quantity: settings.output,
+            full_scale: settings.full_scale,
+            soft_start_s: settings.soft_start_s,
+            equalise: settings.equalise,
+            limit: settings.limit,
+        };
+        Ok(Self {
+            output: ContactOutput::new(settings.output, settings.highpass_hz, sample_rate_hz)?,
+            design: actuator::Channel::new(&options, sample_rate_hz)?,
+            control: ChannelControl::default(),
+            state: ChannelState::default(),
+            sum: [0.0; MAX_BLOCK],
+        })
+    }
+}
+
+impl AudioBus {
+    fn new(settings: &AudioSettings, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let limiter = settings.limit.then(|| PeakLimiter::new(AUDIO_CEILING, sample_rate_hz)).transpose()?;
+        let limiter = limiter.map(|design| (design, PeakLimiterState::default()));
+        Ok(Self { gain: settings.gain as f32, limiter })
+    }
+
+    fn finish(&mut self, mix: &mut [f32]) {
+        for x in mix.iter_mut() {
+            *x *= self.gain;
+        }
+        if let Some((design, state)) = &mut self.limiter {
+            state.run(design, mix);
+        }
+    }
+}

@@ -1,0 +1,357 @@
+//! The game half: takes resources and events, checks them, sends them, frees what comes back.
+//!
+//! Every call returns at once. Nothing here waits for the audio thread.
+
+use crate::body::BodySlot;
+use crate::clock::Clock;
+use crate::config::Config;
+use crate::contact_log::{ContactLog, Names};
+use crate::error::{AddError, Refusal, ReportError};
+use crate::event::{Actuator, BodyId, ContactEvent, ContactId, Impact, SurfaceId};
+use crate::material::Material;
+use crate::modal_model::ModalModel;
+use crate::queue::{Dead, Message, Receiver, Sender};
+use crate::recording::Recording;
+use crate::stats::{Counters, Stats};
+use crate::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M, Surface, SurfaceSlot};
+use asperity_dsp::hertz::{Elastic, HertzContact, HertzPulse};
+use asperity_dsp::trajectory::TrajectoryDesign;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// The game half of an engine.
+pub struct Scene {
+    config: Config,
+    clock: Clock,
+    last_time_s: f64,
+    surfaces: Vec<bool>,
+    bodies: Vec<Option<Material>>,
+    /// The newest move of each contact that did not fit into the queue.
+    held: Vec<(u64, ContactId, ContactEvent)>,
+    to_audio: Sender<Message>,
+    from_audio: Receiver<Dead>,
+    counters: Arc<Counters>,
+    recording: Option<Recording>,
+}
+
+/// A body that surfaces can be on before its material matters.
+const DEFAULT_MATERIAL: Material = Material::PLA;
+
+impl Scene {
+    pub(crate) fn new(
+        config: Config,
+        clock: Clock,
+        to_audio: Sender<Message>,
+        from_audio: Receiver<Dead>,
+        counters: Arc<Counters>,
+    ) -> Self {
+        Self {
+            surfaces: vec![false; config.max_surfaces],
+            bodies: vec![None; config.max_bodies],
+            held: Vec::new(),
+            config,
+            clock,
+            last_time_s: f64::NEG_INFINITY,
+            to_audio,
+            from_audio,
+            counters,
+            recording: None,
+        }
+    }
+
+    /// How the engine was built.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Adds a body that rings, of PLA; [`add_body_of`](Self::add_body_of) sets the material.
+    ///
+    /// # Errors
+    /// When every place is taken or the modes cannot be rendered at this rate.
+    pub fn add_body(&mut self, model: ModalModel) -> Result<BodyId, AddError> {
+        self.add_body_of(model, DEFAULT_MATERIAL)
+    }
+
+    /// Adds a body of a material, which decides how long impacts on it last.
+    ///
+    /// # Errors
+    /// As [`add_body`](Self::add_body), or when the material is impossible.
+    pub fn add_body_of(&mut self, model: ModalModel, material: Material) -> Result<BodyId, AddError> {
+        self.collect();
+        let slot = free_place(self.bodies.iter().map(Option::is_some), "bodies")?;
+        self.set_body(slot, &model, material)?;
+        Ok(BodyId(slot as u32))
+    }
+
+    /// Gives a body other modes while it sounds; the old ones ring out under the new.
+    ///
+    /// # Errors
+    /// As [`add_body_of`](Self::add_body_of), or when the body is not in this scene.
+    pub fn replace_body(
+        &mut self,
+        body: BodyId,
+        model: ModalModel,
+        material: Material,
+    ) -> Result<(), AddError> {
+        self.collect();
+        self.known_body(body)?;
+        self.set_body(body.0 as usize, &model, material)
+    }
+
+    fn set_body(&mut self, slot: usize, model: &ModalModel, material: Material) -> Result<(), AddError> {
+        let material = material.checked()?;
+        let body = Box::new(BodySlot::new(model, self.config.sample_rate_hz)?);
+        self.send(Message::SetBody { slot, body })?;
+        self.bodies[slot] = Some(material);
+        Ok(())
+    }
+
+    /// Takes a body away; it rings out.
+    ///
+    /// # Errors
+    /// When it is not in this scene or the queue is full.
+    pub fn remove_body(&mut self, body: BodyId) -> Result<(), AddError> {
+        self.known_body(body)?;
+        self.send(Message::RemoveBody { slot: body.0 as usize })?;
+        self.bodies[body.0 as usize] = None;
+        Ok(())
+    }
+
+    /// Adds a surface.
+    ///
+    /// # Errors
+    /// When every place is taken, its body is not in this scene, or a number is impossible.
+    pub fn add_surface(&mut self, surface: Surface) -> Result<SurfaceId, AddError> {
+        self.collect();
+        let slot = free_place(self.surfaces.iter().copied(), "surfaces")?;
+        self.set_surface(slot, surface)?;
+        Ok(SurfaceId(slot as u32))
+    }
+
+    /// Changes a surface under the contacts that slide on it, without a click.
+    ///
+    /// # Errors
+    /// As [`add_surface`](Self::add_surface), or when the surface is not in this scene.
+    pub fn replace_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
+        self.collect();
+        self.known_surface(id)?;
+        self.set_surface(id.0 as usize, surface)
+    }
+
+    fn set_surface(&mut self, slot: usize, surface: Surface) -> Result<(), AddError> {
+        let surface = surface.checked()?;
+        let material = match surface.body {
+            Some(body) => self.known_body(body)?,
+            None => DEFAULT_MATERIAL,
+        };
+        let config = &self.config;
+        let period_m = surface.wrap_period_m();
+        let trajectory =
+            TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.sample_rate_hz, period_m)?;
+        let hertz = HertzContact::new(
+            &elastic(EXCITER_MATERIAL),
+            &elastic(material),
+            EXCITER_RADIUS_M,
+            config.probe.pad_mass_kg,
+        )?;
+        let noise_longest_m = surface.source.band().shortest_m;
+        let surface = Box::new(SurfaceSlot { surface, trajectory, hertz, noise_longest_m });
+        self.send(Message::SetSurface { slot, surface })?;
+        self.surfaces[slot] = true;
+        Ok(())
+    }
+
+    /// Takes a surface away; contacts on it fade.
+    ///
+    /// # Errors
+    /// When it is not in this scene or the queue is full.
+    pub fn remove_surface(&mut self, id: SurfaceId) -> Result<(), AddError> {
+        self.known_surface(id)?;
+        self.send(Message::RemoveSurface { slot: id.0 as usize })?;
+        self.surfaces[id.0 as usize] = false;
+        Ok(())
+    }
+
+    /// Sets the user's gain of one haptic channel, 0 = mute; it is reached within a few milliseconds.
+    ///
+    /// # Errors
+    /// When there is no such channel, the gain is not in 0–10, or the queue is full.
+    pub fn set_haptic_gain(&mut self, actuator: Actuator, gain: f64) -> Result<(), AddError> {
+        let channel = usize::from(actuator.0);
+        if channel >= self.config.actuators.len() {
+            return Err(AddError::Unknown("actuator"));
+        }
+        let gain = crate::event::within("gain", gain, "0–10", 0.0, 10.0)?;
+        self.send(Message::SetHapticGain { channel, gain })
+    }
+
+    /// Reports what a contact did at game time `time_s`. Returns at once.
+    ///
+    /// # Errors
+    /// The event is handed back with the reason: a bad number, an unknown name, time running
+    /// backwards, or a full queue. Moves are the last to be refused: when the queue runs full only the
+    /// newest move of each contact is kept, and sent with the next report.
+    pub fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), ReportError> {
+        self.try_report(time_s, event).map_err(|reason| {
+            let cell = match reason {
+                Refusal::QueueFull => &self.counters.dropped,
+                _ => &self.counters.refused,
+            };
+            Counters::add(cell, 1);
+            ReportError { event, reason }
+        })
+    }
+
+    fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
+        let event = self.checked(event)?;
+        self.checked_time(time_s)?;
+        let stamped = self.clock.stamp(time_s, self.counters.position.load(Relaxed));
+        Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
+        self.flush_held();
+        let sample = stamped.sample;
+        self.send_stamped(sample, event)?;
+        if let Some(recording) = &mut self.recording {
+            recording.note(sample as f64 / self.config.sample_rate_hz, &event);
+        }
+        Ok(())
+    }
+
+    fn send_stamped(&mut self, sample: u64, event: ContactEvent) -> Result<(), Refusal> {
+        match event {
+            ContactEvent::Moved { contact, .. } => self.send_move(sample, contact, event),
+            ContactEvent::Begin { contact, .. } | ContactEvent::End { contact } => {
+                self.held.retain(|(_, held, _)| *held != contact);
+                self.send_event(Message::Event { sample, event })
+            }
+            ContactEvent::Impact(impact) => self.send_impact(sample, &impact),
+        }
+    }
+
+    fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
+        let time_s = crate::event::within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
+        if time_s < self.last_time_s {
+            return Err(Refusal::TimeBackwards { time_s, before_s: self.last_time_s });
+        }
+        self.last_time_s = time_s;
+        Ok(())
+    }
+
+    fn checked(&self, event: ContactEvent) -> Result<ContactEvent, Refusal> {
+        Ok(match event {
+            ContactEvent::Begin { contact, surface, actuator, sample } => {
+                self.known_surface(surface).map_err(|_| Refusal::UnknownSurface)?;
+                let channels = self.config.actuators.len();
+                if usize::from(actuator.0) >= channels {
+                    return Err(Refusal::UnknownActuator { index: actuator.0, channels });
+                }
+                ContactEvent::Begin { contact, surface, actuator, sample: sample.checked()? }
+            }
+            ContactEvent::Moved { contact, sample } => {
+                ContactEvent::Moved { contact, sample: sample.checked()? }
+            }
+            ContactEvent::End { .. } => event,
+            ContactEvent::Impact(impact) => {
+                for body in [Some(impact.body), impact.other].into_iter().flatten() {
+                    self.known_body(body).map_err(|_| Refusal::UnknownBody)?;
+                }
+                ContactEvent::Impact(impact.checked()?)
+            }
+        })
+    }
+
+    fn send_move(&mut self, sample: u64, contact: ContactId, event: ContactEvent) -> Result<(), Refusal> {
+        // The last quarter of the queue is kept for landings, lift-offs and impacts.
+        if self.to_audio.free() > self.to_audio.capacity() / 4 {
+            return self.send_event(Message::Event { sample, event });
+        }
+        if let Some(held) = self.held.iter_mut().find(|(_, held, _)| *held == contact) {
+            *held = (sample, contact, event);
+            Counters::add(&self.counters.superseded, 1);
+        } else if self.held.len() < 4 * self.config.max_contacts {
+            self.held.push((sample, contact, event));
+        } else {
+            return Err(Refusal::QueueFull);
+        }
+        Ok(())
+    }
+
+    fn flush_held(&mut self) {
+        while self.to_audio.free() > self.to_audio.capacity() / 4 {
+            let Some((sample, _, event)) = self.held.pop() else { return };
+            // There is room: checked just above.
+            let _ = self.to_audio.send(Message::Event { sample, event });
+        }
+    }
+
+    fn send_impact(&mut self, sample: u64, impact: &Impact) -> Result<(), Refusal> {
+        let material = self.bodies[impact.body.0 as usize].unwrap_or(DEFAULT_MATERIAL);
+        let contact =
+            HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg)
+                .map_err(|_| Refusal::UnknownBody)?;
+        let pulse = HertzPulse {
+            impulse_n_s: impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution),
+            contact_time_s: contact.contact_time_s(impact.speed_m_s),
+        };
+        if pulse.impulse_n_s == 0.0 {
+            return Ok(());
+        }
+        let other = impact.other.map(|other| other.0 as usize);
+        self.send_event(Message::Strike { sample, body: impact.body.0 as usize, other, pulse })
+    }
+
+    fn send_event(&mut self, message: Message) -> Result<(), Refusal> {
+        self.to_audio.send(message).map_err(|_| Refusal::QueueFull)
+    }
+
+    fn send(&mut self, message: Message) -> Result<(), AddError> {
+        self.to_audio.send(message).map_err(|_| AddError::QueueFull)
+    }
+
+    /// Records from now on what is reported, with the time at which the engine applies it, so that
+    /// [`offline::render`](crate::offline::render) gives the same samples. Ids that `names` does not
+    /// name are recorded by number. Recording allocates on the game thread as it grows.
+    pub fn start_recording(&mut self, names: &Names) {
+        self.recording = Some(Recording::new(names));
+    }
+
+    /// Ends the recording and hands it over; empty if there was none.
+    pub fn stop_recording(&mut self) -> ContactLog {
+        self.recording.take().map(Recording::into_log).unwrap_or_default()
+    }
+
+    /// Frees surfaces and bodies that the audio half no longer needs; `add_…` and `replace_…` do it
+    /// too. Returns how many were freed.
+    pub fn collect(&mut self) -> usize {
+        std::iter::from_fn(|| self.from_audio.receive()).count()
+    }
+
+    /// Whether another move might be held back because the audio half lags behind.
+    pub(crate) fn is_filling(&self) -> bool {
+        self.to_audio.free() <= self.to_audio.capacity() / 4 + 1
+    }
+
+    /// What the engine did so far.
+    #[must_use]
+    pub fn stats(&self) -> Stats {
+        self.counters.snapshot()
+    }
+
+    fn known_surface(&self, id: SurfaceId) -> Result<(), AddError> {
+        let known = self.surfaces.get(id.0 as usize).copied().unwrap_or(false);
+        known.then_some(()).ok_or(AddError::Unknown("surface"))
+    }
+
+    fn known_body(&self, id: BodyId) -> Result<Material, AddError> {
+        self.bodies.get(id.0 as usize).copied().flatten().ok_or(AddError::Unknown("body"))
+    }
+}
+
+fn free_place(mut taken: impl ExactSizeIterator<Item = bool>, kind: &'static str) -> Result<usize, AddError> {
+    let capacity = taken.len();
+    taken.position(|taken| !taken).ok_or(AddError::Full { kind, capacity })
+}
+
+fn elastic(material: Material) -> Elastic {
+    Elastic { young_pa: material.young_pa, poisson: material.poisson }
+}

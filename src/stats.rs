@@ -1,0 +1,76 @@
+//! What the audio half did, readable from the game thread at any moment.
+
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
+
+macro_rules! counters {
+    ($($(#[doc = $doc:literal])+ $name:ident),+ $(,)?) => {
+        /// Counts since the engine was built.
+        #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+        pub struct Stats {
+            $($(#[doc = $doc])+ pub $name: u64,)+
+            /// Share of the time budget that the last blocks took, as told by the device; 0 offline.
+            pub load: f32,
+        }
+
+        /// The cells behind [`Stats`]; each has one writer, nobody waits.
+        #[derive(Debug, Default)]
+        pub(crate) struct Counters {
+            $(pub(crate) $name: AtomicU64,)+
+            load_bits: AtomicU32,
+        }
+
+        impl Counters {
+            pub(crate) fn snapshot(&self) -> Stats {
+                Stats {
+                    $($name: self.$name.load(Relaxed),)+
+                    load: f32::from_bits(self.load_bits.load(Relaxed)),
+                }
+            }
+        }
+    };
+}
+
+counters! {
+    /// Samples rendered so far.
+    position,
+    /// Events applied by the audio half.
+    events,
+    /// Impacts among them.
+    impacts,
+    /// Onsets of contact found by the micro-contact model.
+    micro_collisions,
+    /// Events handed back because the queue was full.
+    dropped,
+    /// Moves replaced by a newer move of the same contact before they were sent.
+    superseded,
+    /// Events that named a contact nobody began, or whose voice was stolen.
+    orphaned,
+    /// Contacts silenced because a more important one needed the voice.
+    stolen,
+    /// Contacts faded because nothing was heard of them for the time-out.
+    lapsed,
+    /// Events refused on the game side: bad numbers, unknown names, time running backwards.
+    refused,
+    /// Contacts reset on the audio half after their numbers went bad.
+    quarantined,
+    /// Events that arrived after the sample they were stamped for.
+    late,
+    /// Times the game clock was tied to the audio clock anew.
+    clock_jumps,
+    /// Groups of modes left out for one block because the last blocks ran late.
+    shed,
+    /// Contacts sounding now.
+    contacts,
+}
+
+impl Counters {
+    pub(crate) fn add(cell: &AtomicU64, count: u64) {
+        // Each cell has a single writer, so a plain read-modify-write loses nothing; it is atomic so
+        // that readers never see half a number.
+        cell.store(cell.load(Relaxed).wrapping_add(count), Relaxed);
+    }
+
+    pub(crate) fn set_load(&self, load: f32) {
+        self.load_bits.store(load.to_bits(), Relaxed);
+    }
+}

@@ -1,0 +1,538 @@
+//! One contact: the signal path of the paper on one screen (Hasti, Fig. 2).
+//!
+//! path → profile → micro-contact → { pad displacement → actuator, impulses → body }
+
+use crate::event::{ContactId, ContactSample};
+use crate::seat::Seat;
+use crate::surface::{Excitation, SurfaceSlot};
+use crate::tap::{ContactBlock, Tap};
+use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
+use asperity_dsp::butterworth::{self, Butterworth};
+use asperity_dsp::fractal_noise::FractalNoise;
+use asperity_dsp::hertz::{self, HertzPulse, OnsetMerge};
+use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact, Onset};
+use asperity_dsp::rng::Rng;
+use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
+use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
+
+/// Samples of impulse a contact can hold ahead.
+const BUS_SAMPLES: usize = 2048;
+/// What rounding leaves of a pad that does not move, m or m/s².
+const ROUNDING: f64 = 1e-13;
+/// What rounding leaves of a force that does not change, N.
+const ROUNDING_N: f64 = 1e-11;
+/// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
+const STILL_M: f64 = 1e-12;
+/// Pad acceleration that counts as still, m/s²: −120 dB of what a fingertip just feels.
+const STILL_M_S2: f64 = 1e-6;
+/// Impulse per sample below which a contact counts as silent, N·s: −120 dB of an ordinary stroke's.
+const STILL_N_S: f64 = 1e-12;
+/// Below this speed friction no longer jumps, m/s.
+const STICK_M_S: f64 = 1e-3;
+
+/// Where a voice is before it is anybody's.
+const IDLE: PathEvent =
+    PathEvent { sample: 0, position_m: [0.0; 2], velocity_m_s: None, normal_force_n: 0.0 };
+
+/// What every voice needs and none owns.
+pub(crate) struct Shared {
+    pub(crate) idle_path: TrajectoryDesign,
+    pub(crate) idle_output: ContactOutput,
+    pub(crate) sample_rate_hz: f64,
+    pub(crate) micro_contact: MicroContact,
+    pub(crate) noise: FractalNoise,
+    /// Keeps the alternating part of the contact force.
+    pub(crate) force_high_pass: Butterworth,
+    /// Momentum of a micro-collision per closing speed, kg: pad mass × (1 + restitution).
+    pub(crate) collision_mass_kg: f64,
+    pub(crate) fade_samples: u32,
+}
+
+/// Where the sound and feel of a voice stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Phase {
+    /// Nobody's.
+    Free,
+    /// Touching.
+    Sounding,
+    /// Going silent within `left` samples.
+    Fading { left: u32 },
+}
+
+/// One contact.
+pub(crate) struct Voice {
+    pub(crate) contact: ContactId,
+    pub(crate) surface: usize,
+    pub(crate) actuator: usize,
+    pub(crate) phase: Phase,
+    pub(crate) begun: u64,
+    pub(crate) refreshed: u64,
+    slot: usize,
+    asleep: bool,
+    fade_in_left: u32,
+    trajectory: Trajectory,
+    last_point: PathPoint,
+    last_row: PadSample,
+    last_felt: f64,
+    pad: ContactState,
+    resets_told: u32,
+    merge: OnsetMerge,
+    feel: ContactOutputState,
+    force_high_pass: butterworth::State,
+    reaction: Reaction,
+    grains: Rng,
+    bus: Vec<f64>,
+    bus_busy_until: u64,
+}
+
+/// What one voice adds to a stretch of samples.
+pub(crate) struct VoiceBlock {
+    /// m or m/s², as the actuator plays it.
+    pub(crate) haptic: [f64; MAX_BLOCK],
+    pub(crate) impulse_n_s: [f64; MAX_BLOCK],
+    pub(crate) collisions: u64,
+    pub(crate) resets: u64,
+}
+
+impl VoiceBlock {
+    fn scale(&mut self, i: usize, gain: f64) {
+        self.haptic[i] *= gain;
+        self.impulse_n_s[i] *= gain;
+    }
+}
+
+/// 0 at `step` 0, 1 at `step` = `total`.
+fn raised_cosine(step: u32, total: u32) -> f64 {
+    0.5 - 0.5 * (std::f64::consts::PI * f64::from(step) / f64::from(total)).cos()
+}
+
+/// Work space of one stretch; reused by every voice.
+pub(crate) struct Scratch {
+    points: [PathPoint; MAX_BLOCK],
+    position_m: [[f64; 2]; MAX_BLOCK],
+    velocity_m_s: [[f64; 2]; MAX_BLOCK],
+    footprint_m: [f64; MAX_BLOCK],
+    force_n: [f64; MAX_BLOCK],
+    uv: [[f64; 2]; MAX_BLOCK],
+    force_impulse_n_s: [f64; MAX_BLOCK],
+    surface: SurfaceBlock,
+    rough: SurfaceBlock,
+    pad: [PadSample; MAX_BLOCK],
+    output_force_n: [[f64; 3]; MAX_BLOCK],
+    pub(crate) out: VoiceBlock,
+}
+
+impl Voice {
+    /// A voice that nobody uses; `slot` is its place in the renderer. Allocates its bus.
+    pub(crate) fn free(slot: usize, shared: &Shared) -> Self {
+        Self {
+            contact: ContactId(0),
+            surface: 0,
+            actuator: 0,
+            phase: Phase::Free,
+            begun: 0,
+            refreshed: 0,
+            slot,
+            asleep: false,
+            fade_in_left: 0,
+            trajectory: Trajectory::begin(&shared.idle_path, &IDLE),
+            last_point: PathPoint::default(),
+            last_row: PadSample::default(),
+            last_felt: 0.0,
+            pad: shared.micro_contact.at_rest(0.0, 0.0),
+            resets_told: 0,
+            merge: OnsetMerge::default(),
+            feel: ContactOutputState::begin(&shared.idle_output, 0.0, 0.0),
+            force_high_pass: butterworth::State::default(),
+            reaction: Reaction::default(),
+            grains: Rng::new(slot as u64),
+            bus: vec![0.0; BUS_SAMPLES],
+            bus_busy_until: 0,
+        }
+    }
+
+    /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed.
+    pub(crate) fn begin(
+        &mut self,
+        contact: ContactId,
+        sample: &ContactSample,
+        seat: &mut Seat,
+        output: &ContactOutput,
+        shared: &Shared,
+        position: u64,
+        scratch: &mut Scratch,
+    ) {
+        let Some(slot) = seat.current() else { return };
+        let event = path_event(sample, slot, position);
+        self.contact = contact;
+        self.phase = Phase::Sounding;
+        (self.begun, self.refreshed) = (position, position);
+        self.asleep = false;
+        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples };
+        self.trajectory = Trajectory::begin(&slot.trajectory, &event);
+        self.last_point = PathPoint {
+            position_m: event.position_m,
+            velocity_m_s: [0.0; 2],
+            normal_force_n: event.normal_force_n,
+        };
+        scratch.points[0] = self.last_point;
+        self.profile(seat, shared, position, 1, scratch);
+        let (height_m, force_n) = (scratch.surface.height_m[0], event.normal_force_n);
+        let lands = sample.closing_m_s > 0.0;
+        self.pad = shared.micro_contact.landing(height_m, force_n, sample.closing_m_s);
+        self.resets_told = self.pad.resets();
+        // Both high-passes start settled on the first sample, so that beginning gives no step.
+        let pressed_n = if lands { 0.0 } else { force_n };
+        let pressed_m = pressed_n / shared.micro_contact.probe().contact_stiffness_n_m;
+        let velocity_m_s = if lands { -sample.closing_m_s } else { 0.0 };
+        self.feel = ContactOutputState::begin(output, height_m - pressed_m, velocity_m_s);
+        self.force_high_pass = butterworth::State::settled_at(pressed_n);
+        self.merge = OnsetMerge::default();
+        self.reaction = Reaction::default();
+        self.grains = Rng::new(contact.0 ^ position.rotate_left(32));
+        self.bus.fill(0.0);
+        self.bus_busy_until = 0;
+    }
+
+    /// Goes on somewhere else; wakes a resting contact.
+    ///
+    /// `stamp` is the sample the event holds at, which may lie before `position` when it arrives late:
+    /// the path reckons on from the stamp, so jitter of arrival does not become jitter of motion.
+    pub(crate) fn moved(&mut self, sample: &ContactSample, slot: &SurfaceSlot, stamp: u64, position: u64) {
+        self.refreshed = position;
+        self.asleep = false;
+        let event = path_event(sample, slot, stamp);
+        // A teleport is followed at once by the path itself; an event older than the last is dropped.
+        let _: Moved = self.trajectory.moved(&slot.trajectory, &event);
+    }
+
+    /// Starts to fade, if it has not yet.
+    pub(crate) fn fade(&mut self, shared: &Shared) {
+        if self.phase == Phase::Sounding {
+            self.phase = Phase::Fading { left: shared.fade_samples };
+        }
+    }
+
+    /// How much would be missed: what presses harder and moves faster is heard and felt more.
+    pub(crate) fn priority(&self) -> f64 {
+        let [u, v] = self.last_point.velocity_m_s;
+        let speed_m_s = (u * u + v * v).sqrt();
+        match self.phase {
+            Phase::Free | Phase::Fading { .. } => -1.0,
+            Phase::Sounding => self.last_point.normal_force_n * (1e-3 + speed_m_s),
+        }
+    }
+
+    /// Renders the next `n` samples into `scratch.out`. The stretch lies within one cell of the
+    /// absolute sample grid of [`MAX_BLOCK`].
+    pub(crate) fn render<T: Tap>(
+        &mut self,
+        seat: &mut Seat,
+        shared: &Shared,
+        output: &ContactOutput,
+        position: u64,
+        n: usize,
+        scratch: &mut Scratch,
+        tap: &mut T,
+    ) {
+        let at_grid = position.is_multiple_of(MAX_BLOCK as u64);
+        if self.asleep {
+            self.rest(n, scratch);
+        } else {
+            self.follow_path(seat, n, scratch);
+            self.profile(seat, shared, position, n, scratch);
+            if at_grid {
+                self.press(seat, position);
+            }
+            self.touch(shared, n, scratch);
+            self.excite(seat, shared, position, n, scratch);
+            self.feel(output, n, scratch);
+        }
+        self.apply_fades(shared, n, scratch);
+        self.show(seat, shared, position, n, scratch, tap);
+        self.last_point = scratch.points[n - 1];
+        if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
+            self.fall_asleep_when_still(output, shared, position, n, scratch);
+        }
+    }
+
+    fn follow_path(&mut self, seat: &Seat, n: usize, scratch: &mut Scratch) {
+        if let Some(slot) = seat.current() {
+            self.trajectory.advance(&slot.trajectory, &mut scratch.points[..n]);
+        }
+    }
+
+    /// Heights along the path: the source, and the paper's micro-noise below the source's own band.
+    fn profile(&self, seat: &mut Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
+        for (i, point) in scratch.points[..n].iter().enumerate() {
+            let [u, v] = point.velocity_m_s;
+            scratch.position_m[i] = point.position_m;
+            scratch.velocity_m_s[i] = point.velocity_m_s;
+            scratch.footprint_m[i] = (u * u + v * v).sqrt() / shared.sample_rate_hz;
+            scratch.force_n[i] = point.normal_force_n;
+        }
+        let path = PathBlock {
+            position_m: &scratch.position_m[..n],
+            velocity_m_s: &scratch.velocity_m_s[..n],
+            footprint_m: &scratch.footprint_m[..n],
+            first_sample: position,
+            contact: self.slot,
+        };
+        seat.sample(&path, &shared.noise, &mut scratch.surface, &mut scratch.rough);
+    }
+
+    /// Tells the source how it is touched, and hears what it does back.
+    fn press(&mut self, seat: &mut Seat, position: u64) {
+        let touch = Touch {
+            contact: self.slot,
+            sample: position,
+            position_m: self.last_point.position_m,
+            velocity_m_s: self.last_point.velocity_m_s,
+            normal_force_n: self.last_point.normal_force_n,
+        };
+        self.reaction = seat.react(&touch);
+    }
+
+    fn touch(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
+        shared.micro_contact.run(
+            &mut self.pad,
+            &scratch.surface.height_m[..n],
+            &scratch.force_n[..n],
+            &mut scratch.pad[..n],
+        );
+        let resets = self.pad.resets();
+        scratch.out.resets = u64::from(resets.wrapping_sub(self.resets_told));
+        self.resets_told = resets;
+    }
+
+    /// What the contact sends to the body: a Hertz pulse for each micro-collision and each grain, and
+    /// the alternating contact force.
+    fn excite(&mut self, seat: &Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
+        let Some(slot) = seat.current() else { return };
+        let excitation = slot.surface.excitation;
+        let rate = shared.sample_rate_hz;
+        scratch.out.collisions = 0;
+        for i in 0..n {
+            let sample = position + i as u64;
+            let row = &scratch.pad[i];
+            if let Some(onset) = row.onset {
+                scratch.out.collisions += 1;
+                if excitation != Excitation::Force {
+                    self.collide(slot, shared, &onset, sample);
+                }
+            }
+            let alternating_n = self.force_high_pass.tick(&shared.force_high_pass, row.contact_force_n).high;
+            let moves = alternating_n.abs() >= ROUNDING_N;
+            scratch.force_impulse_n_s[i] = if moves { alternating_n / rate } else { 0.0 };
+            if self.reaction.grain_rate_per_s > 0.0 {
+                self.shift_grain(slot, sample, rate);
+            }
+        }
+        if excitation != Excitation::Collisions {
+            hertz::deposit_force(&mut self.bus, position, &scratch.force_impulse_n_s[..n]);
+        }
+        let mask = self.bus.len() - 1;
+        for i in 0..n {
+            let cell = &mut self.bus[(position as usize).wrapping_add(i) & mask];
+            scratch.out.impulse_n_s[i] = *cell;
+            *cell = 0.0;
+        }
+    }
+
+    fn collide(&mut self, slot: &SurfaceSlot, shared: &Shared, onset: &Onset, sample: u64) {
+        let pulse = HertzPulse {
+            impulse_n_s: shared.collision_mass_kg * onset.closing_m_s,
+            contact_time_s: slot.hertz.contact_time_s(onset.closing_m_s),
+        };
+        let rate = shared.sample_rate_hz;
+        if let Some(pulse) = self.merge.admit(pulse, sample, onset.offset, rate) {
+            self.deposit(&pulse, sample, onset.offset, rate);
+        }
+    }
+
+    /// Grains that give way hit each other at random times (a Poisson process drawn sample by sample).
+    fn shift_grain(&mut self, slot: &SurfaceSlot, sample: u64, sample_rate_hz: f64) {
+        let draw = self.grains.uniform();
+        let expected = self.reaction.grain_rate_per_s / sample_rate_hz;
+        if draw < expected {
+            // The part of the draw below `expected` is uniform too: it says when within the sample.
+            let pulse = HertzPulse {
+                impulse_n_s: self.reaction.grain_impulse_n_s * (0.5 + draw / expected),
+                contact_time_s: slot.hertz.contact_time_s(0.1),
+            };
+            self.deposit(&pulse, sample, draw / expected, sample_rate_hz);
+        }
+    }
+
+    fn deposit(&mut self, pulse: &HertzPulse, sample: u64, offset: f64, sample_rate_hz: f64) {
+        pulse.deposit(&mut self.bus, sample, offset, sample_rate_hz);
+        self.bus_busy_until = self.bus_busy_until.max(pulse_end(pulse, sample, sample_rate_hz));
+    }
+
+    /// What the actuator is to reproduce: the pad's displacement or acceleration about the mean surface.
+    fn feel(&mut self, output: &ContactOutput, n: usize, scratch: &mut Scratch) {
+        for (out, row) in scratch.out.haptic[..n].iter_mut().zip(&scratch.pad[..n]) {
+            let felt = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
+            *out = if felt.abs() < ROUNDING { 0.0 } else { felt };
+        }
+        self.last_felt = scratch.out.haptic[n - 1];
+    }
+
+    /// A resting contact: nothing moves, so nothing is computed; the rows stay as they were.
+    fn rest(&mut self, n: usize, scratch: &mut Scratch) {
+        scratch.points[..n].fill(self.last_point);
+        scratch.pad[..n].fill(self.last_row);
+        scratch.out.haptic[..n].fill(self.last_felt);
+        scratch.out.impulse_n_s[..n].fill(0.0);
+        (scratch.out.collisions, scratch.out.resets) = (0, 0);
+    }
+
+    /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
+    /// its own beginning), out for one that ended, lapsed or was stolen.
+    fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
+        let total = shared.fade_samples;
+        for i in 0..n {
+            if self.fade_in_left > 0 {
+                self.fade_in_left -= 1;
+                scratch.out.scale(i, raised_cosine(total - self.fade_in_left, total));
+            }
+            if let Phase::Fading { left } = self.phase {
+                let left = left.saturating_sub(1);
+                scratch.out.scale(i, raised_cosine(left, total));
+                self.phase = Phase::Fading { left };
+            }
+        }
+        if self.phase == (Phase::Fading { left: 0 }) {
+            self.phase = Phase::Free;
+        }
+    }
+
+    fn fall_asleep_when_still(
+        &mut self,
+        output: &ContactOutput,
+        shared: &Shared,
+        position: u64,
+        n: usize,
+        scratch: &Scratch,
+    ) {
+        let row = PadSample { onset: None, ..scratch.pad[n - 1] };
+        self.last_row = row;
+        if self.asleep {
+            return;
+        }
+        let still = match output.quantity() {
+            Quantity::Displacement => STILL_M,
+            Quantity::Acceleration => STILL_M_S2,
+        };
+        // Without a high-pass a resting pad is felt as its constant displacement.
+        let felt = self.last_felt;
+        let feels_still = felt.abs() < still || (felt - row.pad_m).abs() < still;
+        self.asleep = feels_still
+            && self.trajectory.is_still()
+            && shared.micro_contact.is_settled(&self.pad, row.height_m, row.normal_force_n)
+            && self.reaction.grain_rate_per_s == 0.0
+            && scratch.out.impulse_n_s[n - 1].abs() < STILL_N_S
+            && self.bus_busy_until <= position + n as u64;
+        if self.asleep {
+            self.last_felt = if felt.abs() < still { 0.0 } else { felt };
+            self.bus.fill(0.0);
+        }
+    }
+
+    /// Shows the stretch to the tap. Rows describe the instant `latency` samples back, so the path's
+    /// points are delayed by as much.
+    fn show<T: Tap>(
+        &mut self,
+        seat: &Seat,
+        shared: &Shared,
+        position: u64,
+        n: usize,
+        scratch: &mut Scratch,
+        tap: &mut T,
+    ) {
+        let Some(slot) = seat.current().filter(|_| tap.is_watching()) else { return };
+        let size_m = [slot.surface.width_m, slot.surface.height_m];
+        let latency = shared.micro_contact.latency_samples();
+        for i in 0..n {
+            let point = if i >= latency { scratch.points[i - latency] } else { self.last_point };
+            scratch.position_m[i] = point.position_m;
+            scratch.velocity_m_s[i] = point.velocity_m_s;
+            scratch.uv[i] = [point.position_m[0] / size_m[0], point.position_m[1] / size_m[1]];
+            scratch.output_force_n[i] = output_force(
+                &point,
+                &scratch.pad[i],
+                scratch.surface.gradient[i],
+                scratch.surface.friction[i],
+                &self.reaction,
+            );
+        }
+        // The first rows of a contact would describe instants before it began.
+        let skip = latency.saturating_sub((position - self.begun) as usize).min(n);
+        tap.contact(&ContactBlock {
+            first_sample: position + skip as u64 - latency as u64,
+            contact: self.contact,
+            position_m: &scratch.position_m[skip..n],
+            uv: &scratch.uv[skip..n],
+            velocity_m_s: &scratch.velocity_m_s[skip..n],
+            contact_samples: &scratch.pad[skip..n],
+            impulse_n_s: &scratch.out.impulse_n_s[skip..n],
+            force_n: &scratch.output_force_n[skip..n],
+        });
+    }
+}
+
+/// One past the last sample that a pulse reaches.
+pub(crate) fn pulse_end(pulse: &HertzPulse, sample: u64, sample_rate_hz: f64) -> u64 {
+    // A saturating cast: an endless pulse is cut to the bus by the deposit itself.
+    sample + (pulse.contact_time_s * sample_rate_hz) as u64 + hertz::KERNEL_SAMPLES as u64 + 2
+}
+
+/// 3-D force on the finger: contact + friction + texture (along the surface's slope) + what the
+/// surface does by itself.
+fn output_force(
+    point: &PathPoint,
+    row: &PadSample,
+    gradient: [f64; 2],
+    friction: f64,
+    reaction: &Reaction,
+) -> [f64; 3] {
+    let [u, v] = point.velocity_m_s;
+    let pressed_n = row.contact_force_n;
+    // Below 1 mm/s friction grows linearly, so that a resting finger does not chatter.
+    let slide = friction * pressed_n / (u * u + v * v).sqrt().max(STICK_M_S);
+    let [fx, fy, fz] = reaction.force_n;
+    [fx - slide * u - pressed_n * gradient[0], fy - slide * v - pressed_n * gradient[1], fz + pressed_n]
+}
+
+fn path_event(sample: &ContactSample, slot: &SurfaceSlot, position: u64) -> PathEvent {
+    PathEvent {
+        sample: position,
+        position_m: [sample.uv[0] * slot.surface.width_m, sample.uv[1] * slot.surface.height_m],
+        velocity_m_s: sample.velocity_m_s,
+        normal_force_n: sample.normal_force_n,
+    }
+}
+
+impl Scratch {
+    pub(crate) fn new() -> Box<Self> {
+        Box::new(Self {
+            points: [PathPoint::default(); MAX_BLOCK],
+            position_m: [[0.0; 2]; MAX_BLOCK],
+            velocity_m_s: [[0.0; 2]; MAX_BLOCK],
+            footprint_m: [0.0; MAX_BLOCK],
+            force_n: [0.0; MAX_BLOCK],
+            uv: [[0.0; 2]; MAX_BLOCK],
+            force_impulse_n_s: [0.0; MAX_BLOCK],
+            surface: SurfaceBlock::default(),
+            rough: SurfaceBlock::default(),
+            pad: [PadSample::default(); MAX_BLOCK],
+            output_force_n: [[0.0; 3]; MAX_BLOCK],
+            out: VoiceBlock {
+                haptic: [0.0; MAX_BLOCK],
+                impulse_n_s: [0.0; MAX_BLOCK],
+                collisions: 0,
+                resets: 0,
+            },
+        })
+    }
+}

@@ -1,0 +1,366 @@
+//! Surfaces made of surfaces: sum, scale, mask, crossfade, band split.
+//!
+//! | combination | height | who decides roughness, friction, compliance |
+//! |---|---|---|
+//! | [`Sum`] | Σ hᵢ | the first source; compliances add |
+//! | [`Scale`] | g(t) · h | the source; a rigid one stays rigid |
+//! | [`Mask`] | m(u, v) · h + (1 − m) · h₂ | mixed likewise |
+//! | [`Crossfade`] | (1 − x(t)) · h₁ + x(t) · h₂ | mixed likewise |
+//! | [`BandSplit`] | coarse(h₁) below, fine(h₂) above a wavelength, each with its own weight | the first source |
+//!
+//! Weights that depend on time move by [`crate::fade`], anchored to absolute samples, so that they
+//! make no click and any split into blocks gives the same bits. Slopes follow the product rule in
+//! space; the weights' change in time is not a slope. A contact's change messages and touches reach
+//! every part; forces add up by the same weights as heights.
+
+use crate::change::SurfaceChange;
+use crate::fade::Fade;
+use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand};
+use crate::sand::SandSource;
+use asperity_dsp::DesignError;
+
+/// A surface of any kind.
+pub type Source = Box<dyn HeightField>;
+
+/// All reliefs on top of each other.
+pub struct Sum {
+    sources: Vec<Source>,
+    part: SurfaceBlock,
+}
+
+impl Sum {
+    /// The sum of the sources; the first one is the ground whose roughness and friction are felt.
+    #[must_use]
+    pub fn new(sources: Vec<Source>) -> Self {
+        Self { sources, part: SurfaceBlock::default() }
+    }
+}
+
+impl HeightField for Sum {
+    fn band(&self) -> WavelengthBand {
+        self.sources.iter().fold(WavelengthBand::EMPTY, |band, s| band.union(s.band()))
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        let n = path.len().min(MAX_BLOCK);
+        let Some((first, rest)) = self.sources.split_first_mut() else {
+            out.clear(n);
+            return;
+        };
+        first.sample(path, out);
+        for source in rest {
+            source.sample(path, &mut self.part);
+            for i in 0..n {
+                out.height_m[i] += self.part.height_m[i];
+                out.gradient[i][0] += self.part.gradient[i][0];
+                out.gradient[i][1] += self.part.gradient[i][1];
+                out.compliance_m_n[i] += self.part.compliance_m_n[i];
+            }
+        }
+    }
+
+    fn react(&mut self, touch: &Touch) -> Reaction {
+        self.sources.iter_mut().fold(Reaction::default(), |sum, s| add(sum, s.react(touch), 1.0))
+    }
+
+    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        self.sources.iter_mut().fold(false, |done, s| s.change(change, sample) | done)
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.sources.iter_mut().find_map(|s| s.sand())
+    }
+}
+
+/// A source whose relief is multiplied by a factor that may change.
+pub struct Scale {
+    source: Source,
+    factor: Fade<f64>,
+}
+
+impl Scale {
+    /// The source times `factor`.
+    ///
+    /// # Errors
+    /// When the factor is not within ±1e3 or the sample rate not above 0 Hz.
+    pub fn new(source: Source, factor: f64, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let factor = check_factor(factor)?;
+        Ok(Self { source, factor: Fade::new(factor, sample_rate_hz)? })
+    }
+}
+
+fn check_factor(factor: f64) -> Result<f64, DesignError> {
+    DesignError::check("factor", factor, "within ±1000", |f| f.abs() <= 1e3)
+}
+
+impl HeightField for Scale {
+    fn band(&self) -> WavelengthBand {
+        self.source.band()
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        self.source.sample(path, out);
+        for i in 0..path.len().min(MAX_BLOCK) {
+            let factor = self.factor.at(path.first_sample + i as u64);
+            out.height_m[i] *= factor;
+            out.gradient[i] = out.gradient[i].map(|g| g * factor);
+        }
+    }
+
+    fn react(&mut self, touch: &Touch) -> Reaction {
+        add(Reaction::default(), self.source.react(touch), self.factor.at(touch.sample))
+    }
+
+    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        match change {
+            SurfaceChange::Scale(factor) => check_factor(*factor).map(|f| self.factor.set(f, sample)).is_ok(),
+            other => self.source.change(other, sample),
+        }
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.source.sand()
+    }
+}
+
+/// One source where a mask is 1, another where it is 0.
+pub struct Mask {
+    mask: Source,
+    inside: Source,
+    outside: Source,
+    weight: SurfaceBlock,
+    other: SurfaceBlock,
+}
+
+impl Mask {
+    /// The *height* of `mask` is the weight of `inside`, held within 0–1: a height map with 1 m
+    /// relief serves as mask. It must be smooth on the scale of a footprint, or its edge is felt.
+    #[must_use]
+    pub fn new(mask: Source, inside: Source, outside: Source) -> Self {
+        let (weight, other) = (SurfaceBlock::default(), SurfaceBlock::default());
+        Self { mask, inside, outside, weight, other }
+    }
+}
+
+impl HeightField for Mask {
+    fn band(&self) -> WavelengthBand {
+        self.inside.band().union(self.outside.band())
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        self.mask.sample(path, &mut self.weight);
+        self.inside.sample(path, &mut self.other);
+        self.outside.sample(path, out);
+        for i in 0..path.len().min(MAX_BLOCK) {
+            let raw = self.weight.height_m[i];
+            let w = raw.clamp(0.0, 1.0);
+            let edge = if raw == w { self.weight.gradient[i] } else { [0.0; 2] };
+            let step = self.other.height_m[i] - out.height_m[i];
+            mix(out, &self.other, i, w);
+            out.gradient[i][0] += edge[0] * step;
+            out.gradient[i][1] += edge[1] * step;
+        }
+    }
+
+    fn react(&mut self, touch: &Touch) -> Reaction {
+        let path = PathBlock {
+            position_m: &[touch.position_m],
+            velocity_m_s: &[touch.velocity_m_s],
+            footprint_m: &[0.0],
+            first_sample: touch.sample,
+            contact: touch.contact,
+        };
+        self.mask.sample(&path, &mut self.weight);
+        let w = self.weight.height_m[0].clamp(0.0, 1.0);
+        let inside = self.inside.react(touch);
+        add(add(Reaction::default(), inside, w), self.outside.react(touch), 1.0 - w)
+    }
+
+    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        let mask = self.mask.change(change, sample);
+        let inside = self.inside.change(change, sample);
+        self.outside.change(change, sample) | inside | mask
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.inside.sand().or_else(|| self.outside.sand())
+    }
+}
+
+/// From one source to another at run time.
+pub struct Crossfade {
+    sources: [Source; 2],
+    position: Fade<f64>,
+    other: SurfaceBlock,
+}
+
+impl Crossfade {
+    /// All of `first`; [`SurfaceChange::Crossfade`] moves towards `second`.
+    ///
+    /// # Errors
+    /// When the sample rate is not above 0 Hz.
+    pub fn new(first: Source, second: Source, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let position = Fade::new(0.0, sample_rate_hz)?;
+        Ok(Self { sources: [first, second], position, other: SurfaceBlock::default() })
+    }
+}
+
+impl HeightField for Crossfade {
+    fn band(&self) -> WavelengthBand {
+        self.sources[0].band().union(self.sources[1].band())
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        let [first, second] = &mut self.sources;
+        // Both are always read: a source that remembers its contacts must not miss any path.
+        first.sample(path, out);
+        second.sample(path, &mut self.other);
+        for i in 0..path.len().min(MAX_BLOCK) {
+            let w = self.position.at(path.first_sample + i as u64);
+            mix(out, &self.other, i, w);
+        }
+    }
+
+    fn react(&mut self, touch: &Touch) -> Reaction {
+        let w = self.position.at(touch.sample);
+        let [first, second] = &mut self.sources;
+        add(add(Reaction::default(), first.react(touch), 1.0 - w), second.react(touch), w)
+    }
+
+    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        if let SurfaceChange::Crossfade(position) = change {
+            let accepted = (0.0..=1.0).contains(position);
+            if accepted {
+                self.position.set(*position, sample);
+            }
+            return accepted;
+        }
+        self.sources.iter_mut().fold(false, |done, s| s.change(change, sample) | done)
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.sources.iter_mut().find_map(|s| s.sand())
+    }
+}
+
+/// The long wavelengths of one source and the short wavelengths of another.
+pub struct BandSplit {
+    coarse: Source,
+    fine: Source,
+    wavelength_m: f64,
+    weights: Fade<[f64; 2]>,
+    low: SurfaceBlock,
+    all: SurfaceBlock,
+}
+
+impl BandSplit {
+    /// `coarse` above `wavelength_m` plus `fine` below it. What a source has above a wavelength is
+    /// what it gives to a footprint of half that wavelength; the source's own anti-aliasing is the
+    /// filter, about an octave wide.
+    ///
+    /// # Errors
+    /// When the wavelength is not within 1e-6 to 1 m, or the sample rate not above 0 Hz.
+    pub fn new(
+        coarse: Source,
+        fine: Source,
+        wavelength_m: f64,
+        sample_rate_hz: f64,
+    ) -> Result<Self, DesignError> {
+        let range = |w: f64| (1e-6..=1.0).contains(&w);
+        DesignError::check("wavelength_m", wavelength_m, "1e-6 to 1 m", range)?;
+        let weights = Fade::new([1.0; 2], sample_rate_hz)?;
+        let (low, all) = (SurfaceBlock::default(), SurfaceBlock::default());
+        Ok(Self { coarse, fine, wavelength_m, weights, low, all })
+    }
+
+    fn weights_at(&self, sample: u64) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for (w, values) in self.weights.weights(sample).iter().zip(self.weights.values()) {
+            if *w != 0.0 {
+                sum = [sum[0] + w * values[0], sum[1] + w * values[1]];
+            }
+        }
+        sum
+    }
+}
+
+impl HeightField for BandSplit {
+    fn band(&self) -> WavelengthBand {
+        let (coarse, fine) = (self.coarse.band(), self.fine.band());
+        WavelengthBand {
+            shortest_m: coarse.shortest_m.max(self.wavelength_m).min(fine.shortest_m),
+            longest_m: coarse.longest_m.max(fine.longest_m.min(self.wavelength_m)),
+        }
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        let n = path.len().min(MAX_BLOCK);
+        let mut blunt = [0.5 * self.wavelength_m; MAX_BLOCK];
+        for (blunt, &footprint) in blunt.iter_mut().zip(path.footprint_m) {
+            *blunt = blunt.max(footprint);
+        }
+        let blunt = PathBlock { footprint_m: &blunt[..n], ..*path };
+        self.coarse.sample(&blunt, out);
+        self.fine.sample(&blunt, &mut self.low);
+        self.fine.sample(path, &mut self.all);
+        for i in 0..n {
+            let [low, high] = self.weights_at(path.first_sample + i as u64);
+            out.height_m[i] = low * out.height_m[i] + high * (self.all.height_m[i] - self.low.height_m[i]);
+            for a in 0..2 {
+                out.gradient[i][a] =
+                    low * out.gradient[i][a] + high * (self.all.gradient[i][a] - self.low.gradient[i][a]);
+            }
+        }
+    }
+
+    fn react(&mut self, touch: &Touch) -> Reaction {
+        let [low, high] = self.weights_at(touch.sample);
+        add(add(Reaction::default(), self.coarse.react(touch), low), self.fine.react(touch), high)
+    }
+
+    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        if let SurfaceChange::BandSplit(weights) = change {
+            let accepted = weights.iter().all(|&w| check_factor(w).is_ok());
+            if accepted {
+                self.weights.set(*weights, sample);
+            }
+            return accepted;
+        }
+        let coarse = self.coarse.change(change, sample);
+        self.fine.change(change, sample) | coarse
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.coarse.sand().or_else(|| self.fine.sand())
+    }
+}
+
+/// Moves sample `i` of `out` towards `other` by a weight.
+fn mix(out: &mut SurfaceBlock, other: &SurfaceBlock, i: usize, w: f64) {
+    // Not a + w (b − a): that does not reach b exactly.
+    let lerp = |a: &mut f64, b: f64| {
+        if w == 1.0 {
+            *a = b;
+        } else if w != 0.0 {
+            *a = (1.0 - w) * *a + w * b;
+        }
+    };
+    lerp(&mut out.height_m[i], other.height_m[i]);
+    lerp(&mut out.gradient[i][0], other.gradient[i][0]);
+    lerp(&mut out.gradient[i][1], other.gradient[i][1]);
+    lerp(&mut out.roughness[i], other.roughness[i]);
+    lerp(&mut out.friction[i], other.friction[i]);
+    lerp(&mut out.compliance_m_n[i], other.compliance_m_n[i]);
+}
+
+/// Adds a weighted reaction; grains keep their total momentum a second.
+fn add(sum: Reaction, part: Reaction, weight: f64) -> Reaction {
+    let weighted_rate = weight.abs() * part.grain_rate_per_s;
+    let rate = sum.grain_rate_per_s + weighted_rate;
+    let momentum = sum.grain_rate_per_s * sum.grain_impulse_n_s + weighted_rate * part.grain_impulse_n_s;
+    Reaction {
+        force_n: core::array::from_fn(|a| sum.force_n[a] + weight * part.force_n[a]),
+        grain_rate_per_s: rate,
+        grain_impulse_n_s: if rate > 0.0 { momentum / rate } else { 0.0 },
+    }
+}

@@ -1,0 +1,304 @@
+//! A displacement map under a finger: cubic B-spline over the texels, mip level by footprint.
+//!
+//! ```text
+//! h(p) = relief_m · map(p)     level ℓ = max(0, log₂(2 · footprint / texel)),  neighbouring levels blended
+//! ```
+//!
+//! | symbol | here | |
+//! |---|---|---|
+//! | map | [`Raster`], 0–1 or metres | texel centres at (i + ½)/N of the extent, top left corner at (0, 0) |
+//! | ℓ | pyramid of [`crate::spline`]s | each level half the size, filtered; texels are measured along the stroke |
+//! | R | roughness map of its own size, or a number | sampled likewise, kept within 0–1 |
+//!
+//! Source: Hasti §III-C (displacement and roughness maps). What we changed: the paper does not say how
+//! the map is interpolated; bilinear leaves a velocity SNR of 17 dB on a sine of 12.8 texels a period,
+//! the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid as well, so
+//! that a seamless map has no seam.
+
+use crate::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
+use crate::raster::Raster;
+use crate::resample::halve;
+use crate::spline::{Sample, Spline};
+use crate::wrap::Wrap;
+
+/// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
+/// Assumed; measured values range from 0.2 to above 1.
+pub const FRICTION: f64 = 0.5;
+
+/// The patch of surface a map covers.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Extent {
+    /// Size along u, metres.
+    pub width_m: f64,
+    /// Size along v, metres.
+    pub height_m: f64,
+    /// Height of value 1 over value 0, metres: negative for depth maps, 1 for maps in metres.
+    pub relief_m: f64,
+}
+
+/// Why a map cannot be made.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapError {
+    /// A size that is not a size.
+    #[error("{field}: {value} is refused; must be finite{}", if *.field == "relief_m" { "" } else { " and above 0 m" })]
+    Extent {
+        /// Name of the field.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// No texels, or not as many as width × height.
+    #[error("a map of {width} × {height} texels with {values} values is refused; at least 1 × 1, all there")]
+    Shape {
+        /// Texels in a row.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// A texel that is no number.
+    #[error("the value at column {x}, row {y} is not finite; only finite values make a map")]
+    NotFinite {
+        /// Column.
+        x: usize,
+        /// Row.
+        y: usize,
+    },
+    /// Roughness outside its range.
+    #[error("roughness: {0} is refused; must be 0 to 1")]
+    Roughness(f64),
+}
+
+/// A surface made of maps.
+#[derive(Debug, Clone)]
+pub struct HeightMap {
+    heights: Pyramid,
+    roughness: Roughness,
+    extent: Extent,
+    wrap: Wrap,
+    band: WavelengthBand,
+    friction: f64,
+}
+
+#[derive(Debug, Clone)]
+enum Roughness {
+    Constant(f64),
+    Map(Pyramid),
+}
+
+/// A map at full size, half size, quarter size, …; empty for a map of one value.
+#[derive(Debug, Clone)]
+struct Pyramid {
+    levels: Vec<Spline>,
+    constant: f64,
+}
+
+impl HeightMap {
+    /// A surface from a raster of heights: `extent.relief_m` times its values. Roughness is ½ until
+    /// [`Self::with_roughness`] or [`Self::with_roughness_map`] says otherwise.
+    ///
+    /// # Errors
+    /// When the raster is empty or not finite, or the extent impossible.
+    pub fn new(heights: &Raster, extent: Extent, wrap: Wrap) -> Result<Self, MapError> {
+        extent.check()?;
+        check(heights)?;
+        let heights = Pyramid::new(&heights.map(|v| v * extent.relief_m), extent, wrap);
+        let band = match heights.levels.first() {
+            None => WavelengthBand::EMPTY,
+            Some(finest) => {
+                let [u, v] = finest.texels_per_metre();
+                WavelengthBand { shortest_m: 2.0 / u.max(v), longest_m: extent.width_m.max(extent.height_m) }
+            }
+        };
+        let roughness = Roughness::Constant(0.5);
+        Ok(Self { heights, roughness, extent, wrap, band, friction: FRICTION })
+    }
+
+    /// A plane: every relief comes from the micro-noise.
+    ///
+    /// # Errors
+    /// When the extent is impossible or the roughness outside 0–1.
+    pub fn flat(extent: Extent, roughness: f64) -> Result<Self, MapError> {
+        Self::new(&Raster::constant(1, 1, 0.0), extent, Wrap::Repeat)?.with_roughness(roughness)
+    }
+
+    /// The same surface with one roughness everywhere, 0–1.
+    ///
+    /// # Errors
+    /// When it is outside 0–1.
+    pub fn with_roughness(mut self, roughness: f64) -> Result<Self, MapError> {
+        if !(0.0..=1.0).contains(&roughness) {
+            return Err(MapError::Roughness(roughness));
+        }
+        self.roughness = Roughness::Constant(roughness);
+        Ok(self)
+    }
+
+    /// The same surface with a roughness map (values 0–1, clamped) of any size over the same extent. A
+    /// gloss map is `raster.map(|gloss| 1.0 − gloss)`.
+    ///
+    /// # Errors
+    /// When the raster is empty or not finite.
+    pub fn with_roughness_map(mut self, roughness: &Raster) -> Result<Self, MapError> {
+        check(roughness)?;
+        let roughness = roughness.map(|r| r.clamp(0.0, 1.0));
+        self.roughness = Roughness::Map(Pyramid::new(&roughness, self.extent, self.wrap));
+        Ok(self)
+    }
+
+    /// The same surface with another Coulomb friction coefficient.
+    #[must_use]
+    pub fn with_friction(mut self, coefficient: f64) -> Self {
+        self.friction = coefficient;
+        self
+    }
+
+    /// The patch the map covers.
+    #[must_use]
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// How the map goes on beyond its edges.
+    #[must_use]
+    pub fn wrap(&self) -> Wrap {
+        self.wrap
+    }
+
+    /// After how many metres along u and v the surface is the same again; what a path unwraps by.
+    #[must_use]
+    pub fn wrap_period_m(&self) -> [f64; 2] {
+        [self.wrap.period_m(self.extent.width_m), self.wrap.period_m(self.extent.height_m)]
+    }
+}
+
+impl Extent {
+    fn check(&self) -> Result<(), MapError> {
+        for (field, value) in [("width_m", self.width_m), ("height_m", self.height_m)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(MapError::Extent { field, value });
+            }
+        }
+        if !self.relief_m.is_finite() {
+            return Err(MapError::Extent { field: "relief_m", value: self.relief_m });
+        }
+        Ok(())
+    }
+}
+
+fn check(raster: &Raster) -> Result<(), MapError> {
+    let Raster { width, height, ref values } = *raster;
+    if values.is_empty() || width.checked_mul(height) != Some(values.len()) {
+        return Err(MapError::Shape { width, height, values: values.len() });
+    }
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(at) => Err(MapError::NotFinite { x: at % width, y: at / width }),
+        None => Ok(()),
+    }
+}
+
+impl Pyramid {
+    fn new(raster: &Raster, extent: Extent, wrap: Wrap) -> Self {
+        let constant = raster.values[0];
+        let mut levels = Vec::new();
+        if raster.values.iter().all(|&v| v == constant) {
+            return Self { levels, constant };
+        }
+        let size = [extent.width_m, extent.height_m];
+        levels.push(Spline::new(raster, size, wrap));
+        let mut smaller = halve(raster, wrap);
+        while levels.len() < 32 && (smaller.width > 1 || smaller.height > 1) {
+            levels.push(Spline::new(&smaller, size, wrap));
+            smaller = halve(&smaller, wrap);
+        }
+        Self { levels, constant }
+    }
+
+    /// The map where the contact is, blurred to its footprint.
+    #[inline]
+    fn sample(&self, position_m: [f64; 2], velocity_m_s: [f64; 2], footprint_m: f64) -> Sample {
+        let Some(finest) = self.levels.first() else {
+            return Sample { value: self.constant, gradient: [0.0; 2] };
+        };
+        let [u, v] = finest.texels_per_metre();
+        if is_sharp(footprint_m, [u, v]) {
+            return finest.sample(position_m);
+        }
+        self.sample_blurred(position_m, 2.0 * footprint_m * along(velocity_m_s, [u, v]))
+    }
+
+    /// The map along a path; `take` is given every sample.
+    fn sample_block(&self, path: &PathBlock<'_>, mut take: impl FnMut(usize, Sample)) {
+        match self.levels.first() {
+            Some(finest) if path.footprint_m.iter().all(|&f| is_sharp(f, finest.texels_per_metre())) => {
+                finest.sample_block(path.position_m, take);
+            }
+            _ => {
+                for n in 0..path.len() {
+                    take(n, self.sample(path.position_m[n], path.velocity_m_s[n], path.footprint_m[n]));
+                }
+            }
+        }
+    }
+
+    /// `samples` = 2 · footprint in texels of the finest level.
+    fn sample_blurred(&self, position_m: [f64; 2], samples: f64) -> Sample {
+        let last = self.levels.len() - 1;
+        let samples = samples.clamp(1.0, (1u64 << last) as f64);
+        let level = (samples as u64).ilog2() as usize;
+        let finer = self.levels[level].sample(position_m);
+        let blend = samples / (1u64 << level) as f64 - 1.0;
+        if level == last || blend == 0.0 {
+            return finer;
+        }
+        let coarser = self.levels[level + 1].sample(position_m);
+        let mix = |a: f64, b: f64| a + blend * (b - a);
+        Sample {
+            value: mix(finer.value, coarser.value),
+            gradient: [
+                mix(finer.gradient[0], coarser.gradient[0]),
+                mix(finer.gradient[1], coarser.gradient[1]),
+            ],
+        }
+    }
+}
+
+/// Whether the finest level needs no blur in any direction.
+#[inline]
+fn is_sharp(footprint_m: f64, texels_per_metre: [f64; 2]) -> bool {
+    2.0 * footprint_m * texels_per_metre[0].max(texels_per_metre[1]) <= 1.0
+}
+
+/// Texels per metre along the direction of movement.
+fn along(velocity_m_s: [f64; 2], texels_per_metre: [f64; 2]) -> f64 {
+    let [x, y] = velocity_m_s;
+    let speed = x.hypot(y);
+    if speed > 0.0 {
+        (x * texels_per_metre[0]).hypot(y * texels_per_metre[1]) / speed
+    } else {
+        texels_per_metre[0].max(texels_per_metre[1])
+    }
+}
+
+impl HeightField for HeightMap {
+    fn band(&self) -> WavelengthBand {
+        self.band
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        self.heights.sample_block(path, |n, sample| {
+            out.height_m[n] = sample.value;
+            out.gradient[n] = sample.gradient;
+        });
+        match &self.roughness {
+            Roughness::Constant(roughness) => out.roughness[..path.len()].fill(*roughness),
+            Roughness::Map(map) => {
+                map.sample_block(path, |n, sample| out.roughness[n] = sample.value.clamp(0.0, 1.0));
+            }
+        }
+        out.friction[..path.len()].fill(self.friction);
+        out.compliance_m_n[..path.len()].fill(0.0);
+    }
+}

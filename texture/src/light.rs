@@ -1,0 +1,164 @@
+//! Where the light of a photograph comes from, and whether it comes from anywhere.
+//!
+//! On gentle slopes a light at tilt τ makes the image the derivative of the heights along τ, so that its
+//! power at direction θ goes as cos²(θ − τ), **in every band of wavelengths alike**, whatever the
+//! surface, if that has no preferred direction. Diffuse light gives no such thing, and a pattern with a
+//! direction of its own (rows of bricks, a weave) gives it in some bands and not in others:
+//! ```text
+//! c_b = Σ power · e^(2iθ) / Σ power        over the octave b, each bin over the mean of its ring
+//! ```
+//! is ½ e^(2iτ) in every octave for a light of any slant. Light is found when the c_b agree
+//! ([`LEAST_AGREEMENT`], [`LEAST_DIRECTION`]). Source: the spectral argument is Pentland's (IJCV 4, 1990); the
+//! rule by octaves is ours.
+//!
+//! What one image cannot tell: the sign of τ (hollows lit from below look like bumps lit from above; we
+//! take light from above, as viewers do) and the slant apart from albedo: a texel that faces the viewer
+//! is cos(slant) as bright as one that faces the light, taken as the image's median over its 99.5 %
+//! quantile.
+
+use crate::borders::{Borders, SplitBorders};
+use crate::fft2::{Fft2, angular_frequency};
+use crate::raster::Raster;
+use asperity_dsp::DesignError;
+use rustfft::num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// Mean |c_b| from which an image is taken to be lit from a side; ½ for a perfect case.
+pub const LEAST_DIRECTION: f64 = 0.18;
+/// |Σ c_b| / Σ |c_b| from which the octaves count as agreeing.
+pub const LEAST_AGREEMENT: f64 = 0.9;
+/// Octaves looked at, from the finest that holds no noise.
+const OCTAVES: usize = 4;
+/// Slants that an estimate may give, radians: 20°–70°.
+const SLANTS: [f64; 2] = [20.0 * PI / 180.0, 70.0 * PI / 180.0];
+
+/// A distant light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    direction: [f64; 3],
+}
+
+impl Light {
+    /// From straight above the surface.
+    pub const OVERHEAD: Self = Self { direction: [0.0, 0.0, 1.0] };
+
+    /// A light in this direction (of any length): x along u, y along v (downwards), z out of the surface.
+    ///
+    /// # Errors
+    /// When it is not finite or not above the surface.
+    pub fn new(direction: [f64; 3]) -> Result<Self, DesignError> {
+        let [x, y, z] = direction;
+        let length = (x * x + y * y + z * z).sqrt();
+        DesignError::check("light", length, "a finite direction that is not zero", |l| l > 0.0)?;
+        DesignError::check("light z", z, "above 0: on the side of the viewer", |z| z > 0.0)?;
+        Ok(Self { direction: direction.map(|c| c / length) })
+    }
+
+    /// A light at an angle from the normal and a direction in the surface (from u towards v), radians.
+    ///
+    /// # Errors
+    /// When the slant is not within 0–π/2, or a number is not finite.
+    pub fn at(slant_rad: f64, tilt_rad: f64) -> Result<Self, DesignError> {
+        let (sin, cos) = slant_rad.sin_cos();
+        Self::new([sin * tilt_rad.cos(), sin * tilt_rad.sin(), cos])
+    }
+
+    /// Unit vector towards the light.
+    #[must_use]
+    pub fn direction(&self) -> [f64; 3] {
+        self.direction
+    }
+
+    /// Angle from the normal, radians.
+    #[must_use]
+    pub fn slant_rad(&self) -> f64 {
+        self.direction[2].clamp(-1.0, 1.0).acos()
+    }
+}
+
+/// The light of an image (linear brightness), or `None` when it comes from everywhere.
+#[must_use]
+pub fn estimate_light(image: &Raster) -> Option<Light> {
+    let octaves = octave_directions(image);
+    let (mut sum, mut lengths) = (Complex64::default(), 0.0);
+    for c in &octaves {
+        sum += c;
+        lengths += c.norm();
+    }
+    let direction = lengths / octaves.len().max(1) as f64;
+    if octaves.len() < 2 || direction < LEAST_DIRECTION || sum.norm() < LEAST_AGREEMENT * lengths {
+        return None;
+    }
+    let axis = sum.arg() / 2.0;
+    // Of the two ends, the one up the image; along a row, the left one.
+    let (x, y) = (axis.cos(), axis.sin());
+    let up = if y.abs() < 0.05 { x < 0.0 } else { y < 0.0 };
+    Light::at(slant_of(image), if up { axis } else { axis + PI }).ok()
+}
+
+/// c_b of the octaves, fine to coarse.
+fn octave_directions(image: &Raster) -> Vec<Complex64> {
+    let periodic = SplitBorders::of(image, Borders::Detect).periodic;
+    let (w, h) = (image.width, image.height);
+    let spectrum = Fft2::new(w, h).spectrum(&periodic.values);
+    let rings = w.min(h) / 2;
+    let mut ring_power = vec![(0.0, 0.0); rings + 1];
+    let ring = |place: usize| {
+        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
+        (r, (r / PI * rings as f64).round() as usize)
+    };
+    for (place, value) in spectrum.iter().enumerate() {
+        if let Some(sum) = ring_power.get_mut(ring(place).1) {
+            *sum = (sum.0 + value.norm_sqr(), sum.1 + 1.0);
+        }
+    }
+    // From half the Nyquist frequency down, while an octave has bins enough to tell directions.
+    let count = OCTAVES.min((rings as f64 / 8.0).log2().floor().max(0.0) as usize);
+    let mut sums = vec![(Complex64::default(), 0.0); count];
+    for (place, value) in spectrum.iter().enumerate().skip(1) {
+        let (r, ring) = ring(place);
+        let octave = (PI / 2.0 / r).log2().floor();
+        let Some(&(power, bins)) = ring_power.get(ring) else { continue };
+        if octave < 0.0 || octave as usize >= count || power == 0.0 {
+            continue;
+        }
+        let theta = angular_frequency(place % h, h).atan2(angular_frequency(place / h, w));
+        let share = value.norm_sqr() * bins / power;
+        let sum = &mut sums[octave as usize];
+        *sum = (sum.0 + Complex64::cis(2.0 * theta) * share, sum.1 + share);
+    }
+    sums.into_iter().filter(|s| s.1 > 0.0).map(|s| s.0 / s.1).collect()
+}
+
+/// Slant from brightness; see the module's last paragraph.
+fn slant_of(image: &Raster) -> f64 {
+    let mut sorted = image.values.clone();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let at = |fraction: f64| sorted[((sorted.len() - 1) as f64 * fraction) as usize];
+    let (facing_viewer, facing_light) = (at(0.5), at(0.995));
+    if facing_light <= 0.0 {
+        return SLANTS[0];
+    }
+    (facing_viewer / facing_light).clamp(0.0, 1.0).acos().clamp(SLANTS[0], SLANTS[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use asperity_dsp::rng::Rng;
+
+    #[test]
+    fn a_light_must_shine_on_the_surface() {
+        assert_eq!(Light::new([1.0, 0.0, -0.1]).unwrap_err().field, "light z");
+        assert_eq!(Light::new([0.0; 3]).unwrap_err().field, "light");
+        let light = Light::at(0.5, 2.0).unwrap();
+        assert!((light.slant_rad() - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn noise_without_direction_is_diffuse() {
+        let mut rng = Rng::new(9);
+        let noise = Raster::from_fn(96, 80, |_, _| rng.uniform());
+        assert_eq!(estimate_light(&noise), None);
+    }
+}

@@ -1,0 +1,79 @@
+//! Half-size copies of a map for contacts that move fast.
+
+use crate::raster::Raster;
+use crate::spline::transpose;
+use crate::wrap::Wrap;
+use std::f64::consts::PI;
+
+/// Lobes of the windowed sinc on either side, in texels of the smaller map.
+const LOBES: f64 = 4.0;
+
+/// The map at half its size (rounded up) with the wavelengths that no longer fit filtered out.
+pub fn halve(raster: &Raster, wrap: Wrap) -> Raster {
+    let narrow = halve_rows(raster, wrap);
+    transpose(&halve_rows(&transpose(&narrow), wrap))
+}
+
+fn halve_rows(raster: &Raster, wrap: Wrap) -> Raster {
+    let n = raster.width;
+    let width = n.div_ceil(2);
+    if width == n {
+        return raster.clone();
+    }
+    let taps: Vec<Vec<(usize, f64)>> = (0..width).map(|i| taps_of(i, n, width, wrap)).collect();
+    let mut values = Vec::with_capacity(width * raster.height);
+    for y in 0..raster.height {
+        let row = raster.row(y);
+        values.extend(taps.iter().map(|taps| taps.iter().map(|&(i, w)| w * row[i]).sum::<f64>()));
+    }
+    Raster { width, height: raster.height, values }
+}
+
+/// Which texels make texel `i` of the smaller row, and with what weights (their sum is 1).
+fn taps_of(i: usize, from: usize, to: usize, wrap: Wrap) -> Vec<(usize, f64)> {
+    let ratio = from as f64 / to as f64;
+    let centre = (i as f64 + 0.5) * ratio - 0.5;
+    let reach = LOBES * ratio;
+    let (first, last) = ((centre - reach).ceil() as i64, (centre + reach).floor() as i64);
+    let weight = |k: i64| {
+        let t = (k as f64 - centre) / ratio;
+        sinc(t) * sinc(t / LOBES)
+    };
+    let total: f64 = (first..=last).map(weight).sum();
+    (first..=last).map(|k| (wrap.index(k, from), weight(k) / total)).collect()
+}
+
+fn sinc(t: f64) -> f64 {
+    if t == 0.0 { 1.0 } else { (PI * t).sin() / (PI * t) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(n: usize, periods: f64) -> Raster {
+        Raster::from_fn(n, 3, |x, _| (2.0 * PI * periods * (x as f64 + 0.5) / n as f64).cos())
+    }
+
+    #[test]
+    fn a_long_wave_survives_halving_and_a_short_one_does_not() {
+        for n in [64, 75] {
+            let small = halve(&wave(n, 6.0), Wrap::Repeat);
+            assert_eq!((small.width, small.height), (n.div_ceil(2), 2));
+            for (x, value) in small.row(0).iter().enumerate() {
+                let expected = (2.0 * PI * 6.0 * (x as f64 + 0.5) / small.width as f64).cos();
+                assert!((value - expected).abs() < 0.01, "{n}: {x}: {value} {expected}");
+            }
+            let short = halve(&wave(n, 0.42 * n as f64 - 0.3), Wrap::Mirror);
+            assert!(short.row(0).iter().all(|v| v.abs() < 0.1), "{n}: {:?}", short.row(0));
+        }
+    }
+
+    #[test]
+    fn a_constant_stays_a_constant_whatever_its_size() {
+        for n in 1..20 {
+            let small = halve(&Raster::constant(n, 20 - n, 0.3), Wrap::Clamp);
+            assert!(small.values.iter().all(|v| (v - 0.3).abs() < 1e-15));
+        }
+    }
+}

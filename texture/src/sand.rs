@@ -1,0 +1,35 @@
+//! Sand: a surface that gives way, keeps its volume, and slides to its angle of repose.
+//!
+//! ```text
+//! tool ──► cut what is above its lower surface, heap it on the rim and ahead     tool
+//!      ──► let slide what is steeper than the talus angle θ                      erosion
+//! F_r = k_s (e^{k_c d} − 1)  upwards,  F_f = −k_f v |F_r|  against the motion    law
+//! ```
+//!
+//! | file | one concept |
+//! |---|---|
+//! | [`grid`] | heights as whole numbers, so that volume is kept exactly |
+//! | [`tool`] | any tool by its lower height map: cutting and heaping |
+//! | [`erosion`] | sliding to the angle of repose, on active tiles only |
+//! | [`law`] | depth and force, drag, wetness, layers, grains |
+//! | [`simulation`] | contacts that drag tools, frame by frame |
+//! | [`patch`] | what the audio half sees: 64 × 64 heights around a contact |
+//! | [`source`] | the surface itself, and the hand-over that never waits |
+//!
+//! Source: Beneš, Dorjgotov, Arns & Bertoline, "Granular Material Interactive Manipulation" (2006).
+//! What we read differently or changed is said in each file. The authors' open points that are ours:
+//! arbitrary tools, correct volume, wetness, layers, and that sand is heard.
+
+pub mod erosion;
+pub mod grid;
+pub mod law;
+pub mod patch;
+pub mod simulation;
+pub mod source;
+pub mod tool;
+
+pub use grid::{SandGrid, SandPicture};
+pub use law::{Layer, SandLaw};
+pub use simulation::{SandDesign, SandSimulation};
+pub use source::{SandSource, SandThread, SandWorker};
+pub use tool::Tool;

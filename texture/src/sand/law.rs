@@ -1,0 +1,229 @@
+//! How sand pushes back, and what its grains do.
+//!
+//! ```text
+//! F_r(d) = k_s (e^{k_c d} − 1)   for d > 0, else 0, upwards      d(F) its inverse
+//! F_f    = −k_f v |F_r|                                           along the surface
+//! layers: F_r(d) = ∫₀^d k_s k_c g(z) e^{k_c z} dz,  g = hardness of the layer at depth z
+//! ```
+//!
+//! | symbol | field | the document | here |
+//! |---|---|---|---|
+//! | k_s | [`SandLaw::stiffness_n`] | 1000 | 1000 N |
+//! | k_c | [`SandLaw::exponent_per_m`] | ½ per unit | 1 m⁻¹ |
+//! | k_f | [`SandLaw::drag_s_per_m`] | 10 | 20 s/m |
+//!
+//! Source: the sand paper §4.1, equations 1 and 3, on a square of 2 units with a sphere of 0.01. Its
+//! unit is taken as 0.5 m (ours), so that the sphere is a fingertip of 5 mm; 0.006 and 0.01 units
+//! then give the 3.005 N and 5.013 N of its constants. What we read differently: as printed, equation
+//! 1 is −k_s e^{k_c d} − 1, a jump of 1001 N at the surface; and the friction is horizontal (the text
+//! says vertical). What we added, all ours and simple: wetness w multiplies k_s by 1 + 2w and raises
+//! the talus angle by 20° · w (damp sand holds a steeper slope); layers multiply the hardness below
+//! their depth; grains: a share of the displaced grains hits another one at the tool's speed.
+
+use asperity_dsp::DesignError;
+
+/// k_s, N.
+pub const STIFFNESS_N: f64 = 1000.0;
+/// k_c, 1/m.
+pub const EXPONENT_PER_M: f64 = 1.0;
+/// k_f, s/m.
+pub const DRAG_S_PER_M: f64 = 20.0;
+/// Diameter of a grain, metres (assumed; medium sand).
+pub const GRAIN_M: f64 = 3e-4;
+/// Density of a grain, kg/m³ (quartz).
+pub const GRAIN_DENSITY_KG_M3: f64 = 2650.0;
+/// Share of displaced grains that strike another one (assumed).
+pub const STRIKING_SHARE: f64 = 0.02;
+/// Most layers.
+pub const MAX_LAYERS: usize = 4;
+
+/// Sand below a depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layer {
+    /// Depth at which it begins, metres, above 0 and above the previous one.
+    pub from_m: f64,
+    /// Hardness against the top layer's, above 0.
+    pub hardness: f64,
+}
+
+/// The force law of one kind of sand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SandLaw {
+    /// k_s, N, above 0.
+    pub stiffness_n: f64,
+    /// k_c, 1/m, above 0.
+    pub exponent_per_m: f64,
+    /// k_f, s/m, at or above 0.
+    pub drag_s_per_m: f64,
+    /// 0 = dry, 1 = wet.
+    pub wetness: f64,
+    /// Layers below the top, unused ones `None`.
+    pub layers: [Option<Layer>; MAX_LAYERS],
+    /// Diameter of a grain, metres.
+    pub grain_m: f64,
+}
+
+impl Default for SandLaw {
+    fn default() -> Self {
+        Self {
+            stiffness_n: STIFFNESS_N,
+            exponent_per_m: EXPONENT_PER_M,
+            drag_s_per_m: DRAG_S_PER_M,
+            wetness: 0.0,
+            layers: [None; MAX_LAYERS],
+            grain_m: GRAIN_M,
+        }
+    }
+}
+
+impl SandLaw {
+    /// Refuses what has no force.
+    ///
+    /// # Errors
+    /// Names the first field out of its range.
+    pub fn check(&self) -> Result<(), DesignError> {
+        let between = |low: f64, high: f64| move |x: f64| x >= low && x <= high;
+        DesignError::check("stiffness_n", self.stiffness_n, "0.01 to 1e6 N", between(0.01, 1e6))?;
+        DesignError::check("exponent_per_m", self.exponent_per_m, "1e-3 to 1e4 per m", between(1e-3, 1e4))?;
+        DesignError::check("drag_s_per_m", self.drag_s_per_m, "0 to 1e4 s/m", between(0.0, 1e4))?;
+        DesignError::check("wetness", self.wetness, "0 to 1", between(0.0, 1.0))?;
+        DesignError::check("grain_m", self.grain_m, "1e-5 to 0.01 m", between(1e-5, 0.01))?;
+        let mut above = 0.0;
+        for layer in self.layers.iter().flatten() {
+            let deeper = |d: f64| d > above && d <= 1.0;
+            above = DesignError::check("layers.from_m", layer.from_m, "increasing, to 1 m", deeper)?;
+            DesignError::check("layers.hardness", layer.hardness, "0.01 to 1000", between(0.01, 1000.0))?;
+        }
+        Ok(())
+    }
+
+    /// Stiffness with wetness.
+    fn wet_stiffness_n(&self) -> f64 {
+        self.stiffness_n * (1.0 + 2.0 * self.wetness)
+    }
+
+    /// Talus angle with wetness, degrees, at most 75.
+    #[must_use]
+    pub fn talus_deg(&self, dry_deg: f64) -> f64 {
+        (dry_deg + 20.0 * self.wetness).min(75.0).max(dry_deg)
+    }
+
+    /// Repulse force at a depth, N; 0 above the surface.
+    #[must_use]
+    pub fn force_n(&self, depth_m: f64) -> f64 {
+        if depth_m <= 0.0 {
+            return 0.0;
+        }
+        let (mut force, mut top, mut hardness) = (0.0, 0.0, 1.0);
+        for layer in self.layers.iter().flatten() {
+            if layer.from_m >= depth_m {
+                break;
+            }
+            force += self.part_n(top, layer.from_m, hardness);
+            (top, hardness) = (layer.from_m, layer.hardness);
+        }
+        force + self.part_n(top, depth_m, hardness)
+    }
+
+    /// Force that one layer adds between two depths.
+    fn part_n(&self, top_m: f64, bottom_m: f64, hardness: f64) -> f64 {
+        let k = self.exponent_per_m;
+        hardness * self.wet_stiffness_n() * (k * top_m).exp() * (k * (bottom_m - top_m)).exp_m1()
+    }
+
+    /// Depth at which the sand carries a force, metres; 0 for none.
+    #[must_use]
+    pub fn depth_m(&self, force_n: f64) -> f64 {
+        if force_n <= 0.0 {
+            return 0.0;
+        }
+        let (mut left, mut top, mut hardness) = (force_n, 0.0, 1.0);
+        for layer in self.layers.iter().flatten() {
+            let part = self.part_n(top, layer.from_m, hardness);
+            if part >= left {
+                break;
+            }
+            left -= part;
+            (top, hardness) = (layer.from_m, layer.hardness);
+        }
+        let k = self.exponent_per_m;
+        top + (left / (hardness * self.wet_stiffness_n() * (k * top).exp())).ln_1p() / k
+    }
+
+    /// Compliance at the surface, m/N.
+    #[must_use]
+    pub fn compliance_m_n(&self) -> f64 {
+        1.0 / (self.wet_stiffness_n() * self.exponent_per_m)
+    }
+
+    /// Drag on a tool that the sand carries with `force_n`, N.
+    #[must_use]
+    pub fn drag_n(&self, velocity_m_s: [f64; 2], force_n: f64) -> [f64; 2] {
+        velocity_m_s.map(|v| -self.drag_s_per_m * v * force_n.abs())
+    }
+
+    /// Impacts among grains: their rate (1/s) and mean momentum (N·s), when a tool displaces
+    /// `displaced_m2` m³ of sand a metre of its way.
+    #[must_use]
+    pub fn grains(&self, displaced_m2: f64, speed_m_s: f64) -> (f64, f64) {
+        let volume_m3 = core::f64::consts::PI / 6.0 * self.grain_m.powi(3);
+        let rate = STRIKING_SHARE * displaced_m2 * speed_m_s / volume_m3;
+        (rate, GRAIN_DENSITY_KG_M3 * volume_m3 * speed_m_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_documents_constants_give_3_005_and_5_013_n() {
+        let law = SandLaw { exponent_per_m: 0.5, ..SandLaw::default() };
+        assert!((law.force_n(0.006) - 3.005).abs() < 5e-4);
+        assert!((law.force_n(0.01) - 5.013).abs() < 5e-4);
+        // In metres, one unit being 0.5 m.
+        assert!((SandLaw::default().force_n(0.003) - 3.005).abs() < 5e-4);
+        assert!((SandLaw::default().force_n(0.005) - 5.013).abs() < 5e-4);
+    }
+
+    #[test]
+    fn force_is_continuous_at_the_surface_and_at_layers_and_depth_inverts_it() {
+        let mut law = SandLaw { exponent_per_m: 30.0, wetness: 0.3, ..SandLaw::default() };
+        law.layers[0] = Some(Layer { from_m: 0.002, hardness: 4.0 });
+        law.layers[1] = Some(Layer { from_m: 0.005, hardness: 0.5 });
+        law.check().unwrap();
+        assert_eq!((law.force_n(0.0), law.force_n(-1.0), law.depth_m(0.0)), (0.0, 0.0, 0.0));
+        assert!(law.force_n(1e-12) < 1e-6);
+        for edge in [0.002, 0.005] {
+            assert!((law.force_n(edge + 1e-12) - law.force_n(edge - 1e-12)).abs() < 1e-6);
+        }
+        let mut last = 0.0;
+        for n in 1..200 {
+            let depth = 1e-4 * f64::from(n);
+            let force = law.force_n(depth);
+            assert!(force > last && (law.depth_m(force) - depth).abs() < 1e-12);
+            last = force;
+        }
+        // Twice as steep just inside a layer of twice the hardness.
+        let slope = |d: f64| (law.force_n(d + 1e-7) - law.force_n(d - 1e-7)) / 2e-7;
+        assert!((slope(0.002 + 1e-6) / slope(0.002 - 1e-6) - 4.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn drag_opposes_motion_and_grows_with_both_speed_and_force() {
+        assert_eq!(SandLaw::default().drag_n([0.1, -0.05], 0.5), [-1.0, 0.5]);
+    }
+
+    #[test]
+    fn wet_sand_is_stiffer_and_steeper() {
+        let wet = SandLaw { wetness: 1.0, ..SandLaw::default() };
+        assert!((wet.force_n(0.003) / SandLaw::default().force_n(0.003) - 3.0).abs() < 1e-12);
+        assert_eq!((wet.talus_deg(30.0), SandLaw::default().talus_deg(30.0)), (50.0, 30.0));
+    }
+
+    #[test]
+    fn grains_carry_the_momentum_of_the_displaced_share() {
+        let (rate, impulse) = SandLaw::default().grains(1e-6, 0.1);
+        assert!((rate * impulse - STRIKING_SHARE * 1e-6 * 0.1 * GRAIN_DENSITY_KG_M3 * 0.1).abs() < 1e-15);
+    }
+}

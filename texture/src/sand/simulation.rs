@@ -1,0 +1,401 @@
+//! The sand and the tools dragged through it, one frame (1/60 s) after another.
+//!
+//! In a frame every contact's tool goes from where it was to where it is now, a cell at a time. Its
+//! depth is the one at which the sand carries the contact's normal force (`law`), below the
+//! level of the sand ahead of it (the mean on a half circle outside the heap). Then the sand slides
+//! for as many passes as the frame's budget of cells allows; where a tool stands it is a wall, so
+//! that nothing trickles into the cut it fills. A contact that was not told of in a frame is lifted.
+//!
+//! The patch that the audio half reads shows the sand *without* the print of its own tool: the print is
+//! filled up to the level ahead, because it moves along with the tool and is not what the tool meets
+//! next; only then is a frame's lag not heard as a 60 Hz saw. The tool's own depth is in the
+//! surface's compliance.
+
+use super::erosion::Erosion;
+use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
+use super::law::SandLaw;
+use super::patch::{PATCH, Patch};
+use super::tool::{Press, Tool};
+use asperity_dsp::DesignError;
+
+/// Frames a second.
+pub const FRAMES_PER_S: f64 = 60.0;
+/// Passes of sliding in a frame, at most.
+pub const PASSES_A_FRAME: usize = 8;
+/// Cells looked at in a frame before sliding is put off to the next: about 1 ms.
+pub const CELLS_A_FRAME: usize = 400_000;
+/// Steps of a tool in a frame, at most.
+const STEPS_A_FRAME: usize = 64;
+
+/// A bed of sand to be made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SandDesign {
+    /// Extent along u, metres.
+    pub width_m: f64,
+    /// Extent along v, metres.
+    pub height_m: f64,
+    /// Cells along u.
+    pub cells: usize,
+    /// Depth of the untouched sand, metres.
+    pub depth_m: f64,
+    /// Talus angle of the dry sand, degrees.
+    pub talus_deg: f64,
+    /// Force law, wetness, layers, grains.
+    pub law: SandLaw,
+    /// What every contact drags.
+    pub tool: Tool,
+    /// Contacts are numbered below this.
+    pub contacts: usize,
+}
+
+impl Default for SandDesign {
+    /// 512 × 512 cells on a quarter of a metre, 50 mm deep, 30°, a fingertip.
+    fn default() -> Self {
+        Self {
+            width_m: 0.25,
+            height_m: 0.25,
+            cells: 512,
+            depth_m: 0.05,
+            talus_deg: 30.0,
+            law: SandLaw::default(),
+            tool: Tool::Sphere { radius_m: 0.005 },
+            contacts: 16,
+        }
+    }
+}
+
+/// Where a contact is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Its number.
+    pub contact: usize,
+    /// Position, metres.
+    pub position_m: [f64; 2],
+    /// Velocity, m/s.
+    pub velocity_m_s: [f64; 2],
+    /// Force pressing it down, N.
+    pub normal_force_n: f64,
+}
+
+/// What a render tells about the sand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SandFigures {
+    /// Volume when it was made, m³.
+    pub volume_before_m3: f64,
+    /// Volume now, m³.
+    pub volume_after_m3: f64,
+    /// Difference of the two in units of the grid: 0, or something is broken.
+    pub drift_units: i64,
+    /// Steepest slope now, degrees.
+    pub max_slope_deg: f64,
+}
+
+/// What is known of a contact.
+#[derive(Debug, Clone, Copy, Default)]
+struct Track {
+    told: Option<Pose>,
+    pose: Option<Pose>,
+    /// Level of the sand ahead, metres above the bottom.
+    level_m: f64,
+    /// Radius of the cut, metres.
+    radius_m: f64,
+    displaced_m2: f64,
+}
+
+/// Sand, its sliding and its tools.
+#[derive(Debug, Clone)]
+pub struct SandSimulation {
+    grid: SandGrid,
+    erosion: Erosion,
+    law: SandLaw,
+    tool: Tool,
+    depth_m: f64,
+    tracks: Vec<Track>,
+    presses: Vec<Press>,
+    walls: Vec<(usize, i32)>,
+    volume_before_units: i64,
+}
+
+impl SandSimulation {
+    /// Flat, untouched sand.
+    ///
+    /// # Errors
+    /// Names the field that is out of its range.
+    pub fn new(design: &SandDesign) -> Result<Self, DesignError> {
+        design.law.check()?;
+        design.tool.check()?;
+        let extent = |e: f64| (1e-3..=100.0).contains(&e);
+        DesignError::check("width_m", design.width_m, "1e-3 to 100 m", extent)?;
+        DesignError::check("height_m", design.height_m, "1e-3 to 100 m", extent)?;
+        DesignError::check("contacts", design.contacts as f64, "1 to 1024", |n| (1.0..=1024.0).contains(&n))?;
+        let cells = design.cells.max(1);
+        let cell_m = design.width_m / cells as f64;
+        let rows = (design.height_m / cell_m).round().min(1e6) as usize;
+        let grid = SandGrid::flat(design.cells, rows, cell_m, design.depth_m)?;
+        let reach = design.tool.reach_m() / cell_m;
+        DesignError::check("tool_radius_m", reach, "at most 256 cells", |r| r <= 256.0)?;
+        let erosion = Erosion::new(&grid, design.law.talus_deg(design.talus_deg))?;
+        let presses = vec![Press::new(&design.tool, &grid); design.contacts];
+        let track = Track { level_m: design.depth_m, ..Track::default() };
+        let walls = Vec::with_capacity(4 * grid.columns().min(1024));
+        let volume_before_units = grid.volume_units();
+        Ok(Self {
+            grid,
+            erosion,
+            law: design.law,
+            tool: design.tool.clone(),
+            depth_m: design.depth_m,
+            tracks: vec![track; design.contacts],
+            presses,
+            walls,
+            volume_before_units,
+        })
+    }
+
+    /// The sand.
+    #[must_use]
+    pub fn grid(&self) -> &SandGrid {
+        &self.grid
+    }
+
+    /// Shapes the sand before it is touched (the volume counts from then on).
+    pub fn shape(&mut self, height_m: impl FnMut(usize, usize) -> f64) {
+        self.grid.fill(height_m);
+        self.volume_before_units = self.grid.volume_units();
+        self.erosion.activate_all();
+    }
+
+    /// Another force law; the talus angle stays as it was made.
+    pub fn set_law(&mut self, law: SandLaw) {
+        if law.check().is_ok() {
+            self.law = law;
+        }
+    }
+
+    /// The force law.
+    #[must_use]
+    pub fn law(&self) -> &SandLaw {
+        &self.law
+    }
+
+    /// Contacts are numbered below this.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.tracks.len()
+    }
+
+    /// Tells where a contact is; the last pose before a frame counts.
+    pub fn tell(&mut self, pose: Pose) {
+        let finite = pose.position_m.iter().chain(&pose.velocity_m_s).all(|x| x.is_finite());
+        if let Some(track) = self.tracks.get_mut(pose.contact).filter(|_| finite) {
+            let normal_force_n = if pose.normal_force_n.is_finite() { pose.normal_force_n } else { 0.0 };
+            track.told = Some(Pose { normal_force_n: normal_force_n.clamp(0.0, 1e4), ..pose });
+        }
+    }
+
+    /// Whether a contact's tool stands in the sand.
+    #[must_use]
+    pub fn is_down(&self, contact: usize) -> bool {
+        self.tracks.get(contact).is_some_and(|t| t.pose.is_some())
+    }
+
+    /// One frame: tools move, then sand slides.
+    pub fn frame(&mut self) {
+        for contact in 0..self.tracks.len() {
+            self.drag(contact);
+        }
+        self.raise_walls();
+        let mut cells = 0;
+        for _ in 0..PASSES_A_FRAME {
+            if cells > CELLS_A_FRAME || self.erosion.is_settled() {
+                break;
+            }
+            cells += self.erosion.pass(&mut self.grid);
+        }
+        self.lower_walls();
+    }
+
+    /// Lifts all tools and lets the sand slide until nothing moves.
+    pub fn settle(&mut self) {
+        for (track, press) in self.tracks.iter_mut().zip(&self.presses) {
+            if track.pose.take().is_some() {
+                wake_print(&mut self.erosion, &self.grid, press);
+            }
+            track.told = None;
+        }
+        self.erosion.settle(&mut self.grid);
+    }
+
+    /// Whether nothing slides and no tool is down.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.erosion.is_settled() && self.tracks.iter().all(|t| t.pose.is_none() && t.told.is_none())
+    }
+
+    /// Volumes and steepest slope.
+    #[must_use]
+    pub fn figures(&self) -> SandFigures {
+        let after = self.grid.volume_units();
+        let m3 = self.grid.cell_m() * self.grid.cell_m() / UNITS_PER_M;
+        SandFigures {
+            volume_before_m3: self.volume_before_units as f64 * m3,
+            volume_after_m3: after as f64 * m3,
+            drift_units: after - self.volume_before_units,
+            max_slope_deg: self.grid.max_slope_deg(),
+        }
+    }
+
+    /// A 16-bit picture of the sand.
+    #[must_use]
+    pub fn picture(&self) -> SandPicture {
+        self.grid.picture()
+    }
+
+    /// Moves one contact's tool from its last pose to the one it was told.
+    fn drag(&mut self, contact: usize) {
+        let track = &mut self.tracks[contact];
+        let Some(to) = track.told.take() else {
+            if track.pose.take().is_some() {
+                wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
+                track.displaced_m2 = 0.0;
+            }
+            return;
+        };
+        let landed = track.pose.is_none();
+        let from = track.pose.map_or(to.position_m, |p| p.position_m);
+        let way = [0, 1].map(|a| to.position_m[a] - from[a]);
+        let distance = way[0].hypot(way[1]);
+        let direction = if distance > 0.0 { way.map(|w| w / distance) } else { [0.0; 2] };
+        let steps = ((distance / self.grid.cell_m()).ceil() as usize).clamp(1, STEPS_A_FRAME);
+        let depth_m = self.law.depth_m(to.normal_force_n);
+        let mut units = 0;
+        for step in 1..=steps {
+            let t = step as f64 / steps as f64;
+            let at = [0, 1].map(|a| from[a] + t * way[a]);
+            let level = level_ahead(&self.grid, at, direction, track.radius_m);
+            // The level follows within a radius, so that single grains of the heap do not shake it.
+            let follow = if landed && step == 1 {
+                1.0
+            } else {
+                1.0 - (-distance / steps as f64 / track.radius_m.max(self.grid.cell_m())).exp()
+            };
+            track.level_m += follow * (level - track.level_m);
+            let tip_m = track.level_m - depth_m;
+            let displaced = self.presses[contact].apply(&mut self.grid, &self.tool, at, tip_m, direction);
+            let cut = self.presses[contact].cut_cells().count() as f64;
+            track.radius_m = self.grid.cell_m() * (cut / core::f64::consts::PI).sqrt();
+            if displaced.units > 0 {
+                self.erosion.activate(displaced.columns, displaced.rows);
+                units += displaced.units;
+            }
+        }
+        if steps > 1 || distance > 0.0 {
+            let volume = units as f64 / UNITS_PER_M * self.grid.cell_m() * self.grid.cell_m();
+            let now = if distance > 0.0 { volume / distance } else { 0.0 };
+            track.displaced_m2 += if landed { now } else { 0.5 * (now - track.displaced_m2) };
+            wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
+        }
+        track.pose = Some(to);
+    }
+
+    /// Makes every tool that is down a wall for the sliding sand.
+    fn raise_walls(&mut self) {
+        self.walls.clear();
+        for (track, press) in self.tracks.iter().zip(&self.presses) {
+            if track.pose.is_some() {
+                for at in press.cut_cells() {
+                    let height = self.grid.heights[at];
+                    if height < WALL {
+                        self.walls.push((at, height));
+                        self.grid.heights[at] = WALL;
+                    }
+                }
+            }
+        }
+    }
+
+    fn lower_walls(&mut self) {
+        for &(at, height) in &self.walls {
+            self.grid.heights[at] = height;
+        }
+    }
+
+    /// Writes the sand around a contact into a patch.
+    pub fn write_patch(&self, contact: usize, patch: &mut Patch) {
+        let Some((track, pose)) = self.tracks.get(contact).and_then(|t| Some((t, t.pose?))) else {
+            self.write_overview(patch);
+            return;
+        };
+        let cell = self.grid.cell_m();
+        let heap_m = 1.6 * track.radius_m + 2.0 * cell;
+        let travel_m = pose.velocity_m_s[0].hypot(pose.velocity_m_s[1]) / FRAMES_PER_S;
+        let stride = ((6.0 * heap_m + 4.0 * travel_m) / (PATCH as f64 * cell)).ceil().clamp(1.0, 1e4);
+        let spacing = stride * cell;
+        // Snapped, so that one patch after the other shows the same cells.
+        let first = [0, 1].map(|a| {
+            let middle = pose.position_m[a] + pose.velocity_m_s[a] / FRAMES_PER_S;
+            ((middle / cell - 0.5) / stride).round() - (PATCH / 2) as f64
+        });
+        patch.contact = contact;
+        patch.spacing_m = spacing;
+        patch.origin_m = first.map(|f| (f * stride + 0.5) * cell);
+        patch.base_m = track.level_m - self.depth_m;
+        patch.displaced_m2 = track.displaced_m2;
+        for j in 0..PATCH {
+            for i in 0..PATCH {
+                let at = [patch.origin_m[0] + i as f64 * spacing, patch.origin_m[1] + j as f64 * spacing];
+                let above_level = self.cell_at(at) - track.level_m;
+                let away = (at[0] - pose.position_m[0]).hypot(at[1] - pose.position_m[1]);
+                let t = ((away - heap_m) / (0.5 * heap_m)).clamp(0.0, 1.0);
+                patch.heights_m[j * PATCH + i] = (above_level * t * t * (3.0 - 2.0 * t)) as f32;
+            }
+        }
+    }
+
+    /// Writes all the sand, coarsely, into a patch.
+    pub fn write_overview(&self, patch: &mut Patch) {
+        let cell = self.grid.cell_m();
+        let edge = self.grid.columns().max(self.grid.rows()) as f64 * cell;
+        // One sample beyond each edge, where the spline needs neighbours.
+        patch.spacing_m = edge / (PATCH - 4) as f64;
+        patch.contact = usize::MAX;
+        patch.origin_m = [-1.5 * patch.spacing_m; 2];
+        patch.base_m = 0.0;
+        patch.displaced_m2 = 0.0;
+        for j in 0..PATCH {
+            for i in 0..PATCH {
+                let at = [i, j].map(|k| (k as f64 - 1.5) * patch.spacing_m);
+                patch.heights_m[j * PATCH + i] = (self.cell_at(at) - self.depth_m) as f32;
+            }
+        }
+    }
+
+    /// Height of the cell at a position, of the nearest one beyond the edge, metres.
+    fn cell_at(&self, position_m: [f64; 2]) -> f64 {
+        let cell = |a: usize| (position_m[a] / self.grid.cell_m()).max(0.0) as usize;
+        self.grid.height_m(cell(0), cell(1))
+    }
+}
+
+/// Lets the sand around a print slide when the tool has left it.
+fn wake_print(erosion: &mut Erosion, grid: &SandGrid, press: &Press) {
+    for at in press.cut_cells() {
+        let (x, y) = (at % grid.stride() - 1, at / grid.stride() - 1);
+        erosion.activate([x, x], [y, y]);
+    }
+}
+
+/// Mean height on a circle outside the heap, of its half ahead when there is a direction, metres.
+fn level_ahead(grid: &SandGrid, at: [f64; 2], direction: [f64; 2], radius_m: f64) -> f64 {
+    const POINTS: usize = 16;
+    let ring = 1.6 * radius_m + 2.0 * grid.cell_m();
+    let (mut sum, mut count) = (0.0, 0.0);
+    for n in 0..POINTS {
+        let (s, c) = (core::f64::consts::TAU * n as f64 / POINTS as f64).sin_cos();
+        if c * direction[0] + s * direction[1] > -0.05 {
+            sum += grid.height_at_m([at[0] + ring * c, at[1] + ring * s]);
+            count += 1.0;
+        }
+    }
+    sum / count
+}

@@ -1,0 +1,427 @@
+//! Sand as a surface: the hand-over between the simulation and the audio half.
+//!
+//! | who | does what |
+//! |---|---|
+//! | audio half, every 64 samples | sends the contact's pose, takes the newest patch, gives the old one back |
+//! | simulation, 60 times a second | takes the poses, moves tools, lets sand slide, sends a patch a contact |
+//!
+//! Both directions are lock-free rings of a fixed size whose ends never wait: a full ring drops the
+//! pose (the next one says more), a missing patch leaves the old one in use. Patches are boxes made
+//! beforehand that travel in a circle, so that neither side allocates. From one patch to the next the
+//! height fades over a frame on absolute samples.
+//!
+//! *Synchronous* sand ([`SandSource::synchronous`]) keeps the simulation in the source and runs a
+//! frame wherever a contact's touch crosses a multiple of the frame length on the absolute sample
+//! grid: renders are reproducible and do not depend on how time is split into blocks. It is for
+//! rendering offline; a frame may take a millisecond.
+//!
+//! Height = the sand of the patch + grains (solid noise finer than a cell). The depth to which a tool
+//! sinks is the compliance 1/(k_s k_c) in series with the contact; drag and grain impacts are the
+//! answer to a touch.
+
+use super::grid::SandPicture;
+use super::law::SandLaw;
+use super::patch::Patch;
+use super::simulation::{FRAMES_PER_S, Pose, SandDesign, SandFigures, SandSimulation};
+use crate::change::SurfaceChange;
+use crate::fade::Fade;
+use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand};
+use crate::solid_materials::{FRICTION, SolidMaterial};
+use crate::solid_noise::SolidNoise;
+use asperity_dsp::DesignError;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Patches in circulation for every contact: one that fades out, one that fades in, one that waits,
+/// one under way.
+const PATCHES_A_CONTACT: usize = 4;
+
+/// Where the simulation runs.
+enum Link {
+    Here(Box<SandSimulation>),
+    Elsewhere {
+        poses: rtrb::Producer<Pose>,
+        laws: rtrb::Producer<SandLaw>,
+        patches: rtrb::Consumer<Box<Patch>>,
+        back: rtrb::Producer<Box<Patch>>,
+    },
+}
+
+/// What one contact reads.
+#[derive(Default)]
+struct Slot {
+    old: Option<Box<Patch>>,
+    new: Option<Box<Patch>>,
+    waiting: Option<Box<Patch>>,
+    fade_start: u64,
+    /// First sample of the last block and the one after its last.
+    seen: [u64; 2],
+}
+
+/// A surface of sand.
+pub struct SandSource {
+    link: Link,
+    slots: Vec<Slot>,
+    overview: Box<Patch>,
+    spare: Vec<Box<Patch>>,
+    law: Fade<SandLaw>,
+    grains: SolidNoise,
+    grain_relief: SurfaceBlock,
+    frame_samples: u64,
+    next_frame: u64,
+    longest_m: f64,
+}
+
+/// The simulation's end of the hand-over; calls [`SandWorker::frame`] 60 times a second on a thread
+/// that may take its time.
+pub struct SandWorker {
+    simulation: SandSimulation,
+    poses: rtrb::Consumer<Pose>,
+    laws: rtrb::Consumer<SandLaw>,
+    patches: rtrb::Producer<Box<Patch>>,
+    back: rtrb::Consumer<Box<Patch>>,
+    spare: Vec<Box<Patch>>,
+    touched: Vec<bool>,
+    frames: u64,
+}
+
+impl SandSource {
+    /// Sand that is simulated inside the source, for rendering offline.
+    ///
+    /// # Errors
+    /// Names the field that is out of its range.
+    pub fn synchronous(design: &SandDesign, seed: u64, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let simulation = SandSimulation::new(design)?;
+        let spare = patches(design.contacts * PATCHES_A_CONTACT);
+        Self::new(Link::Here(Box::new(simulation)), spare, design, seed, sample_rate_hz)
+    }
+
+    /// Sand that is simulated elsewhere: the surface, and the worker to be run on another thread.
+    ///
+    /// # Errors
+    /// Names the field that is out of its range.
+    pub fn threaded(
+        design: &SandDesign,
+        seed: u64,
+        sample_rate_hz: f64,
+    ) -> Result<(Self, SandWorker), DesignError> {
+        let simulation = SandSimulation::new(design)?;
+        let count = design.contacts * PATCHES_A_CONTACT + 2;
+        let (poses, poses_out) = rtrb::RingBuffer::new(design.contacts * 64);
+        let (laws, laws_out) = rtrb::RingBuffer::new(4);
+        let (patches_in, patches_out) = rtrb::RingBuffer::new(count);
+        let (back, back_out) = rtrb::RingBuffer::new(count);
+        let worker = SandWorker {
+            touched: vec![false; design.contacts],
+            simulation,
+            poses: poses_out,
+            laws: laws_out,
+            patches: patches_in,
+            back: back_out,
+            spare: patches(count),
+            frames: 0,
+        };
+        let link = Link::Elsewhere { poses, laws, patches: patches_out, back };
+        let spare = Vec::with_capacity(count);
+        Ok((Self::new(link, spare, design, seed, sample_rate_hz)?, worker))
+    }
+
+    fn new(
+        link: Link,
+        spare: Vec<Box<Patch>>,
+        design: &SandDesign,
+        seed: u64,
+        sample_rate_hz: f64,
+    ) -> Result<Self, DesignError> {
+        // Grains fill the wavelengths below two cells.
+        let mut grains = SolidMaterial::Sand.parameters();
+        let cell_m = design.width_m / design.cells as f64;
+        grains.texture_factor_per_m =
+            grains.texture_factor_per_m.max(1.0 / (cell_m * grains.modules[0].frequency)).min(1e6);
+        let block = MAX_BLOCK as f64;
+        let frame_samples =
+            (sample_rate_hz / FRAMES_PER_S / block).round().max(2.0) as u64 * MAX_BLOCK as u64;
+        Ok(Self {
+            link,
+            slots: (0..design.contacts).map(|_| Slot::default()).collect(),
+            overview: Box::new(Patch::flat()),
+            spare,
+            law: Fade::new(design.law, sample_rate_hz)?,
+            grains: SolidNoise::new(grains, seed, sample_rate_hz)?,
+            grain_relief: SurfaceBlock::default(),
+            frame_samples,
+            next_frame: 0,
+            longest_m: design.width_m.max(design.height_m),
+        })
+    }
+
+    /// The simulation, when it runs inside the source.
+    #[must_use]
+    pub fn simulation(&self) -> Option<&SandSimulation> {
+        if let Link::Here(simulation) = &self.link { Some(simulation) } else { None }
+    }
+
+    /// Shapes synchronous sand before it is touched; nothing happens to sand that is elsewhere.
+    pub fn shape(&mut self, height_m: impl FnMut(usize, usize) -> f64) {
+        if let Link::Here(simulation) = &mut self.link {
+            simulation.shape(height_m);
+            simulation.write_overview(&mut self.overview);
+        }
+    }
+
+    /// Lifts all tools, settles the sand and says what is left: volumes, slope, picture. `None` when
+    /// the simulation is elsewhere ([`SandThread::stop`] gives it back).
+    pub fn finish(&mut self) -> Option<(SandFigures, SandPicture)> {
+        let Link::Here(simulation) = &mut self.link else { return None };
+        simulation.settle();
+        Some((simulation.figures(), simulation.picture()))
+    }
+
+    /// Tells the simulation about a touch and takes what it has to say.
+    fn exchange(&mut self, touch: &Touch) {
+        let pose = Pose {
+            contact: touch.contact,
+            position_m: touch.position_m,
+            velocity_m_s: touch.velocity_m_s,
+            normal_force_n: touch.normal_force_n,
+        };
+        match &mut self.link {
+            Link::Here(simulation) => {
+                simulation.tell(pose);
+                if touch.sample < self.next_frame {
+                    return;
+                }
+                self.next_frame = (touch.sample / self.frame_samples + 1) * self.frame_samples;
+                simulation.frame();
+                simulation.write_overview(&mut self.overview);
+                for (contact, slot) in self.slots.iter_mut().enumerate() {
+                    if simulation.is_down(contact)
+                        && let Some(mut patch) = slot.waiting.take().or_else(|| self.spare.pop())
+                    {
+                        simulation.write_patch(contact, &mut patch);
+                        slot.waiting = Some(patch);
+                    }
+                }
+            }
+            Link::Elsewhere { poses, patches, back, .. } => {
+                // A full ring: the simulation is late and will hear the next pose.
+                let _ = poses.push(pose);
+                while let Ok(patch) = patches.pop() {
+                    let replaced = match self.slots.get_mut(patch.contact) {
+                        Some(slot) => slot.waiting.replace(patch),
+                        None => Some(core::mem::replace(&mut self.overview, patch)),
+                    };
+                    give_back(replaced, back, &mut self.spare);
+                }
+                while let Some(patch) = self.spare.pop() {
+                    if let Err(rtrb::PushError::Full(patch)) = back.push(patch) {
+                        self.spare.push(patch);
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Begins to fade to the waiting patch once the last fade is over.
+    fn turn_over(&mut self, contact: usize, sample: u64) {
+        let Some(slot) = self.slots.get_mut(contact) else { return };
+        if slot.waiting.is_some()
+            && sample >= slot.fade_start.saturating_add(fade_samples(self.frame_samples))
+        {
+            let old = slot.old.take();
+            slot.old = slot.new.take();
+            slot.new = slot.waiting.take();
+            slot.fade_start = sample;
+            self.spare.extend(old);
+        }
+    }
+}
+
+/// A patch that came back to the audio half goes to the simulation, or waits until there is room.
+fn give_back(patch: Option<Box<Patch>>, back: &mut rtrb::Producer<Box<Patch>>, spare: &mut Vec<Box<Patch>>) {
+    if let Some(patch) = patch
+        && let Err(rtrb::PushError::Full(patch)) = back.push(patch)
+        && spare.len() < spare.capacity()
+    {
+        spare.push(patch);
+    }
+}
+
+/// The fade ends a block before the next frame.
+fn fade_samples(frame_samples: u64) -> u64 {
+    frame_samples - MAX_BLOCK as u64
+}
+
+fn patches(count: usize) -> Vec<Box<Patch>> {
+    let mut patches = Vec::with_capacity(count + PATCHES_A_CONTACT);
+    patches.extend((0..count).map(|_| Box::new(Patch::flat())));
+    patches
+}
+
+impl HeightField for SandSource {
+    fn band(&self) -> WavelengthBand {
+        WavelengthBand { shortest_m: self.grains.band().shortest_m, longest_m: self.longest_m }
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        let n = path.len().min(MAX_BLOCK);
+        self.grains.sample(path, &mut self.grain_relief);
+        out.clear(n);
+        out.friction[..n].fill(FRICTION);
+        let fade_length = fade_samples(self.frame_samples) as f64;
+        let Some(slot) = self.slots.get_mut(path.contact) else { return };
+        if path.first_sample != slot.seen[0] && path.first_sample != slot.seen[1] {
+            // A new contact: its patches belong to another place.
+            self.spare.extend(slot.old.take().into_iter().chain(slot.new.take()).chain(slot.waiting.take()));
+            slot.fade_start = 0;
+        }
+        slot.seen = [path.first_sample, path.first_sample + n as u64];
+        let old = slot.old.as_ref().unwrap_or(&self.overview);
+        for i in 0..n {
+            let at = path.position_m[i];
+            let sample = path.first_sample + i as u64;
+            let (mut height, mut slope) = (0.0, [0.0; 2]);
+            let mut add = |weight: f64, patch: &Patch| {
+                if weight != 0.0 {
+                    let (h, g) = patch.at(at);
+                    height += weight * h;
+                    slope = [slope[0] + weight * g[0], slope[1] + weight * g[1]];
+                }
+            };
+            match &slot.new {
+                None => add(1.0, old),
+                Some(new) => {
+                    let t = (sample.saturating_sub(slot.fade_start) as f64 / fade_length).min(1.0);
+                    let w = t * t * (3.0 - 2.0 * t);
+                    add(1.0 - w, old);
+                    add(w, new);
+                }
+            }
+            out.height_m[i] = height + self.grain_relief.height_m[i];
+            out.gradient[i] = [0, 1].map(|a| slope[a] + self.grain_relief.gradient[i][a]);
+            for (weight, law) in self.law.weights(sample).iter().zip(self.law.values()) {
+                if *weight != 0.0 {
+                    out.compliance_m_n[i] += weight * law.compliance_m_n();
+                }
+            }
+        }
+    }
+
+    fn react(&mut self, touch: &Touch) -> Reaction {
+        self.exchange(touch);
+        self.turn_over(touch.contact, touch.sample);
+        let displaced_m2 =
+            self.slots.get(touch.contact).and_then(|s| s.new.as_ref()).map_or(0.0, |p| p.displaced_m2);
+        let law = self.law.target();
+        let drag = law.drag_n(touch.velocity_m_s, touch.normal_force_n);
+        let speed = touch.velocity_m_s[0].hypot(touch.velocity_m_s[1]);
+        let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
+        Reaction { force_n: [drag[0], drag[1], 0.0], grain_rate_per_s, grain_impulse_n_s }
+    }
+
+    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        let SurfaceChange::Sand(law) = change else { return false };
+        if law.check().is_err() {
+            return false;
+        }
+        self.law.set(*law, sample);
+        match &mut self.link {
+            Link::Here(simulation) => simulation.set_law(*law),
+            // A full ring: five changes within a frame, of which the simulation misses one.
+            Link::Elsewhere { laws, .. } => drop(laws.push(*law)),
+        }
+        true
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        Some(self)
+    }
+}
+
+impl SandWorker {
+    /// Takes the poses, runs a frame, sends patches.
+    pub fn frame(&mut self) {
+        self.touched.fill(false);
+        while let Ok(law) = self.laws.pop() {
+            self.simulation.set_law(law);
+        }
+        while let Ok(pose) = self.poses.pop() {
+            if let Some(touched) = self.touched.get_mut(pose.contact) {
+                *touched = true;
+            }
+            self.simulation.tell(pose);
+        }
+        while let Ok(patch) = self.back.pop() {
+            self.spare.push(patch);
+        }
+        self.simulation.frame();
+        for contact in 0..self.touched.len() {
+            if self.touched[contact] {
+                self.send(|simulation, patch| simulation.write_patch(contact, patch));
+            }
+        }
+        if self.frames.is_multiple_of(8) {
+            self.send(SandSimulation::write_overview);
+        }
+        self.frames += 1;
+    }
+
+    /// Sends a patch, or none when all are under way.
+    fn send(&mut self, write: impl FnOnce(&SandSimulation, &mut Patch)) {
+        if let Some(mut patch) = self.spare.pop() {
+            write(&self.simulation, &mut patch);
+            if let Err(rtrb::PushError::Full(patch)) = self.patches.push(patch) {
+                self.spare.push(patch);
+            }
+        }
+    }
+
+    /// Shapes the sand before it is touched.
+    pub fn shape(&mut self, height_m: impl FnMut(usize, usize) -> f64) {
+        self.simulation.shape(height_m);
+    }
+
+    /// The simulation.
+    #[must_use]
+    pub fn simulation(&self) -> &SandSimulation {
+        &self.simulation
+    }
+
+    /// Runs frames on a thread of its own until it is stopped.
+    #[must_use]
+    pub fn spawn(mut self) -> SandThread {
+        let stop = Arc::new(AtomicBool::new(false));
+        let seen = Arc::clone(&stop);
+        let handle = std::thread::spawn(move || {
+            let period = Duration::from_secs_f64(1.0 / FRAMES_PER_S);
+            let mut due = Instant::now();
+            while !seen.load(Ordering::Relaxed) {
+                self.frame();
+                due += period;
+                match due.checked_duration_since(Instant::now()) {
+                    Some(rest) => std::thread::sleep(rest),
+                    // Late: the next frame counts from now, none is made up for.
+                    None => due = Instant::now(),
+                }
+            }
+            self.simulation
+        });
+        SandThread { stop, handle }
+    }
+}
+
+/// A running simulation.
+pub struct SandThread {
+    stop: Arc<AtomicBool>,
+    handle: std::thread::JoinHandle<SandSimulation>,
+}
+
+impl SandThread {
+    /// Stops it and gives the sand back; `None` if the thread has died.
+    pub fn stop(self) -> Option<SandSimulation> {
+        self.stop.store(true, Ordering::Relaxed);
+        self.handle.join().ok()
+    }
+}

@@ -1,0 +1,28 @@
+//! Repeated patterns: the lattice of a picture, its averaged cell, what is left, and the wallpaper group.
+//!
+//! Source: thesis ch. 7 (statistical feature matrix, Def. 7.3–7.7; lattices from point clouds, §7.2.2).
+//! The document's user tunes a threshold and two widths; here nothing is tuned, and "no symmetry" is an answer.
+//!
+//! | step | file |
+//! |---|---|
+//! | light taken out | `detrend` |
+//! | distortion of every shift | `feature_matrix` |
+//! | its minima | `minima` |
+//! | lattice, or none | `search` |
+//! | averaged primitive, symmetric part, residual | `cell` |
+//! | point group, one of 17 groups, mean within the fundamental domain | `wallpaper`, `operation` |
+
+mod cell;
+mod detrend;
+mod feature_matrix;
+mod lattice;
+mod minima;
+mod operation;
+mod search;
+mod wallpaper;
+
+pub use cell::{AveragedCell, Separation, averaged_cell, separate, with_cell};
+pub use feature_matrix::{FeatureMatrix, feature_matrix};
+pub use lattice::Lattice;
+pub use search::{MERIT_LIMIT, SMALLEST_SIDE, best_lattice, find_lattice};
+pub use wallpaper::{CellSymmetry, WallpaperGroup, wallpaper_group};

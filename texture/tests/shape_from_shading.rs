@@ -1,0 +1,148 @@
+//! Shape from shading against surfaces whose heights are known.
+
+#![cfg(feature = "offline")]
+
+mod surfaces;
+
+use asperity_texture::gradient_field::{Derivative, slopes};
+use asperity_texture::light::{Light, estimate_light};
+use asperity_texture::raster::Raster;
+use asperity_texture::shape_from_shading::{Method, STEPS, shape_by, shape_from_shading};
+use std::f64::consts::TAU;
+use surfaces::fractal;
+
+/// The image of a surface under a light, 8 bits, with an albedo.
+fn photograph(surface: &Raster, light: Light, albedo: f64) -> Raster {
+    let field = slopes(surface, Derivative::Exact);
+    let [sx, sy, sz] = light.direction();
+    let both = field.along_u.values.iter().zip(&field.along_v.values);
+    let lit = both.map(|(p, q)| (sz - sx * p - sy * q) / (1.0 + p * p + q * q).sqrt());
+    let values = lit.map(|r| (r.max(0.0) * albedo * 255.0).round() / 255.0).collect();
+    Raster { width: surface.width, height: surface.height, values }
+}
+
+fn correlation(a: &Raster, b: &Raster) -> f64 {
+    let (ma, mb) = (a.mean(), b.mean());
+    let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+        a.values.iter().zip(&b.values).map(|(x, y)| f(x - ma, y - mb)).sum()
+    };
+    sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
+}
+
+fn known_surfaces() -> Vec<(&'static str, Raster)> {
+    let n = 128;
+    let scaled = |surface: Raster, slope: f64| {
+        let power = slopes(&surface, Derivative::Exact).power();
+        surface.map(|z| z * slope / power.sqrt())
+    };
+    let egg = |i: usize| (i as f64 * TAU * 4.0 / n as f64).sin();
+    let ridge = fractal(n, 5.0, 1.0, 43);
+    // Caps of spheres on a plane: the document's own test pattern.
+    let cap = |i: usize| ((i % 16) as f64 - 7.5).powi(2);
+    vec![
+        ("ground", scaled(fractal(n, 4.0, 1.0, 41), 0.5)),
+        ("hills", scaled(fractal(n, 5.0, 1.0, 42), 0.4)),
+        ("egg crate", scaled(Raster::from_fn(n, n, |x, y| egg(x) * egg(y)), 0.4)),
+        (
+            "ridges",
+            scaled(
+                Raster::from_fn(n, n, |x, y| {
+                    (TAU * (4 * x + 3 * y) as f64 / n as f64).sin() + 4.0 * ridge.at(x, y)
+                }),
+                0.5,
+            ),
+        ),
+        ("spheres", scaled(Raster::from_fn(n, n, |x, y| (81.0 - cap(x) - cap(y)).max(32.0).sqrt()), 0.5)),
+    ]
+}
+
+#[test]
+fn known_heights_are_found_better_than_by_tsai_and_shah_at_every_slant() {
+    for (name, surface) in known_surfaces() {
+        for slant_deg in [10.0_f64, 20.0, 30.0, 45.0, 60.0] {
+            let light = Light::at(slant_deg.to_radians(), -2.2).unwrap();
+            let image = photograph(&surface, light, 0.9);
+            let found = |method| {
+                let shape = shape_by(method, &image, light, |_| {}).unwrap();
+                correlation(&shape.height_px, &surface)
+            };
+            let ours = found(Method::Integrable(STEPS));
+            let theirs = [1, 2, 5].map(|steps| found(Method::TsaiShah(steps)));
+            let best = theirs.into_iter().fold(f64::MIN, f64::max);
+            println!("{name:10} {slant_deg:2}°: ours {ours:.3}, Tsai–Shah {theirs:.2?}");
+            assert!(ours > best + 0.3, "{name} at {slant_deg}°");
+        }
+    }
+}
+
+#[test]
+fn heights_come_in_texels_whatever_the_albedo() {
+    let surface = &known_surfaces()[1].1;
+    let light = Light::at(45.0_f64.to_radians(), -2.0).unwrap();
+    for albedo in [0.3, 0.9] {
+        let image = photograph(surface, light, albedo);
+        let shape = shape_from_shading(&image, Some(light), |_| {}).unwrap();
+        let rms = |r: &Raster| (slopes(r, Derivative::Exact).power()).sqrt();
+        let ratio = rms(&shape.height_px) / rms(surface);
+        println!("albedo {albedo}: slopes {ratio:.3} of the true ones");
+        assert!((ratio - 1.0).abs() < 0.1);
+        assert!(shape.unexplained.unwrap() < 0.1);
+    }
+}
+
+#[test]
+fn the_first_step_of_tsai_and_shah_is_the_negative_image() {
+    let surface = &known_surfaces()[0].1;
+    let light = Light::at(0.5, -2.0).unwrap();
+    let image = photograph(surface, light, 0.9);
+    let shape = shape_by(Method::TsaiShah(1), &image, light, |_| {}).unwrap();
+    assert!((correlation(&shape.height_px, &image).abs() - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_light_is_found_to_a_few_degrees_or_said_not_to_be_there() {
+    for (seed, tilt) in [(51, -1.0), (52, -1.57), (53, -2.4)] {
+        let surface = fractal(128, 4.5, 1.0, seed);
+        let power = slopes(&surface, Derivative::Exact).power();
+        let surface = surface.map(|z| z * 0.35 / power.sqrt());
+        let light = Light::at(50.0_f64.to_radians(), tilt).unwrap();
+        let found = estimate_light(&photograph(&surface, light, 0.9)).expect("lit from a side");
+        let [x, y, _] = found.direction();
+        let off = (y.atan2(x) - tilt).to_degrees();
+        println!(
+            "tilt {:.0}°: off by {off:.1}°, slant {:.0}°",
+            tilt.to_degrees(),
+            found.slant_rad().to_degrees()
+        );
+        assert!(off.abs() < 8.0);
+        // Skylight: brightness follows height, no direction.
+        assert_eq!(estimate_light(&surface.map(|z| 0.5 + 0.02 * z)), None);
+    }
+}
+
+#[test]
+fn a_diffuse_photograph_is_deep_where_it_is_dark() {
+    let surface = fractal(128, 3.5, 1.0, 61);
+    let shape = shape_from_shading(&surface, None, |_| {}).unwrap();
+    assert_eq!((shape.method, shape.light), (Method::DarkIsDeep, None));
+    let r = correlation(&shape.height_px, &surface);
+    let slope = slopes(&shape.height_px, Derivative::Exact).power().sqrt();
+    assert!(r > 0.5 && (slope - 0.25).abs() < 1e-6, "r {r}, slope {slope}");
+}
+
+#[test]
+fn black_images_and_images_that_are_no_images_do_no_harm() {
+    let light = Light::at(0.7, -2.0).unwrap();
+    for value in [0.0, 1.0] {
+        for method in [Method::Integrable(5), Method::TsaiShah(3), Method::DarkIsDeep] {
+            let shape = shape_by(method, &Raster::constant(16, 9, value), light, |_| {}).unwrap();
+            assert!(shape.height_px.values.iter().all(|z| z.is_finite()), "{method:?}");
+        }
+    }
+    assert_eq!(
+        shape_from_shading(&Raster::constant(4, 9, 0.0), None, |_| {}).unwrap_err().field,
+        "image side"
+    );
+    let nan = Raster::constant(9, 9, f64::NAN);
+    assert_eq!(shape_from_shading(&nan, None, |_| {}).unwrap_err().field, "image");
+}
