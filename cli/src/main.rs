@@ -21,6 +21,7 @@ mod build;
 mod csv;
 mod demo;
 mod error;
+mod fit;
 mod output;
 mod pixels;
 mod plot;
@@ -45,12 +46,14 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Demo(demo::Options),
+    Fit(fit::Options),
     Render(render::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
+        Verb::Fit(options) => fit::run(&options),
         Verb::Render(options) => render::run(&options),
     }
 }
