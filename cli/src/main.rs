@@ -24,6 +24,7 @@ mod demo;
 mod error;
 mod headroom;
 mod measure;
+mod fit;
 mod output;
 mod pixels;
 mod play;
@@ -53,6 +54,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Demo(demo::Options),
+    Fit(fit::Options),
     Render(render::Options),
     Play(play::Options),
     /// Make surfaces from pictures and from other surfaces
@@ -65,6 +67,7 @@ enum Verb {
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
+        Verb::Fit(options) => fit::run(&options),
         Verb::Render(options) => render::run(&options),
         Verb::Play(options) => play::run(&options),
         Verb::Texture(verb) => texture::run(verb),
