@@ -2,8 +2,8 @@
 //!
 //! What the verbs share is here: pictures in, refusals in words, a bar for a fraction done.
 
-pub mod brownian;
 mod abx;
+pub mod brownian;
 pub mod compare;
 pub mod from_normals;
 pub mod from_photo;

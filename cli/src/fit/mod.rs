@@ -10,6 +10,8 @@ mod modes_file;
 mod picture;
 mod report;
 
+pub use report::Report;
+
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
@@ -84,7 +86,6 @@ pub struct Options {
 impl Options {
     /// The options of `asperity fit RECORDING -o OUT`.
     #[must_use]
-    #[allow(dead_code)] // the demo fits with these
     pub fn plain(recording: PathBuf, output: PathBuf) -> Self {
         Self {
             recording,
@@ -258,12 +259,7 @@ fn write_strikes(
     Ok(())
 }
 
-fn write_samples(
-    outputs: &mut Outputs,
-    path: &Path,
-    samples: &[f64],
-    rate_hz: f64,
-) -> Result<(), CliError> {
+fn write_samples(outputs: &mut Outputs, path: &Path, samples: &[f64], rate_hz: f64) -> Result<(), CliError> {
     let samples: Vec<f32> = samples.iter().map(|&x| x as f32).collect();
     wav::write(outputs, path, &[&samples], rate_hz)
 }

@@ -8,16 +8,12 @@ pub mod palette {
     pub const GROUND_EDGE: &str = "#8c7f6a";
     /// The finger pad.
     pub const PAD: &str = "#1565c0";
-    /// The finger.
-    pub const FINGER: &str = "#90a4ae";
     /// Collisions and impacts.
     pub const IMPACT: &str = "#d84315";
     /// What is felt.
     pub const HAPTIC: &str = "#00796b";
     /// What is heard.
     pub const AUDIO: &str = "#5e35b1";
-    /// Path, speed, force.
-    pub const PATH: &str = "#455a64";
     /// Distinct colours for rows of things without a meaning of their own.
     pub const SERIES: [&str; 8] =
         ["#1565c0", "#d84315", "#00796b", "#5e35b1", "#c28a00", "#ad1457", "#558b2f", "#455a64"];

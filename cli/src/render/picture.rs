@@ -298,7 +298,7 @@ fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
 /// Third-octave levels of what is felt and what is heard, each relative to its strongest band.
 fn levels_panel(take: &Take<'_>) -> Panel {
     let frequency = Axis::log("frequency", "Hz").range(10.0, 20_000.0);
-    let mut panel = Panel::new("third octaves", frequency, Axis::new("level", "dB").range(-70.0, 3.0));
+    let mut panel = Panel::new("spectra", frequency, Axis::new("third-octave level", "dB").range(-70.0, 3.0));
     let curves = take
         .haptic
         .first()
