@@ -132,7 +132,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 ///
 /// # Errors
 /// As [`run`].
-pub fn fit(options: &Options) -> Result<report::Report, CliError> {
+pub fn fit(options: &Options) -> Result<Report, CliError> {
     let started = Instant::now();
     check_options(options)?;
     let channel = channel(&options.channel)?;
@@ -159,7 +159,7 @@ pub fn fit(options: &Options) -> Result<report::Report, CliError> {
         outputs.write(path, picture::svg(&recording, &fit).as_bytes())?;
     }
     outputs.commit()?;
-    Ok(report::Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()))
+    Ok(Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()))
 }
 
 /// Refuses what cannot work before the work.
