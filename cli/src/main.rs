@@ -8,32 +8,22 @@
 //! | [`output`] | files that appear complete, together, or not at all |
 //! | [`progress`] | a bar on a terminal, after a second, and nothing in a pipe |
 //! | [`wav`], [`csv`] | samples and tables on disk |
-//! | [`pixels`] | PNG pictures |
-//! | [`plot`] | plots as SVG |
-//! | [`scene_file`], [`build`] | a scene as written, and as an engine |
+//! | [`plot`] | pictures as SVG |
 //!
 //! A verb is a file with `pub struct Options` (derives `clap::Args`) and `pub fn run(options: &Options)
 //! -> Result<(), CliError>`, one variant of [`Verb`] and one arm of [`run`].
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
-mod bench_scene;
 mod build;
 mod csv;
 mod demo;
 mod error;
-mod headroom;
-mod measure;
-mod fit;
 mod output;
-mod pixels;
-mod play;
 mod plot;
 mod progress;
 mod render;
-mod report;
 mod scene_file;
-mod texture;
 #[allow(dead_code)]
 mod texture_analyze;
 mod wav;
@@ -53,26 +43,12 @@ struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 enum Verb {
-    Demo(demo::Options),
-    Fit(fit::Options),
     Render(render::Options),
-    Play(play::Options),
-    /// Make surfaces from pictures and from other surfaces
-    #[command(subcommand)]
-    Texture(texture::Verb),
-    Headroom(headroom::Options),
-    Report(report::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
-        Verb::Demo(options) => demo::run(&options),
-        Verb::Fit(options) => fit::run(&options),
         Verb::Render(options) => render::run(&options),
-        Verb::Play(options) => play::run(&options),
-        Verb::Texture(verb) => texture::run(verb),
-        Verb::Headroom(options) => headroom::run(&options),
-        Verb::Report(options) => report::run(&options),
     }
 }
 
