@@ -12,6 +12,7 @@ pub mod solid;
 
 use crate::error::CliError;
 use crate::progress::Progress;
+use crate::texture_analyze;
 use asperity_dsp::DesignError;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::raster::Raster;
@@ -21,9 +22,10 @@ use std::path::Path;
 /// What to do with a texture.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
-    Compare(compare::Options),
+    Analyze(texture_analyze::AnalyzeArgs),
     Brownian(brownian::Options),
     Solid(solid::Options),
+    Compare(compare::Options),
     FromNormals(from_normals::Options),
     FromPhoto(from_photo::Options),
     Metamer(metamer::Options),
@@ -35,9 +37,10 @@ pub enum Verb {
 /// When an input is bad or an output cannot be written.
 pub fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
-        Verb::Compare(options) => compare::run(&options),
+        Verb::Analyze(options) => texture_analyze::run(&options),
         Verb::Brownian(options) => brownian::run(&options),
         Verb::Solid(options) => solid::run(&options),
+        Verb::Compare(options) => compare::run(&options),
         Verb::FromNormals(options) => from_normals::run(&options),
         Verb::FromPhoto(options) => from_photo::run(&options),
         Verb::Metamer(options) => metamer::run(&options),

@@ -122,7 +122,7 @@ fn speed_panel(take: &Take<'_>) -> Panel {
     let mut panel = Panel::new(
         "how fast the finger slides",
         time(take),
-        Axis::new("speed", "m/s").from_zero(highest(take, |c| &c.speed_m_s)),
+        Axis::new("speed", "m/s").above_zero(highest(take, |c| &c.speed_m_s)),
     );
     for (contact, colour) in drawn(take) {
         let data = Series::signal(contact.speed_m_s.iter().copied(), take.sample_rate_hz, contact.start_s);
@@ -135,7 +135,7 @@ fn force_panel(take: &Take<'_>) -> Panel {
     let mut panel = Panel::new(
         "how hard it presses",
         time(take),
-        Axis::new("force", "N").from_zero(highest(take, |c| &c.normal_force_n)),
+        Axis::new("force", "N").above_zero(highest(take, |c| &c.normal_force_n)),
     );
     for (contact, colour) in drawn(take) {
         let data =
@@ -298,7 +298,7 @@ fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
 /// Third-octave levels of what is felt and what is heard, each relative to its strongest band.
 fn levels_panel(take: &Take<'_>) -> Panel {
     let frequency = Axis::log("frequency", "Hz").range(10.0, 20_000.0);
-    let mut panel = Panel::new("third octaves", frequency, Axis::new("level", "dB").range(-70.0, 3.0));
+    let mut panel = Panel::new("spectra", frequency, Axis::new("third-octave level", "dB").range(-70.0, 3.0));
     let curves = take
         .haptic
         .first()
