@@ -180,7 +180,12 @@ pub fn play_on(renderer: Renderer, options: &DeviceOptions) -> Result<Player, De
         Ok(supervisor) => {
             let engine = Engine::Device { supervisor: Some(supervisor), orders };
             let device = options.device.clone().or_else(|| options.host.clone());
-            Ok(Player { meters, rate_hz: rate, device: device.unwrap_or("the default device".into()), engine })
+            Ok(Player {
+                meters,
+                rate_hz: rate,
+                device: device.unwrap_or("the default device".into()),
+                engine,
+            })
         }
         Err(error) if named => Err(error),
         Err(why) => {

@@ -161,7 +161,8 @@ impl Feed<'_> {
     /// Sends what is due within [`LEAD_S`]; what the queue has no room for waits for the next call.
     fn send(&mut self, scene: &mut Scene) {
         let until_s = scene.stats().position as f64 / self.rate_hz + LEAD_S;
-        while let Some((time_s, event)) = self.events.get(self.next).filter(|(time_s, _)| *time_s <= until_s) {
+        while let Some((time_s, event)) = self.events.get(self.next).filter(|(time_s, _)| *time_s <= until_s)
+        {
             match scene.report(*time_s, *event) {
                 Err(refused) if refused.reason == Refusal::QueueFull => return,
                 // Other refusals are counted by the scene; the rest of the log still plays.
@@ -172,7 +173,12 @@ impl Feed<'_> {
 }
 
 /// Feeds the engine until everything is played, the user has had enough, or the device stays away.
-fn follow(scene: &mut Scene, feed: &mut Feed<'_>, end: u64, interrupted: &AtomicBool) -> Result<(), CliError> {
+fn follow(
+    scene: &mut Scene,
+    feed: &mut Feed<'_>,
+    end: u64,
+    interrupted: &AtomicBool,
+) -> Result<(), CliError> {
     let mut progress = Progress::new("playing", end);
     let (mut position, mut moved) = (scene.stats().position, Instant::now());
     while position < end && !interrupted.load(Relaxed) {
