@@ -16,6 +16,7 @@ use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
+use asperity_texture::sand::{SandDesign, SandLaw, SandSource, Tool};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::SolidNoise;
 use std::path::Path;
@@ -154,6 +155,9 @@ fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
     }
 }
 
+/// Voices of an engine with 64 contacts, the spare ones for fading included: sand keeps a tool for each.
+const SAND_CONTACTS: usize = 96;
+
 /// What every source of a scene shares.
 #[derive(Clone, Copy)]
 struct Ground {
@@ -251,7 +255,28 @@ fn source(source: &Source, ground: Ground) -> Result<Surface, CliError> {
                 .map_err(|error| CliError::told(error).within("lattice"))?;
             finish(Box::new(lattice), extent, false)
         }
-        Source::Sand(_) => Err(CliError::new("sand", "cannot be built", "use another source")),
+        Source::Sand(sand) => {
+            let law = SandLaw {
+                stiffness_n: sand.stiffness_n,
+                exponent_per_m: sand.exponent_per_m,
+                drag_s_per_m: sand.drag_s_per_m,
+                wetness: sand.wetness.unwrap_or_default(),
+                ..SandLaw::default()
+            };
+            let design = SandDesign {
+                width_m: extent.width_m,
+                height_m: extent.height_m,
+                cells: sand.cells as usize,
+                depth_m: sand.depth_m,
+                talus_deg: sand.talus_deg,
+                law,
+                tool: Tool::Sphere { radius_m: sand.tool_radius_m },
+                contacts: SAND_CONTACTS,
+            };
+            let source = SandSource::synchronous(&design, seed, sample_rate_hz)
+                .map_err(|error| CliError::told(error).within("sand"))?;
+            finish(Box::new(source), extent, false)
+        }
     }
 }
 
@@ -266,7 +291,8 @@ fn finish(source: Box<dyn HeightField>, extent: Extent, repeats: bool) -> Result
     Ok(surface.wraps(repeats))
 }
 
-fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {
+/// One channel of an image file.
+pub fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {
     let channel = match image.channel {
         Some('r') => Channel::R,
         Some('g') => Channel::G,

@@ -22,6 +22,7 @@ mod build;
 mod csv;
 mod demo;
 mod error;
+mod fit;
 mod headroom;
 mod measure;
 mod output;
@@ -53,6 +54,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Demo(demo::Options),
+    Fit(fit::Options),
     Render(render::Options),
     Play(play::Options),
     /// Make surfaces from pictures and from other surfaces
@@ -65,6 +67,7 @@ enum Verb {
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
+        Verb::Fit(options) => fit::run(&options),
         Verb::Render(options) => render::run(&options),
         Verb::Play(options) => play::run(&options),
         Verb::Texture(verb) => texture::run(verb),
