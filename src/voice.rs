@@ -30,6 +30,10 @@ const STILL_N_S: f64 = 1e-12;
 /// Below this speed friction no longer jumps, m/s.
 const STICK_M_S: f64 = 1e-3;
 
+/// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
+/// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
+const SAME_TOUCH_M: f64 = 0.01;
+
 /// Where a voice is before it is anybody's.
 const IDLE: PathEvent =
     PathEvent { sample: 0, position_m: [0.0; 2], velocity_m_s: None, normal_force_n: 0.0 };
@@ -65,6 +69,8 @@ pub(crate) struct Voice {
     pub(crate) phase: Phase,
     pub(crate) begun: u64,
     pub(crate) refreshed: u64,
+    /// Whether it fades because the game said so, and not because it lapsed or was stolen.
+    pub(crate) ended: bool,
     slot: usize,
     asleep: bool,
     fade_in_left: u32,
@@ -130,6 +136,7 @@ impl Voice {
             phase: Phase::Free,
             begun: 0,
             refreshed: 0,
+            ended: false,
             slot,
             asleep: false,
             fade_in_left: 0,
@@ -166,6 +173,7 @@ impl Voice {
         self.phase = Phase::Sounding;
         (self.begun, self.refreshed) = (position, position);
         self.asleep = false;
+        self.ended = false;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         self.last_point = PathPoint {
@@ -213,6 +221,27 @@ impl Voice {
     pub(crate) fn fade(&mut self, shared: &Shared) {
         if self.phase == Phase::Sounding {
             self.phase = Phase::Fading { left: shared.fade_samples };
+        }
+    }
+
+    /// Whether a landing is so close that it can be the same touch.
+    pub(crate) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
+        let event = path_event(sample, slot, 0);
+        let period_m = slot.surface.wrap_period_m();
+        let apart_m = (0..2).map(|axis| {
+            let apart_m = event.position_m[axis] - self.last_point.position_m[axis];
+            let turns = if period_m[axis].is_finite() { (apart_m / period_m[axis]).round() } else { 0.0 };
+            apart_m - if turns == 0.0 { 0.0 } else { turns * period_m[axis] }
+        });
+        apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
+    }
+
+    /// Comes back out of its fade, from the level it has faded to.
+    pub(crate) fn resume(&mut self, shared: &Shared) {
+        if let Phase::Fading { left } = self.phase {
+            self.fade_in_left = shared.fade_samples.saturating_sub(left);
+            self.phase = Phase::Sounding;
+            self.ended = false;
         }
     }
 
