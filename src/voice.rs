@@ -118,7 +118,6 @@ pub(crate) struct Scratch {
     footprint_m: [f64; MAX_BLOCK],
     force_n: [f64; MAX_BLOCK],
     uv: [[f64; 2]; MAX_BLOCK],
-    force_impulse_n_s: [f64; MAX_BLOCK],
     surface: SurfaceBlock,
     rough: SurfaceBlock,
     pad: [PadSample; MAX_BLOCK],
@@ -268,6 +267,14 @@ impl Voice {
         tap: &mut T,
     ) {
         let at_grid = position.is_multiple_of(MAX_BLOCK as u64);
+        let wanted = n;
+        // Nothing is computed, counted or shown after a fade, wherever the stretch ends.
+        let n = match self.phase {
+            Phase::Fading { left } => n.min(left as usize),
+            Phase::Free | Phase::Sounding => n,
+        };
+        scratch.out.haptic[n..wanted].fill(0.0);
+        scratch.out.impulse_n_s[n..wanted].fill(0.0);
         if self.asleep {
             self.rest(n, scratch);
         } else {
@@ -282,6 +289,9 @@ impl Voice {
         }
         self.apply_fades(shared, n, scratch);
         self.show(seat, shared, position, n, scratch, tap);
+        if self.phase == Phase::Free {
+            return;
+        }
         self.last_point = scratch.points[n - 1];
         if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
             self.fall_asleep_when_still(output, shared, position, n, scratch);
@@ -361,14 +371,13 @@ impl Voice {
                 }
             }
             let alternating_n = self.force_high_pass.tick(&slot.force_high_pass, row.contact_force_n).high;
-            let moves = alternating_n.abs() >= ROUNDING_N;
-            scratch.force_impulse_n_s[i] = if moves { alternating_n / rate } else { 0.0 };
+            if excitation != Excitation::Collisions && alternating_n.abs() >= ROUNDING_N {
+                // In turn with the pulses: a sum's last bit must not depend on how time is split.
+                hertz::deposit_force(&mut self.bus, sample, &[alternating_n / rate]);
+            }
             if self.reaction.grain_rate_per_s > 0.0 {
                 self.shift_grain(slot, sample, rate);
             }
-        }
-        if excitation != Excitation::Collisions {
-            hertz::deposit_force(&mut self.bus, position, &scratch.force_impulse_n_s[..n]);
         }
         let mask = self.bus.len() - 1;
         for i in 0..n {
@@ -561,7 +570,6 @@ impl Scratch {
             footprint_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             uv: [[0.0; 2]; MAX_BLOCK],
-            force_impulse_n_s: [0.0; MAX_BLOCK],
             surface: SurfaceBlock::default(),
             rough: SurfaceBlock::default(),
             pad: [PadSample::default(); MAX_BLOCK],
