@@ -29,6 +29,7 @@ mod event;
 mod material;
 mod modal_model;
 pub mod null_sink;
+mod occupied;
 pub mod offline;
 mod queue;
 mod recording;

@@ -3,6 +3,7 @@
 //! What the verbs share is here: pictures in, refusals in words, a bar for a fraction done.
 
 mod abx;
+pub mod analyze;
 pub mod brownian;
 pub mod compare;
 pub mod from_normals;
@@ -22,6 +23,7 @@ use std::path::Path;
 /// What to do with a texture.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
+    Analyze(analyze::AnalyzeArgs),
     Analyze(texture_analyze::AnalyzeArgs),
     Brownian(brownian::Options),
     Solid(solid::Options),
@@ -37,6 +39,7 @@ pub enum Verb {
 /// When an input is bad or an output cannot be written.
 pub fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
+        Verb::Analyze(options) => analyze::run(&options),
         Verb::Analyze(options) => texture_analyze::run(&options),
         Verb::Brownian(options) => brownian::run(&options),
         Verb::Solid(options) => solid::run(&options),
