@@ -7,8 +7,8 @@ use crate::scene_file::{
 };
 use asperity::contact_log::Names;
 use asperity::{
-    ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent, Integrator, Material,
-    ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
+    ActuatorPreset, ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent,
+    Integrator, Material, ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
 };
 use asperity_texture::brownian::BrownianDesign;
 use asperity_texture::height_field::HeightField;
@@ -19,6 +19,7 @@ use asperity_texture::raster::Raster;
 use asperity_texture::sand::{SandDesign, SandLaw, SandSource, Tool};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::SolidNoise;
+use std::path::Path;
 
 /// What the command line may set, whatever the scene file says.
 #[derive(Debug, Clone, Copy, Default)]
@@ -42,14 +43,6 @@ pub struct Built {
     /// Ids by the names of the scene file.
     pub names: Names,
 }
-
-/// Device profiles by the names that `equalise` and `limit` use.
-const DEVICES: [(&str, DeviceProfile); 4] = [
-    ("lra-170", DeviceProfile::LRA_170),
-    ("console-voice-coil", DeviceProfile::CONSOLE_VOICE_COIL),
-    ("haptuator", DeviceProfile::HAPTUATOR),
-    ("vr-controller", DeviceProfile::VR_CONTROLLER),
-];
 
 /// Loads every file that a scene names and builds the engine.
 ///
@@ -86,13 +79,14 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
 
 fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
     let default = Config::default();
+    let folder = file.path.parent().unwrap_or(Path::new(""));
     Ok(Config {
         sample_rate_hz: overrides.sample_rate_hz.or(file.sample_rate_hz).unwrap_or(default.sample_rate_hz),
         seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
         path: overrides.path.unwrap_or(default.path),
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: probe(&file.probe)?,
-        actuators: file.actuators.iter().map(actuator).collect::<Result<_, _>>()?,
+        actuators: file.actuators.iter().map(|entry| actuator(entry, folder)).collect::<Result<_, _>>()?,
         audio: AudioSettings { gain: file.audio.gain, limit: file.audio.limit },
         max_surfaces: default.max_surfaces.max(file.surfaces.len()),
         max_bodies: default.max_bodies.max(file.bodies.len()),
@@ -120,7 +114,7 @@ fn probe(entry: &ProbeEntry) -> Result<Probe, CliError> {
     })
 }
 
-fn actuator(entry: &ActuatorEntry) -> Result<ActuatorSettings, CliError> {
+fn actuator(entry: &ActuatorEntry, folder: &Path) -> Result<ActuatorSettings, CliError> {
     Ok(ActuatorSettings {
         output: match entry.output {
             ActuatorOutput::Displacement => Quantity::Displacement,
@@ -128,26 +122,25 @@ fn actuator(entry: &ActuatorEntry) -> Result<ActuatorSettings, CliError> {
         },
         full_scale: entry.full_scale,
         highpass_hz: entry.highpass_hz,
-        equalise: device("equalise", entry.equalise.as_deref())?,
-        limit: device("limit", entry.limit.as_deref())?,
+        equalise: device("equalise", entry.equalise.as_deref(), folder)?,
+        limit: device("limit", entry.limit.as_deref(), folder)?,
         ..ActuatorSettings::default()
     })
 }
 
-fn device(field: &str, name: Option<&str>) -> Result<Option<DeviceProfile>, CliError> {
+/// A shipped profile by name, or a profile's file, relative to the scene's.
+fn device(field: &str, name: Option<&str>, folder: &Path) -> Result<Option<DeviceProfile>, CliError> {
     let Some(name) = name else { return Ok(None) };
-    match DEVICES.iter().find(|(known, _)| *known == name) {
-        Some((_, profile)) => Ok(Some(*profile)),
-        None => {
-            let known = DEVICES.map(|(name, _)| name).join(", ");
-            let at = format!("actuator: {field}");
-            Err(CliError::new(
-                at,
-                format!("\"{name}\" is unknown"),
-                format!("must be none or one of: {known}"),
-            ))
-        }
+    if let Some(preset) = ActuatorPreset::by_name(name) {
+        return Ok(Some(preset.profile));
     }
+    let at = format!("actuator: {field}");
+    if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
+        let preset = ActuatorPreset::load(folder.join(name));
+        return preset.map(|preset| Some(preset.profile)).map_err(|error| CliError::told(error).within(at));
+    }
+    let right = format!("must be none, a profile's file (NAME.toml) or one of: {}", ActuatorPreset::names());
+    Err(CliError::new(at, format!("\"{name}\" is unknown"), right))
 }
 
 fn material(entry: &MaterialEntry) -> Result<Material, CliError> {

@@ -3,6 +3,7 @@
 //! What the verbs share is here: pictures in, refusals in words, a bar for a fraction done.
 
 mod abx;
+pub mod analyze;
 pub mod brownian;
 pub mod compare;
 pub mod from_normals;
@@ -12,7 +13,6 @@ pub mod solid;
 
 use crate::error::CliError;
 use crate::progress::Progress;
-use crate::texture_analyze;
 use asperity_dsp::DesignError;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::raster::Raster;
@@ -22,7 +22,7 @@ use std::path::Path;
 /// What to do with a texture.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
-    Analyze(texture_analyze::AnalyzeArgs),
+    Analyze(analyze::AnalyzeArgs),
     Brownian(brownian::Options),
     Solid(solid::Options),
     Compare(compare::Options),
@@ -37,7 +37,7 @@ pub enum Verb {
 /// When an input is bad or an output cannot be written.
 pub fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
-        Verb::Analyze(options) => texture_analyze::run(&options),
+        Verb::Analyze(options) => analyze::run(&options),
         Verb::Brownian(options) => brownian::run(&options),
         Verb::Solid(options) => solid::run(&options),
         Verb::Compare(options) => compare::run(&options),
