@@ -291,10 +291,12 @@ impl Voice {
             self.rest(n, scratch);
         } else {
             self.follow_path(seat, n, scratch);
-            self.profile(seat, shared, position, n, scratch);
+            // First the touch, then the heights: a surface that gives way answers within the same grid
+            // cell wherever it is cut into stretches.
             if at_grid {
                 self.press(seat, position);
             }
+            self.profile(seat, shared, position, n, scratch);
             self.touch(shared, n, scratch);
             self.filter(seat, shared, output, n, scratch);
             self.excite(seat, shared, position, n, scratch);
