@@ -31,8 +31,7 @@ fn every_source_is_felt_and_heard_and_depends_on_no_block_size() {
         assert!(report["audio_peak"].as_f64().unwrap() > 0.0, "{source}");
         assert!(report["haptic_peak"][0].as_f64().unwrap() > 1e-7, "{source}");
         let first = fs::read(scene.path("out.haptic.wav")).unwrap();
-        // Sand is read in stretches of 64 samples; other cuts of its first frame are not the same yet.
-        scene.report(&["--block", if source.starts_with("sand") { "64" } else { "37" }]);
+        scene.report(&["--block", "37"]);
         assert!(fs::read(scene.path("out.haptic.wav")).unwrap() == first, "{source}");
     }
 }
