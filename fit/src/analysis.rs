@@ -272,8 +272,7 @@ impl Work<'_> {
                 hidden |= gate.opens(peaks, noise_std, &[0.0; 4]);
             }
         }
-        let found =
-            self.on_threads(open.len(), &|i| (open[i], self.band_partials(level, &bands, open[i])));
+        let found = self.on_threads(open.len(), &|i| (open[i], self.band_partials(level, &bands, open[i])));
         let mut found = without_doubles(found, level, samples);
         // Of more than may be kept, the strongest; the others get their turn when these are subtracted.
         found.sort_by(|a, b| b.1.total_cmp(&a.1));

@@ -47,9 +47,8 @@ pub fn energies(band: &[C], poles: &[C]) -> Vec<f64> {
     let sum = |i: usize, j: usize| {
         geometric_sums(poles[i].conj() * poles[j], powers[i].conj() * powers[j], count)[0]
     };
-    let gram = DMatrix::from_fn(poles.len(), poles.len(), |i, j| {
-        sum(i, j) * if i == j { 1.0 + 1e-10 } else { 1.0 }
-    });
+    let gram =
+        DMatrix::from_fn(poles.len(), poles.len(), |i, j| sum(i, j) * if i == j { 1.0 + 1e-10 } else { 1.0 });
     let right = DVector::from_iterator(
         poles.len(),
         poles.iter().map(|z| band.iter().rev().fold(C::new(0.0, 0.0), |sum, y| sum * z.conj() + y)),

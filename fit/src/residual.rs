@@ -90,8 +90,9 @@ mod tests {
 
     #[test]
     fn a_sinusoid_fills_its_own_band_only() {
-        let samples: Vec<f64> =
-            (0..4410).map(|n| (2.0 * std::f64::consts::PI * 1400.0 * f64::from(n) / 44_100.0).sin()).collect();
+        let samples: Vec<f64> = (0..4410)
+            .map(|n| (2.0 * std::f64::consts::PI * 1400.0 * f64::from(n) / 44_100.0).sin())
+            .collect();
         let residual = Residual::new(samples.clone(), &samples, 0, samples.len(), 44_100.0);
         assert!(residual.level_db.abs() < 1e-9);
         for band in &residual.bands {

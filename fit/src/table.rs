@@ -104,10 +104,8 @@ pub fn from_columns(columns: &[(String, Vec<f64>)]) -> Result<Vec<Mode>, TableEr
     let find = |names: &[&str]| {
         columns.iter().find(|(name, _)| names.contains(&name.as_str())).map(|(_, values)| values.as_slice())
     };
-    let frequency = find(FREQUENCY).ok_or(TableError::NoColumn {
-        what: "frequency",
-        names: "frequency_hz, freq_hz, freq, cf",
-    })?;
+    let frequency = find(FREQUENCY)
+        .ok_or(TableError::NoColumn { what: "frequency", names: "frequency_hz, freq_hz, freq, cf" })?;
     let decay = find(DECAY);
     let t60 = find(T60);
     if decay.is_none() && t60.is_none() {
@@ -131,9 +129,7 @@ pub fn from_columns(columns: &[(String, Vec<f64>)]) -> Result<Vec<Mode>, TableEr
                 }
             };
             let decay_per_s = match (decay, t60) {
-                (Some(decay), _) => {
-                    cell(decay, "decay", "a decay at or above 0 would do", |d| d >= 0.0)?
-                }
+                (Some(decay), _) => cell(decay, "decay", "a decay at or above 0 would do", |d| d >= 0.0)?,
                 (None, Some(t60)) => {
                     let seconds = cell(t60, "T60", "a time above 0 s would do", |t| t > 0.0)?;
                     3.0 * std::f64::consts::LN_10 / seconds
@@ -188,7 +184,14 @@ mod tests {
 
     #[test]
     fn bad_tables_are_refused_in_one_line() {
-        for text in ["", "freq\n1\n", "freq,t60\n1,2\n", "freq,t60,gain\n", "freq,t60,gain\n-1,2,3\n", "freq,t60,gain\nx,2,3\n"] {
+        for text in [
+            "",
+            "freq\n1\n",
+            "freq,t60\n1,2\n",
+            "freq,t60,gain\n",
+            "freq,t60,gain\n-1,2,3\n",
+            "freq,t60,gain\nx,2,3\n",
+        ] {
             let error = from_csv(text).unwrap_err().to_string();
             assert!(error.contains("; ") && !error.contains('\n'), "{error}");
         }

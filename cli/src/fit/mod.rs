@@ -258,12 +258,7 @@ fn write_strikes(
     Ok(())
 }
 
-fn write_samples(
-    outputs: &mut Outputs,
-    path: &Path,
-    samples: &[f64],
-    rate_hz: f64,
-) -> Result<(), CliError> {
+fn write_samples(outputs: &mut Outputs, path: &Path, samples: &[f64], rate_hz: f64) -> Result<(), CliError> {
     let samples: Vec<f32> = samples.iter().map(|&x| x as f32).collect();
     wav::write(outputs, path, &[&samples], rate_hz)
 }

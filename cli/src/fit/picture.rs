@@ -19,12 +19,13 @@ pub fn svg(recording: &Recording, fit: &Fit) -> String {
     for warning in &fit.warnings {
         figure = figure.subtitle(format!("warning: {warning}"));
     }
-    let wave = Panel::new("recording", Axis::new("time", "s").without_numbers(), Axis::new("sample value", ""))
-        .with(Layer::line(
-            "",
-            palette::AUDIO,
-            Series::signal(recording.samples.iter().copied(), rate, start_s),
-        ));
+    let wave =
+        Panel::new("recording", Axis::new("time", "s").without_numbers(), Axis::new("sample value", ""))
+            .with(Layer::line(
+                "",
+                palette::AUDIO,
+                Series::signal(recording.samples.iter().copied(), rate, start_s),
+            ));
     figure.row(70.0, [wave]);
     let resynthesis = fit.resynthesis();
     let mut options = SpectrogramOptions {
@@ -42,8 +43,7 @@ pub fn svg(recording: &Recording, fit: &Fit) -> String {
         let picture = spectrogram(samples, rate, &options);
         // All three on the recording's scale.
         options.top_db = options.top_db.or(picture.bar.as_ref().map(|bar| bar.range[1]));
-        let mut panel =
-            Panel::new(title, Axis::new("time", "s"), Axis::log("frequency", "Hz")).with(picture);
+        let mut panel = Panel::new(title, Axis::new("time", "s"), Axis::log("frequency", "Hz")).with(picture);
         if with_modes {
             let end_s = start_s + recording.samples.len() as f64 / rate;
             for mode in fit.modes.iter().take(DRAWN) {

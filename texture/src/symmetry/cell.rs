@@ -180,7 +180,8 @@ mod tests {
             for x in 0..200 {
                 let truth = wave(&lattice, x as f64, y as f64) + picture.mean();
                 error += (parts.symmetric.at(x, y) - truth).powi(2) / 32_000.0;
-                back = back.max((parts.symmetric.at(x, y) + parts.residual.at(x, y) - picture.at(x, y)).abs());
+                back =
+                    back.max((parts.symmetric.at(x, y) + parts.residual.at(x, y) - picture.at(x, y)).abs());
             }
         }
         // 80 cells average the noise to 0.5/√80 = 0.056.

@@ -35,17 +35,12 @@ pub(super) fn decimated(picture: &Raster, factor: usize) -> Raster {
 fn without_quadratic(picture: &Raster) -> Raster {
     let mut rest = picture.clone();
     let along = |i: usize, size: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
-    let terms: [fn(f64, f64) -> f64; 6] = [
-        |_, _| 1.0,
-        |x, _| x,
-        |_, y| y,
-        |x, _| x * x - 1.0 / 3.0,
-        |x, y| x * y,
-        |_, y| y * y - 1.0 / 3.0,
-    ];
+    let terms: [fn(f64, f64) -> f64; 6] =
+        [|_, _| 1.0, |x, _| x, |_, y| y, |x, _| x * x - 1.0 / 3.0, |x, y| x * y, |_, y| y * y - 1.0 / 3.0];
     for term in terms.iter().chain(&terms) {
-        let shape =
-            Raster::from_fn(rest.width, rest.height, |x, y| term(along(x, rest.width), along(y, rest.height)));
+        let shape = Raster::from_fn(rest.width, rest.height, |x, y| {
+            term(along(x, rest.width), along(y, rest.height))
+        });
         let product: f64 = shape.values.iter().zip(&rest.values).map(|(s, v)| s * v).sum();
         let gain = product / shape.values.iter().map(|s| s * s).sum::<f64>();
         for (value, s) in rest.values.iter_mut().zip(&shape.values) {

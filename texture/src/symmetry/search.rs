@@ -117,7 +117,8 @@ fn candidates(fit: &Fit, minima: &[Minimum]) -> Vec<Candidate> {
                     continue;
                 }
                 tried.push(basis);
-                if let Some(candidate) = refined(fit, minima, basis).and_then(|refined| scored(fit, refined)) {
+                if let Some(candidate) = refined(fit, minima, basis).and_then(|refined| scored(fit, refined))
+                {
                     found.push(candidate);
                 }
             }

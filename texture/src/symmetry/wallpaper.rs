@@ -157,7 +157,8 @@ fn largest_symmetric_subgroup(fits: &[Fit], limit: f64) -> Vec<Fit> {
             let found: Vec<Fit> =
                 members.iter().filter_map(|m| good.iter().find(|f| f.matrix == *m)).map(|f| **f).collect();
             let agreement = found.iter().map(|fit| fit.agreement).sum::<f64>() / found.len().max(1) as f64;
-            let better = found.len() > best.len() || (found.len() == best.len() && agreement > best_agreement);
+            let better =
+                found.len() > best.len() || (found.len() == best.len() && agreement > best_agreement);
             if found.len() == members.len() && better {
                 best = found;
                 best_agreement = agreement;
@@ -211,7 +212,10 @@ fn is_mirror(fit: &Fit) -> bool {
 /// The mean of a cell over its group, exactly symmetric.
 fn domain_average(cell: &Raster, spectrum: &Spectrum, point_group: &[Fit]) -> Raster {
     let Some((origin, operations)) = super::operation::snapped(
-        &point_group.iter().map(|fit| Operation { matrix: fit.matrix, translation: fit.translation }).collect::<Vec<_>>(),
+        &point_group
+            .iter()
+            .map(|fit| Operation { matrix: fit.matrix, translation: fit.translation })
+            .collect::<Vec<_>>(),
     ) else {
         return cell.clone();
     };
@@ -251,7 +255,8 @@ impl Spectrum {
         let inverse = matrix.inverse();
         // With y = M·x the correlation is Σ cell(M⁻¹y) cell(y + w).
         let image = Raster::from_fn(side, side, |x, y| {
-            let [u, v] = inverse.apply_whole([x as i64, y as i64]).map(|a| a.rem_euclid(side as i64) as usize);
+            let [u, v] =
+                inverse.apply_whole([x as i64, y as i64]).map(|a| a.rem_euclid(side as i64) as usize);
             cell.at(u, v)
         });
         let mut products = Self::new(&image).values;
