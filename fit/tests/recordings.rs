@@ -3,6 +3,7 @@
 
 mod common;
 
+use asperity_dsp::hertz::{Elastic, HertzContact};
 use asperity_fit::{ChannelChoice, Fit, FitOptions, Recording, fit, load};
 use common::{render_fast, snr_db, stft_peaks};
 use std::path::PathBuf;
@@ -87,12 +88,12 @@ fn half_width_s(name: &str) -> Option<f64> {
     Some(crossing(peak, 1) - crossing(peak, -1))
 }
 
-/// Hertz' contact time of a steel ball on concrete.
+/// Contact time of a steel ball on concrete by the engine's pulse model.
 fn contact_time_s(radius_m: f64, speed_m_s: f64) -> f64 {
-    let plane = |young_pa: f64, poisson: f64| (1.0 - poisson * poisson) / young_pa;
-    let modulus = 1.0 / (plane(2.1e11, 0.29) + plane(3.5e10, 0.2));
-    let mass = 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
-    2.87 * (mass * mass / (radius_m * modulus * modulus * speed_m_s)).powf(0.2)
+    let steel = Elastic { young_pa: 2.1e11, poisson: 0.29 };
+    let concrete = Elastic { young_pa: 3.5e10, poisson: 0.2 };
+    let mass_kg = 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
+    HertzContact::new(&steel, &concrete, radius_m, mass_kg).unwrap().contact_time_s(speed_m_s)
 }
 
 #[test]
