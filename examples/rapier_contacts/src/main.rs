@@ -140,7 +140,10 @@ impl Heard {
 fn ball(world: &mut PhysicsWorld) -> Toucher {
     let handles = world.insert(
         RigidBodyBuilder::dynamic().translation(Vector::new(-0.1, 0.16, 0.1)),
-        ColliderBuilder::ball(0.01).density(7800.0).restitution(0.7),
+        ColliderBuilder::ball(0.01)
+            .density(7800.0)
+            .restitution(0.7)
+            .restitution_combine_rule(CoefficientCombineRule::Max),
     );
     Toucher::new(1, handles, Touch::Strikes { radius_m: 0.01, material: Material::STEEL })
 }
