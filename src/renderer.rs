@@ -30,12 +30,29 @@ use std::sync::atomic::Ordering::Relaxed;
 /// Where the audio limiter holds the peaks: full scale.
 const AUDIO_CEILING: f64 = 1.0;
 
+/// Share of the time budget above which a block counts as overloaded (chosen: what is left is the
+/// system's jitter).
+const OVERLOAD: f32 = 0.85;
+/// So many overloaded blocks in a row are no coincidence.
+const OVERLOADED_BLOCKS: u32 = 4;
+/// So long without overload allows one contact more, s.
+const CALM_S: f64 = 0.5;
+
+/// Keeps the load below what the device gives: how many contacts may sound at present.
+struct Governor {
+    allowed: usize,
+    overloaded: u32,
+    /// Sample of the last overload, or of the last contact that was allowed again.
+    calm_since: u64,
+}
+
 /// The audio half of an engine.
 pub struct Renderer {
     position: u64,
     shared: Shared,
     timeout_samples: u64,
     max_contacts: usize,
+    governor: Governor,
     voices: Vec<Voice>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
@@ -106,6 +123,7 @@ impl Renderer {
             position: 0,
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
+            governor: Governor { allowed: config.max_contacts, overloaded: 0, calm_since: 0 },
             voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
             voices_used: Occupied::new(voices),
             seats_used: Occupied::new(config.max_surfaces),
@@ -156,8 +174,30 @@ impl Renderer {
 
     /// Tells the engine which share of its time budget the last block took (1 = all of it); the device
     /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load).
+    ///
+    /// After several overloaded blocks in a row the least important contact fades and is counted as
+    /// [`shed`](crate::Stats::shed); once there is room again, its next move brings it back. Offline
+    /// nobody tells, so nothing is shed.
     pub fn report_load(&mut self, load: f32) {
         self.counters.set_load(load);
+        let sounding = self.sounding_count();
+        if load > OVERLOAD {
+            self.governor.overloaded += 1;
+            self.governor.calm_since = self.position;
+            if self.governor.overloaded >= OVERLOADED_BLOCKS && sounding > 1 {
+                self.governor.overloaded = 0;
+                self.governor.allowed = sounding - 1;
+                Counters::add(&self.counters.shed, 1);
+                self.silence_least();
+            }
+            return;
+        }
+        self.governor.overloaded = 0;
+        let calm_samples = self.position.saturating_sub(self.governor.calm_since) as f64;
+        if self.governor.allowed < self.max_contacts && calm_samples > CALM_S * self.shared.sample_rate_hz {
+            self.governor.allowed += 1;
+            self.governor.calm_since = self.position;
+        }
     }
 
     /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
@@ -318,7 +358,7 @@ impl Renderer {
         }) else {
             return false;
         };
-        if sounding >= self.max_contacts {
+        if sounding >= self.governor.allowed {
             return false;
         }
         voice.resume(&self.shared);
@@ -359,7 +399,7 @@ impl Renderer {
             return;
         };
         let silent = self.silent[index];
-        if silent.stolen && self.sounding_count() >= self.max_contacts {
+        if silent.stolen && self.sounding_count() >= self.governor.allowed {
             Counters::add(&self.counters.orphaned, 1);
             return;
         }
@@ -387,14 +427,9 @@ impl Renderer {
 
     /// A voice for a new contact: a free one, after stealing the least important when all are taken.
     fn take_voice(&mut self) -> usize {
-        if self.sounding_count() >= self.max_contacts {
-            let least = (0..self.voices.len())
-                .filter(|&i| self.voices[i].phase == Phase::Sounding)
-                .min_by(|&a, &b| self.voices[a].priority().total_cmp(&self.voices[b].priority()));
-            if let Some(least) = least {
-                Counters::add(&self.counters.stolen, 1);
-                self.silence(least, true);
-            }
+        if self.sounding_count() >= self.governor.allowed {
+            Counters::add(&self.counters.stolen, 1);
+            self.silence_least();
         }
         let remaining = |voice: &Voice| match voice.phase {
             Phase::Free => 0,
@@ -402,6 +437,16 @@ impl Renderer {
             Phase::Sounding => u32::MAX,
         };
         (0..self.voices.len()).min_by_key(|&i| remaining(&self.voices[i])).unwrap_or(0)
+    }
+
+    /// Fades the least important contact.
+    fn silence_least(&mut self) {
+        let least = (0..self.voices.len())
+            .filter(|&i| self.voices[i].phase == Phase::Sounding)
+            .min_by(|&a, &b| self.voices[a].priority().total_cmp(&self.voices[b].priority()));
+        if let Some(least) = least {
+            self.silence(least, true);
+        }
     }
 
     /// Fades a contact but remembers it, so that its next move can revive it.

@@ -59,7 +59,7 @@ counters! {
     late,
     /// Times the game clock was tied to the audio clock anew.
     clock_jumps,
-    /// Groups of modes left out for one block because the last blocks ran late.
+    /// Contacts silenced because the last blocks took too much of their time.
     shed,
     /// Contacts sounding now.
     contacts,
