@@ -62,7 +62,10 @@ impl BodySlot {
         }
         let mut input = [0.0f32; MAX_BLOCK];
         let input = &mut input[..out.len()];
-        hertz::take(&mut self.bus, position, input);
+        // The bus is empty beyond the last impact.
+        if self.bus_busy_until > position {
+            hertz::take(&mut self.bus, position, input);
+        }
         for (x, contact) in input.iter_mut().zip(contacts_n_s) {
             *x += *contact as f32;
         }
@@ -105,6 +108,11 @@ impl BodySeat {
     /// Whether the body can be replaced now.
     pub(crate) fn can_change(&self) -> bool {
         self.leaving.iter().any(Option::is_none)
+    }
+
+    /// Whether nothing is here and nothing fades.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.current.is_none() && self.leaving.iter().all(Option::is_none)
     }
 
     /// Puts a body here; the one before it rings out.

@@ -15,6 +15,7 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod actuator_preset;
 mod body;
 pub mod channel_map;
 mod clock;
@@ -28,6 +29,7 @@ mod event;
 mod material;
 mod modal_model;
 pub mod null_sink;
+mod occupied;
 pub mod offline;
 mod queue;
 mod recording;
@@ -39,6 +41,7 @@ mod surface;
 mod tap;
 mod voice;
 
+pub use actuator_preset::{ActuatorPreset, PresetError};
 pub use clock::ClockMode;
 pub use config::{ActuatorSettings, AudioSettings, Config, DeviceProfile, Quantity};
 pub use error::{AddError, ConfigError, Refusal, ReportError};

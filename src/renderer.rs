@@ -7,6 +7,7 @@
 use crate::body::BodySeat;
 use crate::config::{ActuatorSettings, AudioSettings, Config};
 use crate::event::{ContactEvent, ContactId, ContactSample, SurfaceId};
+use crate::occupied::Occupied;
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::seat::{Change, Seat};
 use crate::stats::Counters;
@@ -39,6 +40,10 @@ pub struct Renderer {
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
     bodies: Vec<BodySeat>,
+    /// Which of the three are in use, so that empty places cost nothing.
+    voices_used: Occupied,
+    seats_used: Occupied,
+    bodies_used: Occupied,
     channels: Vec<HapticChannel>,
     audio: AudioBus,
     kernel: Kernel,
@@ -93,7 +98,7 @@ impl Renderer {
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
             micro_contact,
             noise: FractalNoise::new(config.seed),
-            fade_samples: (RELEASE_S * rate).ceil() as u32,
+            fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
         };
         // Spare voices let stolen and ended contacts fade while new ones sound.
         let voices = config.max_contacts + config.max_contacts.div_ceil(2).max(8);
@@ -102,6 +107,9 @@ impl Renderer {
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
             voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
+            voices_used: Occupied::new(voices),
+            seats_used: Occupied::new(config.max_surfaces),
+            bodies_used: Occupied::new(config.max_bodies),
             silent: Vec::with_capacity(config.max_contacts),
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
             bodies: (0..config.max_bodies).map(|_| BodySeat::default()).collect(),
@@ -257,7 +265,10 @@ impl Renderer {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);
             }
-            Message::SetBody { slot, body } => self.bodies[slot].set(body),
+            Message::SetBody { slot, body } => {
+                self.bodies[slot].set(body);
+                self.bodies_used.insert(slot);
+            }
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
         }
@@ -266,8 +277,11 @@ impl Renderer {
     fn apply_event(&mut self, event: &ContactEvent, stamp: u64) {
         match *event {
             ContactEvent::Begin { contact, surface, actuator, sample } => {
-                self.end(contact);
-                self.begin(contact, surface.0 as usize, usize::from(actuator.0), &sample);
+                let (surface, actuator) = (surface.0 as usize, usize::from(actuator.0));
+                if !self.resume(contact, surface, actuator, &sample, stamp) {
+                    self.end(contact);
+                    self.begin(contact, surface, actuator, &sample);
+                }
             }
             ContactEvent::Moved { contact, sample } => self.moved(contact, &sample, stamp),
             ContactEvent::End { contact } => {
@@ -280,12 +294,46 @@ impl Renderer {
         }
     }
 
+    /// A landing right after a lift-off of the same contact at the same place is the physics engine's
+    /// flicker, not the finger's: while the contact still fades it goes on as if it had never ended,
+    /// its closing speed unheard. Whether it was so.
+    fn resume(
+        &mut self,
+        contact: ContactId,
+        surface: usize,
+        actuator: usize,
+        sample: &ContactSample,
+        stamp: u64,
+    ) -> bool {
+        let Some(slot) = self.seats[surface].current().filter(|_| self.seats[surface].is_open()) else {
+            return false;
+        };
+        let sounding = self.sounding_count();
+        let Some(voice) = self.voices.iter_mut().find(|voice| {
+            voice.contact == contact
+                && (voice.surface, voice.actuator) == (surface, actuator)
+                && voice.ended
+                && matches!(voice.phase, Phase::Fading { .. })
+                && voice.is_near(sample, slot)
+        }) else {
+            return false;
+        };
+        if sounding >= self.max_contacts {
+            return false;
+        }
+        voice.resume(&self.shared);
+        voice.moved(sample, slot, stamp, self.position);
+        Counters::add(&self.counters.debounced, 1);
+        true
+    }
+
     fn begin(&mut self, contact: ContactId, surface: usize, actuator: usize, sample: &ContactSample) {
         if !self.seats[surface].is_open() {
             Counters::add(&self.counters.orphaned, 1);
             return;
         }
         let voice = self.take_voice();
+        self.voices_used.insert(voice);
         let voice = &mut self.voices[voice];
         (voice.surface, voice.actuator) = (surface, actuator);
         voice.begin(
@@ -326,12 +374,15 @@ impl Renderer {
         if let Some(index) = known_silent {
             self.silent.swap_remove(index);
         }
-        let sounding = sounding(&mut self.voices, contact).map(|voice| voice.fade(&self.shared));
+        let sounding = sounding(&mut self.voices, contact).map(|voice| {
+            voice.fade(&self.shared);
+            voice.ended = true;
+        });
         sounding.is_some() || known_silent.is_some()
     }
 
     fn sounding_count(&self) -> usize {
-        self.voices.iter().filter(|voice| voice.phase == Phase::Sounding).count()
+        self.voices_used.iter().filter(|&voice| self.voices[voice].phase == Phase::Sounding).count()
     }
 
     /// A voice for a new contact: a free one, after stealing the least important when all are taken.
@@ -370,6 +421,7 @@ impl Renderer {
 
     fn set_surface(&mut self, slot: usize, surface: Box<crate::surface::SurfaceSlot>) {
         let rate = self.shared.sample_rate_hz;
+        self.seats_used.insert(slot);
         if self.seats[slot].set(surface, self.position, rate, &mut self.to_game) == Change::Restart {
             for index in 0..self.voices.len() {
                 if self.voices[index].surface == slot && self.voices[index].phase == Phase::Sounding {
@@ -397,7 +449,11 @@ impl Renderer {
             channel.sum[..n].fill(0.0);
         }
         let (mut collisions, mut resets) = (0, 0);
-        for voice in self.voices.iter_mut().filter(|voice| voice.phase != Phase::Free) {
+        for voice in self.voices_used.iter() {
+            let voice = &mut self.voices[voice];
+            if voice.phase == Phase::Free {
+                continue;
+            }
             let seat = &mut self.seats[voice.surface];
             let channel = &mut self.channels[voice.actuator];
             voice.render(seat, &self.shared, &channel.output, self.position, n, &mut self.scratch, tap);
@@ -406,6 +462,9 @@ impl Renderer {
             resets += out.resets;
             for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
                 *sum += x;
+            }
+            if !out.excites {
+                continue;
             }
             let body = seat.current().and_then(|slot| slot.surface.body);
             if let Some(body) = body.map(|id| &mut self.bodies[id.0 as usize]) {
@@ -429,8 +488,8 @@ impl Renderer {
     fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
         let mix = &mut self.mix.audio[..n];
         mix.fill(0.0);
-        for body in &mut self.bodies {
-            body.render(self.kernel, self.position, mix);
+        for body in self.bodies_used.iter() {
+            self.bodies[body].render(self.kernel, self.position, mix);
         }
         self.audio.finish(mix);
         for out in audio {
@@ -440,7 +499,9 @@ impl Renderer {
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
     fn tidy(&mut self) {
-        for index in 0..self.voices.len() {
+        self.voices_used.retain(|voice| self.voices[voice].phase != Phase::Free);
+        for at in 0..self.voices_used.len() {
+            let index = self.voices_used.at(at);
             let voice = &self.voices[index];
             let lapsed = self.position.saturating_sub(voice.refreshed) > self.timeout_samples;
             if voice.phase == Phase::Sounding && lapsed {
@@ -448,15 +509,24 @@ impl Renderer {
                 self.silence(index, false);
             }
         }
-        for (index, seat) in self.seats.iter_mut().enumerate() {
-            let in_use = || self.voices.iter().any(|v| v.surface == index && v.phase != Phase::Free);
-            seat.tidy(self.position, in_use, &mut self.to_game);
-        }
-        for body in &mut self.bodies {
-            body.tidy(self.position, &mut self.to_game);
-        }
+        self.seats_used.retain(|index| {
+            let sounds = |voice: usize| self.voices[voice].phase != Phase::Free;
+            let in_use = || self.voices_used.iter().any(|v| self.voices[v].surface == index && sounds(v));
+            self.seats[index].tidy(self.position, in_use, &mut self.to_game);
+            !self.seats[index].is_empty()
+        });
+        self.bodies_used.retain(|index| {
+            self.bodies[index].tidy(self.position, &mut self.to_game);
+            !self.bodies[index].is_empty()
+        });
         self.counters.contacts.store(self.sounding_count() as u64, Relaxed);
     }
+}
+
+/// A rise from 0 to 1 in `steps` steps, without step or corner.
+fn raised_cosine(steps: usize) -> Box<[f64]> {
+    let at = |step: usize| 0.5 - 0.5 * (std::f64::consts::PI * step as f64 / steps as f64).cos();
+    (0..=steps).map(at).collect()
 }
 
 /// Rebound over closing speed of the pad as a damped oscillator on the contact spring: e^(−πζ/√(1−ζ²)).

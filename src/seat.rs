@@ -79,6 +79,11 @@ impl Seat {
         self.current.is_some() && !self.removed
     }
 
+    /// Whether no surface is here.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.current.is_none()
+    }
+
     fn start_change(&mut self, surface: Box<SurfaceSlot>, position: u64) {
         self.previous = self.current.replace(surface);
         self.change_began = position;

@@ -9,7 +9,7 @@ use crate::tap::{ContactBlock, Tap};
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
-use asperity_dsp::hertz::{self, HertzPulse, OnsetMerge};
+use asperity_dsp::hertz::{self, FORCE_HISTORY, HertzPulse, OnsetMerge};
 use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact, Onset};
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
@@ -30,6 +30,10 @@ const STILL_N_S: f64 = 1e-12;
 /// Below this speed friction no longer jumps, m/s.
 const STICK_M_S: f64 = 1e-3;
 
+/// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
+/// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
+const SAME_TOUCH_M: f64 = 0.01;
+
 /// Where a voice is before it is anybody's.
 const IDLE: PathEvent =
     PathEvent { sample: 0, position_m: [0.0; 2], velocity_m_s: None, normal_force_n: 0.0 };
@@ -43,7 +47,14 @@ pub(crate) struct Shared {
     pub(crate) noise: FractalNoise,
     /// Momentum of a micro-collision per closing speed, kg: pad mass × (1 + restitution).
     pub(crate) collision_mass_kg: f64,
-    pub(crate) fade_samples: u32,
+    /// The rise of a fade, 0 to 1.
+    pub(crate) fade: Box<[f64]>,
+}
+
+impl Shared {
+    fn fade_samples(&self) -> u32 {
+        self.fade.len().saturating_sub(1) as u32
+    }
 }
 
 /// Where the sound and feel of a voice stand.
@@ -65,6 +76,8 @@ pub(crate) struct Voice {
     pub(crate) phase: Phase,
     pub(crate) begun: u64,
     pub(crate) refreshed: u64,
+    /// Whether it fades because the game said so, and not because it lapsed or was stolen.
+    pub(crate) ended: bool,
     slot: usize,
     asleep: bool,
     fade_in_left: u32,
@@ -79,6 +92,8 @@ pub(crate) struct Voice {
     force_high_pass: butterworth::State,
     reaction: Reaction,
     grains: Rng,
+    /// The impulses of the last forces, which are still on their way to the body.
+    force_history_n_s: [f64; FORCE_HISTORY],
     bus: Vec<f64>,
     bus_busy_until: u64,
 }
@@ -88,6 +103,8 @@ pub(crate) struct VoiceBlock {
     /// m or m/s², as the actuator plays it.
     pub(crate) haptic: [f64; MAX_BLOCK],
     pub(crate) impulse_n_s: [f64; MAX_BLOCK],
+    /// Whether `impulse_n_s` is more than zeros.
+    pub(crate) excites: bool,
     pub(crate) collisions: u64,
     pub(crate) resets: u64,
 }
@@ -99,11 +116,6 @@ impl VoiceBlock {
     }
 }
 
-/// 0 at `step` 0, 1 at `step` = `total`.
-fn raised_cosine(step: u32, total: u32) -> f64 {
-    0.5 - 0.5 * (std::f64::consts::PI * f64::from(step) / f64::from(total)).cos()
-}
-
 /// Work space of one stretch; reused by every voice.
 pub(crate) struct Scratch {
     points: [PathPoint; MAX_BLOCK],
@@ -112,6 +124,8 @@ pub(crate) struct Scratch {
     footprint_m: [f64; MAX_BLOCK],
     force_n: [f64; MAX_BLOCK],
     uv: [[f64; 2]; MAX_BLOCK],
+    /// The contact's history, then one value a sample.
+    force_impulse_n_s: [f64; FORCE_HISTORY + MAX_BLOCK],
     surface: SurfaceBlock,
     rough: SurfaceBlock,
     pad: [PadSample; MAX_BLOCK],
@@ -129,6 +143,7 @@ impl Voice {
             phase: Phase::Free,
             begun: 0,
             refreshed: 0,
+            ended: false,
             slot,
             asleep: false,
             fade_in_left: 0,
@@ -143,6 +158,7 @@ impl Voice {
             force_high_pass: butterworth::State::default(),
             reaction: Reaction::default(),
             grains: Rng::new(slot as u64),
+            force_history_n_s: [0.0; FORCE_HISTORY],
             bus: vec![0.0; BUS_SAMPLES],
             bus_busy_until: 0,
         }
@@ -165,7 +181,8 @@ impl Voice {
         self.phase = Phase::Sounding;
         (self.begun, self.refreshed) = (position, position);
         self.asleep = false;
-        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples };
+        self.ended = false;
+        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         self.last_point = PathPoint {
             position_m: event.position_m,
@@ -187,7 +204,10 @@ impl Voice {
         self.merge = OnsetMerge::default();
         self.reaction = Reaction::default();
         self.grains = Rng::new(contact.0 ^ position.rotate_left(32));
-        self.bus.fill(0.0);
+        self.force_history_n_s = [0.0; FORCE_HISTORY];
+        if self.bus_busy_until > position {
+            self.bus.fill(0.0);
+        }
         self.bus_busy_until = 0;
     }
 
@@ -211,7 +231,28 @@ impl Voice {
     /// Starts to fade, if it has not yet.
     pub(crate) fn fade(&mut self, shared: &Shared) {
         if self.phase == Phase::Sounding {
-            self.phase = Phase::Fading { left: shared.fade_samples };
+            self.phase = Phase::Fading { left: shared.fade_samples() };
+        }
+    }
+
+    /// Whether a landing is so close that it can be the same touch.
+    pub(crate) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
+        let event = path_event(sample, slot, 0);
+        let period_m = slot.surface.wrap_period_m();
+        let apart_m = (0..2).map(|axis| {
+            let apart_m = event.position_m[axis] - self.last_point.position_m[axis];
+            let turns = if period_m[axis].is_finite() { (apart_m / period_m[axis]).round() } else { 0.0 };
+            apart_m - if turns == 0.0 { 0.0 } else { turns * period_m[axis] }
+        });
+        apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
+    }
+
+    /// Comes back out of its fade, from the level it has faded to.
+    pub(crate) fn resume(&mut self, shared: &Shared) {
+        if let Phase::Fading { left } = self.phase {
+            self.fade_in_left = shared.fade_samples().saturating_sub(left);
+            self.phase = Phase::Sounding;
+            self.ended = false;
         }
     }
 
@@ -255,8 +296,8 @@ impl Voice {
                 self.press(seat, position);
             }
             self.touch(shared, n, scratch);
+            self.filter(seat, shared, output, n, scratch);
             self.excite(seat, shared, position, n, scratch);
-            self.feel(output, n, scratch);
         }
         self.apply_fades(shared, n, scratch);
         self.show(seat, shared, position, n, scratch, tap);
@@ -277,11 +318,12 @@ impl Voice {
 
     /// Heights along the path: the source, and the paper's micro-noise below the source's own band.
     fn profile(&self, seat: &mut Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
+        let step_s = 1.0 / shared.sample_rate_hz;
         for (i, point) in scratch.points[..n].iter().enumerate() {
             let [u, v] = point.velocity_m_s;
             scratch.position_m[i] = point.position_m;
             scratch.velocity_m_s[i] = point.velocity_m_s;
-            scratch.footprint_m[i] = (u * u + v * v).sqrt() / shared.sample_rate_hz;
+            scratch.footprint_m[i] = (u * u + v * v).sqrt() * step_s;
             scratch.force_n[i] = point.normal_force_n;
         }
         let path = PathBlock {
@@ -324,37 +366,73 @@ impl Voice {
         self.resets_told = resets;
     }
 
+    /// The two high-passes of a contact side by side, because each waits for itself most of the time: the
+    /// pad's displacement or acceleration about the mean surface, which the actuator is to reproduce, and
+    /// the alternating contact force, which sounds.
+    fn filter(
+        &mut self,
+        seat: &Seat,
+        shared: &Shared,
+        output: &ContactOutput,
+        n: usize,
+        scratch: &mut Scratch,
+    ) {
+        let Some(slot) = seat.current() else { return };
+        let high_pass = slot.force_high_pass;
+        // A force that is not to sound counts as 0 N.
+        let sounds = slot.surface.excitation != Excitation::Collisions;
+        let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
+        let (mut force, mut feel) = (self.force_high_pass, self.feel);
+        let rows = scratch.pad[..n].iter();
+        let outputs = scratch.force_impulse_n_s[FORCE_HISTORY..].iter_mut().zip(&mut scratch.out.haptic);
+        for (row, (impulse_n_s, out)) in rows.zip(outputs) {
+            let alternating_n = force.tick(&high_pass, row.contact_force_n).high;
+            *impulse_n_s = if alternating_n.abs() < ROUNDING_N { 0.0 } else { alternating_n * step_s };
+            let felt = feel.tick(output, row.pad_m, row.pad_velocity_m_s);
+            *out = if felt.abs() < ROUNDING { 0.0 } else { felt };
+        }
+        (self.force_high_pass, self.feel) = (force, feel);
+        self.last_felt = scratch.out.haptic[n - 1];
+    }
+
     /// What the contact sends to the body: a Hertz pulse for each micro-collision and each grain, and
-    /// the alternating contact force.
+    /// the alternating contact force. Pulses and force meet sample by sample, not in the bus, so that
+    /// the order of additions depends on no split into blocks.
     fn excite(&mut self, seat: &Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
         let Some(slot) = seat.current() else { return };
         let excitation = slot.surface.excitation;
         let rate = shared.sample_rate_hz;
         scratch.out.collisions = 0;
+        let grains = self.reaction.grain_rate_per_s > 0.0;
         for i in 0..n {
             let sample = position + i as u64;
-            let row = &scratch.pad[i];
-            if let Some(onset) = row.onset {
+            if let Some(onset) = scratch.pad[i].onset {
                 scratch.out.collisions += 1;
                 if excitation != Excitation::Force {
                     // An onset is dated within the step that ends at its row.
                     self.collide(slot, shared, &onset, sample.saturating_sub(1));
                 }
             }
-            let alternating_n = self.force_high_pass.tick(&slot.force_high_pass, row.contact_force_n).high;
-            if excitation != Excitation::Collisions && alternating_n.abs() >= ROUNDING_N {
-                // In turn with the pulses: a sum's last bit must not depend on how time is split.
-                hertz::deposit_force(&mut self.bus, sample, &[alternating_n / rate]);
-            }
-            if self.reaction.grain_rate_per_s > 0.0 {
+            if grains {
                 self.shift_grain(slot, sample, rate);
             }
         }
+        self.empty_bus(position, &mut scratch.out.impulse_n_s[..n]);
+        let forces_n_s = &mut scratch.force_impulse_n_s;
+        forces_n_s[..FORCE_HISTORY].copy_from_slice(&self.force_history_n_s);
+        hertz::spread_force(&forces_n_s[..FORCE_HISTORY + n], &mut scratch.out.impulse_n_s[..n]);
+        self.force_history_n_s.copy_from_slice(&forces_n_s[n..n + FORCE_HISTORY]);
+        scratch.out.excites = true;
+    }
+
+    /// Takes the pulses of the coming samples off the bus, which is empty beyond the last pulse.
+    fn empty_bus(&mut self, position: u64, out: &mut [f64]) {
+        if self.bus_busy_until <= position {
+            return out.fill(0.0);
+        }
         let mask = self.bus.len() - 1;
-        for i in 0..n {
-            let cell = &mut self.bus[(position as usize).wrapping_add(i) & mask];
-            scratch.out.impulse_n_s[i] = *cell;
-            *cell = 0.0;
+        for (i, y) in out.iter_mut().enumerate() {
+            *y = std::mem::take(&mut self.bus[(position as usize).wrapping_add(i) & mask]);
         }
     }
 
@@ -388,36 +466,31 @@ impl Voice {
         self.bus_busy_until = self.bus_busy_until.max(pulse_end(pulse, sample, sample_rate_hz));
     }
 
-    /// What the actuator is to reproduce: the pad's displacement or acceleration about the mean surface.
-    fn feel(&mut self, output: &ContactOutput, n: usize, scratch: &mut Scratch) {
-        for (out, row) in scratch.out.haptic[..n].iter_mut().zip(&scratch.pad[..n]) {
-            let felt = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
-            *out = if felt.abs() < ROUNDING { 0.0 } else { felt };
-        }
-        self.last_felt = scratch.out.haptic[n - 1];
-    }
-
     /// A resting contact: nothing moves, so nothing is computed; the rows stay as they were.
     fn rest(&mut self, n: usize, scratch: &mut Scratch) {
         scratch.points[..n].fill(self.last_point);
         scratch.pad[..n].fill(self.last_row);
         scratch.out.haptic[..n].fill(self.last_felt);
         scratch.out.impulse_n_s[..n].fill(0.0);
+        scratch.out.excites = false;
         (scratch.out.collisions, scratch.out.resets) = (0, 0);
     }
 
     /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
     /// its own beginning), out for one that ended, lapsed or was stolen.
     fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        let total = shared.fade_samples;
+        if self.fade_in_left == 0 && self.phase == Phase::Sounding {
+            return;
+        }
+        let (total, rise) = (shared.fade_samples(), &shared.fade);
         for i in 0..n {
             if self.fade_in_left > 0 {
                 self.fade_in_left -= 1;
-                scratch.out.scale(i, raised_cosine(total - self.fade_in_left, total));
+                scratch.out.scale(i, rise[(total - self.fade_in_left) as usize]);
             }
             if let Phase::Fading { left } = self.phase {
                 let left = left.saturating_sub(1);
-                scratch.out.scale(i, raised_cosine(left, total));
+                scratch.out.scale(i, rise[left as usize]);
                 self.phase = Phase::Fading { left };
             }
         }
@@ -454,7 +527,7 @@ impl Voice {
             && self.bus_busy_until <= position + n as u64;
         if self.asleep {
             self.last_felt = if felt.abs() < still { 0.0 } else { felt };
-            self.bus.fill(0.0);
+            self.force_history_n_s = [0.0; FORCE_HISTORY];
         }
     }
 
@@ -541,6 +614,7 @@ impl Scratch {
             footprint_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             uv: [[0.0; 2]; MAX_BLOCK],
+            force_impulse_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
             surface: SurfaceBlock::default(),
             rough: SurfaceBlock::default(),
             pad: [PadSample::default(); MAX_BLOCK],
@@ -548,6 +622,7 @@ impl Scratch {
             out: VoiceBlock {
                 haptic: [0.0; MAX_BLOCK],
                 impulse_n_s: [0.0; MAX_BLOCK],
+                excites: false,
                 collisions: 0,
                 resets: 0,
             },

@@ -98,35 +98,27 @@ fn lattice_and_brownian() -> DemoScene {
     }
 }
 
-/// A finger writes an "S" into sand.
+/// A finger draws a zigzag; the sand keeps it.
 fn sand() -> DemoScene {
-    const BOX_M: f64 = 0.25;
-    let mut strokes = Vec::new();
-    for step in 1..=24 {
-        let angle = f64::from(step) / 24.0 * 1.5 * std::f64::consts::PI;
-        strokes.push(([0.125 + 0.045 * angle.cos(), 0.08 - 0.045 * angle.sin()], 0.12));
-    }
-    for step in 1..=24 {
-        let angle = std::f64::consts::FRAC_PI_2 - f64::from(step) / 24.0 * 1.5 * std::f64::consts::PI;
-        strokes.push(([0.125 + 0.045 * angle.cos(), 0.17 - 0.045 * angle.sin()], 0.12));
-    }
+    const BOX_M: f64 = 0.2;
     let finger = Finger {
         contact: 1,
         surface: "box",
         actuator: 0,
         extent_m: [BOX_M; 2],
         start_s: 0.15,
-        normal_force_n: 2.0,
-        from_m: [0.17, 0.08],
-        strokes,
+        normal_force_n: 3.0,
+        from_m: [0.03, 0.05],
+        strokes: vec![([0.17, 0.04], 0.15), ([0.04, 0.11], 0.2), ([0.17, 0.1], 0.15), ([0.04, 0.17], 0.25)],
     };
     DemoScene {
         name: "sand",
         title: "Writing in sand",
-        notice: "A fingertip draws an S into a box of dry sand: the hiss is grains hitting grains, as many as the \
-                 finger displaces. sand.box.sand.png shows the furrow and its rims after the sand has come to rest.",
+        notice: "A fingertip draws a zigzag into a box of dry sand at 3 N: the hiss is grains hitting grains, as many \
+                 as the finger displaces. The picture, and sand.box.sand.png, show the furrow and its rims after the \
+                 sand has come to rest; no grain is lost.",
         toml: format!(
-            "# A box of sand, 25 cm wide.\ncontacts = \"sand.jsonl\"\ntail_s = 0.4\n\n{}\
+            "# A box of sand, 20 cm wide.\ncontacts = \"sand.jsonl\"\ntail_s = 0.4\n\n{}\
              [[surface]]\nname = \"box\"\nbody = \"plate\"\n\
              sand = {{ cells = 256, depth_m = 0.03, talus_deg = 32.0, stiffness_n = 1000.0, exponent_per_m = 1.0, \
              drag_s_per_m = 20.0, tool_radius_m = 0.006 }}\n\

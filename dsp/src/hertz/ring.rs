@@ -125,6 +125,20 @@ pub fn deposit_force(ring: &mut [f64], first_sample: u64, impulses_n_s: &[f64]) 
     }
 }
 
+/// Samples of force that [`spread_force`] looks back.
+pub const FORCE_HISTORY: usize = KERNEL_LATENCY + 1;
+
+/// What [`deposit_force`] would leave in the ring, sample by sample: adds to `out[n]` the force impulses
+/// before it, `impulses_n_s[n + FORCE_HISTORY]` being those of `out[n]`'s own sample. Lengths: as far
+/// as the shorter slice reaches.
+pub fn spread_force(impulses_n_s: &[f64], out: &mut [f64]) {
+    for (y, window) in out.iter_mut().zip(impulses_n_s.windows(FORCE_HISTORY + 1)) {
+        if let [third, second, first, _] = window {
+            *y += (third + first) * (1.0 / 6.0) + second * (4.0 / 6.0);
+        }
+    }
+}
+
 /// Reads the impulses of `out.len()` samples from `first_sample` on and clears them for the ring's next
 /// turn. What is below [`SMALLEST_IMPULSE_N_S`] or not finite is read as zero.
 pub fn take(ring: &mut [f64], first_sample: u64, out: &mut [f32]) {
