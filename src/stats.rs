@@ -57,7 +57,8 @@ counters! {
     late,
     /// Times the game clock was tied to the audio clock anew.
     clock_jumps,
-    /// Groups of modes left out for one block because the last blocks ran late.
+    /// Pieces of work left out because blocks ran late: a group of modes or an octave of a contact's noise
+    /// for 64 samples, or a contact.
     shed,
     /// Contacts sounding now.
     contacts,
