@@ -15,6 +15,7 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod actuator_preset;
 mod body;
 pub mod channel_map;
 mod clock;
@@ -41,6 +42,7 @@ mod surface;
 mod tap;
 mod voice;
 
+pub use actuator_preset::{ActuatorPreset, PresetError};
 pub use clock::ClockMode;
 pub use config::{ActuatorSettings, AudioSettings, Config, DeviceProfile, Quantity};
 pub use error::{AddError, ConfigError, Refusal, ReportError};

@@ -297,8 +297,11 @@ impl Renderer {
     fn apply_event(&mut self, event: &ContactEvent, stamp: u64) {
         match *event {
             ContactEvent::Begin { contact, surface, actuator, sample } => {
-                self.end(contact);
-                self.begin(contact, surface.0 as usize, usize::from(actuator.0), &sample);
+                let (surface, actuator) = (surface.0 as usize, usize::from(actuator.0));
+                if !self.resume(contact, surface, actuator, &sample, stamp) {
+                    self.end(contact);
+                    self.begin(contact, surface, actuator, &sample);
+                }
             }
             ContactEvent::Moved { contact, sample } => self.moved(contact, &sample, stamp),
             ContactEvent::End { contact } => {
@@ -309,6 +312,39 @@ impl Renderer {
             // The scene turns impacts into strikes before they are sent.
             ContactEvent::Impact(_) => {}
         }
+    }
+
+    /// A landing right after a lift-off of the same contact at the same place is the physics engine's
+    /// flicker, not the finger's: while the contact still fades it goes on as if it had never ended,
+    /// its closing speed unheard. Whether it was so.
+    fn resume(
+        &mut self,
+        contact: ContactId,
+        surface: usize,
+        actuator: usize,
+        sample: &ContactSample,
+        stamp: u64,
+    ) -> bool {
+        let Some(slot) = self.seats[surface].current().filter(|_| self.seats[surface].is_open()) else {
+            return false;
+        };
+        let sounding = self.sounding_count();
+        let Some(voice) = self.voices.iter_mut().find(|voice| {
+            voice.contact == contact
+                && (voice.surface, voice.actuator) == (surface, actuator)
+                && voice.ended
+                && matches!(voice.phase, Phase::Fading { .. })
+                && voice.is_near(sample, slot)
+        }) else {
+            return false;
+        };
+        if sounding >= self.max_contacts {
+            return false;
+        }
+        voice.resume(&self.shared);
+        voice.moved(sample, slot, stamp, self.position);
+        Counters::add(&self.counters.debounced, 1);
+        true
     }
 
     fn begin(&mut self, contact: ContactId, surface: usize, actuator: usize, sample: &ContactSample) {
@@ -358,7 +394,10 @@ impl Renderer {
         if let Some(index) = known_silent {
             self.silent.swap_remove(index);
         }
-        let sounding = sounding(&mut self.voices, contact).map(|voice| voice.fade(&self.shared));
+        let sounding = sounding(&mut self.voices, contact).map(|voice| {
+            voice.fade(&self.shared);
+            voice.ended = true;
+        });
         sounding.is_some() || known_silent.is_some()
     }
 

@@ -47,6 +47,8 @@ counters! {
     orphaned,
     /// Contacts silenced because a more important one needed the voice.
     stolen,
+    /// Landings right after a lift-off of the same contact at the same place, taken as one contact.
+    debounced,
     /// Contacts faded because nothing was heard of them for the time-out.
     lapsed,
     /// Events refused on the game side: bad numbers, unknown names, time running backwards.

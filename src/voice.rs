@@ -30,6 +30,10 @@ const STILL_N_S: f64 = 1e-12;
 /// Below this speed friction no longer jumps, m/s.
 const STICK_M_S: f64 = 1e-3;
 
+/// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
+/// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
+const SAME_TOUCH_M: f64 = 0.01;
+
 /// Where a voice is before it is anybody's.
 const IDLE: PathEvent =
     PathEvent { sample: 0, position_m: [0.0; 2], velocity_m_s: None, normal_force_n: 0.0 };
@@ -74,6 +78,8 @@ pub(crate) struct Voice {
     pub(crate) phase: Phase,
     pub(crate) begun: u64,
     pub(crate) refreshed: u64,
+    /// Whether it fades because the game said so, and not because it lapsed or was stolen.
+    pub(crate) ended: bool,
     slot: usize,
     asleep: bool,
     fade_in_left: u32,
@@ -140,6 +146,7 @@ impl Voice {
             phase: Phase::Free,
             begun: 0,
             refreshed: 0,
+            ended: false,
             slot,
             asleep: false,
             fade_in_left: 0,
@@ -177,6 +184,7 @@ impl Voice {
         self.phase = Phase::Sounding;
         (self.begun, self.refreshed) = (position, position);
         self.asleep = false;
+        self.ended = false;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         self.last_point = PathPoint {
@@ -230,6 +238,27 @@ impl Voice {
         }
     }
 
+    /// Whether a landing is so close that it can be the same touch.
+    pub(crate) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
+        let event = path_event(sample, slot, 0);
+        let period_m = slot.surface.wrap_period_m();
+        let apart_m = (0..2).map(|axis| {
+            let apart_m = event.position_m[axis] - self.last_point.position_m[axis];
+            let turns = if period_m[axis].is_finite() { (apart_m / period_m[axis]).round() } else { 0.0 };
+            apart_m - if turns == 0.0 { 0.0 } else { turns * period_m[axis] }
+        });
+        apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
+    }
+
+    /// Comes back out of its fade, from the level it has faded to.
+    pub(crate) fn resume(&mut self, shared: &Shared) {
+        if let Phase::Fading { left } = self.phase {
+            self.fade_in_left = shared.fade_samples().saturating_sub(left);
+            self.phase = Phase::Sounding;
+            self.ended = false;
+        }
+    }
+
     /// How much would be missed: what presses harder and moves faster is heard and felt more.
     pub(crate) fn priority(&self) -> f64 {
         let [u, v] = self.last_point.velocity_m_s;
@@ -253,6 +282,14 @@ impl Voice {
         tap: &mut T,
     ) {
         let at_grid = position.is_multiple_of(MAX_BLOCK as u64);
+        let wanted = n;
+        // Nothing is computed, counted or shown after a fade, wherever the stretch ends.
+        let n = match self.phase {
+            Phase::Fading { left } => n.min(left as usize),
+            Phase::Free | Phase::Sounding => n,
+        };
+        scratch.out.haptic[n..wanted].fill(0.0);
+        scratch.out.impulse_n_s[n..wanted].fill(0.0);
         if self.asleep {
             self.rest(n, scratch);
         } else {
@@ -267,6 +304,9 @@ impl Voice {
         }
         self.apply_fades(shared, n, scratch);
         self.show(seat, shared, position, n, scratch, tap);
+        if self.phase == Phase::Free {
+            return;
+        }
         self.last_point = scratch.points[n - 1];
         if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
             self.fall_asleep_when_still(output, shared, position, n, scratch);

@@ -17,6 +17,12 @@ struct Counting;
 thread_local! {
     static WATCHED: Cell<bool> = const { Cell::new(false) };
     static TOUCHED: Cell<u64> = const { Cell::new(0) };
+    /// Bytes allocated less bytes freed on this thread.
+    static HELD: Cell<i64> = const { Cell::new(0) };
+}
+
+fn hold(bytes: i64) {
+    HELD.with(|held| held.set(held.get() + bytes));
 }
 
 fn note() {
@@ -31,18 +37,21 @@ fn note() {
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         note();
+        hold(layout.size() as i64);
         // SAFETY: the caller's promises are passed on.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
         note();
+        hold(-(layout.size() as i64));
         // SAFETY: the caller's promises are passed on.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         note();
+        hold(size as i64 - layout.size() as i64);
         // SAFETY: the caller's promises are passed on.
         unsafe { System.realloc(pointer, layout, size) }
     }
@@ -143,7 +152,15 @@ impl Game {
                 let _ = self.scene.replace_body(body, bar(), Material::GLASS);
             }
             3 => {
-                let _ = self.scene.set_haptic_gain(Actuator(0), 0.5);
+                let gain = self.rng.uniform();
+                let _ = self.scene.set_haptic_gain(Actuator(0), gain);
+            }
+            4 => {
+                if self.scene.remove_body(self.bodies[which % 2]).is_ok() {
+                    if let Ok(id) = self.scene.add_body(bar()) {
+                        self.bodies[which % 2] = id;
+                    }
+                }
             }
             _ => {}
         }
@@ -151,7 +168,7 @@ impl Game {
 }
 
 #[test]
-fn a_minute_of_randomised_events_touches_no_heap_on_the_audio_half() {
+fn ten_minutes_of_randomised_events_touch_no_heap_on_the_audio_half() {
     let config = Config { max_contacts: 6, contact_timeout_s: 0.05, ..Config::default() };
     let (mut scene, mut renderer) = config.build().unwrap();
     let bodies = vec![scene.add_body(bar()).unwrap(), scene.add_body(bar()).unwrap()];
@@ -164,7 +181,7 @@ fn a_minute_of_randomised_events_touches_no_heap_on_the_audio_half() {
     let (mut haptic, mut audio) = (vec![0.0f32; 512], vec![0.0f32; 512]);
     let mut touched = 0;
     let mut peak = 0.0f32;
-    while game.time_s < 60.0 {
+    while game.time_s < 600.0 {
         let until = game.time_s + 0.005;
         while game.time_s < until {
             game.step();
@@ -190,8 +207,54 @@ fn a_minute_of_randomised_events_touches_no_heap_on_the_audio_half() {
         ("stolen", stats.stolen),
         ("lapsed", stats.lapsed),
         ("orphaned", stats.orphaned),
+        ("debounced", stats.debounced),
         ("micro_collisions", stats.micro_collisions),
     ] {
         assert!(count > 0, "the random game never met: {name}");
     }
+}
+
+#[test]
+fn a_flood_of_a_million_events_a_second_for_ten_seconds_needs_no_more_memory() {
+    let (mut scene, mut renderer) = Config::default().build().unwrap();
+    let body = scene.add_body(bar()).unwrap();
+    let surface = scene.add_surface(plate(0.8).on(body)).unwrap();
+    let sample = |u: f64| ContactSample {
+        uv: [u, 0.5],
+        velocity_m_s: Some([0.1, 0.0]),
+        normal_force_n: 0.6,
+        closing_m_s: 0.0,
+    };
+    let contacts = 10u64;
+    for contact in 0..contacts {
+        let event = ContactEvent::begin(ContactId(contact), surface, Actuator(0), sample(0.1));
+        scene.report(0.0, event).unwrap();
+    }
+    let (mut haptic, mut audio) = ([0.0f32; 256], [0.0f32; 256]);
+    let (mut reported, mut handed_back, mut touched) = (contacts, 0u64, 0);
+    let mut step = 0.0f64;
+    let held = HELD.with(Cell::get);
+    let mut most = 0;
+    for microsecond in 0..10_000_000u64 {
+        let time_s = microsecond as f64 * 1e-6;
+        let event = ContactEvent::moved(ContactId(microsecond % contacts), sample(0.1 + 0.7 * time_s));
+        reported += 1;
+        handed_back += u64::from(scene.report(time_s, event).is_err());
+        if microsecond % 64 == 0 {
+            most = most.max(HELD.with(Cell::get) - held);
+        }
+        while (renderer.position() as f64) < time_s * renderer.sample_rate_hz() {
+            touched += heap_operations(|| renderer.render(&mut [&mut haptic], &mut [&mut audio]));
+            step = haptic.iter().chain(&audio).fold(step, |peak, x| peak.max(f64::from(x.abs())));
+        }
+    }
+    let stats = scene.stats();
+    eprintln!("{most} bytes more, {stats:?}");
+    assert_eq!(touched, 0);
+    assert!(most < 64 * 1024, "{most} bytes");
+    assert!(step > 0.0 && step.is_finite());
+    assert_eq!(stats.dropped, handed_back);
+    let waiting = reported - stats.events - stats.superseded - stats.dropped;
+    assert!(waiting <= 4096 + contacts, "{waiting} events are nowhere: {stats:?}");
+    assert_eq!((stats.contacts, stats.lapsed), (contacts, 0), "no finger is lost in the flood");
 }

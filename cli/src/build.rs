@@ -7,8 +7,8 @@ use crate::scene_file::{
 };
 use asperity::contact_log::Names;
 use asperity::{
-    ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent, Integrator, Material,
-    ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
+    ActuatorPreset, ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent,
+    Integrator, Material, ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
 };
 use asperity_texture::brownian::BrownianDesign;
 use asperity_texture::height_field::HeightField;
@@ -16,8 +16,10 @@ use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
+use asperity_texture::sand::{SandDesign, SandLaw, SandSource, Tool};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::SolidNoise;
+use std::path::Path;
 
 /// What the command line may set, whatever the scene file says.
 #[derive(Debug, Clone, Copy, Default)]
@@ -41,14 +43,6 @@ pub struct Built {
     /// Ids by the names of the scene file.
     pub names: Names,
 }
-
-/// Device profiles by the names that `equalise` and `limit` use.
-const DEVICES: [(&str, DeviceProfile); 4] = [
-    ("lra-170", DeviceProfile::LRA_170),
-    ("console-voice-coil", DeviceProfile::CONSOLE_VOICE_COIL),
-    ("haptuator", DeviceProfile::HAPTUATOR),
-    ("vr-controller", DeviceProfile::VR_CONTROLLER),
-];
 
 /// Loads every file that a scene names and builds the engine.
 ///
@@ -90,13 +84,14 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
 
 fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
     let default = Config::default();
+    let folder = file.path.parent().unwrap_or(Path::new(""));
     Ok(Config {
         sample_rate_hz: overrides.sample_rate_hz.or(file.sample_rate_hz).unwrap_or(default.sample_rate_hz),
         seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
         path: overrides.path.unwrap_or(default.path),
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: probe(&file.probe)?,
-        actuators: file.actuators.iter().map(actuator).collect::<Result<_, _>>()?,
+        actuators: file.actuators.iter().map(|entry| actuator(entry, folder)).collect::<Result<_, _>>()?,
         audio: AudioSettings { gain: file.audio.gain, limit: file.audio.limit },
         max_surfaces: default.max_surfaces.max(file.surfaces.len()),
         max_bodies: default.max_bodies.max(file.bodies.len()),
@@ -124,7 +119,7 @@ fn probe(entry: &ProbeEntry) -> Result<Probe, CliError> {
     })
 }
 
-fn actuator(entry: &ActuatorEntry) -> Result<ActuatorSettings, CliError> {
+fn actuator(entry: &ActuatorEntry, folder: &Path) -> Result<ActuatorSettings, CliError> {
     Ok(ActuatorSettings {
         output: match entry.output {
             ActuatorOutput::Displacement => Quantity::Displacement,
@@ -132,26 +127,25 @@ fn actuator(entry: &ActuatorEntry) -> Result<ActuatorSettings, CliError> {
         },
         full_scale: entry.full_scale,
         highpass_hz: entry.highpass_hz,
-        equalise: device("equalise", entry.equalise.as_deref())?,
-        limit: device("limit", entry.limit.as_deref())?,
+        equalise: device("equalise", entry.equalise.as_deref(), folder)?,
+        limit: device("limit", entry.limit.as_deref(), folder)?,
         ..ActuatorSettings::default()
     })
 }
 
-fn device(field: &str, name: Option<&str>) -> Result<Option<DeviceProfile>, CliError> {
+/// A shipped profile by name, or a profile's file, relative to the scene's.
+fn device(field: &str, name: Option<&str>, folder: &Path) -> Result<Option<DeviceProfile>, CliError> {
     let Some(name) = name else { return Ok(None) };
-    match DEVICES.iter().find(|(known, _)| *known == name) {
-        Some((_, profile)) => Ok(Some(*profile)),
-        None => {
-            let known = DEVICES.map(|(name, _)| name).join(", ");
-            let at = format!("actuator: {field}");
-            Err(CliError::new(
-                at,
-                format!("\"{name}\" is unknown"),
-                format!("must be none or one of: {known}"),
-            ))
-        }
+    if let Some(preset) = ActuatorPreset::by_name(name) {
+        return Ok(Some(preset.profile));
     }
+    let at = format!("actuator: {field}");
+    if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
+        let preset = ActuatorPreset::load(folder.join(name));
+        return preset.map(|preset| Some(preset.profile)).map_err(|error| CliError::told(error).within(at));
+    }
+    let right = format!("must be none, a profile's file (NAME.toml) or one of: {}", ActuatorPreset::names());
+    Err(CliError::new(at, format!("\"{name}\" is unknown"), right))
 }
 
 fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
@@ -165,6 +159,9 @@ fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
         }),
     }
 }
+
+/// Voices of an engine with 64 contacts, the spare ones for fading included: sand keeps a tool for each.
+const SAND_CONTACTS: usize = 96;
 
 /// What every source of a scene shares.
 #[derive(Clone, Copy)]
@@ -263,7 +260,28 @@ fn source(source: &Source, ground: Ground) -> Result<Surface, CliError> {
                 .map_err(|error| CliError::told(error).within("lattice"))?;
             finish(Box::new(lattice), extent, false)
         }
-        Source::Sand(_) => Err(CliError::new("sand", "cannot be built", "use another source")),
+        Source::Sand(sand) => {
+            let law = SandLaw {
+                stiffness_n: sand.stiffness_n,
+                exponent_per_m: sand.exponent_per_m,
+                drag_s_per_m: sand.drag_s_per_m,
+                wetness: sand.wetness.unwrap_or_default(),
+                ..SandLaw::default()
+            };
+            let design = SandDesign {
+                width_m: extent.width_m,
+                height_m: extent.height_m,
+                cells: sand.cells as usize,
+                depth_m: sand.depth_m,
+                talus_deg: sand.talus_deg,
+                law,
+                tool: Tool::Sphere { radius_m: sand.tool_radius_m },
+                contacts: SAND_CONTACTS,
+            };
+            let source = SandSource::synchronous(&design, seed, sample_rate_hz)
+                .map_err(|error| CliError::told(error).within("sand"))?;
+            finish(Box::new(source), extent, false)
+        }
     }
 }
 
@@ -278,7 +296,8 @@ fn finish(source: Box<dyn HeightField>, extent: Extent, repeats: bool) -> Result
     Ok(surface.wraps(repeats))
 }
 
-fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {
+/// One channel of an image file.
+pub fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {
     let channel = match image.channel {
         Some('r') => Channel::R,
         Some('g') => Channel::G,

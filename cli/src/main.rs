@@ -22,10 +22,12 @@ mod build;
 mod csv;
 mod demo;
 mod error;
+mod fit;
 mod headroom;
 mod measure;
 mod output;
 mod pixels;
+mod play;
 mod plot;
 mod progress;
 mod render;
@@ -50,7 +52,9 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Demo(demo::Options),
+    Fit(fit::Options),
     Render(render::Options),
+    Play(play::Options),
     /// Make surfaces from pictures and from other surfaces
     #[command(subcommand)]
     Texture(texture::Verb),
@@ -61,7 +65,9 @@ enum Verb {
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
+        Verb::Fit(options) => fit::run(&options),
         Verb::Render(options) => render::run(&options),
+        Verb::Play(options) => play::run(&options),
         Verb::Texture(verb) => texture::run(verb),
         Verb::Headroom(options) => headroom::run(&options),
         Verb::Report(options) => report::run(&options),

@@ -2,9 +2,14 @@
 //!
 //! What the verbs share is here: pictures in, refusals in words, a bar for a fraction done.
 
+mod abx;
+pub mod analyze;
+pub mod brownian;
+pub mod compare;
 pub mod from_normals;
 pub mod from_photo;
 pub mod metamer;
+pub mod solid;
 
 use crate::error::CliError;
 use crate::progress::Progress;
@@ -17,6 +22,10 @@ use std::path::Path;
 /// What to do with a texture.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
+    Analyze(analyze::AnalyzeArgs),
+    Brownian(brownian::Options),
+    Solid(solid::Options),
+    Compare(compare::Options),
     FromNormals(from_normals::Options),
     FromPhoto(from_photo::Options),
     Metamer(metamer::Options),
@@ -28,6 +37,10 @@ pub enum Verb {
 /// When an input is bad or an output cannot be written.
 pub fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
+        Verb::Analyze(options) => analyze::run(&options),
+        Verb::Brownian(options) => brownian::run(&options),
+        Verb::Solid(options) => solid::run(&options),
+        Verb::Compare(options) => compare::run(&options),
         Verb::FromNormals(options) => from_normals::run(&options),
         Verb::FromPhoto(options) => from_photo::run(&options),
         Verb::Metamer(options) => metamer::run(&options),
@@ -68,4 +81,62 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("must be a number above 0".to_owned()),
     }
+}
+
+/// What the verbs that make heights from nothing report.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Preview {
+    /// Texels a side.
+    pub size: usize,
+    /// Size of a texel on the surface.
+    pub metres_per_px: f64,
+    /// Height of one of 65 535 grey steps.
+    pub metres_per_grey: f64,
+    /// Height of white over black: `relief_m` of a scene file.
+    pub relief_m: f64,
+    /// Rms height about the mean.
+    pub rms_m: f64,
+    /// The file written.
+    pub files: Vec<std::path::PathBuf>,
+}
+
+/// Writes heights in metres as a 16-bit picture from its lowest to its highest point.
+fn write_heights(path: &Path, heights_m: &Raster, metres_per_px: f64) -> Result<Preview, CliError> {
+    let (low, high) = heights_m.range();
+    let relief_m = high - low;
+    let scale = if relief_m > 0.0 { 1.0 / relief_m } else { 0.0 };
+    let grey: Vec<u16> =
+        heights_m.values.iter().map(|height| ((height - low) * scale * 65_535.0).round() as u16).collect();
+    let mean = heights_m.mean();
+    let count = heights_m.values.len().max(1) as f64;
+    let rms_m = (heights_m.values.iter().map(|height| (height - mean).powi(2)).sum::<f64>() / count).sqrt();
+    let mut outputs = crate::output::Outputs::new();
+    outputs.write(path, &crate::pixels::png16(heights_m.width, heights_m.height, &grey))?;
+    Ok(Preview {
+        size: heights_m.width,
+        metres_per_px,
+        metres_per_grey: relief_m / 65_535.0,
+        relief_m,
+        rms_m,
+        files: outputs.commit()?,
+    })
+}
+
+/// Prints a preview as JSON or in words.
+fn say_preview(preview: &Preview, json: bool, width_m: f64) -> Result<(), CliError> {
+    if json {
+        return crate::output::say_json(preview);
+    }
+    let files: Vec<String> = preview.files.iter().map(|path| path.display().to_string()).collect();
+    crate::output::say(&format!(
+        "{0} × {0} texels of {1}: relief {2}, rms {3}\nwrote {4}; in a scene file: width_m = {5}, height_m = {5}, relief_m = {6:.4e}",
+        preview.size,
+        crate::plot::quantity(preview.metres_per_px, "m"),
+        crate::plot::quantity(preview.relief_m, "m"),
+        crate::plot::quantity(preview.rms_m, "m"),
+        files.join(", "),
+        width_m,
+        preview.relief_m,
+    ));
+    Ok(())
 }

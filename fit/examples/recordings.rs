@@ -27,8 +27,16 @@ fn main() {
                     .take(3)
                     .map(|m| format!("{:.2}/{:.2}", m.frequency_hz, m.decay_per_s))
                     .collect();
+                let from = fit.onset_sample;
+                let to = ((fit.end_s - recording.starts_at_s) * recording.sample_rate_hz).round() as usize;
+                let mean = recording.samples[recording.samples.len() * 3 / 4..].iter().sum::<f64>()
+                    / (recording.samples.len() - recording.samples.len() * 3 / 4) as f64;
+                let sound: Vec<f64> = recording.samples[from..to].iter().map(|x| x - mean).collect();
+                let rate = recording.sample_rate_hz;
+                let peaks = common::stft_peaks(&sound, rate, max_modes);
+                let baseline = common::snr_db(&sound, &common::render_fast(&peaks, rate, sound.len()));
                 println!(
-                    "{:36} {:4} {:6.2} {:7.2} {:7.2} {:7.1} {:6.2}  {}",
+                    "baseline {baseline:6.2} dB  {:36} {:4} {:6.2} {:7.2} {:7.2} {:7.1} {:6.2}  {}",
                     fit.source,
                     fit.modes.len(),
                     1e3 * fit.start_offset_s,

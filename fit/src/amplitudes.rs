@@ -7,14 +7,50 @@ use crate::geometric_sum::geometric_sums;
 use crate::partial::Partial;
 use crate::projection::correlate;
 use crate::refinement::Scaled;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, Vector2};
 
 /// Relative weight of keeping amplitudes small: decides between modes that coincide to rounding.
 const RIDGE: f64 = 1e-11;
 
 /// Sets every `c` to the least-squares amplitude at `signal[0]`.
 pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial]) {
-    let count = signal.len();
+    let right = DVector::from_iterator(
+        2 * partials.len(),
+        correlate(signal, partials).into_iter().flat_map(|[p0, _]| [p0.re, -p0.im]),
+    );
+    let Some(system) = factored(partials, signal.len()) else { return };
+    let solution = system.solve(&right);
+    for (k, partial) in partials.iter_mut().enumerate() {
+        partial.c = Complex::new(solution[2 * k], solution[2 * k + 1]);
+    }
+}
+
+/// By how much the squared residual would rise if a partial were taken out and the other amplitudes
+/// refitted. Never more than its energy, and next to nothing for one of two giants that cancel.
+#[must_use]
+pub fn contributions(partials: &[Partial], count: usize) -> Vec<f64> {
+    let Some(system) = factored(partials, count) else {
+        return partials.iter().map(|p| p.energy(count)).collect();
+    };
+    let inverse = system.inverse();
+    partials
+        .iter()
+        .enumerate()
+        .map(|(k, partial)| {
+            let block = inverse.fixed_view::<2, 2>(2 * k, 2 * k).into_owned();
+            let c = Vector2::new(partial.c.re, partial.c.im);
+            block.try_inverse().map_or(0.0, |inverse| c.dot(&(inverse * c)))
+        })
+        .collect()
+}
+
+fn factored(partials: &[Partial], count: usize) -> Option<Scaled> {
+    let gram = amplitude_gram(partials, count);
+    (0..4).find_map(|power| Scaled::new(&gram, RIDGE * 1e3_f64.powi(power)))
+}
+
+/// The (Re c, Im c) rows and columns of the Gram matrix.
+fn amplitude_gram(partials: &[Partial], count: usize) -> DMatrix<f64> {
     let size = 2 * partials.len();
     let mut gram = DMatrix::zeros(size, size);
     let poles: Vec<_> = partials.iter().map(|p| (p.pole(), p.power(count as f64))).collect();
@@ -36,17 +72,7 @@ pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial]) {
             }
         }
     }
-    let right = DVector::from_iterator(
-        size,
-        correlate(signal, partials).into_iter().flat_map(|[p0, _]| [p0.re, -p0.im]),
-    );
-    let Some(system) = (0..4).find_map(|power| Scaled::new(&gram, RIDGE * 1e3_f64.powi(power))) else {
-        return;
-    };
-    let solution = system.solve(&right);
-    for (k, partial) in partials.iter_mut().enumerate() {
-        partial.c = Complex::new(solution[2 * k], solution[2 * k + 1]);
-    }
+    gram
 }
 
 #[cfg(test)]

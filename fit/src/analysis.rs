@@ -8,13 +8,13 @@
 //! 2. Joint refinement over the whole segment, proof, refinement.
 //! 3. The same on the residual, with the noise measured again in the residual, until nothing is added.
 
-use crate::amplitudes::fit_amplitudes;
-use crate::esprit::poles;
+use crate::amplitudes::{contributions, fit_amplitudes};
+use crate::esprit::{energies, poles};
 use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
-use crate::pruning::{prune, prune_missed_by_nobody};
+use crate::pruning::{prune, prune_missed_by_nobody, simplify};
 use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
 use nalgebra::Complex;
@@ -27,8 +27,14 @@ const PASSES: usize = 3;
 const SPAN_NEPERS: f64 = 3.0;
 /// Accepted steps of a refinement within a level, after removals, and at the end.
 const LEVEL_STEPS: usize = 3;
+/// A residual with this many times the noise's power is no noise.
+const MISFIT: f64 = 2.0;
+/// Most rounds of taking out modes that only mend others.
+const SIMPLIFYING_ROUNDS: usize = 15;
 /// Most rounds of one level.
 const LEVEL_ROUNDS: usize = 3;
+/// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
+const WORTHWHILE: f64 = 0.9;
 const FINAL_STEPS: usize = 12;
 
 /// What bounds an analysis, in units of samples.
@@ -71,8 +77,9 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         capped: false,
     };
     let levels = Level::ladder(segment.len());
+    let mut cost = f64::INFINITY;
     for pass in 0..PASSES {
-        let known = work.partials.clone();
+        let known = work.partials.len();
         let mut added = 0;
         for (i, &level) in levels.iter().enumerate() {
             progress(0.9 * (pass * levels.len() + i) as f64 / (PASSES * levels.len()) as f64);
@@ -82,19 +89,31 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
             break;
         }
         work.settle(FINAL_STEPS);
-        let residual = subtract(segment, &work.partials);
-        work.noise = NoiseFloor::estimate(&residual, limits.rate_hz, limits.least_noise);
+        work.measure_noise();
         while prune_missed_by_nobody(segment, &mut work.partials, &work.noise, &limits.bounds) > 0 {
             work.settle(LEVEL_STEPS);
         }
-        if pass > 0 && work.partials.len() <= known.len() {
+        let left = square_sum(&subtract(segment, &work.partials));
+        if pass > 0 && (work.partials.len() <= known || work.capped && left > 0.95 * cost) {
             break;
+        }
+        cost = left;
+    }
+    if work.capped || work.leaves_more_than_noise() {
+        let mut rounds = 0;
+        while rounds < SIMPLIFYING_ROUNDS && simplify(&mut work.partials, &work.noise, segment.len()) > 0 {
+            work.settle(LEVEL_STEPS);
+            rounds += 1;
         }
     }
     work.settle(FINAL_STEPS);
     let residual = subtract(segment, &work.partials);
     progress(1.0);
     Analysis { partials: work.partials, noise: work.noise, residual, capped: work.capped }
+}
+
+fn square_sum(samples: &[f64]) -> f64 {
+    samples.iter().map(|x| x * x).sum()
 }
 
 /// `signal` minus `partials`.
@@ -105,6 +124,9 @@ pub fn subtract(signal: &[f64], partials: &[Partial]) -> Vec<f64> {
     residual
 }
 
+/// A partial without amplitude, and its energy in its band.
+type Ranked = (Partial, f64);
+
 struct Work<'a> {
     segment: &'a [f64],
     limits: &'a Limits,
@@ -114,19 +136,52 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
+    /// Whether the residual is more than what the quiet end of the segment has of noise.
+    fn leaves_more_than_noise(&self) -> bool {
+        let residual = subtract(self.segment, &self.partials);
+        let quiet = NoiseFloor::estimate(&residual, self.limits.rate_hz, self.limits.least_noise);
+        square_sum(&residual) / residual.len() as f64 > MISFIT * quiet.mean_variance()
+    }
+
+    /// The noise as the residual shows it now.
+    fn measure_noise(&mut self) {
+        let residual = subtract(self.segment, &self.partials);
+        self.noise = NoiseFloor::of_residual(&residual, self.limits.rate_hz, self.limits.least_noise);
+    }
+
     /// Looks for new partials at one level and refits, again while strong ones hid weak ones; says how
     /// many it proposed. `whole`: refit over the whole segment, not only after the level's span.
+    ///
+    /// Once there are more modes than allowed, the noise is measured anew in every round: what a real
+    /// body does besides ringing counts as noise as soon as the strong modes are known.
     fn level(&mut self, level: Level, whole: bool) -> usize {
         let mut proposed = 0;
         for _ in 0..LEVEL_ROUNDS {
             let residual = subtract(self.segment, &self.partials);
+            let before = square_sum(&residual);
+            if self.capped {
+                self.measure_noise();
+            }
             let (found, hidden) = self.candidates(level, &residual);
             if found.is_empty() {
                 break;
             }
             proposed += found.len();
-            self.join(found, level.span(), if whole { 0 } else { level.span() });
-            if !hidden {
+            let known = self.partials.clone();
+            self.join(&found, level.span(), if whole { 0 } else { level.span() });
+            let mut after = square_sum(&subtract(self.segment, &self.partials));
+            if self.capped && after > before && !whole {
+                // What fits late does not fit early: fit all of it.
+                self.partials.clone_from(&known);
+                let early: Vec<Partial> = found.iter().map(|p| p.moved(-(level.span() as f64))).collect();
+                self.join(&early, level.span(), 0);
+                after = square_sum(&subtract(self.segment, &self.partials));
+            }
+            if self.capped && after > before {
+                self.partials = known;
+                break;
+            }
+            if !hidden || (self.capped && after > WORTHWHILE * before) {
                 break;
             }
         }
@@ -134,7 +189,7 @@ impl Work<'_> {
     }
 
     /// Refits what is known together with `found` (amplitudes unknown) from sample `start` on.
-    fn join(&mut self, found: Vec<Partial>, span: usize, start: usize) {
+    fn join(&mut self, found: &[Partial], span: usize, start: usize) {
         let offset = start as f64;
         let (alive, frozen): (Vec<Partial>, Vec<Partial>) =
             self.partials.iter().partition(|p| p.delta * offset < SPAN_NEPERS);
@@ -177,12 +232,15 @@ impl Work<'_> {
     /// Keeps the strongest by energy, within the cap and the level limit; says how many went.
     fn drop_faint(&mut self, partials: &mut Vec<Partial>, count: usize) -> usize {
         let before = partials.len();
-        partials.sort_by(|a, b| b.energy(count).total_cmp(&a.energy(count)));
         if partials.len() > self.limits.max_partials {
             self.capped = true;
-            partials.truncate(self.limits.max_partials);
+            let worth = contributions(partials, count);
+            let mut ranked: Vec<(f64, Partial)> = worth.into_iter().zip(partials.drain(..)).collect();
+            ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+            partials.extend(ranked.into_iter().take(self.limits.max_partials).map(|(_, p)| p));
         }
-        if let Some(strongest) = partials.first().map(|p| p.energy(count)) {
+        let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
+        if strongest > 0.0 {
             partials.retain(|p| p.energy(count) >= strongest * self.limits.least_energy);
         }
         partials.sort_by(|a, b| a.omega.total_cmp(&b.omega));
@@ -215,7 +273,12 @@ impl Work<'_> {
             }
         }
         let found = self.on_threads(open.len(), &|i| (open[i], self.band_partials(level, &bands, open[i])));
-        (without_doubles(found, level, samples), hidden)
+        let mut found = without_doubles(found, level, samples);
+        // Of more than may be kept, the strongest; the others get their turn when these are subtracted.
+        found.sort_by(|a, b| b.1.total_cmp(&a.1));
+        hidden |= found.len() > self.limits.max_partials;
+        found.truncate(self.limits.max_partials);
+        (found.into_iter().map(|(partial, _)| partial).collect(), hidden)
     }
 
     /// `work(0 .. count)` in order, shared among the threads allowed.
@@ -263,16 +326,19 @@ impl Work<'_> {
         (self.noise.variance_at(level.centre(k)) * bands.noise_gain).sqrt()
     }
 
-    fn band_partials(&self, level: Level, bands: &Bands, k: usize) -> Vec<Partial> {
+    fn band_partials(&self, level: Level, bands: &Bands, k: usize) -> Vec<Ranked> {
         let (centre, reach) = (level.centre(k), Self::reach(level));
         let bounds = &self.limits.bounds;
         let d = level.decimation as f64;
         let band = &bands.bands[k];
         let noise_std = self.noise_std(level, bands, k);
         let longest_delta = SPAN_NEPERS / (level.span() as f64).max(1.0);
-        poles(band, noise_std)
+        let poles = poles(band, noise_std);
+        let energies = energies(band, &poles);
+        poles
             .into_iter()
-            .filter_map(|z| {
+            .zip(energies)
+            .filter_map(|(z, energy)| {
                 let omega = centre + z.arg() / d;
                 let delta = -z.norm().ln() / d;
                 let growth = -delta * d * band.len() as f64;
@@ -280,7 +346,8 @@ impl Work<'_> {
                     && (bounds.omega_low..=bounds.omega_high).contains(&omega)
                     && delta <= bounds.delta_high.min(longest_delta)
                     && growth < 1.0;
-                kept.then(|| Partial { omega, delta: delta.max(bounds.delta_low), c: Complex::new(0.0, 0.0) })
+                let c = Complex::new(0.0, 0.0);
+                kept.then(|| (Partial { omega, delta: delta.max(bounds.delta_low), c }, energy))
             })
             .collect()
     }
@@ -293,24 +360,25 @@ fn strongest(peaks: &[[f64; 4]]) -> [f64; 4] {
 
 /// Joins the bands' partials; a pole that two neighbouring bands saw is kept once, from the band whose
 /// centre is nearer.
-fn without_doubles(found: Vec<(usize, Vec<Partial>)>, level: Level, samples: usize) -> Vec<Partial> {
+fn without_doubles(found: Vec<(usize, Vec<Ranked>)>, level: Level, samples: usize) -> Vec<Ranked> {
     let tolerance = 1.0 / (samples * level.decimation) as f64;
-    let mut kept: Vec<(usize, Partial)> = Vec::new();
+    let mut kept: Vec<(usize, Ranked)> = Vec::new();
     for (k, partials) in found {
-        for partial in partials {
-            let double = kept.iter().rposition(|(other, p)| {
+        for ranked in partials {
+            let partial = ranked.0;
+            let double = kept.iter().rposition(|(other, (p, _))| {
                 *other + 1 == k && (p.omega - partial.omega).abs() < tolerance + 0.2 * partial.delta
             });
             match double {
-                None => kept.push((k, partial)),
+                None => kept.push((k, ranked)),
                 Some(i) => {
                     let distance = |k: usize| (partial.omega - level.centre(k)).abs();
                     if distance(k) < distance(kept[i].0) {
-                        kept[i] = (k, partial);
+                        kept[i] = (k, ranked);
                     }
                 }
             }
         }
     }
-    kept.into_iter().map(|(_, partial)| partial).collect()
+    kept.into_iter().map(|(_, ranked)| ranked).collect()
 }

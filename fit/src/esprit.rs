@@ -7,8 +7,9 @@
 //! diagonals, and its eigenvectors are the left singular vectors (a dynamic range of 1e7 in amplitude
 //! remains, far beyond a band's). Φ in closed form, because U↑ᴴ U↑ = I − u uᴴ with u the last row of U.
 
+use crate::geometric_sum::geometric_sums;
 use crate::model_order::order;
-use nalgebra::{Complex, DMatrix, Schur, SymmetricEigen};
+use nalgebra::{Cholesky, Complex, DMatrix, DVector, Schur, SymmetricEigen};
 
 type C = Complex<f64>;
 
@@ -35,6 +36,26 @@ pub fn poles(band: &[C], noise_std: f64) -> Vec<C> {
     }
     let basis = DMatrix::from_fn(rows, order, |i, j| eigen.eigenvectors[(i, ranked[j])]);
     shift_eigenvalues(&basis)
+}
+
+/// Energy of every pole in `band`: least-squares amplitudes of all of them, squared and summed over the
+/// window. Says which poles of many bands matter; infinite when the poles cannot be told apart.
+#[must_use]
+pub fn energies(band: &[C], poles: &[C]) -> Vec<f64> {
+    let count = band.len();
+    let powers: Vec<C> = poles.iter().map(|z| z.powu(count as u32)).collect();
+    let sum = |i: usize, j: usize| {
+        geometric_sums(poles[i].conj() * poles[j], powers[i].conj() * powers[j], count)[0]
+    };
+    let gram =
+        DMatrix::from_fn(poles.len(), poles.len(), |i, j| sum(i, j) * if i == j { 1.0 + 1e-10 } else { 1.0 });
+    let right = DVector::from_iterator(
+        poles.len(),
+        poles.iter().map(|z| band.iter().rev().fold(C::new(0.0, 0.0), |sum, y| sum * z.conj() + y)),
+    );
+    let lengths: Vec<f64> = gram.diagonal().iter().map(|d| d.re).collect();
+    let Some(factor) = Cholesky::new(gram) else { return vec![f64::INFINITY; poles.len()] };
+    factor.solve(&right).iter().zip(lengths).map(|(b, length)| b.norm_sqr() * length).collect()
 }
 
 /// H Hᴴ.

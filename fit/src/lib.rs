@@ -21,6 +21,9 @@
 //! | [`suspicion`] | partials → warnings: hum, no decay, not exponential |
 //! | [`fitted`] | what comes out |
 //! | [`residual`] | what modes do not explain |
+//! | [`scaling`] | modes → modes of another size or material |
+//! | [`merge`] | fits of several strikes → one body with amplitudes per strike |
+//! | [`table`] | modes ↔ CSV, and other programs' tables |
 //! | [`partial`], [`geometric_sum`], [`projection`] | the damped sinusoid, its sums, its passes over samples |
 
 pub mod amplitudes;
@@ -28,6 +31,7 @@ pub mod analysis;
 pub mod esprit;
 pub mod fitted;
 pub mod geometric_sum;
+pub mod merge;
 pub mod model_order;
 pub mod noise_floor;
 pub mod onset;
@@ -37,9 +41,11 @@ pub mod pruning;
 pub mod recording;
 pub mod refinement;
 pub mod residual;
+pub mod scaling;
 pub mod strike;
 pub mod sub_band;
 pub mod suspicion;
+pub mod table;
 
 pub use fitted::{Fit, FittedMode, Warning};
 pub use recording::{ChannelChoice, Recording, RecordingError, load};

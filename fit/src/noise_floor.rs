@@ -16,6 +16,9 @@ const SMOOTHING_HZ: f64 = 1500.0;
 /// The percentile over frequency, and its normal deviate.
 const PERCENTILE: f64 = 0.3;
 const DEVIATE: f64 = -0.524_4;
+/// The first half counts when it is this much louder than its share: the larger of two estimates of the
+/// same noise would be biased.
+const LOUDER: f64 = 0.8;
 /// Bins beside 0 Hz and half the rate that the window's main lobe reaches.
 const EDGE_BINS: usize = 5;
 
@@ -42,6 +45,22 @@ impl NoiseFloor {
         let half = (0.5 * SMOOTHING_HZ / rate_hz * length as f64).ceil() as usize;
         let scale = 1.0 / percentile_of_median(starts.len());
         let variance = percentiles(&medians, half.max(4)).iter().map(|v| (v * scale).max(least)).collect();
+        Self { variance }
+    }
+
+    /// Estimates from what a fit left of a segment: the louder of its halves at every frequency, so that
+    /// a recording that is not quite a sum of modes is not judged by its silent end.
+    #[must_use]
+    pub fn of_residual(samples: &[f64], rate_hz: f64, least: f64) -> Self {
+        let end = Self::estimate(samples, rate_hz, least);
+        let start = Self::estimate(&samples[..samples.len() / 2], rate_hz, least);
+        let points = end.variance.len() - 1;
+        let variance = end
+            .variance
+            .iter()
+            .enumerate()
+            .map(|(i, &v)| v.max(LOUDER * start.variance_at(PI * i as f64 / points as f64)))
+            .collect();
         Self { variance }
     }
 

@@ -4,7 +4,7 @@
 //! again from later when the first milliseconds are no sum of modes (the striker still pushes) → hum
 //! and non-exponential decays named → residual.
 
-use crate::analysis::{Analysis, Limits, analyse};
+use crate::analysis::{Analysis, Limits, analyse, subtract};
 use crate::fitted::{Fit, FittedMode, Warning};
 use crate::onset;
 use crate::partial::Partial;
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 /// Offsets after the onset that are tried, s (1 ms of half-sine force: 27 dB with the contact in the
 /// analysed part, 75 dB without).
-const START_OFFSETS_S: [f64; 4] = [0.0, 0.001, 0.0025, 0.005];
+const START_OFFSETS_S: [f64; 3] = [0.0, 0.001, 0.003];
 /// The attack is modal when its first 5 ms leave at most this many times what later 5 ms leave.
 const ATTACK_EXCESS: f64 = 4.0;
 /// Sound shorter than this is warned of, s.
@@ -211,8 +211,8 @@ fn clipped_offset(recording: &Recording, found: &Found) -> Option<usize> {
     (offset + FEWEST_SAMPLES < found.end - found.onset).then_some(offset)
 }
 
-/// The earliest offset from which the attack is modal; when there is none, the one that explains most
-/// of the sound from the onset on.
+/// The earliest offset when its attack is modal; otherwise the one with the best sum of the two
+/// signal-to-residual ratios that compete: from the onset on, and of the ringing after all offsets.
 fn analyse_from(
     samples: &[f64],
     found: &Found,
@@ -225,20 +225,21 @@ fn analyse_from(
     let strike = &samples[found.onset..found.end];
     let usable: Vec<usize> =
         offsets.iter().copied().filter(|&o| o == 0 || o + FEWEST_SAMPLES <= strike.len()).collect();
+    let latest = usable.last().copied().unwrap_or(0);
     let mut best: Option<(f64, usize, Analysis)> = None;
     for (i, &offset) in usable.iter().enumerate() {
         let segment = &strike[offset..];
         let limits = limits(segment, recording, options);
         let part = usable.len() as f64;
         let analysis = analyse(segment, &limits, &mut |done| progress((i as f64 + done) / part));
-        let modal = attack_excess(&analysis, segment, rate) <= ATTACK_EXCESS;
-        let early: Vec<Partial> = analysis.partials.iter().map(|p| p.moved(-(offset as f64))).collect();
-        let left = ratio_db(&crate::analysis::subtract(strike, &early), strike);
-        if modal {
+        if i == 0 && (usable.len() == 1 || attack_excess(&analysis, segment, rate) <= ATTACK_EXCESS) {
             return (offset, analysis);
         }
-        if best.as_ref().is_none_or(|(least, _, _)| left < *least) {
-            best = Some((left, offset, analysis));
+        let early: Vec<Partial> = analysis.partials.iter().map(|p| p.moved(-(offset as f64))).collect();
+        let left = subtract(strike, &early);
+        let cost = ratio_db(&left, strike) + ratio_db(&left[latest..], &strike[latest..]);
+        if best.as_ref().is_none_or(|(least, _, _)| cost < *least) {
+            best = Some((cost, offset, analysis));
         }
     }
     match best {
@@ -315,7 +316,7 @@ fn assemble(
     }
     let early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
     let mut left = samples[..onset].to_vec();
-    left.extend(crate::analysis::subtract(&samples[onset..], &early));
+    left.extend(subtract(&samples[onset..], &early));
     let snr = |from: usize| -ratio_db(&left[from..end], &samples[from..end]);
     let resynthesis_snr_db = snr(onset + offset);
     let snr_from_onset_db = snr(onset);

@@ -111,6 +111,8 @@ pub struct DeviceReport {
     pub callback_frames: u64,
     /// Distance from callback to ear or skin, s, as the device tells; 0 where it does not.
     pub latency_s: f64,
+    /// Mean share of the callbacks' time that rendering took.
+    pub mean_load: f64,
     /// Longest share of a callback's time that rendering took.
     pub peak_load: f64,
 }
@@ -123,6 +125,8 @@ struct Meters {
     haptic_underruns: AtomicU64,
     callback_frames: AtomicU64,
     latency_us: AtomicU64,
+    busy_ns: AtomicU64,
+    frames: AtomicU64,
     peak_load_ppm: AtomicU64,
 }
 
@@ -136,12 +140,14 @@ enum Message {
 /// A playing engine. Dropping it stops the sound.
 pub struct Player {
     meters: Arc<Meters>,
+    rate_hz: f64,
+    device: String,
     engine: Engine,
 }
 
 enum Engine {
     Device { supervisor: Option<JoinHandle<()>>, orders: Sender<Message> },
-    Silent { _sink: NullSink, why: DeviceError },
+    Silent { sink: Option<NullSink>, block_frames: usize, why: DeviceError },
 }
 
 /// Plays on the default device, or silently where there is none; see [`Player::silent_because`].
@@ -172,15 +178,24 @@ pub fn play_on(renderer: Renderer, options: &DeviceOptions) -> Result<Player, De
     let (orders, inbox) = channel();
     match streams::supervise(device.clone(), options.clone(), rate, meters.clone(), orders.clone(), inbox) {
         Ok(supervisor) => {
-            Ok(Player { meters, engine: Engine::Device { supervisor: Some(supervisor), orders } })
+            let engine = Engine::Device { supervisor: Some(supervisor), orders };
+            let device = options.device.clone().or_else(|| options.host.clone());
+            Ok(Player {
+                meters,
+                rate_hz: rate,
+                device: device.unwrap_or("the default device".into()),
+                engine,
+            })
         }
         Err(error) if named => Err(error),
         Err(why) => {
             let Some(interleaver) = Arc::into_inner(device).and_then(|lock| lock.into_inner().ok()) else {
                 return Err(why);
             };
-            let sink = NullSink::start(interleaver, options.block_frames.unwrap_or(256) as usize)?;
-            Ok(Player { meters, engine: Engine::Silent { _sink: sink, why } })
+            let block_frames = options.block_frames.unwrap_or(256) as usize;
+            let sink = Some(NullSink::start(interleaver, block_frames)?);
+            let engine = Engine::Silent { sink, block_frames, why };
+            Ok(Player { meters, rate_hz: rate, device: "no device".into(), engine })
         }
     }
 }
@@ -195,11 +210,42 @@ impl Player {
         }
     }
 
-    /// What the device met so far.
+    /// The device as it was asked for.
+    #[must_use]
+    pub fn device(&self) -> &str {
+        &self.device
+    }
+
+    /// Stops the sound and tells what the device met. Of a null sink, callbacks are its blocks and
+    /// underruns the blocks that were late.
+    #[must_use]
+    pub fn stop(mut self) -> DeviceReport {
+        let pace = match &mut self.engine {
+            Engine::Silent { sink, block_frames, .. } => {
+                sink.take().and_then(NullSink::stop).map(|(_, pace)| (pace, *block_frames))
+            }
+            Engine::Device { .. } => None,
+        };
+        match pace {
+            None => self.report(),
+            Some((pace, block_frames)) => DeviceReport {
+                callbacks: pace.blocks,
+                underruns: pace.late,
+                callback_frames: block_frames as u64,
+                mean_load: pace.load,
+                peak_load: pace.longest_s * self.rate_hz / block_frames as f64,
+                ..DeviceReport::default()
+            },
+        }
+    }
+
+    /// What the device met so far; of a null sink only [`stop`](Self::stop) tells.
     #[must_use]
     pub fn report(&self) -> DeviceReport {
         let meters = &self.meters;
+        let played_s = meters.frames.load(Relaxed) as f64 / self.rate_hz;
         DeviceReport {
+            mean_load: meters.busy_ns.load(Relaxed) as f64 * 1e-9 / played_s.max(1e-9),
             callbacks: meters.callbacks.load(Relaxed),
             underruns: meters.underruns.load(Relaxed),
             rebuilt: meters.rebuilt.load(Relaxed),

@@ -155,11 +155,14 @@ impl Job {
             let began = Instant::now();
             engine.fill(out, channels);
             let frames = out.len() / channels;
-            let load = began.elapsed().as_secs_f64() * rate_hz / frames.max(1) as f64;
+            let busy = began.elapsed();
+            let load = busy.as_secs_f64() * rate_hz / frames.max(1) as f64;
             engine.renderer().report_load(load as f32);
             let stamp = info.timestamp();
             meters.latency_us.store((stamp.playback - stamp.callback).as_micros() as u64, Relaxed);
             meters.callbacks.fetch_add(1, Relaxed);
+            meters.frames.fetch_add(frames as u64, Relaxed);
+            meters.busy_ns.fetch_add(busy.as_nanos() as u64, Relaxed);
             meters.callback_frames.store(frames as u64, Relaxed);
             meters.peak_load_ppm.fetch_max((load * 1e6) as u64, Relaxed);
         };

@@ -5,18 +5,19 @@ use rustfft::{FftPlanner, num_complex::Complex};
 
 /// Levels of the third octaves from 25 Hz to 10 kHz, dB re 1 (rms²); Welch's method with Hann windows.
 pub fn third_octaves_db(x: &[f32], rate_hz: f64) -> Vec<f64> {
-    let power = power_spectrum(x, 8192);
-    let bin_hz = rate_hz / 8192.0;
-    (0..27)
+    third_octaves_from_db(x, rate_hz, 8192, 25.0, 27)
+}
+
+/// Levels of `bands` third octaves from `first_hz` on, from spectra of `length` samples.
+pub fn third_octaves_from_db(x: &[f32], rate_hz: f64, length: usize, first_hz: f64, bands: u32) -> Vec<f64> {
+    let power = power_spectrum(x, length);
+    let bin_hz = rate_hz / length as f64;
+    (0..bands)
         .map(|band| {
-            let centre_hz = 25.0 * 2f64.powf(f64::from(band) / 3.0);
+            let centre_hz = first_hz * 2f64.powf(f64::from(band) / 3.0);
             let (low, high) = (centre_hz * 2f64.powf(-1.0 / 6.0), centre_hz * 2f64.powf(1.0 / 6.0));
-            let sum: f64 = power
-                .iter()
-                .enumerate()
-                .filter(|(bin, _)| (low..high).contains(&(*bin as f64 * bin_hz)))
-                .map(|(_, p)| p)
-                .sum();
+            let inside = |bin: &usize| (low..high).contains(&(*bin as f64 * bin_hz));
+            let sum: f64 = (0..power.len()).filter(inside).map(|bin| power[bin]).sum();
             10.0 * sum.max(1e-30).log10()
         })
         .collect()

@@ -1,10 +1,18 @@
-//! Prints the measured tables of the offline analysis; `dimension`, `lattice` or `groups` prints one.
+//! Prints the measured tables of the offline analysis; `dimension`, `lattice`, `controls` or `groups` prints one,
+//! names of picture files print what is found in them.
 //! `cargo run --release -p asperity-texture --features offline --example analysis_table`
 
 #[path = "../tests/support/exact_brownian.rs"]
 mod exact_brownian;
+#[path = "../tests/support/patterns.rs"]
+mod patterns;
+#[path = "../tests/support/wallpaper.rs"]
+mod wallpaper;
 
 use asperity_texture::fractal_dimension as fd;
+use asperity_texture::image_io::{Channel, load_channel};
+use asperity_texture::raster::Raster;
+use asperity_texture::symmetry::{self, WallpaperGroup};
 use exact_brownian::{ExactBrownian, quantise};
 use std::time::Instant;
 
@@ -13,6 +21,136 @@ fn main() {
     let asked = |name: &str| wanted.is_empty() || wanted.iter().any(|w| w == name);
     if asked("dimension") {
         dimension();
+    }
+    if asked("lattice") {
+        lattice();
+    }
+    if asked("controls") {
+        controls();
+    }
+    if asked("groups") {
+        groups();
+    }
+    for file in wanted.iter().filter(|w| w.contains('.')) {
+        picture(file);
+    }
+}
+
+fn lattice() {
+    const SEEDS: u64 = 24;
+    println!("\nLattice, 256², {SEEDS} random patterns a kind and row: share found right");
+    println!("  row         square  rectangular  rhombic  oblique  hexagonal  all     least merit   ms");
+    for (name, stress) in patterns::ROWS {
+        let (mut all, mut time, mut least) = (0.0, 0.0, f64::INFINITY);
+        print!("  {name:10}");
+        for (k, kind) in patterns::KINDS.into_iter().enumerate() {
+            let mut right = 0.0;
+            for seed in 0..SEEDS {
+                let (pattern, truth) = patterns::picture(kind, stress, 256, 1000 * k as u64 + seed + 1);
+                let start = Instant::now();
+                let found = symmetry::find_lattice(&pattern);
+                time += 1e3 * start.elapsed().as_secs_f64() / (5 * SEEDS) as f64;
+                if let Some(l) = found.filter(|l| patterns::is_lattice([l.t1_px, l.t2_px], truth)) {
+                    right += 1.0 / SEEDS as f64;
+                    least = least.min(merit(l.confidence));
+                }
+            }
+            all += right / 5.0;
+            print!("  {right:8.3}");
+        }
+        println!("    {all:.3}   {least:6.1}     {time:.1}");
+    }
+}
+
+/// The standard errors behind a confidence.
+fn merit(confidence: f64) -> f64 {
+    symmetry::MERIT_LIMIT * (confidence / (1.0 - confidence)).sqrt()
+}
+
+fn controls() {
+    println!("\nPictures without a lattice: largest merit of the best (limit {})", symmetry::MERIT_LIMIT);
+    let show = |name: &str, pictures: Vec<Raster>| {
+        let merits: Vec<f64> = pictures
+            .iter()
+            .map(|p| symmetry::best_lattice(p).map_or(0.0, |lattice| merit(lattice.confidence)))
+            .collect();
+        let refused = merits.iter().filter(|m| **m < symmetry::MERIT_LIMIT).count();
+        let largest = merits.iter().copied().fold(0.0, f64::max);
+        println!("  {name:14} refused {refused} of {}, largest merit {largest:.1}", merits.len());
+    };
+    for d in [2.1, 2.3, 2.5, 2.7, 2.9] {
+        let generator = ExactBrownian::new(256, 3.0 - d);
+        show(&format!("Brownian {d}"), (0..12).flat_map(|seed| generator.pair(seed)).collect());
+    }
+    for radius in [4.0, 9.0, 16.0] {
+        show(&format!("blobs {radius}"), (0..24).map(|seed| patterns::blobs(256, radius, seed)).collect());
+    }
+    for radius in [8.0, 14.0] {
+        show(&format!("grains {radius}"), (0..24).map(|seed| patterns::grains(256, radius, seed)).collect());
+    }
+    let stripes = |noise| (0..24).map(|s| patterns::stripes(256, 17.3, 0.4 * s as f64, noise, s)).collect();
+    show("stripes", stripes(0.0));
+    show("noisy stripes", stripes(0.5));
+    show("white noise", (0..24).map(|seed| patterns::stripes(256, 1e9, 0.0, 1.0, seed)).collect());
+}
+
+fn groups() {
+    const SEEDS: u64 = 20;
+    println!("\nWallpaper groups, clean motifs of four random blobs, 256², {SEEDS} each");
+    let (mut all, mut time) = (0.0, 0.0);
+    for group in WallpaperGroup::ALL {
+        let mut right = 0.0;
+        let mut wrong = String::new();
+        for seed in 0..SEEDS {
+            let pattern = wallpaper::picture(group, 256, 31 * seed + 7);
+            let Some(lattice) = symmetry::find_lattice(&pattern) else {
+                wrong += " no lattice";
+                continue;
+            };
+            let start = Instant::now();
+            let found = symmetry::wallpaper_group(&symmetry::averaged_cell(&pattern, &lattice), &lattice);
+            time += 1e3 * start.elapsed().as_secs_f64() / (17 * SEEDS) as f64;
+            if found.group == group {
+                right += 1.0 / SEEDS as f64;
+            } else {
+                wrong += &format!(" {} ({:.3})", found.group.name(), found.agreement);
+            }
+        }
+        all += right / 17.0;
+        println!("  {:5} {right:.2} {wrong}", group.name());
+    }
+    println!("  all {all:.3}, {time:.1} ms for cell and group");
+}
+
+fn picture(file: &str) {
+    let image = load_channel(file, Channel::Luma).expect("a readable picture").raster;
+    let start = Instant::now();
+    let lattice = symmetry::best_lattice(&image);
+    let time = 1e3 * start.elapsed().as_secs_f64();
+    println!("\n{file}: {} × {}, lattice sought in {time:.0} ms", image.width, image.height);
+    if let Some(l) = lattice {
+        let verdict = if l.confidence >= 0.5 { "found" } else { "refused" };
+        println!("  {verdict}: {:.2?} {:.2?}, merit {:.1}", l.t1_px, l.t2_px, merit(l.confidence));
+        if l.confidence >= 0.5 {
+            let cell = symmetry::averaged_cell(&image, &l);
+            let group = symmetry::wallpaper_group(&cell, &l);
+            println!(
+                "  {} (agreement {:.3}), reliability {:.3}, {} cells",
+                group.group.name(),
+                group.agreement,
+                cell.reliability,
+                cell.repeats
+            );
+        }
+    }
+    match fd::fractal_dimension(&image) {
+        Ok(report) => {
+            println!("  {:.3?} R {:.2}", report.dimension, report.roughness);
+            for condition in report.conditions {
+                println!("  {condition}");
+            }
+        }
+        Err(error) => println!("  {error}"),
     }
 }
 

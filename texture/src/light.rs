@@ -1,15 +1,19 @@
 //! Where the light of a photograph comes from, and whether it comes from anywhere.
 //!
 //! On gentle slopes a light at tilt τ makes the image the derivative of the heights along τ, so that its
-//! power at direction θ goes as cos²(θ − τ), **in every band of wavelengths alike**, whatever the
-//! surface, if that has no preferred direction. Diffuse light gives no such thing, and a pattern with a
-//! direction of its own (rows of bricks, a weave) gives it in some bands and not in others:
+//! power at direction θ goes as cos²(θ − τ), **in every octave of wavelengths alike**, whatever the
+//! surface, if that has no direction of its own:
 //! ```text
-//! c_b = Σ power · e^(2iθ) / Σ power        over the octave b, each bin over the mean of its ring
+//! c_m = Σ power · e^(imθ) / Σ power        each bin over the mean of its ring
+//! c_2 = ½ e^(2iτ)        c_4 = 0
 //! ```
-//! is ½ e^(2iτ) in every octave for a light of any slant. Light is found when the c_b agree
-//! ([`LEAST_AGREEMENT`], [`LEAST_DIRECTION`]). Source: the spectral argument is Pentland's (IJCV 4, 1990); the
-//! rule by octaves is ours.
+//! Diffuse light gives c_2 = 0. A pattern that has a direction of its own (rows of bricks, a weave) is not
+//! cosine-shaped: its edges give a c_4 as well, or a c_2 in some octaves only. Light is found when every
+//! octave has the c_2 of a light ([`LEAST_DIRECTION`]) and the c_4 of none ([`MOST_CORNER`]) and they agree
+//! ([`LEAST_AGREEMENT`]). Measured: renderings of ground, rock and metal maps at 30° and 60° have c_2 of
+//! 0.36–0.55 and c_4 below 0.15; seven photographs of brick, tile, walkway, reptile skin, nuts and
+//! gravel all break one of the rules, where a rule by c_2 alone took four of them for lit from a side.
+//! The spectral argument is Pentland's (IJCV 4, 1990); the rule is ours.
 //!
 //! What one image cannot tell: the sign of τ (hollows lit from below look like bumps lit from above; we
 //! take light from above, as viewers do) and the slant apart from albedo: a texel that faces the viewer
@@ -23,12 +27,14 @@ use asperity_dsp::DesignError;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Mean |c_b| from which an image is taken to be lit from a side; ½ for a perfect case.
-pub const LEAST_DIRECTION: f64 = 0.18;
-/// |Σ c_b| / Σ |c_b| from which the octaves count as agreeing.
+/// |c_2| that every octave of an image lit from a side has; ½ for a perfect case.
+pub const LEAST_DIRECTION: f64 = 0.33;
+/// |c_4| that an octave of a pattern with edges of its own exceeds.
+pub const MOST_CORNER: f64 = 0.2;
+/// |Σ c_2| / Σ |c_2| from which the octaves count as agreeing.
 pub const LEAST_AGREEMENT: f64 = 0.9;
 /// Octaves looked at, from the finest that holds no noise.
-const OCTAVES: usize = 4;
+const OCTAVES: usize = 3;
 /// Slants that an estimate may give, radians: 20°–70°.
 const SLANTS: [f64; 2] = [20.0 * PI / 180.0, 70.0 * PI / 180.0];
 
@@ -84,12 +90,12 @@ impl Light {
 pub fn estimate_light(image: &Raster) -> Option<Light> {
     let octaves = octave_directions(image);
     let (mut sum, mut lengths) = (Complex64::default(), 0.0);
-    for c in &octaves {
-        sum += c;
-        lengths += c.norm();
+    for [c2, _] in &octaves {
+        sum += c2;
+        lengths += c2.norm();
     }
-    let direction = lengths / octaves.len().max(1) as f64;
-    if octaves.len() < 2 || direction < LEAST_DIRECTION || sum.norm() < LEAST_AGREEMENT * lengths {
+    let lit = |[c2, c4]: &[Complex64; 2]| c2.norm() >= LEAST_DIRECTION && c4.norm() <= MOST_CORNER;
+    if octaves.len() < 2 || !octaves.iter().all(lit) || sum.norm() < LEAST_AGREEMENT * lengths {
         return None;
     }
     let axis = sum.arg() / 2.0;
@@ -99,8 +105,8 @@ pub fn estimate_light(image: &Raster) -> Option<Light> {
     Light::at(slant_of(image), if up { axis } else { axis + PI }).ok()
 }
 
-/// c_b of the octaves, fine to coarse.
-fn octave_directions(image: &Raster) -> Vec<Complex64> {
+/// c_2 and c_4 of the octaves, fine to coarse.
+fn octave_directions(image: &Raster) -> Vec<[Complex64; 2]> {
     let periodic = SplitBorders::of(image, Borders::Detect).periodic;
     let (w, h) = (image.width, image.height);
     let spectrum = Fft2::new(w, h).spectrum(&periodic.values);
@@ -117,7 +123,7 @@ fn octave_directions(image: &Raster) -> Vec<Complex64> {
     }
     // From half the Nyquist frequency down, while an octave has bins enough to tell directions.
     let count = OCTAVES.min((rings as f64 / 8.0).log2().floor().max(0.0) as usize);
-    let mut sums = vec![(Complex64::default(), 0.0); count];
+    let mut sums = vec![([Complex64::default(); 2], 0.0); count];
     for (place, value) in spectrum.iter().enumerate().skip(1) {
         let (r, ring) = ring(place);
         let octave = (PI / 2.0 / r).log2().floor();
@@ -128,9 +134,10 @@ fn octave_directions(image: &Raster) -> Vec<Complex64> {
         let theta = angular_frequency(place % h, h).atan2(angular_frequency(place / h, w));
         let share = value.norm_sqr() * bins / power;
         let sum = &mut sums[octave as usize];
-        *sum = (sum.0 + Complex64::cis(2.0 * theta) * share, sum.1 + share);
+        let turned = [2.0, 4.0].map(|m| Complex64::cis(m * theta) * share);
+        *sum = ([sum.0[0] + turned[0], sum.0[1] + turned[1]], sum.1 + share);
     }
-    sums.into_iter().filter(|s| s.1 > 0.0).map(|s| s.0 / s.1).collect()
+    sums.into_iter().filter(|s| s.1 > 0.0).map(|s| s.0.map(|c| c / s.1)).collect()
 }
 
 /// Slant from brightness; see the module's last paragraph.

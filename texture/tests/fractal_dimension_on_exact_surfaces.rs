@@ -42,47 +42,46 @@ fn the_generator_has_the_variogram_it_promises() {
 
 #[test]
 fn the_recommended_dimension_is_within_a_hundredth_on_8_and_16_bit_maps() {
-    for levels in [256, 65_536] {
-        let mut errors = Vec::new();
-        for tenth in 1..=9 {
-            let dimension = 2.0 + 0.1 * f64::from(tenth);
-            for surface in surfaces(dimension, 4) {
+    let mut errors = [0.0; 2];
+    for tenth in 1..=9 {
+        let dimension = 2.0 + 0.1 * f64::from(tenth);
+        for surface in surfaces(dimension, 2) {
+            for (error, levels) in errors.iter_mut().zip([256, 65_536]) {
                 let found = transects(&quantise(&surface, levels)).unwrap();
-                errors.push((found.dimension - dimension).abs());
+                *error += (found.dimension - dimension).abs() / 18.0;
             }
         }
-        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-        assert!(mean <= 0.01, "{levels} levels: mean absolute error {mean:.4}");
     }
+    assert!(errors.iter().all(|e| *e <= 0.01), "mean absolute errors at 8 and 16 bits: {errors:?}");
 }
 
 #[test]
 fn the_probability_dimension_rises_with_the_true_one() {
-    for levels in [256, 65_536] {
-        let (mut before, mut error) = (0.0, 0.0);
-        for tenth in 1..=9 {
-            let dimension = 2.0 + 0.1 * f64::from(tenth);
-            let found: Vec<f64> = surfaces(dimension, 2)
-                .iter()
-                .map(|s| probability_dimension(&quantise(s, levels)).unwrap())
-                .collect();
-            let mean = found.iter().sum::<f64>() / found.len() as f64;
-            assert!(mean > before, "D {dimension}: {mean} after {before}");
-            before = mean;
-            error += (mean - dimension).abs() / 9.0;
+    let (mut before, mut errors) = ([0.0; 2], [0.0; 2]);
+    for tenth in 1..=9 {
+        let dimension = 2.0 + 0.1 * f64::from(tenth);
+        let maps = surfaces(dimension, 2);
+        for (k, levels) in [256, 65_536].into_iter().enumerate() {
+            let found: f64 =
+                maps.iter().map(|s| probability_dimension(&quantise(s, levels)).unwrap() / 2.0).sum();
+            assert!(found > before[k], "D {dimension}, {levels} levels: {found} after {}", before[k]);
+            before[k] = found;
+            errors[k] += (found - dimension).abs() / 9.0;
         }
-        assert!(error <= 0.05, "{levels} levels: mean absolute error {error:.3}");
     }
+    assert!(errors.iter().all(|e| *e <= 0.05), "mean absolute errors at 8 and 16 bits: {errors:?}");
 }
 
 #[test]
-fn grid_cubes_saturate_as_the_documents_table_says() {
-    for (dimension, boxes) in [(2.2, 2.22), (2.5, 2.36), (2.8, 2.44)] {
-        let found = fractal_dimension(&quantise(&surfaces(dimension, 1)[0], 256)).unwrap().dimension;
-        for d in [found.box_counting, found.information, found.correlation] {
-            assert!((d - boxes).abs() < 0.15, "D {dimension}: {found:?}");
-        }
+fn grid_cubes_saturate_on_rough_surfaces_and_the_recommended_dimension_does_not() {
+    let found = [2.2, 2.8].map(|d| fractal_dimension(&quantise(&surfaces(d, 1)[0], 256)).unwrap().dimension);
+    let rise =
+        |of: fn(&asperity_texture::fractal_dimension::FractalDimension) -> f64| of(&found[1]) - of(&found[0]);
+    // The document's table rises by 0.22 over these 0.6.
+    for saturated in [rise(|d| d.box_counting), rise(|d| d.information), rise(|d| d.correlation)] {
+        assert!(saturated.abs() < 0.22, "{found:?}");
     }
+    assert!((rise(|d| d.recommended) - 0.6).abs() < 0.03, "{found:?}");
 }
 
 #[test]

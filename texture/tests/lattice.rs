@@ -126,3 +126,20 @@ fn impossible_lattices_are_refused_by_name() {
     assert_eq!(Lattice::new(&hole, T1, T2).unwrap_err().field, "cell.values");
     assert!(Lattice::new(&cell, T1, T2).unwrap().band().shortest_m > 0.0);
 }
+
+// scipy.ndimage.map_coordinates(order=3, mode="grid-wrap"); tests/independent/lattice.py.
+#[test]
+fn heights_agree_with_scipys_periodic_cubic_spline() {
+    let cell = Raster::from_fn(5, 4, |x, y| ((7 * x + 11 * y + 3 * x * y) % 13) as f64 * 1e-5);
+    let lattice = Lattice::new(&cell, T1, T2).unwrap();
+    for (at, wanted) in [
+        ([0.0, 0.0], 1.090_909_090_909_088e-5),
+        ([0.0123, -0.0045], 4.378_044_299_028_781_5e-5),
+        ([-0.1, 0.2], 1.109_122_474_747_486_7e-4),
+        ([0.003_71, 0.001_13], 6.911_262_899_369_695e-6),
+        ([1.5, -2.25], 8.830_852_119_737_43e-5),
+    ] {
+        let height = lattice.at(at).0;
+        assert!((height - wanted).abs() < 1e-15, "{height} for {wanted}");
+    }
+}

@@ -108,11 +108,12 @@ fn the_force_stays_under_its_cap_and_follows_its_direction_and_the_medium_drags(
     parameters.direction = ForceDirection::Tangent;
     let source = SolidNoise::new(parameters, 1, RATE).unwrap();
     let velocity = [0.06, -0.08];
+    let drag = parameters.viscosity_n_s_m;
     let (mut highest, mut capped) = (0.0_f64, 0);
     for n in 0..4000 {
         let at = [f64::from(n) * 1.3e-4, 0.017];
         let force = source.force_n(at, velocity, 0.5, 1e-4, 0);
-        let texture = [force[0] + 2.0 * velocity[0], force[1] + 2.0 * velocity[1]];
+        let texture = [force[0] + drag * velocity[0], force[1] + drag * velocity[1]];
         let along = texture[0] * 0.6 - texture[1] * 0.8;
         assert!((texture[0] * 0.8 + texture[1] * 0.6).abs() < 1e-12 && force[2] == 0.0);
         highest = highest.max(along.abs());

@@ -35,6 +35,7 @@ pub fn scenes() -> Vec<DemoScene> {
     let mut scenes: Vec<DemoScene> = PLATES.iter().map(plate_scene).collect();
     scenes.push(struck());
     scenes.push(scraped());
+    scenes.extend(super::gallery::scenes());
     scenes
 }
 

@@ -37,7 +37,7 @@ impl Axis {
 
     /// Starts at zero and leaves room above `high`, for things that are never negative.
     #[must_use]
-    pub fn from_zero(self, high: f64) -> Self {
+    pub fn above_zero(self, high: f64) -> Self {
         let high = if high.is_finite() && high > 0.0 { high } else { 1.0 };
         self.range(0.0, high * 1.15)
     }
@@ -129,16 +129,18 @@ impl Ruler {
     fn linear(axis: &Axis, low: f64, high: f64, count: usize) -> Self {
         let [from, to] = axis.range.unwrap_or_else(|| padded(low, high));
         let (factor, name) = prefix(from.abs().max(to.abs()), &axis.unit);
+        // An axis may run downwards, as the rows of a map do.
+        let (low, high) = (from.min(to), from.max(to));
         let inside = |step: f64| {
-            let first = (from / factor / step - 1e-9).ceil() as i64;
-            let last = (to / factor / step + 1e-9).floor() as i64;
+            let first = (low / factor / step - 1e-9).ceil() as i64;
+            let last = (high / factor / step + 1e-9).floor() as i64;
             first..=last.min(first + 50)
         };
         // One number says nothing about a scale.
         let step = (count..count + 8)
-            .map(|count| nice_step((to - from) / factor, count))
+            .map(|count| nice_step((high - low) / factor, count))
             .find(|step| inside(*step).count() > 1)
-            .unwrap_or_else(|| nice_step((to - from) / factor, count));
+            .unwrap_or_else(|| nice_step((high - low) / factor, count));
         let digits = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
         let ticks = inside(step)
             .map(|index| {
@@ -265,6 +267,13 @@ mod tests {
         assert_eq!(ruler.caption, "height (µm)");
         let texts: Vec<&str> = ruler.ticks.iter().map(|tick| tick.text.as_str()).collect();
         assert_eq!(texts, ["−100", "0", "100", "200"]);
+    }
+
+    #[test]
+    fn an_axis_may_run_downwards() {
+        let ruler = Ruler::new(&Axis::new("v", "m").range(0.1, 0.0), 0.0, 0.0, 3);
+        assert!(ruler.ticks.len() >= 2);
+        assert_eq!((ruler.place(0.1), ruler.place(0.0)), (0.0, 1.0));
     }
 
     #[test]

@@ -6,16 +6,18 @@ mod recorder;
 use crate::build::{self, Built, Overrides};
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
-use crate::scene_file::{ActuatorOutput, SceneFile};
-use crate::{plot, wav};
+use crate::scene_file::{ActuatorOutput, SceneFile, Source};
+use crate::{pixels, plot, wav};
 use asperity::contact_log::{ContactLog, LogEvent};
 use asperity::offline::{self, Render};
-use asperity::{Integrator, PathMode};
+use asperity::{Integrator, PathMode, SurfaceId};
+use asperity_texture::raster::Raster;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use picture::{ContactCurve, HapticChannel, Take};
+use picture::{ContactCurve, Ground, HapticChannel, Take};
 use recorder::Recorder;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -113,8 +115,26 @@ pub struct Report {
     pub lapsed: u64,
     /// Rate of both WAV files.
     pub sample_rate_hz: f64,
+    /// Surfaces of sand as they lie afterwards, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub sand: BTreeMap<String, SandReport>,
     /// Every file written.
     pub files: Vec<PathBuf>,
+}
+
+/// A surface of sand after the last contact, settled.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct SandReport {
+    /// Volume before the first contact.
+    pub volume_before_m3: f64,
+    /// Volume now.
+    pub volume_after_m3: f64,
+    /// Steepest slope.
+    pub max_slope_deg: f64,
+    /// Height of one grey step of its picture.
+    pub metres_per_grey: f64,
+    /// Height of black above the bottom of the bed.
+    pub lowest_m: f64,
 }
 
 /// Runs the verb.
@@ -162,6 +182,8 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         path: options.path,
     };
     let built = build::build(&file, &overrides)?;
+    let names: Vec<(String, SurfaceId)> =
+        built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
     let rate_hz = built.renderer.sample_rate_hz();
     let duration_s = log.end_s() + file.tail_s;
     check_length(&file, duration_s, rate_hz)?;
@@ -175,8 +197,26 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
     let mut report = report(&render, watching);
+    for sand in &render.sand {
+        let Some((name, _)) = names.iter().find(|(_, id)| *id == sand.surface) else { continue };
+        let raster = &sand.picture.raster;
+        let grey: Vec<u16> = raster.values.iter().map(|height| (height * 65_535.0).round() as u16).collect();
+        let path = with_suffix(stem, &format!("{}.sand.png", file_name(name)));
+        outputs.write(&path, &pixels::png16(raster.width, raster.height, &grey))?;
+        report.sand.insert(
+            name.clone(),
+            SandReport {
+                volume_before_m3: sand.figures.volume_before_m3,
+                volume_after_m3: sand.figures.volume_after_m3,
+                max_slope_deg: sand.figures.max_slope_deg,
+                metres_per_grey: sand.picture.metres_per_grey,
+                lowest_m: sand.picture.lowest_m,
+            },
+        );
+    }
     if options.plot {
-        let svg = picture(&file, &log, &render, &curves, &report);
+        let grounds = grounds(&file, &render, &names);
+        let svg = picture(&file, &log, &render, &curves, &report, grounds);
         outputs.write(&with_suffix(stem, "svg"), svg.as_bytes())?;
     }
     report.files = outputs.commit()?;
@@ -297,6 +337,7 @@ fn report(render: &Render, watching: Duration) -> Report {
         orphaned: stats.orphaned,
         lapsed: stats.lapsed,
         sample_rate_hz: render.sample_rate_hz,
+        sand: BTreeMap::new(),
         files: Vec::new(),
     }
 }
@@ -307,6 +348,7 @@ fn picture(
     render: &Render,
     curves: &[ContactCurve],
     report: &Report,
+    grounds: Vec<Ground>,
 ) -> String {
     let haptic = file.actuators.iter().zip(&render.haptic).map(|(actuator, samples)| {
         let (quantity, unit) = match actuator.output {
@@ -339,7 +381,53 @@ fn picture(
         haptic: haptic.collect(),
         contacts: curves,
         impacts_s,
+        grounds,
     })
+}
+
+/// Texels a side of a surface in the picture.
+const GROUND_PX: usize = 192;
+
+/// The surfaces that can be seen from above: maps as they are, sand as it lies afterwards.
+fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> Vec<Ground> {
+    file.surfaces
+        .iter()
+        .filter_map(|surface| {
+            let id = names.iter().find(|(name, _)| *name == surface.name)?.1;
+            let sand = render.sand.iter().find(|sand| sand.surface == id);
+            let (title, heights) = match (&surface.source, sand) {
+                (_, Some(sand)) => ("the sand afterwards", sand.picture.raster.clone()),
+                (Source::Map { image, invert, .. }, _) => {
+                    let raster = build::pixels(image).ok()?.raster;
+                    let upright = if *invert { raster.map(|height| 1.0 - height) } else { raster };
+                    ("from above", upright)
+                }
+                _ => return None,
+            };
+            Some(Ground {
+                title: title.to_owned(),
+                extent_m: [surface.width_m, surface.height_m],
+                heights: thumbnail(&heights),
+                surface: format!(" on {}", surface.name),
+            })
+        })
+        .collect()
+}
+
+/// A small copy whose heights fill 0–1.
+fn thumbnail(heights: &Raster) -> Raster {
+    let (width, height) = (heights.width.min(GROUND_PX), heights.height.min(GROUND_PX));
+    let (low, high) = heights.range();
+    let span = if high > low { high - low } else { 1.0 };
+    Raster::from_fn(width, height, |x, y| {
+        let (x, y) = (x * heights.width / width, y * heights.height / height);
+        (heights.at(x, y) - low) / span
+    })
+}
+
+/// A surface's name as part of a file name.
+fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_. ".contains(c) { c } else { '_' }).collect()
 }
 
 fn title(path: &Path) -> String {

@@ -3,7 +3,10 @@
 //! From top to bottom: the finger's speed and force; the surface as it passed below with the pad on it;
 //! the impulses sent to the body; the busiest instant enlarged; and both outputs as waves and spectra.
 
-use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram};
+use crate::plot::{
+    Axis, Figure, Layer, Panel, Picture, Series, SpectrogramOptions, colour, palette, spectrogram,
+};
+use asperity_texture::raster::Raster;
 
 /// Contacts drawn one by one; more would cover each other.
 pub const DRAWN_CONTACTS: usize = 4;
@@ -27,6 +30,8 @@ pub struct ContactCurve {
     pub speed_m_s: Vec<f64>,
     /// Normal force, N.
     pub normal_force_n: Vec<f64>,
+    /// Where it went, in texture coordinates, some hundred times a second.
+    pub path_uv: Vec<[f64; 2]>,
     /// Times, s, and momenta, N·s, sent to the body.
     pub impulses: Vec<[f64; 2]>,
     /// Times, s, and pad heights, m, of micro-collisions.
@@ -46,6 +51,19 @@ pub struct HapticChannel<'a> {
     pub samples: &'a [f32],
 }
 
+/// A surface seen from above.
+#[derive(Debug, Clone)]
+pub struct Ground {
+    /// Headline.
+    pub title: String,
+    /// Extent along u and v, m.
+    pub extent_m: [f64; 2],
+    /// Heights, 0 = lowest, 1 = highest, top row first.
+    pub heights: Raster,
+    /// Label of the contacts on it ends with this.
+    pub surface: String,
+}
+
 /// Everything the picture shows.
 #[derive(Debug)]
 pub struct Take<'a> {
@@ -63,6 +81,8 @@ pub struct Take<'a> {
     pub contacts: &'a [ContactCurve],
     /// Times of impacts, s.
     pub impacts_s: Vec<f64>,
+    /// What was touched, as far as it can be drawn from above.
+    pub grounds: Vec<Ground>,
 }
 
 /// Draws the picture.
@@ -102,7 +122,7 @@ fn speed_panel(take: &Take<'_>) -> Panel {
     let mut panel = Panel::new(
         "how fast the finger slides",
         time(take),
-        Axis::new("speed", "m/s").from_zero(highest(take, |c| &c.speed_m_s)),
+        Axis::new("speed", "m/s").above_zero(highest(take, |c| &c.speed_m_s)),
     );
     for (contact, colour) in drawn(take) {
         let data = Series::signal(contact.speed_m_s.iter().copied(), take.sample_rate_hz, contact.start_s);
@@ -115,7 +135,7 @@ fn force_panel(take: &Take<'_>) -> Panel {
     let mut panel = Panel::new(
         "how hard it presses",
         time(take),
-        Axis::new("force", "N").from_zero(highest(take, |c| &c.normal_force_n)),
+        Axis::new("force", "N").above_zero(highest(take, |c| &c.normal_force_n)),
     );
     for (contact, colour) in drawn(take) {
         let data =
@@ -242,13 +262,43 @@ fn zoom_panels(take: &Take<'_>) -> Vec<Panel> {
             radius_px: vec![3.5],
             names: Vec::new(),
         });
-    vec![zoom, levels_panel(take)]
+    let mut panels = vec![zoom, levels_panel(take)];
+    panels.extend(take.grounds.first().map(|ground| ground_panel(take, ground)));
+    panels
+}
+
+/// The finger's way over the surface, seen from above; v grows downwards, as in the image.
+fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
+    let [width_m, height_m] = ground.extent_m;
+    let picture = Picture {
+        x: [0.0, width_m],
+        y: [height_m, 0.0],
+        width: ground.heights.width,
+        height: ground.heights.height,
+        values: ground.heights.values.iter().map(|&height| height as f32).collect(),
+        scale: colour::Scale::Earth,
+        bar: None,
+    };
+    let across = Axis::new("u", "m").range(0.0, width_m);
+    let down = Axis::new("v", "m").range(height_m, 0.0);
+    let mut panel = Panel::new(ground.title.clone(), across, down).with(picture);
+    for (contact, colour) in drawn(take).filter(|(contact, _)| contact.label.ends_with(&ground.surface)) {
+        panel = panel.with(Layer::Line {
+            label: String::new(),
+            colour: colour.to_owned(),
+            width_px: 1.8,
+            fill: None,
+            dashed: false,
+            data: Series::Points(contact.path_uv.iter().map(|[u, v]| [u * width_m, v * height_m]).collect()),
+        });
+    }
+    panel
 }
 
 /// Third-octave levels of what is felt and what is heard, each relative to its strongest band.
 fn levels_panel(take: &Take<'_>) -> Panel {
     let frequency = Axis::log("frequency", "Hz").range(10.0, 20_000.0);
-    let mut panel = Panel::new("third octaves", frequency, Axis::new("level", "dB").range(-70.0, 3.0));
+    let mut panel = Panel::new("spectra", frequency, Axis::new("third-octave level", "dB").range(-70.0, 3.0));
     let curves = take
         .haptic
         .first()

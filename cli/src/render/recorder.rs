@@ -18,6 +18,9 @@ const FORCE_RATE_HZ: f64 = 1_000.0;
 /// The picture keeps the strongest impulse of so many a second and contact.
 const IMPULSE_RATE_HZ: f64 = 2_000.0;
 
+/// The picture keeps the place of every so many samples.
+const PATH_EVERY: u64 = 256;
+
 type Table = CsvWriter<BufWriter<File>>;
 
 /// What a render keeps besides its samples.
@@ -71,7 +74,6 @@ impl Recorder {
 
     /// Ends the tables. Returns the curves, and the time that watching took.
     pub fn finish(mut self) -> io::Result<(Vec<(ContactId, ContactCurve)>, Duration)> {
-        let began = Instant::now();
         if let Some(error) = self.failure.take() {
             return Err(error);
         }
@@ -83,7 +85,6 @@ impl Recorder {
             force.close(u64::MAX)?;
             force.table.finish()?;
         }
-        let _ = began;
         Ok((self.curves.unwrap_or_default(), self.spent))
     }
 
@@ -239,6 +240,9 @@ impl ContactCurve {
                 self.pad_m.push(row.pad_m);
                 self.speed_m_s.push(u.hypot(v));
                 self.normal_force_n.push(row.normal_force_n);
+                if self.samples.is_multiple_of(PATH_EVERY) {
+                    self.path_uv.push(block.uv[index]);
+                }
                 if row.onset.is_some() {
                     self.collisions.push([time_s, row.pad_m]);
                 }

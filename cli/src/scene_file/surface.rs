@@ -263,12 +263,12 @@ fn read_lattice(
 fn read_sand(mut table: Fields) -> Result<Source, CliError> {
     let sand = Sand {
         cells: table.whole("cells", 16, 2048)?.unwrap_or(512),
-        depth_m: table.number_or("depth_m", 0.05, Allowed::above(0.0, 10.0, "m"))?,
+        depth_m: table.number_or("depth_m", 0.05, Allowed::above(0.0, 0.45, "m"))?,
         talus_deg: table.number_or("talus_deg", 30.0, Allowed::between(1.0, 80.0, "degrees"))?,
-        stiffness_n: table.number_or("stiffness_n", 1_000.0, Allowed::above(0.0, 1e9, "N"))?,
-        exponent_per_m: table.number_or("exponent_per_m", 1.0, Allowed::above(0.0, 1e6, "1/m"))?,
-        drag_s_per_m: table.number_or("drag_s_per_m", 20.0, Allowed::between(0.0, 1e6, "s/m"))?,
-        tool_radius_m: table.number_or("tool_radius_m", 0.005, Allowed::above(0.0, 1.0, "m"))?,
+        stiffness_n: table.number_or("stiffness_n", 1_000.0, Allowed::between(0.01, 1e6, "N"))?,
+        exponent_per_m: table.number_or("exponent_per_m", 1.0, Allowed::between(1e-3, 1e4, "1/m"))?,
+        drag_s_per_m: table.number_or("drag_s_per_m", 20.0, Allowed::between(0.0, 1e4, "s/m"))?,
+        tool_radius_m: table.number_or("tool_radius_m", 0.005, Allowed::between(1e-4, 0.2, "m"))?,
         wetness: table.number("wetness", Allowed::between(0.0, 1.0, ""))?,
     };
     table.finish()?;

@@ -17,8 +17,8 @@
 //! The document is silent about the vertical scale of the cubes, and it decides everything; each file
 //! says what we chose and what it changed. Measured on exact Brownian surfaces (256 × 256, D 2.1–2.9,
 //! `examples/analysis_table.rs` prints the table): the recommended estimator errs by 0.005 on the mean,
-//! the probability dimension by 0.04, the grid cubes by 0.4 because they saturate near D = 2.45 as the
-//! document's own table does.
+//! the probability dimension by 0.04, the grid cubes by 0.4 because they saturate near D = 2.15 (in the
+//! document's own table near 2.44).
 
 mod conditions;
 mod grid_cubes;

@@ -187,7 +187,7 @@ mod tests {
         // 80 cells average the noise to 0.5/√80 = 0.056.
         assert!(error.sqrt() < 0.07 && back < 1e-12, "{} {back}", error.sqrt());
         let cell = averaged_cell(&picture, &lattice);
-        assert!(cell.reliability > 0.98 && cell.repeats > 60 && cell.cell.width % 12 == 0);
+        assert!(cell.reliability > 0.98 && cell.repeats > 60 && cell.cell.width.is_multiple_of(12));
     }
 
     #[test]

@@ -130,7 +130,7 @@ fn process(fft: &std::sync::Arc<dyn Fft<f64>>, lines: &mut [Complex<f64>]) {
 /// The next length whose prime factors are 2, 3 and 5: such FFTs are fast.
 pub(super) fn smooth_size(least: usize) -> usize {
     let strip = |mut n: usize, factor: usize| {
-        while n > 1 && n % factor == 0 {
+        while n > 1 && n.is_multiple_of(factor) {
             n /= factor;
         }
         n

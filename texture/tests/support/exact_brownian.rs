@@ -1,6 +1,8 @@
 //! Exact fractional Brownian surfaces, the ground truth of the dimension: E|h(p) − h(q)|² = |p − q|^2H on
-//! the whole grid, by circulant embedding after Stein, "Fast and exact simulation of fractional Brownian
+//! the whole grid (lengths in diagonals of the map), by circulant embedding after Stein, "Fast and exact simulation of fractional Brownian
 //! surfaces", J. Comput. Graph. Stat. 11 (2002). Independent of the crate's own generator on purpose.
+
+#![allow(dead_code, reason = "each user takes what it needs")]
 
 use asperity_dsp::rng::Rng;
 use asperity_texture::raster::Raster;
@@ -60,8 +62,10 @@ impl ExactBrownian {
         let mut surface = |part: fn(&Complex<f64>) -> f64| {
             let (u, v) = (self.slope * rng.normal(), self.slope * rng.normal());
             let origin = part(&field[0]);
+            // Stein's increments have twice the variance.
             Raster::from_fn(self.size, self.size, |x, y| {
-                part(&field[y * self.torus + x]) - origin + u * x as f64 + v * y as f64
+                let height = part(&field[y * self.torus + x]) - origin + u * x as f64 + v * y as f64;
+                height * std::f64::consts::FRAC_1_SQRT_2
             })
         };
         [surface(|c| c.re), surface(|c| c.im)]
@@ -76,7 +80,7 @@ pub fn quantise(surface: &Raster, levels: u32) -> Raster {
 }
 
 fn strip(mut n: usize, factor: usize) -> usize {
-    while n % factor == 0 {
+    while n.is_multiple_of(factor) {
         n /= factor;
     }
     n

@@ -1,5 +1,7 @@
 //! Patterns of known lattice, the disturbances of the lattice table, and pictures without any.
 
+#![allow(dead_code, reason = "each user takes what it needs")]
+
 use asperity_dsp::rng::Rng;
 use asperity_texture::raster::Raster;
 use std::f64::consts::TAU;
@@ -14,8 +16,7 @@ pub enum Kind {
     Hexagonal,
 }
 
-pub const KINDS: [Kind; 5] =
-    [Kind::Square, Kind::Rectangular, Kind::Rhombic, Kind::Oblique, Kind::Hexagonal];
+pub const KINDS: [Kind; 5] = [Kind::Square, Kind::Rectangular, Kind::Rhombic, Kind::Oblique, Kind::Hexagonal];
 
 /// What a row of the table does to a clean pattern.
 #[derive(Debug, Clone, Copy)]
@@ -41,8 +42,7 @@ pub const ROWS: [(&str, Stress); 7] = [
 
 /// A random basis of a kind: shortest translation 16–36 texels, any rotation.
 pub fn basis(kind: Kind, rng: &mut Rng) -> [[f64; 2]; 2] {
-    let big: f64 = std::env::var("BIG").ok().and_then(|s| s.parse().ok()).unwrap_or(1.0);
-    let a = big * (16.0 + 20.0 * rng.uniform());
+    let a = 16.0 + 20.0 * rng.uniform();
     let (ratio, degrees): (f64, f64) = match kind {
         Kind::Square => (1.0, 90.0),
         Kind::Rectangular => (1.2 + 0.5 * rng.uniform(), 90.0),
@@ -189,10 +189,8 @@ pub fn grains(size: usize, radius: f64, seed: u64) -> Raster {
         }
     }
     Raster::from_fn(size, size, |x, y| {
-        let nearest = centres
-            .iter()
-            .map(|c| (c[0] - x as f64).hypot(c[1] - y as f64))
-            .fold(f64::INFINITY, f64::min);
+        let nearest =
+            centres.iter().map(|c| (c[0] - x as f64).hypot(c[1] - y as f64)).fold(f64::INFINITY, f64::min);
         (1.0 - (nearest / radius).powi(2)).max(0.0).sqrt()
     })
 }

@@ -1,5 +1,7 @@
 //! Motifs of all 17 wallpaper groups, from the generators the International Tables list for the conventional cell.
 
+#![allow(dead_code, reason = "each user takes what it needs")]
+
 use asperity_dsp::rng::Rng;
 use asperity_texture::raster::Raster;
 use asperity_texture::symmetry::WallpaperGroup::{self, *};

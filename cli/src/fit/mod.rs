@@ -1,0 +1,265 @@
+//! `asperity fit`: one recorded impact becomes a body that rings.
+//!
+//! | file | what |
+//! |---|---|
+//! | [`modes_file`] | `NAME.modes.json` with standard deviations and the residual's summary |
+//! | [`picture`] | the three spectrograms |
+//! | [`report`] | what `--json` and the terminal say |
+
+mod modes_file;
+mod picture;
+mod report;
+
+pub use report::Report;
+
+use crate::error::CliError;
+use crate::output::{self, Outputs, check_destination};
+use crate::progress::Progress;
+use crate::wav;
+use asperity_dsp::mode::Mode;
+use asperity_fit::merge::merge;
+use asperity_fit::scaling::{DampingLaw, scale_size, transfer_damping};
+use asperity_fit::{ChannelChoice, Fit, FitOptions, Recording, table};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Steps of the progress bar.
+const STEPS: u64 = 200;
+
+/// Turn one recorded impact into modes
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Recording of one strike: WAV, 8–32 bit or float, 1 kHz – 1 MHz
+    #[arg(value_name = "RECORDING.wav")]
+    pub recording: PathBuf,
+    /// Modes file to write
+    #[arg(short, long = "output", value_name = "OUT.modes.json")]
+    pub output: PathBuf,
+    /// Impulse that the recorded strike delivered, N·s
+    #[arg(long, value_name = "N_S", default_value_t = 0.01)]
+    pub impulse: f64,
+    /// Most modes
+    #[arg(long, value_name = "N", default_value_t = FitOptions::default().max_modes)]
+    pub max_modes: usize,
+    /// Lowest frequency, Hz
+    #[arg(long, value_name = "HZ", default_value_t = 20.0)]
+    pub from_hz: f64,
+    /// Highest frequency, Hz
+    #[arg(long, value_name = "HZ")]
+    pub to_hz: Option<f64>,
+    /// Drop modes this far below the strongest in energy, dB
+    #[arg(long, value_name = "DB", default_value_t = -80.0, allow_negative_numbers = true)]
+    pub min_level: f64,
+    /// Channel: loudest, mix, or its number from 0
+    #[arg(long, value_name = "CHANNEL", default_value = "loudest")]
+    pub channel: String,
+    /// Fit from this long after the onset instead of finding out, ms
+    #[arg(long, value_name = "MS")]
+    pub start_ms: Option<f64>,
+    /// Make the body this many times as large
+    #[arg(long, value_name = "FACTOR")]
+    pub scale_size: Option<f64>,
+    /// Give the body the damping of another: its modes file, or ALPHA,BETA of d = α + β ω²
+    #[arg(long, value_name = "MODES.json|ALPHA,BETA")]
+    pub material: Option<String>,
+    /// More strikes of the same object; writes OUT.strikeN.modes.json with common frequencies for each
+    #[arg(long, value_name = "STRIKE.wav", num_args = 1..)]
+    pub merge: Vec<PathBuf>,
+    /// Write what the modes do not explain
+    #[arg(long, value_name = "OUT.wav")]
+    pub residual: Option<PathBuf>,
+    /// Write the modes alone, in the recording's place
+    #[arg(long, value_name = "OUT.wav")]
+    pub resynthesis: Option<PathBuf>,
+    /// Draw spectrograms of recording, resynthesis and residual
+    #[arg(long, value_name = "OUT.svg")]
+    pub plot: Option<PathBuf>,
+    /// Write the modes as a table
+    #[arg(long, value_name = "OUT.csv")]
+    pub csv: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Options {
+    /// The options of `asperity fit RECORDING -o OUT`.
+    #[must_use]
+    pub fn plain(recording: PathBuf, output: PathBuf) -> Self {
+        Self {
+            recording,
+            output,
+            impulse: 0.01,
+            max_modes: FitOptions::default().max_modes,
+            from_hz: 20.0,
+            to_hz: None,
+            min_level: -80.0,
+            channel: "loudest".to_owned(),
+            start_ms: None,
+            scale_size: None,
+            material: None,
+            merge: Vec::new(),
+            residual: None,
+            resynthesis: None,
+            plot: None,
+            csv: None,
+            json: false,
+        }
+    }
+
+    fn fit_options(&self) -> FitOptions {
+        FitOptions {
+            max_modes: self.max_modes,
+            band_hz: (self.from_hz, self.to_hz.unwrap_or(f64::INFINITY)),
+            least_level_db: self.min_level,
+            start_offset_s: self.start_ms.map(|ms| 1e-3 * ms),
+            ..FitOptions::default()
+        }
+    }
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// When the recording cannot be read or fitted, an option is out of range, or a file cannot be written.
+pub fn run(options: &Options) -> Result<(), CliError> {
+    let report = fit(options)?;
+    if options.json { output::say_json(&report) } else { report.say(options) }
+}
+
+/// Fits and writes the files; the report is what `--json` prints.
+///
+/// # Errors
+/// As [`run`].
+pub fn fit(options: &Options) -> Result<Report, CliError> {
+    let started = Instant::now();
+    check_options(options)?;
+    let channel = channel(&options.channel)?;
+    let (recording, fit) = fitted(&options.recording, channel, options)?;
+    let law = material(options)?;
+    let changed = |modes: &[Mode]| {
+        let sized = options.scale_size.map_or_else(|| modes.to_vec(), |size| scale_size(modes, size));
+        law.map_or_else(|| sized.clone(), |law| transfer_damping(&sized, &law))
+    };
+    let mut outputs = Outputs::new();
+    let plain: Vec<Mode> = fit.modes.iter().map(asperity_fit::FittedMode::mode).collect();
+    modes_file::write(&mut outputs, &options.output, &fit, &changed(&plain), options.impulse)?;
+    write_strikes(&mut outputs, options, channel, &recording, &fit, &changed)?;
+    if let Some(path) = &options.csv {
+        outputs.write(path, table::to_csv(&fit.modes).as_bytes())?;
+    }
+    if let Some(path) = &options.residual {
+        write_samples(&mut outputs, path, &fit.residual.samples, fit.sample_rate_hz)?;
+    }
+    if let Some(path) = &options.resynthesis {
+        write_samples(&mut outputs, path, &fit.resynthesis(), fit.sample_rate_hz)?;
+    }
+    if let Some(path) = &options.plot {
+        outputs.write(path, picture::svg(&recording, &fit).as_bytes())?;
+    }
+    outputs.commit()?;
+    Ok(Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()))
+}
+
+/// Refuses what cannot work before the work.
+fn check_options(options: &Options) -> Result<(), CliError> {
+    let positive = |name: &str, value: f64| {
+        if value.is_finite() && value > 0.0 {
+            Ok(())
+        } else {
+            Err(CliError::new(name, format!("{value} is refused"), "must be a number above 0"))
+        }
+    };
+    positive("--impulse", options.impulse)?;
+    options.scale_size.map_or(Ok(()), |size| positive("--scale-size", size))?;
+    check_destination(&options.output)?;
+    for path in [&options.residual, &options.resynthesis, &options.plot, &options.csv].into_iter().flatten() {
+        check_destination(path)?;
+    }
+    Ok(())
+}
+
+fn channel(text: &str) -> Result<ChannelChoice, CliError> {
+    match text {
+        "loudest" => Ok(ChannelChoice::Loudest),
+        "mix" => Ok(ChannelChoice::Mix),
+        number => number.parse().map(ChannelChoice::Index).map_err(|_| {
+            CliError::new(
+                "--channel",
+                format!("{text} is refused"),
+                "must be loudest, mix or a number from 0",
+            )
+        }),
+    }
+}
+
+fn fitted(path: &Path, channel: ChannelChoice, options: &Options) -> Result<(Recording, Fit), CliError> {
+    let recording = asperity_fit::load(path, channel).map_err(CliError::told)?;
+    let mut progress = Progress::new("fitting", STEPS);
+    let mut shown = 0;
+    let fit = asperity_fit::fit(&recording, &options.fit_options(), &mut |done| {
+        let step = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
+        progress.advance(step.saturating_sub(shown));
+        shown = shown.max(step);
+    })
+    .map_err(CliError::told)?;
+    Ok((recording, fit))
+}
+
+/// The damping law to give the body.
+fn material(options: &Options) -> Result<Option<DampingLaw>, CliError> {
+    let Some(text) = &options.material else { return Ok(None) };
+    if let Some((alpha, beta)) = text.split_once(',')
+        && let (Ok(alpha_per_s), Ok(beta_s)) = (alpha.trim().parse::<f64>(), beta.trim().parse::<f64>())
+    {
+        let fine = alpha_per_s >= 0.0 && beta_s >= 0.0 && alpha_per_s + beta_s > 0.0;
+        if fine && alpha_per_s.is_finite() && beta_s.is_finite() {
+            return Ok(Some(DampingLaw { alpha_per_s, beta_s }));
+        }
+        return Err(CliError::new(
+            "--material",
+            format!("{text} is refused"),
+            "α and β must be at or above 0, not both 0",
+        ));
+    }
+    let path = Path::new(text);
+    let model = asperity::ModalModel::load(path).map_err(CliError::told)?;
+    DampingLaw::of(&model.modes).map(Some).ok_or_else(|| {
+        CliError::file(path, "has no damped mode to learn a law from", "name a modes file with damped modes")
+    })
+}
+
+/// `OUT.strike0.modes.json` and so on, when there are more strikes.
+fn write_strikes(
+    outputs: &mut Outputs,
+    options: &Options,
+    channel: ChannelChoice,
+    recording: &Recording,
+    fit: &Fit,
+    changed: &dyn Fn(&[Mode]) -> Vec<Mode>,
+) -> Result<(), CliError> {
+    if options.merge.is_empty() {
+        return Ok(());
+    }
+    let others = options
+        .merge
+        .iter()
+        .map(|path| fitted(path, channel, options))
+        .collect::<Result<Vec<_>, CliError>>()?;
+    let strikes: Vec<(&Recording, &Fit)> =
+        std::iter::once((recording, fit)).chain(others.iter().map(|(r, f)| (r, f))).collect();
+    let merged = merge(&strikes);
+    for (s, modes) in merged.strikes.iter().enumerate() {
+        let name = options.output.to_string_lossy();
+        let stem = name.strip_suffix(".modes.json").unwrap_or(&name);
+        let path = PathBuf::from(format!("{stem}.strike{s}.modes.json"));
+        modes_file::write_plain(outputs, &path, &strikes[s].1.source, &changed(modes), options.impulse)?;
+    }
+    Ok(())
+}
+
+fn write_samples(outputs: &mut Outputs, path: &Path, samples: &[f64], rate_hz: f64) -> Result<(), CliError> {
+    let samples: Vec<f32> = samples.iter().map(|&x| x as f32).collect();
+    wav::write(outputs, path, &[&samples], rate_hz)
+}

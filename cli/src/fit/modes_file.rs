@@ -1,0 +1,149 @@
+//! `NAME.modes.json` as the fit writes it: what the engine reads, and beside it what a user may ask.
+
+use crate::error::CliError;
+use crate::output::Outputs;
+use asperity_dsp::mode::Mode;
+use asperity_fit::{Fit, FittedMode};
+use serde::Serialize;
+use std::path::Path;
+
+#[derive(Serialize)]
+struct File<'a> {
+    format: &'static str,
+    version: u32,
+    source: &'a str,
+    impulse_n_s: f64,
+    modes: Vec<FileMode>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fit: Option<Details>,
+}
+
+#[derive(Serialize)]
+struct FileMode {
+    frequency_hz: f64,
+    decay_per_s: f64,
+    amplitude: f64,
+    phase_rad: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    std: Option<Deviation>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    energy: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Deviation {
+    frequency_hz: Option<f64>,
+    decay_per_s: Option<f64>,
+    amplitude: Option<f64>,
+    phase_rad: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct Details {
+    sample_rate_hz: f64,
+    onset_s: f64,
+    start_offset_s: f64,
+    end_s: f64,
+    noise_floor_db: f64,
+    resynthesis_snr_db: f64,
+    residual: ResidualSummary,
+}
+
+#[derive(Serialize)]
+struct ResidualSummary {
+    level_db: f64,
+    attack_db: f64,
+    step_s: f64,
+    bands: Vec<Band>,
+}
+
+#[derive(Serialize)]
+struct Band {
+    low_hz: f64,
+    high_hz: f64,
+    rms: Vec<f64>,
+}
+
+/// Writes a fit, with `modes` (rescaled ones, perhaps) in the place of its own.
+pub fn write(
+    outputs: &mut Outputs,
+    path: &Path,
+    fit: &Fit,
+    modes: &[Mode],
+    impulse_n_s: f64,
+) -> Result<(), CliError> {
+    let modes = modes.iter().zip(&fit.modes).map(|(mode, fitted)| detailed(mode, fitted)).collect();
+    let details = Details {
+        sample_rate_hz: fit.sample_rate_hz,
+        onset_s: fit.onset_s,
+        start_offset_s: fit.start_offset_s,
+        end_s: fit.end_s,
+        noise_floor_db: fit.noise_floor_db,
+        resynthesis_snr_db: fit.resynthesis_snr_db,
+        residual: ResidualSummary {
+            level_db: fit.residual.level_db,
+            attack_db: fit.residual.attack_db,
+            step_s: asperity_fit::residual::STEP_S,
+            bands: fit
+                .residual
+                .bands
+                .iter()
+                .map(|band| Band { low_hz: band.low_hz, high_hz: band.high_hz, rms: band.rms.clone() })
+                .collect(),
+        },
+    };
+    put(outputs, path, &fit.source, modes, impulse_n_s, Some(details))
+}
+
+/// Writes modes alone.
+pub fn write_plain(
+    outputs: &mut Outputs,
+    path: &Path,
+    source: &str,
+    modes: &[Mode],
+    impulse_n_s: f64,
+) -> Result<(), CliError> {
+    let modes = modes.iter().map(plain).collect();
+    put(outputs, path, source, modes, impulse_n_s, None)
+}
+
+fn put(
+    outputs: &mut Outputs,
+    path: &Path,
+    source: &str,
+    modes: Vec<FileMode>,
+    impulse_n_s: f64,
+    fit: Option<Details>,
+) -> Result<(), CliError> {
+    let file = File { format: "asperity.modes", version: 1, source, impulse_n_s, modes, fit };
+    let text = serde_json::to_string_pretty(&file)
+        .map_err(|error| CliError::file(path, error, "please report it with the input"))?;
+    outputs.write(path, text.as_bytes())
+}
+
+fn plain(mode: &Mode) -> FileMode {
+    FileMode {
+        frequency_hz: mode.frequency_hz,
+        decay_per_s: mode.decay_per_s,
+        amplitude: mode.amplitude,
+        phase_rad: mode.phase_rad,
+        std: None,
+        energy: None,
+    }
+}
+
+fn detailed(mode: &Mode, fitted: &FittedMode) -> FileMode {
+    let finite = |x: f64| x.is_finite().then_some(x);
+    // A rescaled mode's deviations scale with it.
+    let (f, d) = (mode.frequency_hz / fitted.frequency_hz, mode.decay_per_s / fitted.decay_per_s.max(1e-12));
+    FileMode {
+        std: Some(Deviation {
+            frequency_hz: finite(fitted.frequency_std_hz * f),
+            decay_per_s: finite(fitted.decay_std_per_s * d),
+            amplitude: finite(fitted.amplitude_std),
+            phase_rad: finite(fitted.phase_std_rad),
+        }),
+        energy: Some(fitted.energy),
+        ..plain(mode)
+    }
+}

@@ -1,0 +1,83 @@
+//! What a fit came to, for programs and for people.
+
+use super::Options;
+use crate::error::CliError;
+use crate::output;
+use asperity_fit::Fit;
+use asperity_fit::scaling::DampingLaw;
+use serde::Serialize;
+
+/// The object of `--json`.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    /// How many modes were found.
+    pub modes: usize,
+    /// Where the strike begins, s of the file.
+    pub onset_s: f64,
+    /// From the onset to where the modes were fitted, s.
+    pub start_offset_s: f64,
+    /// Recording over residual, dB.
+    pub resynthesis_snr_db: f64,
+    /// The same with the contact included, dB.
+    pub snr_from_onset_db: f64,
+    /// Noise power, dB re full scale.
+    pub noise_floor_db: f64,
+    /// How long the fit took.
+    pub seconds: f64,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// α of d = α + β ω², 1/s.
+    pub damping_alpha_per_s: Option<f64>,
+    /// β, s.
+    pub damping_beta_s: Option<f64>,
+    /// Residual level in the attack, dB re the recording there.
+    pub attack_residual_db: f64,
+    /// The five modes with most energy: `[frequency_hz, decay_per_s, amplitude]`.
+    pub strongest: Vec<[f64; 3]>,
+}
+
+impl Report {
+    /// Sums a fit up.
+    pub fn new(fit: &Fit, law: Option<DampingLaw>, seconds: f64) -> Self {
+        Self {
+            modes: fit.modes.len(),
+            onset_s: fit.onset_s,
+            start_offset_s: fit.start_offset_s,
+            resynthesis_snr_db: fit.resynthesis_snr_db,
+            snr_from_onset_db: fit.snr_from_onset_db,
+            noise_floor_db: fit.noise_floor_db,
+            seconds,
+            warnings: fit.warnings.iter().map(ToString::to_string).collect(),
+            damping_alpha_per_s: law.map(|law| law.alpha_per_s),
+            damping_beta_s: law.map(|law| law.beta_s),
+            attack_residual_db: fit.residual.attack_db,
+            strongest: fit
+                .modes
+                .iter()
+                .take(5)
+                .map(|m| [m.frequency_hz, m.decay_per_s, m.amplitude])
+                .collect(),
+        }
+    }
+
+    /// Tells a person.
+    pub fn say(&self, options: &Options) -> Result<(), CliError> {
+        output::say(&format!(
+            "{}: {} modes, {:.1} dB above what they leave, onset at {:.4} s, noise {:.0} dB; {:.1} s",
+            options.output.display(),
+            self.modes,
+            self.resynthesis_snr_db,
+            self.onset_s,
+            self.noise_floor_db,
+            self.seconds
+        ));
+        for [frequency_hz, decay_per_s, amplitude] in &self.strongest {
+            let t60_s = 3.0 * std::f64::consts::LN_10 / decay_per_s;
+            output::say(&format!("  {frequency_hz:10.2} Hz   T60 {t60_s:7.3} s   amplitude {amplitude:.4}"));
+        }
+        for warning in &self.warnings {
+            output::say(&format!("  warning: {warning}"));
+        }
+        Ok(())
+    }
+}

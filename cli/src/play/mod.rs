@@ -1,0 +1,61 @@
+//! `asperity play SCENE.toml`: a scene and its contact log through the sound card, in real time.
+//!
+//! Needs the cargo feature `device` (or `jack`, `pulseaudio`); without it the verb is there and says so.
+
+#[cfg(feature = "device")]
+mod session;
+
+use crate::error::CliError;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Play a scene and its contact log through the sound card
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Scene file
+    #[arg(value_name = "SCENE.toml", required_unless_present_any = ["list_devices", "channels"])]
+    pub scene: Option<PathBuf>,
+    /// List the devices, one a line, the id first
+    #[arg(long)]
+    pub list_devices: bool,
+    /// Device by the id that --list-devices prints
+    #[arg(long, value_name = "ID")]
+    pub device: Option<String>,
+    /// Host: alsa, jack, pulseaudio, wasapi or coreaudio, as far as they were built in
+    #[arg(long, value_name = "NAME")]
+    pub host: Option<String>,
+    /// A second device for the actuators; its clock is followed by a small resampler
+    #[arg(long, value_name = "ID")]
+    pub haptic_device: Option<String>,
+    /// What goes where: audio=0,1 haptic=2,3 or dualsense
+    #[arg(long, value_name = "MAP", num_args = 1..=2)]
+    pub channels: Vec<String>,
+    /// Frames a callback to ask for; the device may decide otherwise
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub block: Option<u32>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// When an input is bad, a named device is not there, or it is lost and does not come back.
+#[cfg(feature = "device")]
+pub fn run(options: &Options) -> Result<(), CliError> {
+    if options.list_devices { session::list() } else { session::run(options) }
+}
+
+/// Runs the verb of a program that was built without sound card support.
+///
+/// # Errors
+/// Always: names the feature to build with.
+#[cfg(not(feature = "device"))]
+pub fn run(_options: &Options) -> Result<(), CliError> {
+    Err(CliError::new(
+        "play",
+        "this program was built without sound card support",
+        "build it with `cargo build --release -p asperity-cli --features device` (or jack, or pulseaudio)",
+    ))
+}

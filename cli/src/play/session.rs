@@ -1,0 +1,260 @@
+//! A scene played on a device: events go out a little ahead of the sound, each stamped with its sample,
+//! so that what is heard is what `render` writes.
+
+use super::Options;
+use crate::build::{self, Built, Overrides};
+use crate::error::CliError;
+use crate::output;
+use crate::progress::Progress;
+use crate::scene_file::SceneFile;
+use asperity::channel_map::ChannelMap;
+use asperity::contact_log::ContactLog;
+use asperity::device::{self, DeviceOptions, DeviceReport, Player};
+use asperity::{ContactEvent, Refusal, Scene, Stats};
+use serde::Serialize;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::{Duration, Instant};
+
+/// How far ahead of the sound events are sent, s; the player may sleep for so long unnoticed.
+const LEAD_S: f64 = 0.25;
+/// How often the player looks whether events are due.
+const STEP: Duration = Duration::from_millis(10);
+/// A device that stands still for so long is given up.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Group delay of the 30 Hz path filter, s (Hasti §III-C).
+const PATH_DELAY_S: f64 = 0.0075;
+
+/// What is printed at the end.
+#[derive(Debug, Serialize)]
+struct Summary {
+    /// The device, or null where the scene was played silently.
+    device: Option<String>,
+    sample_rate_hz: f64,
+    played_s: f64,
+    callbacks: u64,
+    callback_frames: u64,
+    underruns: u64,
+    haptic_underruns: u64,
+    rebuilt: u64,
+    load: f64,
+    peak_load: f64,
+    /// Block and device together, without the path filter.
+    latency_s: f64,
+    path_delay_s: f64,
+    events: u64,
+    late: u64,
+    dropped: u64,
+    interrupted: bool,
+}
+
+/// Prints every output device.
+///
+/// # Errors
+/// Never; a machine without devices is not an error.
+pub fn list() -> Result<(), CliError> {
+    let devices = device::list();
+    if devices.is_empty() {
+        eprintln!("no sound card was found; connect one, or start the sound server");
+    }
+    for found in devices {
+        let shape = match (found.channels, found.sample_rate_hz) {
+            (0, _) | (_, 0) => String::new(),
+            (channels, rate_hz) => format!("\t{channels} channels, {rate_hz} Hz"),
+        };
+        output::say(&format!("{}\t{}{shape}", found.id, found.name));
+    }
+    Ok(())
+}
+
+/// Plays.
+///
+/// # Errors
+/// When an input is bad, a named device is not there, or it is lost and does not come back.
+pub fn run(options: &Options) -> Result<(), CliError> {
+    let (scene_path, channels) = scene_and_channels(options)?;
+    let file = SceneFile::load(Path::new(&scene_path))?;
+    let log = load_log(&file)?;
+    let device_options = DeviceOptions {
+        host: options.host.clone(),
+        device: options.device.clone(),
+        haptic_device: options.haptic_device.clone(),
+        channels,
+        block_frames: options.block,
+    };
+    let named = options.host.is_some() || options.device.is_some() || options.haptic_device.is_some();
+    let rate = match device::sample_rate_hz(&device_options) {
+        Ok(rate) => Some(rate),
+        Err(error) if named => return Err(CliError::told(error)),
+        Err(_) => None,
+    };
+    let built = build::build(&file, &Overrides { sample_rate_hz: rate, ..Overrides::default() })?;
+    let summary = play(built, &log, &file, &device_options)?;
+    if options.json { output::say_json(&summary) } else { print(&summary) }
+}
+
+/// `--channels` takes one or two values and may have swallowed the scene that follows it.
+fn scene_and_channels(options: &Options) -> Result<(std::path::PathBuf, Option<ChannelMap>), CliError> {
+    let mut parts = options.channels.clone();
+    let mut scene = options.scene.clone();
+    if scene.is_none() && parts.len() > 1 {
+        scene = parts.pop().map(Into::into);
+    }
+    let scene = scene.ok_or_else(|| CliError::new("SCENE.toml", "is missing", "name a scene file"))?;
+    let text = parts.join(" ");
+    let map = (!parts.is_empty()).then(|| ChannelMap::parse(&text)).transpose().map_err(CliError::told)?;
+    Ok((scene, map))
+}
+
+fn load_log(file: &SceneFile) -> Result<ContactLog, CliError> {
+    let path = file.contacts.as_ref().ok_or_else(|| {
+        let at = format!("{}: contacts", file.path.display());
+        CliError::new(at, "is missing", "write contacts = \"NAME.jsonl\", the events to play")
+    })?;
+    ContactLog::load(path).map_err(CliError::told)
+}
+
+fn play(
+    built: Built,
+    log: &ContactLog,
+    file: &SceneFile,
+    options: &DeviceOptions,
+) -> Result<Summary, CliError> {
+    let Built { mut scene, renderer, names } = built;
+    let rate_hz = renderer.sample_rate_hz();
+    let latency_samples = renderer.latency_samples();
+    let events = log
+        .lines
+        .iter()
+        .map(|line| Ok((line.t, line.event.resolve(&names)?)))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|error| CliError::told(error).within(log_name(file)))?;
+    let mut feed = Feed { events: &events, next: 0, rate_hz };
+    feed.send(&mut scene);
+    let interrupted = watch_for_interrupt();
+    let player = device::play_on(renderer, options).map_err(CliError::told)?;
+    if let Some(why) = player.silent_because() {
+        eprintln!("warning: playing silently: {why}");
+    }
+    let end = ((log.end_s() + file.tail_s) * rate_hz).ceil() as u64 + latency_samples as u64;
+    let outcome = follow(&mut scene, &mut feed, end, &interrupted);
+    let heard_on = player.silent_because().is_none().then(|| player.device().to_owned());
+    let stats = scene.stats();
+    let report = player.stop();
+    outcome?;
+    Ok(summary(heard_on, rate_hz, latency_samples, &stats, &report, interrupted.load(Relaxed)))
+}
+
+fn log_name(file: &SceneFile) -> String {
+    file.contacts.as_deref().unwrap_or(&file.path).display().to_string()
+}
+
+/// The events that are still to be sent.
+struct Feed<'a> {
+    events: &'a [(f64, ContactEvent)],
+    next: usize,
+    rate_hz: f64,
+}
+
+impl Feed<'_> {
+    /// Sends what is due within [`LEAD_S`]; what the queue has no room for waits for the next call.
+    fn send(&mut self, scene: &mut Scene) {
+        let until_s = scene.stats().position as f64 / self.rate_hz + LEAD_S;
+        while let Some((time_s, event)) = self.events.get(self.next).filter(|(time_s, _)| *time_s <= until_s)
+        {
+            match scene.report(*time_s, *event) {
+                Err(refused) if refused.reason == Refusal::QueueFull => return,
+                // Other refusals are counted by the scene; the rest of the log still plays.
+                _ => self.next += 1,
+            }
+        }
+    }
+}
+
+/// Feeds the engine until everything is played, the user has had enough, or the device stays away.
+fn follow(
+    scene: &mut Scene,
+    feed: &mut Feed<'_>,
+    end: u64,
+    interrupted: &AtomicBool,
+) -> Result<(), CliError> {
+    let mut progress = Progress::new("playing", end);
+    let (mut position, mut moved) = (scene.stats().position, Instant::now());
+    while position < end && !interrupted.load(Relaxed) {
+        feed.send(scene);
+        std::thread::sleep(STEP);
+        let now = scene.stats().position;
+        progress.advance(now - position);
+        if now > position {
+            (position, moved) = (now, Instant::now());
+        } else if moved.elapsed() > PATIENCE {
+            let what = format!("stands still for {} s", PATIENCE.as_secs());
+            let right = "check the cable or the sound server, or choose another one with --device";
+            return Err(CliError::new("device", what, right));
+        }
+    }
+    Ok(())
+}
+
+/// Ctrl-C ends the session like its last event does. Without a handler it ends the program at once.
+fn watch_for_interrupt() -> Arc<AtomicBool> {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let seen = interrupted.clone();
+    let _ = ctrlc::set_handler(move || seen.store(true, Relaxed));
+    interrupted
+}
+
+fn summary(
+    device: Option<String>,
+    rate_hz: f64,
+    latency_samples: usize,
+    stats: &Stats,
+    report: &DeviceReport,
+    interrupted: bool,
+) -> Summary {
+    Summary {
+        device,
+        sample_rate_hz: rate_hz,
+        played_s: stats.position as f64 / rate_hz,
+        callbacks: report.callbacks,
+        callback_frames: report.callback_frames,
+        underruns: report.underruns,
+        haptic_underruns: report.haptic_underruns,
+        rebuilt: report.rebuilt,
+        load: report.mean_load,
+        peak_load: report.peak_load,
+        latency_s: (report.callback_frames as f64 + latency_samples as f64) / rate_hz + report.latency_s,
+        path_delay_s: PATH_DELAY_S,
+        events: stats.events,
+        late: stats.late,
+        dropped: stats.dropped,
+        interrupted,
+    }
+}
+
+fn print(summary: &Summary) -> Result<(), CliError> {
+    output::say(&format!(
+        "{} {:.1} s on {} at {} Hz, blocks of {} frames",
+        if summary.interrupted { "stopped after" } else { "played" },
+        summary.played_s,
+        summary.device.as_deref().unwrap_or("no device"),
+        summary.sample_rate_hz,
+        summary.callback_frames,
+    ));
+    output::say(&format!(
+        "{} underruns, {} haptic underruns, stream built anew {} times; load {:.1} %, at most {:.1} %; latency {:.1} ms \
+         and {:.1} ms of the path filter; {} events, {} late, {} dropped",
+        summary.underruns,
+        summary.haptic_underruns,
+        summary.rebuilt,
+        100.0 * summary.load,
+        100.0 * summary.peak_load,
+        1e3 * summary.latency_s,
+        1e3 * summary.path_delay_s,
+        summary.events,
+        summary.late,
+        summary.dropped,
+    ));
+    Ok(())
+}

@@ -1,0 +1,122 @@
+//! `asperity demo`, `headroom` and `report` from outside.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+use support::{asperity, told};
+
+fn samples(path: &Path) -> Vec<f32> {
+    let mut reader = hound::WavReader::open(path).unwrap();
+    reader.samples::<f32>().map(Result::unwrap).collect()
+}
+
+fn rms(samples: &[f32]) -> f64 {
+    (samples.iter().map(|&sample| f64::from(sample).powi(2)).sum::<f64>() / samples.len() as f64).sqrt()
+}
+
+#[test]
+fn the_demo_writes_scenes_that_sound_with_pictures_and_an_index() {
+    let folder = tempfile::tempdir().unwrap();
+    let began = Instant::now();
+    let (status, out, err) = told(&asperity(folder.path(), &["demo"]));
+    assert_eq!((status, err.as_str()), (0, ""));
+    assert!(began.elapsed().as_secs() < 30, "took {:?}", began.elapsed());
+    assert!(out.contains("index.html"), "{out}");
+    let demo = folder.path().join("demo-out");
+    let index = fs::read_to_string(demo.join("index.html")).unwrap();
+    let readme = fs::read_to_string(demo.join("README.txt")).unwrap();
+    let mut scenes = 0;
+    for entry in fs::read_dir(&demo).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        scenes += 1;
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let audio = samples(&demo.join(format!("{name}.audio.wav")));
+        let haptic = samples(&demo.join(format!("{name}.haptic.wav")));
+        assert_eq!(audio.len(), haptic.len(), "{name}");
+        assert!(audio.iter().chain(&haptic).all(|sample| sample.is_finite()), "{name}");
+        let peak = audio.iter().fold(0.0f32, |peak, sample| peak.max(sample.abs()));
+        assert!((0.02..=1.0).contains(&peak), "{name} peaks at {peak}");
+        if name != "struck" {
+            let peak = haptic.iter().fold(0.0f32, |peak, sample| peak.max(sample.abs()));
+            assert!((0.02..=1.0).contains(&peak), "{name} is felt with {peak}");
+        }
+        assert!(fs::read_to_string(demo.join(format!("{name}.svg"))).unwrap().ends_with("</svg>\n"));
+        assert!(
+            index.contains(&format!("{name}.audio.wav")) && readme.contains(&format!("{name}: ")),
+            "{name}"
+        );
+    }
+    assert!(scenes >= 8, "{scenes} scenes");
+    let plate = |name: &str| samples(&demo.join(format!("{name}.audio.wav")));
+    let (matte_first, shiny_first) = (plate("matte-shiny"), plate("shiny-matte"));
+    let slow = 13_000..35_000;
+    assert!(
+        rms(&matte_first[slow.clone()]) > 2.0 * rms(&shiny_first[slow]),
+        "the matte half is louder than the shiny one"
+    );
+}
+
+#[test]
+fn headroom_reports_every_promised_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let began = Instant::now();
+    let (status, out, err) = told(&asperity(folder.path(), &["headroom", "--json"]));
+    assert_eq!((status, err.as_str()), (0, ""));
+    assert!(began.elapsed().as_secs() < 60);
+    let report: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert!(
+        report["cpu"].is_string()
+            && report["block_frames"].is_number()
+            && report["sample_rate_hz"].is_number()
+    );
+    let rows = |list: &str| report[list].as_array().unwrap().clone();
+    for scene in rows("scenes") {
+        assert!(scene["name"].is_string());
+        for field in ["contacts", "modes", "real_time_factor", "block_p50_us", "block_p99_9_us"] {
+            assert!(scene[field].is_number(), "{scene}");
+        }
+    }
+    let banks: Vec<u64> = rows("modal_bank").iter().map(|row| row["modes"].as_u64().unwrap()).collect();
+    assert_eq!(banks, [16, 64, 256, 1024, 4096]);
+    assert!(rows("modal_bank").iter().all(|row| row["mode_samples_per_s"].as_f64().unwrap() > 1e6));
+    let contact = rows("contact");
+    let integrators: Vec<&str> = contact.iter().map(|row| row["integrator"].as_str().unwrap()).collect();
+    assert_eq!(integrators, ["semi-implicit-euler", "exact-event", "energy-conserving"]);
+}
+
+#[test]
+fn the_report_covers_every_axis_with_named_references() {
+    let folder = tempfile::tempdir().unwrap();
+    let (status, _, err) = told(&asperity(folder.path(), &["report", "-o", "figures"]));
+    assert_eq!((status, err.as_str()), (0, ""));
+    let path = |name: &str| folder.path().join("figures").join(name);
+    let text = fs::read_to_string(path("speed_vs_error.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let rows = report["rows"].as_array().unwrap();
+    let error = |choice: &str| {
+        let row = rows.iter().find(|row| row["choice"] == choice).unwrap();
+        row["error"].as_f64().unwrap()
+    };
+    for axis in
+        ["integrator", "path", "map filter", "noise octaves", "mode culling", "number format", "block size"]
+    {
+        let members: Vec<_> = rows.iter().filter(|row| row["axis"] == axis).collect();
+        assert!(members.len() >= 3, "{axis}");
+        for row in members {
+            assert!(row["ns_per_sample"].as_f64().unwrap() > 0.0, "{row}");
+            assert!(row["error"].as_f64().unwrap() >= 0.0, "{row}");
+            assert!(!row["reference"].as_str().unwrap().is_empty(), "{row}");
+        }
+    }
+    assert!(error("exact-event") < error("semi-implicit-euler"));
+    assert!(error("semi-implicit-euler") < error("semi-implicit-euler-explicit"));
+    assert!(error("extrapolate") < 0.1 * error("hold"));
+    assert!(error("cubic B-spline with slope and mip levels") < 0.01 * error("bilinear (not offered)"));
+    assert_eq!(error("4096 frames"), 0.0);
+    assert!(path("speed_vs_error.svg").exists() && path("speed_vs_error.md").exists());
+}

@@ -1,0 +1,139 @@
+//! From event to sample: at most one block and one sample in the engine; haptics and audio together.
+
+mod common;
+
+use asperity::{
+    Actuator, ActuatorSettings, ClockMode, Config, ContactBlock, ContactEvent, ContactId, ContactSample,
+    Excitation, Impact, Material, ModalModel, Mode, Quantity, Tap,
+};
+use asperity_dsp::rng::Rng;
+use common::plate;
+
+const RATE_HZ: f64 = 44_100.0;
+
+/// A body that is silent again after a few milliseconds.
+fn tick() -> ModalModel {
+    let mode = Mode { frequency_hz: 3000.0, decay_per_s: 4000.0, amplitude: 1.0, phase_rad: 0.0 };
+    ModalModel::new(vec![mode], 0.01).unwrap()
+}
+
+fn impact(body: asperity::BodyId) -> ContactEvent {
+    ContactEvent::Impact(Impact {
+        body,
+        other: None,
+        speed_m_s: 2.0,
+        mass_kg: 0.001,
+        radius_m: 0.001,
+        striker: Material::STEEL,
+        restitution: 1.0,
+    })
+}
+
+#[test]
+fn a_stamped_event_sounds_at_its_own_sample() {
+    for block in [64, 256, 1000] {
+        for sample in [0u64, 1, 63, 64, 255, 777] {
+            let (mut scene, mut renderer) = Config::default().build().unwrap();
+            let body = scene.add_body(tick()).unwrap();
+            scene.report(sample as f64 / RATE_HZ, impact(body)).unwrap();
+            let mut heard = Vec::new();
+            while heard.len() < 2000 {
+                let (mut h, mut a) = (vec![0.0; block], vec![0.0; block]);
+                renderer.render(&mut [&mut h], &mut [&mut a]);
+                heard.extend(a);
+            }
+            let onset = heard.iter().position(|x| *x != 0.0).unwrap() as u64;
+            let due = sample + renderer.latency_samples() as u64;
+            assert!(onset >= due && onset <= due + 1, "sample {sample}: heard at {onset}, due at {due}");
+        }
+    }
+}
+
+/// A game that reports at random moments, a device that renders at the start of each block.
+fn latencies(block: usize, events: usize) -> Vec<f64> {
+    let (mut scene, mut renderer) = Config { clock: ClockMode::LIVE, ..Config::default() }.build().unwrap();
+    let body = scene.add_body(tick()).unwrap();
+    let mut rng = Rng::new(3);
+    let (mut now, mut heard) = (5000.0, Vec::<f32>::new());
+    let mut found = Vec::new();
+    for _ in 0..events {
+        now += 4000.0 + 3000.0 * rng.uniform();
+        // Every callback whose turn came before the event has been rendered.
+        let render_to = |renderer: &mut asperity::Renderer, heard: &mut Vec<f32>, sample: f64| {
+            while heard.len() as f64 <= sample {
+                let (mut h, mut a) = (vec![0.0; block], vec![0.0; block]);
+                renderer.render(&mut [&mut h], &mut [&mut a]);
+                heard.extend(a);
+            }
+        };
+        render_to(&mut renderer, &mut heard, now);
+        scene.report(77.0 + now / RATE_HZ, impact(body)).unwrap();
+        let from = heard.len();
+        render_to(&mut renderer, &mut heard, now + 2500.0);
+        let onset = from + heard[from..].iter().position(|x| *x != 0.0).unwrap();
+        found.push(onset as f64 - now);
+    }
+    found
+}
+
+#[test]
+fn live_an_event_is_heard_within_one_block_and_one_sample() {
+    for block in [64, 128, 256, 512, 1024] {
+        let found = latencies(block, 200);
+        let most = found.iter().copied().fold(0.0, f64::max);
+        let mean = found.iter().sum::<f64>() / found.len() as f64;
+        eprintln!("blocks of {block}: latency mean {mean:.1}, at most {most:.1} samples");
+        let look_ahead = Config::default().build().unwrap().1.latency_samples();
+        assert!(most <= (block + 1 + look_ahead) as f64, "blocks of {block}: {most} samples");
+    }
+}
+
+/// Remembers at which sample the contact model saw an onset.
+#[derive(Default)]
+struct Onsets {
+    samples: Vec<u64>,
+}
+
+impl Tap for Onsets {
+    fn contact(&mut self, block: &ContactBlock<'_>) {
+        for (i, row) in block.contact_samples.iter().enumerate() {
+            if row.onset.is_some() {
+                self.samples.push(block.first_sample + i as u64);
+            }
+        }
+    }
+}
+
+#[test]
+fn one_micro_collision_is_felt_and_heard_at_the_same_sample() {
+    for excitation in [Excitation::Collisions, Excitation::Both] {
+        for begin in [1000u64, 1037, 1063, 1064] {
+            let actuators = vec![ActuatorSettings {
+                output: Quantity::Acceleration,
+                full_scale: 1.0,
+                highpass_hz: 0.0,
+                ..ActuatorSettings::default()
+            }];
+            let (mut scene, mut renderer) = Config { actuators, ..Config::default() }.build().unwrap();
+            let body = scene.add_body(tick()).unwrap();
+            let flat = plate(0.5).micro_relief_m(0.0).on(body).excitation(excitation);
+            let surface = scene.add_surface(flat).unwrap();
+            let sample = ContactSample {
+                uv: [0.5, 0.5],
+                velocity_m_s: Some([0.0, 0.0]),
+                normal_force_n: 0.5,
+                closing_m_s: 0.1,
+            };
+            let event = ContactEvent::begin(ContactId(1), surface, Actuator(0), sample);
+            scene.report(begin as f64 / RATE_HZ, event).unwrap();
+            let (mut felt, mut heard) = (vec![0.0f32; 4096], vec![0.0f32; 4096]);
+            let mut onsets = Onsets::default();
+            renderer.render_tapped(&mut [&mut felt], &mut [&mut heard], &mut onsets);
+            let first = |x: &[f32]| x.iter().position(|x| *x != 0.0).unwrap() as i64;
+            let collided = *onsets.samples.first().expect("a landing is a collision") as i64;
+            let (felt, heard) = (first(&felt), first(&heard));
+            eprintln!("{excitation:?} from {begin}: collided {collided}, felt {felt}, heard {heard}");
+            assert_eq!(felt, heard, "{excitation:?} from {begin}");
+        }
+    }
+}
