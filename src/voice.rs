@@ -3,7 +3,7 @@
 //! path → profile → micro-contact → { pad displacement → actuator, impulses → body }
 
 use crate::event::{ContactId, ContactSample};
-use crate::seat::Seat;
+use crate::seat::{Noise, Seat};
 use crate::surface::{Excitation, SurfaceSlot};
 use crate::tap::{ContactBlock, Tap};
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
@@ -47,6 +47,8 @@ pub(crate) struct Shared {
     pub(crate) noise: FractalNoise,
     /// Momentum of a micro-collision per closing speed, kg: pad mass × (1 + restitution).
     pub(crate) collision_mass_kg: f64,
+    /// Octaves of noise left out because blocks run late.
+    pub(crate) noise_octaves_gone: u32,
     /// The rise of a fade, 0 to 1.
     pub(crate) fade: Box<[f64]>,
 }
@@ -122,6 +124,7 @@ pub(crate) struct Scratch {
     position_m: [[f64; 2]; MAX_BLOCK],
     velocity_m_s: [[f64; 2]; MAX_BLOCK],
     footprint_m: [f64; MAX_BLOCK],
+    noise_footprint_m: [f64; MAX_BLOCK],
     force_n: [f64; MAX_BLOCK],
     uv: [[f64; 2]; MAX_BLOCK],
     /// The contact's history, then one value a sample.
@@ -319,11 +322,14 @@ impl Voice {
     /// Heights along the path: the source, and the paper's micro-noise below the source's own band.
     fn profile(&self, seat: &mut Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
         let step_s = 1.0 / shared.sample_rate_hz;
+        let widened = f64::from(1u32 << shared.noise_octaves_gone);
         for (i, point) in scratch.points[..n].iter().enumerate() {
             let [u, v] = point.velocity_m_s;
             scratch.position_m[i] = point.position_m;
             scratch.velocity_m_s[i] = point.velocity_m_s;
             scratch.footprint_m[i] = (u * u + v * v).sqrt() * step_s;
+            // A footprint twice as wide hides the finest octave that is left.
+            scratch.noise_footprint_m[i] = scratch.footprint_m[i] * widened;
             scratch.force_n[i] = point.normal_force_n;
         }
         let path = PathBlock {
@@ -333,7 +339,8 @@ impl Voice {
             first_sample: position,
             contact: self.slot,
         };
-        seat.sample(&path, &shared.noise, &mut scratch.surface, &mut scratch.rough);
+        let noise = Noise { field: &shared.noise, footprint_m: &scratch.noise_footprint_m[..n] };
+        seat.sample(&path, &noise, &mut scratch.surface, &mut scratch.rough);
         // A surface that gives way lies lower by as much as the force presses it in.
         let surface = &mut scratch.surface;
         let give = surface.compliance_m_n[..n].iter().zip(&scratch.force_n);
@@ -612,6 +619,7 @@ impl Scratch {
             position_m: [[0.0; 2]; MAX_BLOCK],
             velocity_m_s: [[0.0; 2]; MAX_BLOCK],
             footprint_m: [0.0; MAX_BLOCK],
+            noise_footprint_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             uv: [[0.0; 2]; MAX_BLOCK],
             force_impulse_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
