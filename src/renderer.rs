@@ -31,29 +31,12 @@ use std::sync::atomic::Ordering::Relaxed;
 /// Where the audio limiter holds the peaks: full scale.
 const AUDIO_CEILING: f64 = 1.0;
 
-/// Share of the time budget above which a block counts as overloaded (chosen: what is left is the
-/// system's jitter).
-const OVERLOAD: f32 = 0.85;
-/// So many overloaded blocks in a row are no coincidence.
-const OVERLOADED_BLOCKS: u32 = 4;
-/// So long without overload allows one contact more, s.
-const CALM_S: f64 = 0.5;
-
-/// Keeps the load below what the device gives: how many contacts may sound at present.
-struct Governor {
-    allowed: usize,
-    overloaded: u32,
-    /// Sample of the last overload, or of the last contact that was allowed again.
-    calm_since: u64,
-}
-
 /// The audio half of an engine.
 pub struct Renderer {
     position: u64,
     shared: Shared,
     timeout_samples: u64,
     max_contacts: usize,
-    governor: Governor,
     voices: Vec<Voice>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
@@ -128,7 +111,6 @@ impl Renderer {
             position: 0,
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
-            governor: Governor { allowed: config.max_contacts, overloaded: 0, calm_since: 0 },
             voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
             voices_used: Occupied::new(voices),
             seats_used: Occupied::new(config.max_surfaces),
@@ -180,33 +162,6 @@ impl Renderer {
     }
 
     /// Tells the engine which share of its time budget the last block took (1 = all of it); the device
-<<<<<<< HEAD
-    /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load).
-    ///
-    /// After several overloaded blocks in a row the least important contact fades and is counted as
-    /// [`shed`](crate::Stats::shed); once there is room again, its next move brings it back. Offline
-    /// nobody tells, so nothing is shed.
-    pub fn report_load(&mut self, load: f32) {
-        self.counters.set_load(load);
-        let sounding = self.sounding_count();
-        if load > OVERLOAD {
-            self.governor.overloaded += 1;
-            self.governor.calm_since = self.position;
-            if self.governor.overloaded >= OVERLOADED_BLOCKS && sounding > 1 {
-                self.governor.overloaded = 0;
-                self.governor.allowed = sounding - 1;
-                Counters::add(&self.counters.shed, 1);
-                self.silence_least();
-            }
-            return;
-        }
-        self.governor.overloaded = 0;
-        let calm_samples = self.position.saturating_sub(self.governor.calm_since) as f64;
-        if self.governor.allowed < self.max_contacts && calm_samples > CALM_S * self.shared.sample_rate_hz {
-            self.governor.allowed += 1;
-            self.governor.calm_since = self.position;
-        }
-=======
     /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load). When
     /// blocks run late, the least audible work is left out ([`Config::shed_load`](crate::Config::shed_load)).
     pub fn report_load(&mut self, load: f32) {
@@ -222,7 +177,6 @@ impl Renderer {
     /// How many contacts may sound at present.
     fn contact_limit(&self) -> usize {
         self.governor.contacts(self.max_contacts)
->>>>>>> refs/heads/perf
     }
 
     /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
@@ -374,7 +328,7 @@ impl Renderer {
         let Some(slot) = self.seats[surface].current().filter(|_| self.seats[surface].is_open()) else {
             return false;
         };
-        let sounding = self.sounding_count();
+        let full = self.sounding_count() >= self.contact_limit();
         let Some(voice) = self.voices.iter_mut().find(|voice| {
             voice.contact == contact
                 && (voice.surface, voice.actuator) == (surface, actuator)
@@ -384,7 +338,7 @@ impl Renderer {
         }) else {
             return false;
         };
-        if sounding >= self.governor.allowed {
+        if full {
             return false;
         }
         voice.resume(&self.shared);
@@ -425,11 +379,7 @@ impl Renderer {
             return;
         };
         let silent = self.silent[index];
-<<<<<<< HEAD
-        if silent.stolen && self.sounding_count() >= self.governor.allowed {
-=======
         if silent.stolen && self.sounding_count() >= self.contact_limit() {
->>>>>>> refs/heads/perf
             Counters::add(&self.counters.orphaned, 1);
             return;
         }
@@ -457,11 +407,7 @@ impl Renderer {
 
     /// A voice for a new contact: a free one, after stealing the least important when all are taken.
     fn take_voice(&mut self) -> usize {
-<<<<<<< HEAD
-        if self.sounding_count() >= self.governor.allowed {
-=======
         if self.sounding_count() >= self.contact_limit() {
->>>>>>> refs/heads/perf
             Counters::add(&self.counters.stolen, 1);
             self.silence_least();
         }
@@ -475,16 +421,9 @@ impl Renderer {
 
     /// Fades the least important contact.
     fn silence_least(&mut self) {
-<<<<<<< HEAD
-        let least = (0..self.voices.len())
-            .filter(|&i| self.voices[i].phase == Phase::Sounding)
-            .min_by(|&a, &b| self.voices[a].priority().total_cmp(&self.voices[b].priority()));
-        if let Some(least) = least {
-=======
         let priority = |i: &usize| self.voices[*i].priority();
         let sounding = self.voices_used.iter().filter(|&i| self.voices[i].phase == Phase::Sounding);
         if let Some(least) = sounding.min_by(|a, b| priority(a).total_cmp(&priority(b))) {
->>>>>>> refs/heads/perf
             self.silence(least, true);
         }
     }
