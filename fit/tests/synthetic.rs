@@ -145,7 +145,7 @@ fn the_bound_is_the_one_numpy_computes() {
         Mode { frequency_hz: 3000.0, decay_per_s: 60.0, amplitude: 0.2, phase_rad: 2.0 },
     ];
     let bounds = cramer_rao(&modes, 8000.0, 8000, 0.01);
-    for (ours, theirs) in bounds.iter().zip(common::NUMPY_BOUNDS) {
+    for (ours, theirs) in bounds.iter().zip(NUMPY_BOUNDS) {
         for (ours, theirs) in ours.iter().zip(theirs) {
             assert!((ours / theirs - 1.0).abs() < 1e-6, "{ours} {theirs}");
         }
