@@ -212,12 +212,8 @@ impl Voice {
         (self.begun, self.refreshed) = (position, position);
         self.asleep = false;
         self.ended = false;
-<<<<<<< HEAD
-        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
-=======
         self.rising = None;
-        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples };
->>>>>>> refs/heads/live
+        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         self.last_point = PathPoint {
             position_m: event.position_m,
@@ -284,20 +280,13 @@ impl Voice {
 
     /// Comes back out of its fade, from the level it has faded to and without a corner.
     pub(crate) fn resume(&mut self, shared: &Shared) {
-<<<<<<< HEAD
-        if let Phase::Fading { left } = self.phase {
-            self.fade_in_left = shared.fade_samples().saturating_sub(left);
-            self.phase = Phase::Sounding;
-            self.ended = false;
-=======
-        let step = 1.0 / f64::from(shared.fade_samples);
-        let faded = matches!(self.phase, Phase::Fading { left } if left < shared.fade_samples);
+        let step = 1.0 / f64::from(shared.fade_samples());
+        let faded = matches!(self.phase, Phase::Fading { left } if left < shared.fade_samples());
         let phase = (1.0 - 2.0 * self.gain).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
         // Before the first faded sample nothing has happened yet.
         self.rising = faded.then_some(Rising { phase, speed: -step });
         if faded {
             self.fade_in_left = 0;
->>>>>>> refs/heads/live
         }
         self.phase = Phase::Sounding;
         self.ended = false;
@@ -530,7 +519,8 @@ impl Voice {
     /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
     /// its own beginning), out for one that ended, lapsed or was stolen.
     fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        if self.fade_in_left == 0 && self.phase == Phase::Sounding {
+        if self.fade_in_left == 0 && self.rising.is_none() && self.phase == Phase::Sounding {
+            self.gain = 1.0;
             return;
         }
         let (total, rise) = (shared.fade_samples(), &shared.fade);
@@ -538,14 +528,7 @@ impl Voice {
             self.gain = 1.0;
             if self.fade_in_left > 0 {
                 self.fade_in_left -= 1;
-<<<<<<< HEAD
-                scratch.out.scale(i, rise[(total - self.fade_in_left) as usize]);
-            }
-            if let Phase::Fading { left } = self.phase {
-                let left = left.saturating_sub(1);
-                scratch.out.scale(i, rise[left as usize]);
-=======
-                self.gain *= raised_cosine(total - self.fade_in_left, total);
+                self.gain *= rise[(total - self.fade_in_left) as usize];
             }
             if let Some(rising) = &mut self.rising {
                 self.gain *= rising.tick(total);
@@ -555,8 +538,7 @@ impl Voice {
             }
             if let Phase::Fading { left } = self.phase {
                 let left = left.saturating_sub(1);
-                self.gain *= raised_cosine(left, total);
->>>>>>> refs/heads/live
+                self.gain *= rise[left as usize];
                 self.phase = Phase::Fading { left };
             }
             if self.gain != 1.0 {
