@@ -13,7 +13,6 @@ pub mod solid;
 
 use crate::error::CliError;
 use crate::progress::Progress;
-use crate::texture_analyze;
 use asperity_dsp::DesignError;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::raster::Raster;
@@ -24,7 +23,6 @@ use std::path::Path;
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     Analyze(analyze::AnalyzeArgs),
-    Analyze(texture_analyze::AnalyzeArgs),
     Brownian(brownian::Options),
     Solid(solid::Options),
     Compare(compare::Options),
@@ -40,7 +38,6 @@ pub enum Verb {
 pub fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Analyze(options) => analyze::run(&options),
-        Verb::Analyze(options) => texture_analyze::run(&options),
         Verb::Brownian(options) => brownian::run(&options),
         Verb::Solid(options) => solid::run(&options),
         Verb::Compare(options) => compare::run(&options),
