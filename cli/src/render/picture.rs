@@ -207,7 +207,8 @@ fn impulse_panel(take: &Take<'_>) -> Panel {
 /// The window with the most collisions, or else the most momentum, on the contact it belongs to.
 fn busiest(take: &Take<'_>) -> Option<(usize, f64)> {
     let mut best: Option<(f64, usize, f64)> = None;
-    for (index, contact) in take.contacts.iter().enumerate() {
+    // Only what is drawn was kept in full.
+    for (index, contact) in take.contacts.iter().enumerate().filter(|(_, c)| !c.height_m.is_empty()) {
         let collides = !contact.collisions.is_empty();
         let events = if collides { &contact.collisions } else { &contact.impulses };
         let strength = |at: usize| if collides { 1.0 } else { events[at][1].abs() };
