@@ -26,6 +26,7 @@ fn impact(body: asperity::BodyId) -> ContactEvent {
         radius_m: 0.001,
         striker: Material::STEEL,
         restitution: 1.0,
+        position: 0,
     })
 }
 
