@@ -109,6 +109,7 @@ fn steel_ball_on(body: BodyId) -> ContactEvent {
         radius_m: 0.005,
         striker: Material::STEEL,
         restitution: 0.8,
+        position: 0,
     })
 }
 

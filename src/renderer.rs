@@ -4,9 +4,10 @@
 //! made by [`Config::build`](crate::Config::build). Time is cut at events and on an absolute grid of
 //! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
 
-use crate::body::BodySeat;
+use crate::body::{BodySeat, Terms};
 use crate::config::{ActuatorSettings, AudioSettings, Config};
 use crate::event::{ContactEvent, ContactId, ContactSample, SurfaceId};
+use crate::governor::Governor;
 use crate::occupied::Occupied;
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::seat::{Change, Seat};
@@ -47,6 +48,9 @@ pub struct Renderer {
     channels: Vec<HapticChannel>,
     audio: AudioBus,
     kernel: Kernel,
+    governor: Governor,
+    /// Groups of modes left out in the present stretch.
+    groups_shed: usize,
     from_game: Receiver<Message>,
     to_game: Sender<Dead>,
     counters: Arc<Counters>,
@@ -98,6 +102,7 @@ impl Renderer {
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
             micro_contact,
             noise: FractalNoise::new(config.seed),
+            noise_octaves_gone: 0,
             fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
         };
         // Spare voices let stolen and ended contacts fade while new ones sound.
@@ -120,6 +125,8 @@ impl Renderer {
                 .collect::<Result<_, _>>()?,
             audio: AudioBus::new(&config.audio, rate)?,
             kernel: Kernel::detect(),
+            governor: Governor::new(config.shed_load, rate),
+            groups_shed: 0,
             from_game,
             to_game,
             counters,
@@ -155,9 +162,21 @@ impl Renderer {
     }
 
     /// Tells the engine which share of its time budget the last block took (1 = all of it); the device
-    /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load).
+    /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load). When
+    /// blocks run late, the least audible work is left out ([`Config::shed_load`](crate::Config::shed_load)).
     pub fn report_load(&mut self, load: f32) {
         self.counters.set_load(load);
+        self.governor.hear(load, self.position, self.sounding_count());
+        self.shared.noise_octaves_gone = self.governor.octaves_gone();
+        if self.sounding_count() > self.contact_limit() {
+            Counters::add(&self.counters.shed, 1);
+            self.silence_least();
+        }
+    }
+
+    /// How many contacts may sound at present.
+    fn contact_limit(&self) -> usize {
+        self.governor.contacts(self.max_contacts)
     }
 
     /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
@@ -245,12 +264,13 @@ impl Renderer {
                 Counters::add(&self.counters.late, u64::from(sample < self.position));
                 self.apply_event(&event, sample);
             }
-            Message::Strike { sample, body, other, pulse } => {
+            Message::Strike { sample, body, position, other, pulse } => {
                 Counters::add(&self.counters.events, 1);
                 Counters::add(&self.counters.impacts, 1);
                 Counters::add(&self.counters.late, u64::from(sample < self.position));
-                for body in [Some(body), other].into_iter().flatten() {
-                    self.strike(body, &pulse);
+                self.strike(body, position, &pulse);
+                if let Some(other) = other {
+                    self.strike(other, 0, &pulse);
                 }
             }
             Message::SetSurface { slot, surface } => self.set_surface(slot, surface),
@@ -308,7 +328,7 @@ impl Renderer {
         let Some(slot) = self.seats[surface].current().filter(|_| self.seats[surface].is_open()) else {
             return false;
         };
-        let sounding = self.sounding_count();
+        let full = self.sounding_count() >= self.contact_limit();
         let Some(voice) = self.voices.iter_mut().find(|voice| {
             voice.contact == contact
                 && (voice.surface, voice.actuator) == (surface, actuator)
@@ -318,7 +338,7 @@ impl Renderer {
         }) else {
             return false;
         };
-        if sounding >= self.max_contacts {
+        if full {
             return false;
         }
         voice.resume(&self.shared);
@@ -359,7 +379,7 @@ impl Renderer {
             return;
         };
         let silent = self.silent[index];
-        if silent.stolen && self.sounding_count() >= self.max_contacts {
+        if silent.stolen && self.sounding_count() >= self.contact_limit() {
             Counters::add(&self.counters.orphaned, 1);
             return;
         }
@@ -387,14 +407,9 @@ impl Renderer {
 
     /// A voice for a new contact: a free one, after stealing the least important when all are taken.
     fn take_voice(&mut self) -> usize {
-        if self.sounding_count() >= self.max_contacts {
-            let least = (0..self.voices.len())
-                .filter(|&i| self.voices[i].phase == Phase::Sounding)
-                .min_by(|&a, &b| self.voices[a].priority().total_cmp(&self.voices[b].priority()));
-            if let Some(least) = least {
-                Counters::add(&self.counters.stolen, 1);
-                self.silence(least, true);
-            }
+        if self.sounding_count() >= self.contact_limit() {
+            Counters::add(&self.counters.stolen, 1);
+            self.silence_least();
         }
         let remaining = |voice: &Voice| match voice.phase {
             Phase::Free => 0,
@@ -402,6 +417,15 @@ impl Renderer {
             Phase::Sounding => u32::MAX,
         };
         (0..self.voices.len()).min_by_key(|&i| remaining(&self.voices[i])).unwrap_or(0)
+    }
+
+    /// Fades the least important contact.
+    fn silence_least(&mut self) {
+        let priority = |i: &usize| self.voices[*i].priority();
+        let sounding = self.voices_used.iter().filter(|&i| self.voices[i].phase == Phase::Sounding);
+        if let Some(least) = sounding.min_by(|a, b| priority(a).total_cmp(&priority(b))) {
+            self.silence(least, true);
+        }
     }
 
     /// Fades a contact but remembers it, so that its next move can revive it.
@@ -438,10 +462,10 @@ impl Renderer {
         self.silent.retain(|silent| silent.surface != slot);
     }
 
-    fn strike(&mut self, body: usize, pulse: &asperity_dsp::hertz::HertzPulse) {
+    fn strike(&mut self, body: usize, position: usize, pulse: &asperity_dsp::hertz::HertzPulse) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
         let sample = self.position + self.latency_samples() as u64;
-        self.bodies[body].strike(pulse, sample, self.shared.sample_rate_hz);
+        self.bodies[body].strike(position, pulse, sample, self.shared.sample_rate_hz);
     }
 
     fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
@@ -466,9 +490,9 @@ impl Renderer {
             if !out.excites {
                 continue;
             }
-            let body = seat.current().and_then(|slot| slot.surface.body);
-            if let Some(body) = body.map(|id| &mut self.bodies[id.0 as usize]) {
-                body.touch(&out.impulse_n_s[..n]);
+            let surface = seat.current().map(|slot| &slot.surface);
+            if let Some((body, place)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
+                self.bodies[body.0 as usize].touch(place, &out.impulse_n_s[..n]);
             }
         }
         Counters::add(&self.counters.micro_collisions, collisions);
@@ -488,9 +512,12 @@ impl Renderer {
     fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
         let mix = &mut self.mix.audio[..n];
         mix.fill(0.0);
+        let terms = Terms { kernel: self.kernel, position: self.position, governor: &self.governor };
+        let mut shed = 0;
         for body in self.bodies_used.iter() {
-            self.bodies[body].render(self.kernel, self.position, mix);
+            shed += self.bodies[body].render(terms, mix);
         }
+        self.groups_shed = shed;
         self.audio.finish(mix);
         for out in audio {
             out[at..at + n].copy_from_slice(mix);
@@ -519,7 +546,10 @@ impl Renderer {
             self.bodies[index].tidy(self.position, &mut self.to_game);
             !self.bodies[index].is_empty()
         });
-        self.counters.contacts.store(self.sounding_count() as u64, Relaxed);
+        let sounding = self.sounding_count() as u64;
+        let octaves = u64::from(self.governor.octaves_gone()) * sounding;
+        Counters::add(&self.counters.shed, self.groups_shed as u64 + octaves);
+        self.counters.contacts.store(sounding, Relaxed);
     }
 }
 

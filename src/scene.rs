@@ -117,7 +117,9 @@ impl Scene {
 
     fn set_body(&mut self, slot: usize, model: &ModalModel, material: Material) -> Result<(), AddError> {
         let material = material.checked()?;
-        let body = Box::new(BodySlot::new(model, self.config.sample_rate_hz)?);
+        let rate = self.config.sample_rate_hz;
+        let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
+        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate)?);
         self.send(Message::SetBody { slot, body })?;
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
@@ -250,7 +252,9 @@ impl Scene {
         match event {
             ContactEvent::Moved { contact, .. } => self.send_move(sample, contact, event),
             ContactEvent::Begin { contact, .. } | ContactEvent::End { contact } => {
+                let before = self.held.len();
                 self.held.retain(|(_, held, _)| *held != contact);
+                Counters::add(&self.counters.superseded, (before - self.held.len()) as u64);
                 self.send_event(Message::Event { sample, event })
             }
             ContactEvent::Impact(impact) => self.send_impact(sample, &impact),
@@ -307,7 +311,9 @@ impl Scene {
 
     fn flush_held(&mut self) {
         while self.to_audio.free() > self.to_audio.capacity() / 4 {
-            let Some((sample, _, event)) = self.held.pop() else { return };
+            let oldest = (0..self.held.len()).min_by_key(|&index| self.held[index].0);
+            let Some(oldest) = oldest else { return };
+            let (sample, _, event) = self.held.swap_remove(oldest);
             // There is room: checked just above.
             let _ = self.to_audio.send(Message::Event { sample, event });
         }
@@ -327,7 +333,13 @@ impl Scene {
             return Ok(());
         }
         let other = impact.other.map(|other| other.0 as usize);
-        self.send_event(Message::Strike { sample, body: impact.body.0 as usize, other, pulse })
+        self.send_event(Message::Strike {
+            sample,
+            body: impact.body.0 as usize,
+            position: impact.position,
+            other,
+            pulse,
+        })
     }
 
     fn send_event(&mut self, message: Message) -> Result<(), Refusal> {

@@ -41,7 +41,7 @@ counters! {
     micro_collisions,
     /// Events handed back because the queue was full.
     dropped,
-    /// Moves replaced by a newer move of the same contact before they were sent.
+    /// Moves that a newer event of the same contact made pointless before they were sent.
     superseded,
     /// Events that named a contact nobody began, or whose voice was stolen.
     orphaned,
@@ -59,7 +59,8 @@ counters! {
     late,
     /// Times the game clock was tied to the audio clock anew.
     clock_jumps,
-    /// Groups of modes left out for one block because the last blocks ran late.
+    /// Pieces of work left out because blocks ran late: a group of modes or an octave of a contact's noise
+    /// for 64 samples, or a contact.
     shed,
     /// Contacts sounding now.
     contacts,

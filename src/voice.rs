@@ -3,7 +3,7 @@
 //! path → profile → micro-contact → { pad displacement → actuator, impulses → body }
 
 use crate::event::{ContactId, ContactSample};
-use crate::seat::Seat;
+use crate::seat::{Noise, Seat};
 use crate::surface::{Excitation, SurfaceSlot};
 use crate::tap::{ContactBlock, Tap};
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
@@ -47,6 +47,8 @@ pub(crate) struct Shared {
     pub(crate) noise: FractalNoise,
     /// Momentum of a micro-collision per closing speed, kg: pad mass × (1 + restitution).
     pub(crate) collision_mass_kg: f64,
+    /// Octaves of noise left out because blocks run late.
+    pub(crate) noise_octaves_gone: u32,
     /// The rise of a fade, 0 to 1.
     pub(crate) fade: Box<[f64]>,
 }
@@ -81,6 +83,10 @@ pub(crate) struct Voice {
     slot: usize,
     asleep: bool,
     fade_in_left: u32,
+    /// Coming back out of a fade.
+    rising: Option<Rising>,
+    /// Gain of the last sample.
+    gain: f64,
     trajectory: Trajectory,
     last_point: PathPoint,
     last_row: PadSample,
@@ -96,6 +102,27 @@ pub(crate) struct Voice {
     force_history_n_s: [f64; FORCE_HISTORY],
     bus: Vec<f64>,
     bus_busy_until: u64,
+}
+
+/// A fade that turns round: its phase (0 = silent, 1 = full) slows down, stops and comes back, so that
+/// the gain has no corner.
+struct Rising {
+    phase: f64,
+    /// Per sample.
+    speed: f64,
+}
+
+/// Share of a fade's length that its turning takes.
+const TURN: f64 = 0.2;
+
+impl Rising {
+    /// The next gain.
+    fn tick(&mut self, fade_samples: u32) -> f64 {
+        let top = 1.0 / f64::from(fade_samples);
+        self.speed = (self.speed + 2.0 * top * top / TURN).min(top);
+        self.phase = (self.phase + self.speed).clamp(0.0, 1.0);
+        0.5 - 0.5 * (std::f64::consts::PI * self.phase).cos()
+    }
 }
 
 /// What one voice adds to a stretch of samples.
@@ -122,6 +149,7 @@ pub(crate) struct Scratch {
     position_m: [[f64; 2]; MAX_BLOCK],
     velocity_m_s: [[f64; 2]; MAX_BLOCK],
     footprint_m: [f64; MAX_BLOCK],
+    noise_footprint_m: [f64; MAX_BLOCK],
     force_n: [f64; MAX_BLOCK],
     uv: [[f64; 2]; MAX_BLOCK],
     /// The contact's history, then one value a sample.
@@ -147,6 +175,8 @@ impl Voice {
             slot,
             asleep: false,
             fade_in_left: 0,
+            rising: None,
+            gain: 0.0,
             trajectory: Trajectory::begin(&shared.idle_path, &IDLE),
             last_point: PathPoint::default(),
             last_row: PadSample::default(),
@@ -182,6 +212,7 @@ impl Voice {
         (self.begun, self.refreshed) = (position, position);
         self.asleep = false;
         self.ended = false;
+        self.rising = None;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         self.last_point = PathPoint {
@@ -247,13 +278,18 @@ impl Voice {
         apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
     }
 
-    /// Comes back out of its fade, from the level it has faded to.
+    /// Comes back out of its fade, from the level it has faded to and without a corner.
     pub(crate) fn resume(&mut self, shared: &Shared) {
-        if let Phase::Fading { left } = self.phase {
-            self.fade_in_left = shared.fade_samples().saturating_sub(left);
-            self.phase = Phase::Sounding;
-            self.ended = false;
+        let step = 1.0 / f64::from(shared.fade_samples());
+        let faded = matches!(self.phase, Phase::Fading { left } if left < shared.fade_samples());
+        let phase = (1.0 - 2.0 * self.gain).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
+        // Before the first faded sample nothing has happened yet.
+        self.rising = faded.then_some(Rising { phase, speed: -step });
+        if faded {
+            self.fade_in_left = 0;
         }
+        self.phase = Phase::Sounding;
+        self.ended = false;
     }
 
     /// How much would be missed: what presses harder and moves faster is heard and felt more.
@@ -321,11 +357,14 @@ impl Voice {
     /// Heights along the path: the source, and the paper's micro-noise below the source's own band.
     fn profile(&self, seat: &mut Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
         let step_s = 1.0 / shared.sample_rate_hz;
+        let widened = f64::from(1u32 << shared.noise_octaves_gone);
         for (i, point) in scratch.points[..n].iter().enumerate() {
             let [u, v] = point.velocity_m_s;
             scratch.position_m[i] = point.position_m;
             scratch.velocity_m_s[i] = point.velocity_m_s;
             scratch.footprint_m[i] = (u * u + v * v).sqrt() * step_s;
+            // A footprint twice as wide hides the finest octave that is left.
+            scratch.noise_footprint_m[i] = scratch.footprint_m[i] * widened;
             scratch.force_n[i] = point.normal_force_n;
         }
         let path = PathBlock {
@@ -335,7 +374,8 @@ impl Voice {
             first_sample: position,
             contact: self.slot,
         };
-        seat.sample(&path, &shared.noise, &mut scratch.surface, &mut scratch.rough);
+        let noise = Noise { field: &shared.noise, footprint_m: &scratch.noise_footprint_m[..n] };
+        seat.sample(&path, &noise, &mut scratch.surface, &mut scratch.rough);
         // A surface that gives way lies lower by as much as the force presses it in.
         let surface = &mut scratch.surface;
         let give = surface.compliance_m_n[..n].iter().zip(&scratch.force_n);
@@ -481,19 +521,30 @@ impl Voice {
     /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
     /// its own beginning), out for one that ended, lapsed or was stolen.
     fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        if self.fade_in_left == 0 && self.phase == Phase::Sounding {
+        if self.fade_in_left == 0 && self.rising.is_none() && self.phase == Phase::Sounding {
+            self.gain = 1.0;
             return;
         }
         let (total, rise) = (shared.fade_samples(), &shared.fade);
         for i in 0..n {
+            self.gain = 1.0;
             if self.fade_in_left > 0 {
                 self.fade_in_left -= 1;
-                scratch.out.scale(i, rise[(total - self.fade_in_left) as usize]);
+                self.gain *= rise[(total - self.fade_in_left) as usize];
+            }
+            if let Some(rising) = &mut self.rising {
+                self.gain *= rising.tick(total);
+                if rising.phase >= 1.0 {
+                    self.rising = None;
+                }
             }
             if let Phase::Fading { left } = self.phase {
                 let left = left.saturating_sub(1);
-                scratch.out.scale(i, rise[left as usize]);
+                self.gain *= rise[left as usize];
                 self.phase = Phase::Fading { left };
+            }
+            if self.gain != 1.0 {
+                scratch.out.scale(i, self.gain);
             }
         }
         if self.phase == (Phase::Fading { left: 0 }) {
@@ -614,6 +665,7 @@ impl Scratch {
             position_m: [[0.0; 2]; MAX_BLOCK],
             velocity_m_s: [[0.0; 2]; MAX_BLOCK],
             footprint_m: [0.0; MAX_BLOCK],
+            noise_footprint_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             uv: [[0.0; 2]; MAX_BLOCK],
             force_impulse_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],

@@ -164,5 +164,6 @@ fn impact(body: &str, gained_m_s: f64) -> LogEvent {
         radius_m: CORNER_M,
         striker: Striker::Preset("plastic".into()),
         restitution: CUBE_RESTITUTION,
+        position: 0,
     }
 }

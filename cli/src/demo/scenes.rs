@@ -116,7 +116,12 @@ pub fn plate_modes() -> ModalModel {
             }
         })
         .collect();
-    ModalModel { source: "free circular plate, chosen damping".to_owned(), impulse_n_s: 0.01, modes }
+    ModalModel {
+        source: "free circular plate, chosen damping".to_owned(),
+        impulse_n_s: 0.01,
+        modes,
+        positions: Vec::new(),
+    }
 }
 
 /// Modes of a free steel bar (Euler–Bernoulli, f ∝ (2n+1)²), as a glockenspiel's.
@@ -136,7 +141,12 @@ pub fn bar_modes() -> ModalModel {
             }
         })
         .collect();
-    ModalModel { source: "free bar, chosen damping".to_owned(), impulse_n_s: 0.01, modes }
+    ModalModel {
+        source: "free bar, chosen damping".to_owned(),
+        impulse_n_s: 0.01,
+        modes,
+        positions: Vec::new(),
+    }
 }
 
 fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m): (f64, f64)) -> LogLine {
@@ -150,6 +160,7 @@ fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m)
             radius_m,
             striker: Striker::Preset(striker.to_owned()),
             restitution: 0.5,
+            position: 0,
         },
     }
 }
