@@ -102,6 +102,7 @@ fn report(scene: &mut Scene, time_s: f64, event: ContactEvent) -> Result<(), Box
 
 fn steel_ball_on(body: BodyId) -> ContactEvent {
     ContactEvent::Impact(Impact {
+        position: 0,
         body,
         other: None,
         speed_m_s: 0.8,
@@ -109,6 +110,7 @@ fn steel_ball_on(body: BodyId) -> ContactEvent {
         radius_m: 0.005,
         striker: Material::STEEL,
         restitution: 0.8,
+        position: 0,
     })
 }
 

@@ -1,11 +1,15 @@
 //! A body that rings: its modal bank and the impulse bus that excites it.
 
-use crate::modal_model::ModalModel;
+use crate::governor::Governor;
+use crate::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::queue::{Dead, Sender};
 use crate::voice::pulse_end;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::{self, HertzPulse};
-use asperity_dsp::modal_bank::{self, Awake, GroupOptions, GroupState, Kernel, ModeGroup};
+use asperity_dsp::modal_bank::{
+    self, Awake, Bank, GroupOptions, GroupState, Input, Kernel, LaneGains, ModeGroup,
+};
+use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// Samples of impulse that a body's bus can hold ahead: the longest impact that is rendered whole is
@@ -17,57 +21,139 @@ pub(crate) struct BodySlot {
     groups: Vec<ModeGroup>,
     states: Vec<GroupState>,
     awake: Awake,
+    places: Vec<Place>,
+}
+
+/// One strike position: what reaches the body there.
+struct Place {
+    /// What each lane takes; empty for the only position of a body.
+    gains: Vec<LaneGains>,
     bus: Vec<f64>,
     bus_busy_until: u64,
+    /// What contacts send during the present stretch.
+    contacts_n_s: [f64; MAX_BLOCK],
+    touched: bool,
+    /// All of it, while the stretch is rendered.
+    input: [f32; MAX_BLOCK],
+}
+
+/// How a stretch is rendered.
+#[derive(Clone, Copy)]
+pub(crate) struct Terms<'a> {
+    pub(crate) kernel: Kernel,
+    /// Absolute index of the first sample.
+    pub(crate) position: u64,
+    /// Says how much is left out because blocks run late.
+    pub(crate) governor: &'a Governor,
+}
+
+impl Place {
+    fn new(gains: Vec<LaneGains>) -> Self {
+        let bus = vec![0.0; BUS_SAMPLES];
+        let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
+        Self { gains, bus, bus_busy_until: 0, contacts_n_s, touched: false, input }
+    }
+
+    /// Gathers the impulses of the next `n` samples, and tells whether there may be any.
+    fn gather(&mut self, position: u64, n: usize) -> bool {
+        let input = &mut self.input[..n];
+        input.fill(0.0);
+        let busy = self.bus_busy_until > position;
+        // The bus is empty beyond the last impact.
+        if busy {
+            hertz::take(&mut self.bus, position, input);
+        }
+        if self.touched {
+            for (x, contact) in input.iter_mut().zip(&mut self.contacts_n_s) {
+                *x += std::mem::take(contact) as f32;
+            }
+        }
+        busy | std::mem::take(&mut self.touched)
+    }
 }
 
 impl BodySlot {
     /// Designs the bank at the engine's rate; modes at or above Nyquist stay silent.
     pub(crate) fn new(model: &ModalModel, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let mut modes: Vec<_> = model.unit_modes().filter(|m| m.amplitude != 0.0).collect();
+        let mut modes: Vec<_> = model.unit_modes().filter(|(mode, _)| mode.amplitude != 0.0).collect();
         // Slow decays first, so that the groups still awake are always a prefix.
-        modal_bank::sort_by_decay(&mut modes);
+        modes.sort_by(|(a, _), (b, _)| {
+            a.decay_per_s.total_cmp(&b.decay_per_s).then(a.frequency_hz.total_cmp(&b.frequency_hz))
+        });
         let options = GroupOptions::IMPULSE_RING;
-        let groups = modes
-            .chunks(modal_bank::LANES)
-            .map(|chunk| modal_bank::design_group(chunk, sample_rate_hz, &options))
-            .collect::<Result<Vec<_>, _>>()?;
+        let design = |chunk: &[(Mode, [f32; MAX_POSITIONS])]| {
+            let modes: Vec<_> = chunk.iter().map(|(mode, _)| *mode).collect();
+            modal_bank::design_group(&modes, sample_rate_hz, &options)
+        };
+        let groups = modes.chunks(modal_bank::LANES).map(design).collect::<Result<Vec<_>, _>>()?;
         let states = vec![GroupState::default(); groups.len()];
-        Ok(Self { groups, states, awake: Awake::default(), bus: vec![0.0; BUS_SAMPLES], bus_busy_until: 0 })
+        let gains_at = |position: usize| {
+            let lane = |chunk: &[(Mode, [f32; MAX_POSITIONS])], lane: usize| {
+                chunk.get(lane).map_or(0.0, |(_, shares)| shares[position])
+            };
+            let chunks = modes.chunks(modal_bank::LANES);
+            chunks.map(|chunk| LaneGains(std::array::from_fn(|i| lane(chunk, i)))).collect()
+        };
+        let places = match model.position_count() {
+            1 => vec![Place::new(Vec::new())],
+            count => (0..count).map(|position| Place::new(gains_at(position))).collect(),
+        };
+        Ok(Self { groups, states, awake: Awake::default(), places })
+    }
+
+    /// The place of a strike position; one the body does not have counts as its last.
+    fn place(&mut self, position: usize) -> &mut Place {
+        let last = self.places.len() - 1;
+        &mut self.places[position.min(last)]
     }
 
     /// Adds an impact whose contact begins at `sample`.
-    pub(crate) fn strike(&mut self, pulse: &HertzPulse, sample: u64, sample_rate_hz: f64) {
-        pulse.deposit(&mut self.bus, sample, 0.0, sample_rate_hz);
-        self.bus_busy_until = self.bus_busy_until.max(pulse_end(pulse, sample, sample_rate_hz));
+    pub(crate) fn strike(&mut self, position: usize, pulse: &HertzPulse, sample: u64, sample_rate_hz: f64) {
+        let place = self.place(position);
+        pulse.deposit(&mut place.bus, sample, 0.0, sample_rate_hz);
+        place.bus_busy_until = place.bus_busy_until.max(pulse_end(pulse, sample, sample_rate_hz));
+    }
+
+    /// Adds what one contact sends during the present stretch.
+    fn touch(&mut self, position: usize, impulse_n_s: &[f64]) {
+        let place = self.place(position);
+        place.touched = true;
+        for (sum, x) in place.contacts_n_s.iter_mut().zip(impulse_n_s) {
+            *sum += x;
+        }
     }
 
     /// Whether nothing rings and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
-        self.awake.groups() == 0 && self.bus_busy_until <= position
+        self.awake.groups() == 0
+            && self.places.iter().all(|place| !place.touched && place.bus_busy_until <= position)
     }
 
-    /// Adds the body's sound to `out`. `contacts_n_s` is what touching contacts send at each sample,
-    /// and `touched` whether any contact touches.
-    pub(crate) fn render(
-        &mut self,
-        kernel: Kernel,
-        position: u64,
-        contacts_n_s: &[f64],
-        touched: bool,
-        out: &mut [f32],
-    ) {
-        if !touched && self.is_silent(position) {
-            return;
+    /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck it.
+    pub(crate) fn render(&mut self, terms: Terms<'_>, out: &mut [f32]) -> usize {
+        if self.is_silent(terms.position) {
+            return 0;
         }
-        let mut input = [0.0f32; MAX_BLOCK];
-        let input = &mut input[..out.len()];
-        hertz::take(&mut self.bus, position, input);
-        for (x, contact) in input.iter_mut().zip(contacts_n_s) {
-            *x += *contact as f32;
+        let n = out.len();
+        let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_POSITIONS];
+        let mut count = 0;
+        // Only positions that something reaches are mixed; adding zeros would change nothing.
+        for place in &mut self.places {
+            if place.gather(terms.position, n) || count == 0 {
+                inputs[count] = Input { impulses: &place.input[..n], gains: &place.gains };
+                count += 1;
+            }
         }
-        let (groups, states) = (&self.groups, &mut self.states);
-        self.awake.render(kernel, position, groups, states, input, out, modal_bank::SLEEP_AMPLITUDE);
+        let driven = terms.governor.groups_driven(self.groups.len());
+        let bank = Bank {
+            kernel: terms.kernel,
+            groups: &self.groups,
+            states: &mut self.states,
+            driven,
+            threshold: modal_bank::SLEEP_AMPLITUDE,
+        };
+        self.awake.render_bank(bank, terms.position, &inputs[..count], out);
+        self.groups.len() - driven
     }
 }
 
@@ -76,7 +162,6 @@ impl BodySlot {
 pub(crate) struct BodySeat {
     current: Option<Box<BodySlot>>,
     leaving: [Option<Leaving>; LEAVING],
-    input: Input,
 }
 
 /// Replacements of one body that may still be fading at the same time; more wait in the queue.
@@ -89,22 +174,15 @@ struct Leaving {
     left: u32,
 }
 
-/// What contacts send to the body during the present stretch.
-struct Input {
-    impulse_n_s: [f64; MAX_BLOCK],
-    touched: bool,
-}
-
-impl Default for Input {
-    fn default() -> Self {
-        Self { impulse_n_s: [0.0; MAX_BLOCK], touched: false }
-    }
-}
-
 impl BodySeat {
     /// Whether the body can be replaced now.
     pub(crate) fn can_change(&self) -> bool {
         self.leaving.iter().any(Option::is_none)
+    }
+
+    /// Whether nothing is here and nothing fades.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.current.is_none() && self.leaving.iter().all(Option::is_none)
     }
 
     /// Puts a body here; the one before it rings out.
@@ -121,38 +199,33 @@ impl BodySeat {
     }
 
     /// Adds an impact whose contact begins at `sample`.
-    pub(crate) fn strike(&mut self, pulse: &HertzPulse, sample: u64, sample_rate_hz: f64) {
+    pub(crate) fn strike(&mut self, position: usize, pulse: &HertzPulse, sample: u64, sample_rate_hz: f64) {
         if let Some(body) = &mut self.current {
-            body.strike(pulse, sample, sample_rate_hz);
+            body.strike(position, pulse, sample, sample_rate_hz);
         }
     }
 
     /// Adds what one contact sends.
-    pub(crate) fn touch(&mut self, impulse_n_s: &[f64]) {
-        self.input.touched = true;
-        for (sum, x) in self.input.impulse_n_s.iter_mut().zip(impulse_n_s) {
-            *sum += x;
+    pub(crate) fn touch(&mut self, position: usize, impulse_n_s: &[f64]) {
+        if let Some(body) = &mut self.current {
+            body.touch(position, impulse_n_s);
         }
     }
 
-    /// Adds the sound of the next `out.len()` samples to `out`.
-    pub(crate) fn render(&mut self, kernel: Kernel, position: u64, out: &mut [f32]) {
+    /// Adds the sound of the next `out.len()` samples to `out` and returns how many groups of modes were
+    /// left out.
+    pub(crate) fn render(&mut self, terms: Terms<'_>, out: &mut [f32]) -> usize {
         let n = out.len();
-        if let Some(body) = &mut self.current {
-            let input = &self.input;
-            body.render(kernel, position, &input.impulse_n_s[..n], input.touched, out);
-        }
-        if self.input.touched {
-            self.input = Input::default();
-        }
+        let shed = self.current.as_mut().map_or(0, |body| body.render(terms, out));
         for leaving in self.leaving.iter_mut().flatten() {
             let mut tail = [0.0f32; MAX_BLOCK];
-            leaving.body.render(kernel, position, &[0.0; MAX_BLOCK][..n], false, &mut tail[..n]);
+            leaving.body.render(terms, &mut tail[..n]);
             for (sum, x) in out.iter_mut().zip(&tail) {
                 leaving.left = leaving.left.saturating_sub(1);
                 *sum += x * (leaving.left as f32 / LEAVING_SAMPLES as f32);
             }
         }
+        shed
     }
 
     /// Sends bodies that have left home.

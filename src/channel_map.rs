@@ -194,6 +194,7 @@ mod tests {
                 radius_m: 0.005,
                 striker: crate::Material::STEEL,
                 restitution: 1.0,
+                position: 0,
             };
             scene.report(0.01, crate::ContactEvent::Impact(impact)).unwrap();
             let mut device = Interleaver::new(renderer, ChannelMap::parse("audio=2 haptic=0").unwrap());

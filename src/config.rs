@@ -8,6 +8,7 @@ use crate::scene::Scene;
 use crate::stats::Counters;
 use asperity_dsp::DesignError;
 use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe};
+use asperity_dsp::modal_bank::Culling;
 use asperity_dsp::trajectory::PathMode;
 use std::sync::Arc;
 
@@ -90,6 +91,12 @@ pub struct Config {
     pub contact_timeout_s: f64,
     /// How game time becomes samples.
     pub clock: ClockMode,
+    /// Modes that are left out when a body is added, because nobody can hear them; `None` keeps all. The
+    /// default costs −100 dB of error or less; [`Culling::default`] goes further, as far as the ear does.
+    pub culling: Option<Culling>,
+    /// Whether the audio half leaves out the least audible work while blocks run late, as told by
+    /// [`Renderer::report_load`]. Where nobody reports a load, nothing is ever left out.
+    pub shed_load: bool,
 }
 
 impl Default for Config {
@@ -109,6 +116,8 @@ impl Default for Config {
             queue_capacity: 4096,
             contact_timeout_s: 0.25,
             clock: ClockMode::default(),
+            culling: Some(Culling::NEGLIGIBLE),
+            shed_load: true,
         }
     }
 }
@@ -138,6 +147,14 @@ impl Config {
             (0.01..=3600.0).contains(&t)
         })?;
         DesignError::check("audio.gain", self.audio.gain, "0–1e6", |g| (0.0..=1e6).contains(&g))?;
+        if let Some(culling) = self.culling {
+            // Without end is allowed: nothing is too quiet.
+            let level_db = culling.level_db.clamp(-1.0, 1e9);
+            DesignError::check("culling.level_db", level_db, "0 dB or more", |l| l >= 0.0)?;
+            DesignError::check("culling.loudest_db_spl", culling.loudest_db_spl, "0–200 dB", |l| {
+                (0.0..=200.0).contains(&l)
+            })?;
+        }
         let count = |field, value: usize, most: usize, expected| {
             DesignError::check(field, value as f64, expected, |v| v >= 1.0 && v <= most as f64).map(|_| ())
         };

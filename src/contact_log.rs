@@ -69,6 +69,9 @@ pub enum LogEvent {
         /// Rebound over approach speed; missing: 1, the loss-free Hertz impact.
         #[serde(default = "loss_free")]
         restitution: f64,
+        /// Which of the body's strike positions is hit; missing: 0.
+        #[serde(default, skip_serializing_if = "is_first")]
+        position: usize,
     },
 }
 
@@ -95,6 +98,10 @@ pub struct LogSample {
     /// Approach speed at landing, m/s.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub closing_m_s: f64,
+}
+
+fn is_first(position: &usize) -> bool {
+    *position == 0
 }
 
 fn loss_free() -> f64 {
@@ -217,7 +224,7 @@ impl ContactLog {
                 return Err(LogError::TimeBackwards { place: place(), t: line.t, before });
             }
             if line.t > MAX_TIME_S {
-                let message = format!("t = {} s is more than a day", line.t);
+                let message = format!("t = {:?} s is more than a day", line.t);
                 return Err(LogError::Malformed { place: place(), message });
             }
             before = line.t;
@@ -260,7 +267,7 @@ impl LogEvent {
             },
             Self::Move { contact, sample } => ContactEvent::moved(ContactId(*contact), (*sample).into()),
             Self::End { contact } => ContactEvent::end(ContactId(*contact)),
-            Self::Impact { body, other, speed_m_s, mass_kg, radius_m, striker, restitution } => {
+            Self::Impact { body, other, speed_m_s, mass_kg, radius_m, striker, restitution, position } => {
                 ContactEvent::Impact(Impact {
                     body: find("body", body, &names.bodies)?,
                     other: other.as_ref().map(|name| find("body", name, &names.bodies)).transpose()?,
@@ -269,6 +276,7 @@ impl LogEvent {
                     radius_m: *radius_m,
                     striker: striker.material()?,
                     restitution: *restitution,
+                    position: *position,
                 })
             }
         })

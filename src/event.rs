@@ -63,6 +63,9 @@ pub struct Impact {
     pub striker: Material,
     /// Ratio of rebound to approach speed, 0–1; 1 is the loss-free impact of Hertz theory.
     pub restitution: f64,
+    /// Which of the body's strike positions is hit; 0 is the one every body has, and one that the body
+    /// does not have counts as its last.
+    pub position: usize,
 }
 
 /// One report of the physics step.

@@ -26,9 +26,11 @@ pub mod device;
 pub mod drift;
 mod error;
 mod event;
+mod governor;
 mod material;
 mod modal_model;
 pub mod null_sink;
+mod occupied;
 pub mod offline;
 mod queue;
 mod recording;
@@ -49,7 +51,7 @@ pub use event::{
     MAX_UV, SurfaceId,
 };
 pub use material::Material;
-pub use modal_model::{ModalModel, ModalModelError};
+pub use modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use renderer::Renderer;
 pub use scene::Scene;
 pub use stats::Stats;
@@ -60,6 +62,7 @@ pub use surface::{
 pub use tap::{ContactBlock, NoTap, Tap};
 
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
+pub use asperity_dsp::modal_bank::Culling;
 pub use asperity_dsp::mode::Mode;
 pub use asperity_dsp::trajectory::PathMode;
 /// Sources of surfaces, and maps.

@@ -4,6 +4,7 @@
 //! to an impulse of `impulse_n_s`; the engine scales linearly, so an impulse J sounds as
 //! y · J / `impulse_n_s` (Hasti §III-D).
 
+use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -24,7 +25,13 @@ pub struct ModalModel {
     pub impulse_n_s: f64,
     /// The modes, in any order.
     pub modes: Vec<Mode>,
+    /// Amplitudes when the body is struck elsewhere: strike position 1, 2, … (at most
+    /// [`MAX_POSITIONS`] − 1), each with one amplitude for every mode. Position 0 is `modes` itself.
+    pub positions: Vec<Vec<f64>>,
 }
+
+/// Most strike positions a body may have, the first included.
+pub const MAX_POSITIONS: usize = modal_bank::MAX_INPUTS;
 
 /// Why a modes file was refused.
 #[derive(Debug, thiserror::Error)]
@@ -46,7 +53,7 @@ pub enum ModalModelError {
         message: String,
     },
     /// A number that no body can have.
-    #[error("{field}: {value} is refused; must be {expected}")]
+    #[error("{field}: {value:?} is refused; must be {expected}")]
     BadValue {
         /// Which field of which mode.
         field: String,
@@ -66,6 +73,8 @@ struct File {
     #[serde(default = "one")]
     impulse_n_s: f64,
     modes: Vec<FileMode>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    positions: Vec<Vec<f64>>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -87,7 +96,7 @@ impl ModalModel {
     /// # Errors
     /// When a mode grows, has no frequency, or a number is not finite.
     pub fn new(modes: Vec<Mode>, impulse_n_s: f64) -> Result<Self, ModalModelError> {
-        let model = Self { source: String::new(), impulse_n_s, modes };
+        let model = Self { source: String::new(), impulse_n_s, modes, positions: Vec::new() };
         model.check()?;
         Ok(model)
     }
@@ -135,7 +144,8 @@ impl ModalModel {
                 phase_rad: m.phase_rad,
             })
             .collect();
-        let model = Self { source: file.source, impulse_n_s: file.impulse_n_s, modes };
+        let positions = file.positions;
+        let model = Self { source: file.source, impulse_n_s: file.impulse_n_s, modes, positions };
         model.check()?;
         Ok(model)
     }
@@ -159,13 +169,71 @@ impl ModalModel {
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
             modes,
+            positions: self.positions.clone(),
         };
         serde_json::to_string(&file).unwrap_or_default()
     }
 
-    /// The modes for an impulse of 1 N·s.
-    pub(crate) fn unit_modes(&self) -> impl Iterator<Item = Mode> + '_ {
-        self.modes.iter().map(|m| Mode { amplitude: m.amplitude / self.impulse_n_s, ..*m })
+    /// The same model with more strike positions: one amplitude for every mode in each list.
+    ///
+    /// # Errors
+    /// When a list is not as long as the modes, a number is not finite, or there are too many.
+    pub fn with_positions(mut self, positions: Vec<Vec<f64>>) -> Result<Self, ModalModelError> {
+        self.positions = positions;
+        self.check()?;
+        Ok(self)
+    }
+
+    /// How many strike positions there are, the first included.
+    #[must_use]
+    pub fn position_count(&self) -> usize {
+        1 + self.positions.len()
+    }
+
+    /// The model without the modes that nobody can hear at `sample_rate_hz`, wherever it is struck.
+    #[must_use]
+    pub fn audible(&self, sample_rate_hz: f64, culling: &Culling) -> Self {
+        let mut keep = vec![false; self.modes.len()];
+        let mut audible = vec![false; self.modes.len()];
+        for position in 0..self.position_count() {
+            let modes: Vec<_> = self.modes_at(position).collect();
+            modal_bank::audible(&modes, sample_rate_hz, culling, &mut audible);
+            keep.iter_mut().zip(&audible).for_each(|(keep, audible)| *keep |= audible);
+        }
+        let kept = |i: &usize| keep[*i];
+        Self {
+            modes: (0..self.modes.len()).filter(kept).map(|i| self.modes[i]).collect(),
+            positions: self
+                .positions
+                .iter()
+                .map(|amplitudes| (0..amplitudes.len()).filter(kept).map(|i| amplitudes[i]).collect())
+                .collect(),
+            source: self.source.clone(),
+            impulse_n_s: self.impulse_n_s,
+        }
+    }
+
+    /// The modes as they answer a strike at a position.
+    fn modes_at(&self, position: usize) -> impl Iterator<Item = Mode> + '_ {
+        let elsewhere = position.checked_sub(1).and_then(|i| self.positions.get(i));
+        self.modes.iter().enumerate().map(move |(i, mode)| {
+            let amplitude = elsewhere.and_then(|a| a.get(i)).copied().unwrap_or(mode.amplitude);
+            Mode { amplitude, ..*mode }
+        })
+    }
+
+    /// The modes for an impulse of 1 N·s, each at the position where it answers most, and its share of
+    /// that (−1 to 1) at every position.
+    pub(crate) fn unit_modes(&self) -> impl Iterator<Item = (Mode, [f32; MAX_POSITIONS])> + '_ {
+        (0..self.modes.len()).map(|i| {
+            let mode = self.modes[i];
+            let at = |p: usize| if p == 0 { mode.amplitude } else { self.positions[p - 1][i] };
+            let most = (0..self.position_count()).map(at).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            let most = most.unwrap_or(mode.amplitude);
+            let share =
+                |p| if p < self.position_count() && most != 0.0 { (at(p) / most) as f32 } else { 0.0 };
+            (Mode { amplitude: most / self.impulse_n_s, ..mode }, std::array::from_fn(share))
+        })
     }
 
     fn check(&self) -> Result<(), ModalModelError> {
@@ -177,6 +245,18 @@ impl ModalModel {
         }
         if self.modes.len() > MAX_MODES {
             return Err(refuse("modes".into(), self.modes.len() as f64, "at most 65536 modes"));
+        }
+        if self.positions.len() >= MAX_POSITIONS {
+            return Err(refuse("positions".into(), self.positions.len() as f64, "at most 15 lists"));
+        }
+        for (p, amplitudes) in self.positions.iter().enumerate() {
+            if amplitudes.len() != self.modes.len() {
+                let expected = "as many amplitudes as there are modes";
+                return Err(refuse(format!("positions[{p}]"), amplitudes.len() as f64, expected));
+            }
+            if let Some(bad) = amplitudes.iter().find(|a| !in_range(**a, -1e9, 1e9)) {
+                return Err(refuse(format!("positions[{p}]"), *bad, "finite, within ±1e9"));
+            }
         }
         for (i, mode) in self.modes.iter().enumerate() {
             if !in_range(mode.frequency_hz, 1e-3, 1e7) {
@@ -223,7 +303,7 @@ mod tests {
     #[test]
     fn unit_modes_are_scaled_by_the_recorded_strike() {
         let model = ModalModel::parse(TILE).unwrap();
-        let unit = model.unit_modes().next().unwrap();
+        let (unit, _) = model.unit_modes().next().unwrap();
         assert!((unit.amplitude - 31.0).abs() < 1e-12);
     }
 

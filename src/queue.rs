@@ -13,7 +13,7 @@ pub(crate) enum Message {
     /// What a contact does, and the sample it holds at.
     Event { sample: u64, event: ContactEvent },
     /// A rigid striker hits a body, and perhaps rings itself.
-    Strike { sample: u64, body: usize, other: Option<usize>, pulse: HertzPulse },
+    Strike { sample: u64, body: usize, position: usize, other: Option<usize>, pulse: HertzPulse },
     /// A surface for a new or used slot.
     SetSurface { slot: usize, surface: Box<SurfaceSlot> },
     /// Parameters of a surface change while it is touched.

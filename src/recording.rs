@@ -41,6 +41,7 @@ impl Recording {
                 radius_m: impact.radius_m,
                 striker: Striker::Constants(impact.striker),
                 restitution: impact.restitution,
+                position: impact.position,
             },
         };
         self.lines.push(LogLine { t: time_s, event });

@@ -4,9 +4,11 @@
 //! made by [`Config::build`](crate::Config::build). Time is cut at events and on an absolute grid of
 //! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
 
-use crate::body::BodySeat;
+use crate::body::{BodySeat, Terms};
 use crate::config::{ActuatorSettings, AudioSettings, Config};
 use crate::event::{ContactEvent, ContactId, ContactSample, SurfaceId};
+use crate::governor::Governor;
+use crate::occupied::Occupied;
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::seat::{Change, Seat};
 use crate::stats::Counters;
@@ -29,36 +31,26 @@ use std::sync::atomic::Ordering::Relaxed;
 /// Where the audio limiter holds the peaks: full scale.
 const AUDIO_CEILING: f64 = 1.0;
 
-/// Share of the time budget above which a block counts as overloaded (chosen: what is left is the
-/// system's jitter).
-const OVERLOAD: f32 = 0.85;
-/// So many overloaded blocks in a row are no coincidence.
-const OVERLOADED_BLOCKS: u32 = 4;
-/// So long without overload allows one contact more, s.
-const CALM_S: f64 = 0.5;
-
-/// Keeps the load below what the device gives: how many contacts may sound at present.
-struct Governor {
-    allowed: usize,
-    overloaded: u32,
-    /// Sample of the last overload, or of the last contact that was allowed again.
-    calm_since: u64,
-}
-
 /// The audio half of an engine.
 pub struct Renderer {
     position: u64,
     shared: Shared,
     timeout_samples: u64,
     max_contacts: usize,
-    governor: Governor,
     voices: Vec<Voice>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
     bodies: Vec<BodySeat>,
+    /// Which of the three are in use, so that empty places cost nothing.
+    voices_used: Occupied,
+    seats_used: Occupied,
+    bodies_used: Occupied,
     channels: Vec<HapticChannel>,
     audio: AudioBus,
     kernel: Kernel,
+    governor: Governor,
+    /// Groups of modes left out in the present stretch.
+    groups_shed: usize,
     from_game: Receiver<Message>,
     to_game: Sender<Dead>,
     counters: Arc<Counters>,
@@ -110,7 +102,8 @@ impl Renderer {
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
             micro_contact,
             noise: FractalNoise::new(config.seed),
-            fade_samples: (RELEASE_S * rate).ceil() as u32,
+            noise_octaves_gone: 0,
+            fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
         };
         // Spare voices let stolen and ended contacts fade while new ones sound.
         let voices = config.max_contacts + config.max_contacts.div_ceil(2).max(8);
@@ -118,8 +111,10 @@ impl Renderer {
             position: 0,
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
-            governor: Governor { allowed: config.max_contacts, overloaded: 0, calm_since: 0 },
             voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
+            voices_used: Occupied::new(voices),
+            seats_used: Occupied::new(config.max_surfaces),
+            bodies_used: Occupied::new(config.max_bodies),
             silent: Vec::with_capacity(config.max_contacts),
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
             bodies: (0..config.max_bodies).map(|_| BodySeat::default()).collect(),
@@ -130,6 +125,8 @@ impl Renderer {
                 .collect::<Result<_, _>>()?,
             audio: AudioBus::new(&config.audio, rate)?,
             kernel: Kernel::detect(),
+            governor: Governor::new(config.shed_load, rate),
+            groups_shed: 0,
             from_game,
             to_game,
             counters,
@@ -165,31 +162,21 @@ impl Renderer {
     }
 
     /// Tells the engine which share of its time budget the last block took (1 = all of it); the device
-    /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load).
-    ///
-    /// After several overloaded blocks in a row the least important contact fades and is counted as
-    /// [`shed`](crate::Stats::shed); once there is room again, its next move brings it back. Offline
-    /// nobody tells, so nothing is shed.
+    /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load). When
+    /// blocks run late, the least audible work is left out ([`Config::shed_load`](crate::Config::shed_load)).
     pub fn report_load(&mut self, load: f32) {
         self.counters.set_load(load);
-        let sounding = self.sounding_count();
-        if load > OVERLOAD {
-            self.governor.overloaded += 1;
-            self.governor.calm_since = self.position;
-            if self.governor.overloaded >= OVERLOADED_BLOCKS && sounding > 1 {
-                self.governor.overloaded = 0;
-                self.governor.allowed = sounding - 1;
-                Counters::add(&self.counters.shed, 1);
-                self.silence_least();
-            }
-            return;
+        self.governor.hear(load, self.position, self.sounding_count());
+        self.shared.noise_octaves_gone = self.governor.octaves_gone();
+        if self.sounding_count() > self.contact_limit() {
+            Counters::add(&self.counters.shed, 1);
+            self.silence_least();
         }
-        self.governor.overloaded = 0;
-        let calm_samples = self.position.saturating_sub(self.governor.calm_since) as f64;
-        if self.governor.allowed < self.max_contacts && calm_samples > CALM_S * self.shared.sample_rate_hz {
-            self.governor.allowed += 1;
-            self.governor.calm_since = self.position;
-        }
+    }
+
+    /// How many contacts may sound at present.
+    fn contact_limit(&self) -> usize {
+        self.governor.contacts(self.max_contacts)
     }
 
     /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
@@ -277,12 +264,13 @@ impl Renderer {
                 Counters::add(&self.counters.late, u64::from(sample < self.position));
                 self.apply_event(&event, sample);
             }
-            Message::Strike { sample, body, other, pulse } => {
+            Message::Strike { sample, body, position, other, pulse } => {
                 Counters::add(&self.counters.events, 1);
                 Counters::add(&self.counters.impacts, 1);
                 Counters::add(&self.counters.late, u64::from(sample < self.position));
-                for body in [Some(body), other].into_iter().flatten() {
-                    self.strike(body, &pulse);
+                self.strike(body, position, &pulse);
+                if let Some(other) = other {
+                    self.strike(other, 0, &pulse);
                 }
             }
             Message::SetSurface { slot, surface } => self.set_surface(slot, surface),
@@ -297,7 +285,10 @@ impl Renderer {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);
             }
-            Message::SetBody { slot, body } => self.bodies[slot].set(body),
+            Message::SetBody { slot, body } => {
+                self.bodies[slot].set(body);
+                self.bodies_used.insert(slot);
+            }
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
         }
@@ -337,7 +328,7 @@ impl Renderer {
         let Some(slot) = self.seats[surface].current().filter(|_| self.seats[surface].is_open()) else {
             return false;
         };
-        let sounding = self.sounding_count();
+        let full = self.sounding_count() >= self.contact_limit();
         let Some(voice) = self.voices.iter_mut().find(|voice| {
             voice.contact == contact
                 && (voice.surface, voice.actuator) == (surface, actuator)
@@ -347,7 +338,7 @@ impl Renderer {
         }) else {
             return false;
         };
-        if sounding >= self.governor.allowed {
+        if full {
             return false;
         }
         voice.resume(&self.shared);
@@ -362,6 +353,7 @@ impl Renderer {
             return;
         }
         let voice = self.take_voice();
+        self.voices_used.insert(voice);
         let voice = &mut self.voices[voice];
         (voice.surface, voice.actuator) = (surface, actuator);
         voice.begin(
@@ -387,7 +379,7 @@ impl Renderer {
             return;
         };
         let silent = self.silent[index];
-        if silent.stolen && self.sounding_count() >= self.governor.allowed {
+        if silent.stolen && self.sounding_count() >= self.contact_limit() {
             Counters::add(&self.counters.orphaned, 1);
             return;
         }
@@ -410,12 +402,12 @@ impl Renderer {
     }
 
     fn sounding_count(&self) -> usize {
-        self.voices.iter().filter(|voice| voice.phase == Phase::Sounding).count()
+        self.voices_used.iter().filter(|&voice| self.voices[voice].phase == Phase::Sounding).count()
     }
 
     /// A voice for a new contact: a free one, after stealing the least important when all are taken.
     fn take_voice(&mut self) -> usize {
-        if self.sounding_count() >= self.governor.allowed {
+        if self.sounding_count() >= self.contact_limit() {
             Counters::add(&self.counters.stolen, 1);
             self.silence_least();
         }
@@ -429,10 +421,9 @@ impl Renderer {
 
     /// Fades the least important contact.
     fn silence_least(&mut self) {
-        let least = (0..self.voices.len())
-            .filter(|&i| self.voices[i].phase == Phase::Sounding)
-            .min_by(|&a, &b| self.voices[a].priority().total_cmp(&self.voices[b].priority()));
-        if let Some(least) = least {
+        let priority = |i: &usize| self.voices[*i].priority();
+        let sounding = self.voices_used.iter().filter(|&i| self.voices[i].phase == Phase::Sounding);
+        if let Some(least) = sounding.min_by(|a, b| priority(a).total_cmp(&priority(b))) {
             self.silence(least, true);
         }
     }
@@ -454,6 +445,7 @@ impl Renderer {
 
     fn set_surface(&mut self, slot: usize, surface: Box<crate::surface::SurfaceSlot>) {
         let rate = self.shared.sample_rate_hz;
+        self.seats_used.insert(slot);
         if self.seats[slot].set(surface, self.position, rate, &mut self.to_game) == Change::Restart {
             for index in 0..self.voices.len() {
                 if self.voices[index].surface == slot && self.voices[index].phase == Phase::Sounding {
@@ -470,10 +462,10 @@ impl Renderer {
         self.silent.retain(|silent| silent.surface != slot);
     }
 
-    fn strike(&mut self, body: usize, pulse: &asperity_dsp::hertz::HertzPulse) {
+    fn strike(&mut self, body: usize, position: usize, pulse: &asperity_dsp::hertz::HertzPulse) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
         let sample = self.position + self.latency_samples() as u64;
-        self.bodies[body].strike(pulse, sample, self.shared.sample_rate_hz);
+        self.bodies[body].strike(position, pulse, sample, self.shared.sample_rate_hz);
     }
 
     fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
@@ -481,7 +473,11 @@ impl Renderer {
             channel.sum[..n].fill(0.0);
         }
         let (mut collisions, mut resets) = (0, 0);
-        for voice in self.voices.iter_mut().filter(|voice| voice.phase != Phase::Free) {
+        for voice in self.voices_used.iter() {
+            let voice = &mut self.voices[voice];
+            if voice.phase == Phase::Free {
+                continue;
+            }
             let seat = &mut self.seats[voice.surface];
             let channel = &mut self.channels[voice.actuator];
             voice.render(seat, &self.shared, &channel.output, self.position, n, &mut self.scratch, tap);
@@ -491,9 +487,12 @@ impl Renderer {
             for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
                 *sum += x;
             }
-            let body = seat.current().and_then(|slot| slot.surface.body);
-            if let Some(body) = body.map(|id| &mut self.bodies[id.0 as usize]) {
-                body.touch(&out.impulse_n_s[..n]);
+            if !out.excites {
+                continue;
+            }
+            let surface = seat.current().map(|slot| &slot.surface);
+            if let Some((body, place)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
+                self.bodies[body.0 as usize].touch(place, &out.impulse_n_s[..n]);
             }
         }
         Counters::add(&self.counters.micro_collisions, collisions);
@@ -513,9 +512,12 @@ impl Renderer {
     fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
         let mix = &mut self.mix.audio[..n];
         mix.fill(0.0);
-        for body in &mut self.bodies {
-            body.render(self.kernel, self.position, mix);
+        let terms = Terms { kernel: self.kernel, position: self.position, governor: &self.governor };
+        let mut shed = 0;
+        for body in self.bodies_used.iter() {
+            shed += self.bodies[body].render(terms, mix);
         }
+        self.groups_shed = shed;
         self.audio.finish(mix);
         for out in audio {
             out[at..at + n].copy_from_slice(mix);
@@ -524,7 +526,9 @@ impl Renderer {
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
     fn tidy(&mut self) {
-        for index in 0..self.voices.len() {
+        self.voices_used.retain(|voice| self.voices[voice].phase != Phase::Free);
+        for at in 0..self.voices_used.len() {
+            let index = self.voices_used.at(at);
             let voice = &self.voices[index];
             let lapsed = self.position.saturating_sub(voice.refreshed) > self.timeout_samples;
             if voice.phase == Phase::Sounding && lapsed {
@@ -532,15 +536,27 @@ impl Renderer {
                 self.silence(index, false);
             }
         }
-        for (index, seat) in self.seats.iter_mut().enumerate() {
-            let in_use = || self.voices.iter().any(|v| v.surface == index && v.phase != Phase::Free);
-            seat.tidy(self.position, in_use, &mut self.to_game);
-        }
-        for body in &mut self.bodies {
-            body.tidy(self.position, &mut self.to_game);
-        }
-        self.counters.contacts.store(self.sounding_count() as u64, Relaxed);
+        self.seats_used.retain(|index| {
+            let sounds = |voice: usize| self.voices[voice].phase != Phase::Free;
+            let in_use = || self.voices_used.iter().any(|v| self.voices[v].surface == index && sounds(v));
+            self.seats[index].tidy(self.position, in_use, &mut self.to_game);
+            !self.seats[index].is_empty()
+        });
+        self.bodies_used.retain(|index| {
+            self.bodies[index].tidy(self.position, &mut self.to_game);
+            !self.bodies[index].is_empty()
+        });
+        let sounding = self.sounding_count() as u64;
+        let octaves = u64::from(self.governor.octaves_gone()) * sounding;
+        Counters::add(&self.counters.shed, self.groups_shed as u64 + octaves);
+        self.counters.contacts.store(sounding, Relaxed);
     }
+}
+
+/// A rise from 0 to 1 in `steps` steps, without step or corner.
+fn raised_cosine(steps: usize) -> Box<[f64]> {
+    let at = |step: usize| 0.5 - 0.5 * (std::f64::consts::PI * step as f64 / steps as f64).cos();
+    (0..=steps).map(at).collect()
 }
 
 /// Rebound over closing speed of the pad as a damped oscillator on the contact spring: e^(−πζ/√(1−ζ²)).

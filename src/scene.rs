@@ -117,7 +117,9 @@ impl Scene {
 
     fn set_body(&mut self, slot: usize, model: &ModalModel, material: Material) -> Result<(), AddError> {
         let material = material.checked()?;
-        let body = Box::new(BodySlot::new(model, self.config.sample_rate_hz)?);
+        let rate = self.config.sample_rate_hz;
+        let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
+        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate)?);
         self.send(Message::SetBody { slot, body })?;
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
@@ -331,7 +333,13 @@ impl Scene {
             return Ok(());
         }
         let other = impact.other.map(|other| other.0 as usize);
-        self.send_event(Message::Strike { sample, body: impact.body.0 as usize, other, pulse })
+        self.send_event(Message::Strike {
+            sample,
+            body: impact.body.0 as usize,
+            position: impact.position,
+            other,
+            pulse,
+        })
     }
 
     fn send_event(&mut self, message: Message) -> Result<(), Refusal> {

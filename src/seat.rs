@@ -26,6 +26,13 @@ pub(crate) struct Seat {
     removed: bool,
 }
 
+/// The micro-noise along a path.
+pub(crate) struct Noise<'a> {
+    pub(crate) field: &'a FractalNoise,
+    /// As the path's, or wider where octaves are left out.
+    pub(crate) footprint_m: &'a [f64],
+}
+
 /// What setting a surface means for the contacts on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Change {
@@ -79,6 +86,11 @@ impl Seat {
         self.current.is_some() && !self.removed
     }
 
+    /// Whether no surface is here.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.current.is_none()
+    }
+
     fn start_change(&mut self, surface: Box<SurfaceSlot>, position: u64) {
         self.previous = self.current.replace(surface);
         self.change_began = position;
@@ -103,7 +115,7 @@ impl Seat {
     pub(crate) fn sample(
         &mut self,
         path: &PathBlock<'_>,
-        noise: &FractalNoise,
+        noise: &Noise<'_>,
         out: &mut SurfaceBlock,
         rough: &mut SurfaceBlock,
     ) {
@@ -164,7 +176,7 @@ impl SurfaceSlot {
     fn sample(
         &mut self,
         path: &PathBlock<'_>,
-        noise: &FractalNoise,
+        noise: &Noise<'_>,
         out: &mut SurfaceBlock,
         rough: &mut SurfaceBlock,
     ) {
@@ -189,8 +201,8 @@ impl SurfaceSlot {
             out.friction[..n].fill(friction);
         }
         if surface.micro_relief_m > 0.0 {
-            noise.add(
-                &NoisePath { position_m: path.position_m, footprint_m: path.footprint_m },
+            noise.field.add(
+                &NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m },
                 &out.roughness[..n],
                 surface.micro_relief_m,
                 self.noise_longest_m,

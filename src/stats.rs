@@ -59,7 +59,8 @@ counters! {
     late,
     /// Times the game clock was tied to the audio clock anew.
     clock_jumps,
-    /// Contacts silenced because the last blocks took too much of their time.
+    /// Pieces of work left out because blocks ran late: a group of modes or an octave of a contact's noise
+    /// for 64 samples, or a contact.
     shed,
     /// Contacts sounding now.
     contacts,

@@ -57,6 +57,7 @@ pub struct Surface {
     pub(crate) micro_relief_m: f64,
     pub(crate) friction: Option<f64>,
     pub(crate) excitation: Excitation,
+    pub(crate) strike_position: usize,
 }
 
 impl std::fmt::Debug for Surface {
@@ -110,6 +111,7 @@ impl Surface {
             micro_relief_m: DEFAULT_MICRO_RELIEF_M,
             friction: None,
             excitation: Excitation::default(),
+            strike_position: 0,
         })
     }
 
@@ -132,6 +134,14 @@ impl Surface {
     #[must_use]
     pub fn on(mut self, body: BodyId) -> Self {
         self.body = Some(body);
+        self
+    }
+
+    /// Which of the body's strike positions contacts on this surface excite; 0 unless told otherwise. A
+    /// position the body does not have counts as its last.
+    #[must_use]
+    pub fn at_strike_position(mut self, position: usize) -> Self {
+        self.strike_position = position;
         self
     }
 

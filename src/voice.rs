@@ -3,13 +3,13 @@
 //! path → profile → micro-contact → { pad displacement → actuator, impulses → body }
 
 use crate::event::{ContactId, ContactSample};
-use crate::seat::Seat;
+use crate::seat::{Noise, Seat};
 use crate::surface::{Excitation, SurfaceSlot};
 use crate::tap::{ContactBlock, Tap};
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
-use asperity_dsp::hertz::{self, HertzPulse, OnsetMerge};
+use asperity_dsp::hertz::{self, FORCE_HISTORY, HertzPulse, OnsetMerge};
 use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact, Onset};
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
@@ -47,7 +47,16 @@ pub(crate) struct Shared {
     pub(crate) noise: FractalNoise,
     /// Momentum of a micro-collision per closing speed, kg: pad mass × (1 + restitution).
     pub(crate) collision_mass_kg: f64,
-    pub(crate) fade_samples: u32,
+    /// Octaves of noise left out because blocks run late.
+    pub(crate) noise_octaves_gone: u32,
+    /// The rise of a fade, 0 to 1.
+    pub(crate) fade: Box<[f64]>,
+}
+
+impl Shared {
+    fn fade_samples(&self) -> u32 {
+        self.fade.len().saturating_sub(1) as u32
+    }
 }
 
 /// Where the sound and feel of a voice stand.
@@ -89,6 +98,8 @@ pub(crate) struct Voice {
     force_high_pass: butterworth::State,
     reaction: Reaction,
     grains: Rng,
+    /// The impulses of the last forces, which are still on their way to the body.
+    force_history_n_s: [f64; FORCE_HISTORY],
     bus: Vec<f64>,
     bus_busy_until: u64,
 }
@@ -119,6 +130,8 @@ pub(crate) struct VoiceBlock {
     /// m or m/s², as the actuator plays it.
     pub(crate) haptic: [f64; MAX_BLOCK],
     pub(crate) impulse_n_s: [f64; MAX_BLOCK],
+    /// Whether `impulse_n_s` is more than zeros.
+    pub(crate) excites: bool,
     pub(crate) collisions: u64,
     pub(crate) resets: u64,
 }
@@ -130,20 +143,17 @@ impl VoiceBlock {
     }
 }
 
-/// 0 at `step` 0, 1 at `step` = `total`.
-fn raised_cosine(step: u32, total: u32) -> f64 {
-    0.5 - 0.5 * (std::f64::consts::PI * f64::from(step) / f64::from(total)).cos()
-}
-
 /// Work space of one stretch; reused by every voice.
 pub(crate) struct Scratch {
     points: [PathPoint; MAX_BLOCK],
     position_m: [[f64; 2]; MAX_BLOCK],
     velocity_m_s: [[f64; 2]; MAX_BLOCK],
     footprint_m: [f64; MAX_BLOCK],
+    noise_footprint_m: [f64; MAX_BLOCK],
     force_n: [f64; MAX_BLOCK],
     uv: [[f64; 2]; MAX_BLOCK],
-    force_impulse_n_s: [f64; MAX_BLOCK],
+    /// The contact's history, then one value a sample.
+    force_impulse_n_s: [f64; FORCE_HISTORY + MAX_BLOCK],
     surface: SurfaceBlock,
     rough: SurfaceBlock,
     pad: [PadSample; MAX_BLOCK],
@@ -178,6 +188,7 @@ impl Voice {
             force_high_pass: butterworth::State::default(),
             reaction: Reaction::default(),
             grains: Rng::new(slot as u64),
+            force_history_n_s: [0.0; FORCE_HISTORY],
             bus: vec![0.0; BUS_SAMPLES],
             bus_busy_until: 0,
         }
@@ -202,7 +213,7 @@ impl Voice {
         self.asleep = false;
         self.ended = false;
         self.rising = None;
-        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples };
+        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         self.last_point = PathPoint {
             position_m: event.position_m,
@@ -224,7 +235,10 @@ impl Voice {
         self.merge = OnsetMerge::default();
         self.reaction = Reaction::default();
         self.grains = Rng::new(contact.0 ^ position.rotate_left(32));
-        self.bus.fill(0.0);
+        self.force_history_n_s = [0.0; FORCE_HISTORY];
+        if self.bus_busy_until > position {
+            self.bus.fill(0.0);
+        }
         self.bus_busy_until = 0;
     }
 
@@ -248,7 +262,7 @@ impl Voice {
     /// Starts to fade, if it has not yet.
     pub(crate) fn fade(&mut self, shared: &Shared) {
         if self.phase == Phase::Sounding {
-            self.phase = Phase::Fading { left: shared.fade_samples };
+            self.phase = Phase::Fading { left: shared.fade_samples() };
         }
     }
 
@@ -266,8 +280,8 @@ impl Voice {
 
     /// Comes back out of its fade, from the level it has faded to and without a corner.
     pub(crate) fn resume(&mut self, shared: &Shared) {
-        let step = 1.0 / f64::from(shared.fade_samples);
-        let faded = matches!(self.phase, Phase::Fading { left } if left < shared.fade_samples);
+        let step = 1.0 / f64::from(shared.fade_samples());
+        let faded = matches!(self.phase, Phase::Fading { left } if left < shared.fade_samples());
         let phase = (1.0 - 2.0 * self.gain).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
         // Before the first faded sample nothing has happened yet.
         self.rising = faded.then_some(Rising { phase, speed: -step });
@@ -301,6 +315,14 @@ impl Voice {
         tap: &mut T,
     ) {
         let at_grid = position.is_multiple_of(MAX_BLOCK as u64);
+        let wanted = n;
+        // Nothing is computed, counted or shown after a fade, wherever the stretch ends.
+        let n = match self.phase {
+            Phase::Fading { left } => n.min(left as usize),
+            Phase::Free | Phase::Sounding => n,
+        };
+        scratch.out.haptic[n..wanted].fill(0.0);
+        scratch.out.impulse_n_s[n..wanted].fill(0.0);
         if self.asleep {
             self.rest(n, scratch);
         } else {
@@ -310,11 +332,14 @@ impl Voice {
                 self.press(seat, position);
             }
             self.touch(shared, n, scratch);
+            self.filter(seat, shared, output, n, scratch);
             self.excite(seat, shared, position, n, scratch);
-            self.feel(output, n, scratch);
         }
         self.apply_fades(shared, n, scratch);
         self.show(seat, shared, position, n, scratch, tap);
+        if self.phase == Phase::Free {
+            return;
+        }
         self.last_point = scratch.points[n - 1];
         if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
             self.fall_asleep_when_still(output, shared, position, n, scratch);
@@ -329,11 +354,15 @@ impl Voice {
 
     /// Heights along the path: the source, and the paper's micro-noise below the source's own band.
     fn profile(&self, seat: &mut Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
+        let step_s = 1.0 / shared.sample_rate_hz;
+        let widened = f64::from(1u32 << shared.noise_octaves_gone);
         for (i, point) in scratch.points[..n].iter().enumerate() {
             let [u, v] = point.velocity_m_s;
             scratch.position_m[i] = point.position_m;
             scratch.velocity_m_s[i] = point.velocity_m_s;
-            scratch.footprint_m[i] = (u * u + v * v).sqrt() / shared.sample_rate_hz;
+            scratch.footprint_m[i] = (u * u + v * v).sqrt() * step_s;
+            // A footprint twice as wide hides the finest octave that is left.
+            scratch.noise_footprint_m[i] = scratch.footprint_m[i] * widened;
             scratch.force_n[i] = point.normal_force_n;
         }
         let path = PathBlock {
@@ -343,7 +372,8 @@ impl Voice {
             first_sample: position,
             contact: self.slot,
         };
-        seat.sample(&path, &shared.noise, &mut scratch.surface, &mut scratch.rough);
+        let noise = Noise { field: &shared.noise, footprint_m: &scratch.noise_footprint_m[..n] };
+        seat.sample(&path, &noise, &mut scratch.surface, &mut scratch.rough);
         // A surface that gives way lies lower by as much as the force presses it in.
         let surface = &mut scratch.surface;
         let give = surface.compliance_m_n[..n].iter().zip(&scratch.force_n);
@@ -376,38 +406,73 @@ impl Voice {
         self.resets_told = resets;
     }
 
+    /// The two high-passes of a contact side by side, because each waits for itself most of the time: the
+    /// pad's displacement or acceleration about the mean surface, which the actuator is to reproduce, and
+    /// the alternating contact force, which sounds.
+    fn filter(
+        &mut self,
+        seat: &Seat,
+        shared: &Shared,
+        output: &ContactOutput,
+        n: usize,
+        scratch: &mut Scratch,
+    ) {
+        let Some(slot) = seat.current() else { return };
+        let high_pass = slot.force_high_pass;
+        // A force that is not to sound counts as 0 N.
+        let sounds = slot.surface.excitation != Excitation::Collisions;
+        let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
+        let (mut force, mut feel) = (self.force_high_pass, self.feel);
+        let rows = scratch.pad[..n].iter();
+        let outputs = scratch.force_impulse_n_s[FORCE_HISTORY..].iter_mut().zip(&mut scratch.out.haptic);
+        for (row, (impulse_n_s, out)) in rows.zip(outputs) {
+            let alternating_n = force.tick(&high_pass, row.contact_force_n).high;
+            *impulse_n_s = if alternating_n.abs() < ROUNDING_N { 0.0 } else { alternating_n * step_s };
+            let felt = feel.tick(output, row.pad_m, row.pad_velocity_m_s);
+            *out = if felt.abs() < ROUNDING { 0.0 } else { felt };
+        }
+        (self.force_high_pass, self.feel) = (force, feel);
+        self.last_felt = scratch.out.haptic[n - 1];
+    }
+
     /// What the contact sends to the body: a Hertz pulse for each micro-collision and each grain, and
-    /// the alternating contact force.
+    /// the alternating contact force. Pulses and force meet sample by sample, not in the bus, so that
+    /// the order of additions depends on no split into blocks.
     fn excite(&mut self, seat: &Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
         let Some(slot) = seat.current() else { return };
         let excitation = slot.surface.excitation;
         let rate = shared.sample_rate_hz;
         scratch.out.collisions = 0;
+        let grains = self.reaction.grain_rate_per_s > 0.0;
         for i in 0..n {
             let sample = position + i as u64;
-            let row = &scratch.pad[i];
-            if let Some(onset) = row.onset {
+            if let Some(onset) = scratch.pad[i].onset {
                 scratch.out.collisions += 1;
                 if excitation != Excitation::Force {
                     // An onset is dated within the step that ends at its row.
                     self.collide(slot, shared, &onset, sample.saturating_sub(1));
                 }
             }
-            let alternating_n = self.force_high_pass.tick(&slot.force_high_pass, row.contact_force_n).high;
-            let moves = alternating_n.abs() >= ROUNDING_N;
-            scratch.force_impulse_n_s[i] = if moves { alternating_n / rate } else { 0.0 };
-            if self.reaction.grain_rate_per_s > 0.0 {
+            if grains {
                 self.shift_grain(slot, sample, rate);
             }
         }
-        if excitation != Excitation::Collisions {
-            hertz::deposit_force(&mut self.bus, position, &scratch.force_impulse_n_s[..n]);
+        self.empty_bus(position, &mut scratch.out.impulse_n_s[..n]);
+        let forces_n_s = &mut scratch.force_impulse_n_s;
+        forces_n_s[..FORCE_HISTORY].copy_from_slice(&self.force_history_n_s);
+        hertz::spread_force(&forces_n_s[..FORCE_HISTORY + n], &mut scratch.out.impulse_n_s[..n]);
+        self.force_history_n_s.copy_from_slice(&forces_n_s[n..n + FORCE_HISTORY]);
+        scratch.out.excites = true;
+    }
+
+    /// Takes the pulses of the coming samples off the bus, which is empty beyond the last pulse.
+    fn empty_bus(&mut self, position: u64, out: &mut [f64]) {
+        if self.bus_busy_until <= position {
+            return out.fill(0.0);
         }
         let mask = self.bus.len() - 1;
-        for i in 0..n {
-            let cell = &mut self.bus[(position as usize).wrapping_add(i) & mask];
-            scratch.out.impulse_n_s[i] = *cell;
-            *cell = 0.0;
+        for (i, y) in out.iter_mut().enumerate() {
+            *y = std::mem::take(&mut self.bus[(position as usize).wrapping_add(i) & mask]);
         }
     }
 
@@ -441,33 +506,29 @@ impl Voice {
         self.bus_busy_until = self.bus_busy_until.max(pulse_end(pulse, sample, sample_rate_hz));
     }
 
-    /// What the actuator is to reproduce: the pad's displacement or acceleration about the mean surface.
-    fn feel(&mut self, output: &ContactOutput, n: usize, scratch: &mut Scratch) {
-        for (out, row) in scratch.out.haptic[..n].iter_mut().zip(&scratch.pad[..n]) {
-            let felt = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
-            *out = if felt.abs() < ROUNDING { 0.0 } else { felt };
-        }
-        self.last_felt = scratch.out.haptic[n - 1];
-    }
-
     /// A resting contact: nothing moves, so nothing is computed; the rows stay as they were.
     fn rest(&mut self, n: usize, scratch: &mut Scratch) {
         scratch.points[..n].fill(self.last_point);
         scratch.pad[..n].fill(self.last_row);
         scratch.out.haptic[..n].fill(self.last_felt);
         scratch.out.impulse_n_s[..n].fill(0.0);
+        scratch.out.excites = false;
         (scratch.out.collisions, scratch.out.resets) = (0, 0);
     }
 
     /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
     /// its own beginning), out for one that ended, lapsed or was stolen.
     fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        let total = shared.fade_samples;
+        if self.fade_in_left == 0 && self.rising.is_none() && self.phase == Phase::Sounding {
+            self.gain = 1.0;
+            return;
+        }
+        let (total, rise) = (shared.fade_samples(), &shared.fade);
         for i in 0..n {
             self.gain = 1.0;
             if self.fade_in_left > 0 {
                 self.fade_in_left -= 1;
-                self.gain *= raised_cosine(total - self.fade_in_left, total);
+                self.gain *= rise[(total - self.fade_in_left) as usize];
             }
             if let Some(rising) = &mut self.rising {
                 self.gain *= rising.tick(total);
@@ -477,7 +538,7 @@ impl Voice {
             }
             if let Phase::Fading { left } = self.phase {
                 let left = left.saturating_sub(1);
-                self.gain *= raised_cosine(left, total);
+                self.gain *= rise[left as usize];
                 self.phase = Phase::Fading { left };
             }
             if self.gain != 1.0 {
@@ -517,7 +578,7 @@ impl Voice {
             && self.bus_busy_until <= position + n as u64;
         if self.asleep {
             self.last_felt = if felt.abs() < still { 0.0 } else { felt };
-            self.bus.fill(0.0);
+            self.force_history_n_s = [0.0; FORCE_HISTORY];
         }
     }
 
@@ -602,9 +663,10 @@ impl Scratch {
             position_m: [[0.0; 2]; MAX_BLOCK],
             velocity_m_s: [[0.0; 2]; MAX_BLOCK],
             footprint_m: [0.0; MAX_BLOCK],
+            noise_footprint_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             uv: [[0.0; 2]; MAX_BLOCK],
-            force_impulse_n_s: [0.0; MAX_BLOCK],
+            force_impulse_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
             surface: SurfaceBlock::default(),
             rough: SurfaceBlock::default(),
             pad: [PadSample::default(); MAX_BLOCK],
@@ -612,6 +674,7 @@ impl Scratch {
             out: VoiceBlock {
                 haptic: [0.0; MAX_BLOCK],
                 impulse_n_s: [0.0; MAX_BLOCK],
+                excites: false,
                 collisions: 0,
                 resets: 0,
             },

@@ -19,6 +19,7 @@ fn tick() -> ModalModel {
 
 fn impact(body: asperity::BodyId) -> ContactEvent {
     ContactEvent::Impact(Impact {
+        position: 0,
         body,
         other: None,
         speed_m_s: 2.0,
@@ -26,6 +27,7 @@ fn impact(body: asperity::BodyId) -> ContactEvent {
         radius_m: 0.001,
         striker: Material::STEEL,
         restitution: 1.0,
+        position: 0,
     })
 }
 

@@ -123,6 +123,7 @@ impl Game {
                     radius_m: 0.005,
                     striker: Material::STEEL,
                     restitution: 0.7,
+                    position: 0,
                 }),
                 _ => ContactEvent::moved(contact, sample),
             };

@@ -170,38 +170,3 @@ fn game_time_that_runs_backwards_is_refused_and_counted_until_it_is_ahead_again(
     assert_no_glitch(&haptic, "time runs backwards, felt");
     assert_no_glitch(&audio, "time runs backwards, heard");
 }
-
-#[test]
-fn a_device_that_is_overloaded_sheds_the_least_important_contacts_and_gets_them_back() {
-    let (mut scene, mut renderer, surface, _) = engine(live());
-    let begin = |contact: u64| ContactEvent::begin(ContactId(contact), surface, Actuator(0), sample_at(0.0));
-    for contact in 0..10 {
-        scene.report(0.0, begin(contact)).unwrap();
-    }
-    let mut heard = Vec::new();
-    let mut run = |scene: &mut Scene, seconds: f64, load: f32, from_s: f64| {
-        let mut blocks = 0;
-        while f64::from(blocks) * 64.0 < seconds * 44_100.0 {
-            if blocks % 12 == 0 {
-                let time_s = from_s + f64::from(blocks) * 64.0 / 44_100.0;
-                for contact in 0..10 {
-                    scene.report(time_s, ContactEvent::moved(ContactId(contact), sample_at(time_s))).unwrap();
-                }
-            }
-            let (mut h, mut a) = ([0.0f32; 64], [0.0f32; 64]);
-            renderer.render(&mut [&mut h], &mut [&mut a]);
-            renderer.report_load(load);
-            heard.extend(h);
-            blocks += 1;
-        }
-    };
-    run(&mut scene, 0.3, 0.2, 0.0);
-    assert_eq!((scene.stats().contacts, scene.stats().shed), (10, 0));
-    run(&mut scene, 0.2, 1.1, 0.3);
-    let stats = scene.stats();
-    assert_eq!((stats.contacts, stats.shed), (1, 9), "one contact is always left: {stats:?}");
-    run(&mut scene, 6.0, 0.2, 0.5);
-    let stats = scene.stats();
-    assert_eq!((stats.contacts, stats.shed, stats.stolen), (10, 9, 0), "{stats:?}");
-    assert_no_glitch(&heard, "shed, felt");
-}

@@ -58,7 +58,12 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
         let place = |error: CliError| at(error.within(format!("body \"{}\"", body.name)));
         let model = match &body.modes {
             Some(path) => ModalModel::load(path).map_err(CliError::told)?,
-            None => ModalModel { source: String::new(), impulse_n_s: 1.0, modes: Vec::new() },
+            None => ModalModel {
+                source: String::new(),
+                impulse_n_s: 1.0,
+                modes: Vec::new(),
+                positions: Vec::new(),
+            },
         };
         let material = body.material.as_ref().map(material).transpose().map_err(place)?;
         let id = match material {

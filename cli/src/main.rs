@@ -34,8 +34,6 @@ mod render;
 mod report;
 mod scene_file;
 mod texture;
-#[allow(dead_code)]
-mod texture_analyze;
 mod wav;
 
 use clap::{Parser, Subcommand, error::ErrorKind};

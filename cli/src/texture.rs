@@ -3,6 +3,7 @@
 //! What the verbs share is here: pictures in, refusals in words, a bar for a fraction done.
 
 mod abx;
+pub mod analyze;
 pub mod brownian;
 pub mod compare;
 pub mod from_normals;
@@ -21,9 +22,10 @@ use std::path::Path;
 /// What to do with a texture.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
-    Compare(compare::Options),
+    Analyze(analyze::AnalyzeArgs),
     Brownian(brownian::Options),
     Solid(solid::Options),
+    Compare(compare::Options),
     FromNormals(from_normals::Options),
     FromPhoto(from_photo::Options),
     Metamer(metamer::Options),
@@ -35,9 +37,10 @@ pub enum Verb {
 /// When an input is bad or an output cannot be written.
 pub fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
-        Verb::Compare(options) => compare::run(&options),
+        Verb::Analyze(options) => analyze::run(&options),
         Verb::Brownian(options) => brownian::run(&options),
         Verb::Solid(options) => solid::run(&options),
+        Verb::Compare(options) => compare::run(&options),
         Verb::FromNormals(options) => from_normals::run(&options),
         Verb::FromPhoto(options) => from_photo::run(&options),
         Verb::Metamer(options) => metamer::run(&options),

@@ -26,6 +26,11 @@ pub struct Butterworth {
     a1: f64,
     a2: f64,
     a3: f64,
+    /// What moves the state: 2 a₁ − 1, 2 a₂, 2 a₃. Written so, a sample waits for its predecessor half
+    /// as long as when the state is mirrored about the output.
+    band_to_band: f64,
+    cross: f64,
+    input_to_low: f64,
     angular_cutoff_per_s: f64,
 }
 
@@ -62,7 +67,16 @@ impl Butterworth {
         )?;
         let g = libm::tan(PI * cutoff / rate);
         let a1 = 1.0 / (1.0 + g * (g + SQRT_2));
-        Ok(Self { a1, a2: g * a1, a3: g * g * a1, angular_cutoff_per_s: 2.0 * PI * cutoff })
+        let (a2, a3) = (g * a1, g * g * a1);
+        Ok(Self {
+            a1,
+            a2,
+            a3,
+            band_to_band: 2.0 * a1 - 1.0,
+            cross: 2.0 * a2,
+            input_to_low: 2.0 * a3,
+            angular_cutoff_per_s: 2.0 * PI * cutoff,
+        })
     }
 
     /// 2π · cutoff: turns [`Output::band`] into units per second.
@@ -96,9 +110,10 @@ impl State {
     pub fn tick(&mut self, filter: &Butterworth, input: f64) -> Output {
         let v3 = input - self.low;
         let band = filter.a1 * self.band + filter.a2 * v3;
-        let low = self.low + filter.a2 * self.band + filter.a3 * v3;
-        self.band = 2.0 * band - self.band;
-        self.low = 2.0 * low - self.low;
+        let low = (self.low + filter.a2 * self.band) + filter.a3 * v3;
+        let before = self.band;
+        self.band = filter.band_to_band * before + filter.cross * v3;
+        self.low = (self.low + filter.cross * before) + filter.input_to_low * v3;
         Output { low, band, high: input - SQRT_2 * band - low }
     }
 

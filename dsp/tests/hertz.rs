@@ -1,7 +1,8 @@
 //! Hertz pulses against the integrated equation of motion, and the ring and the bank against the exact response.
 
 use asperity_dsp::hertz::{
-    Elastic, HertzContact, HertzPulse, KERNEL_LATENCY, OnsetMerge, deposit_force, pulse_shape, take,
+    Elastic, FORCE_HISTORY, HertzContact, HertzPulse, KERNEL_LATENCY, OnsetMerge, deposit_force, pulse_shape,
+    spread_force, take,
 };
 use asperity_dsp::modal_bank::{
     GroupOptions, GroupState, Kernel, ReferenceMode, ReferenceState, design_group,
@@ -350,4 +351,21 @@ fn onsets_within_a_contact_add_only_what_is_harder() {
     assert_eq!(merge.admit(hit(0.2), 106, 0.9, rate), None);
     assert_eq!(merge.admit(hit(0.2), 107, 0.0, rate), Some(hit(0.2)));
     assert_eq!(merge.admit(hit(f64::NAN), 108, 0.0, rate), None);
+}
+
+#[test]
+fn a_force_spread_sample_by_sample_is_what_the_ring_would_have_given() {
+    let mut rng = Rng::new(12);
+    let mut forces = vec![0.0; FORCE_HISTORY];
+    forces.extend((0..200).map(|_| rng.normal()));
+    let mut ring = vec![0.0; 512];
+    deposit_force(&mut ring, 0, &forces[FORCE_HISTORY..]);
+    let mut spread = vec![0.0; 200];
+    // In two parts, as blocks come.
+    let (first, second) = spread.split_at_mut(77);
+    spread_force(&forces[..FORCE_HISTORY + 77], first);
+    spread_force(&forces[77..], second);
+    for (n, (a, b)) in spread.iter().zip(&ring).enumerate() {
+        assert!((a - b).abs() < 1e-15, "sample {n}: {a} against {b}");
+    }
 }

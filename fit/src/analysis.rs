@@ -14,7 +14,7 @@ use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
-use crate::pruning::{prune, prune_missed_by_nobody};
+use crate::pruning::{prune, prune_missed_by_nobody, simplify};
 use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
 use nalgebra::Complex;
@@ -27,6 +27,10 @@ const PASSES: usize = 3;
 const SPAN_NEPERS: f64 = 3.0;
 /// Accepted steps of a refinement within a level, after removals, and at the end.
 const LEVEL_STEPS: usize = 3;
+/// A residual with this many times the noise's power is no noise.
+const MISFIT: f64 = 2.0;
+/// Most rounds of taking out modes that only mend others.
+const SIMPLIFYING_ROUNDS: usize = 15;
 /// Most rounds of one level.
 const LEVEL_ROUNDS: usize = 3;
 /// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
@@ -95,6 +99,13 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         }
         cost = left;
     }
+    if work.capped || work.leaves_more_than_noise() {
+        let mut rounds = 0;
+        while rounds < SIMPLIFYING_ROUNDS && simplify(&mut work.partials, &work.noise, segment.len()) > 0 {
+            work.settle(LEVEL_STEPS);
+            rounds += 1;
+        }
+    }
     work.settle(FINAL_STEPS);
     let residual = subtract(segment, &work.partials);
     progress(1.0);
@@ -125,6 +136,13 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
+    /// Whether the residual is more than what the quiet end of the segment has of noise.
+    fn leaves_more_than_noise(&self) -> bool {
+        let residual = subtract(self.segment, &self.partials);
+        let quiet = NoiseFloor::estimate(&residual, self.limits.rate_hz, self.limits.least_noise);
+        square_sum(&residual) / residual.len() as f64 > MISFIT * quiet.mean_variance()
+    }
+
     /// The noise as the residual shows it now.
     fn measure_noise(&mut self) {
         let residual = subtract(self.segment, &self.partials);

@@ -67,6 +67,9 @@ pub fn doubts(partials: &[Partial], residual: &[f64], noise: &NoiseFloor, rate_h
         let left: f64 = spectrum[from.min(to)..to].iter().sum();
         let expected_noise = noise.variance_at(partial.omega) * count as f64 * (to - from.min(to)) as f64
             / spectrum.len() as f64;
+        if partial.energy(count) < 0.1 * ranked[0].energy(count) {
+            break;
+        }
         let share = (left - 4.0 * expected_noise) / partial.energy(count).max(1e-300);
         if share > EXPONENTIAL_SHARE {
             warnings

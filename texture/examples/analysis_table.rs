@@ -69,7 +69,7 @@ fn merit(confidence: f64) -> f64 {
 
 fn controls() {
     println!("\nPictures without a lattice: largest merit of the best (limit {})", symmetry::MERIT_LIMIT);
-    let mut show = |name: &str, pictures: Vec<Raster>| {
+    let show = |name: &str, pictures: Vec<Raster>| {
         let merits: Vec<f64> = pictures
             .iter()
             .map(|p| symmetry::best_lattice(p).map_or(0.0, |lattice| merit(lattice.confidence)))

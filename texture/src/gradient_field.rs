@@ -304,11 +304,11 @@ fn visit(w: usize, h: usize, derivative: Derivative, mut each: impl FnMut(usize,
     let fold = |i: usize, by: isize, n: usize| i.saturating_add_signed(by).min(n - 1);
     for y in 0..h {
         let row = stencil(derivative, y, h);
-        for x in 0..w {
+        for (x, (first, weights)) in columns.iter().enumerate() {
             for &(by, share) in across {
                 let (yy, xx) = (fold(y, by, h), fold(x, by, w));
-                for (k, &weight) in columns[x].1.iter().enumerate() {
-                    each(y * w + x, yy * w + columns[x].0 + k, [share * weight, 0.0]);
+                for (k, &weight) in weights.iter().enumerate() {
+                    each(y * w + x, yy * w + first + k, [share * weight, 0.0]);
                 }
                 for (k, &weight) in row.1.iter().enumerate() {
                     each(y * w + x, (row.0 + k) * w + xx, [0.0, share * weight]);

@@ -18,7 +18,7 @@
 use crate::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
 use crate::raster::Raster;
 use crate::resample::halve;
-use crate::spline::{Sample, Spline};
+use crate::spline::{Sample, Samples, Spline};
 use crate::wrap::Wrap;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
@@ -233,7 +233,12 @@ impl Pyramid {
     fn sample_block(&self, path: &PathBlock<'_>, mut take: impl FnMut(usize, Sample)) {
         match self.levels.first() {
             Some(finest) if path.footprint_m.iter().all(|&f| is_sharp(f, finest.texels_per_metre())) => {
-                finest.sample_block(path.position_m, take);
+                let mut samples = Samples::EMPTY;
+                finest.sample_block(path.position_m, &mut samples);
+                for n in 0..path.len() {
+                    let gradient = [samples.slope_u[n], samples.slope_v[n]];
+                    take(n, Sample { value: samples.value[n], gradient });
+                }
             }
             _ => {
                 for n in 0..path.len() {

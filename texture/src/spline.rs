@@ -8,6 +8,8 @@
 //! and columns over the map as it goes on beyond its edges. Why: over 12.8 texels a period a stroke's
 //! velocity is clean to 63 dB; bilinear interpolation buzzes at the texel rate (17 dB).
 
+mod simd;
+
 use crate::height_field::MAX_BLOCK;
 use crate::raster::Raster;
 use crate::wrap::Wrap;
@@ -48,6 +50,38 @@ pub struct Sample {
     pub value: f64,
     /// Its slope along u and v, per metre.
     pub gradient: [f64; 2],
+}
+
+/// Positions evaluated side by side.
+const LANES: usize = 4;
+/// Places of a block and of the lanes beyond its end.
+const ROOM: usize = MAX_BLOCK + LANES;
+
+/// Values and slopes of a block, each on its own so that lanes fill vectors.
+#[derive(Debug, Clone)]
+pub struct Samples {
+    /// Values of the map.
+    pub value: [f64; ROOM],
+    /// Slopes along u, per metre.
+    pub slope_u: [f64; ROOM],
+    /// Slopes along v, per metre.
+    pub slope_v: [f64; ROOM],
+}
+
+impl Samples {
+    /// Nothing yet.
+    pub const EMPTY: Self = Self { value: [0.0; ROOM], slope_u: [0.0; ROOM], slope_v: [0.0; ROOM] };
+}
+
+/// [`Place`]s of a block.
+struct Places {
+    texel: [f64; ROOM],
+    fraction: [f64; ROOM],
+    slope: [f64; ROOM],
+}
+
+impl Places {
+    const EMPTY: Self = Self { texel: [0.0; ROOM], fraction: [0.0; ROOM], slope: [0.0; ROOM] };
 }
 
 /// Where along one axis: the texel before, how far beyond it (0–1), and slope per metre for a slope of
@@ -93,30 +127,32 @@ impl Spline {
 
     /// Value and slope at each of up to [`MAX_BLOCK`] positions, the same bits as [`Self::sample`]: a
     /// slow finger stays in a cell for many samples, whose polynomial is found once.
-    pub fn sample_block(&self, position_m: &[[f64; 2]], mut take: impl FnMut(usize, Sample)) {
+    pub fn sample_block(&self, position_m: &[[f64; 2]], out: &mut Samples) {
+        simd::sample_block(self, position_m, out);
+    }
+
+    #[inline(always)]
+    fn sample_block_in_lanes(&self, position_m: &[[f64; 2]], out: &mut Samples) {
         let len = position_m.len().min(MAX_BLOCK);
-        let mut places = [[Place::default(); MAX_BLOCK]; 2];
-        for (axis, places) in places.iter_mut().enumerate() {
-            for (place, position) in places.iter_mut().zip(&position_m[..len]) {
-                *place = self.axes[axis].place(position[axis]);
-            }
-        }
-        let [x, y] = &places;
+        let [mut x, mut y] = [Places::EMPTY; 2];
+        self.axes[0].places(position_m, 0, &mut x);
+        self.axes[1].places(position_m, 1, &mut y);
         let mut start = 0;
         while start < len {
-            let (column, row) = (x[start].texel, y[start].texel);
-            let same = |n: &usize| x[*n].texel == column && y[*n].texel == row;
+            let (column, row) = (x.texel[start], y.texel[start]);
+            let same = |n: &usize| x.texel[*n] == column && y.texel[*n] == row;
             let end = start + 1 + (start + 1..len).take_while(same).count();
             let cell = self.cell(column, row);
-            for n in start..end {
-                take(n, cell.at(&x[n], &y[n]));
+            // Whole lanes: what is written beyond the cell's samples is overwritten by the next cell's.
+            for n in (start..end).step_by(LANES) {
+                cell.at_lanes(&x, &y, n, out);
             }
             start = end;
         }
     }
 
     /// The polynomial between texel (column, row) and the next.
-    #[inline]
+    #[inline(always)]
     fn cell(&self, column: f64, row: f64) -> Cell {
         let start = self.axes[1].first(row) * self.stride + self.axes[0].first(column);
         let mut c = [[0.0; 4]; 4];
@@ -131,7 +167,7 @@ impl Spline {
 }
 
 /// Four B-spline coefficients c₀ … c₃ in each lane → the powers 0 … 3 of the fraction from c₁ to c₂.
-#[inline]
+#[inline(always)]
 fn to_powers(c: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
     let mut out = [[0.0; 4]; 4];
     for n in 0..4 {
@@ -143,7 +179,7 @@ fn to_powers(c: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
     out
 }
 
-#[inline]
+#[inline(always)]
 fn transposed(m: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
     let mut out = m;
     for (i, row) in out.iter_mut().enumerate() {
@@ -155,6 +191,28 @@ fn transposed(m: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
 }
 
 impl Cell {
+    /// [`Self::at`] for the places from `n` on, side by side.
+    #[inline(always)]
+    fn at_lanes(&self, x: &Places, y: &Places, n: usize, out: &mut Samples) {
+        let p = &self.powers;
+        let lanes = |values: &[f64; ROOM]| -> [f64; LANES] { std::array::from_fn(|i| values[n + i]) };
+        let (t, u) = (lanes(&x.fraction), lanes(&y.fraction));
+        let (x_slope, y_slope) = (lanes(&x.slope), lanes(&y.slope));
+        let (mut level, mut rise) = ([[0.0; LANES]; 4], [[0.0; LANES]; 4]);
+        for j in 0..4 {
+            for i in 0..LANES {
+                level[j][i] = ((p[3][j] * t[i] + p[2][j]) * t[i] + p[1][j]) * t[i] + p[0][j];
+                rise[j][i] = (3.0 * p[3][j] * t[i] + 2.0 * p[2][j]) * t[i] + p[1][j];
+            }
+        }
+        for i in 0..LANES {
+            let (level, rise, u) = (level.map(|l| l[i]), rise.map(|r| r[i]), u[i]);
+            out.value[n + i] = ((level[3] * u + level[2]) * u + level[1]) * u + level[0];
+            out.slope_u[n + i] = (((rise[3] * u + rise[2]) * u + rise[1]) * u + rise[0]) * x_slope[i];
+            out.slope_v[n + i] = ((3.0 * level[3] * u + 2.0 * level[2]) * u + level[1]) * y_slope[i];
+        }
+    }
+
     #[inline]
     fn at(&self, x: &Place, y: &Place) -> Sample {
         // powers[i][j] belongs to xⁱ yʲ; the four powers of y side by side.
@@ -178,7 +236,7 @@ impl Cell {
 
 /// Largest whole number not above x, for |x| < 2⁵¹: adding a large number rounds. `f64::floor` is a
 /// library call on plain x86-64.
-#[inline]
+#[inline(always)]
 fn floor(x: f64) -> f64 {
     const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
     let rounded = (x + ROUND) - ROUND;
@@ -197,8 +255,27 @@ impl Axis {
         }
     }
 
+    /// Where the positions of a block are; for the usual maps, which repeat, in a loop without branches.
+    #[inline(always)]
+    fn places(&self, position_m: &[[f64; 2]], axis: usize, out: &mut Places) {
+        let places = out.texel.iter_mut().zip(&mut out.fraction).zip(&mut out.slope);
+        let repeats = Self { wrap: Wrap::Repeat, ..*self };
+        let all = position_m.iter().take(MAX_BLOCK).zip(places);
+        if self.wrap == Wrap::Repeat {
+            for (position, ((texel, fraction), slope)) in all {
+                let place = repeats.place(position[axis]);
+                (*texel, *fraction, *slope) = (place.texel, place.fraction, place.slope);
+            }
+        } else {
+            for (position, ((texel, fraction), slope)) in all {
+                let place = self.place(position[axis]);
+                (*texel, *fraction, *slope) = (place.texel, place.fraction, place.slope);
+            }
+        }
+    }
+
     /// Where a position is.
-    #[inline]
+    #[inline(always)]
     fn place(&self, position_m: f64) -> Place {
         let n = self.len;
         let t = position_m * self.texels_per_metre - 0.5;

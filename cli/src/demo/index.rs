@@ -1,6 +1,7 @@
 //! The page that says what each file of the demo is.
 
 use super::scenes::DemoScene;
+use crate::fit;
 use crate::plot::quantity;
 use crate::render::Report;
 use std::fmt::Write;
@@ -13,14 +14,33 @@ const HOW: &str = "NAME.audio.wav is what is heard; NAME.haptic.wav is what a vi
                    NAME.toml and NAME.jsonl are the scene and the contact log it was made from; change them and \
                    run `asperity render NAME.toml -o NAME --plot` again.";
 
+/// What is said about the fit, beside its pictures.
+const FIT: &str = "tile_strike.wav is a recorded impact, made by the project (synthetic: a tile in a room, with noise), \
+                   fitted as `asperity fit tile_strike.wav -o tile.modes.json --max-modes 32 --plot tile.fit.svg` does. \
+                   tile.resynthesis.wav is what the modes alone sound like; the tile of the struck scene plays them. \
+                   Do the same with a recording of your own.";
+
+/// What the fit came to.
+fn found(fitted: &fit::Report) -> String {
+    format!(
+        "{} modes in {:.1} s, {:.0} dB above what they leave",
+        fitted.modes, fitted.seconds, fitted.resynthesis_snr_db
+    )
+}
+
 fn level(report: &Report) -> String {
     quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB")
 }
 
 /// What is printed at the end.
 #[must_use]
-pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report]) -> String {
-    let mut text = format!("{} scenes in {}\n\n", scenes.len(), folder.display());
+pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report], fitted: &fit::Report) -> String {
+    let mut text = format!(
+        "fitted tile_strike.wav: {}\n{} scenes in {}\n\n",
+        found(fitted),
+        scenes.len(),
+        folder.display()
+    );
     for (scene, report) in scenes.iter().zip(reports) {
         let _ = writeln!(
             text,
@@ -43,8 +63,9 @@ pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report]) -> Strin
 
 /// `README.txt`.
 #[must_use]
-pub fn text(scenes: &[DemoScene], reports: &[Report]) -> String {
+pub fn text(scenes: &[DemoScene], reports: &[Report], fitted: &fit::Report) -> String {
     let mut text = format!("asperity demo\n=============\n\n{}\n", wrapped(HOW));
+    let _ = write!(text, "\nThe fit\n-------\n{}{}\n", wrapped(FIT), found(fitted));
     for (scene, report) in scenes.iter().zip(reports) {
         let _ = write!(
             text,
@@ -83,7 +104,7 @@ fn wrapped(text: &str) -> String {
 
 /// `index.html`: players and pictures, no script, no network.
 #[must_use]
-pub fn html(scenes: &[DemoScene], reports: &[Report]) -> String {
+pub fn html(scenes: &[DemoScene], reports: &[Report], fitted: &fit::Report) -> String {
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>asperity demo</title>\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n<style>\n\
@@ -96,7 +117,7 @@ pub fn html(scenes: &[DemoScene], reports: &[Report]) -> String {
     for scene in scenes {
         let _ = write!(page, "<a href=\"#{0}\">{1}</a> · ", scene.name, scene.title);
     }
-    page.push_str("</p>\n");
+    page.push_str("<a href=\"#fit\">A recording becomes modes</a></p>\n");
     for (scene, report) in scenes.iter().zip(reports) {
         let name = scene.name;
         let _ = write!(
@@ -115,6 +136,15 @@ pub fn html(scenes: &[DemoScene], reports: &[Report]) -> String {
             level(report)
         );
     }
+    let _ = write!(
+        page,
+        "<section id=\"fit\"><h2>A recording becomes modes</h2>\n<p>{FIT}</p>\n<div class=\"players\">\
+         <label>recording <audio controls preload=\"none\" src=\"tile_strike.wav\"></audio></label>\
+         <label>its modes <audio controls preload=\"none\" src=\"tile.resynthesis.wav\"></audio></label></div>\n\
+         <p>{} · <a href=\"tile.modes.json\">modes</a></p>\n<img src=\"tile.fit.svg\" alt=\"spectrograms of the \
+         recording, its resynthesis and the residual\"></section>\n",
+        found(fitted)
+    );
     page.push_str("</body></html>\n");
     page
 }

@@ -3,18 +3,26 @@
 //! Writes the shipped scenes into a folder, fits the shipped recording, renders every scene through the
 //! very path of `asperity render --plot`, and writes an index that says what each file is.
 
+mod gallery;
 mod index;
 mod plates;
 mod scenes;
 mod strokes;
 
 use crate::error::CliError;
+use crate::fit;
 use crate::output::{self, Outputs, ensure_folder};
 use crate::progress::Progress;
 use crate::render;
 use clap::Args;
 use scenes::DemoScene;
 use std::path::{Path, PathBuf};
+
+/// Modes kept of the shipped recording: enough for a tile, found in a few seconds.
+const FIT_MODES: usize = 32;
+
+/// The recording that the demo fits: synthetic, a tile in a room with noise.
+const TILE_STRIKE: &[u8] = include_bytes!("../../assets/tile_strike.wav");
 
 /// Fit a shipped recording, render the shipped scenes, and say what to listen to
 #[derive(Debug, Args)]
@@ -33,7 +41,14 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     ensure_folder(folder)?;
     let scenes = scenes::scenes();
     write_inputs(folder, &scenes)?;
-    let mut progress = Progress::new("rendering", scenes.len() as u64);
+    let mut progress = Progress::new("rendering", 1 + scenes.len() as u64);
+    let fitted = fit::fit(&fit::Options {
+        plot: Some(folder.join("tile.fit.svg")),
+        resynthesis: Some(folder.join("tile.resynthesis.wav")),
+        max_modes: FIT_MODES,
+        ..fit::Options::plain(folder.join("tile_strike.wav"), folder.join("tile.modes.json"))
+    })?;
+    progress.advance(1);
     let mut reports = Vec::new();
     for scene in &scenes {
         let report = render::render(&render::Options {
@@ -54,10 +69,10 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     drop(progress);
     let mut outputs = Outputs::new();
-    outputs.write(&folder.join("index.html"), index::html(&scenes, &reports).as_bytes())?;
-    outputs.write(&folder.join("README.txt"), index::text(&scenes, &reports).as_bytes())?;
+    outputs.write(&folder.join("index.html"), index::html(&scenes, &reports, &fitted).as_bytes())?;
+    outputs.write(&folder.join("README.txt"), index::text(&scenes, &reports, &fitted).as_bytes())?;
     outputs.commit()?;
-    output::say(&index::summary(folder, &scenes, &reports));
+    output::say(&index::summary(folder, &scenes, &reports, &fitted));
     Ok(())
 }
 
@@ -67,7 +82,7 @@ fn write_inputs(folder: &Path, scenes: &[DemoScene]) -> Result<(), CliError> {
     let mut write = |name: &str, bytes: &[u8]| outputs.write(&folder.join(name), bytes);
     write("plate.modes.json", scenes::plate_modes().to_json().as_bytes())?;
     write("bar.modes.json", scenes::bar_modes().to_json().as_bytes())?;
-    write("tile.modes.json", scenes::plate_modes().to_json().as_bytes())?;
+    write("tile_strike.wav", TILE_STRIKE)?;
     for scene in scenes {
         let mut log = Vec::new();
         scene.log.write(&mut log).map_err(|error| CliError::write(&folder.join(scene.name), &error))?;

@@ -35,7 +35,7 @@ pub fn scenes() -> Vec<DemoScene> {
     let mut scenes: Vec<DemoScene> = PLATES.iter().map(plate_scene).collect();
     scenes.push(struck());
     scenes.push(scraped());
-    scenes.extend(gallery());
+    scenes.extend(super::gallery::scenes());
     scenes
 }
 
@@ -116,7 +116,12 @@ pub fn plate_modes() -> ModalModel {
             }
         })
         .collect();
-    ModalModel { source: "free circular plate, chosen damping".to_owned(), impulse_n_s: 0.01, modes }
+    ModalModel {
+        source: "free circular plate, chosen damping".to_owned(),
+        impulse_n_s: 0.01,
+        modes,
+        positions: Vec::new(),
+    }
 }
 
 /// Modes of a free steel bar (Euler–Bernoulli, f ∝ (2n+1)²), as a glockenspiel's.
@@ -136,7 +141,12 @@ pub fn bar_modes() -> ModalModel {
             }
         })
         .collect();
-    ModalModel { source: "free bar, chosen damping".to_owned(), impulse_n_s: 0.01, modes }
+    ModalModel {
+        source: "free bar, chosen damping".to_owned(),
+        impulse_n_s: 0.01,
+        modes,
+        positions: Vec::new(),
+    }
 }
 
 fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m): (f64, f64)) -> LogLine {
@@ -150,6 +160,7 @@ fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m)
             radius_m,
             striker: Striker::Preset(striker.to_owned()),
             restitution: 0.5,
+            position: 0,
         },
     }
 }
@@ -253,138 +264,6 @@ fn scraped() -> DemoScene {
         ),
         log: log(finger.lines()),
         assets: vec![("scraped.displacement.png".to_owned(), pixels::png16(columns as usize, rows, &map))],
-    }
-}
-
-/// A stroke across a square of ground and back, for surfaces that come from formulas.
-fn ground(
-    name: &'static str,
-    title: &'static str,
-    notice: &'static str,
-    source: &str,
-    gain: f64,
-) -> DemoScene {
-    let finger = Finger {
-        contact: 1,
-        surface: "ground",
-        actuator: 0,
-        extent_m: [SIDE_M; 2],
-        start_s: LEAD_S,
-        normal_force_n: 0.6,
-        from_m: [0.02, 0.05],
-        strokes: vec![([0.12, 0.06], 0.08), ([0.02, 0.08], 0.2)],
-    };
-    let toml = format!(
-        "# {title}\n\
-         contacts = \"{name}.jsonl\"\n\
-         tail_s = 0.4\n\n\
-         [[body]]\n\
-         name = \"plate\"\n\
-         modes = \"plate.modes.json\"\n\
-         material = \"stone\"\n\n\
-         [[surface]]\n\
-         name = \"ground\"\n\
-         body = \"plate\"\n\
-         {source}\n\
-         width_m = {SIDE_M}\n\
-         height_m = {SIDE_M}\n\n\
-         [[actuator]]\n\
-         full_scale = 0.0005\n\n\
-         [audio]\n\
-         gain = {gain}\n"
-    );
-    DemoScene { name, title, notice, toml, log: log(finger.lines()), assets: Vec::new() }
-}
-
-/// Surfaces that are no image maps: solid noise, a Brownian surface, a lattice, sand.
-fn gallery() -> Vec<DemoScene> {
-    let gravel = ground(
-        "gravel",
-        "Gravel",
-        "Solid noise of 2 mm grain, one of the seven materials; try solid = \"sandpaper\", \"wood\" or \
-         \"pebbles\" in gravel.toml.",
-        "solid = \"gravel\"",
-        10.0,
-    );
-    let stone = ground(
-        "stone",
-        "Broken stone",
-        "A fractional Brownian surface (H = 0.4, 0.1 mm): no pattern at any scale, the same place always feels \
-         the same.",
-        "brownian = { hurst = 0.4, rms_m = 1e-4 }",
-        10.0,
-    );
-    let weave = ground(
-        "weave",
-        "Woven cloth",
-        "One cell of a plain weave, repeated for ever along two directions: a hum whose pitch follows the speed.",
-        "lattice = { cell = \"weave.cell.png\", t1_m = [0.0024, 0.0004], t2_m = [-0.0004, 0.0024] }\n\
-         relief_m = 0.0002\nroughness = 0.6",
-        10.0,
-    );
-    let side = 96;
-    let assets = vec![("weave.cell.png".to_owned(), pixels::png16(side, side, &weave_cell(side)))];
-    vec![gravel, stone, DemoScene { assets, ..weave }, writing_in_sand()]
-}
-
-/// Two threads over, two under: the unit of a plain weave.
-fn weave_cell(side: usize) -> Vec<u16> {
-    use std::f64::consts::PI;
-    (0..side * side)
-        .map(|index| {
-            let at = |texel: usize| (texel as f64 + 0.5) / side as f64;
-            let (u, v) = (at(index % side), at(index / side));
-            // Each thread is round across and goes up and down along; the higher one is seen.
-            let thread = |along: f64, across: f64, first: f64| {
-                let lane = (across * 2.0).floor();
-                let round = (PI * (across * 2.0).fract()).sin().max(0.0).sqrt();
-                0.5 * round + 0.5 * (0.5 + 0.5 * (2.0 * PI * along + PI * (lane + first)).cos())
-            };
-            let height = thread(u, v, 0.0).max(thread(v, u, 1.0));
-            (height * 65_535.0).round() as u16
-        })
-        .collect()
-}
-
-/// A finger draws a zigzag; the sand keeps it.
-fn writing_in_sand() -> DemoScene {
-    const BOX_M: f64 = 0.2;
-    let finger = Finger {
-        contact: 1,
-        surface: "sand",
-        actuator: 0,
-        extent_m: [BOX_M; 2],
-        start_s: LEAD_S,
-        normal_force_n: 3.0,
-        from_m: [0.03, 0.05],
-        strokes: vec![([0.17, 0.04], 0.15), ([0.04, 0.11], 0.2), ([0.17, 0.1], 0.15), ([0.04, 0.17], 0.25)],
-    };
-    DemoScene {
-        name: "sand",
-        title: "Writing in sand",
-        notice: "A finger draws a zigzag into a bed of sand at 3 N. The picture shows the sand afterwards: a groove, \
-                 heaps beside it, every slope at rest and no grain lost. Grains that give way are heard and felt.",
-        toml: format!(
-            "# Sand gives way, keeps its volume, and slides to its angle of repose.\n\
-             contacts = \"sand.jsonl\"\n\
-             tail_s = 0.4\n\n\
-             [[body]]\n\
-             name = \"tray\"\n\
-             modes = \"plate.modes.json\"\n\
-             material = \"plastic\"\n\n\
-             [[surface]]\n\
-             name = \"sand\"\n\
-             body = \"tray\"\n\
-             sand = {{ cells = 256, depth_m = 0.03, talus_deg = 30.0 }}\n\
-             width_m = {BOX_M}\n\
-             height_m = {BOX_M}\n\n\
-             [[actuator]]\n\
-             full_scale = 0.002\n\n\
-             [audio]\n\
-             gain = 10.0\n"
-        ),
-        log: log(finger.lines()),
-        assets: Vec::new(),
     }
 }
 

@@ -71,7 +71,7 @@ impl Finger<'_> {
         let sample = LogSample {
             uv: [rounded(place[0] / self.extent_m[0]), rounded((place[1] + tremor) / self.extent_m[1])],
             velocity_m_s: Some(velocity.map(rounded)),
-            normal_force_n: rounded(self.normal_force_n * wander),
+            normal_force_n: rounded(self.normal_force_n * wander * pressing(since)),
             closing_m_s: if first { LANDING_M_S } else { 0.0 },
         };
         if first {
@@ -81,6 +81,12 @@ impl Finger<'_> {
             LogEvent::Move { contact: self.contact, sample }
         }
     }
+}
+
+/// A landing finger presses with a fifth of its force at first and with all of it after a tenth of a second.
+fn pressing(since_s: f64) -> f64 {
+    let tau = (since_s / 0.1).clamp(0.0, 1.0);
+    0.2 + 0.8 * tau * tau * (3.0 - 2.0 * tau)
 }
 
 /// One way across.

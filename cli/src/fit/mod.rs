@@ -10,6 +10,8 @@ mod modes_file;
 mod picture;
 mod report;
 
+pub use report::Report;
+
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
@@ -84,7 +86,6 @@ pub struct Options {
 impl Options {
     /// The options of `asperity fit RECORDING -o OUT`.
     #[must_use]
-    #[allow(dead_code)] // the demo fits with these
     pub fn plain(recording: PathBuf, output: PathBuf) -> Self {
         Self {
             recording,
@@ -131,7 +132,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 ///
 /// # Errors
 /// As [`run`].
-pub fn fit(options: &Options) -> Result<report::Report, CliError> {
+pub fn fit(options: &Options) -> Result<Report, CliError> {
     let started = Instant::now();
     check_options(options)?;
     let channel = channel(&options.channel)?;
@@ -158,7 +159,7 @@ pub fn fit(options: &Options) -> Result<report::Report, CliError> {
         outputs.write(path, picture::svg(&recording, &fit).as_bytes())?;
     }
     outputs.commit()?;
-    Ok(report::Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()))
+    Ok(Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()))
 }
 
 /// Refuses what cannot work before the work.

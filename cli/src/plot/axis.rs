@@ -37,7 +37,7 @@ impl Axis {
 
     /// Starts at zero and leaves room above `high`, for things that are never negative.
     #[must_use]
-    pub fn from_zero(self, high: f64) -> Self {
+    pub fn above_zero(self, high: f64) -> Self {
         let high = if high.is_finite() && high > 0.0 { high } else { 1.0 };
         self.range(0.0, high * 1.15)
     }

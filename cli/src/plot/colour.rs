@@ -8,16 +8,12 @@ pub mod palette {
     pub const GROUND_EDGE: &str = "#8c7f6a";
     /// The finger pad.
     pub const PAD: &str = "#1565c0";
-    /// The finger.
-    pub const FINGER: &str = "#90a4ae";
     /// Collisions and impacts.
     pub const IMPACT: &str = "#d84315";
     /// What is felt.
     pub const HAPTIC: &str = "#00796b";
     /// What is heard.
     pub const AUDIO: &str = "#5e35b1";
-    /// Path, speed, force.
-    pub const PATH: &str = "#455a64";
     /// Distinct colours for rows of things without a meaning of their own.
     pub const SERIES: [&str; 8] =
         ["#1565c0", "#d84315", "#00796b", "#5e35b1", "#c28a00", "#ad1457", "#558b2f", "#455a64"];
@@ -28,8 +24,6 @@ pub mod palette {
 pub enum Scale {
     /// Dark to bright with even steps to the eye, readable without colour vision: levels.
     Level,
-    /// Black to white: heights as a map shows them.
-    Grey,
     /// Through the colours of earth: heights under a path.
     Earth,
 }
@@ -45,7 +39,6 @@ const LEVEL: [[u8; 3]; 9] = [
     [254, 194, 135],
     [252, 250, 200],
 ];
-const GREY: [[u8; 3]; 2] = [[0, 0, 0], [255, 255, 255]];
 const EARTH: [[u8; 3]; 4] = [[94, 80, 63], [158, 139, 110], [214, 200, 174], [250, 246, 236]];
 
 impl Scale {
@@ -54,7 +47,6 @@ impl Scale {
     pub fn at(self, position: f32) -> [u8; 3] {
         let stops: &[[u8; 3]] = match self {
             Self::Level => &LEVEL,
-            Self::Grey => &GREY,
             Self::Earth => &EARTH,
         };
         let clamped = if position.is_finite() { position.clamp(0.0, 1.0) } else { 0.0 };

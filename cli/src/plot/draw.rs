@@ -139,7 +139,6 @@ fn extents(panel: &Panel) -> (Extent, Extent) {
                 picture.x.iter().for_each(|&value| x.exact(value));
                 picture.y.iter().for_each(|&value| y.exact(value));
             }
-            Layer::Words { .. } => {}
         }
     }
     (x, y)
@@ -233,7 +232,7 @@ fn draw_head(svg: &mut Svg, panel: &Panel, [left, top, width, _]: [f64; 4]) {
                 (label, colour.as_str(), false)
             }
             Layer::Dots { label, colour, .. } => (label, colour.as_str(), true),
-            Layer::Picture(_) | Layer::Words { .. } => continue,
+            Layer::Picture(_) => continue,
         };
         if label.is_empty() {
             continue;
@@ -316,10 +315,6 @@ fn draw_layer(svg: &mut Svg, layer: &Layer, place: &Place) {
             draw_names(svg, points, names, place);
         }
         Layer::Picture(picture) => draw_picture(svg, picture, place),
-        Layer::Words { at, text, colour } => {
-            let style = TextStyle { size: 11.0, colour, halo: true, ..Default::default() };
-            svg.text([place.x(at[0]), place.y(at[1])], style, text);
-        }
     }
 }
 

@@ -181,15 +181,6 @@ pub enum Layer {
     },
     /// A picture over a rectangle of the plane.
     Picture(Picture),
-    /// Words at a place.
-    Words {
-        /// Where, in the panel's units.
-        at: [f64; 2],
-        /// What.
-        text: String,
-        /// Text colour.
-        colour: String,
-    },
 }
 
 impl Layer {

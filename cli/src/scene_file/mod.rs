@@ -7,7 +7,7 @@
 mod fields;
 mod surface;
 
-pub use surface::{Excitation, Lattice, Pixels, Roughness, Sand, SolidNoise, Source, SurfaceEntry, Wrap};
+pub use surface::{Excitation, Pixels, Roughness, Source, SurfaceEntry, Wrap};
 
 use crate::error::CliError;
 use fields::{Allowed, Fields};

@@ -1,5 +1,8 @@
 use super::*;
 
+#[path = "../../../fuzz/mutation.rs"]
+mod mutation;
+
 fn parse(text: &str) -> Result<SceneFile, String> {
     SceneFile::parse(text, Path::new("dir/scene.toml")).map_err(|error| error.to_string())
 }
@@ -143,4 +146,50 @@ fn surfaces_that_contradict_themselves_are_refused() {
 fn broken_toml_names_its_line() {
     assert!(refusal("seed = 1\ntail_s = = 3").contains("line 2:"), "{}", refusal("seed = 1\ntail_s = = 3"));
     assert!(refusal("\u{0}").starts_with("error: dir/scene.toml: line 1:"));
+}
+
+/// The scene target of the fuzzing: the engine's other files are in the engine's `tests/fuzz.rs`.
+#[test]
+fn any_scene_file_is_read_or_refused_by_name() {
+    let scene = r#"
+sample_rate_hz = 44100
+seed = 1
+contacts = "stroke.jsonl"
+tail_s = 1.0
+[[body]]
+name = "tile"
+modes = "tile.modes.json"
+material = { young_pa = 7e10, poisson = 0.24, density_kg_m3 = 2400.0 }
+[[surface]]
+name = "tiles"
+body = "tile"
+solid = "gravel"
+roughness = 0.5
+width_m = 0.14
+height_m = 0.14
+micro_relief_m = 2e-6
+excitation = "both"
+[[surface]]
+name = "dune"
+sand = { cells = 512, depth_m = 0.05, talus_deg = 30.0 }
+width_m = 1.0
+height_m = 1.0
+[probe]
+pad_mass_kg = 1e-4
+contact_stiffness_n_m = 5e4
+[[actuator]]
+output = "displacement"
+full_scale = 1e-4
+[audio]
+gain = 1.0
+limit = false
+"#;
+    let runs = mutation::drive(&[scene.as_bytes().to_vec()], |data| {
+        if let Ok(text) = std::str::from_utf8(data) {
+            if let Err(refusal) = parse(text) {
+                assert!(refusal.len() > 10 && !refusal.contains('\n'), "{refusal:?}");
+            }
+        }
+    });
+    assert!(runs > 50, "{runs}");
 }

@@ -67,7 +67,7 @@ impl Scene {
         let scene = Self { folder: tempfile::tempdir().unwrap() };
         scene.write("bar.modes.json", MODES);
         scene.write("scene.toml", TOML);
-        scene.write("stroke.jsonl", &stroke(1, 0.5));
+        scene.write("stroke.jsonl", stroke(1, 0.5));
         scene
     }
 

@@ -29,7 +29,9 @@ mod ring;
 mod shape;
 
 pub use merge::OnsetMerge;
-pub use ring::{KERNEL_SAMPLES, SHORTEST_SAMPLES, SMALLEST_IMPULSE_N_S, deposit_force, take};
+pub use ring::{
+    FORCE_HISTORY, KERNEL_SAMPLES, SHORTEST_SAMPLES, SMALLEST_IMPULSE_N_S, deposit_force, spread_force, take,
+};
 pub use shape::pulse_shape;
 
 use crate::DesignError;

@@ -111,14 +111,30 @@ fn edge(v: f64, step: f64) -> [f64; 4] {
 /// same latency as a pulse. The taps' response (2 + cos θ)/3 is the kernel's sinc⁴ within 0.09 dB up to 10 kHz
 /// at 44.1 kHz (0.65 dB at 15 kHz), so one compensated bank serves both.
 ///
+/// Cells are added to sample by sample, so any split into calls gives the same bits.
 /// The block must be at least 4 samples shorter than the ring.
 pub fn deposit_force(ring: &mut [f64], first_sample: u64, impulses_n_s: &[f64]) {
     debug_assert!(ring.len().is_power_of_two() && impulses_n_s.len() + 4 <= ring.len());
-    let latency = KERNEL_LATENCY as u64;
-    for (tap, weight) in [(latency - 1, 1.0 / 6.0), (latency, 4.0 / 6.0), (latency + 1, 1.0 / 6.0)] {
-        let mut write = Writer { ring, at: first_sample.wrapping_add(tap) };
-        for &impulse in impulses_n_s {
+    let mut first_tap = first_sample.wrapping_add(KERNEL_LATENCY as u64 - 1);
+    for &impulse in impulses_n_s {
+        let mut write = Writer { ring, at: first_tap };
+        for weight in [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0] {
             write.push(weight * impulse);
+        }
+        first_tap = first_tap.wrapping_add(1);
+    }
+}
+
+/// Samples of force that [`spread_force`] looks back.
+pub const FORCE_HISTORY: usize = KERNEL_LATENCY + 1;
+
+/// What [`deposit_force`] would leave in the ring, sample by sample: adds to `out[n]` the force impulses
+/// before it, `impulses_n_s[n + FORCE_HISTORY]` being those of `out[n]`'s own sample. Lengths: as far
+/// as the shorter slice reaches.
+pub fn spread_force(impulses_n_s: &[f64], out: &mut [f64]) {
+    for (y, window) in out.iter_mut().zip(impulses_n_s.windows(FORCE_HISTORY + 1)) {
+        if let [third, second, first, _] = window {
+            *y += (third + first) * (1.0 / 6.0) + second * (4.0 / 6.0);
         }
     }
 }

@@ -27,6 +27,11 @@ pub struct Culling {
     pub loudest_db_spl: f64,
 }
 
+impl Culling {
+    /// Only what starts 120 dB below the loudest, which no reproduction can show.
+    pub const NEGLIGIBLE: Self = Self { level_db: 120.0, masking: false, loudest_db_spl: 80.0 };
+}
+
 impl Default for Culling {
     /// 80 dB, with masking, at 80 dB SPL (assumed: a loud but comfortable object).
     fn default() -> Self {

@@ -1,7 +1,7 @@
 //! Sleep: what has rung out is put exactly to rest and costs nothing until it is struck again.
 
-use super::Kernel;
 use super::design::{GRID_SAMPLES, GroupState, ModeGroup};
+use super::{Input, Kernel};
 
 /// Amplitudes beyond this are no vibration but a broken state, which is put to rest.
 const ABSURD_AMPLITUDE: f32 = 1e15;
@@ -72,24 +72,84 @@ impl Awake {
         out: &mut [f32],
         threshold: f32,
     ) {
-        let samples = out.len().min(impulses_n_s.len());
+        let input = [Input { impulses: impulses_n_s, gains: &[] }];
+        let bank = Bank { kernel, groups, states, driven: groups.len(), threshold };
+        self.run(bank, first_sample, &input, true, out);
+    }
+
+    /// As [`Self::render`] for up to [`MAX_INPUTS`] inputs with a gain for every lane (without gains: one
+    /// input that every lane hears), of which only the first [`Bank::driven`] groups hear anything; the
+    /// others ring out.
+    pub fn render_bank(&mut self, bank: Bank<'_>, first_sample: u64, inputs: &[Input<'_>], out: &mut [f32]) {
+        let shared = inputs.len() == 1 && inputs.first().is_some_and(|input| input.gains.is_empty());
+        self.run(bank, first_sample, inputs, shared, out);
+    }
+
+    fn run(
+        &mut self,
+        bank: Bank<'_>,
+        first_sample: u64,
+        inputs: &[Input<'_>],
+        shared: bool,
+        out: &mut [f32],
+    ) {
+        let Bank { kernel, groups, states, driven, threshold } = bank;
+        let mut heard = [Input { impulses: &[], gains: &[] }; MAX_INPUTS];
+        let heard = &mut heard[..inputs.len().min(MAX_INPUTS)];
+        let samples = inputs.iter().fold(out.len(), |n, input| n.min(input.impulses.len()));
+        let driven = driven.min(groups.len()).min(states.len());
         let mut at = 0;
         while at < samples {
             let now = first_sample.wrapping_add(at as u64);
             let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
-            let (impulses, y) = (&impulses_n_s[at..at + len], &mut out[at..at + len]);
-            // All bits but the sign, or'ed: many at a time where `any` looks at one.
-            let struck = || impulses.iter().fold(0, |bits, u| bits | (u.to_bits() << 1)) != 0;
-            if self.groups < groups.len() && struck() {
-                self.groups = groups.len();
+            for (heard, input) in heard.iter_mut().zip(inputs) {
+                *heard = Input { impulses: &input.impulses[at..at + len], gains: input.gains };
+            }
+            let y = &mut out[at..at + len];
+            if self.groups < driven && heard.iter().any(|input| is_struck(input.impulses)) {
+                self.groups = driven;
             }
             let awake = self.groups.min(groups.len()).min(states.len());
             let (groups, states) = (&groups[..awake], &mut states[..awake]);
-            kernel.render(now, groups, states, impulses, y);
+            let driven = driven.min(awake);
+            let (deaf, deaf_states) = (&groups[driven..], &mut states[driven..]);
+            if !deaf.is_empty() {
+                kernel.render(now, deaf, deaf_states, &SILENCE[..len], y);
+            }
+            let (groups_heard, states_heard) = (&groups[..driven], &mut states[..driven]);
+            match heard {
+                [input] if shared => kernel.render(now, groups_heard, states_heard, input.impulses, y),
+                _ => kernel.render_mixed(now, groups_heard, states_heard, heard, y),
+            }
             if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
                 self.groups = kernel.settle(groups, states, threshold);
             }
             at += len;
         }
     }
+}
+
+/// What [`Awake::render_bank`] renders.
+#[derive(Debug)]
+pub struct Bank<'a> {
+    /// The instructions.
+    pub kernel: Kernel,
+    /// The modes, slowest decay first.
+    pub groups: &'a [ModeGroup],
+    /// Their states.
+    pub states: &'a mut [GroupState],
+    /// How many leading groups hear the inputs.
+    pub driven: usize,
+    /// Amplitude below which a mode is put to rest, output units.
+    pub threshold: f32,
+}
+
+/// Most inputs of [`Awake::render_bank`].
+pub const MAX_INPUTS: usize = 16;
+
+const SILENCE: [f32; GRID_SAMPLES as usize] = [0.0; GRID_SAMPLES as usize];
+
+/// Whether any impulse is not zero. All bits but the sign, or'ed: many at a time where `any` looks at one.
+fn is_struck(impulses: &[f32]) -> bool {
+    impulses.iter().fold(0, |bits, u| bits | (u.to_bits() << 1)) != 0
 }

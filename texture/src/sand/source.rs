@@ -233,7 +233,11 @@ impl SandSource {
             let old = slot.old.take();
             slot.old = slot.new.take();
             slot.new = slot.waiting.take();
-            slot.fade_start = sample;
+            // A contact's first patch takes over at once: until now it read the overview, which by now
+            // shows the print of the very finger that stands in it.
+            let is_first = slot.old.is_none();
+            slot.fade_start =
+                if is_first { sample.saturating_sub(fade_samples(self.frame_samples)) } else { sample };
             self.spare.extend(old);
         }
     }

@@ -1,0 +1,205 @@
+//! What is left out because nobody would miss it, and what leaving it out costs.
+
+mod common;
+
+use asperity::contact_log::{ContactLog, Names};
+use asperity::offline::{self, Options};
+use asperity::{
+    Actuator, Config, ContactEvent, ContactId, ContactSample, Culling, MAX_POSITIONS, ModalModel, Mode,
+    Renderer, Scene,
+};
+use asperity_dsp::rng::Rng;
+use common::{SIDE_M, plate, stroke};
+use std::collections::HashMap;
+
+/// A body as a fit of a recording gives it: a few strong modes and hundreds of weak ones.
+fn body(modes: usize) -> ModalModel {
+    let mut rng = Rng::new(8);
+    let modes = (0..modes).map(|i| Mode {
+        frequency_hz: 150.0 * 100f64.powf(rng.uniform()),
+        decay_per_s: 4.0 + 60.0 * rng.uniform(),
+        amplitude: rng.normal() * 10f64.powf(-6.5 * i as f64 / modes as f64),
+        phase_rad: 0.0,
+    });
+    ModalModel::new(modes.collect(), 0.01).unwrap()
+}
+
+fn strike(config: Config, model: ModalModel, position: usize) -> Vec<f32> {
+    let (mut scene, renderer) = config.build().unwrap();
+    let body = scene.add_body(model).unwrap();
+    let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), surfaces: HashMap::new() };
+    let line = r#"{"t":0.01,"event":"impact","body":"b","speed_m_s":0.5,"mass_kg":0.002,"radius_m":0.002,"striker":"steel","position":"#;
+    let log = ContactLog::parse(&format!("{line}{position}}}"), "log").unwrap();
+    offline::render(scene, renderer, &log, &names, &Options { block_frames: 256, tail_s: 0.5 }).unwrap().audio
+}
+
+/// Energy of the difference over the energy of the reference, dB.
+fn error_db(found: &[f32], reference: &[f32]) -> f64 {
+    let difference: Vec<f32> = found.iter().zip(reference).map(|(a, b)| a - b).collect();
+    20.0 * (common::rms(&difference) / common::rms(reference)).log10()
+}
+
+#[test]
+fn modes_that_nobody_hears_are_left_out_and_the_error_stays_below_them() {
+    let all = body(400);
+    let whole = strike(Config { culling: None, ..Config::default() }, all.clone(), 0);
+    // What is left out, how many modes must go, and how much of the sound may go with them.
+    for (culling, at_most, bar_db) in [
+        (Culling::NEGLIGIBLE, 385, -100.0),
+        (Culling { masking: false, ..Culling::default() }, 300, -60.0),
+        (Culling::default(), 120, -20.0),
+    ] {
+        let kept = all.audible(44_100.0, &culling).modes.len();
+        let culled = strike(Config { culling: Some(culling), ..Config::default() }, all.clone(), 0);
+        let error = error_db(&culled, &whole);
+        println!(
+            "{} dB, masking {}: {kept} of 400 modes, error {error:.1} dB",
+            culling.level_db, culling.masking
+        );
+        assert!(kept < at_most, "{kept} modes of 400 are kept");
+        assert!(error < bar_db, "{error} dB");
+    }
+}
+
+#[test]
+fn a_body_sounds_as_it_is_struck() {
+    let mut rng = Rng::new(3);
+    let base = body(50);
+    let elsewhere: Vec<Vec<f64>> =
+        (0..3).map(|_| base.modes.iter().map(|m| m.amplitude * rng.normal()).collect()).collect();
+    let model = base.clone().with_positions(elsewhere.clone()).unwrap();
+    let plain = |amplitudes: &[f64]| {
+        let modes = base.modes.iter().zip(amplitudes).map(|(m, a)| Mode { amplitude: *a, ..*m });
+        ModalModel::new(modes.collect(), base.impulse_n_s).unwrap()
+    };
+    let own: Vec<f64> = base.modes.iter().map(|m| m.amplitude).collect();
+    for (position, amplitudes) in [&own].into_iter().chain(&elsewhere).enumerate() {
+        let found = strike(Config::default(), model.clone(), position);
+        let expected = strike(Config::default(), plain(amplitudes), 0);
+        let error = error_db(&found, &expected);
+        assert!(error < -100.0, "position {position}: {error} dB");
+    }
+    let last = strike(Config::default(), model.clone(), 3);
+    assert_eq!(strike(Config::default(), model, 99), last, "a position beyond the last counts as the last");
+}
+
+#[test]
+fn two_fingers_on_two_positions_add_up() {
+    let model = body(40);
+    let amplitudes = model.modes.iter().rev().map(|m| m.amplitude).collect();
+    let model = model.with_positions(vec![amplitudes]).unwrap();
+    let slide = |touching: &[usize]| {
+        let (mut scene, mut renderer) = Config::default().build().unwrap();
+        let body = scene.add_body(model.clone()).unwrap();
+        for (finger, &position) in touching.iter().enumerate() {
+            let surface = plate(0.8).on(body).at_strike_position(position);
+            let surface = scene.add_surface(surface).unwrap();
+            let event = ContactEvent::begin(ContactId(finger as u64), surface, Actuator(0), sliding());
+            scene.report(0.0, event).unwrap();
+        }
+        let (mut haptic, mut audio) = (vec![0.0; 8820], vec![0.0; 8820]);
+        renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+        audio
+    };
+    let (first, second, both) = (slide(&[0]), slide(&[1]), slide(&[0, 1]));
+    let sum: Vec<f32> = first.iter().zip(&second).map(|(a, b)| a + b).collect();
+    assert!(error_db(&both, &sum) < -100.0);
+    assert!(error_db(&first, &second) > -10.0, "the positions sound differently");
+}
+
+#[test]
+fn a_modes_file_may_list_positions_and_is_refused_when_they_do_not_fit() {
+    let text = r#"{"format":"asperity.modes","version":1,"modes":[{"frequency_hz":440.0,"decay_per_s":3.0,"amplitude":1.0}],"positions":[[0.5],[-2.0]]}"#;
+    let model = ModalModel::parse(text).unwrap();
+    assert_eq!(model.position_count(), 3);
+    assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
+    let refused = ModalModel::parse(&text.replace("[0.5]", "[0.5,0.1]")).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "positions[0]: 2 is refused; must be as many amplitudes as there are modes"
+    );
+    assert!(model.clone().with_positions(vec![vec![f64::NAN]]).is_err());
+    assert!(model.with_positions(vec![vec![1.0]; MAX_POSITIONS]).is_err());
+}
+
+fn sliding() -> ContactSample {
+    ContactSample { uv: [0.1, 0.4], velocity_m_s: Some([0.1, 0.02]), normal_force_n: 0.6, closing_m_s: 0.0 }
+}
+
+/// Ten fingers on a body of 80 modes, all at once.
+fn ten_fingers(config: Config) -> (Scene, Renderer) {
+    let (mut scene, renderer) = Config { contact_timeout_s: 3600.0, ..config }.build().unwrap();
+    let body = scene.add_body(body(80)).unwrap();
+    let surface = scene.add_surface(plate(0.9).on(body)).unwrap();
+    for finger in 0..10 {
+        let sample = ContactSample { normal_force_n: 0.3 + 0.05 * finger as f64, ..sliding() };
+        scene.report(0.0, ContactEvent::begin(ContactId(finger), surface, Actuator(0), sample)).unwrap();
+    }
+    (scene, renderer)
+}
+
+fn blocks(renderer: &mut Renderer, count: usize, load: Option<f32>) -> Vec<f32> {
+    let mut all = Vec::new();
+    let (mut haptic, mut audio) = ([0.0f32; 64], [0.0f32; 64]);
+    for _ in 0..count {
+        if let Some(load) = load {
+            renderer.report_load(load);
+        }
+        renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+        all.extend_from_slice(&audio);
+    }
+    all
+}
+
+#[test]
+fn nothing_is_ever_left_out_where_nobody_reports_a_load() {
+    let (scene, mut renderer) = ten_fingers(Config::default());
+    let unreported = blocks(&mut renderer, 100, None);
+    assert_eq!(scene.stats().shed, 0);
+    let (scene, mut renderer) = ten_fingers(Config { shed_load: false, ..Config::default() });
+    assert_eq!(blocks(&mut renderer, 100, Some(3.0)), unreported);
+    assert_eq!((scene.stats().shed, scene.stats().load), (0, 3.0));
+}
+
+#[test]
+fn a_late_engine_leaves_out_little_by_little_and_takes_everything_back() {
+    let (scene, mut renderer) = ten_fingers(Config::default());
+    let (_, mut whole) = ten_fingers(Config::default());
+    let warm = blocks(&mut renderer, 50, None);
+    assert_eq!(blocks(&mut whole, 50, None), warm);
+    let mut shed = 0;
+    let mut errors = Vec::new();
+    for level in 1..=8 {
+        // One late block a level, then neither late nor easy.
+        blocks(&mut renderer, 1, Some(0.9));
+        let found = blocks(&mut renderer, 40, Some(0.7));
+        blocks(&mut whole, 1, None);
+        let error = error_db(&found, &blocks(&mut whole, 40, None));
+        println!("level {level}: error {error:.1} dB");
+        errors.push(error);
+        assert!(scene.stats().shed > shed, "level {level} leaves something out");
+        shed = scene.stats().shed;
+        assert_eq!(scene.stats().contacts, 10);
+    }
+    assert!(errors[0] < -10.0 && errors.iter().all(|e| *e < 3.0), "{errors:?}");
+    blocks(&mut renderer, 30, Some(2.0));
+    let few = scene.stats().contacts;
+    assert!((1..=3).contains(&few), "{few} contacts are left");
+    // Easy again: everything comes back within 16 levels of half a second, and moves revive the contacts.
+    blocks(&mut renderer, 6200, Some(0.1));
+    shed = scene.stats().shed;
+    blocks(&mut renderer, 50, Some(0.1));
+    assert_eq!(scene.stats().shed, shed);
+}
+
+#[test]
+fn culling_does_not_touch_what_a_stroke_sounds_like() {
+    let log = stroke(SIDE_M, 0.1, 0.5, 0.3);
+    let options = Options { block_frames: 256, tail_s: 0.2 };
+    let with =
+        |culling| common::render(Config { culling, ..Config::default() }, plate(0.8), &log, &options).audio;
+    assert!(
+        error_db(&with(Some(Culling::NEGLIGIBLE)), &with(None)) < -100.0
+            || with(None) == with(Some(Culling::NEGLIGIBLE))
+    );
+}
