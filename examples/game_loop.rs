@@ -102,7 +102,6 @@ fn report(scene: &mut Scene, time_s: f64, event: ContactEvent) -> Result<(), Box
 
 fn steel_ball_on(body: BodyId) -> ContactEvent {
     ContactEvent::Impact(Impact {
-        position: 0,
         body,
         other: None,
         speed_m_s: 0.8,

@@ -19,7 +19,6 @@ fn tick() -> ModalModel {
 
 fn impact(body: asperity::BodyId) -> ContactEvent {
     ContactEvent::Impact(Impact {
-        position: 0,
         body,
         other: None,
         speed_m_s: 2.0,

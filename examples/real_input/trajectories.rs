@@ -157,7 +157,6 @@ pub fn tosses(csv: &str, body: &str) -> Result<ContactLog, String> {
 
 fn impact(body: &str, gained_m_s: f64) -> LogEvent {
     LogEvent::Impact {
-        position: 0,
         body: body.into(),
         other: None,
         speed_m_s: gained_m_s / (1.0 + CUBE_RESTITUTION),
