@@ -224,7 +224,7 @@ impl ContactLog {
                 return Err(LogError::TimeBackwards { place: place(), t: line.t, before });
             }
             if line.t > MAX_TIME_S {
-                let message = format!("t = {} s is more than a day", line.t);
+                let message = format!("t = {:?} s is more than a day", line.t);
                 return Err(LogError::Malformed { place: place(), message });
             }
             before = line.t;

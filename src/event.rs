@@ -2,6 +2,16 @@
 //!
 //! Events are small `Copy` values in SI units, stamped by the caller in game seconds. The same type
 //! serves a live game, a replayed [contact log](crate::contact_log) and every test.
+//!
+//! **Impact or slide?** What strikes and leaves, or strikes with a rigid body, is an [`Impact`]: one pulse
+//! into the body. What stays is a contact: its landing sounds through the contact model, by
+//! [`closing_m_s`](ContactSample::closing_m_s). Report one or the other for the same landing, not both.
+//!
+//! **Flicker.** Physics engines lose a contact for a frame and find it again. A begin that comes while
+//! the same contact still fades from its end (25 ms, longer than a frame at 60 Hz), on the same surface
+//! and actuator and within 10 mm of where it left, is the same touch: it goes on from the level it has
+//! faded to, without a landing, and is counted in [`Stats::debounced`](crate::Stats::debounced). A begin
+//! of a contact that never ended is a landing.
 
 use crate::material::Material;
 

@@ -53,7 +53,7 @@ pub enum ModalModelError {
         message: String,
     },
     /// A number that no body can have.
-    #[error("{field}: {value} is refused; must be {expected}")]
+    #[error("{field}: {value:?} is refused; must be {expected}")]
     BadValue {
         /// Which field of which mode.
         field: String,

@@ -252,7 +252,9 @@ impl Scene {
         match event {
             ContactEvent::Moved { contact, .. } => self.send_move(sample, contact, event),
             ContactEvent::Begin { contact, .. } | ContactEvent::End { contact } => {
+                let before = self.held.len();
                 self.held.retain(|(_, held, _)| *held != contact);
+                Counters::add(&self.counters.superseded, (before - self.held.len()) as u64);
                 self.send_event(Message::Event { sample, event })
             }
             ContactEvent::Impact(impact) => self.send_impact(sample, &impact),
@@ -309,7 +311,9 @@ impl Scene {
 
     fn flush_held(&mut self) {
         while self.to_audio.free() > self.to_audio.capacity() / 4 {
-            let Some((sample, _, event)) = self.held.pop() else { return };
+            let oldest = (0..self.held.len()).min_by_key(|&index| self.held[index].0);
+            let Some(oldest) = oldest else { return };
+            let (sample, _, event) = self.held.swap_remove(oldest);
             // There is room: checked just above.
             let _ = self.to_audio.send(Message::Event { sample, event });
         }

@@ -41,7 +41,7 @@ counters! {
     micro_collisions,
     /// Events handed back because the queue was full.
     dropped,
-    /// Moves replaced by a newer move of the same contact before they were sent.
+    /// Moves that a newer event of the same contact made pointless before they were sent.
     superseded,
     /// Events that named a contact nobody began, or whose voice was stolen.
     orphaned,

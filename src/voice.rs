@@ -83,6 +83,10 @@ pub(crate) struct Voice {
     slot: usize,
     asleep: bool,
     fade_in_left: u32,
+    /// Coming back out of a fade.
+    rising: Option<Rising>,
+    /// Gain of the last sample.
+    gain: f64,
     trajectory: Trajectory,
     last_point: PathPoint,
     last_row: PadSample,
@@ -98,6 +102,27 @@ pub(crate) struct Voice {
     force_history_n_s: [f64; FORCE_HISTORY],
     bus: Vec<f64>,
     bus_busy_until: u64,
+}
+
+/// A fade that turns round: its phase (0 = silent, 1 = full) slows down, stops and comes back, so that
+/// the gain has no corner.
+struct Rising {
+    phase: f64,
+    /// Per sample.
+    speed: f64,
+}
+
+/// Share of a fade's length that its turning takes.
+const TURN: f64 = 0.2;
+
+impl Rising {
+    /// The next gain.
+    fn tick(&mut self, fade_samples: u32) -> f64 {
+        let top = 1.0 / f64::from(fade_samples);
+        self.speed = (self.speed + 2.0 * top * top / TURN).min(top);
+        self.phase = (self.phase + self.speed).clamp(0.0, 1.0);
+        0.5 - 0.5 * (std::f64::consts::PI * self.phase).cos()
+    }
 }
 
 /// What one voice adds to a stretch of samples.
@@ -150,6 +175,8 @@ impl Voice {
             slot,
             asleep: false,
             fade_in_left: 0,
+            rising: None,
+            gain: 0.0,
             trajectory: Trajectory::begin(&shared.idle_path, &IDLE),
             last_point: PathPoint::default(),
             last_row: PadSample::default(),
@@ -185,6 +212,7 @@ impl Voice {
         (self.begun, self.refreshed) = (position, position);
         self.asleep = false;
         self.ended = false;
+        self.rising = None;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         self.last_point = PathPoint {
@@ -250,13 +278,18 @@ impl Voice {
         apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
     }
 
-    /// Comes back out of its fade, from the level it has faded to.
+    /// Comes back out of its fade, from the level it has faded to and without a corner.
     pub(crate) fn resume(&mut self, shared: &Shared) {
-        if let Phase::Fading { left } = self.phase {
-            self.fade_in_left = shared.fade_samples().saturating_sub(left);
-            self.phase = Phase::Sounding;
-            self.ended = false;
+        let step = 1.0 / f64::from(shared.fade_samples());
+        let faded = matches!(self.phase, Phase::Fading { left } if left < shared.fade_samples());
+        let phase = (1.0 - 2.0 * self.gain).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
+        // Before the first faded sample nothing has happened yet.
+        self.rising = faded.then_some(Rising { phase, speed: -step });
+        if faded {
+            self.fade_in_left = 0;
         }
+        self.phase = Phase::Sounding;
+        self.ended = false;
     }
 
     /// How much would be missed: what presses harder and moves faster is heard and felt more.
@@ -486,19 +519,30 @@ impl Voice {
     /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
     /// its own beginning), out for one that ended, lapsed or was stolen.
     fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        if self.fade_in_left == 0 && self.phase == Phase::Sounding {
+        if self.fade_in_left == 0 && self.rising.is_none() && self.phase == Phase::Sounding {
+            self.gain = 1.0;
             return;
         }
         let (total, rise) = (shared.fade_samples(), &shared.fade);
         for i in 0..n {
+            self.gain = 1.0;
             if self.fade_in_left > 0 {
                 self.fade_in_left -= 1;
-                scratch.out.scale(i, rise[(total - self.fade_in_left) as usize]);
+                self.gain *= rise[(total - self.fade_in_left) as usize];
+            }
+            if let Some(rising) = &mut self.rising {
+                self.gain *= rising.tick(total);
+                if rising.phase >= 1.0 {
+                    self.rising = None;
+                }
             }
             if let Phase::Fading { left } = self.phase {
                 let left = left.saturating_sub(1);
-                scratch.out.scale(i, rise[left as usize]);
+                self.gain *= rise[left as usize];
                 self.phase = Phase::Fading { left };
+            }
+            if self.gain != 1.0 {
+                scratch.out.scale(i, self.gain);
             }
         }
         if self.phase == (Phase::Fading { left: 0 }) {

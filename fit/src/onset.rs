@@ -145,7 +145,8 @@ mod tests {
             let samples: Vec<f64> = (0..66_150)
                 .map(|n| {
                     let t = f64::from(n) / 44_100.0;
-                    (-2.0 * t).exp() * ((6000.0 * t).sin() + ((6000.0 + 6.283 * beat_hz) * t).sin())
+                    (-2.0 * t).exp()
+                        * ((6000.0 * t).sin() + ((6000.0 + std::f64::consts::TAU * beat_hz) * t).sin())
                 })
                 .collect();
             let strike = find(&samples, 44_100.0);

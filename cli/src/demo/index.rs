@@ -16,7 +16,7 @@ const HOW: &str = "NAME.audio.wav is what is heard; NAME.haptic.wav is what a vi
 
 /// What is said about the fit, beside its pictures.
 const FIT: &str = "tile_strike.wav is a recorded impact, made by the project (synthetic: a tile in a room, with noise), \
-                   fitted as `asperity fit tile_strike.wav -o tile.modes.json --plot tile.fit.svg` does. \
+                   fitted as `asperity fit tile_strike.wav -o tile.modes.json --max-modes 32 --plot tile.fit.svg` does. \
                    tile.resynthesis.wav is what the modes alone sound like; the tile of the struck scene plays them. \
                    Do the same with a recording of your own.";
 

@@ -8,8 +8,8 @@ use crate::output;
 use crate::progress::Progress;
 use crate::scene_file::SceneFile;
 use asperity::channel_map::ChannelMap;
-use asperity::contact_log::ContactLog;
-use asperity::device::{self, DeviceOptions, DeviceReport, Player};
+use asperity::contact_log::{ContactLog, LogError};
+use asperity::device::{self, DeviceOptions, DeviceReport};
 use asperity::{ContactEvent, Refusal, Scene, Stats};
 use serde::Serialize;
 use std::path::Path;
@@ -128,7 +128,7 @@ fn play(
         .lines
         .iter()
         .map(|line| Ok((line.t, line.event.resolve(&names)?)))
-        .collect::<Result<Vec<_>, _>>()
+        .collect::<Result<Vec<_>, LogError>>()
         .map_err(|error| CliError::told(error).within(log_name(file)))?;
     let mut feed = Feed { events: &events, next: 0, rate_hz };
     feed.send(&mut scene);

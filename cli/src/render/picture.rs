@@ -9,7 +9,9 @@ use crate::plot::{
 use asperity_texture::raster::Raster;
 
 /// Contacts drawn one by one; more would cover each other.
-pub const DRAWN_CONTACTS: usize = 4;
+pub const DRAWN_CONTACTS: usize = 8;
+/// With more contacts than this the legend has room for their numbers only.
+const NAMED_CONTACTS: usize = 3;
 /// Length of the enlarged instant, s.
 const ZOOM_S: f64 = 0.03;
 
@@ -126,7 +128,7 @@ fn speed_panel(take: &Take<'_>) -> Panel {
     );
     for (contact, colour) in drawn(take) {
         let data = Series::signal(contact.speed_m_s.iter().copied(), take.sample_rate_hz, contact.start_s);
-        panel = panel.with(Layer::line(legend(take, contact), colour, data));
+        panel = panel.with(Layer::line("", colour, data));
     }
     panel
 }
@@ -140,7 +142,7 @@ fn force_panel(take: &Take<'_>) -> Panel {
     for (contact, colour) in drawn(take) {
         let data =
             Series::signal(contact.normal_force_n.iter().copied(), take.sample_rate_hz, contact.start_s);
-        panel = panel.with(Layer::line(legend(take, contact), colour, data));
+        panel = panel.with(Layer::line("", colour, data));
     }
     panel
 }
@@ -150,9 +152,14 @@ fn highest(take: &Take<'_>, values: impl Fn(&ContactCurve) -> &Vec<f64>) -> f64 
     drawn(take).flat_map(|(contact, _)| values(contact)).copied().fold(0.0, f64::max)
 }
 
-/// A label in the legend where there is more than one contact to tell apart.
+/// What the legend says: the pad where there is one contact, and as much of each name as there is room
+/// for where there are more. The colours are those of the force and speed panels above.
 fn legend(take: &Take<'_>, contact: &ContactCurve) -> String {
-    if take.contacts.len() > 1 { contact.label.clone() } else { String::new() }
+    match take.contacts.len() {
+        0 | 1 => "pad".to_owned(),
+        2..=NAMED_CONTACTS => contact.label.clone(),
+        _ => contact.label.split(' ').next().unwrap_or_default().to_owned(),
+    }
 }
 
 fn profile_panel(take: &Take<'_>) -> Panel {
@@ -171,8 +178,7 @@ fn profile_panel(take: &Take<'_>) -> Panel {
         let pad = Series::signal(contact.pad_m.iter().copied(), take.sample_rate_hz, contact.start_s);
         let label = if index == 0 { "surface" } else { "" };
         panel = panel.with(Layer::ground(label, surface));
-        let label = if take.contacts.len() > 1 { contact.label.clone() } else { "pad".to_owned() };
-        panel = panel.with(Layer::line(label, colour, pad));
+        panel = panel.with(Layer::line(legend(take, contact), colour, pad));
     }
     panel.with(impact_rules(take))
 }
@@ -201,7 +207,8 @@ fn impulse_panel(take: &Take<'_>) -> Panel {
 /// The window with the most collisions, or else the most momentum, on the contact it belongs to.
 fn busiest(take: &Take<'_>) -> Option<(usize, f64)> {
     let mut best: Option<(f64, usize, f64)> = None;
-    for (index, contact) in take.contacts.iter().enumerate() {
+    // Only what is drawn was kept in full.
+    for (index, contact) in take.contacts.iter().enumerate().filter(|(_, c)| !c.height_m.is_empty()) {
         let collides = !contact.collisions.is_empty();
         let events = if collides { &contact.collisions } else { &contact.impulses };
         let strength = |at: usize| if collides { 1.0 } else { events[at][1].abs() };

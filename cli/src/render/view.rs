@@ -1,0 +1,99 @@
+//! From a finished render to the picture of it: units, labels, surfaces from above.
+
+use super::Report;
+use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};
+use crate::scene_file::{ActuatorOutput, SceneFile, Source};
+use crate::{build, plot};
+use asperity::SurfaceId;
+use asperity::contact_log::{ContactLog, LogEvent};
+use asperity::offline::Render;
+use asperity_texture::raster::Raster;
+use std::path::Path;
+
+/// Draws the picture of `STEM.svg`.
+pub fn draw(
+    file: &SceneFile,
+    log: &ContactLog,
+    render: &Render,
+    curves: &[ContactCurve],
+    report: &Report,
+    names: &[(String, SurfaceId)],
+) -> String {
+    let haptic = file.actuators.iter().zip(&render.haptic).map(|(actuator, samples)| {
+        let (quantity, unit) = match actuator.output {
+            ActuatorOutput::Displacement => ("displacement", "m"),
+            ActuatorOutput::Acceleration => ("acceleration", "m/s²"),
+        };
+        HapticChannel { quantity, unit, full_scale: actuator.full_scale, samples }
+    });
+    let impacts_s = log
+        .lines
+        .iter()
+        .filter(|line| matches!(line.event, LogEvent::Impact { .. }))
+        .map(|line| line.t)
+        .collect();
+    let surfaces: Vec<&str> = file.surfaces.iter().map(|surface| surface.name.as_str()).collect();
+    picture::draw(&Take {
+        title: title(&file.path),
+        summary: vec![format!(
+            "{} at {} Hz · {} · {} events, {} micro-collisions, {} impacts · audio peak {}",
+            plot::quantity(report.duration_s, "s"),
+            report.sample_rate_hz,
+            if surfaces.is_empty() { "no surface".to_owned() } else { surfaces.join(", ") },
+            report.events,
+            report.micro_collisions,
+            report.impacts,
+            plot::quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB"),
+        )],
+        sample_rate_hz: render.sample_rate_hz,
+        audio: &render.audio,
+        haptic: haptic.collect(),
+        contacts: curves,
+        impacts_s,
+        grounds: grounds(file, render, names),
+    })
+}
+
+/// Texels a side of a surface in the picture.
+const GROUND_PX: usize = 192;
+
+/// The surfaces that can be seen from above: maps as they are, sand as it lies afterwards.
+fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> Vec<Ground> {
+    file.surfaces
+        .iter()
+        .filter_map(|surface| {
+            let id = names.iter().find(|(name, _)| *name == surface.name)?.1;
+            let sand = render.sand.iter().find(|sand| sand.surface == id);
+            let (title, heights) = match (&surface.source, sand) {
+                (_, Some(sand)) => ("the sand afterwards", sand.picture.raster.clone()),
+                (Source::Map { image, invert, .. }, _) => {
+                    let raster = build::pixels(image).ok()?.raster;
+                    let upright = if *invert { raster.map(|height| 1.0 - height) } else { raster };
+                    ("from above", upright)
+                }
+                _ => return None,
+            };
+            Some(Ground {
+                title: title.to_owned(),
+                extent_m: [surface.width_m, surface.height_m],
+                heights: thumbnail(&heights),
+                surface: format!(" on {}", surface.name),
+            })
+        })
+        .collect()
+}
+
+/// A small copy whose heights fill 0–1.
+fn thumbnail(heights: &Raster) -> Raster {
+    let (width, height) = (heights.width.min(GROUND_PX), heights.height.min(GROUND_PX));
+    let (low, high) = heights.range();
+    let span = if high > low { high - low } else { 1.0 };
+    Raster::from_fn(width, height, |x, y| {
+        let (x, y) = (x * heights.width / width, y * heights.height / height);
+        (heights.at(x, y) - low) / span
+    })
+}
+
+fn title(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "render".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}

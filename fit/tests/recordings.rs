@@ -1,0 +1,113 @@
+//! Real recordings of the corpus: better than spectral peaks, the same frequencies at every velocity,
+//! one exponential for one mode, and Hertz' contact time in an impact's pulse.
+
+mod common;
+
+use asperity_dsp::hertz::{Elastic, HertzContact};
+use asperity_fit::{ChannelChoice, Fit, FitOptions, Recording, fit, load};
+use common::{render_fast, snr_db, stft_peaks};
+use std::path::PathBuf;
+
+/// The corpus, or `None` (said aloud) when it is not there; in CI it must be.
+fn corpus() -> Option<PathBuf> {
+    let root = std::env::var_os("ASPERITY_CORPUS")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus"), PathBuf::from);
+    if root.is_dir() {
+        return Some(root);
+    }
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "the corpus is missing in CI");
+    println!("skipped: no corpus at {}", root.display());
+    None
+}
+
+fn fitted(name: &str, max_modes: usize) -> Option<(Recording, Fit)> {
+    let path = corpus()?.join("impacts").join(name);
+    let recording = load(path, ChannelChoice::Loudest).unwrap();
+    let options = FitOptions { max_modes, start_offset_s: Some(0.0), threads: 1, ..FitOptions::default() };
+    let fit = fit(&recording, &options, &mut |_| {}).unwrap();
+    Some((recording, fit))
+}
+
+#[test]
+fn sixty_modes_explain_more_than_sixty_spectral_peaks() {
+    for name in
+        ["kenney_impactGlass_light_000.wav", "kenney_impactMetal_light_000.wav", "vcsl_wood_click_ff.wav"]
+    {
+        let Some((recording, fit)) = fitted(name, 60) else { return };
+        assert!(fit.modes.len() <= 60);
+        let rate = recording.sample_rate_hz;
+        let end = ((fit.end_s - recording.starts_at_s) * rate).round() as usize;
+        let sound = &recording.samples[fit.onset_sample..end];
+        let peaks = stft_peaks(sound, rate, 60);
+        let baseline = snr_db(sound, &render_fast(&peaks, rate, sound.len()));
+        let ours = snr_db(sound, &fit.resynthesise(sound.len()));
+        assert!(ours > baseline + 3.0, "{name}: {ours} dB against {baseline} dB");
+        let peak = sound.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+        assert!(fit.modes.iter().all(|m| m.decay_per_s > 0.0 && m.amplitude <= 8.0 * peak * 1.001));
+    }
+}
+
+#[test]
+fn velocity_layers_of_one_object_agree_in_frequency() {
+    let mut strongest = Vec::new();
+    for name in ["vcsl_xylo_medium_C5_ff.wav", "vcsl_xylo_medium_C5_pp.wav"] {
+        let Some((_, fit)) = fitted(name, 30) else { return };
+        strongest.push(fit.modes[0].frequency_hz);
+    }
+    let spread = (strongest[0] / strongest[1] - 1.0).abs();
+    assert!(spread < 1e-3, "{strongest:?}");
+}
+
+/// Time a pulse stays above half its peak, s, of an oscilloscope's text file.
+fn half_width_s(name: &str) -> Option<f64> {
+    let text = std::fs::read_to_string(corpus()?.join("impacts").join(name)).unwrap();
+    let rows: Vec<(f64, f64)> = text
+        .lines()
+        .skip(5)
+        .filter_map(|line| {
+            let mut cells = line.split_whitespace();
+            Some((cells.next()?.parse().ok()?, cells.next()?.parse().ok()?))
+        })
+        .collect();
+    let rest = rows[..400].iter().map(|r| r.1).sum::<f64>() / 400.0;
+    // The first arrival points down; later ones are echoes of the slab.
+    let (peak, _) = rows
+        .iter()
+        .enumerate()
+        .filter(|(_, r)| r.0 < 0.0)
+        .fold((0, 0.0_f64), |best, (i, r)| if rest - r.1 > best.1 { (i, rest - r.1) } else { best });
+    let half = 0.5 * (rest - rows[peak].1);
+    let crossing = |mut i: usize, step: isize| {
+        while rest - rows[i].1 > half {
+            i = i.wrapping_add_signed(step);
+        }
+        let inside = rows[i.wrapping_add_signed(-step)];
+        let part = (rest - inside.1 - half) / (rows[i].1 - inside.1);
+        inside.0 + part * (rows[i].0 - inside.0)
+    };
+    Some(crossing(peak, 1) - crossing(peak, -1))
+}
+
+/// Contact time of a steel ball on concrete by the engine's pulse model.
+fn contact_time_s(radius_m: f64, speed_m_s: f64) -> f64 {
+    let steel = Elastic { young_pa: 2.1e11, poisson: 0.29 };
+    let concrete = Elastic { young_pa: 3.5e10, poisson: 0.2 };
+    let mass_kg = 7850.0 * 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
+    HertzContact::new(&steel, &concrete, radius_m, mass_kg).unwrap().contact_time_s(speed_m_s)
+}
+
+#[test]
+fn impact_pulses_last_as_long_as_hertz_says() {
+    // A sin^1.5 pulse is above half its peak for this part of its length.
+    const HALF_WIDTH: f64 = 0.566;
+    let Some(small) = half_width_s("impactecho_ball6mm_00000.txt") else { return };
+    let Some(large) = half_width_s("impactecho_ball10mm_00046.txt") else { return };
+    for (measured, radius_m) in [(small, 0.003), (large, 0.005)] {
+        // The drop height is not recorded; balls fall from 5 cm to 1 m.
+        let slow = HALF_WIDTH * contact_time_s(radius_m, 1.0);
+        let fast = HALF_WIDTH * contact_time_s(radius_m, 4.5);
+        assert!((fast..slow).contains(&measured), "{measured} outside {fast}..{slow}");
+    }
+    // Contact time is proportional to the radius at one speed.
+    assert!((large / small / (10.0 / 6.0) - 1.0).abs() < 0.12, "{large} {small}");
+}

@@ -1,0 +1,153 @@
+//! Made impacts: what is found, how near to the Cramér–Rao bound, and what noise alone gives.
+//! The whole table is `cargo run --release --example table`; these are its cells that fit into a minute.
+
+mod common;
+
+use asperity_dsp::mode::Mode;
+use asperity_dsp::rng::Rng;
+use asperity_fit::{FitOptions, FittedMode, Recording, fit};
+use common::*;
+
+fn fitted(samples: &[f64], rate_hz: f64) -> asperity_fit::Fit {
+    let recording = Recording::from_samples("made", samples.to_vec(), rate_hz).unwrap();
+    let options = FitOptions { start_offset_s: Some(0.0), threads: 1, ..FitOptions::default() };
+    fit(&recording, &options, &mut |_| {}).unwrap()
+}
+
+fn modes(fit: &asperity_fit::Fit) -> Vec<Mode> {
+    fit.modes.iter().map(FittedMode::mode).collect()
+}
+
+#[test]
+fn modes_are_found_at_the_bound_and_nothing_else() {
+    let (mut identifiable, mut missed, mut spurious) = (0, 0, 0);
+    let (mut f, mut d) = (vec![], vec![]);
+    for (count, snr, seed) in [(10, 60.0, 11), (10, 20.0, 12), (30, 60.0, 13), (30, 40.0, 14), (30, 20.0, 15)]
+    {
+        let made = impact(count, snr, seed, 44_100.0, 2.0);
+        let bounds = cramer_rao(&made.truth, made.rate_hz, made.clean.len(), made.noise_std);
+        let score = score(&made, &bounds, &modes(&fitted(&made.noisy, made.rate_hz)));
+        assert!(
+            score.limit_db - score.snr_db < if snr > 50.0 { 3.0 } else { 5.0 },
+            "{count} modes at {snr} dB: {} dB against {}",
+            score.snr_db,
+            score.limit_db
+        );
+        identifiable += score.identifiable;
+        missed += score.missed;
+        spurious += score.spurious;
+        f.extend(score.f_ratio);
+        d.extend(score.d_ratio);
+    }
+    assert!(missed * 50 <= identifiable, "{missed} of {identifiable} missed");
+    assert!(spurious <= 2, "{spurious} of 110 spurious");
+    assert!(robust_rms(&f) < 1.5 && robust_rms(&d) < 1.5, "{} {}", robust_rms(&f), robust_rms(&d));
+    let near = f.iter().zip(&d).filter(|(f, d)| f.abs() < 4.0 && d.abs() < 4.0).count();
+    assert!(near as f64 >= 0.97 * f.len() as f64);
+}
+
+#[test]
+fn two_modes_a_hertz_apart_are_told_apart_at_20_db() {
+    let mode = |frequency_hz: f64, phase_rad: f64| Mode {
+        frequency_hz,
+        decay_per_s: 6.908 / 2.0,
+        amplitude: 0.5,
+        phase_rad,
+    };
+    let mut rng = Rng::new(77);
+    let mut both = 0;
+    for draw in 0..10 {
+        let truth = vec![mode(700.0, 0.3 * f64::from(draw)), mode(701.0, 1.0 - 0.5 * f64::from(draw))];
+        let made = with_noise(truth, 20.0, &mut rng, 44_100.0, 2.0);
+        let found = modes(&fitted(&made.noisy, 44_100.0));
+        both += usize::from(
+            found.len() == 2
+                && made
+                    .truth
+                    .iter()
+                    .all(|t| found.iter().any(|f| (f.frequency_hz - t.frequency_hz).abs() < 0.2)),
+        );
+    }
+    assert!(both >= 9, "{both} of 10");
+}
+
+#[test]
+fn noise_has_no_modes() {
+    let mut with_modes = 0;
+    for seed in 0..10 {
+        let mut rng = Rng::new(500 + seed);
+        let mut last = 0.0;
+        let samples: Vec<f64> = (0..66_150)
+            .map(|_| {
+                let white = rng.normal();
+                // Every other draw is coloured: 6 dB an octave above 2 kHz.
+                last += 0.25 * (white - last);
+                0.1 * if seed % 2 == 0 { white } else { last }
+            })
+            .collect();
+        let fit = fitted(&samples, 44_100.0);
+        with_modes += usize::from(!fit.modes.is_empty());
+    }
+    assert!(with_modes <= 1, "{with_modes} of 10");
+}
+
+#[test]
+fn amplitude_phase_and_onset_are_those_of_the_strike() {
+    let truth = [
+        Mode { frequency_hz: 812.4, decay_per_s: 14.2, amplitude: 0.31, phase_rad: 0.4 },
+        Mode { frequency_hz: 2210.0, decay_per_s: 40.0, amplitude: 0.2, phase_rad: -2.0 },
+    ];
+    for rate_hz in [22_050.0, 44_100.0, 48_000.0, 96_000.0] {
+        let mut samples = vec![0.0; (0.1 * rate_hz) as usize];
+        let onset = samples.len();
+        samples.extend(render(&truth, rate_hz, rate_hz as usize));
+        let mut rng = Rng::new(3);
+        samples.iter_mut().for_each(|x| *x += 1e-4 * rng.normal());
+        let fit = fitted(&samples, rate_hz);
+        assert_eq!(fit.modes.len(), 2, "{rate_hz}");
+        let lag_s = fit.onset_s - onset as f64 / rate_hz;
+        assert!(lag_s.abs() < 2e-4, "{rate_hz}: {lag_s}");
+        for t in &truth {
+            let m = fit.modes.iter().find(|m| (m.frequency_hz - t.frequency_hz).abs() < 1.0).unwrap();
+            assert!((m.frequency_hz / t.frequency_hz - 1.0).abs() < 1e-5);
+            assert!((m.decay_per_s / t.decay_per_s - 1.0).abs() < 0.01);
+            let expected = t.amplitude * (-t.decay_per_s * lag_s).exp();
+            assert!((m.amplitude / expected - 1.0).abs() < 0.01, "{m:?}");
+            let turn = 2.0 * std::f64::consts::PI;
+            let phase = (m.phase_rad - t.phase_rad - turn * t.frequency_hz * lag_s).rem_euclid(turn);
+            assert!(phase.min(turn - phase) < 0.02, "{rate_hz}: {m:?} {lag_s} {phase}");
+        }
+    }
+}
+
+#[test]
+fn standard_deviations_are_the_bound() {
+    let made = impact(10, 40.0, 21, 44_100.0, 1.0);
+    let bounds = cramer_rao(&made.truth, made.rate_hz, made.clean.len(), made.noise_std);
+    let fit = fitted(&made.noisy, made.rate_hz);
+    let mut compared = 0;
+    for (t, bound) in made.truth.iter().zip(&bounds).filter(|(t, b)| identifiable(t, b)) {
+        if let Some(m) = fit.modes.iter().find(|m| (m.frequency_hz - t.frequency_hz).abs() < 4.0 * bound[0]) {
+            let ratio = m.frequency_std_hz / bound[0];
+            assert!((0.5..2.0).contains(&ratio), "{t:?} {ratio}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 6, "{compared}");
+}
+
+/// Figures of `independent/cramer_rao.py` (numpy, the joint bound by a pseudo-inverse).
+#[test]
+fn the_bound_is_the_one_numpy_computes() {
+    let modes = [
+        Mode { frequency_hz: 440.0, decay_per_s: 3.0, amplitude: 1.0, phase_rad: 0.3 },
+        Mode { frequency_hz: 441.0, decay_per_s: 5.0, amplitude: 0.5, phase_rad: -1.0 },
+        Mode { frequency_hz: 3000.0, decay_per_s: 60.0, amplitude: 0.2, phase_rad: 2.0 },
+    ];
+    let bounds = cramer_rao(&modes, 8000.0, 8000, 0.01);
+    for (ours, theirs) in bounds.iter().zip(NUMPY_BOUNDS) {
+        for (ours, theirs) in ours.iter().zip(theirs) {
+            assert!((ours / theirs - 1.0).abs() < 1e-6, "{ours} {theirs}");
+        }
+    }
+}
