@@ -6,6 +6,7 @@ use crate::build::{self, Built, Overrides};
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
+use crate::render::load_log;
 use crate::scene_file::SceneFile;
 use asperity::channel_map::ChannelMap;
 use asperity::contact_log::{ContactLog, LogError};
@@ -105,14 +106,6 @@ fn scene_and_channels(options: &Options) -> Result<(std::path::PathBuf, Option<C
     let text = parts.join(" ");
     let map = (!parts.is_empty()).then(|| ChannelMap::parse(&text)).transpose().map_err(CliError::told)?;
     Ok((scene, map))
-}
-
-fn load_log(file: &SceneFile) -> Result<ContactLog, CliError> {
-    let path = file.contacts.as_ref().ok_or_else(|| {
-        let at = format!("{}: contacts", file.path.display());
-        CliError::new(at, "is missing", "write contacts = \"NAME.jsonl\", the events to play")
-    })?;
-    ContactLog::load(path).map_err(CliError::told)
 }
 
 fn play(

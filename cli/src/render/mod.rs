@@ -18,7 +18,7 @@ use picture::ContactCurve;
 use recorder::Recorder;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Renders longer than this show a progress bar even when nothing else watches the contacts, s.
@@ -222,7 +222,11 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     Ok(report)
 }
 
-fn load_log(file: &SceneFile) -> Result<ContactLog, CliError> {
+/// The contact log that a scene file names.
+///
+/// # Errors
+/// When none is named, it is no log, or it speaks of a channel that the scene does not have.
+pub fn load_log(file: &SceneFile) -> Result<ContactLog, CliError> {
     let path = file.contacts.as_ref().ok_or_else(|| {
         CliError::new(
             format!("{}: contacts", file.path.display()),
@@ -230,7 +234,22 @@ fn load_log(file: &SceneFile) -> Result<ContactLog, CliError> {
             "write contacts = \"NAME.jsonl\", the events to render",
         )
     })?;
-    ContactLog::load(path).map_err(CliError::told)
+    let log = ContactLog::load(path).map_err(CliError::told)?;
+    check_actuators(&log, path, file.actuators.len())?;
+    Ok(log)
+}
+
+/// A contact on a channel that is not there would be felt nowhere.
+fn check_actuators(log: &ContactLog, path: &Path, channels: usize) -> Result<(), CliError> {
+    for line in &log.lines {
+        let LogEvent::Begin { actuator, .. } = line.event else { continue };
+        if usize::from(actuator) >= channels {
+            let what = format!("actuator {actuator} at t = {} s is not in the scene", line.t);
+            let right = format!("must be below {channels}, the number of [[actuator]] tables");
+            return Err(CliError::new("actuator", what, right).within(path.display()));
+        }
+    }
+    Ok(())
 }
 
 fn check_length(file: &SceneFile, duration_s: f64, rate_hz: f64) -> Result<(), CliError> {
