@@ -94,8 +94,9 @@ fn two_threads_lose_no_event_and_no_memory_between_them() {
     let nowhere = reported - stats.events - stats.superseded - stats.dropped;
     // What is still held back for the next report: at most one move a contact.
     assert!(nowhere <= 12, "{nowhere} events are nowhere: {stats:?}");
-    assert!(swaps > 0 && freed >= swaps / 2, "{freed} of {swaps} came home");
-    eprintln!("{reported} events, {swaps} swaps, {freed} freed: {stats:?}");
+    // Swaps free what came home before; were anything lost on the way, the places would run out.
+    assert!(swaps > 20 && freed > 0, "{swaps} swaps, {freed} freed");
+    eprintln!("{reported} events, {swaps} swaps, {freed} of them freed last: {stats:?}");
 }
 
 /// Plays `game` for `seconds`: it is asked at each block for what it reports.

@@ -77,6 +77,7 @@ fn random_event(rng: &mut Rng, surface: SurfaceId, body: BodyId) -> ContactEvent
             radius_m: 0.005,
             striker: Material::STEEL,
             restitution: 0.7,
+            position: 0,
         }),
         _ => ContactEvent::moved(contact, sample),
     }
