@@ -86,9 +86,9 @@ impl Seat {
         self.current.is_some() && !self.removed
     }
 
-    /// Whether no surface is here.
+    /// Whether no surface is here, none fades and none waits.
     pub(crate) fn is_empty(&self) -> bool {
-        self.current.is_none()
+        self.current.is_none() && self.previous.is_none() && self.waiting.is_none()
     }
 
     fn start_change(&mut self, surface: Box<SurfaceSlot>, position: u64) {

@@ -118,7 +118,7 @@ fn a_modes_file_may_list_positions_and_is_refused_when_they_do_not_fit() {
     let refused = ModalModel::parse(&text.replace("[0.5]", "[0.5,0.1]")).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "positions[0]: 2 is refused; must be as many amplitudes as there are modes"
+        "positions[0]: 2.0 is refused; must be as many amplitudes as there are modes"
     );
     assert!(model.clone().with_positions(vec![vec![f64::NAN]]).is_err());
     assert!(model.with_positions(vec![vec![1.0]; MAX_POSITIONS]).is_err());
