@@ -28,7 +28,7 @@ fn render(model: ModalModel, log: &ContactLog) {
         surfaces: HashMap::from([("tiles".to_owned(), surface)]),
         bodies: HashMap::from([("tile".to_owned(), body)]),
     };
-    if !(log.end_s() <= LONGEST_S) {
+    if log.end_s().is_nan() || log.end_s() > LONGEST_S {
         return;
     }
     if let Ok(take) =

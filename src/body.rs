@@ -232,10 +232,10 @@ impl BodySeat {
     pub(crate) fn tidy(&mut self, position: u64, home: &mut Sender<Dead>) {
         for place in &mut self.leaving {
             let gone = place.as_ref().is_some_and(|l| l.left == 0 || l.body.is_silent(position));
-            if let Some(Leaving { body, left }) = gone.then(|| place.take()).flatten() {
-                if let Err(Dead::Body(body)) = home.send(Dead::Body(body)) {
-                    *place = Some(Leaving { body, left });
-                }
+            if let Some(Leaving { body, left }) = gone.then(|| place.take()).flatten()
+                && let Err(Dead::Body(body)) = home.send(Dead::Body(body))
+            {
+                *place = Some(Leaving { body, left });
             }
         }
     }

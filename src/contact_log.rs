@@ -220,7 +220,7 @@ impl ContactLog {
             let place = || format!("{name}:{}", index + 1);
             let line: LogLine = serde_json::from_str(text)
                 .map_err(|error| LogError::Malformed { place: place(), message: error.to_string() })?;
-            if !(line.t >= before) {
+            if line.t.is_nan() || line.t < before {
                 return Err(LogError::TimeBackwards { place: place(), t: line.t, before });
             }
             if line.t > MAX_TIME_S {

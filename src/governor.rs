@@ -110,7 +110,7 @@ mod tests {
     #[test]
     fn work_comes_back_one_level_in_half_a_second_of_easy_blocks() {
         let blocks_a_level = (RECOVERY_S * RATE / 64.0) as usize + 1;
-        let late = vec![0.9; 3];
+        let late = [0.9; 3];
         let easy = |blocks: usize| late.iter().copied().chain(vec![0.2; blocks]);
         assert_eq!(after(easy(blocks_a_level / 2)).level, 3);
         assert_eq!(after(easy(blocks_a_level + 2)).level, 2);

@@ -99,10 +99,12 @@ impl Seat {
     /// Sends home what nobody needs any more; called on the absolute sample grid.
     pub(crate) fn tidy(&mut self, position: u64, in_use: impl Fn() -> bool, home: &mut Sender<Dead>) {
         let faded = (position.saturating_sub(self.change_began)) as f64 >= self.change_samples;
-        if faded && self.previous.is_some() && retire(&mut self.previous, home) {
-            if let Some(next) = self.waiting.take() {
-                self.start_change(next, position);
-            }
+        if faded
+            && self.previous.is_some()
+            && retire(&mut self.previous, home)
+            && let Some(next) = self.waiting.take()
+        {
+            self.start_change(next, position);
         }
         if self.removed && self.current.is_some() && !in_use() {
             retire(&mut self.waiting, home);

@@ -195,6 +195,7 @@ impl Voice {
     }
 
     /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed.
+    #[expect(clippy::too_many_arguments, reason = "what a voice needs and does not own")]
     pub(crate) fn begin(
         &mut self,
         contact: ContactId,
@@ -304,6 +305,7 @@ impl Voice {
 
     /// Renders the next `n` samples into `scratch.out`. The stretch lies within one cell of the
     /// absolute sample grid of [`MAX_BLOCK`].
+    #[expect(clippy::too_many_arguments, reason = "what a voice needs and does not own")]
     pub(crate) fn render<T: Tap>(
         &mut self,
         seat: &mut Seat,
