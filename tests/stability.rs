@@ -200,7 +200,7 @@ fn a_storm_of_bad_numbers_leaves_a_working_engine() {
     for _ in 0..20_000 {
         let sample = ContactSample {
             uv: [wild(&mut rng), wild(&mut rng)],
-            velocity_m_s: (rng.next_u32() % 2 == 0).then(|| [wild(&mut rng), wild(&mut rng)]),
+            velocity_m_s: rng.next_u32().is_multiple_of(2).then(|| [wild(&mut rng), wild(&mut rng)]),
             normal_force_n: wild(&mut rng),
             closing_m_s: wild(&mut rng),
         };
@@ -215,7 +215,7 @@ fn a_storm_of_bad_numbers_leaves_a_working_engine() {
             _ => ContactEvent::moved(ContactId(u64::from(rng.next_u32() % 3)), sample),
         };
         let _ = run.scene.report(now, event);
-        if rng.next_u32() % 8 == 0 {
+        if rng.next_u32().is_multiple_of(8) {
             run.render(0.001);
         }
     }
