@@ -328,7 +328,10 @@ impl Renderer {
         let Some(slot) = self.seats[surface].current().filter(|_| self.seats[surface].is_open()) else {
             return false;
         };
-        let full = self.sounding_count() >= self.contact_limit();
+        // A contact that has landed again meanwhile sounds once, not twice.
+        if sounding(&mut self.voices, contact).is_some() || self.sounding_count() >= self.contact_limit() {
+            return false;
+        }
         let Some(voice) = self.voices.iter_mut().find(|voice| {
             voice.contact == contact
                 && (voice.surface, voice.actuator) == (surface, actuator)
@@ -338,11 +341,9 @@ impl Renderer {
         }) else {
             return false;
         };
-        if full {
-            return false;
-        }
         voice.resume(&self.shared);
         voice.moved(sample, slot, stamp, self.position);
+        self.silent.retain(|silent| silent.contact != contact);
         Counters::add(&self.counters.debounced, 1);
         true
     }

@@ -223,7 +223,10 @@ impl Scene {
     /// The event is handed back with the reason: a bad number, an unknown name, time running
     /// backwards, or a full queue. Moves are the last to be refused: when the queue runs full only the
     /// newest move of each contact is kept, and sent with the next report.
-    #[expect(clippy::result_large_err, reason = "the event is handed back, and a box would be an allocation")]
+    #[expect(
+        clippy::result_large_err,
+        reason = "the event is handed back whole, without a box on the game thread"
+    )]
     pub fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), ReportError> {
         self.try_report(time_s, event).map_err(|reason| {
             let cell = match reason {

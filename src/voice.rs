@@ -195,7 +195,7 @@ impl Voice {
     }
 
     /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed.
-    #[expect(clippy::too_many_arguments, reason = "what a voice needs and does not own")]
+    #[expect(clippy::too_many_arguments, reason = "what is borrowed apart cannot be handed over together")]
     pub(crate) fn begin(
         &mut self,
         contact: ContactId,
@@ -305,7 +305,7 @@ impl Voice {
 
     /// Renders the next `n` samples into `scratch.out`. The stretch lies within one cell of the
     /// absolute sample grid of [`MAX_BLOCK`].
-    #[expect(clippy::too_many_arguments, reason = "what a voice needs and does not own")]
+    #[expect(clippy::too_many_arguments, reason = "what is borrowed apart cannot be handed over together")]
     pub(crate) fn render<T: Tap>(
         &mut self,
         seat: &mut Seat,
@@ -329,10 +329,12 @@ impl Voice {
             self.rest(n, scratch);
         } else {
             self.follow_path(seat, n, scratch);
-            self.profile(seat, shared, position, n, scratch);
+            // First the touch, then the heights: a surface that gives way answers within the same grid
+            // cell wherever it is cut into stretches.
             if at_grid {
                 self.press(seat, position);
             }
+            self.profile(seat, shared, position, n, scratch);
             self.touch(shared, n, scratch);
             self.filter(seat, shared, output, n, scratch);
             self.excite(seat, shared, position, n, scratch);

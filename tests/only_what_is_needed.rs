@@ -85,7 +85,8 @@ fn a_body_sounds_as_it_is_struck() {
 
 #[test]
 fn two_fingers_on_two_positions_add_up() {
-    let model = body(40);
+    // Loud, so that no mode falls asleep in one rendering and not in another.
+    let model = ModalModel { impulse_n_s: 1e-7, ..body(40) };
     let amplitudes = model.modes.iter().rev().map(|m| m.amplitude).collect();
     let model = model.with_positions(vec![amplitudes]).unwrap();
     let slide = |touching: &[usize]| {
@@ -103,7 +104,8 @@ fn two_fingers_on_two_positions_add_up() {
     };
     let (first, second, both) = (slide(&[0]), slide(&[1]), slide(&[0, 1]));
     let sum: Vec<f32> = first.iter().zip(&second).map(|(a, b)| a + b).collect();
-    assert!(error_db(&both, &sum) < -100.0);
+    let error = error_db(&both, &sum);
+    assert!(error < -100.0, "{error} dB");
     assert!(error_db(&first, &second) > -10.0, "the positions sound differently");
 }
 

@@ -107,7 +107,7 @@ impl Game {
             let contact = ContactId(u64::from(self.rng.next_u32() % 12));
             let sample = ContactSample {
                 uv: [self.number(), self.number()],
-                velocity_m_s: (self.rng.next_u32() % 5 != 0).then(|| [0.3 * self.number(), 0.0]),
+                velocity_m_s: (!self.rng.next_u32().is_multiple_of(5)).then(|| [0.3 * self.number(), 0.0]),
                 normal_force_n: 3.0 * self.number(),
                 closing_m_s: (0.1 * self.number()).abs(),
             };
@@ -142,10 +142,9 @@ impl Game {
                 let _ = self.scene.replace_surface(self.surfaces[which], surface);
             }
             1 => {
-                if self.scene.remove_surface(self.surfaces[which]).is_ok() {
-                    if let Ok(id) = self.scene.add_surface(grating(2e-3, 1e-4).on(body)) {
-                        self.surfaces[which] = id;
-                    }
+                let removed = self.scene.remove_surface(self.surfaces[which]).is_ok();
+                if removed && let Ok(id) = self.scene.add_surface(grating(2e-3, 1e-4).on(body)) {
+                    self.surfaces[which] = id;
                 }
             }
             2 => {
@@ -156,10 +155,9 @@ impl Game {
                 let _ = self.scene.set_haptic_gain(Actuator(0), gain);
             }
             4 => {
-                if self.scene.remove_body(self.bodies[which % 2]).is_ok() {
-                    if let Ok(id) = self.scene.add_body(bar()) {
-                        self.bodies[which % 2] = id;
-                    }
+                let removed = self.scene.remove_body(self.bodies[which % 2]).is_ok();
+                if removed && let Ok(id) = self.scene.add_body(bar()) {
+                    self.bodies[which % 2] = id;
                 }
             }
             _ => {}

@@ -22,7 +22,8 @@ fn the_demo_writes_scenes_that_sound_with_pictures_and_an_index() {
     let began = Instant::now();
     let (status, out, err) = told(&asperity(folder.path(), &["demo"]));
     assert_eq!((status, err.as_str()), (0, ""));
-    assert!(began.elapsed().as_secs() < 30, "took {:?}", began.elapsed());
+    // Ten seconds on two idle cores; tests share them with others.
+    assert!(began.elapsed().as_secs() < 60, "took {:?}", began.elapsed());
     assert!(out.contains("index.html"), "{out}");
     let demo = folder.path().join("demo-out");
     let index = fs::read_to_string(demo.join("index.html")).unwrap();

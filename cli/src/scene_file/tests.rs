@@ -185,10 +185,10 @@ gain = 1.0
 limit = false
 "#;
     let runs = mutation::drive(&[scene.as_bytes().to_vec()], |data| {
-        if let Ok(text) = std::str::from_utf8(data) {
-            if let Err(refusal) = parse(text) {
-                assert!(refusal.len() > 10 && !refusal.contains('\n'), "{refusal:?}");
-            }
+        if let Ok(text) = std::str::from_utf8(data)
+            && let Err(refusal) = parse(text)
+        {
+            assert!(refusal.len() > 10 && !refusal.contains('\n'), "{refusal:?}");
         }
     });
     assert!(runs > 50, "{runs}");
