@@ -216,22 +216,23 @@ impl Voice {
         self.rising = None;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
-        self.last_point = PathPoint {
-            position_m: event.position_m,
-            velocity_m_s: [0.0; 2],
-            normal_force_n: event.normal_force_n,
-        };
-        scratch.points[0] = self.last_point;
-        self.profile(seat, shared, position, 1, scratch);
-        let (height_m, force_n) = (scratch.surface.height_m[0], event.normal_force_n);
+        // The path may begin behind the event, by the filter's delay.
+        let mut path = self.trajectory;
+        path.advance(&slot.trajectory, &mut scratch.points[..1]);
+        self.last_point = scratch.points[0];
+        let force_n = event.normal_force_n;
         let lands = sample.closing_m_s > 0.0;
-        self.pad = shared.micro_contact.landing(height_m, force_n, sample.closing_m_s);
+        if lands {
+            self.profile(seat, shared, position, 1, scratch);
+            let height_m = scratch.surface.height_m[0];
+            self.pad = shared.micro_contact.landing(height_m, force_n, sample.closing_m_s);
+            self.feel = ContactOutputState::begin(output, height_m, -sample.closing_m_s);
+        } else {
+            self.lead_in(seat, output, shared, position, scratch);
+        }
         self.resets_told = self.pad.resets();
-        // Both high-passes start settled on the first sample, so that beginning gives no step.
+        // The high-pass starts settled, so that beginning gives no step.
         let pressed_n = if lands { 0.0 } else { force_n };
-        let pressed_m = pressed_n / shared.micro_contact.probe().contact_stiffness_n_m;
-        let velocity_m_s = if lands { -sample.closing_m_s } else { 0.0 };
-        self.feel = ContactOutputState::begin(output, height_m - pressed_m, velocity_m_s);
         self.force_high_pass = butterworth::State::settled_at(pressed_n);
         self.merge = OnsetMerge::default();
         self.reaction = Reaction::default();
@@ -241,6 +242,30 @@ impl Voice {
             self.bus.fill(0.0);
         }
         self.bus_busy_until = 0;
+    }
+
+    /// A finger that is suddenly there has been sliding already: the pad is led along the straight line
+    /// to where it appears, so that it moves with the surface from its first sample.
+    fn lead_in(
+        &mut self,
+        seat: &mut Seat,
+        output: &ContactOutput,
+        shared: &Shared,
+        position: u64,
+        scratch: &mut Scratch,
+    ) {
+        let PathPoint { position_m: end_m, velocity_m_s, normal_force_n } = self.last_point;
+        for (i, point) in scratch.points.iter_mut().enumerate() {
+            let before_s = (MAX_BLOCK - i) as f64 / shared.sample_rate_hz;
+            let position_m = [0, 1].map(|axis| end_m[axis] - velocity_m_s[axis] * before_s);
+            *point = PathPoint { position_m, velocity_m_s, normal_force_n };
+        }
+        self.profile(seat, shared, position, MAX_BLOCK, scratch);
+        let (heights_m, forces_n) = (&scratch.surface.height_m, &scratch.force_n);
+        self.pad = shared.micro_contact.at_rest(heights_m[0], forces_n[0]);
+        shared.micro_contact.run(&mut self.pad, heights_m, forces_n, &mut scratch.pad);
+        let last = &scratch.pad[MAX_BLOCK - 1];
+        self.feel = ContactOutputState::begin(output, last.pad_m, last.pad_velocity_m_s);
     }
 
     /// Goes on somewhere else; wakes a resting contact.

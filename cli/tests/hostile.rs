@@ -62,7 +62,6 @@ fn events_with_absurd_numbers_are_left_out_and_counted() {
         ("\"normal_force_n\":0.6", "\"normal_force_n\":1e300"),
         ("\"normal_force_n\":0.6", "\"normal_force_n\":-1e300"),
         ("\"closing_m_s\":0.05", "\"closing_m_s\":1e300"),
-        ("\"actuator\":0", "\"actuator\":9"),
     ] {
         let log = stroke(1, 0.3);
         assert!(log.contains(from), "{from}");
@@ -282,4 +281,11 @@ fn scene_files_with_absurd_numbers_are_refused_by_key() {
     scene.write("scene.toml", [0xff, 0x00, 0x9f]);
     assert_refused(&scene.render(&[]), &["scene.toml"]);
     assert_refused(&support::asperity(scene.folder.path(), &["render", ".", "-o", "out"]), &["is a folder"]);
+}
+
+#[test]
+fn a_channel_that_is_not_there_is_an_error_with_the_number_of_channels() {
+    let scene = Scene::new();
+    scene.write("stroke.jsonl", stroke(1, 0.3).replace("\"actuator\":0", "\"actuator\":9"));
+    assert_refused(&scene.render(&[]), &["actuator 9", "must be below 1"]);
 }

@@ -91,7 +91,9 @@ mod tests {
     #[test]
     fn reduction_finds_the_short_basis_of_a_skewed_one() {
         let [a, b] = reduced([10.0 + 7.0 * 30.0, 7.0 * 4.0], [30.0, 4.0]);
-        assert!((length(a) - 10.0).abs() < 1e-9 && (cross(a, b) - 40.0).abs() < 1e-9);
+        // (10, 0) and (30, 4) span what (0, 4) and (10, 0) span.
+        assert!((length(a) - 4.0).abs() < 1e-9 && (length(b) - 10.0).abs() < 1e-9);
+        assert!((cross(a, b) - 40.0).abs() < 1e-9);
         assert!(2.0 * dot(a, b).abs() <= dot(a, a) + 1e-9);
     }
 
