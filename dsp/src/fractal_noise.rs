@@ -10,8 +10,8 @@
 //! | n | [`crate::gradient_noise_2d`] | one octave, cell length aᵢ |
 //! | Qᵢ, oᵢ | three rotations 30° apart, seeded offsets | so that no direction follows the lattice |
 //! | R | `roughness` | per sample: it changes gains, never positions |
-//! | L(R) | [`level`] | makes the rms in the octave of wavelengths about 1 mm equal `rms` for every R |
-//! | Wᵢ | [`footprint_weight`], [`tail_boost`] and `longest_wavelength_m` | below |
+//! | L(R) | `level` | makes the rms in the octave of wavelengths about 1 mm equal `rms` for every R |
+//! | Wᵢ | `footprint_weight`, `tail_boost` and `longest_wavelength_m` | below |
 //!
 //! Source: Hasti §III-C (1/f^α overlay, α = 2.5 − 1.5 R). **What we changed.** The paper filters a
 //! temporal noise and divides by the speed. This noise is a function of the place: the same place

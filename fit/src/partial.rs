@@ -41,7 +41,7 @@ impl Partial {
         Self { c: self.c * self.power(n), ..*self }
     }
 
-    /// Energy Σ x[n]² over `samples` samples, without the double-frequency ripple.
+    /// Energy Σ `x[n]²` over `samples` samples, without the double-frequency ripple.
     #[must_use]
     pub fn energy(&self, samples: usize) -> f64 {
         let exponent = 2.0 * self.delta * samples as f64;

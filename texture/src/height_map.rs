@@ -7,7 +7,7 @@
 //! | symbol | here | |
 //! |---|---|---|
 //! | map | [`Raster`], 0–1 or metres | texel centres at (i + ½)/N of the extent, top left corner at (0, 0) |
-//! | ℓ | pyramid of [`crate::spline`]s | each level half the size, filtered; texels are measured along the stroke |
+//! | ℓ | pyramid of `spline`s | each level half the size, filtered; texels are measured along the stroke |
 //! | R | roughness map of its own size, or a number | sampled likewise, kept within 0–1 |
 //!
 //! Source: Hasti §III-C (displacement and roughness maps). What we changed: the paper does not say how

@@ -18,8 +18,6 @@ use asperity_dsp::DesignError;
 
 /// Steepest slope that is believed (84°); beyond it 8 bits say nothing.
 const STEEPEST: f64 = 10.0;
-/// Another derivative than the true one is only believed when its curl is below this fraction of that one's.
-const CLEARLY: f64 = 0.9;
 /// A green convention is only decided when its curl is at most this fraction of the other's.
 const DECIDED: f64 = 0.8;
 
@@ -157,10 +155,6 @@ fn which_green(field: &Slopes, borders: Borders, wanted: Green) -> (Green, bool)
 }
 
 fn which_derivative(field: &Slopes, borders: Borders) -> Derivative {
-    // A surface of one wavelength has no curl by any of them; then what is left is rounding, and the true
-    // derivative is the best guess.
-    let doubt = CLEARLY * curl_of(field, borders, Derivative::Exact);
     let measured = DERIVATIVES.map(|d| (d, curl_of(field, borders, d)));
-    let least = measured.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
-    least.filter(|(_, curl)| *curl < doubt).map_or(Derivative::Exact, |(d, _)| d)
+    measured.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(Derivative::Exact, |(d, _)| d)
 }

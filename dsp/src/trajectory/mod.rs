@@ -9,7 +9,7 @@
 //! | symbol | here | |
 //! |---|---|---|
 //! | p₀, v₀, t₀ | the latest [`PathEvent`] | position unwrapped, velocity reported or estimated |
-//! | T | [`Reckoning`]'s running event period | 1–100 ms, 1/60 s until two events are known |
+//! | T | `Reckoning`'s running event period | 1–100 ms, 1/60 s until two events are known |
 //! | H_lp | [`TrajectoryDesign`]'s filter | Hasti §III-C: 2nd-order Butterworth, −3 dB at 30 Hz |
 //! | velocity | the filter's band output | smooth, so that pitch does not step at events |
 //!

@@ -1,7 +1,7 @@
 //! Random midpoint displacement, the document's construction of Brownian paths and surfaces.
 //!
 //! A new point is the mean of its neighbours plus a normal number whose variance is what the law
-//! E[ΔX²] = |r|^{2H} leaves open. For neighbours at distances ρ_i from the point and r_ij from each
+//! E\[ΔX²\] = |r|^{2H} leaves open. For neighbours at distances ρ_i from the point and r_ij from each
 //! other, n of them, it is
 //!
 //! ```text
