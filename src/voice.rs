@@ -2,18 +2,25 @@
 //!
 //! path → profile → micro-contact → { pad displacement → actuator, impulses → body }
 
+mod excitation;
+mod fades;
+mod watching;
+
+pub(crate) use excitation::pulse_end;
+
 use crate::event::{ContactId, ContactSample};
 use crate::seat::{Noise, Seat};
 use crate::surface::{Excitation, SurfaceSlot};
-use crate::tap::{ContactBlock, Tap};
+use crate::tap::Tap;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
-use asperity_dsp::hertz::{self, FORCE_HISTORY, HertzPulse, OnsetMerge};
-use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact, Onset};
+use asperity_dsp::hertz::{FORCE_HISTORY, OnsetMerge};
+use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact};
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
+use fades::Rising;
 
 /// Samples of impulse a contact can hold ahead.
 const BUS_SAMPLES: usize = 2048;
@@ -27,8 +34,6 @@ const STILL_M: f64 = 1e-12;
 const STILL_M_S2: f64 = 1e-6;
 /// Impulse per sample below which a contact counts as silent, N·s: −120 dB of an ordinary stroke's.
 const STILL_N_S: f64 = 1e-12;
-/// Below this speed friction no longer jumps, m/s.
-const STICK_M_S: f64 = 1e-3;
 
 /// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
 /// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
@@ -102,27 +107,6 @@ pub(crate) struct Voice {
     force_history_n_s: [f64; FORCE_HISTORY],
     bus: Vec<f64>,
     bus_busy_until: u64,
-}
-
-/// A fade that turns round: its phase (0 = silent, 1 = full) slows down, stops and comes back, so that
-/// the gain has no corner.
-struct Rising {
-    phase: f64,
-    /// Per sample.
-    speed: f64,
-}
-
-/// Share of a fade's length that its turning takes.
-const TURN: f64 = 0.2;
-
-impl Rising {
-    /// The next gain.
-    fn tick(&mut self, fade_samples: u32) -> f64 {
-        let top = 1.0 / f64::from(fade_samples);
-        self.speed = (self.speed + 2.0 * top * top / TURN).min(top);
-        self.phase = (self.phase + self.speed).clamp(0.0, 1.0);
-        0.5 - 0.5 * (std::f64::consts::PI * self.phase).cos()
-    }
 }
 
 /// What one voice adds to a stretch of samples.
@@ -285,13 +269,6 @@ impl Voice {
         self.asleep = false;
     }
 
-    /// Starts to fade, if it has not yet.
-    pub(crate) fn fade(&mut self, shared: &Shared) {
-        if self.phase == Phase::Sounding {
-            self.phase = Phase::Fading { left: shared.fade_samples() };
-        }
-    }
-
     /// Whether a landing is so close that it can be the same touch.
     pub(crate) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
         let event = path_event(sample, slot, 0);
@@ -302,20 +279,6 @@ impl Voice {
             apart_m - if turns == 0.0 { 0.0 } else { turns * period_m[axis] }
         });
         apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
-    }
-
-    /// Comes back out of its fade, from the level it has faded to and without a corner.
-    pub(crate) fn resume(&mut self, shared: &Shared) {
-        let step = 1.0 / f64::from(shared.fade_samples());
-        let faded = matches!(self.phase, Phase::Fading { left } if left < shared.fade_samples());
-        let phase = (1.0 - 2.0 * self.gain).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
-        // Before the first faded sample nothing has happened yet.
-        self.rising = faded.then_some(Rising { phase, speed: -step });
-        if faded {
-            self.fade_in_left = 0;
-        }
-        self.phase = Phase::Sounding;
-        self.ended = false;
     }
 
     /// How much would be missed: what presses harder and moves faster is heard and felt more.
@@ -464,77 +427,6 @@ impl Voice {
         self.last_felt = scratch.out.haptic[n - 1];
     }
 
-    /// What the contact sends to the body: a Hertz pulse for each micro-collision and each grain, and
-    /// the alternating contact force. Pulses and force meet sample by sample, not in the bus, so that
-    /// the order of additions depends on no split into blocks.
-    fn excite(&mut self, seat: &Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
-        let Some(slot) = seat.current() else { return };
-        let excitation = slot.surface.excitation;
-        let rate = shared.sample_rate_hz;
-        scratch.out.collisions = 0;
-        let grains = self.reaction.grain_rate_per_s > 0.0;
-        for i in 0..n {
-            let sample = position + i as u64;
-            if let Some(onset) = scratch.pad[i].onset {
-                scratch.out.collisions += 1;
-                if excitation != Excitation::Force {
-                    // An onset is dated within the step that ends at its row.
-                    self.collide(slot, shared, &onset, sample.saturating_sub(1));
-                }
-            }
-            if grains {
-                self.shift_grain(slot, sample, rate);
-            }
-        }
-        self.empty_bus(position, &mut scratch.out.impulse_n_s[..n]);
-        let forces_n_s = &mut scratch.force_impulse_n_s;
-        forces_n_s[..FORCE_HISTORY].copy_from_slice(&self.force_history_n_s);
-        hertz::spread_force(&forces_n_s[..FORCE_HISTORY + n], &mut scratch.out.impulse_n_s[..n]);
-        self.force_history_n_s.copy_from_slice(&forces_n_s[n..n + FORCE_HISTORY]);
-        scratch.out.excites = true;
-    }
-
-    /// Takes the pulses of the coming samples off the bus, which is empty beyond the last pulse.
-    fn empty_bus(&mut self, position: u64, out: &mut [f64]) {
-        if self.bus_busy_until <= position {
-            return out.fill(0.0);
-        }
-        let mask = self.bus.len() - 1;
-        for (i, y) in out.iter_mut().enumerate() {
-            *y = std::mem::take(&mut self.bus[(position as usize).wrapping_add(i) & mask]);
-        }
-    }
-
-    fn collide(&mut self, slot: &SurfaceSlot, shared: &Shared, onset: &Onset, sample: u64) {
-        let pulse = HertzPulse {
-            impulse_n_s: shared.collision_mass_kg * onset.closing_m_s,
-            contact_time_s: slot.hertz.contact_time_s(onset.closing_m_s),
-        };
-        let rate = shared.sample_rate_hz;
-        if let Some(pulse) = self.merge.admit(pulse, sample, onset.offset, rate) {
-            self.deposit(&pulse, sample, onset.offset, rate);
-        }
-    }
-
-    /// Grains that give way hit each other at random times (a Poisson process drawn sample by sample).
-    fn shift_grain(&mut self, slot: &SurfaceSlot, sample: u64, sample_rate_hz: f64) {
-        let draw = self.grains.uniform();
-        let expected = self.reaction.grain_rate_per_s / sample_rate_hz;
-        if draw < expected {
-            // The part of the draw below `expected` is uniform too: it says when within the sample.
-            let pulse = HertzPulse {
-                impulse_n_s: self.reaction.grain_impulse_n_s * (0.5 + draw / expected),
-                contact_time_s: slot.hertz.contact_time_s(0.1),
-            };
-            self.deposit(&pulse, sample, draw / expected, sample_rate_hz);
-        }
-    }
-
-    fn deposit(&mut self, pulse: &HertzPulse, sample: u64, offset: f64, sample_rate_hz: f64) {
-        pulse.deposit(&mut self.bus, sample, offset, sample_rate_hz);
-        self.bus_busy_until = self.bus_busy_until.max(pulse_end(pulse, sample, sample_rate_hz));
-    }
-
     /// A resting contact: nothing moves, so nothing is computed; the rows stay as they were.
     fn rest(&mut self, n: usize, scratch: &mut Scratch) {
         scratch.points[..n].fill(self.last_point);
@@ -543,40 +435,6 @@ impl Voice {
         scratch.out.impulse_n_s[..n].fill(0.0);
         scratch.out.excites = false;
         (scratch.out.collisions, scratch.out.resets) = (0, 0);
-    }
-
-    /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
-    /// its own beginning), out for one that ended, lapsed or was stolen.
-    fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        if self.fade_in_left == 0 && self.rising.is_none() && self.phase == Phase::Sounding {
-            self.gain = 1.0;
-            return;
-        }
-        let (total, rise) = (shared.fade_samples(), &shared.fade);
-        for i in 0..n {
-            self.gain = 1.0;
-            if self.fade_in_left > 0 {
-                self.fade_in_left -= 1;
-                self.gain *= rise[(total - self.fade_in_left) as usize];
-            }
-            if let Some(rising) = &mut self.rising {
-                self.gain *= rising.tick(total);
-                if rising.phase >= 1.0 {
-                    self.rising = None;
-                }
-            }
-            if let Phase::Fading { left } = self.phase {
-                let left = left.saturating_sub(1);
-                self.gain *= rise[left as usize];
-                self.phase = Phase::Fading { left };
-            }
-            if self.gain != 1.0 {
-                scratch.out.scale(i, self.gain);
-            }
-        }
-        if self.phase == (Phase::Fading { left: 0 }) {
-            self.phase = Phase::Free;
-        }
     }
 
     fn fall_asleep_when_still(
@@ -610,70 +468,6 @@ impl Voice {
             self.force_history_n_s = [0.0; FORCE_HISTORY];
         }
     }
-
-    /// Shows the stretch to the tap. Rows describe the instant `latency` samples back, so the path's
-    /// points are delayed by as much.
-    fn show<T: Tap>(
-        &mut self,
-        seat: &Seat,
-        shared: &Shared,
-        position: u64,
-        n: usize,
-        scratch: &mut Scratch,
-        tap: &mut T,
-    ) {
-        let Some(slot) = seat.current().filter(|_| tap.is_watching()) else { return };
-        let size_m = [slot.surface.width_m, slot.surface.height_m];
-        let latency = shared.micro_contact.latency_samples();
-        for i in 0..n {
-            let point = if i >= latency { scratch.points[i - latency] } else { self.last_point };
-            scratch.position_m[i] = point.position_m;
-            scratch.velocity_m_s[i] = point.velocity_m_s;
-            scratch.uv[i] = [point.position_m[0] / size_m[0], point.position_m[1] / size_m[1]];
-            scratch.output_force_n[i] = output_force(
-                &point,
-                &scratch.pad[i],
-                scratch.surface.gradient[i],
-                scratch.surface.friction[i],
-                &self.reaction,
-            );
-        }
-        // The first rows of a contact would describe instants before it began.
-        let skip = latency.saturating_sub((position - self.begun) as usize).min(n);
-        tap.contact(&ContactBlock {
-            first_sample: position + skip as u64 - latency as u64,
-            contact: self.contact,
-            position_m: &scratch.position_m[skip..n],
-            uv: &scratch.uv[skip..n],
-            velocity_m_s: &scratch.velocity_m_s[skip..n],
-            contact_samples: &scratch.pad[skip..n],
-            impulse_n_s: &scratch.out.impulse_n_s[skip..n],
-            force_n: &scratch.output_force_n[skip..n],
-        });
-    }
-}
-
-/// One past the last sample that a pulse reaches.
-pub(crate) fn pulse_end(pulse: &HertzPulse, sample: u64, sample_rate_hz: f64) -> u64 {
-    // A saturating cast: an endless pulse is cut to the bus by the deposit itself.
-    sample + (pulse.contact_time_s * sample_rate_hz) as u64 + hertz::KERNEL_SAMPLES as u64 + 2
-}
-
-/// 3-D force on the finger: contact + friction + texture (along the surface's slope) + what the
-/// surface does by itself.
-fn output_force(
-    point: &PathPoint,
-    row: &PadSample,
-    gradient: [f64; 2],
-    friction: f64,
-    reaction: &Reaction,
-) -> [f64; 3] {
-    let [u, v] = point.velocity_m_s;
-    let pressed_n = row.contact_force_n;
-    // Below 1 mm/s friction grows linearly, so that a resting finger does not chatter.
-    let slide = friction * pressed_n / (u * u + v * v).sqrt().max(STICK_M_S);
-    let [fx, fy, fz] = reaction.force_n;
-    [fx - slide * u - pressed_n * gradient[0], fy - slide * v - pressed_n * gradient[1], fz + pressed_n]
 }
 
 fn path_event(sample: &ContactSample, slot: &SurfaceSlot, position: u64) -> PathEvent {
