@@ -282,3 +282,21 @@ fn a_2_hz_stroke_agrees_with_scipy() {
         }
     }
 }
+
+/// Stamps on whole samples: what rounding a stamp to a sample costs is not the path's.
+#[test]
+fn ripple_and_lag_are_the_same_at_every_rate() {
+    for rate_hz in [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0] {
+        let design = TrajectoryDesign::new(PathMode::Extrapolate, 30.0, rate_hz, [f64::INFINITY; 2]).unwrap();
+        let step = (rate_hz / 60.0).round() as u64;
+        let events: Vec<_> =
+            (0..120).map(|n| event(n * step, 0.1 * (n * step) as f64 / rate_hz, Some(0.1))).collect();
+        let points = render(&design, &events, 120 * step);
+        for (n, point) in points.iter().enumerate().skip(points.len() / 4) {
+            let ripple = point.velocity_m_s[0] / 0.1 - 1.0;
+            let lag_s = n as f64 / rate_hz - point.position_m[0] / 0.1;
+            assert!(ripple.abs() < 1e-3, "{rate_hz} Hz: ripple {ripple}");
+            assert!((0.007..0.008).contains(&lag_s), "{rate_hz} Hz: lag {lag_s}");
+        }
+    }
+}
