@@ -50,6 +50,7 @@ fn stages() {
         TrajectoryDesign::new(PathMode::Extrapolate, 30.0, RATE_HZ, [scenes::SIDE_M; 2]).expect("valid");
     let event = PathEvent {
         sample: 0,
+        fraction: 0.0,
         position_m: [0.01, 0.02],
         velocity_m_s: Some([0.09, 0.04]),
         normal_force_n: 0.5,

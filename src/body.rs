@@ -1,5 +1,6 @@
 //! A body that rings: its modal bank and the impulse bus that excites it.
 
+use crate::clock::Stamp;
 use crate::governor::Governor;
 use crate::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::queue::{Dead, Sender};
@@ -107,11 +108,12 @@ impl BodySlot {
         &mut self.places[position.min(last)]
     }
 
-    /// Adds an impact whose contact begins at `sample`.
-    pub(crate) fn strike(&mut self, position: usize, pulse: &HertzPulse, sample: u64, sample_rate_hz: f64) {
+    /// Adds an impact whose contact begins at `stamp`.
+    pub(crate) fn strike(&mut self, position: usize, pulse: &HertzPulse, stamp: Stamp, sample_rate_hz: f64) {
         let place = self.place(position);
-        pulse.deposit(&mut place.bus, sample, 0.0, sample_rate_hz);
-        place.bus_busy_until = place.bus_busy_until.max(pulse_end(pulse, sample, sample_rate_hz));
+        pulse.deposit(&mut place.bus, stamp.sample(), stamp.fraction(), sample_rate_hz);
+        let end = pulse_end(pulse, stamp.sample(), sample_rate_hz);
+        place.bus_busy_until = place.bus_busy_until.max(end);
     }
 
     /// Adds what one contact sends during the present stretch.
@@ -198,10 +200,10 @@ impl BodySeat {
         }
     }
 
-    /// Adds an impact whose contact begins at `sample`.
-    pub(crate) fn strike(&mut self, position: usize, pulse: &HertzPulse, sample: u64, sample_rate_hz: f64) {
+    /// Adds an impact whose contact begins at `stamp`.
+    pub(crate) fn strike(&mut self, position: usize, pulse: &HertzPulse, stamp: Stamp, sample_rate_hz: f64) {
         if let Some(body) = &mut self.current {
-            body.strike(position, pulse, sample, sample_rate_hz);
+            body.strike(position, pulse, stamp, sample_rate_hz);
         }
     }
 

@@ -1,5 +1,6 @@
 //! Rendering a contact log without a device: the same two halves, the same events, to memory or WAV.
 
+use crate::clock::Stamp;
 use crate::contact_log::{ContactLog, LogError, Names};
 use crate::error::ReportError;
 use crate::event::SurfaceId;
@@ -90,7 +91,7 @@ pub fn render_tapped<T: Tap>(
         .collect::<Result<Vec<_>, LogError>>()?;
     let mut take = Take::new(scene, renderer, frames, options.block_frames.clamp(1, 4096));
     for (time_s, event) in events {
-        take.make_room((time_s * rate).round() as u64, tap);
+        take.make_room(Stamp::at(time_s * rate).sample(), tap);
         // Refusals are counted by the scene; the rest of the log still renders.
         let _: Result<(), ReportError> = take.scene.report(time_s, event);
     }

@@ -3,6 +3,7 @@
 //! Neither end ever waits. A full ring hands the item back, so the sender decides what is lost.
 
 use crate::body::BodySlot;
+use crate::clock::Stamp;
 use crate::event::ContactEvent;
 use crate::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
@@ -10,10 +11,10 @@ use asperity_texture::change::SurfaceChange;
 
 /// Game thread → audio thread, in order.
 pub(crate) enum Message {
-    /// What a contact does, and the sample it holds at.
-    Event { sample: u64, event: ContactEvent },
+    /// What a contact does, and when it holds.
+    Event { stamp: Stamp, event: ContactEvent },
     /// A rigid striker hits a body, and perhaps rings itself.
-    Strike { sample: u64, body: usize, position: usize, other: Option<usize>, pulse: HertzPulse },
+    Strike { stamp: Stamp, body: usize, position: usize, other: Option<usize>, pulse: HertzPulse },
     /// A surface for a new or used slot.
     SetSurface { slot: usize, surface: Box<SurfaceSlot> },
     /// Parameters of a surface change while it is touched.

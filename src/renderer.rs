@@ -5,6 +5,7 @@
 //! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
 
 use crate::body::{BodySeat, Terms};
+use crate::clock::Stamp;
 use crate::config::{ActuatorSettings, AudioSettings, Config};
 use crate::event::{ContactEvent, ContactId, ContactSample, SurfaceId};
 use crate::governor::Governor;
@@ -20,6 +21,7 @@ use asperity_dsp::actuator::{
     Quantity, RELEASE_S,
 };
 use asperity_dsp::fractal_noise::FractalNoise;
+use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::{MicroContact, Probe};
 use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
@@ -232,8 +234,8 @@ impl Renderer {
     fn stretch(&mut self, wanted: usize) -> usize {
         let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
         let to_event = match self.from_game.peek() {
-            Some(Message::Event { sample, .. } | Message::Strike { sample, .. }) => {
-                usize::try_from(sample.saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
+            Some(Message::Event { stamp, .. } | Message::Strike { stamp, .. }) => {
+                usize::try_from(stamp.sample().saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
             }
             _ => usize::MAX,
         };
@@ -243,7 +245,9 @@ impl Renderer {
     fn apply_due(&mut self) {
         while let Some(message) = self.from_game.peek() {
             let due = match message {
-                Message::Event { sample, .. } | Message::Strike { sample, .. } => *sample <= self.position,
+                Message::Event { stamp, .. } | Message::Strike { stamp, .. } => {
+                    stamp.sample() <= self.position
+                }
                 // Each of these may send something home; it waits until there is room.
                 Message::SetBody { slot, .. } => self.to_game.free() > 0 && self.bodies[*slot].can_change(),
                 _ => self.to_game.free() > 0,
@@ -259,18 +263,16 @@ impl Renderer {
 
     fn apply(&mut self, message: Message) {
         match message {
-            Message::Event { sample, event } => {
-                Counters::add(&self.counters.events, 1);
-                Counters::add(&self.counters.late, u64::from(sample < self.position));
-                self.apply_event(&event, sample);
+            Message::Event { stamp, event } => {
+                self.note_arrival(stamp);
+                self.apply_event(&event, stamp);
             }
-            Message::Strike { sample, body, position, other, pulse } => {
-                Counters::add(&self.counters.events, 1);
+            Message::Strike { stamp, body, position, other, pulse } => {
+                self.note_arrival(stamp);
                 Counters::add(&self.counters.impacts, 1);
-                Counters::add(&self.counters.late, u64::from(sample < self.position));
-                self.strike(body, position, &pulse);
+                self.strike(body, position, &pulse, stamp);
                 if let Some(other) = other {
-                    self.strike(other, 0, &pulse);
+                    self.strike(other, 0, &pulse, stamp);
                 }
             }
             Message::SetSurface { slot, surface } => self.set_surface(slot, surface),
@@ -294,13 +296,23 @@ impl Renderer {
         }
     }
 
-    fn apply_event(&mut self, event: &ContactEvent, stamp: u64) {
+    fn note_arrival(&self, stamp: Stamp) {
+        Counters::add(&self.counters.events, 1);
+        Counters::add(&self.counters.late, u64::from(stamp.sample() < self.position));
+    }
+
+    /// When something begins that holds at `stamp`: what is late begins at once.
+    fn due(&self, stamp: Stamp) -> Stamp {
+        stamp.max(Stamp::whole(self.position))
+    }
+
+    fn apply_event(&mut self, event: &ContactEvent, stamp: Stamp) {
         match *event {
             ContactEvent::Begin { contact, surface, actuator, sample } => {
                 let (surface, actuator) = (surface.0 as usize, usize::from(actuator.0));
                 if !self.resume(contact, surface, actuator, &sample, stamp) {
                     self.end(contact);
-                    self.begin(contact, surface, actuator, &sample);
+                    self.begin(contact, surface, actuator, &sample, stamp);
                 }
             }
             ContactEvent::Moved { contact, sample } => self.moved(contact, &sample, stamp),
@@ -323,7 +335,7 @@ impl Renderer {
         surface: usize,
         actuator: usize,
         sample: &ContactSample,
-        stamp: u64,
+        stamp: Stamp,
     ) -> bool {
         let Some(slot) = self.seats[surface].current().filter(|_| self.seats[surface].is_open()) else {
             return false;
@@ -348,11 +360,19 @@ impl Renderer {
         true
     }
 
-    fn begin(&mut self, contact: ContactId, surface: usize, actuator: usize, sample: &ContactSample) {
+    fn begin(
+        &mut self,
+        contact: ContactId,
+        surface: usize,
+        actuator: usize,
+        sample: &ContactSample,
+        stamp: Stamp,
+    ) {
         if !self.seats[surface].is_open() {
             Counters::add(&self.counters.orphaned, 1);
             return;
         }
+        let due = self.due(stamp);
         let voice = self.take_voice();
         self.voices_used.insert(voice);
         let voice = &mut self.voices[voice];
@@ -363,12 +383,12 @@ impl Renderer {
             &mut self.seats[surface],
             &self.channels[actuator].output,
             &self.shared,
-            self.position,
+            due,
             &mut self.scratch,
         );
     }
 
-    fn moved(&mut self, contact: ContactId, sample: &ContactSample, stamp: u64) {
+    fn moved(&mut self, contact: ContactId, sample: &ContactSample, stamp: Stamp) {
         if let Some(voice) = sounding(&mut self.voices, contact) {
             if let Some(slot) = self.seats[voice.surface].current() {
                 voice.moved(sample, slot, stamp, self.position);
@@ -386,7 +406,7 @@ impl Renderer {
         }
         self.silent.swap_remove(index);
         let landed = ContactSample { closing_m_s: 0.0, ..*sample };
-        self.begin(contact, silent.surface, silent.actuator, &landed);
+        self.begin(contact, silent.surface, silent.actuator, &landed, stamp);
     }
 
     /// Whether there was such a contact.
@@ -463,10 +483,10 @@ impl Renderer {
         self.silent.retain(|silent| silent.surface != slot);
     }
 
-    fn strike(&mut self, body: usize, position: usize, pulse: &asperity_dsp::hertz::HertzPulse) {
+    fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
-        let sample = self.position + self.latency_samples() as u64;
-        self.bodies[body].strike(position, pulse, sample, self.shared.sample_rate_hz);
+        let sounds = self.due(stamp).later(self.latency_samples() as u64);
+        self.bodies[body].strike(position, pulse, sounds, self.shared.sample_rate_hz);
     }
 
     fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {

@@ -3,7 +3,7 @@
 //! Every call returns at once. Nothing here waits for the audio thread.
 
 use crate::body::BodySlot;
-use crate::clock::Clock;
+use crate::clock::{Clock, Stamp};
 use crate::config::Config;
 use crate::contact_log::{ContactLog, Names};
 use crate::error::{AddError, Refusal, ReportError};
@@ -29,7 +29,7 @@ pub struct Scene {
     surfaces: Vec<bool>,
     bodies: Vec<Option<KnownBody>>,
     /// The newest move of each contact that did not fit into the queue.
-    held: Vec<(u64, ContactId, ContactEvent)>,
+    held: Vec<(Stamp, ContactId, ContactEvent)>,
     to_audio: Sender<Message>,
     from_audio: Receiver<Dead>,
     counters: Arc<Counters>,
@@ -244,24 +244,24 @@ impl Scene {
         let stamped = self.clock.stamp(time_s, self.counters.position.load(Relaxed));
         Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
         self.flush_held();
-        let sample = stamped.sample;
-        self.send_stamped(sample, event)?;
+        let stamp = stamped.stamp;
+        self.send_stamped(stamp, event)?;
         if let Some(recording) = &mut self.recording {
-            recording.note(sample as f64 / self.config.sample_rate_hz, &event);
+            recording.note(stamp.samples() / self.config.sample_rate_hz, &event);
         }
         Ok(())
     }
 
-    fn send_stamped(&mut self, sample: u64, event: ContactEvent) -> Result<(), Refusal> {
+    fn send_stamped(&mut self, stamp: Stamp, event: ContactEvent) -> Result<(), Refusal> {
         match event {
-            ContactEvent::Moved { contact, .. } => self.send_move(sample, contact, event),
+            ContactEvent::Moved { contact, .. } => self.send_move(stamp, contact, event),
             ContactEvent::Begin { contact, .. } | ContactEvent::End { contact } => {
                 let before = self.held.len();
                 self.held.retain(|(_, held, _)| *held != contact);
                 Counters::add(&self.counters.superseded, (before - self.held.len()) as u64);
-                self.send_event(Message::Event { sample, event })
+                self.send_event(Message::Event { stamp, event })
             }
-            ContactEvent::Impact(impact) => self.send_impact(sample, &impact),
+            ContactEvent::Impact(impact) => self.send_impact(stamp, &impact),
         }
     }
 
@@ -297,16 +297,16 @@ impl Scene {
         })
     }
 
-    fn send_move(&mut self, sample: u64, contact: ContactId, event: ContactEvent) -> Result<(), Refusal> {
+    fn send_move(&mut self, stamp: Stamp, contact: ContactId, event: ContactEvent) -> Result<(), Refusal> {
         // The last quarter of the queue is kept for landings, lift-offs and impacts.
         if self.to_audio.free() > self.to_audio.capacity() / 4 {
-            return self.send_event(Message::Event { sample, event });
+            return self.send_event(Message::Event { stamp, event });
         }
         if let Some(held) = self.held.iter_mut().find(|(_, held, _)| *held == contact) {
-            *held = (sample, contact, event);
+            *held = (stamp, contact, event);
             Counters::add(&self.counters.superseded, 1);
         } else if self.held.len() < 4 * self.config.max_contacts {
-            self.held.push((sample, contact, event));
+            self.held.push((stamp, contact, event));
         } else {
             return Err(Refusal::QueueFull);
         }
@@ -317,13 +317,13 @@ impl Scene {
         while self.to_audio.free() > self.to_audio.capacity() / 4 {
             let oldest = (0..self.held.len()).min_by_key(|&index| self.held[index].0);
             let Some(oldest) = oldest else { return };
-            let (sample, _, event) = self.held.swap_remove(oldest);
+            let (stamp, _, event) = self.held.swap_remove(oldest);
             // There is room: checked just above.
-            let _ = self.to_audio.send(Message::Event { sample, event });
+            let _ = self.to_audio.send(Message::Event { stamp, event });
         }
     }
 
-    fn send_impact(&mut self, sample: u64, impact: &Impact) -> Result<(), Refusal> {
+    fn send_impact(&mut self, stamp: Stamp, impact: &Impact) -> Result<(), Refusal> {
         let known = self.bodies[impact.body.0 as usize];
         let material = known.map_or(DEFAULT_MATERIAL, |body| body.material);
         let contact =
@@ -338,7 +338,7 @@ impl Scene {
         }
         let other = impact.other.map(|other| other.0 as usize);
         self.send_event(Message::Strike {
-            sample,
+            stamp,
             body: impact.body.0 as usize,
             position: impact.position,
             other,

@@ -8,6 +8,7 @@ mod watching;
 
 pub(crate) use excitation::pulse_end;
 
+use crate::clock::Stamp;
 use crate::event::{ContactId, ContactSample};
 use crate::seat::{Noise, Seat};
 use crate::surface::{Excitation, SurfaceSlot};
@@ -41,7 +42,7 @@ const SAME_TOUCH_M: f64 = 0.01;
 
 /// Where a voice is before it is anybody's.
 const IDLE: PathEvent =
-    PathEvent { sample: 0, position_m: [0.0; 2], velocity_m_s: None, normal_force_n: 0.0 };
+    PathEvent { sample: 0, fraction: 0.0, position_m: [0.0; 2], velocity_m_s: None, normal_force_n: 0.0 };
 
 /// What every voice needs and none owns.
 pub(crate) struct Shared {
@@ -187,11 +188,12 @@ impl Voice {
         seat: &mut Seat,
         output: &ContactOutput,
         shared: &Shared,
-        position: u64,
+        stamp: Stamp,
         scratch: &mut Scratch,
     ) {
         let Some(slot) = seat.current() else { return };
-        let event = path_event(sample, slot, position);
+        let event = path_event(sample, slot, stamp);
+        let position = stamp.sample();
         self.contact = contact;
         self.phase = Phase::Sounding;
         (self.begun, self.refreshed) = (position, position);
@@ -254,9 +256,9 @@ impl Voice {
 
     /// Goes on somewhere else; wakes a resting contact.
     ///
-    /// `stamp` is the sample the event holds at, which may lie before `position` when it arrives late:
+    /// `stamp` is when the event holds, which may lie before `position` when it arrives late:
     /// the path reckons on from the stamp, so jitter of arrival does not become jitter of motion.
-    pub(crate) fn moved(&mut self, sample: &ContactSample, slot: &SurfaceSlot, stamp: u64, position: u64) {
+    pub(crate) fn moved(&mut self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp, position: u64) {
         self.refreshed = position;
         self.asleep = false;
         let event = path_event(sample, slot, stamp);
@@ -271,7 +273,7 @@ impl Voice {
 
     /// Whether a landing is so close that it can be the same touch.
     pub(crate) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
-        let event = path_event(sample, slot, 0);
+        let event = path_event(sample, slot, Stamp::default());
         let period_m = slot.surface.wrap_period_m();
         let apart_m = (0..2).map(|axis| {
             let apart_m = event.position_m[axis] - self.last_point.position_m[axis];
@@ -470,9 +472,10 @@ impl Voice {
     }
 }
 
-fn path_event(sample: &ContactSample, slot: &SurfaceSlot, position: u64) -> PathEvent {
+fn path_event(sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> PathEvent {
     PathEvent {
-        sample: position,
+        sample: stamp.sample(),
+        fraction: stamp.fraction(),
         position_m: [sample.uv[0] * slot.surface.width_m, sample.uv[1] * slot.surface.height_m],
         velocity_m_s: sample.velocity_m_s,
         normal_force_n: sample.normal_force_n,

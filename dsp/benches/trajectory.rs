@@ -11,6 +11,7 @@ fn trajectory(c: &mut Criterion) {
     group.throughput(Throughput::Elements((SAMPLES * EVENTS) as u64)).sample_size(40);
     let event = |n: usize| PathEvent {
         sample: (n * SAMPLES) as u64,
+        fraction: 0.0,
         position_m: [0.1 * n as f64 / 60.0, 0.03],
         velocity_m_s: Some([0.1, 0.0]),
         normal_force_n: 0.5,

@@ -20,10 +20,11 @@ fn truth(t: f64) -> (f64, f64) {
 fn events(with_velocity: bool) -> Vec<PathEvent> {
     (0..(SECONDS * EVENT_RATE_HZ) as u32)
         .map(|index| {
-            let sample = (f64::from(index) / EVENT_RATE_HZ * SAMPLE_RATE_HZ).round() as u64;
-            let (position, velocity) = truth(sample as f64 / SAMPLE_RATE_HZ);
+            let time_s = f64::from(index) / EVENT_RATE_HZ;
+            let (position, velocity) = truth(time_s);
             PathEvent {
-                sample,
+                sample: (time_s * SAMPLE_RATE_HZ) as u64,
+                fraction: (time_s * SAMPLE_RATE_HZ).fract(),
                 position_m: [position, 0.0],
                 velocity_m_s: with_velocity.then_some([velocity, 0.0]),
                 normal_force_n: 0.5,

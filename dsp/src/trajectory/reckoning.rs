@@ -17,6 +17,8 @@ const DECAY_PERIODS: f64 = 0.5;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Reckoning {
     sample: u64,
+    /// How far beyond its sample the event holds, samples; its position is already carried back to it.
+    fraction: f64,
     velocity_m_s: [f64; 2],
     force_n: f64,
     period_s: f64,
@@ -37,7 +39,7 @@ struct Glide {
 }
 
 impl Reckoning {
-    pub fn begin(sample: u64, velocity_m_s: [f64; 2], force_n: f64) -> Self {
+    pub fn begin(sample: u64, fraction: f64, velocity_m_s: [f64; 2], force_n: f64) -> Self {
         let glide = Glide {
             after_samples: -1,
             position_m: [0.0; 2],
@@ -45,11 +47,15 @@ impl Reckoning {
             keep: 0.0,
             started: false,
         };
-        Self { sample, velocity_m_s, force_n, period_s: FIRST_PERIOD_S, events: 1, glide }
+        Self { sample, fraction, velocity_m_s, force_n, period_s: FIRST_PERIOD_S, events: 1, glide }
     }
 
     pub fn sample(&self) -> u64 {
         self.sample
+    }
+
+    pub fn fraction(&self) -> f64 {
+        self.fraction
     }
 
     pub fn velocity(&self) -> [f64; 2] {
@@ -101,7 +107,7 @@ impl Reckoning {
     pub fn follow(
         &mut self,
         design: &TrajectoryDesign,
-        sample: u64,
+        (sample, fraction): (u64, f64),
         gap_s: f64,
         velocity_m_s: [f64; 2],
         force_n: f64,
@@ -116,7 +122,7 @@ impl Reckoning {
             self.events = self.events.saturating_add(1);
         }
         let (period_s, events) = (self.period_s, self.events);
-        *self = Self { period_s, events, ..Self::begin(sample, velocity_m_s, force_n) };
+        *self = Self { period_s, events, ..Self::begin(sample, fraction, velocity_m_s, force_n) };
         self.glide.keep = libm::exp(-design.sample_period_s / (DECAY_PERIODS * period_s));
         self.glide.after_samples = self.glide_limit_samples(design);
     }

@@ -10,7 +10,13 @@ fn design(mode: PathMode) -> TrajectoryDesign {
 }
 
 fn event(sample: u64, x: f64, velocity: Option<f64>) -> PathEvent {
-    PathEvent { sample, position_m: [x, 0.0], velocity_m_s: velocity.map(|v| [v, 0.0]), normal_force_n: 0.5 }
+    PathEvent {
+        sample,
+        fraction: 0.0,
+        position_m: [x, 0.0],
+        velocity_m_s: velocity.map(|v| [v, 0.0]),
+        normal_force_n: 0.5,
+    }
 }
 
 /// Renders events up to `end`; each event lands on its own sample.
@@ -147,6 +153,7 @@ fn wrapped_and_unwrapped_positions_are_the_same_path() {
     let plain: Vec<PathEvent> = (0..300u64)
         .map(|n| PathEvent {
             sample: n * 735,
+            fraction: 0.0,
             position_m: [0.4 * n as f64 / 60.0, -0.3 * n as f64 / 60.0],
             velocity_m_s: Some([0.4, -0.3]),
             normal_force_n: 1.0,
@@ -283,20 +290,33 @@ fn a_2_hz_stroke_agrees_with_scipy() {
     }
 }
 
-/// Stamps on whole samples: what rounding a stamp to a sample costs is not the path's.
+/// Events at 60 Hz fall between samples at every rate that 60 does not divide.
+fn steady_between_samples(rate_hz: f64, velocity: Option<f64>) -> Vec<PathEvent> {
+    let at = |n: u32| f64::from(n) / 60.0 * rate_hz + 0.37;
+    (0..120)
+        .map(|n| {
+            let event = event(at(n) as u64, 0.1 * at(n) / rate_hz, velocity);
+            PathEvent { fraction: at(n).fract(), ..event }
+        })
+        .collect()
+}
+
 #[test]
-fn ripple_and_lag_are_the_same_at_every_rate() {
+fn ripple_and_lag_are_the_same_at_every_rate_though_stamps_fall_between_samples() {
     for rate_hz in [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0] {
-        let design = TrajectoryDesign::new(PathMode::Extrapolate, 30.0, rate_hz, [f64::INFINITY; 2]).unwrap();
-        let step = (rate_hz / 60.0).round() as u64;
-        let events: Vec<_> =
-            (0..120).map(|n| event(n * step, 0.1 * (n * step) as f64 / rate_hz, Some(0.1))).collect();
-        let points = render(&design, &events, 120 * step);
-        for (n, point) in points.iter().enumerate().skip(points.len() / 4) {
-            let ripple = point.velocity_m_s[0] / 0.1 - 1.0;
-            let lag_s = n as f64 / rate_hz - point.position_m[0] / 0.1;
-            assert!(ripple.abs() < 1e-3, "{rate_hz} Hz: ripple {ripple}");
-            assert!((0.007..0.008).contains(&lag_s), "{rate_hz} Hz: lag {lag_s}");
+        for (mode, velocity) in [
+            (PathMode::Extrapolate, Some(0.1)),
+            (PathMode::Extrapolate, None),
+            (PathMode::Hermite, Some(0.1)),
+        ] {
+            let design = TrajectoryDesign::new(mode, 30.0, rate_hz, [f64::INFINITY; 2]).unwrap();
+            let points = render(&design, &steady_between_samples(rate_hz, velocity), (2.0 * rate_hz) as u64);
+            for (n, point) in points.iter().enumerate().skip(points.len() / 4) {
+                let ripple = point.velocity_m_s[0] / 0.1 - 1.0;
+                let lag_s = n as f64 / rate_hz - point.position_m[0] / 0.1;
+                assert!(ripple.abs() < 1e-5, "{mode:?}, {rate_hz} Hz: ripple {ripple}");
+                assert!((lag_s - design.lag_s()).abs() < 1e-4, "{mode:?}, {rate_hz} Hz: lag {lag_s}");
+            }
         }
     }
 }
