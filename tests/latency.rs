@@ -50,6 +50,17 @@ fn a_stamped_event_sounds_at_its_own_sample() {
     }
 }
 
+/// Samples from an impact to the first that is not zero: a mode begins at the zero of its sine.
+fn rise_samples() -> f64 {
+    let (mut scene, mut renderer) = Config::default().build().unwrap();
+    let body = scene.add_body(tick()).unwrap();
+    scene.report(100.0 / RATE_HZ, impact(body)).unwrap();
+    let (mut h, mut a) = ([0.0; 512], [0.0; 512]);
+    renderer.render(&mut [&mut h], &mut [&mut a]);
+    let onset = a.iter().position(|x| *x != 0.0).unwrap();
+    (onset - renderer.latency_samples()) as f64 - 100.0
+}
+
 /// A game that reports at random moments, a device that renders at the start of each block.
 fn latencies(block: usize, events: usize) -> Vec<f64> {
     let (mut scene, mut renderer) = Config { clock: ClockMode::LIVE, ..Config::default() }.build().unwrap();
@@ -74,6 +85,9 @@ fn latencies(block: usize, events: usize) -> Vec<f64> {
         let onset = from + heard[from..].iter().position(|x| *x != 0.0).unwrap();
         found.push(onset as f64 - now);
     }
+    // An offline render has no latency: what its impact takes to rise is the mode's, not the engine's.
+    let rise = rise_samples();
+    found.iter_mut().for_each(|latency| *latency -= rise);
     found
 }
 
@@ -84,8 +98,7 @@ fn live_an_event_is_heard_within_one_block_and_one_sample() {
         let most = found.iter().copied().fold(0.0, f64::max);
         let mean = found.iter().sum::<f64>() / found.len() as f64;
         eprintln!("blocks of {block}: latency mean {mean:.1}, at most {most:.1} samples");
-        let look_ahead = Config::default().build().unwrap().1.latency_samples();
-        assert!(most <= (block + 1 + look_ahead) as f64, "blocks of {block}: {most} samples");
+        assert!(most <= (block + 1) as f64, "blocks of {block}: {most} samples");
     }
 }
 

@@ -27,11 +27,17 @@ fn relief(noise: &FractalNoise, positions: &[[f64; 2]], footprint_m: f64, roughn
 
 /// Mean power per bin over many strokes at a speed.
 fn mean_power(roughness: f64, speed_m_s: f64, len: usize, strokes: u64) -> Vec<f64> {
+    mean_power_at(RATE_HZ, roughness, speed_m_s, len, strokes)
+}
+
+/// [`mean_power`] at another sample rate.
+fn mean_power_at(rate_hz: f64, roughness: f64, speed_m_s: f64, len: usize, strokes: u64) -> Vec<f64> {
+    let step_m = speed_m_s / rate_hz;
     let mut mean = vec![0.0; len / 2];
     for seed in 0..strokes {
         let noise = FractalNoise::new(seed);
-        let positions = stroke(&mut Rng::new(seed), len, speed_m_s / RATE_HZ);
-        let heights = relief(&noise, &positions, speed_m_s / RATE_HZ, roughness);
+        let positions = stroke(&mut Rng::new(seed), len, step_m);
+        let heights = relief(&noise, &positions, step_m, roughness);
         for (mean, power) in mean.iter_mut().zip(power(&heights)) {
             *mean += power / strokes as f64;
         }
@@ -41,13 +47,21 @@ fn mean_power(roughness: f64, speed_m_s: f64, len: usize, strokes: u64) -> Vec<f
 
 /// Power between two frequencies, dB.
 fn band_db(power: &[f64], from_hz: f64, to_hz: f64) -> f64 {
-    let bin_hz = 0.5 * RATE_HZ / power.len() as f64;
+    band_db_at(RATE_HZ, power, from_hz, to_hz)
+}
+
+fn band_db_at(rate_hz: f64, power: &[f64], from_hz: f64, to_hz: f64) -> f64 {
+    let bin_hz = 0.5 * rate_hz / power.len() as f64;
     let inside = power.iter().enumerate().filter(|(k, _)| (from_hz..to_hz).contains(&(*k as f64 * bin_hz)));
     10.0 * inside.map(|(_, p)| p).sum::<f64>().log10()
 }
 
 fn third_octave_db(power: &[f64], centre_hz: f64) -> f64 {
-    band_db(power, centre_hz * 2f64.powf(-1.0 / 6.0), centre_hz * 2f64.powf(1.0 / 6.0))
+    third_octave_db_at(RATE_HZ, power, centre_hz)
+}
+
+fn third_octave_db_at(rate_hz: f64, power: &[f64], centre_hz: f64) -> f64 {
+    band_db_at(rate_hz, power, centre_hz * 2f64.powf(-1.0 / 6.0), centre_hz * 2f64.powf(1.0 / 6.0))
 }
 
 /// Slope and largest deviation from the straight line of equally spaced values.
@@ -85,6 +99,27 @@ fn the_spectrum_falls_by_3_db_alpha_per_octave_over_two_and_a_half_decades() {
         for (centre, level) in [20.0, 100.0, 500.0, 2500.0].into_iter().zip(levels_db) {
             let measured = third_octave_db(&power, centre);
             assert!((measured - level).abs() < 1.0, "α {alpha}, {centre} Hz: {measured} for {level} dB");
+        }
+    }
+}
+
+/// Wavelengths near the sample period are faded out, so at 22.05 kHz the two and a half decades end at 2 kHz.
+#[test]
+fn the_slope_holds_at_every_sample_rate() {
+    for (rate_hz, len, lowest_hz) in [
+        (22_050.0, 1 << 16, 6.25),
+        (48_000.0, 1 << 16, 12.5),
+        (96_000.0, 1 << 17, 12.5),
+        (192_000.0, 1 << 18, 12.5),
+    ] {
+        for (roughness, alpha) in [(0.0, 2.5), (1.0, 1.0)] {
+            let power = mean_power_at(rate_hz, roughness, 0.1, len, 64);
+            let band =
+                |i: u32| third_octave_db_at(rate_hz, &power, lowest_hz * 2f64.powf(f64::from(i) / 3.0));
+            let (slope, _) = line(&(0..26).map(band).collect::<Vec<_>>(), 1.0 / 3.0);
+            let error = slope + 3.0103 * (alpha - 1.0);
+            println!("{rate_hz} Hz, α {alpha}: slope error {error:.3} dB/oct");
+            assert!(error.abs() < 0.1, "{rate_hz} Hz, α {alpha}: {error} dB/oct");
         }
     }
 }

@@ -20,7 +20,18 @@ struct Seen {
 
 /// A map along a path, in blocks of `block` samples.
 fn along(map: &mut HeightMap, positions: &[[f64; 2]], velocity: [f64; 2], block: usize) -> Vec<Seen> {
-    let footprint = velocity[0].hypot(velocity[1]) / RATE_HZ;
+    along_at(RATE_HZ, map, positions, velocity, block)
+}
+
+/// [`along`] at another sample rate.
+fn along_at(
+    rate_hz: f64,
+    map: &mut HeightMap,
+    positions: &[[f64; 2]],
+    velocity: [f64; 2],
+    block: usize,
+) -> Vec<Seen> {
+    let footprint = velocity[0].hypot(velocity[1]) / rate_hz;
     let mut seen = Vec::new();
     let mut out = SurfaceBlock::default();
     for position_m in positions.chunks(block) {
@@ -42,8 +53,12 @@ fn along(map: &mut HeightMap, positions: &[[f64; 2]], velocity: [f64; 2], block:
 }
 
 fn stroke(start: [f64; 2], velocity: [f64; 2], len: usize) -> Vec<[f64; 2]> {
+    stroke_at(RATE_HZ, start, velocity, len)
+}
+
+fn stroke_at(rate_hz: f64, start: [f64; 2], velocity: [f64; 2], len: usize) -> Vec<[f64; 2]> {
     (0..len)
-        .map(|n| n as f64 / RATE_HZ)
+        .map(|n| n as f64 / rate_hz)
         .map(|t| [start[0] + velocity[0] * t, start[1] + velocity[1] * t])
         .collect()
 }
@@ -138,16 +153,20 @@ fn an_oblique_stroke_over_a_16_bit_sine_has_a_velocity_snr_above_60_db() {
     let mut map = HeightMap::new(&sine, EXTENT, Wrap::Repeat).unwrap();
     let angle = 20f64.to_radians();
     let velocity = [0.1 * angle.cos(), 0.1 * angle.sin()];
-    let seen = along(&mut map, &stroke([0.01, 0.02], velocity, 88_200), velocity, 64);
-    let per_sample = TAU * velocity[0] / RATE_HZ / (12.8 * 0.14 / 1024.0);
-    let heights: Vec<f64> = seen.iter().map(|s| s.height_m).collect();
-    let differences: Vec<f64> = heights.windows(2).map(|w| (w[1] - w[0]) * RATE_HZ).collect();
-    let slopes: Vec<f64> =
-        seen.iter().map(|s| s.gradient[0] * velocity[0] + s.gradient[1] * velocity[1]).collect();
-    let (height, velocity, analytic) =
-        (snr_db(&heights, per_sample), snr_db(&differences, per_sample), snr_db(&slopes, per_sample));
-    println!("SNR: height {height:.1} dB, velocity {velocity:.1} dB, from the gradient {analytic:.1} dB");
-    assert!(height > 80.0 && velocity > 60.0 && analytic > 60.0, "{height} {velocity} {analytic}");
+    for rate in [22_050.0, RATE_HZ, 48_000.0, 96_000.0, 192_000.0] {
+        let path = stroke_at(rate, [0.01, 0.02], velocity, (2.0 * rate) as usize);
+        let seen = along_at(rate, &mut map, &path, velocity, 64);
+        let per_sample = TAU * velocity[0] / rate / (12.8 * 0.14 / 1024.0);
+        let heights: Vec<f64> = seen.iter().map(|s| s.height_m).collect();
+        let differences: Vec<f64> = heights.windows(2).map(|w| (w[1] - w[0]) * rate).collect();
+        let slope = |s: &Seen| s.gradient[0] * velocity[0] + s.gradient[1] * velocity[1];
+        let slopes: Vec<f64> = seen.iter().map(slope).collect();
+        let [height, felt, analytic] = [&heights, &differences, &slopes].map(|x| snr_db(x, per_sample));
+        println!(
+            "{rate} Hz: SNR of the height {height:.1} dB, velocity {felt:.1} dB, from the gradient {analytic:.1} dB"
+        );
+        assert!(height > 80.0 && felt > 60.0 && analytic > 60.0, "{rate} Hz: {height} {felt} {analytic}");
+    }
 }
 
 #[test]
