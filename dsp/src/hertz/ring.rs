@@ -106,35 +106,41 @@ fn edge(v: f64, step: f64) -> [f64; 4] {
     [a, b - 4.0 * a, c - 4.0 * b + 6.0 * a, d - 4.0 * c + 6.0 * b - 4.0 * a]
 }
 
-/// Adds a sampled force to the ring: entry n of `impulses_n_s` is force × step of the absolute sample
-/// `first_sample` + n, and reaches the ring through the taps 1/6, 4/6, 1/6 of the cubic kernel, at the
-/// same latency as a pulse. The taps' response (2 + cos θ)/3 is the kernel's sinc⁴ within 0.09 dB up to 10 kHz
-/// at 44.1 kHz (0.65 dB at 15 kHz), so one compensated bank serves both.
+/// What a mean force over one step still needs to have passed the kernel sinc⁴: sinc³ as a symmetric filter
+/// of five taps about [`KERNEL_LATENCY`], equal to it up to θ⁴ (0.04 dB off at 10 kHz and 44.1 kHz, 0.07 dB at
+/// a quarter of any rate). The outer two taps undo the droop of the mean itself.
+const FORCE_TAPS: [f64; FORCE_HISTORY + 1] =
+    [-7.0 / 1920.0, 67.0 / 480.0, 233.0 / 320.0, 67.0 / 480.0, -7.0 / 1920.0];
+
+/// Samples of force that [`spread_force`] looks back.
+pub const FORCE_HISTORY: usize = 2 * KERNEL_LATENCY;
+
+/// Adds a sampled force to the ring: entry n of `impulses_n_s` is the mean force over a step × the step, of
+/// the absolute sample `first_sample` + n, and reaches the ring through `FORCE_TAPS`, at the same
+/// latency as a pulse, so one compensated bank serves both.
 ///
 /// Cells are added to sample by sample, so any split into calls gives the same bits.
 /// The block must be at least 4 samples shorter than the ring.
 pub fn deposit_force(ring: &mut [f64], first_sample: u64, impulses_n_s: &[f64]) {
-    debug_assert!(ring.len().is_power_of_two() && impulses_n_s.len() + 4 <= ring.len());
-    let mut first_tap = first_sample.wrapping_add(KERNEL_LATENCY as u64 - 1);
+    debug_assert!(ring.len().is_power_of_two() && impulses_n_s.len() + FORCE_HISTORY <= ring.len());
+    let mut first_tap = first_sample;
     for &impulse in impulses_n_s {
         let mut write = Writer { ring, at: first_tap };
-        for weight in [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0] {
+        for weight in FORCE_TAPS {
             write.push(weight * impulse);
         }
         first_tap = first_tap.wrapping_add(1);
     }
 }
 
-/// Samples of force that [`spread_force`] looks back.
-pub const FORCE_HISTORY: usize = KERNEL_LATENCY + 1;
-
 /// What [`deposit_force`] would leave in the ring, sample by sample: adds to `out[n]` the force impulses
-/// before it, `impulses_n_s[n + FORCE_HISTORY]` being those of `out[n]`'s own sample. Lengths: as far
+/// up to it, `impulses_n_s[n + FORCE_HISTORY]` being those of `out[n]`'s own sample. Lengths: as far
 /// as the shorter slice reaches.
 pub fn spread_force(impulses_n_s: &[f64], out: &mut [f64]) {
+    let [outer, inner, middle, ..] = FORCE_TAPS;
     for (y, window) in out.iter_mut().zip(impulses_n_s.windows(FORCE_HISTORY + 1)) {
-        if let [third, second, first, _] = window {
-            *y += (third + first) * (1.0 / 6.0) + second * (4.0 / 6.0);
+        if let [a, b, c, d, e] = window {
+            *y += (a + e) * outer + (b + d) * inner + c * middle;
         }
     }
 }
