@@ -2,6 +2,7 @@
 
 mod common;
 
+use asperity::contact_log::{LogEvent, LogLine, LogSample};
 use asperity::offline::Options;
 use common::{SIDE_M, grating, peak, plate, render, si_config, stroke};
 
@@ -44,4 +45,24 @@ fn begin_and_end_are_no_rougher_than_the_stroke_itself() {
         );
         assert!(roughest(&x[at(0.59)..at(0.65)]) <= allowed, "{name}: a click at the end");
     }
+}
+
+/// As a pen lifts: 125 reports a second, the force falls from 1.3 N to almost nothing in 40 ms, then the end.
+#[test]
+fn lifting_off_is_not_felt_as_a_thump() {
+    let mut log = stroke(SIDE_M, 0.02, 1.3, 0.6);
+    log.lines.pop();
+    let LogEvent::Move { contact, sample } = log.lines[20].event.clone() else { panic!("a move") };
+    for (step, normal_force_n) in [1.1, 0.9, 0.5, 0.05].into_iter().enumerate() {
+        let t = 0.6 + 0.008 * step as f64;
+        let uv = [0.1 + 0.02 * t / SIDE_M, sample.uv[1]];
+        let event = LogEvent::Move { contact, sample: LogSample { uv, normal_force_n, ..sample.clone() } };
+        log.lines.push(LogLine { t, event });
+    }
+    log.lines.push(LogLine { t: 0.632, event: LogEvent::End { contact } });
+    let take = render(si_config(), grating(1e-3, 1e-5), &log, &Options::default());
+    let at = |seconds: f64| (seconds * take.sample_rate_hz) as usize;
+    let (during, lifting) =
+        (peak(&take.haptic[0][at(0.2)..at(0.6)]), peak(&take.haptic[0][at(0.6)..at(0.8)]));
+    assert!(lifting < 1.5 * during, "{lifting} m while lifting, {during} m before");
 }

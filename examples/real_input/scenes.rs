@@ -134,5 +134,5 @@ impl Ground {
 }
 
 /// A cube tossed onto a table.
-pub const TOSSES: &str = "contacts = \"tosses.jsonl\"\n\n\
+pub const TOSSES: &str = "contacts = \"tosses.jsonl\"\n\n[audio]\ngain = 0.15\n\n\
     [[body]]\nname = \"table\"\nmodes = \"faust_semMidCenter.modes.json\"\nmaterial = \"wood\"\n";

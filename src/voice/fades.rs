@@ -24,9 +24,11 @@ impl Rising {
 }
 
 impl Voice {
-    /// Starts to fade, if it has not yet.
+    /// Starts to fade, if it has not yet, pressed as it is now: the smoothed force still falls after a
+    /// lift-off, and the pad it sets free would be felt as a thump louder than the stroke.
     pub(crate) fn fade(&mut self, shared: &Shared) {
         if self.phase == Phase::Sounding {
+            self.trajectory.hold_force(self.last_point.normal_force_n);
             self.phase = Phase::Fading { left: shared.fade_samples() };
         }
     }

@@ -48,11 +48,22 @@ fn draw_row(svg: &mut Svg, row: &Row, top: f64, width_px: f64, any_bar: bool) ->
         let last = index + 1 == row.panels.len();
         let right = if bar_of(panel).is_some() || (last && any_bar) { RIGHT_WITH_BAR_PX } else { RIGHT_PX };
         let plot = [x + LEFT_PX, top + HEAD_PX, (cell - LEFT_PX - right).max(40.0), row.height_px];
-        draw_panel(svg, panel, plot);
+        draw_panel(svg, panel, if panel.true_scale { to_scale(panel, plot) } else { plot });
         x += cell;
     }
     let numbers = row.panels.iter().any(|panel| panel.x.numbers);
     top + HEAD_PX + row.height_px + if numbers { FOOT_PX } else { FOOT_WITHOUT_NUMBERS_PX }
+}
+
+/// The largest part of the place in which a unit is as long across as down.
+fn to_scale(panel: &Panel, [left, top, width_px, height_px]: [f64; 4]) -> [f64; 4] {
+    let (Some(x), Some(y)) = (panel.x.range, panel.y.range) else { return [left, top, width_px, height_px] };
+    let (across, down) = ((x[1] - x[0]).abs(), (y[1] - y[0]).abs());
+    let px_per_unit = (width_px / across).min(height_px / down);
+    if !(px_per_unit.is_finite() && px_per_unit > 0.0) {
+        return [left, top, width_px, height_px];
+    }
+    [left, top, (across * px_per_unit).max(20.0), (down * px_per_unit).max(20.0)]
 }
 
 fn bar_of(panel: &Panel) -> Option<&Picture> {

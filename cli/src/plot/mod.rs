@@ -80,6 +80,8 @@ pub struct Panel {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
+    /// Whether a unit is as long across as down, as on a map; needs both axes' ranges.
+    pub true_scale: bool,
     /// Back to front.
     pub layers: Vec<Layer>,
 }
@@ -88,7 +90,14 @@ impl Panel {
     /// A panel without layers.
     #[must_use]
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        Self { title: title.into(), weight: 1.0, x, y, layers: Vec::new() }
+        Self { title: title.into(), weight: 1.0, x, y, true_scale: false, layers: Vec::new() }
+    }
+
+    /// Makes a unit as long across as down.
+    #[must_use]
+    pub fn true_scale(mut self) -> Self {
+        self.true_scale = true;
+        self
     }
 
     /// Sets the share of the row's width.

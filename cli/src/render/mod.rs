@@ -160,6 +160,11 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     if report.audio_peak > 1.0 {
         output::say("the audio exceeds full scale: lower [audio] gain, or set limit = true");
     }
+    for (channel, peak) in report.haptic_peak.iter().enumerate().filter(|(_, peak)| **peak > 1.0) {
+        output::say(&format!(
+            "haptic channel {channel} peaks at {peak:.2} of full scale: raise its full_scale, or set limit = true"
+        ));
+    }
     Ok(())
 }
 

@@ -6,6 +6,7 @@
 use crate::plot::{
     Axis, Figure, Layer, Panel, Picture, Series, SpectrogramOptions, colour, palette, spectrogram,
 };
+use crate::scene_file::Wrap;
 use asperity_texture::raster::Raster;
 
 /// Contacts drawn one by one; more would cover each other.
@@ -60,6 +61,8 @@ pub struct Ground {
     pub title: String,
     /// Extent along u and v, m.
     pub extent_m: [f64; 2],
+    /// How it goes on beyond its edges.
+    pub wrap: Wrap,
     /// Heights, 0 = lowest, 1 = highest, top row first.
     pub heights: Raster,
     /// Label of the contacts on it ends with this.
@@ -288,7 +291,7 @@ fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
     };
     let across = Axis::new("u", "m").range(0.0, width_m);
     let down = Axis::new("v", "m").range(height_m, 0.0);
-    let mut panel = Panel::new(ground.title.clone(), across, down).with(picture);
+    let mut panel = Panel::new(ground.title.clone(), across, down).with(picture).true_scale();
     for (contact, colour) in drawn(take).filter(|(contact, _)| contact.label.ends_with(&ground.surface)) {
         panel = panel.with(Layer::Line {
             label: String::new(),
@@ -296,10 +299,29 @@ fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
             width_px: 1.8,
             fill: None,
             dashed: false,
-            data: Series::Points(contact.path_uv.iter().map(|[u, v]| [u * width_m, v * height_m]).collect()),
+            data: Series::Points(on_one_tile(&contact.path_uv, ground)),
         });
     }
     panel
+}
+
+/// A path on the one tile of a surface that is drawn, m; where it goes on at the other edge the line is broken.
+fn on_one_tile(path_uv: &[[f64; 2]], ground: &Ground) -> Vec<[f64; 2]> {
+    let fold = |x: f64| match ground.wrap {
+        Wrap::Repeat => x.rem_euclid(1.0),
+        Wrap::Mirror => 1.0 - (x.rem_euclid(2.0) - 1.0).abs(),
+        Wrap::Clamp => x,
+    };
+    let place = |uv: [f64; 2]| [fold(uv[0]) * ground.extent_m[0], fold(uv[1]) * ground.extent_m[1]];
+    let tile = |uv: [f64; 2]| uv.map(f64::floor);
+    let mut points = Vec::with_capacity(path_uv.len());
+    for (n, &uv) in path_uv.iter().enumerate() {
+        if ground.wrap == Wrap::Repeat && n > 0 && tile(path_uv[n - 1]) != tile(uv) {
+            points.push([f64::NAN; 2]);
+        }
+        points.push(place(uv));
+    }
+    points
 }
 
 /// Third-octave levels of what is felt and what is heard, each relative to its strongest band.

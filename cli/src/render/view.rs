@@ -2,7 +2,7 @@
 
 use super::Report;
 use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};
-use crate::scene_file::{ActuatorOutput, SceneFile, Source};
+use crate::scene_file::{ActuatorOutput, SceneFile, Source, Wrap};
 use crate::{build, plot};
 use asperity::SurfaceId;
 use asperity::contact_log::{ContactLog, LogEvent};
@@ -73,7 +73,10 @@ fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> 
                 }
                 _ => return None,
             };
+            // Sand ends at its edges.
+            let wrap = if sand.is_some() { Wrap::Clamp } else { surface.wrap };
             Some(Ground {
+                wrap,
                 title: title.to_owned(),
                 extent_m: [surface.width_m, surface.height_m],
                 heights: thumbnail(&heights),

@@ -71,6 +71,13 @@ impl History {
         }
     }
 
+    /// Lets every event have had this force.
+    pub fn set_force_n(&mut self, force_n: f64) {
+        for knot in &mut self.knots[..self.len] {
+            knot.force_n = force_n;
+        }
+    }
+
     /// Whether the delayed reading has passed the latest event.
     pub fn is_past(&self, design: &TrajectoryDesign, sample: u64) -> bool {
         self.age_of_latest(design, sample) >= 0

@@ -290,6 +290,17 @@ impl Trajectory {
         Moved::Followed
     }
 
+    /// From the next sample on the normal force stays at `normal_force_n` until the next event: for a contact
+    /// that fades, which would otherwise follow its own lift-off.
+    pub fn hold_force(&mut self, normal_force_n: f64) {
+        if self.still || !(normal_force_n.is_finite() && normal_force_n >= 0.0) {
+            return;
+        }
+        self.force = State::settled_at(normal_force_n);
+        self.reckoning.set_force_n(normal_force_n);
+        self.history.set_force_n(normal_force_n);
+    }
+
     /// How far from its expected position an event may be and still belong to the same stroke.
     fn reach_m(&self, event: &PathEvent, gap_s: f64) -> f64 {
         let before = self.reckoning.velocity();

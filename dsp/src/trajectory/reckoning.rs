@@ -66,6 +66,10 @@ impl Reckoning {
         self.force_n
     }
 
+    pub fn set_force_n(&mut self, force_n: f64) {
+        self.force_n = force_n;
+    }
+
     pub fn period_s(&self) -> f64 {
         self.period_s
     }

@@ -258,6 +258,28 @@ fn force_follows_smoothly_and_never_pulls() {
     assert!(out.iter().all(|p| p.normal_force_n >= 0.0));
 }
 
+#[test]
+fn a_held_force_stays_until_the_next_event() {
+    for mode in [PathMode::Extrapolate, PathMode::Hold, PathMode::Hermite] {
+        let design = design(mode);
+        let mut path = Trajectory::begin(&design, &event(0, 0.0, Some(0.1)));
+        path.moved(&design, &PathEvent { normal_force_n: 0.0, ..event(0, 0.0, Some(0.1)) });
+        let mut out = vec![PathPoint::default(); 300];
+        path.advance(&design, &mut out);
+        let held_n = out[299].normal_force_n;
+        path.hold_force(held_n);
+        path.advance(&design, &mut out);
+        assert!(out.iter().all(|p| (p.normal_force_n - held_n).abs() < 1e-12), "{mode:?}");
+        path.moved(
+            &design,
+            &PathEvent { normal_force_n: 2.0, ..event(600, 0.1 * 600.0 / RATE_HZ, Some(0.1)) },
+        );
+        let mut out = vec![PathPoint::default(); 8000];
+        path.advance(&design, &mut out);
+        assert!((out[7999].normal_force_n - 2.0).abs() < 1e-3, "{mode:?}");
+    }
+}
+
 // dsp/tests/independent/trajectory.py: scipy.signal.lfilter of butter(2, 30, fs=44100).
 #[test]
 fn a_2_hz_stroke_agrees_with_scipy() {
