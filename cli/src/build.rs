@@ -16,7 +16,7 @@ use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
-use asperity_texture::sand::{SandDesign, SandLaw, SandSource, Tool};
+use asperity_texture::sand::{SandDesign, SandLaw, SandSource, SandWorker, Tool};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::SolidNoise;
 use std::path::Path;
@@ -32,6 +32,8 @@ pub struct Overrides {
     pub integrator: Option<Integrator>,
     /// How sparse positions become a path.
     pub path: Option<PathMode>,
+    /// Simulate sand on a thread of its own, for sound that must not wait for it.
+    pub live: bool,
 }
 
 /// A scene ready to be rendered.
@@ -42,6 +44,8 @@ pub struct Built {
     pub renderer: Renderer,
     /// Ids by the names of the scene file.
     pub names: Names,
+    /// What has to run on threads of its own; empty unless [`Overrides::live`].
+    pub workers: Vec<SandWorker>,
 }
 
 /// Loads every file that a scene names and builds the engine.
@@ -54,6 +58,7 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
     let (seed, rate_hz) = (config.seed, config.sample_rate_hz);
     let (mut scene, renderer) = config.build().map_err(|error| at(CliError::told(error)))?;
     let mut names = Names::default();
+    let mut workers = Vec::new();
     for body in &file.bodies {
         let place = |error: CliError| at(error.within(format!("body \"{}\"", body.name)));
         let model = match &body.modes {
@@ -75,11 +80,12 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
     for entry in &file.surfaces {
         let place = |error: CliError| at(error.within(format!("surface \"{}\"", entry.name)));
         let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
-        let surface = surface(entry, body, seed, rate_hz).map_err(place)?;
+        let live = overrides.live.then_some(&mut workers);
+        let surface = surface(entry, body, (seed, rate_hz), live).map_err(place)?;
         let id = scene.add_surface(surface).map_err(|error| place(CliError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
-    Ok(Built { scene, renderer, names })
+    Ok(Built { scene, renderer, names, workers })
 }
 
 fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
@@ -175,8 +181,8 @@ struct Ground {
 fn surface(
     entry: &SurfaceEntry,
     body: Option<BodyId>,
-    seed: u64,
-    sample_rate_hz: f64,
+    (seed, sample_rate_hz): (u64, f64),
+    live: Option<&mut Vec<SandWorker>>,
 ) -> Result<Surface, CliError> {
     let wrap = match entry.wrap {
         WrapEntry::Repeat => Wrap::Repeat,
@@ -185,7 +191,7 @@ fn surface(
     };
     let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
     let ground = Ground { extent, wrap, seed, sample_rate_hz };
-    let mut surface = source(&entry.source, ground)?;
+    let mut surface = source(&entry.source, ground, live)?;
     surface = match &entry.roughness {
         RoughnessEntry::Number(None) => surface,
         RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),
@@ -216,7 +222,7 @@ fn surface(
     })
 }
 
-fn source(source: &Source, ground: Ground) -> Result<Surface, CliError> {
+fn source(source: &Source, ground: Ground, live: Option<&mut Vec<SandWorker>>) -> Result<Surface, CliError> {
     let Ground { extent, wrap, seed, sample_rate_hz } = ground;
     let repeats = wrap == Wrap::Repeat;
     match source {
@@ -278,8 +284,16 @@ fn source(source: &Source, ground: Ground) -> Result<Surface, CliError> {
                 tool: Tool::Sphere { radius_m: sand.tool_radius_m },
                 contacts: SAND_CONTACTS,
             };
-            let source = SandSource::synchronous(&design, seed, sample_rate_hz)
-                .map_err(|error| CliError::told(error).within("sand"))?;
+            let source = match live {
+                None => SandSource::synchronous(&design, seed, sample_rate_hz),
+                Some(workers) => {
+                    SandSource::threaded(&design, seed, sample_rate_hz).map(|(source, worker)| {
+                        workers.push(worker);
+                        source
+                    })
+                }
+            };
+            let source = source.map_err(|error| CliError::told(error).within("sand"))?;
             finish(Box::new(source), extent, false)
         }
     }

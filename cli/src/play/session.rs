@@ -12,6 +12,7 @@ use asperity::channel_map::ChannelMap;
 use asperity::contact_log::{ContactLog, LogError};
 use asperity::device::{self, DeviceOptions, DeviceReport};
 use asperity::{ContactEvent, Refusal, Scene, Stats};
+use asperity_texture::sand::SandWorker;
 use serde::Serialize;
 use std::path::Path;
 use std::sync::Arc;
@@ -90,7 +91,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         Err(error) if named => return Err(CliError::told(error)),
         Err(_) => None,
     };
-    let built = build::build(&file, &Overrides { sample_rate_hz: rate, ..Overrides::default() })?;
+    let built = build::build(&file, &Overrides { sample_rate_hz: rate, live: true, ..Overrides::default() })?;
     let summary = play(built, &log, &file, &device_options)?;
     if options.json { output::say_json(&summary) } else { print(&summary) }
 }
@@ -114,7 +115,8 @@ fn play(
     file: &SceneFile,
     options: &DeviceOptions,
 ) -> Result<Summary, CliError> {
-    let Built { mut scene, renderer, names } = built;
+    let Built { mut scene, renderer, names, workers } = built;
+    let sand: Vec<_> = workers.into_iter().map(SandWorker::spawn).collect();
     let rate_hz = renderer.sample_rate_hz();
     let latency_samples = renderer.latency_samples();
     let events = log
@@ -135,6 +137,9 @@ fn play(
     let heard_on = player.silent_because().is_none().then(|| player.device().to_owned());
     let stats = scene.stats();
     let report = player.stop();
+    for thread in sand {
+        let _ = thread.stop();
+    }
     outcome?;
     Ok(summary(heard_on, rate_hz, latency_samples, &stats, &report, interrupted.load(Relaxed)))
 }

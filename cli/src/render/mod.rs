@@ -185,6 +185,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         seed: options.seed,
         integrator: options.integrator,
         path: options.path,
+        live: false,
     };
     let built = build::build(&file, &overrides)?;
     let names: Vec<(String, SurfaceId)> =
@@ -302,7 +303,7 @@ fn play(
     mut recorder: Recorder,
 ) -> Result<Played, CliError> {
     let settings = offline::Options { block_frames: usize::from(options.block), tail_s: file.tail_s };
-    let Built { scene, renderer, names } = built;
+    let Built { scene, renderer, names, workers: _ } = built;
     let at = |error| {
         let path = file.contacts.as_deref().unwrap_or(&file.path);
         CliError::told(error).within(path.display())
