@@ -10,8 +10,8 @@
 use asperity::texture::height_map::HeightMap;
 use asperity::texture::raster::Raster;
 use asperity::{
-    Actuator, BodyId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent, Impact, Material,
-    ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
+    Actuator, AudioSettings, BodyId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent,
+    Impact, Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
 };
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -23,7 +23,8 @@ const STEP: Duration = Duration::from_micros(16_667);
 
 fn main() -> Result<(), Box<dyn Error>> {
     // 1. Build the engine. LIVE ties game time to the audio clock; ask the device for its rate first.
-    let config = Config { clock: ClockMode::LIVE, sample_rate_hz: rate_hz(), ..Config::default() };
+    let audio = AudioSettings { limit: true, ..AudioSettings::default() }; // a sound card clips at ±1
+    let config = Config { clock: ClockMode::LIVE, sample_rate_hz: rate_hz(), audio, ..Config::default() };
     let (mut scene, renderer) = config.build()?;
 
     // 2. Say what can be touched, and what rings when it is.

@@ -32,7 +32,7 @@ pub struct Overrides {
     pub integrator: Option<Integrator>,
     /// How sparse positions become a path.
     pub path: Option<PathMode>,
-    /// Simulate sand on a thread of its own, for sound that must not wait for it.
+    /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are limited.
     pub live: bool,
 }
 
@@ -98,7 +98,8 @@ fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: probe(&file.probe)?,
         actuators: file.actuators.iter().map(|entry| actuator(entry, folder)).collect::<Result<_, _>>()?,
-        audio: AudioSettings { gain: file.audio.gain, limit: file.audio.limit },
+        // A sound card clips what exceeds full scale.
+        audio: AudioSettings { gain: file.audio.gain, limit: file.audio.limit || overrides.live },
         max_surfaces: default.max_surfaces.max(file.surfaces.len()),
         max_bodies: default.max_bodies.max(file.bodies.len()),
         // A scene is loaded whole before the first block is rendered.

@@ -15,8 +15,8 @@ use asperity::contact_log::{LogEvent, Names};
 use asperity::offline::{self, Options};
 use asperity::texture::height_map::HeightMap;
 use asperity::{
-    Actuator, ActuatorSettings, ClockMode, Config, Extent, Material, ModalModel, Mode, Renderer, Scene,
-    Surface,
+    Actuator, ActuatorSettings, AudioSettings, ClockMode, Config, Extent, Material, ModalModel, Mode,
+    Renderer, Scene, Surface,
 };
 use mesh::UvMesh;
 use rapier3d::prelude::*;
@@ -36,6 +36,7 @@ const FINGER_KG: f32 = 0.02;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).map_or_else(PathBuf::new, PathBuf::from);
+    std::fs::create_dir_all(&folder)?;
     let (mut scene, mut renderer, names) = engine(ClockMode::LIVE)?;
     scene.start_recording(&names);
     let live = play(&mut scene, &mut renderer, &names)?;
@@ -79,7 +80,9 @@ struct Heard {
 
 fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names), Box<dyn Error>> {
     let actuators = vec![ActuatorSettings::default(); 2];
-    let config = Config { clock, sample_rate_hz: RATE_HZ, actuators, ..Config::default() };
+    // A dropped ball is fifty times louder than a finger; a sound card clips at ±1.
+    let audio = AudioSettings { gain: 0.1, limit: true };
+    let config = Config { clock, sample_rate_hz: RATE_HZ, actuators, audio, ..Config::default() };
     let (mut scene, renderer) = config.build()?;
     let mode =
         |frequency_hz, decay_per_s, amplitude| Mode { frequency_hz, decay_per_s, amplitude, phase_rad: 0.0 };
