@@ -14,6 +14,8 @@ use std::time::{Duration, Instant};
 
 /// How long to wait between attempts to get a lost device back.
 const RETRY: Duration = Duration::from_millis(500);
+/// Frames a callback to ask for when nobody says: left to themselves some sound servers keep two seconds.
+const BLOCK_FRAMES: u32 = 512;
 /// Haptic samples kept between two devices.
 const HAPTIC_FILL: usize = 1024;
 
@@ -103,15 +105,11 @@ impl Job {
     fn build(&self, number: u64) -> Result<Vec<Stream>, DeviceError> {
         let options = &self.options;
         let mut streams = Vec::new();
-        let haptics = match &options.haptic_device {
-            None => Vec::new(),
-            Some(_) => self.lock().map_or_else(Vec::new, |mut device| device.split_haptics(4 * HAPTIC_FILL)),
-        };
         let device = find(options.host.as_deref(), options.device.as_deref())?;
         streams.push(self.audio_stream(&device, number)?);
         if let Some(id) = &options.haptic_device {
             let device = find(options.host.as_deref(), Some(id))?;
-            streams.push(self.haptic_stream(&device, haptics, number)?);
+            streams.push(self.haptic_stream(&device, number)?);
         }
         for stream in &streams {
             stream.play()?;
@@ -123,28 +121,47 @@ impl Job {
         self.device.lock().ok()
     }
 
-    fn config(&self, channels: usize) -> StreamConfig {
-        let buffer_size = self.options.block_frames.map_or(BufferSize::Default, BufferSize::Fixed);
+    fn config(&self, channels: usize, buffer_size: BufferSize) -> StreamConfig {
         StreamConfig { channels: channels as u16, sample_rate: self.rate_hz.round() as u32, buffer_size }
+    }
+
+    /// The buffer sizes to try in turn. Who names one gets that or an error.
+    fn buffer_sizes(&self) -> Vec<BufferSize> {
+        match self.options.block_frames {
+            Some(frames) => vec![BufferSize::Fixed(frames)],
+            None => vec![BufferSize::Fixed(BLOCK_FRAMES), BufferSize::Default],
+        }
+    }
+
+    /// The first configuration with which a stream can be built.
+    fn first_that_works(
+        &self,
+        channels: &[usize],
+        build: impl Fn(StreamConfig) -> Result<Stream, DeviceError>,
+    ) -> Result<Stream, DeviceError> {
+        let mut outcome = Err(DeviceError::NoDevice);
+        for buffer_size in self.buffer_sizes() {
+            for &channels in channels {
+                outcome = build(self.config(channels, buffer_size));
+                if outcome.is_ok() {
+                    return outcome;
+                }
+            }
+        }
+        outcome
     }
 
     fn audio_stream(&self, device: &Device, number: u64) -> Result<Stream, DeviceError> {
         let wanted = self.lock().map_or(2, |device| device.map().width());
         // Some devices only run with all their channels; those that list fewer may still take more.
         let offered = device.default_output_config().map_or(2, |c| usize::from(c.channels()));
-        let mut outcome = None;
-        for channels in [wanted, wanted.max(offered)] {
-            let stream = self.build_audio(device, channels, number);
-            let built = stream.is_ok();
-            outcome = Some(stream);
-            if built {
-                break;
-            }
-        }
-        outcome.unwrap_or(Err(DeviceError::NoDevice))
+        self.first_that_works(&[wanted, wanted.max(offered)], |config| {
+            self.build_audio(device, config, number)
+        })
     }
 
-    fn build_audio(&self, device: &Device, channels: usize, number: u64) -> Result<Stream, DeviceError> {
+    fn build_audio(&self, device: &Device, config: StreamConfig, number: u64) -> Result<Stream, DeviceError> {
+        let channels = usize::from(config.channels);
         let (engine, meters, rate_hz) = (self.device.clone(), self.meters.clone(), self.rate_hz);
         let callback = move |out: &mut [f32], info: &OutputCallbackInfo| {
             // Held by this callback alone while the stream runs; tried, so that nothing ever waits.
@@ -166,22 +183,24 @@ impl Job {
             meters.callback_frames.store(frames as u64, Relaxed);
             meters.peak_load_ppm.fetch_max((load * 1e6) as u64, Relaxed);
         };
-        let stream = device.build_output_stream::<f32, _, _>(
-            self.config(channels),
-            callback,
-            self.watch(number),
-            None,
-        )?;
-        Ok(stream)
+        Ok(device.build_output_stream::<f32, _, _>(config, callback, self.watch(number), None)?)
     }
 
-    fn haptic_stream(
+    fn haptic_stream(&self, device: &Device, number: u64) -> Result<Stream, DeviceError> {
+        let channels = self.lock().map_or(1, |mut device| device.renderer().haptic_channels().max(1));
+        self.first_that_works(&[channels], |config| self.build_haptics(device, config, number))
+    }
+
+    fn build_haptics(
         &self,
         device: &Device,
-        mut haptics: Vec<Receiver<f32>>,
+        config: StreamConfig,
         number: u64,
     ) -> Result<Stream, DeviceError> {
-        let channels = haptics.len().max(1);
+        let channels = usize::from(config.channels);
+        // The rings go to the stream and are lost with one that cannot be built.
+        let mut haptics =
+            self.lock().map_or_else(Vec::new, |mut device| device.split_haptics(4 * HAPTIC_FILL));
         let meters = self.meters.clone();
         let mut readers = vec![DriftResampler::new(HAPTIC_FILL, self.rate_hz); channels];
         let mut chunk = [0.0f32; 256];
@@ -200,13 +219,7 @@ impl Job {
             let underruns = readers.iter().map(DriftResampler::underruns).sum();
             meters.haptic_underruns.store(underruns, Relaxed);
         };
-        let stream = device.build_output_stream::<f32, _, _>(
-            self.config(channels),
-            callback,
-            self.watch(number),
-            None,
-        )?;
-        Ok(stream)
+        Ok(device.build_output_stream::<f32, _, _>(config, callback, self.watch(number), None)?)
     }
 
     /// Counts glitches; everything else means that the stream is lost.
