@@ -305,7 +305,7 @@ impl SandSimulation {
             if track.pose.is_some() {
                 for at in press.cut_cells() {
                     let height = self.grid.heights[at];
-                    if height < WALL {
+                    if height != WALL {
                         self.walls.push((at, height));
                         self.grid.heights[at] = WALL;
                     }
