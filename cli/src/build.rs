@@ -1,24 +1,20 @@
 //! From a scene file to a running engine.
 
+mod source;
+
 use crate::error::CliError;
 use crate::scene_file::{
     ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MaterialEntry, Pixels, ProbeEntry,
-    Roughness as RoughnessEntry, SceneFile, Source, SurfaceEntry, Wrap as WrapEntry,
+    Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
 };
 use asperity::contact_log::Names;
 use asperity::{
     ActuatorPreset, ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent,
     Integrator, Material, ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
 };
-use asperity_texture::brownian::BrownianDesign;
-use asperity_texture::height_field::HeightField;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
-use asperity_texture::lattice::Lattice;
-use asperity_texture::raster::Raster;
-use asperity_texture::sand::{SandDesign, SandLaw, SandSource, Tool};
-use asperity_texture::solid_materials::SolidMaterial;
-use asperity_texture::solid_noise::SolidNoise;
+use source::Ground;
 use std::path::Path;
 
 /// What the command line may set, whatever the scene file says.
@@ -160,18 +156,6 @@ fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
     }
 }
 
-/// Voices of an engine with 64 contacts, the spare ones for fading included: sand keeps a tool for each.
-const SAND_CONTACTS: usize = 96;
-
-/// What every source of a scene shares.
-#[derive(Clone, Copy)]
-struct Ground {
-    extent: Extent,
-    wrap: Wrap,
-    seed: u64,
-    sample_rate_hz: f64,
-}
-
 fn surface(
     entry: &SurfaceEntry,
     body: Option<BodyId>,
@@ -185,8 +169,10 @@ fn surface(
     };
     let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
     let ground = Ground { extent, wrap, seed, sample_rate_hz };
-    let mut surface = source(&entry.source, ground)?;
-    surface = match &entry.roughness {
+    let source = ground.source(&entry.source)?;
+    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
+    let surface = surface.wraps(ground.repeats(&entry.source));
+    let mut surface = match &entry.roughness {
         RoughnessEntry::Number(None) => surface,
         RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),
         RoughnessEntry::Map { image, gloss } => {
@@ -214,86 +200,6 @@ fn surface(
         Some(body) => surface.on(body),
         None => surface,
     })
-}
-
-fn source(source: &Source, ground: Ground) -> Result<Surface, CliError> {
-    let Ground { extent, wrap, seed, sample_rate_hz } = ground;
-    let repeats = wrap == Wrap::Repeat;
-    match source {
-        Source::Flat => {
-            let plane = HeightMap::flat(extent, asperity::DEFAULT_ROUGHNESS).map_err(CliError::told)?;
-            finish(Box::new(plane), extent, repeats)
-        }
-        Source::Map { image, relief_m, invert } => {
-            let heights = upright(pixels(image)?.debanded(wrap), *invert);
-            let map = HeightMap::new(&heights, Extent { relief_m: *relief_m, ..extent }, wrap)
-                .map_err(|error| CliError::told(error).within(image.path.display()))?;
-            finish(Box::new(map), extent, repeats)
-        }
-        Source::Solid(solid) => {
-            let material = SolidMaterial::from_name(&solid.preset).ok_or_else(|| {
-                let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ");
-                CliError::new(
-                    "solid",
-                    format!("\"{}\" is unknown", solid.preset),
-                    format!("must be one of: {known}"),
-                )
-            })?;
-            let noise =
-                SolidNoise::new(material.parameters(), seed, sample_rate_hz).map_err(CliError::told)?;
-            finish(Box::new(noise), extent, false)
-        }
-        Source::Brownian { hurst, rms_m, seed: own, cells } => {
-            let mut design = BrownianDesign::new(*hurst, *rms_m, own.unwrap_or(seed));
-            design.size = cells.map_or(design.size, |cells| cells as usize);
-            let relief = design.surface().map_err(CliError::told)?;
-            // The relief is isotropic and repeats in a square; a surface of another shape is cut from it.
-            let side_m = extent.width_m.max(extent.height_m);
-            let square = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
-            let map = HeightMap::new(&relief, square, Wrap::Repeat).map_err(CliError::told)?;
-            finish(Box::new(map), extent, extent.width_m == extent.height_m)
-        }
-        Source::Lattice(lattice) => {
-            let relief_m = lattice.relief_m;
-            let cell = upright(pixels(&lattice.cell)?.debanded(Wrap::Repeat), lattice.invert);
-            let lattice = Lattice::new(&cell.map(|height| height * relief_m), lattice.t1_m, lattice.t2_m)
-                .map_err(|error| CliError::told(error).within("lattice"))?;
-            finish(Box::new(lattice), extent, false)
-        }
-        Source::Sand(sand) => {
-            let law = SandLaw {
-                stiffness_n: sand.stiffness_n,
-                exponent_per_m: sand.exponent_per_m,
-                drag_s_per_m: sand.drag_s_per_m,
-                wetness: sand.wetness.unwrap_or_default(),
-                ..SandLaw::default()
-            };
-            let design = SandDesign {
-                width_m: extent.width_m,
-                height_m: extent.height_m,
-                cells: sand.cells as usize,
-                depth_m: sand.depth_m,
-                talus_deg: sand.talus_deg,
-                law,
-                tool: Tool::Sphere { radius_m: sand.tool_radius_m },
-                contacts: SAND_CONTACTS,
-            };
-            let source = SandSource::synchronous(&design, seed, sample_rate_hz)
-                .map_err(|error| CliError::told(error).within("sand"))?;
-            finish(Box::new(source), extent, false)
-        }
-    }
-}
-
-/// A depth map holds what a height map lacks.
-fn upright(heights: Raster, invert: bool) -> Raster {
-    if invert { heights.map(|height| 1.0 - height) } else { heights }
-}
-
-/// `repeats`: a jump of uv by a whole tile is no movement.
-fn finish(source: Box<dyn HeightField>, extent: Extent, repeats: bool) -> Result<Surface, CliError> {
-    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
-    Ok(surface.wraps(repeats))
 }
 
 /// One channel of an image file.
