@@ -19,7 +19,7 @@ fn design(cells: usize, width_m: f64) -> SandDesign {
 }
 
 fn pose(position_m: [f64; 2], velocity_m_s: [f64; 2], normal_force_n: f64) -> Pose {
-    Pose { contact: 0, position_m, velocity_m_s, normal_force_n }
+    Pose { contact: 0, position_m, velocity_m_s, normal_force_n, landed: false }
 }
 
 /// Writes a wavy line; returns what every frame took.
