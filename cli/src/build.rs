@@ -1,24 +1,22 @@
 //! From a scene file to a running engine.
 
+mod source;
+
 use crate::error::CliError;
 use crate::scene_file::{
     ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MaterialEntry, Pixels, ProbeEntry,
-    Roughness as RoughnessEntry, SceneFile, Source, SurfaceEntry, Wrap as WrapEntry,
+    Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
 };
 use asperity::contact_log::Names;
 use asperity::{
     ActuatorPreset, ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent,
     Integrator, Material, ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
 };
-use asperity_texture::brownian::BrownianDesign;
-use asperity_texture::height_field::HeightField;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
-use asperity_texture::lattice::Lattice;
-use asperity_texture::raster::Raster;
-use asperity_texture::sand::{SandDesign, SandLaw, SandSource, SandWorker, Tool};
-use asperity_texture::solid_materials::SolidMaterial;
-use asperity_texture::solid_noise::SolidNoise;
+use asperity_texture::sand::SandWorker;
+use source::Ground;
+use std::cell::RefCell;
 use std::path::Path;
 
 /// What the command line may set, whatever the scene file says.
@@ -58,7 +56,7 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
     let (seed, rate_hz) = (config.seed, config.sample_rate_hz);
     let (mut scene, renderer) = config.build().map_err(|error| at(CliError::told(error)))?;
     let mut names = Names::default();
-    let mut workers = Vec::new();
+    let workers = RefCell::default();
     for body in &file.bodies {
         let place = |error: CliError| at(error.within(format!("body \"{}\"", body.name)));
         let model = match &body.modes {
@@ -80,12 +78,12 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
     for entry in &file.surfaces {
         let place = |error: CliError| at(error.within(format!("surface \"{}\"", entry.name)));
         let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
-        let live = overrides.live.then_some(&mut workers);
+        let live = overrides.live.then_some(&workers);
         let surface = surface(entry, body, (seed, rate_hz), live).map_err(place)?;
         let id = scene.add_surface(surface).map_err(|error| place(CliError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
-    Ok(Built { scene, renderer, names, workers })
+    Ok(Built { scene, renderer, names, workers: workers.into_inner() })
 }
 
 fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
@@ -167,23 +165,11 @@ fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
     }
 }
 
-/// Voices of an engine with 64 contacts, the spare ones for fading included: sand keeps a tool for each.
-const SAND_CONTACTS: usize = 96;
-
-/// What every source of a scene shares.
-#[derive(Clone, Copy)]
-struct Ground {
-    extent: Extent,
-    wrap: Wrap,
-    seed: u64,
-    sample_rate_hz: f64,
-}
-
 fn surface(
     entry: &SurfaceEntry,
     body: Option<BodyId>,
     (seed, sample_rate_hz): (u64, f64),
-    live: Option<&mut Vec<SandWorker>>,
+    workers: Option<&RefCell<Vec<SandWorker>>>,
 ) -> Result<Surface, CliError> {
     let wrap = match entry.wrap {
         WrapEntry::Repeat => Wrap::Repeat,
@@ -191,9 +177,11 @@ fn surface(
         WrapEntry::Mirror => Wrap::Mirror,
     };
     let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
-    let ground = Ground { extent, wrap, seed, sample_rate_hz };
-    let mut surface = source(&entry.source, ground, live)?;
-    surface = match &entry.roughness {
+    let ground = Ground { extent, wrap, seed, sample_rate_hz, workers };
+    let source = ground.source(&entry.source)?;
+    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
+    let surface = surface.wraps(ground.repeats(&entry.source));
+    let mut surface = match &entry.roughness {
         RoughnessEntry::Number(None) => surface,
         RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),
         RoughnessEntry::Map { image, gloss } => {
@@ -221,94 +209,6 @@ fn surface(
         Some(body) => surface.on(body),
         None => surface,
     })
-}
-
-fn source(source: &Source, ground: Ground, live: Option<&mut Vec<SandWorker>>) -> Result<Surface, CliError> {
-    let Ground { extent, wrap, seed, sample_rate_hz } = ground;
-    let repeats = wrap == Wrap::Repeat;
-    match source {
-        Source::Flat => {
-            let plane = HeightMap::flat(extent, asperity::DEFAULT_ROUGHNESS).map_err(CliError::told)?;
-            finish(Box::new(plane), extent, repeats)
-        }
-        Source::Map { image, relief_m, invert } => {
-            let heights = upright(pixels(image)?.debanded(wrap), *invert);
-            let map = HeightMap::new(&heights, Extent { relief_m: *relief_m, ..extent }, wrap)
-                .map_err(|error| CliError::told(error).within(image.path.display()))?;
-            finish(Box::new(map), extent, repeats)
-        }
-        Source::Solid(solid) => {
-            let material = SolidMaterial::from_name(&solid.preset).ok_or_else(|| {
-                let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ");
-                CliError::new(
-                    "solid",
-                    format!("\"{}\" is unknown", solid.preset),
-                    format!("must be one of: {known}"),
-                )
-            })?;
-            let noise =
-                SolidNoise::new(material.parameters(), seed, sample_rate_hz).map_err(CliError::told)?;
-            finish(Box::new(noise), extent, false)
-        }
-        Source::Brownian { hurst, rms_m, seed: own, cells } => {
-            let mut design = BrownianDesign::new(*hurst, *rms_m, own.unwrap_or(seed));
-            design.size = cells.map_or(design.size, |cells| cells as usize);
-            let relief = design.surface().map_err(CliError::told)?;
-            // The relief is isotropic and repeats in a square; a surface of another shape is cut from it.
-            let side_m = extent.width_m.max(extent.height_m);
-            let square = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
-            let map = HeightMap::new(&relief, square, Wrap::Repeat).map_err(CliError::told)?;
-            finish(Box::new(map), extent, extent.width_m == extent.height_m)
-        }
-        Source::Lattice(lattice) => {
-            let relief_m = lattice.relief_m;
-            let cell = upright(pixels(&lattice.cell)?.debanded(Wrap::Repeat), lattice.invert);
-            let lattice = Lattice::new(&cell.map(|height| height * relief_m), lattice.t1_m, lattice.t2_m)
-                .map_err(|error| CliError::told(error).within("lattice"))?;
-            finish(Box::new(lattice), extent, false)
-        }
-        Source::Sand(sand) => {
-            let law = SandLaw {
-                stiffness_n: sand.stiffness_n,
-                exponent_per_m: sand.exponent_per_m,
-                drag_s_per_m: sand.drag_s_per_m,
-                wetness: sand.wetness.unwrap_or_default(),
-                ..SandLaw::default()
-            };
-            let design = SandDesign {
-                width_m: extent.width_m,
-                height_m: extent.height_m,
-                cells: sand.cells as usize,
-                depth_m: sand.depth_m,
-                talus_deg: sand.talus_deg,
-                law,
-                tool: Tool::Sphere { radius_m: sand.tool_radius_m },
-                contacts: SAND_CONTACTS,
-            };
-            let source = match live {
-                None => SandSource::synchronous(&design, seed, sample_rate_hz),
-                Some(workers) => {
-                    SandSource::threaded(&design, seed, sample_rate_hz).map(|(source, worker)| {
-                        workers.push(worker);
-                        source
-                    })
-                }
-            };
-            let source = source.map_err(|error| CliError::told(error).within("sand"))?;
-            finish(Box::new(source), extent, false)
-        }
-    }
-}
-
-/// A depth map holds what a height map lacks.
-fn upright(heights: Raster, invert: bool) -> Raster {
-    if invert { heights.map(|height| 1.0 - height) } else { heights }
-}
-
-/// `repeats`: a jump of uv by a whole tile is no movement.
-fn finish(source: Box<dyn HeightField>, extent: Extent, repeats: bool) -> Result<Surface, CliError> {
-    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
-    Ok(surface.wraps(repeats))
 }
 
 /// One channel of an image file.

@@ -23,8 +23,8 @@
 //! same order, fused multiply–adds included, so that all give the same bits on every machine (a processor
 //! without that instruction computes it in software, several times slower).
 //!
-//! Cells are numbered with 32 bits. Beyond ±2³¹ cells (86 km at 0.04 mm) all cells get the same
-//! gradients: still finite, still continuous inside a cell, no longer a useful surface.
+//! Cells are numbered with 32 bits: after 2³² of them (170 km at 0.04 mm) the noise repeats. Beyond
+//! 2⁵¹ cells, numbers in `f64` have no fraction left to speak of.
 
 use crate::rng::hash_u32;
 
@@ -34,9 +34,21 @@ mod simd;
 const PRIME: [u32; 3] = [0x9E37_79B1, 0x85EB_CA77, 0xC2B2_AE3D];
 const MIX: u32 = 0x27D4_EB2F;
 
-/// Half of the edge vectors; the other half are their opposites.
-const PAIRS: [[f32; 3]; 6] =
-    [[1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 1.0, 1.0], [0.0, 1.0, -1.0]];
+/// The edge vectors, each beside its opposite.
+const EDGES: [[f32; 3]; 12] = [
+    [1.0, 1.0, 0.0],
+    [-1.0, -1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [-1.0, 1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [-1.0, 0.0, -1.0],
+    [1.0, 0.0, -1.0],
+    [-1.0, 0.0, 1.0],
+    [0.0, 1.0, 1.0],
+    [0.0, -1.0, -1.0],
+    [0.0, 1.0, -1.0],
+    [0.0, -1.0, 1.0],
+];
 
 /// Noise at one point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -143,21 +155,19 @@ impl GradientNoise3d {
         let y = [y0, y0.wrapping_add(PRIME[1])];
         let z = [z0 ^ self.seed, z0.wrapping_add(PRIME[2]) ^ self.seed];
         let (dx, dy, dz) = ([fx, fx - 1.0], [fy, fy - 1.0], [fz, fz - 1.0]);
-        let (wx, wy, wz) = ([1.0 - sx, sx], [1.0 - sy, sy], [1.0 - sz, sz]);
 
-        let mut dot = [0.0_f32; 8];
-        let mut weight = [0.0_f32; 8];
-        let mut pair = [&PAIRS[0]; 8];
-        for corner in 0..8 {
-            let (a, b, c) = (corner & 1, (corner >> 1) & 1, corner >> 2);
-            let (g, sign) = gradient(x[a] ^ (y[b] ^ z[c]));
-            dot[corner] = fma(g[2], dz[c], fma(g[1], dy[b], g[0] * dx[a])) * sign;
-            weight[corner] = wx[a] * (wy[b] * wz[c]) * sign;
-            pair[corner] = g;
-        }
+        let edge: [&[f32; 3]; 8] =
+            core::array::from_fn(|c| gradient(x[c & 1] ^ (y[(c >> 1) & 1] ^ z[c >> 2])));
+        let dot: [f32; 8] = core::array::from_fn(|c| {
+            let (a, b, c, g) = (c & 1, (c >> 1) & 1, c >> 2, edge[c]);
+            fma(g[2], dz[c], fma(g[1], dy[b], g[0] * dx[a]))
+        });
+        // The gradients are blended like the values.
         let sum: [f32; 3] = core::array::from_fn(|i| {
-            let two = |c: usize| fma(weight[c + 1], pair[c + 1][i], weight[c] * pair[c][i]);
-            (two(0) + two(2)) + (two(4) + two(6))
+            let along_x = |c: usize| fma(sx, edge[c + 1][i] - edge[c][i], edge[c][i]);
+            let along_y = |near: f32, far: f32| fma(sy, far - near, near);
+            let (low, high) = (along_y(along_x(0), along_x(2)), along_y(along_x(4), along_x(6)));
+            fma(sz, high - low, low)
         });
         let along_x = [dot[1] - dot[0], dot[3] - dot[2], dot[5] - dot[4], dot[7] - dot[6]];
         let v: [f32; 4] = core::array::from_fn(|i| fma(sx, along_x[i], dot[2 * i]));
@@ -224,25 +234,25 @@ struct Points<'a> {
     dz: &'a mut [f32],
 }
 
-/// Cell index and fraction, the index as the vector instructions convert it (−2³¹ out of range).
+/// Added to a number, leaves its whole part, rounded to nearest and even, in the low 32 bits.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
+
+/// Cell index and fraction. On a border between cells either of them does: the fraction is 0 or 1.
 #[inline]
 fn split(x: f64) -> (u32, f32) {
-    const EDGE: f64 = 2_147_483_648.0;
-    if (-EDGE..EDGE).contains(&x) {
-        let toward_zero = x as i32;
-        let cell = toward_zero - i32::from(x < f64::from(toward_zero));
-        (cell as u32, (x - f64::from(cell)) as f32)
-    } else {
-        (i32::MIN as u32, (x - libm::floor(x)) as f32)
-    }
+    let whole = (x - 0.5) + WHOLE;
+    (whole.to_bits() as u32, (x - (whole - WHOLE)) as f32)
 }
 
-/// The gradient of a lattice point as one of [`PAIRS`] and its sign.
+/// The gradient of a lattice point.
 #[inline]
-fn gradient(lattice: u32) -> (&'static [f32; 3], f32) {
+fn gradient(lattice: u32) -> &'static [f32; 3] {
     let index = ((lattice.wrapping_mul(MIX) >> 16) * 12) >> 16;
-    (&PAIRS[(index >> 1) as usize], if index & 1 == 0 { 1.0 } else { -1.0 })
+    &EDGES[index as usize]
 }
+
+/// √15, and a quarter of it: 30 (c² − ¼)² = 2 (√15 c² − √15/4)².
+const ROOT_15: f32 = 3.872_983_3;
 
 /// Quintic blend about the middle of the cell, ½ + c (15/8 − c² (5 − 6 c²)), and its slope
 /// 30 (c² − ¼)²: exact at both ends, and eight times closer to the true curve in `f32` than the usual
@@ -252,8 +262,8 @@ fn blend(t: f32) -> (f32, f32) {
     let c = t - 0.5;
     let c2 = c * c;
     let curve = fma(c2, fma(6.0, c2, -5.0), 1.875);
-    let rest = c2 - 0.25;
-    (fma(c, curve, 0.5), 30.0 * (rest * rest))
+    let root = fma(c2, ROOT_15, -0.25 * ROOT_15);
+    (fma(c, curve, 0.5), 2.0 * (root * root))
 }
 
 /// a · b + c, rounded once.

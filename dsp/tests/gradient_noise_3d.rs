@@ -191,31 +191,55 @@ fn a_traverse_has_its_half_power_edge_at_0_59_cycles_per_cell() {
     assert!((energy_90 - 0.66).abs() < 0.06, "{energy_90}");
 }
 
-/// The bars are 15 ns a point and 4 ns a sample in vector batches on a quiet machine (the example
-/// gradient_noise_speed prints them); here twice as much is allowed for neighbours.
 #[test]
-fn vector_kernels_stay_near_their_speed() {
-    let noise = GradientNoise3d::new(1);
+fn samples_of_a_path_have_the_numbers_of_single_points() {
+    // 100 mm/s over cells of 0.2 mm at a slant, and hardly moving.
+    for step in [1.0 / 88.2, 1e-5] {
+        let at =
+            |n: usize| [-3.2 + 0.72 * step * n as f64, 7.9 + 0.51 * step * n as f64, 0.47 * step * n as f64];
+        let axis: [Vec<f64>; 3] = core::array::from_fn(|a| (0..500).map(|n| at(n)[a]).collect());
+        for kernel in [Kernel::Portable, Kernel::Avx2, Kernel::Avx512] {
+            let noise = GradientNoise3d::new(5).with_kernel(kernel);
+            let mut out = [vec![0.0; 500], vec![0.0; 500], vec![0.0; 500], vec![0.0; 500]];
+            let [value, dx, dy, dz] = &mut out;
+            noise.batch(&axis[0], &axis[1], &axis[2], &mut Noise3Batch { value, dx, dy, dz });
+            let single = GradientNoise3d::new(5).with_kernel(Kernel::Portable);
+            let wanted: Vec<_> = (0..500).map(|n| single.at(at(n))).map(|n| (n.value, n.gradient)).collect();
+            let [value, dx, dy, dz] = &out;
+            let found: Vec<_> = (0..500).map(|n| (value[n], [dx[n], dy[n], dz[n]])).collect();
+            assert_eq!(found, wanted, "{kernel:?}");
+        }
+    }
+}
+
+/// The bars are 15 ns a point and 4 ns a sample in AVX2 batches of 64 as the engine's (the example gradient_noise_speed prints
+/// all kernels). Neighbours on the machine come and go: it has five seconds to show it.
+#[test]
+fn a_point_takes_15_ns_and_a_sample_of_an_avx2_batch_4() {
+    let noise = GradientNoise3d::new(1).with_kernel(Kernel::Avx2);
     if cfg!(debug_assertions) || noise.kernel() == Kernel::Portable {
         println!("skipped: only optimised builds with vector kernels have a bar");
         return;
     }
     let at = points(512, 1000.0, 3);
     let axis: [Vec<f64>; 3] = core::array::from_fn(|a| at.iter().map(|p| p[a]).collect());
-    let mut out = [vec![0.0; 512], vec![0.0; 512], vec![0.0; 512], vec![0.0; 512]];
+    let mut out = [[0.0; 64]; 4];
     let (mut single, mut batch) = (f64::INFINITY, f64::INFINITY);
-    for _ in 0..20_000 {
+    let began = std::time::Instant::now();
+    while (single > 15.0 || batch > 4.0) && began.elapsed().as_secs_f64() < 5.0 {
         let clock = std::time::Instant::now();
         let sum: f32 = at.iter().map(|&p| noise.at(p)).map(|n| n.value + n.gradient[0]).sum();
-        single = single.min(clock.elapsed().as_secs_f64());
+        single = single.min(clock.elapsed().as_secs_f64() * 1e9 / 512.0);
         std::hint::black_box(sum);
         let clock = std::time::Instant::now();
-        let [value, dx, dy, dz] = &mut out;
-        noise.batch(&axis[0], &axis[1], &axis[2], &mut Noise3Batch { value, dx, dy, dz });
-        batch = batch.min(clock.elapsed().as_secs_f64());
+        for block in (0..512).step_by(64) {
+            let [value, dx, dy, dz] = &mut out;
+            let [x, y, z] = [0, 1, 2].map(|a| &axis[a][block..block + 64]);
+            noise.batch(x, y, z, &mut Noise3Batch { value, dx, dy, dz });
+        }
+        batch = batch.min(clock.elapsed().as_secs_f64() * 1e9 / 512.0);
         std::hint::black_box(&out);
     }
-    let (single, batch) = (single * 1e9 / 512.0, batch * 1e9 / 512.0);
-    println!("{single:.1} ns a point, {batch:.2} ns a sample ({:?})", noise.kernel());
-    assert!(single < 30.0 && batch < 8.0, "{single} {batch}");
+    println!("{single:.1} ns a point, {batch:.2} ns a sample");
+    assert!(single <= 15.0 && batch <= 4.0, "{single} {batch}");
 }

@@ -15,6 +15,7 @@
 //! | [`simulation`] | contacts that drag tools, frame by frame |
 //! | [`patch`] | what the audio half sees: 64 × 64 heights around a contact |
 //! | [`source`] | the surface itself, and the hand-over that never waits |
+//! | [`worker`] | the other end of the hand-over, on a thread of its own |
 //!
 //! Source: Beneš, Dorjgotov, Arns & Bertoline, "Granular Material Interactive Manipulation" (2006).
 //! What we read differently or changed is said in each file. The authors' open points that are ours:
@@ -27,9 +28,11 @@ pub mod patch;
 pub mod simulation;
 pub mod source;
 pub mod tool;
+pub mod worker;
 
 pub use grid::{SandGrid, SandPicture};
 pub use law::{Layer, SandLaw};
 pub use simulation::{SandDesign, SandFigures, SandSimulation};
-pub use source::{SandSource, SandThread, SandWorker};
+pub use source::SandSource;
 pub use tool::Tool;
+pub use worker::{SandThread, SandWorker};

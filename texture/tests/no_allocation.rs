@@ -132,6 +132,6 @@ fn a_brownian_path_does_not_allocate_while_it_is_read() {
     use asperity_texture::brownian::BrownianDesign;
     use asperity_texture::brownian::rendering::{BrownianPath, Rendering};
     let heights = BrownianDesign::new(0.5, 1e-4, 1).path().unwrap();
-    let mut path: Source = Box::new(BrownianPath::new(&heights, 5e-4, Rendering::Lateral, 4).unwrap());
+    let mut path: Source = Box::new(BrownianPath::new(&heights, 5e-4, Some(Rendering::Lateral), 4).unwrap());
     assert_eq!(heap_operations(&mut path, SurfaceChange::Scale(1.0)), 0);
 }

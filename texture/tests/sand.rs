@@ -1,11 +1,15 @@
 //! Sand: volume, angle of repose, cone, tools, speed.
 
+#[path = "common/naive_sand.rs"]
+mod naive_sand;
+
 use asperity_dsp::rng::Rng;
 use asperity_texture::raster::Raster;
-use asperity_texture::sand::erosion::Erosion;
+use asperity_texture::sand::erosion::{Erosion, SETTLED_DEG};
 use asperity_texture::sand::simulation::Pose;
 use asperity_texture::sand::tool::Press;
 use asperity_texture::sand::{SandDesign, SandGrid, SandLaw, SandSimulation, Tool};
+use naive_sand::{NaiveSand, Share, random_fields};
 use std::time::Instant;
 
 const TALUS_DEG: f64 = 30.0;
@@ -15,7 +19,7 @@ fn design(cells: usize, width_m: f64) -> SandDesign {
 }
 
 fn pose(position_m: [f64; 2], velocity_m_s: [f64; 2], normal_force_n: f64) -> Pose {
-    Pose { contact: 0, position_m, velocity_m_s, normal_force_n }
+    Pose { contact: 0, position_m, velocity_m_s, normal_force_n, landed: false }
 }
 
 /// Writes a wavy line; returns what every frame took.
@@ -50,7 +54,8 @@ fn writing_for_a_minute_loses_not_one_unit_of_volume_and_settles_below_the_talus
 
 #[test]
 fn a_random_field_settles_below_the_talus_angle_with_its_volume_at_every_angle_and_size() {
-    for (columns, rows, talus) in [(64, 64, 30.0), (33, 97, 25.0), (5, 4, 40.0), (31, 32, 34.0)] {
+    let sizes = [(64, 64), (33, 97), (5, 4), (31, 32), (65, 31), (127, 33), (130, 65), (200, 160)];
+    for ((columns, rows), talus) in sizes.into_iter().zip([30.0, 25.0, 40.0, 34.0, 1.0, 60.0, 15.0, 33.0]) {
         let mut grid = SandGrid::flat(columns, rows, 1e-3, 0.05).unwrap();
         let mut rng = Rng::new(columns as u64);
         grid.fill(|_, _| 0.05 + 0.01 * rng.normal());
@@ -58,7 +63,7 @@ fn a_random_field_settles_below_the_talus_angle_with_its_volume_at_every_angle_a
         erosion.activate_all();
         erosion.settle(&mut grid);
         assert_eq!(grid.volume_units(), before);
-        assert!(grid.max_slope_deg() <= talus + 0.5, "{columns}: {}", grid.max_slope_deg());
+        assert!(grid.max_slope_deg() <= talus + SETTLED_DEG + 1e-3, "{columns}: {}", grid.max_slope_deg());
     }
 }
 
@@ -93,11 +98,14 @@ fn a_column_collapses_to_the_cone_of_its_volume_within_3_percent() {
     let peak = (3.0 * volume * tan * tan / std::f64::consts::PI).cbrt();
     let radius = peak / tan;
     let measured_peak = grid.height_m(middle, middle) - 0.01;
-    // Where the flank, continued, meets the ground: along an axis and along a diagonal.
-    let base = |dx: usize, dy: usize, step: f64| {
-        let at = |k: usize| grid.height_m(middle + k * dx, middle + k * dy) - 0.01;
+    println!("peak {:.4} of the cone", measured_peak / peak);
+    assert!((measured_peak / peak - 1.0).abs() < 0.03);
+    // Where the flank, continued, meets the ground: along the axes and the diagonals, both ways.
+    for (dx, dy) in [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1_isize)] {
+        let step = f64::from((dx * dx + dy * dy) as i32).sqrt();
+        let cell_at = |k: usize, d: isize| middle.wrapping_add_signed(k as isize * d);
         let points: Vec<(f64, f64)> = (0..70)
-            .map(|k| (k as f64 * step * cell, at(k)))
+            .map(|k| (k as f64 * step * cell, grid.height_m(cell_at(k, dx), cell_at(k, dy)) - 0.01))
             .filter(|p| p.1 > 0.2 * peak && p.1 < 0.8 * peak)
             .collect();
         let m = points.len() as f64;
@@ -105,17 +113,10 @@ fn a_column_collapses_to_the_cone_of_its_volume_within_3_percent() {
             (points.iter().map(|p| p.0).sum::<f64>() / m, points.iter().map(|p| p.1).sum::<f64>() / m);
         let slope = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>()
             / points.iter().map(|p| (p.0 - mx).powi(2)).sum::<f64>();
-        mx - my / slope
-    };
-    let (axis, diagonal) = (base(1, 0, 1.0), base(1, 1, std::f64::consts::SQRT_2));
-    println!(
-        "peak {:.4}, axis {:.4}, diagonal {:.4} of the cone",
-        measured_peak / peak,
-        axis / radius,
-        diagonal / radius
-    );
-    assert!((measured_peak / peak - 1.0).abs() < 0.03);
-    assert!((axis / radius - 1.0).abs() < 0.03 && (diagonal / radius - 1.0).abs() < 0.03);
+        let ratio = (mx - my / slope) / radius;
+        println!("({dx:2}, {dy:2}): radius {ratio:.4} of the cone");
+        assert!((ratio - 1.0).abs() < 0.03, "({dx}, {dy}): {ratio}");
+    }
 }
 
 #[test]
@@ -224,97 +225,31 @@ fn the_same_strokes_give_the_same_sand_and_the_edge_keeps_its_sand_too() {
     assert!(a.figures().max_slope_deg <= TALUS_DEG + 0.5);
 }
 
-/// The pass as the document describes it, over every cell of the grid, until nothing moves: the same
-/// whole numbers and the same share, on a padded grid, without tiles.
-fn settle_naively(heights: &mut [i32], n: usize, limit: [i32; 2], tolerance: i32) -> usize {
-    let stride = n + 2;
-    for pass in 1.. {
-        let mut moved = false;
-        for y in 1..=n {
-            for x in 1..=n {
-                let at = y * stride + x;
-                let h = heights[at];
-                let (mut most, mut sum) = (0, 0.0);
-                let mut excess = [(0, 0_usize); 8];
-                let mut count = 0;
-                let (above, below) = (at - stride, at + stride);
-                let around = [at - 1, at + 1, above, below, above - 1, above + 1, below - 1, below + 1];
-                for (k, to) in around.into_iter().enumerate() {
-                    let e = h - heights[to] - limit[k / 4];
-                    if e > 0 {
-                        excess[count] = (e, to);
-                        count += 1;
-                        most = most.max(e);
-                        sum += f64::from(e);
-                    }
-                }
-                if most > tolerance {
-                    for &(e, to) in &excess[..count] {
-                        let part = (0.5 * f64::from(most) * f64::from(e) / sum) as i32;
-                        heights[to] += part;
-                        heights[at] -= part;
-                    }
-                    moved = true;
-                }
-            }
-        }
-        if !moved {
-            return pass;
-        }
-    }
-    0
-}
-
-/// White noise that is steep everywhere, white noise that is steep in places, hills and valleys.
-fn random_fields(n: usize) -> [(&'static str, Vec<f64>); 3] {
-    let mut rng = Rng::new(5);
-    let mut white = |sigma: f64| (0..n * n).map(|_| 0.05 + sigma * rng.normal()).collect::<Vec<f64>>();
-    let (rough, mild) = (white(4e-3), white(4e-4));
-    let noise = asperity_dsp::gradient_noise_3d::GradientNoise3d::new(3);
-    let octave = |i: usize, k: i32| {
-        let f = 0.01 * 2.0_f64.powi(k);
-        let at = [f * (i % n) as f64, f * (i / n) as f64, 0.5 * f64::from(k)];
-        0.03 / 2.0_f64.powi(k) * f64::from(noise.at(at).value)
-    };
-    let hills = (0..n * n).map(|i| 0.1 + (0..4).map(|k| octave(i, k)).sum::<f64>()).collect();
-    [("rough", rough), ("mild", mild), ("hills", hills)]
-}
-
 #[test]
-fn settling_a_random_field_is_several_times_faster_than_the_naive_pass() {
-    let (n, cell) = (300, 1e-3);
-    let unit = 1_073_741_824.0;
-    let limit = TALUS_DEG.to_radians().tan() * cell * unit;
-    let above = (TALUS_DEG + 0.25).to_radians().tan() * cell * unit - limit;
-    for (name, start) in random_fields(n) {
-        // Taken in turns, the best of each: neighbours on the machine come and go.
-        let (mut slow, mut fast, mut passes, mut ours) = (f64::INFINITY, f64::INFINITY, 0, 0);
-        for _ in 0..3 {
-            let mut naive = vec![1 << 30; (n + 2) * (n + 2)];
-            for (i, h) in start.iter().enumerate() {
-                naive[(i / n + 1) * (n + 2) + i % n + 1] = (h * unit) as i32;
-            }
-            let limits = [limit as i32, (limit * 2.0_f64.sqrt()) as i32];
+fn settling_a_random_field_is_at_least_five_times_faster_than_the_naive_pass() {
+    let (n, cell) = (256, 1e-3);
+    for (name, start) in random_fields(n, 5) {
+        // Taken in turns, the best of each: neighbours on the machine come and go. The naive pass takes
+        // the better one of two shares.
+        let (mut slow, mut fast) = (f64::INFINITY, f64::INFINITY);
+        for share in [Share::Half, Share::Level, Share::Half] {
+            let mut naive = NaiveSand::new(&start, n, cell, TALUS_DEG, SETTLED_DEG);
             let clock = Instant::now();
-            passes = settle_naively(&mut naive, n, limits, above as i32);
+            naive.settle(share);
             slow = slow.min(clock.elapsed().as_secs_f64());
             let mut grid = SandGrid::flat(n, n, cell, 0.05).unwrap();
             grid.fill(|x, y| start[y * n + x]);
+            let volume = grid.volume_units();
             let mut erosion = Erosion::new(&grid, TALUS_DEG).unwrap();
             erosion.activate_all();
             let clock = Instant::now();
-            ours = erosion.settle(&mut grid);
+            erosion.settle(&mut grid);
             fast = fast.min(clock.elapsed().as_secs_f64());
-            assert!(grid.max_slope_deg() <= TALUS_DEG + 0.5);
+            assert!(grid.max_slope_deg() <= TALUS_DEG + SETTLED_DEG + 1e-3 && grid.volume_units() == volume);
         }
         let ratio = slow / fast;
-        let (slow, fast) = (slow * 1e3, fast * 1e3);
-        println!(
-            "{name}: naive {slow:.1} ms in {passes} passes, ours {fast:.1} ms in {ours}: {ratio:.1} times"
-        );
-        // Measured 4.7, 2.8 and 2.4 times beside other work on the machine; see the closing note.
-        let least = if name == "hills" { 2.0 } else { 1.2 };
-        assert!(ratio >= least, "{name}: {ratio}");
+        println!("{name}: naive {:.1} ms, ours {:.2} ms: {ratio:.1} times", slow * 1e3, fast * 1e3);
+        assert!(ratio >= 5.0, "{name}: {ratio}");
     }
 }
 
@@ -331,6 +266,23 @@ fn a_frame_of_a_million_cells_takes_at_most_2_ms_while_dragging() {
     times.sort_by(f64::total_cmp);
     println!("0.6 mm cells: median {:.3} ms, 99 % {:.3} ms", times[300] * 1e3, times[594] * 1e3);
     assert!(times[300] <= 2e-3, "{}", times[300]);
+}
+
+#[test]
+fn a_tool_forced_to_the_bottom_of_deep_sand_heaps_no_higher_than_half_a_metre_and_loses_nothing() {
+    let tool = Tool::Sphere { radius_m: 0.1 };
+    let deep = SandDesign { depth_m: 0.45, tool, ..design(100, 0.4) };
+    let mut sand = SandSimulation::new(&deep).unwrap();
+    for n in 0..60 {
+        sand.tell(pose([0.1 + 0.003 * f64::from(n), 0.2], [0.18, 0.0], 1e4));
+        sand.frame();
+        assert_eq!(sand.figures().drift_units, 0, "frame {n}");
+        let heights = || (0..10_000).map(|i| sand.grid().height_m(i % 100, i / 100));
+        assert!(heights().all(|h| (0.0..=0.5).contains(&h)), "frame {n}");
+    }
+    sand.settle();
+    let figures = sand.figures();
+    assert!(figures.drift_units == 0 && figures.max_slope_deg <= TALUS_DEG + 0.5, "{figures:?}");
 }
 
 #[test]

@@ -119,6 +119,32 @@ fn an_old_groove_is_felt_by_a_stroke_across_it() {
 }
 
 #[test]
+fn a_finger_that_was_lifted_is_put_down_again_and_not_dragged_across() {
+    // Two taps of the same voice, 0.1 m apart, with half a second between them or hardly any.
+    for gap in [22_016, 64] {
+        let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+        let tap = |sand: &mut SandSource, first: u64, u: f64| {
+            for k in 0..40 {
+                sand.react(&Touch {
+                    contact: 0,
+                    sample: first + 64 * k,
+                    position_m: [u, 0.05],
+                    velocity_m_s: [0.0; 2],
+                    normal_force_n: 3.0,
+                });
+            }
+            first + 64 * 40
+        };
+        let end = tap(&mut sand, 0, 0.05);
+        tap(&mut sand, end + gap, 0.15);
+        sand.finish().unwrap();
+        let height = |u: f64| sand.simulation().unwrap().grid().height_at_m([u, 0.05]) - 0.05;
+        println!("{gap}: {:.5} {:.5} {:.5}", height(0.05), height(0.1), height(0.15));
+        assert!(height(0.05) < -1e-3 && height(0.15) < -1e-3 && height(0.1).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn a_touch_is_answered_by_drag_and_by_grains_in_proportion_to_what_is_displaced() {
     let answers = |force: f64| {
         let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();

@@ -198,7 +198,9 @@ impl Fields {
         let mut tables = Vec::with_capacity(items.len());
         for (index, item) in items.into_iter().enumerate() {
             match item {
-                Value::Table(table) => tables.push(Self::new(table, format!("{key} {}", index + 1))),
+                Value::Table(table) => {
+                    tables.push(Self::new(table, format!("{} {}", self.inner(key), index + 1)))
+                }
                 other => return Err(self.wrong_kind(key, &other, &right)),
             }
         }

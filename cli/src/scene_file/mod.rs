@@ -5,9 +5,13 @@
 //! engine calls.
 
 mod fields;
+mod sand;
+mod source;
 mod surface;
 
-pub use surface::{Excitation, Pixels, Roughness, Source, SurfaceEntry, Wrap};
+pub use sand::{Sand, Tool};
+pub use source::{Brownian, BrownianForce, Direction, Lattice, Pixels, SolidNoise, Source};
+pub use surface::{Excitation, Roughness, SurfaceEntry, Wrap};
 
 use crate::error::CliError;
 use fields::{Allowed, Fields};

@@ -67,7 +67,7 @@ fn every_source_of_the_interface_is_read() {
     assert!(matches!(source("solid = \"gravel\""), Source::Solid(solid) if solid.preset == "gravel"));
     assert!(matches!(
         source("brownian = { hurst = 0.5, rms_m = 1e-4 }"),
-        Source::Brownian { hurst: 0.5, .. }
+        Source::Brownian(Brownian { hurst: 0.5, graph: false, force: None, .. })
     ));
     let lattice = "relief_m = 0.001\nlattice = { cell = \"cell.png\", t1_m = [0.01, 0.0], t2_m = [0, 0.01] }";
     assert!(matches!(source(lattice), Source::Lattice(lattice) if lattice.t2_m == [0.0, 0.01]));
@@ -76,6 +76,60 @@ fn every_source_of_the_interface_is_read() {
     let Source::Sand(written) = source(sand) else { panic!("not sand") };
     let Source::Sand(default) = source("sand = {}") else { panic!("not sand") };
     assert_eq!(written, default);
+}
+
+#[test]
+fn sources_are_put_together_from_tables_like_a_surfaces_own() {
+    let source = |line: &str| parse(&format!("{SURFACE}{line}")).unwrap().surfaces[0].source.clone();
+    let Source::Sum(parts) = source(
+        "sum = [{ solid = \"sand\", scale = 0.5 }, { displacement = \"d.png\", relief_m = 1e-3 }, {}]",
+    ) else {
+        panic!("not a sum")
+    };
+    assert!(matches!(&parts[0], Source::Scale(solid, 0.5) if matches!(**solid, Source::Solid(_))));
+    assert!(matches!(&parts[1], Source::Map { image, .. } if image.path == Path::new("dir/d.png")));
+    assert_eq!(parts[2], Source::Flat);
+    let Source::Scale(mask, -1.0) = source(
+        "scale = -1.0\nmask = { image = \"m.png\", channel = \"g\", inside = { solid = \"wood\" }, \
+         outside = { brownian = { hurst = 0.2, rms_m = 1e-5, graph = true, force = \"lateral\" } } }",
+    ) else {
+        panic!("not scaled")
+    };
+    let Source::Mask { image, outside, .. } = *mask else { panic!("not a mask") };
+    assert_eq!((image.path.as_path(), image.channel), (Path::new("dir/m.png"), Some('g')));
+    let graph = Brownian { hurst: 0.2, rms_m: 1e-5, seed: None, cells: None, graph: true, force: None };
+    assert_eq!(*outside, Source::Brownian(Brownian { force: Some(BrownianForce::Lateral), ..graph }));
+    let fade = "crossfade = { from = { solid = { preset = \"wood\", octaves = 3 } }, to = {}, at_s = 0.25 }";
+    let Source::Crossfade { from, at_s: 0.25, .. } = source(fade) else { panic!("not a crossfade") };
+    assert!(matches!(*from, Source::Solid(solid) if solid.octaves == Some(3)));
+    let Source::Sand(sand) = source(
+        "sand = { layers = [{ from_m = 0.002, hardness = 4 }, { from_m = 0.01, hardness = 0.5 }], \
+         tool = { map = \"bar.png\", width_m = 0.02, relief_m = 0.01 } }",
+    ) else {
+        panic!("not sand")
+    };
+    assert_eq!(sand.layers, [(0.002, 4.0), (0.01, 0.5)]);
+    assert!(matches!(sand.tool, Tool::Map { width_m: 0.02, .. }));
+}
+
+#[test]
+fn parts_of_a_source_are_refused_by_their_own_place() {
+    for (line, parts) in [
+        ("sum = [{ solid = 3 }]", &["sum 1: solid: 3 is no material"][..]),
+        ("sum = [{ solid = \"sand\", width_m = 1.0 }]", &["sum 1: width_m: unknown key", "crossfade"]),
+        ("sum = []", &["sum: is empty"]),
+        ("mask = { image = \"m.png\", inside = {} }", &["mask: outside: is missing"]),
+        ("solid = \"sand\"\nsand = {}", &["sand: stands beside solid"]),
+        ("crossfade = { from = {}, to = {} }", &["crossfade: at_s: is missing"]),
+        ("brownian = { hurst = 0.5, rms_m = 1e-4, force = \"up\" }", &["brownian: force", "lateral"]),
+        ("sand = { layers = [{ from_m = 0.0, hardness = 1 }] }", &["layers 1: from_m", "above 0"]),
+        ("sand = { tool_radius_m = 0.01, tool = { map = \"a.png\" } }", &["tool: stands beside"]),
+    ] {
+        let refusal = refusal(&format!("{SURFACE}{line}"));
+        for part in parts {
+            assert!(refusal.contains(part), "{refusal}\nlacks {part}");
+        }
+    }
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! What the black-box tests share: running the program, and small scenes to run it on.
 #![allow(dead_code)]
 
+pub mod oracle;
+
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,9 @@
 //! the same order, so that the bits are the same.
 #![allow(unsafe_code)]
 
-use super::{MIX, PRIME, Points};
+mod point;
+
+use super::{EDGES, MIX, PRIME, Points, ROOT_15, WHOLE};
 
 #[cfg(target_arch = "x86")]
 use core::arch::x86::*;
@@ -40,21 +42,24 @@ pub(super) fn run_avx512(seed: u32, points: &mut Points<'_>) -> usize {
 pub(super) fn single(seed: u32, x: f64, y: f64, z: f64) -> super::Noise3 {
     // SAFETY: `GradientNoise3d` holds a vector kernel only when the processor has it, and every
     // processor with AVX-512F has AVX2 and FMA.
-    unsafe { avx2::single(seed, x, y, z) }
+    unsafe { point::single(seed, x, y, z) }
 }
 
 /// The kernel, written once over the vector operations of the module it is expanded in.
+///
+/// Gradients have twice their length here, because that takes one byte of a float, and so has all that
+/// comes of them; the slopes of the blend have half of theirs. Halved in the end, it is the same bits.
 macro_rules! kernel {
     ($feature:literal, $lanes:literal) => {
-        /// Blend weight and its slope, as `blend` and `blend_slope`.
+        /// Blend weight and half its slope, as `blend`.
         #[inline]
         #[target_feature(enable = $feature)]
         fn blend(t: Float) -> (Float, Float) {
             let c = sub(t, splat(0.5));
             let c2 = mul(c, c);
             let curve = fma(c2, fma(splat(6.0), c2, splat(-5.0)), splat(1.875));
-            let rest = sub(c2, splat(0.25));
-            (fma(c, curve, splat(0.5)), mul(splat(30.0), mul(rest, rest)))
+            let root = fma(c2, splat(ROOT_15), splat(-0.25 * ROOT_15));
+            (fma(c, curve, splat(0.5)), mul(root, root))
         }
 
         #[inline]
@@ -63,11 +68,71 @@ macro_rules! kernel {
             fma(weight, difference, a)
         }
 
+        /// From one to another.
+        #[inline]
+        #[target_feature(enable = $feature)]
+        fn between(near: Float, far: Float, weight: Float) -> Float {
+            fma(weight, sub(far, near), near)
+        }
+
+        /// Value and slopes from where a point lies in its cell and its eight gradients.
+        macro_rules! blended {
+            ($fx:ident, $fy:ident, $fz:ident, $gradient:expr) => {{
+                let (half, one) = (splat(0.5), splat(1.0));
+                let ((sx, tx), (sy, ty), (sz, tz)) = (blend($fx), blend($fy), blend($fz));
+                let (dx, dy, dz) = ([$fx, sub($fx, one)], [$fy, sub($fy, one)], [$fz, sub($fz, one)]);
+                let none = splat(0.0);
+                // Along x and y, near and far along z: components of the gradient, value, slopes.
+                let mut planes = [(none, none, none, none, none, none); 2];
+                for (c, plane) in planes.iter_mut().enumerate() {
+                    let mut rows = [(none, none, none, none, none); 2];
+                    for (b, row) in rows.iter_mut().enumerate() {
+                        let corner = 2 * b + 4 * c;
+                        let g: [Gradient; 2] = [$gradient(corner), $gradient(corner + 1)];
+                        let mut dot = [none; 2];
+                        for a in 0..2 {
+                            dot[a] = fma(g[a].z, dz[c], fma(g[a].y, dy[b], mul(g[a].x, dx[a])));
+                        }
+                        let difference = sub(dot[1], dot[0]);
+                        *row = (
+                            between(g[0].x, g[1].x, sx),
+                            between(g[0].y, g[1].y, sx),
+                            between(g[0].z, g[1].z, sx),
+                            lerp(dot[0], difference, sx),
+                            difference,
+                        );
+                    }
+                    let [near, far] = rows;
+                    let difference = sub(far.3, near.3);
+                    *plane = (
+                        between(near.0, far.0, sy),
+                        between(near.1, far.1, sy),
+                        between(near.2, far.2, sy),
+                        lerp(near.3, difference, sy),
+                        between(near.4, far.4, sy),
+                        difference,
+                    );
+                }
+                let [near, far] = planes;
+                let (gx, gy, gz) =
+                    (between(near.0, far.0, sz), between(near.1, far.1, sz), between(near.2, far.2, sz));
+                let nx = between(near.4, far.4, sz);
+                let ny = between(near.5, far.5, sz);
+                let nz = sub(far.3, near.3);
+                let low = near.3;
+                [
+                    mul(half, lerp(low, nz, sz)),
+                    fma(tx, nx, mul(half, gx)),
+                    fma(ty, ny, mul(half, gy)),
+                    fma(tz, nz, mul(half, gz)),
+                ]
+            }};
+        }
+
         /// # Safety
         /// `whole` must be a multiple of the lane count and no longer than the slices.
         #[target_feature(enable = $feature)]
         pub(super) unsafe fn run(seed: u32, points: &mut Points<'_>, whole: usize) {
-            let one = splat(1.0);
             for start in (0..whole).step_by($lanes) {
                 // SAFETY: `start + lanes` ≤ `whole` ≤ length of every slice.
                 let ((ix, fx), (iy, fy), (iz, fz)) = unsafe {
@@ -77,53 +142,21 @@ macro_rules! kernel {
                         split(points.z.as_ptr().add(start)),
                     )
                 };
-                let ((sx, tx), (sy, ty), (sz, tz)) = (blend(fx), blend(fy), blend(fz));
                 let x0 = imul(ix, isplat(PRIME[0]));
                 let x = [x0, iadd(x0, isplat(PRIME[0]))];
                 let y0 = imul(iy, isplat(PRIME[1]));
                 let y = [y0, iadd(y0, isplat(PRIME[1]))];
                 let z0 = imul(iz, isplat(PRIME[2]));
                 let z = [xor(z0, isplat(seed)), xor(iadd(z0, isplat(PRIME[2])), isplat(seed))];
-                let (dx, dy, dz) = ([fx, sub(fx, one)], [fy, sub(fy, one)], [fz, sub(fz, one)]);
-                let (wx, wy, wz) = ([sub(one, sx), sx], [sub(one, sy), sy], [sub(one, sz), sz]);
-
-                let mut dot = [splat(0.0); 8];
-                let mut sums = [(splat(0.0), splat(0.0), splat(0.0)); 4];
-                for (bc, sum) in sums.iter_mut().enumerate() {
-                    let (b, c) = (bc & 1, bc >> 1);
-                    let (lattice_yz, weight_yz) = (xor(y[b], z[c]), mul(wy[b], wz[c]));
-                    let g = [gradient(xor(x[0], lattice_yz)), gradient(xor(x[1], lattice_yz))];
-                    for a in 0..2 {
-                        let Gradient { x: gx, y: gy, z: gz, sign } = g[a];
-                        dot[2 * bc + a] = flip(fma(gz, dz[c], fma(gy, dy[b], mul(gx, dx[a]))), sign);
-                    }
-                    let w = [flip(mul(wx[0], weight_yz), g[0].sign), flip(mul(wx[1], weight_yz), g[1].sign)];
-                    *sum = (
-                        fma(w[1], g[1].x, mul(w[0], g[0].x)),
-                        fma(w[1], g[1].y, mul(w[0], g[0].y)),
-                        fma(w[1], g[1].z, mul(w[0], g[0].z)),
-                    );
-                }
-                let [s0, s1, s2, s3] = sums;
-                let gx = add(add(s0.0, s1.0), add(s2.0, s3.0));
-                let gy = add(add(s0.1, s1.1), add(s2.1, s3.1));
-                let gz = add(add(s0.2, s1.2), add(s2.2, s3.2));
-                let (x00, x10) = (sub(dot[1], dot[0]), sub(dot[3], dot[2]));
-                let (x01, x11) = (sub(dot[5], dot[4]), sub(dot[7], dot[6]));
-                let (v00, v10) = (lerp(dot[0], x00, sx), lerp(dot[2], x10, sx));
-                let (v01, v11) = (lerp(dot[4], x01, sx), lerp(dot[6], x11, sx));
-                let (y0, y1) = (sub(v10, v00), sub(v11, v01));
-                let (low, high) = (lerp(v00, y0, sy), lerp(v01, y1, sy));
-                let (x0, x1) = (lerp(x00, sub(x10, x00), sy), lerp(x01, sub(x11, x01), sy));
-                let nx = lerp(x0, sub(x1, x0), sz);
-                let ny = lerp(y0, sub(y1, y0), sz);
-                let nz = sub(high, low);
+                let hashed =
+                    |corner: usize| gradient(xor(x[corner & 1], xor(y[corner >> 1 & 1], z[corner >> 2])));
+                let [value, dx, dy, dz] = blended!(fx, fy, fz, hashed);
                 // SAFETY: as for the loads.
                 unsafe {
-                    store(points.value.as_mut_ptr().add(start), lerp(low, nz, sz));
-                    store(points.dx.as_mut_ptr().add(start), fma(tx, nx, gx));
-                    store(points.dy.as_mut_ptr().add(start), fma(ty, ny, gy));
-                    store(points.dz.as_mut_ptr().add(start), fma(tz, nz, gz));
+                    store(points.value.as_mut_ptr().add(start), value);
+                    store(points.dx.as_mut_ptr().add(start), dx);
+                    store(points.dy.as_mut_ptr().add(start), dy);
+                    store(points.dz.as_mut_ptr().add(start), dz);
                 }
             }
         }
@@ -133,20 +166,19 @@ macro_rules! kernel {
 /// Short names for vector operations, so that the kernel reads as the formula.
 macro_rules! operations {
     ($feature:literal, $float:ty, $int:ty, $($name:ident($($arg:ident: $kind:ty),*) -> $out:ty = $op:ident;)*) => {
-        type Float = $float;
-        type Int = $int;
-        /// The first of a pair of opposite gradients, and a sign bit for the second.
+        pub(super) type Float = $float;
+        pub(super) type Int = $int;
+        /// A gradient, doubled.
         #[derive(Clone, Copy)]
-        struct Gradient {
-            x: Float,
-            y: Float,
-            z: Float,
-            sign: Float,
+        pub(super) struct Gradient {
+            pub x: Float,
+            pub y: Float,
+            pub z: Float,
         }
         $(
             #[inline]
             #[target_feature(enable = $feature)]
-            fn $name($($arg: $kind),*) -> $out {
+            pub(super) fn $name($($arg: $kind),*) -> $out {
                 $op($($arg),*)
             }
         )*
@@ -157,11 +189,9 @@ mod avx2 {
     use super::*;
 
     operations! { "avx2,fma", __m256, __m256i,
-        add(a: Float, b: Float) -> Float = _mm256_add_ps;
         sub(a: Float, b: Float) -> Float = _mm256_sub_ps;
         mul(a: Float, b: Float) -> Float = _mm256_mul_ps;
         fma(a: Float, b: Float, c: Float) -> Float = _mm256_fmadd_ps;
-        flip(a: Float, sign: Float) -> Float = _mm256_xor_ps;
         splat(a: f32) -> Float = _mm256_set1_ps;
         iadd(a: Int, b: Int) -> Int = _mm256_add_epi32;
         imul(a: Int, b: Int) -> Int = _mm256_mullo_epi32;
@@ -171,7 +201,7 @@ mod avx2 {
 
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    fn isplat(a: u32) -> Int {
+    pub(super) fn isplat(a: u32) -> Int {
         _mm256_set1_epi32(a as i32)
     }
 
@@ -182,9 +212,12 @@ mod avx2 {
     unsafe fn split(from: *const f64) -> (Int, Float) {
         // SAFETY: the caller's promise.
         let (a, b) = unsafe { (_mm256_loadu_pd(from), _mm256_loadu_pd(from.add(4))) };
-        let (fa, fb) = (_mm256_floor_pd(a), _mm256_floor_pd(b));
-        let cells = _mm256_set_m128i(_mm256_cvttpd_epi32(fb), _mm256_cvttpd_epi32(fa));
-        let (a, b) = (_mm256_cvtpd_ps(_mm256_sub_pd(a, fa)), _mm256_cvtpd_ps(_mm256_sub_pd(b, fb)));
+        let whole = |x| _mm256_add_pd(_mm256_sub_pd(x, _mm256_set1_pd(0.5)), _mm256_set1_pd(WHOLE));
+        let rest = |x, whole| _mm256_sub_pd(x, _mm256_sub_pd(whole, _mm256_set1_pd(WHOLE)));
+        let (wa, wb) = (whole(a), whole(b));
+        let low = _mm256_shuffle_ps::<0b10_00_10_00>(_mm256_castpd_ps(wa), _mm256_castpd_ps(wb));
+        let cells = _mm256_permute4x64_epi64::<0b11_01_10_00>(_mm256_castps_si256(low));
+        let (a, b) = (_mm256_cvtpd_ps(rest(a, wa)), _mm256_cvtpd_ps(rest(b, wb)));
         (cells, _mm256_set_m128(b, a))
     }
 
@@ -197,95 +230,34 @@ mod avx2 {
         unsafe { _mm256_storeu_ps(to, value) }
     }
 
-    /// `PAIRS` from registers and the sign of `gradient_index(lattice)`.
-    #[inline]
-    #[target_feature(enable = "avx2,fma")]
-    fn gradient(lattice: Int) -> Gradient {
-        let index = _mm256_mulhi_epu16(imul(lattice, isplat(MIX)), isplat(12 << 16));
-        let pair = _mm256_srli_epi32::<17>(index);
-        let x = _mm256_setr_ps(1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0);
-        let y = _mm256_setr_ps(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0);
-        let z = _mm256_setr_ps(0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0);
-        Gradient {
-            x: _mm256_permutevar8x32_ps(x, pair),
-            y: _mm256_permutevar8x32_ps(y, pair),
-            z: _mm256_permutevar8x32_ps(z, pair),
-            sign: _mm256_castsi256_ps(_mm256_slli_epi32::<15>(index)),
+    /// The highest byte of 2 and of −2 for each component of `EDGES`; all other bytes of theirs are 0.
+    const BYTES: [[i8; 16]; 3] = {
+        let mut bytes = [[0; 16]; 3];
+        let mut edge = 0;
+        while edge < 12 {
+            let mut axis = 0;
+            while axis < 3 {
+                bytes[axis][edge] = (EDGES[edge][axis] * 2.0).to_bits().to_be_bytes()[0] as i8;
+                axis += 1;
+            }
+            edge += 1;
         }
-    }
+        bytes
+    };
 
-    /// One point, its eight corners in the eight lanes (lowest bit: x). The position comes in three
-    /// registers: one 32-byte load of values just stored would wait for the stores to reach the cache.
+    /// Twice `EDGES[index]`: the index is brought to the highest byte of a lane, where the shuffle reads
+    /// it; indices above 127, in the other bytes, give 0.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn single(seed: u32, x: f64, y: f64, z: f64) -> super::super::Noise3 {
-        let position = _mm256_setr_pd(x, y, z, 0.0);
-        let floor = _mm256_floor_pd(position);
-        let t = _mm256_cvtpd_ps(_mm256_sub_pd(position, floor));
-        let prime = _mm_setr_epi32(PRIME[0] as i32, PRIME[1] as i32, PRIME[2] as i32, 0);
-        let cell = _mm_mullo_epi32(_mm256_cvttpd_epi32(floor), prime);
-        let cell = _mm256_set_m128i(cell, cell);
-        let far_x = _mm256_setr_epi32(0, -1, 0, -1, 0, -1, 0, -1);
-        let far_y = _mm256_setr_epi32(0, 0, -1, -1, 0, 0, -1, -1);
-        let far_z = _mm256_setr_epi32(0, 0, 0, 0, -1, -1, -1, -1);
-        let step = |far: Int, a: usize| _mm256_and_si256(far, isplat(PRIME[a]));
-        let x = iadd(_mm256_shuffle_epi32::<0x00>(cell), step(far_x, 0));
-        let y = iadd(_mm256_shuffle_epi32::<0x55>(cell), step(far_y, 1));
-        let z = xor(iadd(_mm256_shuffle_epi32::<0xAA>(cell), step(far_z, 2)), isplat(seed));
-        let g = gradient(xor(x, xor(y, z)));
-
-        // Blend weights of the three axes side by side.
-        let c = _mm_sub_ps(t, _mm_set1_ps(0.5));
-        let c2 = _mm_mul_ps(c, c);
-        let curve = _mm_fmadd_ps(_mm_set1_ps(6.0), c2, _mm_set1_ps(-5.0));
-        let curve = _mm_fmadd_ps(c2, curve, _mm_set1_ps(1.875));
-        let s = _mm_fmadd_ps(c, curve, _mm_set1_ps(0.5));
-        let rest = _mm_sub_ps(c2, _mm_set1_ps(0.25));
-        let slope = _mm_mul_ps(_mm_set1_ps(30.0), _mm_mul_ps(rest, rest));
-
-        let (t2, s2) = (_mm256_set_m128(t, t), _mm256_set_m128(s, s));
-        let near = sub(splat(1.0), s2);
-        let pick = |near: Float, s: Float, far: Int| _mm256_blendv_ps(near, s, _mm256_castsi256_ps(far));
-        let wx = pick(_mm256_permute_ps::<0x00>(near), _mm256_permute_ps::<0x00>(s2), far_x);
-        let wy = pick(_mm256_permute_ps::<0x55>(near), _mm256_permute_ps::<0x55>(s2), far_y);
-        let wz = pick(_mm256_permute_ps::<0xAA>(near), _mm256_permute_ps::<0xAA>(s2), far_z);
-        let offset = |t: Float, far: Int| sub(t, _mm256_and_ps(_mm256_castsi256_ps(far), splat(1.0)));
-        let dx = offset(_mm256_permute_ps::<0x00>(t2), far_x);
-        let dy = offset(_mm256_permute_ps::<0x55>(t2), far_y);
-        let dz = offset(_mm256_permute_ps::<0xAA>(t2), far_z);
-        let dot = flip(fma(g.z, dz, fma(g.y, dy, mul(g.x, dx))), g.sign);
-        let w = flip(mul(wx, mul(wy, wz)), g.sign);
-
-        // Sums over the corners: along x (into the even lanes), then y (within a half), then z.
-        let odd_w = _mm256_movehdup_ps(w);
-        let pair = |g: Float| fma(odd_w, _mm256_movehdup_ps(g), mul(w, g));
-        let (px, py, pz) = (pair(g.x), pair(g.y), pair(g.z));
-        let xy = _mm256_shuffle_ps::<0b10_00_10_00>(px, py);
-        let zz = _mm256_shuffle_ps::<0b10_00_10_00>(pz, pz);
-        let sum = _mm256_hadd_ps(xy, zz);
-        let sum = _mm_add_ps(_mm256_castps256_ps128(sum), _mm256_extractf128_ps::<1>(sum));
-
-        let (low, high) = (_mm256_castps256_ps128(dot), _mm256_extractf128_ps::<1>(dot));
-        let even = _mm_shuffle_ps::<0b10_00_10_00>(low, high);
-        let odd = _mm_shuffle_ps::<0b11_01_11_01>(low, high);
-        let along_x = _mm_sub_ps(odd, even);
-        let v = _mm_fmadd_ps(_mm_shuffle_ps::<0x00>(s, s), along_x, even);
-        // Values and x-slopes, near and far along y.
-        let near_y = _mm_shuffle_ps::<0b10_00_10_00>(v, along_x);
-        let far_y = _mm_shuffle_ps::<0b11_01_11_01>(v, along_x);
-        let difference = _mm_sub_ps(far_y, near_y);
-        let at_y = _mm_fmadd_ps(_mm_shuffle_ps::<0x55>(s, s), difference, near_y);
-        // Value, x-slope and y-slope, near and far along z.
-        let near_z = _mm_shuffle_ps::<0b00_00_10_00>(at_y, difference);
-        let far_z = _mm_shuffle_ps::<0b01_01_11_01>(at_y, difference);
-        let rise = _mm_sub_ps(far_z, near_z);
-        let at_z = _mm_fmadd_ps(_mm_shuffle_ps::<0xAA>(s, s), rise, near_z);
-        let slopes = _mm_shuffle_ps::<0b00_00_10_01>(at_z, rise);
-        let total = _mm_fmadd_ps(slope, slopes, sum);
-        let mut gradient = [0.0_f32; 4];
-        // SAFETY: four floats are writable.
-        unsafe { _mm_storeu_ps(gradient.as_mut_ptr(), total) };
-        super::super::Noise3 { value: _mm_cvtss_f32(at_z), gradient: [gradient[0], gradient[1], gradient[2]] }
+    pub(super) fn gradient(lattice: Int) -> Gradient {
+        let index = _mm256_mulhi_epu16(imul(lattice, isplat(MIX)), isplat((12 << 8) << 16));
+        let index = _mm256_or_si256(index, isplat(0x0080_8080));
+        let pick = |axis: usize| {
+            // SAFETY: sixteen bytes are readable.
+            let bytes = unsafe { _mm_loadu_si128(BYTES[axis].as_ptr().cast()) };
+            _mm256_castsi256_ps(_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(bytes), index))
+        };
+        Gradient { x: pick(0), y: pick(1), z: pick(2) }
     }
 }
 
@@ -293,7 +265,6 @@ mod avx512 {
     use super::*;
 
     operations! { "avx512f", __m512, __m512i,
-        add(a: Float, b: Float) -> Float = _mm512_add_ps;
         sub(a: Float, b: Float) -> Float = _mm512_sub_ps;
         mul(a: Float, b: Float) -> Float = _mm512_mul_ps;
         fma(a: Float, b: Float, c: Float) -> Float = _mm512_fmadd_ps;
@@ -317,12 +288,13 @@ mod avx512 {
     unsafe fn split(from: *const f64) -> (Int, Float) {
         // SAFETY: the caller's promise.
         let (a, b) = unsafe { (_mm512_loadu_pd(from), _mm512_loadu_pd(from.add(8))) };
-        let fa = _mm512_roundscale_pd::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(a);
-        let fb = _mm512_roundscale_pd::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(b);
-        let cells =
-            _mm512_inserti64x4::<1>(_mm512_castsi256_si512(_mm512_cvttpd_epi32(fa)), _mm512_cvttpd_epi32(fb));
-        let a = _mm512_castpd256_pd512(_mm256_castps_pd(_mm512_cvtpd_ps(_mm512_sub_pd(a, fa))));
-        let b = _mm256_castps_pd(_mm512_cvtpd_ps(_mm512_sub_pd(b, fb)));
+        let whole = |x| _mm512_add_pd(_mm512_sub_pd(x, _mm512_set1_pd(0.5)), _mm512_set1_pd(WHOLE));
+        let rest = |x, whole| _mm512_sub_pd(x, _mm512_sub_pd(whole, _mm512_set1_pd(WHOLE)));
+        let (wa, wb) = (whole(a), whole(b));
+        let low = |whole| _mm512_castsi256_si512(_mm512_cvtepi64_epi32(_mm512_castpd_si512(whole)));
+        let cells = _mm512_inserti64x4::<1>(low(wa), _mm512_castsi512_si256(low(wb)));
+        let a = _mm512_castpd256_pd512(_mm256_castps_pd(_mm512_cvtpd_ps(rest(a, wa))));
+        let b = _mm256_castps_pd(_mm512_cvtpd_ps(rest(b, wb)));
         (cells, _mm512_castpd_ps(_mm512_insertf64x4::<1>(a, b)))
     }
 
@@ -335,29 +307,29 @@ mod avx512 {
         unsafe { _mm512_storeu_ps(to, value) }
     }
 
-    #[inline]
-    #[target_feature(enable = "avx512f")]
-    fn flip(a: Float, sign: Float) -> Float {
-        _mm512_castsi512_ps(xor(_mm512_castps_si512(a), _mm512_castps_si512(sign)))
+    /// One component of twice `EDGES`.
+    const fn doubled(axis: usize) -> [f32; 16] {
+        let mut all = [0.0; 16];
+        let mut edge = 0;
+        while edge < 12 {
+            all[edge] = 2.0 * EDGES[edge][axis];
+            edge += 1;
+        }
+        all
     }
+    const DOUBLED: [[f32; 16]; 3] = [doubled(0), doubled(1), doubled(2)];
 
-    /// `PAIRS` from registers and the sign of `gradient_index(lattice)`.
+    /// Twice `EDGES[index]`, from registers.
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn gradient(lattice: Int) -> Gradient {
         let mixed = imul(lattice, isplat(MIX));
-        let index = imul(_mm512_srli_epi32::<16>(mixed), isplat(12));
-        let pair = _mm512_srli_epi32::<17>(index);
-        let (o, l, m) = (0.0, 1.0, -1.0);
-        let x = _mm512_setr_ps(l, l, l, l, o, o, o, o, o, o, o, o, o, o, o, o);
-        let y = _mm512_setr_ps(l, m, o, o, l, l, o, o, o, o, o, o, o, o, o, o);
-        let z = _mm512_setr_ps(o, o, l, m, l, m, o, o, o, o, o, o, o, o, o, o);
-        let sign = _mm512_and_si512(_mm512_slli_epi32::<15>(index), isplat(1 << 31));
-        Gradient {
-            x: _mm512_permutexvar_ps(pair, x),
-            y: _mm512_permutexvar_ps(pair, y),
-            z: _mm512_permutexvar_ps(pair, z),
-            sign: _mm512_castsi512_ps(sign),
-        }
+        let index = _mm512_srli_epi32::<16>(imul(_mm512_srli_epi32::<16>(mixed), isplat(12)));
+        let pick = |axis: usize| {
+            // SAFETY: sixteen floats are readable.
+            let table = unsafe { _mm512_loadu_ps(DOUBLED[axis].as_ptr()) };
+            _mm512_permutexvar_ps(index, table)
+        };
+        Gradient { x: pick(0), y: pick(1), z: pick(2) }
     }
 }

@@ -150,19 +150,20 @@ struct Travelled {
 pub struct BrownianPath {
     coefficients: Vec<f64>,
     spacing_m: f64,
-    force: BrownianForce,
+    force: Option<BrownianForce>,
     contacts: Vec<Travelled>,
 }
 
 impl BrownianPath {
-    /// A periodic graph of heights (m) `spacing_m` apart, for contacts numbered below `contacts`.
+    /// A periodic graph of heights (m) `spacing_m` apart, for contacts numbered below `contacts`; it
+    /// answers with a force if one is given.
     ///
     /// # Errors
     /// When there are fewer than 4 heights, one is not finite or the spacing is not above 0.
     pub fn new(
         heights_m: &[f64],
         spacing_m: f64,
-        rendering: Rendering,
+        rendering: Option<Rendering>,
         contacts: usize,
     ) -> Result<Self, DesignError> {
         DesignError::check("heights_m", heights_m.len() as f64, "4 or more", |n| n >= 4.0)?;
@@ -172,12 +173,13 @@ impl BrownianPath {
         let spacing = DesignError::check("spacing_m", spacing_m, "above 0, to 1 m", |s| s > 0.0 && s <= 1.0)?;
         let highest = heights_m.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let lowest = heights_m.iter().copied().fold(f64::INFINITY, f64::min);
+        let span = (highest - lowest).max(f64::MIN_POSITIVE);
         let mut coefficients = heights_m.to_vec();
         crate::lattice::prefilter(&mut coefficients);
         Ok(Self {
             coefficients,
             spacing_m: spacing,
-            force: BrownianForce::graph(rendering, (highest - lowest).max(f64::MIN_POSITIVE))?,
+            force: rendering.map(|rendering| BrownianForce::graph(rendering, span)).transpose()?,
             contacts: vec![Travelled::default(); contacts.max(1)],
         })
     }
@@ -231,8 +233,9 @@ impl HeightField for BrownianPath {
     }
 
     fn react(&mut self, touch: &Touch) -> Reaction {
+        let Some(force) = &self.force else { return Reaction::default() };
         let distance = self.contacts[self.slot(touch.contact)].end_m;
         let slope = Self::slope_along(self.at(distance).1, touch.velocity_m_s);
-        Reaction { force_n: self.force.force_n(slope, touch.velocity_m_s), ..Reaction::default() }
+        Reaction { force_n: force.force_n(slope, touch.velocity_m_s), ..Reaction::default() }
     }
 }

@@ -1,45 +1,66 @@
 //! Sliding to the angle of repose, only where something can slide.
 //!
 //! ```text
-//! e_i = (h − h_i) − d_i tan θ > 0      d_i = dx or √2 dx, eight neighbours
-//! Δm  = c · max e_i                     c = 1 / (1 + max e_i / Σ e), cells taken one after another
-//! Δm_i = Δm · e_i / Σ e
+//! e = |h − h_i| − d_i tan θ             d_i = dx or √2 dx, for each of a cell's eight neighbours in turn
+//! Δm = ½ e  from the higher to the lower one, where e is more than ¼° of slope
 //! ```
 //!
-//! Source: the sand paper §3.2. What we read differently: the printed "m_i" in the share is the
-//! difference to the neighbour, not its height; diagonal neighbours are √2 further away. The paper
-//! leaves c open; ours brings the lowest neighbour exactly to the talus angle, ½ with one neighbour
-//! and up to 8/9 with eight, and makes cones rounder than ½ does (4 % against 2.5 % along a diagonal).
-//! What we changed: sand is cut into tiles of 32 × 32 cells, and a tile is looked at only while something
-//! moved in it or next to it; whole rows are first tested without branches, and only the cells
-//! that are too steep are worked on; the order of rows and cells turns with every pass, so that
-//! sequential work has no preferred direction. A slope counts as settled at θ + ¼°, where
-//! another hundred passes would only creep. All arithmetic is in whole numbers:
-//! the same sand gives the same sand everywhere. On x86 the pass over a tile is compiled a second time
-//! for AVX2 (the same operations, eight cells at once) and chosen at run time.
-#![allow(unsafe_code)]
+//! Source: the sand paper §3.2, whose rule gives each lower neighbour Δm_i = Δm · e_i / Σ e of
+//! Δm = c · max e, all at once and c left open. (The printed "m_i" in the share is the difference to the
+//! neighbour, not its height; diagonal neighbours are √2 further away.) With one neighbour too low, ours
+//! is the same with c = ½; with several, they are served one after another instead of in shares.
+//!
+//! Why: pairs of cells that do not touch each other can slide at once, so that a whole row slides
+//! against the next one, or against itself shifted by a cell, in vector registers and without branches
+//! ([`row`]): 0.9 ns a cell for all eight neighbours, where the rule as printed takes 4 to 17. A random
+//! field settles 15 to 25 times faster than by repeating the document's pass over the whole grid until
+//! nothing moves. Cones come out rounder than the document's: within 2.6 % of the ideal radius along the
+//! axes and the diagonals (10 % with shares and cells taken row by row).
+//!
+//! Sand is cut into tiles of 64 × 32 cells. Each remembers which of its rows may have become too steep,
+//! a bit a row, and only those are looked at. Rows, and what is served first within them, turn
+//! with every pass, so that sequential work has no preferred direction. A slope counts as settled at
+//! θ + ¼°, where another hundred passes would only creep. All arithmetic is in whole numbers: the
+//! same sand gives the same sand everywhere.
 
-use super::grid::{SandGrid, UNITS_PER_M, WALL};
+mod row;
+
+use super::grid::{SandGrid, UNITS_PER_M};
 use asperity_dsp::DesignError;
+use row::{Moved, Order, Rows, Steepness};
 
-/// Edge of a tile, cells.
-pub const TILE: usize = 32;
+/// Columns of a tile: wide enough that a vector is not read back before it has been written.
+pub const TILE: usize = 64;
+/// Rows of a tile: the bits of a word.
+const TILE_ROWS: usize = u32::BITS as usize;
 /// Excess over the talus angle that is left alone, degrees.
 pub const SETTLED_DEG: f64 = 0.25;
 
 /// The state of sliding on one grid.
 #[derive(Debug, Clone)]
 pub struct Erosion {
-    /// Height a neighbour may be lower: along an edge, along a diagonal.
-    limit: [i32; 2],
-    /// Excess that makes a cell slide.
-    tolerance: [i32; 2],
+    steepness: Steepness,
     tile_columns: usize,
     tile_rows: usize,
-    active: Vec<bool>,
-    next: Vec<bool>,
+    /// Rows to be looked at in this pass, one bit a row, one word a tile.
+    active: Vec<u32>,
+    next: Vec<u32>,
     pass: u32,
-    wide: bool,
+    rows: Rows,
+}
+
+/// What moved in a tile, one bit a row.
+#[derive(Default)]
+struct Slides {
+    /// Anything.
+    any: u32,
+    /// Sand went to or came from the row below.
+    below: u32,
+    /// Cells that touch the tile to the left, to the right.
+    left: u32,
+    right: u32,
+    /// To be looked at again.
+    again: u32,
 }
 
 impl Erosion {
@@ -51,40 +72,45 @@ impl Erosion {
         DesignError::check("talus_deg", talus_deg, "1 to 80 degrees", |t| (1.0..=80.0).contains(&t))?;
         let rise = |degrees: f64| degrees.to_radians().tan() * grid.cell_m() * UNITS_PER_M;
         let (at, above) = (rise(talus_deg), rise(talus_deg + SETTLED_DEG) - rise(talus_deg));
-        let both = |x: f64| [x as i32, (x * core::f64::consts::SQRT_2) as i32];
-        let (tile_columns, tile_rows) = (grid.columns().div_ceil(TILE), grid.rows().div_ceil(TILE));
+        let steepness = |run: f64| {
+            let limit = (at * run) as i32;
+            (limit, limit.saturating_add(((above * run) as i32).max(8)))
+        };
+        let (tile_columns, tile_rows) = (grid.columns().div_ceil(TILE), grid.rows().div_ceil(TILE_ROWS));
         let tiles = tile_columns * tile_rows;
         Ok(Self {
-            limit: both(at),
-            tolerance: both(above).map(|t| t.max(8)),
+            steepness: Steepness { axis: steepness(1.0), diagonal: steepness(core::f64::consts::SQRT_2) },
             tile_columns,
             tile_rows,
-            active: vec![false; tiles],
-            next: vec![false; tiles],
+            active: vec![0; tiles],
+            next: vec![0; tiles],
             pass: 0,
-            wide: wide_available(),
+            rows: Rows::detect(),
         })
     }
 
     /// The same with the instructions every processor has: for tests, the sand is the same.
     #[must_use]
     pub fn portable(self) -> Self {
-        Self { wide: false, ..self }
+        Self { rows: Rows::Portable, ..self }
     }
 
     /// Looks at everything in the next pass.
     pub fn activate_all(&mut self) {
-        self.active.fill(true);
+        self.active.fill(u32::MAX);
     }
 
-    /// Looks at a rectangle of cells (ends included) and one cell around it in the next pass.
+    /// Looks at a rectangle of cells (ends included) and what is around it in the next pass.
     pub fn activate(&mut self, x: [usize; 2], y: [usize; 2]) {
-        let tiles = |range: [usize; 2], count: usize| {
-            (range[0].saturating_sub(1) / TILE)..=((range[1] + 1) / TILE).min(count - 1)
-        };
-        for ty in tiles(y, self.tile_rows) {
-            for tx in tiles(x, self.tile_columns) {
-                self.active[ty * self.tile_columns + tx] = true;
+        // A row slides against the one below: the row above the first one sees it too.
+        let (first, last) = (y[0].saturating_sub(1), y[1]);
+        let (left, right) = (x[0].saturating_sub(1) / TILE, (x[1] / TILE).min(self.tile_columns - 1));
+        for ty in first / TILE_ROWS..=(last / TILE_ROWS).min(self.tile_rows - 1) {
+            let from = first.saturating_sub(ty * TILE_ROWS);
+            let to = (last - ty * TILE_ROWS).min(TILE_ROWS - 1);
+            let bits = (u32::MAX << from) & (u32::MAX >> (TILE_ROWS - 1 - to));
+            for tx in left..=right {
+                self.active[ty * self.tile_columns + tx] |= bits;
             }
         }
     }
@@ -92,30 +118,29 @@ impl Erosion {
     /// Whether nothing slides any more.
     #[must_use]
     pub fn is_settled(&self) -> bool {
-        !self.active.contains(&true)
+        self.active.iter().all(|&rows| rows == 0)
     }
 
     /// Tiles that the next pass looks at.
     #[must_use]
     pub fn active_tiles(&self) -> usize {
-        self.active.iter().filter(|&&a| a).count()
+        self.active.iter().filter(|&&rows| rows != 0).count()
     }
 
-    /// One pass over the active tiles; returns how many cells it looked at.
+    /// One pass over the active rows; returns how many cells it looked at.
     pub fn pass(&mut self, grid: &mut SandGrid) -> usize {
         let tiles = self.active.len();
-        let mut cells = 0;
+        let mut rows = 0;
         for n in 0..tiles {
             let tile = if self.pass & 1 == 0 { n } else { tiles - 1 - n };
-            if self.active[tile] {
-                let (tx, ty) = (tile % self.tile_columns, tile / self.tile_columns);
-                cells += self.dispatch(grid, tx, ty);
+            if self.active[tile] != 0 {
+                rows += self.tile(grid, tile);
             }
         }
         core::mem::swap(&mut self.active, &mut self.next);
-        self.next.fill(false);
+        self.next.fill(0);
         self.pass = self.pass.wrapping_add(1);
-        cells
+        rows * TILE
     }
 
     /// Passes until settled; returns their number.
@@ -128,159 +153,80 @@ impl Erosion {
         passes
     }
 
-    /// One tile with the widest instructions there are.
-    fn dispatch(&mut self, grid: &mut SandGrid, tx: usize, ty: usize) -> usize {
-        #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
-        if self.wide {
-            // SAFETY: `wide` is true only where the processor was found to have AVX2.
-            return unsafe { self.tile_wide(grid, tx, ty) };
-        }
-        self.tile(grid, tx, ty)
-    }
-
-    #[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
-    #[target_feature(enable = "avx2")]
-    fn tile_wide(&mut self, grid: &mut SandGrid, tx: usize, ty: usize) -> usize {
-        self.tile(grid, tx, ty)
-    }
-
-    #[inline(always)]
-    fn tile(&mut self, grid: &mut SandGrid, tx: usize, ty: usize) -> usize {
-        let columns = (tx * TILE)..((tx + 1) * TILE).min(grid.columns());
-        let rows = (ty * TILE)..((ty + 1) * TILE).min(grid.rows());
-        let count = rows.len();
-        // Edges of the tile that something moved at: left, right, top, bottom, anywhere.
-        let mut moved = [false; 5];
-        for n in 0..count {
-            let y = if self.pass & 2 == 0 { rows.start + n } else { rows.end - 1 - n };
-            let steep = self.steep_cells(grid, grid.index(columns.start, y), columns.len());
-            if steep == 0 {
-                continue;
+    /// The active rows of a tile, and those that become so under way; returns their number.
+    fn tile(&mut self, grid: &mut SandGrid, tile: usize) -> usize {
+        let (tx, ty) = (tile % self.tile_columns, tile / self.tile_columns);
+        let first_row = ty * TILE_ROWS;
+        let rows = (grid.rows() - first_row).min(TILE_ROWS) as u32;
+        let within = u32::MAX >> (u32::BITS - rows);
+        let order = Order::of(self.pass);
+        let mut left = self.active[tile] & within;
+        let mut slides = Slides::default();
+        let mut looked_at = 0;
+        while left != 0 {
+            let row =
+                if order.upwards { u32::BITS - 1 - left.leading_zeros() } else { left.trailing_zeros() };
+            let bit = 1 << row;
+            left &= !bit;
+            looked_at += 1;
+            let at = grid.index(tx * TILE, first_row + row as usize);
+            let moved = self.rows.slide(grid, at, &self.steepness, order);
+            if moved.any {
+                let (up, down) = (bit >> 1, if moved.below { bit << 1 } else { 0 });
+                // What comes next in this pass sees it now, what came before in the next pass.
+                let now = if order.upwards { up } else { down } & within;
+                left |= now;
+                slides.record(bit, &moved);
+                slides.again |= (bit | up | down) & !now & within;
             }
-            // Every third cell: what they touch does not overlap, so that the processor works on
-            // several at once.
-            for n in 0..3 {
-                let third = if self.pass & 1 == 0 { n } else { 2 - n };
-                let mut steep = steep & (0x4924_9249 << third);
-                while steep != 0 {
-                    let x = steep.trailing_zeros();
-                    steep &= steep - 1;
-                    let at = grid.index(columns.start + x as usize, y);
-                    if self.slide(grid, at) {
-                        moved[0] |= x == 0;
-                        moved[1] |= x as usize + 1 == columns.len();
-                        moved[2] |= y == rows.start;
-                        moved[3] |= y + 1 == rows.end;
-                        moved[4] = true;
-                    }
+        }
+        if slides.any != 0 {
+            self.wake(tile, rows, &slides);
+        }
+        looked_at
+    }
+
+    /// Marks the rows that a tile's slides may have made too steep, in it and in the tiles around it.
+    fn wake(&mut self, tile: usize, rows: u32, slides: &Slides) {
+        let (tx, ty) = (tile % self.tile_columns, tile / self.tile_columns);
+        let last_row = 1 << (rows - 1);
+        let above = (slides.any & 1 != 0 && ty > 0).then(|| tile - self.tile_columns);
+        let below =
+            (slides.below & last_row != 0 && ty + 1 < self.tile_rows).then(|| tile + self.tile_columns);
+        let lowest = 1 << (TILE_ROWS - 1);
+        self.next[tile] |= slides.again;
+        if let Some(above) = above {
+            self.next[above] |= lowest;
+        }
+        if let Some(below) = below {
+            self.next[below] |= 1;
+        }
+        let mut beside = |moved: u32, step: fn(usize) -> usize| {
+            if moved != 0 {
+                self.next[step(tile)] |= moved | (moved >> 1) | ((moved & slides.below) << 1);
+                if let Some(above) = above {
+                    self.next[step(above)] |= if moved & 1 != 0 { lowest } else { 0 };
+                }
+                if let Some(below) = below {
+                    self.next[step(below)] |= u32::from(moved & last_row != 0);
                 }
             }
-        }
-        if moved[4] {
-            self.wake(tx, ty, &moved);
-        }
-        count * columns.len()
-    }
-
-    /// Wakes a tile and those whose cells may have become steep: a move changes the eight cells
-    /// around it, and those look one cell further.
-    fn wake(&mut self, tx: usize, ty: usize, moved: &[bool; 5]) {
-        let reach = |low: bool, high: bool, t: usize, count: usize| {
-            t.saturating_sub(usize::from(low))..=(t + usize::from(high)).min(count - 1)
         };
-        for y in reach(moved[2], moved[3], ty, self.tile_rows) {
-            for x in reach(moved[0], moved[1], tx, self.tile_columns) {
-                self.next[y * self.tile_columns + x] = true;
-            }
+        if tx > 0 {
+            beside(slides.left, |t| t - 1);
         }
-    }
-
-    /// Which of up to 32 cells of a row are too steep, one bit a cell, without branches.
-    #[inline(always)]
-    fn steep_cells(&self, grid: &SandGrid, at: usize, count: usize) -> u32 {
-        let stride = grid.stride();
-        let row = |offset: usize| {
-            let cells = &grid.heights[offset..offset + count + 2];
-            // At the right border a row is shorter: walls stand where it ends.
-            cells.first_chunk::<{ TILE + 2 }>().copied().unwrap_or_else(|| {
-                let mut padded = [WALL; TILE + 2];
-                padded[..cells.len()].copy_from_slice(cells);
-                padded
-            })
-        };
-        let (above, here, below) = (row(at - stride - 1), row(at - 1), row(at + stride - 1));
-        let axis_limit = self.limit[0] + self.tolerance[0];
-        let diagonal_limit = self.limit[1] + self.tolerance[1];
-        let mut flags = [0_u8; TILE];
-        for i in 0..TILE {
-            let axis = here[i].min(here[i + 2]).min(above[i + 1].min(below[i + 1]));
-            let diagonal = above[i].min(above[i + 2]).min(below[i].min(below[i + 2]));
-            let h = here[i + 1];
-            let steep = (h - axis > axis_limit) | (h - diagonal > diagonal_limit);
-            flags[i] = u8::from(steep & (h < WALL));
+        if tx + 1 < self.tile_columns {
+            beside(slides.right, |t| t + 1);
         }
-        // Eight flags to eight bits: the product brings flag k to bit 56 + k.
-        let (eights, _) = flags.as_chunks::<8>();
-        eights.iter().rev().fold(0, |bits, eight| {
-            let gathered = u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-            (bits << 8) | gathered as u32
-        })
-    }
-
-    /// Lets one cell slide; tells whether anything moved.
-    #[inline(always)]
-    fn slide(&self, grid: &mut SandGrid, at: usize) -> bool {
-        let stride = grid.stride();
-        let Some(window) = grid.heights.get_mut(at - stride - 1..=at + stride + 1) else { return false };
-        let (above, rest) = window.split_at_mut(stride);
-        let (here, below) = rest.split_at_mut(stride);
-        let (Some(above), Some(here), Some(below)) =
-            (above.first_chunk_mut::<3>(), here.first_chunk_mut::<3>(), below.first_chunk_mut::<3>())
-        else {
-            return false;
-        };
-        let h = here[1];
-        let [axis, diagonal] = self.limit;
-        let drop = |other: i32, limit: i32| (h - other - limit).max(0);
-        let excess = [
-            drop(above[0], diagonal),
-            drop(above[1], axis),
-            drop(above[2], diagonal),
-            drop(here[0], axis),
-            drop(here[2], axis),
-            drop(below[0], diagonal),
-            drop(below[1], axis),
-            drop(below[2], diagonal),
-        ];
-        let most = excess.iter().fold(0, |most, &e| most.max(e));
-        if most <= self.tolerance[0] {
-            return false;
-        }
-        // c / Σ e in units of 2⁻³²; every excess is below 2³¹, so that no product overflows.
-        let sum: u64 = excess.iter().map(|&e| u64::from(e.unsigned_abs())).sum();
-        let most = u64::from(most.unsigned_abs());
-        let share = (most << 32) / (sum + most);
-        let part = excess.map(|e| ((u64::from(e.unsigned_abs()) * share) >> 32) as i32);
-        above[0] += part[0];
-        above[1] += part[1];
-        above[2] += part[2];
-        here[0] += part[3];
-        here[2] += part[4];
-        below[0] += part[5];
-        below[1] += part[6];
-        below[2] += part[7];
-        let given: i32 = part.iter().sum();
-        here[1] = h - given;
-        given > 0
     }
 }
 
-#[cfg(any(target_arch = "x86_64", target_arch = "x86"))]
-fn wide_available() -> bool {
-    std::arch::is_x86_feature_detected!("avx2")
-}
-
-#[cfg(not(any(target_arch = "x86_64", target_arch = "x86")))]
-fn wide_available() -> bool {
-    false
+impl Slides {
+    fn record(&mut self, bit: u32, moved: &Moved) {
+        let flag = |set: bool| if set { bit } else { 0 };
+        self.any |= bit;
+        self.below |= flag(moved.below);
+        self.left |= flag(moved.left);
+        self.right |= flag(moved.right);
+    }
 }

@@ -4,6 +4,7 @@
 //! drift by a single unit however long the sand is played with (floating point drifts by 1e-6).
 //! The grid is surrounded by a wall one cell thick that nothing slides over.
 
+use super::erosion::TILE;
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 
@@ -11,10 +12,13 @@ use asperity_dsp::DesignError;
 pub const UNITS_PER_M: f64 = 1_073_741_824.0;
 /// Most cells along an edge.
 pub const MAX_CELLS: usize = 4096;
-/// Heights stay below ± this; the surrounding wall is higher.
+/// No sand is heaped higher than this, half a metre.
 pub(super) const HIGHEST: i32 = 1 << 29;
-/// A cell that is no sand: the wall around the grid, or the tool.
-pub(super) const WALL: i32 = 1 << 30;
+/// Heights are 0 to below this, and so are their differences.
+pub(super) const SPAN: u32 = 1 << 30;
+/// A cell that is no sand: the wall around the grid, or the tool. Its difference to any height, in
+/// either direction and wrapped to 32 bits, is no less than [`SPAN`].
+pub(super) const WALL: i32 = -(3 << 29);
 
 /// A rectangle of sand.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +26,7 @@ pub struct SandGrid {
     columns: usize,
     rows: usize,
     cell_m: f64,
-    /// (columns + 2) · (rows + 2) heights, walls included.
+    /// Rows of heights with a wall around them, and walls on the right up to a whole number of tiles.
     pub(super) heights: Vec<i32>,
 }
 
@@ -49,7 +53,8 @@ impl SandGrid {
         DesignError::check("rows", rows as f64, "4 to 4096 cells", edge)?;
         DesignError::check("cell_m", cell_m, "1e-6 to 0.1 m", |c| (1e-6..=0.1).contains(&c))?;
         DesignError::check("depth_m", depth_m, "above 0, to 0.45 m", |d| d > 0.0 && d <= 0.45)?;
-        let mut grid = Self { columns, rows, cell_m, heights: vec![WALL; (columns + 2) * (rows + 2)] };
+        let mut grid = Self { columns, rows, cell_m, heights: Vec::new() };
+        grid.heights = vec![WALL; grid.stride() * (rows + 2)];
         grid.fill(|_, _| depth_m);
         Ok(grid)
     }
@@ -91,7 +96,7 @@ impl SandGrid {
     /// Heights in a row, walls included.
     #[inline]
     pub(super) fn stride(&self) -> usize {
-        self.columns + 2
+        self.columns.next_multiple_of(TILE) + 2
     }
 
     /// Height of a cell, metres above the bottom.

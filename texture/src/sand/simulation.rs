@@ -5,16 +5,12 @@
 //! level of the sand ahead of it (the mean on a half circle outside the heap). Then the sand slides
 //! for as many passes as the frame's budget of cells allows; where a tool stands it is a wall, so
 //! that nothing trickles into the cut it fills. A contact that was not told of in a frame is lifted.
-//!
-//! The patch that the audio half reads shows the sand *without* the print of its own tool: the print is
-//! filled up to the level ahead, because it moves along with the tool and is not what the tool meets
-//! next; only then is a frame's lag not heard as a 60 Hz saw. The tool's own depth is in the
-//! surface's compliance.
+
+mod view;
 
 use super::erosion::Erosion;
 use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
-use super::patch::{PATCH, Patch};
 use super::tool::{Press, Tool};
 use asperity_dsp::DesignError;
 
@@ -75,6 +71,8 @@ pub struct Pose {
     pub velocity_m_s: [f64; 2],
     /// Force pressing it down, N.
     pub normal_force_n: f64,
+    /// It was lifted since the last pose: its tool is put down here, not dragged here.
+    pub landed: bool,
 }
 
 /// What a render tells about the sand.
@@ -189,7 +187,8 @@ impl SandSimulation {
         let finite = pose.position_m.iter().chain(&pose.velocity_m_s).all(|x| x.is_finite());
         if let Some(track) = self.tracks.get_mut(pose.contact).filter(|_| finite) {
             let normal_force_n = if pose.normal_force_n.is_finite() { pose.normal_force_n } else { 0.0 };
-            track.told = Some(Pose { normal_force_n: normal_force_n.clamp(0.0, 1e4), ..pose });
+            let landed = pose.landed || track.told.is_some_and(|told| told.landed);
+            track.told = Some(Pose { normal_force_n: normal_force_n.clamp(0.0, 1e4), landed, ..pose });
         }
     }
 
@@ -254,13 +253,12 @@ impl SandSimulation {
     /// Moves one contact's tool from its last pose to the one it was told.
     fn drag(&mut self, contact: usize) {
         let track = &mut self.tracks[contact];
-        let Some(to) = track.told.take() else {
-            if track.pose.take().is_some() {
-                wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
-                track.displaced_m2 = 0.0;
-            }
-            return;
-        };
+        let told = track.told.take();
+        if told.is_none_or(|to| to.landed) && track.pose.take().is_some() {
+            wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
+            track.displaced_m2 = 0.0;
+        }
+        let Some(to) = told else { return };
         let landed = track.pose.is_none();
         let from = track.pose.map_or(to.position_m, |p| p.position_m);
         let way = [0, 1].map(|a| to.position_m[a] - from[a]);
@@ -305,7 +303,7 @@ impl SandSimulation {
             if track.pose.is_some() {
                 for at in press.cut_cells() {
                     let height = self.grid.heights[at];
-                    if height < WALL {
+                    if height != WALL {
                         self.walls.push((at, height));
                         self.grid.heights[at] = WALL;
                     }
@@ -318,62 +316,6 @@ impl SandSimulation {
         for &(at, height) in &self.walls {
             self.grid.heights[at] = height;
         }
-    }
-
-    /// Writes the sand around a contact into a patch.
-    pub fn write_patch(&self, contact: usize, patch: &mut Patch) {
-        let Some((track, pose)) = self.tracks.get(contact).and_then(|t| Some((t, t.pose?))) else {
-            self.write_overview(patch);
-            return;
-        };
-        let cell = self.grid.cell_m();
-        let heap_m = 1.6 * track.radius_m + 2.0 * cell;
-        let travel_m = pose.velocity_m_s[0].hypot(pose.velocity_m_s[1]) / FRAMES_PER_S;
-        let stride = ((6.0 * heap_m + 4.0 * travel_m) / (PATCH as f64 * cell)).ceil().clamp(1.0, 1e4);
-        let spacing = stride * cell;
-        // Snapped, so that one patch after the other shows the same cells.
-        let first = [0, 1].map(|a| {
-            let middle = pose.position_m[a] + pose.velocity_m_s[a] / FRAMES_PER_S;
-            ((middle / cell - 0.5) / stride).round() - (PATCH / 2) as f64
-        });
-        patch.contact = contact;
-        patch.spacing_m = spacing;
-        patch.origin_m = first.map(|f| (f * stride + 0.5) * cell);
-        patch.base_m = track.level_m - self.depth_m;
-        patch.displaced_m2 = track.displaced_m2;
-        for j in 0..PATCH {
-            for i in 0..PATCH {
-                let at = [patch.origin_m[0] + i as f64 * spacing, patch.origin_m[1] + j as f64 * spacing];
-                let above_level = self.cell_at(at) - track.level_m;
-                let away = (at[0] - pose.position_m[0]).hypot(at[1] - pose.position_m[1]);
-                let t = ((away - heap_m) / (0.5 * heap_m)).clamp(0.0, 1.0);
-                patch.heights_m[j * PATCH + i] = (above_level * t * t * (3.0 - 2.0 * t)) as f32;
-            }
-        }
-    }
-
-    /// Writes all the sand, coarsely, into a patch.
-    pub fn write_overview(&self, patch: &mut Patch) {
-        let cell = self.grid.cell_m();
-        let edge = self.grid.columns().max(self.grid.rows()) as f64 * cell;
-        // One sample beyond each edge, where the spline needs neighbours.
-        patch.spacing_m = edge / (PATCH - 4) as f64;
-        patch.contact = usize::MAX;
-        patch.origin_m = [-1.5 * patch.spacing_m; 2];
-        patch.base_m = 0.0;
-        patch.displaced_m2 = 0.0;
-        for j in 0..PATCH {
-            for i in 0..PATCH {
-                let at = [i, j].map(|k| (k as f64 - 1.5) * patch.spacing_m);
-                patch.heights_m[j * PATCH + i] = (self.cell_at(at) - self.depth_m) as f32;
-            }
-        }
-    }
-
-    /// Height of the cell at a position, of the nearest one beyond the edge, metres.
-    fn cell_at(&self, position_m: [f64; 2]) -> f64 {
-        let cell = |a: usize| (position_m[a] / self.grid.cell_m()).max(0.0) as usize;
-        self.grid.height_m(cell(0), cell(1))
     }
 }
 

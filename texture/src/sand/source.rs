@@ -23,15 +23,13 @@ use super::grid::SandPicture;
 use super::law::SandLaw;
 use super::patch::Patch;
 use super::simulation::{FRAMES_PER_S, Pose, SandDesign, SandFigures, SandSimulation};
+use super::worker::SandWorker;
 use crate::change::SurfaceChange;
 use crate::fade::Fade;
 use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand};
 use crate::solid_materials::{FRICTION, SolidMaterial};
 use crate::solid_noise::SolidNoise;
 use asperity_dsp::DesignError;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 /// Patches in circulation for every contact: one that fades out, one that fades in, one that waits,
 /// one under way.
@@ -55,6 +53,10 @@ struct Slot {
     new: Option<Box<Patch>>,
     waiting: Option<Box<Patch>>,
     fade_start: u64,
+    /// Sample of the next touch, if the contact stays down.
+    next_touch: u64,
+    /// The simulation has not been told yet that the contact has landed.
+    landed: bool,
     /// First sample of the last block and the one after its last.
     seen: [u64; 2],
 }
@@ -71,19 +73,6 @@ pub struct SandSource {
     frame_samples: u64,
     next_frame: u64,
     longest_m: f64,
-}
-
-/// The simulation's end of the hand-over; calls [`SandWorker::frame`] 60 times a second on a thread
-/// that may take its time.
-pub struct SandWorker {
-    simulation: SandSimulation,
-    poses: rtrb::Consumer<Pose>,
-    laws: rtrb::Consumer<SandLaw>,
-    patches: rtrb::Producer<Box<Patch>>,
-    back: rtrb::Consumer<Box<Patch>>,
-    spare: Vec<Box<Patch>>,
-    touched: Vec<bool>,
-    frames: u64,
 }
 
 impl SandSource {
@@ -180,15 +169,29 @@ impl SandSource {
 
     /// Tells the simulation about a touch and takes what it has to say.
     fn exchange(&mut self, touch: &Touch) {
-        let pose = Pose {
+        let mut pose = Pose {
             contact: touch.contact,
             position_m: touch.position_m,
             velocity_m_s: touch.velocity_m_s,
             normal_force_n: touch.normal_force_n,
+            landed: false,
         };
+        if let Some(slot) = self.slots.get_mut(touch.contact) {
+            slot.landed |= slot.next_touch != touch.sample;
+            slot.next_touch = touch.sample + MAX_BLOCK as u64;
+            pose.landed = slot.landed;
+        }
         match &mut self.link {
             Link::Here(simulation) => {
+                // While nothing touched the sand, it went on sliding.
+                while touch.sample >= self.next_frame + self.frame_samples && !simulation.is_at_rest() {
+                    simulation.frame();
+                    self.next_frame += self.frame_samples;
+                }
                 simulation.tell(pose);
+                if let Some(slot) = self.slots.get_mut(touch.contact) {
+                    slot.landed = false;
+                }
                 if touch.sample < self.next_frame {
                     return;
                 }
@@ -206,7 +209,11 @@ impl SandSource {
             }
             Link::Elsewhere { poses, patches, back, .. } => {
                 // A full ring: the simulation is late and will hear the next pose.
-                let _ = poses.push(pose);
+                if poses.push(pose).is_ok()
+                    && let Some(slot) = self.slots.get_mut(touch.contact)
+                {
+                    slot.landed = false;
+                }
                 while let Ok(patch) = patches.pop() {
                     let replaced = match self.slots.get_mut(patch.contact) {
                         Some(slot) => slot.waiting.replace(patch),
@@ -341,91 +348,5 @@ impl HeightField for SandSource {
 
     fn sand(&mut self) -> Option<&mut SandSource> {
         Some(self)
-    }
-}
-
-impl SandWorker {
-    /// Takes the poses, runs a frame, sends patches.
-    pub fn frame(&mut self) {
-        self.touched.fill(false);
-        while let Ok(law) = self.laws.pop() {
-            self.simulation.set_law(law);
-        }
-        while let Ok(pose) = self.poses.pop() {
-            if let Some(touched) = self.touched.get_mut(pose.contact) {
-                *touched = true;
-            }
-            self.simulation.tell(pose);
-        }
-        while let Ok(patch) = self.back.pop() {
-            self.spare.push(patch);
-        }
-        self.simulation.frame();
-        for contact in 0..self.touched.len() {
-            if self.touched[contact] {
-                self.send(|simulation, patch| simulation.write_patch(contact, patch));
-            }
-        }
-        if self.frames.is_multiple_of(8) {
-            self.send(SandSimulation::write_overview);
-        }
-        self.frames += 1;
-    }
-
-    /// Sends a patch, or none when all are under way.
-    fn send(&mut self, write: impl FnOnce(&SandSimulation, &mut Patch)) {
-        if let Some(mut patch) = self.spare.pop() {
-            write(&self.simulation, &mut patch);
-            if let Err(rtrb::PushError::Full(patch)) = self.patches.push(patch) {
-                self.spare.push(patch);
-            }
-        }
-    }
-
-    /// Shapes the sand before it is touched.
-    pub fn shape(&mut self, height_m: impl FnMut(usize, usize) -> f64) {
-        self.simulation.shape(height_m);
-    }
-
-    /// The simulation.
-    #[must_use]
-    pub fn simulation(&self) -> &SandSimulation {
-        &self.simulation
-    }
-
-    /// Runs frames on a thread of its own until it is stopped.
-    #[must_use]
-    pub fn spawn(mut self) -> SandThread {
-        let stop = Arc::new(AtomicBool::new(false));
-        let seen = Arc::clone(&stop);
-        let handle = std::thread::spawn(move || {
-            let period = Duration::from_secs_f64(1.0 / FRAMES_PER_S);
-            let mut due = Instant::now();
-            while !seen.load(Ordering::Relaxed) {
-                self.frame();
-                due += period;
-                match due.checked_duration_since(Instant::now()) {
-                    Some(rest) => std::thread::sleep(rest),
-                    // Late: the next frame counts from now, none is made up for.
-                    None => due = Instant::now(),
-                }
-            }
-            self.simulation
-        });
-        SandThread { stop, handle }
-    }
-}
-
-/// A running simulation.
-pub struct SandThread {
-    stop: Arc<AtomicBool>,
-    handle: std::thread::JoinHandle<SandSimulation>,
-}
-
-impl SandThread {
-    /// Stops it and gives the sand back; `None` if the thread has died.
-    pub fn stop(self) -> Option<SandSimulation> {
-        self.stop.store(true, Ordering::Relaxed);
-        self.handle.join().ok()
     }
 }

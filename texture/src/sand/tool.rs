@@ -194,7 +194,7 @@ impl Press {
                 let at = grid.index(x, y);
                 let before = grid.heights[at];
                 // Touching counts as cut, so that the tool keeps standing in its own print.
-                if lower <= f64::from(before) + 1.0 && before < WALL {
+                if lower <= f64::from(before) + 1.0 && before != WALL {
                     let after = (lower.max(0.0) as i32).min(before);
                     grid.heights[at] = after;
                     units += i64::from(before) - i64::from(after);
@@ -246,8 +246,15 @@ impl Press {
         for &(at, sum) in &self.rim {
             // Rounded so that the last one brings the sum to what was cut.
             let due = if sum == total { cut.units } else { (cut.units as f64 * (sum / total)) as i64 };
-            grid.heights[at] += (due - given) as i32;
-            given = due;
+            let part = (due - given).min(i64::from(HIGHEST - grid.heights[at]));
+            grid.heights[at] += part as i32;
+            given += part;
+        }
+        // What a heap that is full to the top cannot take stays under the tool.
+        for &(at, before) in &self.cut {
+            let part = (cut.units - given).min(i64::from(before - grid.heights[at]));
+            grid.heights[at] += part as i32;
+            given += part;
         }
         Displaced { units: cut.units, columns: near.columns, rows: near.rows }
     }

@@ -1,0 +1,221 @@
+//! From what a scene file says about heights to a source the engine samples.
+
+use super::pixels;
+use crate::error::CliError;
+use crate::scene_file::{
+    Brownian, BrownianForce as ForceEntry, Direction, Lattice as LatticeEntry, Sand,
+    SolidNoise as SolidEntry, Source, Tool as ToolEntry,
+};
+use asperity::{Extent, Wrap};
+use asperity_texture::brownian::BrownianDesign;
+use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface, Rendering};
+use asperity_texture::change::SurfaceChange;
+use asperity_texture::combine::{Crossfade, Mask, Scale, Sum};
+use asperity_texture::height_field::HeightField;
+use asperity_texture::height_map::HeightMap;
+use asperity_texture::lattice::Lattice;
+use asperity_texture::raster::Raster;
+use asperity_texture::sand::{Layer, SandDesign, SandLaw, SandSource, SandWorker, Tool};
+use asperity_texture::solid_materials::SolidMaterial;
+use asperity_texture::solid_noise::{ForceDirection, SolidNoise};
+use std::cell::RefCell;
+
+/// Voices of an engine with 64 contacts, the spare ones for fading included: what remembers its contacts
+/// has a place for each.
+const CONTACTS: usize = 96;
+/// Points of a graph unless told otherwise.
+const GRAPH_POINTS: usize = 1 << 14;
+
+type Boxed = Box<dyn HeightField>;
+
+/// What every source of a surface shares.
+#[derive(Clone, Copy)]
+pub(super) struct Ground<'a> {
+    pub extent: Extent,
+    pub wrap: Wrap,
+    pub seed: u64,
+    pub sample_rate_hz: f64,
+    /// Where the workers of sand go that is simulated elsewhere; none = it is simulated within the source.
+    pub workers: Option<&'a RefCell<Vec<SandWorker>>>,
+}
+
+impl Ground<'_> {
+    /// Whether a jump of uv by a whole tile is no movement.
+    pub fn repeats(self, source: &Source) -> bool {
+        let square = self.extent.width_m == self.extent.height_m;
+        match source {
+            Source::Flat | Source::Map { .. } => self.wrap == Wrap::Repeat,
+            Source::Brownian(brownian) => square && !brownian.graph,
+            Source::Solid(_) | Source::Lattice(_) | Source::Sand(_) => false,
+            Source::Sum(parts) => parts.iter().all(|part| self.repeats(part)),
+            Source::Scale(source, _) => self.repeats(source),
+            Source::Mask { inside, outside, .. } => {
+                self.wrap == Wrap::Repeat && self.repeats(inside) && self.repeats(outside)
+            }
+            Source::Crossfade { from, to, .. } => self.repeats(from) && self.repeats(to),
+        }
+    }
+
+    /// The source itself.
+    pub fn source(self, source: &Source) -> Result<Boxed, CliError> {
+        Ok(match source {
+            Source::Flat => {
+                Box::new(HeightMap::flat(self.extent, asperity::DEFAULT_ROUGHNESS).map_err(CliError::told)?)
+            }
+            Source::Map { image, relief_m, invert } => {
+                let heights = upright(pixels(image)?.debanded(self.wrap), *invert);
+                let extent = Extent { relief_m: *relief_m, ..self.extent };
+                let map = HeightMap::new(&heights, extent, self.wrap);
+                Box::new(map.map_err(|error| CliError::told(error).within(image.path.display()))?)
+            }
+            Source::Solid(solid) => Box::new(self.solid(solid)?),
+            Source::Brownian(brownian) => self.brownian(brownian)?,
+            Source::Lattice(entry) => Box::new(lattice(entry)?),
+            Source::Sand(sand) => Box::new(self.sand(sand)?),
+            Source::Sum(parts) => {
+                Box::new(Sum::new(parts.iter().map(|part| self.source(part)).collect::<Result<_, _>>()?))
+            }
+            Source::Scale(source, factor) => {
+                let scale = Scale::new(self.source(source)?, *factor, self.sample_rate_hz);
+                Box::new(scale.map_err(|error| CliError::told(error).within("scale"))?)
+            }
+            Source::Mask { image, inside, outside } => {
+                let weights = pixels(image)?.debanded(self.wrap);
+                let mask = HeightMap::new(&weights, self.extent, self.wrap)
+                    .map_err(|error| CliError::told(error).within(image.path.display()))?;
+                Box::new(Mask::new(Box::new(mask), self.source(inside)?, self.source(outside)?))
+            }
+            Source::Crossfade { from, to, at_s } => {
+                let (from, to) = (self.source(from)?, self.source(to)?);
+                let mut fade = Crossfade::new(from, to, self.sample_rate_hz).map_err(CliError::told)?;
+                let sample = (at_s * self.sample_rate_hz).round() as u64;
+                fade.change(&SurfaceChange::Crossfade(1.0), sample);
+                Box::new(fade)
+            }
+        })
+    }
+
+    fn solid(self, entry: &SolidEntry) -> Result<SolidNoise, CliError> {
+        let material = SolidMaterial::from_name(&entry.preset).ok_or_else(|| {
+            let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ");
+            let what = format!("\"{}\" is unknown", entry.preset);
+            CliError::new("solid", what, format!("must be one of: {known}"))
+        })?;
+        let mut parameters = material.parameters();
+        let set = |to: &mut f64, written: Option<f64>| *to = written.unwrap_or(*to);
+        let module = &mut parameters.modules[0];
+        set(&mut module.magnitude, entry.magnitude);
+        set(&mut module.frequency, entry.frequency);
+        set(&mut module.lacunarity, entry.lacunarity);
+        set(&mut module.persistence, entry.persistence);
+        module.octaves = entry.octaves.map_or(module.octaves, |octaves| octaves as usize);
+        set(&mut parameters.texture_factor_per_m, entry.texture_factor_per_m);
+        set(&mut parameters.amplitude_m, entry.amplitude_m);
+        set(&mut parameters.limit_n, entry.limit_n);
+        set(&mut parameters.cap_n, entry.cap_n);
+        set(&mut parameters.viscosity_n_s_m, entry.viscosity_n_s_m);
+        parameters.proportional_to_contact = entry.proportional.unwrap_or(parameters.proportional_to_contact);
+        if let Some(direction) = entry.direction {
+            parameters.direction = match direction {
+                Direction::X => ForceDirection::X,
+                Direction::Normal => ForceDirection::Normal,
+                Direction::Tangent => ForceDirection::Tangent,
+            };
+        }
+        SolidNoise::new(parameters, entry.seed.unwrap_or(self.seed), self.sample_rate_hz)
+            .map_err(|error| CliError::told(error).within("solid"))
+    }
+
+    fn brownian(self, entry: &Brownian) -> Result<Boxed, CliError> {
+        let told = |error| CliError::told(error).within("brownian");
+        let mut design = BrownianDesign::new(entry.hurst, entry.rms_m, entry.seed.unwrap_or(self.seed));
+        let rendering = entry.force.map(|force| match force {
+            ForceEntry::Orthogonal => Rendering::Orthogonal,
+            ForceEntry::Lateral => Rendering::Lateral,
+        });
+        if entry.graph {
+            design.size = entry.cells.map_or(GRAPH_POINTS, |cells| cells as usize);
+            let heights_m = design.path().map_err(told)?;
+            let spacing_m = self.extent.width_m / design.size as f64;
+            return Ok(Box::new(
+                BrownianPath::new(&heights_m, spacing_m, rendering, CONTACTS).map_err(told)?,
+            ));
+        }
+        design.size = entry.cells.map_or(design.size, |cells| cells as usize);
+        let relief = design.surface().map_err(told)?;
+        // The relief is isotropic and repeats in a square; a surface of another shape is cut from it.
+        let side_m = self.extent.width_m.max(self.extent.height_m);
+        let square = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
+        let map = Box::new(HeightMap::new(&relief, square, Wrap::Repeat).map_err(CliError::told)?);
+        let Some(rendering) = rendering else { return Ok(map) };
+        let (low, high) = relief.range();
+        let force = BrownianForce::surface(rendering, high - low).map_err(told)?;
+        Ok(Box::new(BrownianSurface::new(map, force)))
+    }
+
+    fn sand(self, entry: &Sand) -> Result<SandSource, CliError> {
+        let default = SandLaw::default();
+        let mut law = SandLaw {
+            stiffness_n: entry.stiffness_n,
+            exponent_per_m: entry.exponent_per_m,
+            drag_s_per_m: entry.drag_s_per_m,
+            wetness: entry.wetness.unwrap_or(default.wetness),
+            grain_m: entry.grain_m.unwrap_or(default.grain_m),
+            ..default
+        };
+        for (slot, &(from_m, hardness)) in law.layers.iter_mut().zip(&entry.layers) {
+            *slot = Some(Layer { from_m, hardness });
+        }
+        let design = SandDesign {
+            width_m: self.extent.width_m,
+            height_m: self.extent.height_m,
+            cells: entry.cells as usize,
+            depth_m: entry.depth_m,
+            talus_deg: entry.talus_deg,
+            law,
+            tool: tool(&entry.tool)?,
+            contacts: CONTACTS,
+        };
+        let source = match self.workers {
+            None => SandSource::synchronous(&design, self.seed, self.sample_rate_hz),
+            Some(workers) => {
+                let sand = SandSource::threaded(&design, self.seed, self.sample_rate_hz);
+                sand.map(|(source, worker)| {
+                    workers.borrow_mut().push(worker);
+                    source
+                })
+            }
+        };
+        source.map_err(|error| CliError::told(error).within("sand"))
+    }
+}
+
+fn lattice(entry: &LatticeEntry) -> Result<Lattice, CliError> {
+    let relief_m = entry.relief_m;
+    let cell = upright(pixels(&entry.cell)?.debanded(Wrap::Repeat), entry.invert);
+    Lattice::new(&cell.map(|height| height * relief_m), entry.t1_m, entry.t2_m)
+        .map_err(|error| CliError::told(error).within("lattice"))
+}
+
+/// A picture of a tool's underside: white is no tool, the darkest point is the lowest.
+fn tool(entry: &ToolEntry) -> Result<Tool, CliError> {
+    match entry {
+        ToolEntry::Sphere(radius_m) => Ok(Tool::Sphere { radius_m: *radius_m }),
+        ToolEntry::Map { image, width_m, relief_m } => {
+            let grey = pixels(image)?.raster;
+            let lowest = grey.range().0;
+            if lowest >= 1.0 {
+                let right = "must show the tool darker than white, which is no tool";
+                return Err(CliError::new(image.path.display().to_string(), "is white everywhere", right));
+            }
+            let texel_m = width_m / grey.width as f64;
+            let map = grey.map(|grey| if grey >= 1.0 { f64::INFINITY } else { (grey - lowest) * relief_m });
+            Ok(Tool::LowerMap { map, texel_m })
+        }
+    }
+}
+
+/// A depth map holds what a height map lacks.
+fn upright(heights: Raster, invert: bool) -> Raster {
+    if invert { heights.map(|height| 1.0 - height) } else { heights }
+}

@@ -1,0 +1,101 @@
+//! `sand = { … }`: a bed of sand and what is dragged through it.
+
+use super::fields::{Allowed, Fields};
+use super::source::{Pixels, read_channel};
+use crate::error::CliError;
+use std::path::Path;
+
+/// Layers below the top that the engine knows.
+const MAX_LAYERS: usize = 4;
+
+/// Sand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sand {
+    /// Cells along u.
+    pub cells: u64,
+    /// Depth of the bed, m.
+    pub depth_m: f64,
+    /// Angle of repose, degrees.
+    pub talus_deg: f64,
+    /// k_s of the repulse force, N.
+    pub stiffness_n: f64,
+    /// k_c of the repulse force, 1/m.
+    pub exponent_per_m: f64,
+    /// k_f of the drag, s/m.
+    pub drag_s_per_m: f64,
+    /// 0 dry – 1 wet; none = the engine's default.
+    pub wetness: Option<f64>,
+    /// Diameter of a grain, m; none = the engine's default.
+    pub grain_m: Option<f64>,
+    /// Depth at which a layer begins (m), and its hardness against the top's.
+    pub layers: Vec<(f64, f64)>,
+    /// What is dragged through it.
+    pub tool: Tool,
+}
+
+/// What a contact drags.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Tool {
+    /// A sphere of this radius, m.
+    Sphere(f64),
+    /// Any tool, by a picture of its underside.
+    Map {
+        /// Grey is height above the tool's lowest point, white is no tool.
+        image: Pixels,
+        /// Width of the picture, m.
+        width_m: f64,
+        /// Height of white over black, m.
+        relief_m: f64,
+    },
+}
+
+/// Reads the table.
+pub fn read(mut table: Fields, folder: &Path) -> Result<Sand, CliError> {
+    let sand = Sand {
+        cells: table.whole("cells", 16, 2048)?.unwrap_or(512),
+        depth_m: table.number_or("depth_m", 0.05, Allowed::above(0.0, 0.45, "m"))?,
+        talus_deg: table.number_or("talus_deg", 30.0, Allowed::between(1.0, 80.0, "degrees"))?,
+        stiffness_n: table.number_or("stiffness_n", 1_000.0, Allowed::between(0.01, 1e6, "N"))?,
+        exponent_per_m: table.number_or("exponent_per_m", 1.0, Allowed::between(1e-3, 1e4, "1/m"))?,
+        drag_s_per_m: table.number_or("drag_s_per_m", 20.0, Allowed::between(0.0, 1e4, "s/m"))?,
+        wetness: table.number("wetness", Allowed::between(0.0, 1.0, ""))?,
+        grain_m: table.number("grain_m", Allowed::between(1e-5, 0.01, "m"))?,
+        layers: read_layers(&mut table)?,
+        tool: read_tool(&mut table, folder)?,
+    };
+    table.finish()?;
+    Ok(sand)
+}
+
+fn read_layers(table: &mut Fields) -> Result<Vec<(f64, f64)>, CliError> {
+    let mut layers = Vec::new();
+    let mut above_m = 0.0;
+    for mut layer in table.tables("layers")? {
+        let from_m = layer.needed_number("from_m", Allowed::above(above_m, 1.0, "m"))?;
+        layers.push((from_m, layer.needed_number("hardness", Allowed::between(0.01, 1_000.0, ""))?));
+        layer.finish()?;
+        above_m = from_m;
+    }
+    if layers.len() > MAX_LAYERS {
+        let what = format!("holds {}", layers.len());
+        return Err(table.refuse("layers", what, format!("at most {MAX_LAYERS} layers below the top")));
+    }
+    Ok(layers)
+}
+
+fn read_tool(table: &mut Fields, folder: &Path) -> Result<Tool, CliError> {
+    let radius_m = table.number("tool_radius_m", Allowed::between(1e-4, 0.2, "m"))?;
+    let Some(mut tool) = table.table("tool")? else {
+        return Ok(Tool::Sphere(radius_m.unwrap_or(0.005)));
+    };
+    if radius_m.is_some() {
+        let right = "write one of them; a tool's picture has its own width_m";
+        return Err(table.refuse("tool", "stands beside tool_radius_m", right));
+    }
+    let channel = read_channel(&mut tool, "channel")?;
+    let image = Pixels { path: folder.join(tool.needed_text("map")?), channel };
+    let width_m = tool.needed_number("width_m", Allowed::between(2e-4, 0.4, "m"))?;
+    let relief_m = tool.needed_number("relief_m", Allowed::above(0.0, 0.4, "m"))?;
+    tool.finish()?;
+    Ok(Tool::Map { image, width_m, relief_m })
+}

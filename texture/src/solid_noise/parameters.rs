@@ -1,0 +1,114 @@
+//! What a solid-noise surface is made of, with its ranges.
+
+use crate::height_field::WavelengthBand;
+use asperity_dsp::DesignError;
+
+/// Most octaves of a module.
+pub const MAX_OCTAVES: usize = 16;
+
+/// One noise function of the document (wood needs two).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoiseModule {
+    /// Magnitude M, at or above 0; 0 = no such module.
+    pub magnitude: f64,
+    /// Octaves N, 1 to [`MAX_OCTAVES`].
+    pub octaves: usize,
+    /// Frequency f of the first octave, cells per unit of length 1/T, above 0.
+    pub frequency: f64,
+    /// Lacunarity: frequency ratio of neighbouring octaves, at or above 1.
+    pub lacunarity: f64,
+    /// Persistence: amplitude ratio of neighbouring octaves, 0 to 1.
+    pub persistence: f64,
+}
+
+impl NoiseModule {
+    /// No noise.
+    pub const SILENT: Self =
+        Self { magnitude: 0.0, octaves: 1, frequency: 1.0, lacunarity: 2.0, persistence: 0.5 };
+
+    fn check(&self) -> Result<(), DesignError> {
+        DesignError::check("magnitude", self.magnitude, "0 to 1e3", |m| (0.0..=1e3).contains(&m))?;
+        DesignError::check("octaves", self.octaves as f64, "1 to 16", |n| (1.0..=16.0).contains(&n))?;
+        DesignError::check("frequency", self.frequency, "above 0, to 1e6", |f| f > 0.0 && f <= 1e6)?;
+        DesignError::check("lacunarity", self.lacunarity, "1 to 8", |l| (1.0..=8.0).contains(&l))?;
+        DesignError::check("persistence", self.persistence, "0 to 1", |p| (0.0..=1.0).contains(&p))?;
+        Ok(())
+    }
+}
+
+/// Along which direction the texture force acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForceDirection {
+    /// Along the surface's u axis, as in the document.
+    X,
+    /// Out of the surface.
+    Normal,
+    /// Along the motion; none at rest.
+    Tangent,
+}
+
+/// Everything about a solid-noise surface that may change while it is touched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolidNoiseParameters {
+    /// The noise functions that are added up.
+    pub modules: [NoiseModule; 2],
+    /// Texture factor T, 1/m, above 0.
+    pub texture_factor_per_m: f64,
+    /// Height per unit of magnitude A, metres.
+    pub amplitude_m: f64,
+    /// Force per unit of magnitude L, N, 0 to 1.
+    pub limit_n: f64,
+    /// Largest texture force, N, at or above 0.
+    pub cap_n: f64,
+    /// Direction of the texture force.
+    pub direction: ForceDirection,
+    /// Whether the texture force is multiplied by the normal force in newtons (as the document's
+    /// references 5 and 6 ask; the document itself does not).
+    pub proportional_to_contact: bool,
+    /// Drag −b v of the medium, N·s/m, at or above 0.
+    pub viscosity_n_s_m: f64,
+    /// Coulomb friction coefficient, at or above 0.
+    pub friction: f64,
+}
+
+impl SolidNoiseParameters {
+    /// Refuses what cannot be rendered.
+    ///
+    /// # Errors
+    /// Names the first field that is not finite or out of its range.
+    pub fn check(&self) -> Result<(), DesignError> {
+        for module in &self.modules {
+            module.check()?;
+        }
+        let t = self.texture_factor_per_m;
+        DesignError::check("texture_factor_per_m", t, "above 0, to 1e6", |t| t > 0.0 && t <= 1e6)?;
+        DesignError::check("amplitude_m", self.amplitude_m, "within ±0.1 m", |a| a.abs() <= 0.1)?;
+        DesignError::check("limit_n", self.limit_n, "0 to 1", |l| (0.0..=1.0).contains(&l))?;
+        DesignError::check("cap_n", self.cap_n, "0 to 100 N", |c| (0.0..=100.0).contains(&c))?;
+        let b = self.viscosity_n_s_m;
+        DesignError::check("viscosity_n_s_m", b, "0 to 1000", |b| (0.0..=1000.0).contains(&b))?;
+        DesignError::check("friction", self.friction, "0 to 10", |f| (0.0..=10.0).contains(&f))?;
+        Ok(())
+    }
+
+    /// Cells per metre and amplitude (in units of magnitude) of one octave.
+    pub(super) fn octave(&self, module: &NoiseModule, index: usize) -> (f64, f64) {
+        let (mut frequency, mut amplitude) = (self.texture_factor_per_m * module.frequency, module.magnitude);
+        for _ in 0..index {
+            frequency *= module.lacunarity;
+            amplitude *= module.persistence;
+        }
+        (frequency, amplitude)
+    }
+
+    /// From two cells of the coarsest octave down to one cell of the finest.
+    pub(super) fn band(&self) -> WavelengthBand {
+        let mut band = WavelengthBand::EMPTY;
+        for module in self.modules.iter().filter(|m| m.magnitude > 0.0) {
+            let first = self.octave(module, 0).0;
+            let last = self.octave(module, module.octaves - 1).0;
+            band = band.union(WavelengthBand { shortest_m: 1.0 / last, longest_m: 2.0 / first });
+        }
+        band
+    }
+}
