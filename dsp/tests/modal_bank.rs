@@ -207,7 +207,7 @@ fn without_the_trim_the_decay_is_what_f32_can_store() {
     impulses[0] = 1.0;
     let y = render(Kernel::detect(), &[group], &impulses, 0, || 4096);
     let (_, t60) = pitch_and_t60_error(&y, &m, 192_000.0);
-    assert!(t60.abs() > 1e-3 && t60.abs() < 1e-2, "{t60}");
+    assert!(t60.abs() > 3e-4 && t60.abs() < 1e-2, "{t60}");
 }
 
 #[test]
@@ -237,9 +237,7 @@ fn two_seconds_of_white_force_on_the_lowest_mode_leave_no_error_above_minus_100_
         for kernel in kernels() {
             let db = error_db(&render(kernel, &design(&modes, rate), &impulses, 0, || 64), &exact);
             println!("{rate} Hz, {:?}: {db:.1} dB", kernel.isa());
-            // Rounding twice where the others round once costs the portable set a few dB in this extreme case.
-            let bar = if kernel.isa() == Isa::Portable { -95.0 } else { -100.0 };
-            assert!(db <= bar, "{rate} Hz, {:?}: {db} dB", kernel.isa());
+            assert!(db <= -100.0, "{rate} Hz, {:?}: {db} dB", kernel.isa());
         }
     }
 }
@@ -259,6 +257,38 @@ fn any_split_into_blocks_gives_the_same_bits() {
             let random =
                 render(kernel, &groups, &impulses, 1_000_003, || 1 + (sizes.uniform() * 700.0) as usize);
             assert_eq!(whole, random);
+        }
+    }
+}
+
+#[test]
+fn any_split_gives_the_same_bits_with_gained_inputs_too() {
+    let mut rng = Rng::new(15);
+    let groups = design(&body(70, &mut rng), 44_100.0);
+    for inputs in [1, 2, 3] {
+        let impulses: Vec<Vec<f32>> =
+            (0..inputs).map(|_| (0..1_000).map(|_| rng.normal() as f32).collect()).collect();
+        let gains: Vec<Vec<LaneGains>> = (0..inputs)
+            .map(|_| groups.iter().map(|_| LaneGains(std::array::from_fn(|_| rng.normal() as f32))).collect())
+            .collect();
+        for kernel in kernels() {
+            let split = |size: usize| {
+                let (mut states, mut out) = (vec![GroupState::REST; groups.len()], vec![0.0; 1_000]);
+                for at in (0..1_000).step_by(size) {
+                    let to = (at + size).min(1_000);
+                    let feed: Vec<Input> = impulses
+                        .iter()
+                        .zip(&gains)
+                        .map(|(impulses, gains)| Input { impulses: &impulses[at..to], gains })
+                        .collect();
+                    kernel.render_mixed(77 + at as u64, &groups, &mut states, &feed, &mut out[at..to]);
+                }
+                out
+            };
+            let whole = split(1_000);
+            for size in [1, 2, 3, 37, 64] {
+                assert_eq!(whole, split(size), "{inputs} inputs, {:?}, blocks of {size}", kernel.isa());
+            }
         }
     }
 }
