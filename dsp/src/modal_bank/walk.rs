@@ -86,10 +86,7 @@ impl Direct {
         for (k, input) in job.feed.inputs.iter().enumerate().take(MAX_INPUTS) {
             let gains = if job.feed.shared { &[] } else { input.gains };
             // SAFETY: passed on from the caller.
-            unsafe {
-                direct.own[k] = lane_sum::<V, P>(job.groups, gains, |group| &group.now[0]);
-                direct.next[k] = lane_sum::<V, P>(job.groups, gains, |group| &group.first[0]);
-            }
+            [direct.own[k], direct.next[k]] = unsafe { lane_sums::<V, P>(job.groups, gains) };
         }
         direct
     }
@@ -97,69 +94,72 @@ impl Direct {
     /// Adds its share to the output of a chunk, and keeps what a pair that is cut in two needs.
     #[inline(always)]
     fn add(&self, job: &mut Job<'_>, chunk: Chunk, out: &mut [f32]) {
+        let inputs = job.feed.inputs;
+        // The sum over the inputs, each with its weight, of sample `n` of the chunk.
+        let sum = |weights: &[f32], n: usize| {
+            inputs.iter().zip(weights).fold(0.0, |sum, (input, to)| sum + to * input.impulses[chunk.at + n])
+        };
         let carried = &mut job.states[0].carried;
-        let mut own = [0.0; ROWS];
-        let mut next = [0.0; ROWS + 1];
-        if chunk.odd {
-            next[0] = core::mem::take(carried);
-        }
         let odd = usize::from(chunk.odd);
-        for ((input, to_own), to_next) in job.feed.inputs.iter().zip(self.own).zip(self.next) {
-            let impulses = &input.impulses[chunk.at..chunk.at + chunk.len];
-            for (x, u) in own.iter_mut().zip(impulses) {
-                *x += to_own * u;
-            }
-            // Every other weight is zero: whole vectors are faster than every other sample.
-            let alternating = [to_next, 0.0, to_next, 0.0, to_next, 0.0, to_next, 0.0];
-            let (eights, rest) = impulses[odd..].as_chunks::<8>();
-            let (to_eights, to_rest) = next[odd + 1..].as_chunks_mut::<8>();
-            for (x, u) in to_eights.iter_mut().zip(eights) {
+        if let (true, Some(y)) = (chunk.odd, out.first_mut()) {
+            *y += sum(&self.own, 0) + core::mem::take(carried);
+        }
+        let (eights, rest) = out[odd..].as_chunks_mut::<8>();
+        let after = odd + 8 * eights.len();
+        for (e, y) in eights.iter_mut().enumerate() {
+            let (mut own, mut next) = ([0.0; 8], [0.0; 8]);
+            for ((input, to_own), to_next) in inputs.iter().zip(self.own).zip(self.next) {
+                let Some(u) = input.impulses[chunk.at + odd + 8 * e..].first_chunk::<8>() else { continue };
                 for i in 0..8 {
-                    x[i] += alternating[i] * u[i];
+                    own[i] += to_own * u[i];
+                    // Whole vectors of which every other weight is zero are faster than every other sample.
+                    next[i] += if i % 2 == 1 { to_next } else { 0.0 } * u[i & !1];
                 }
             }
-            let to_rest = to_eights.get_mut(eights.len()).map_or(to_rest, |x| &mut x[..]);
-            for ((x, u), weight) in to_rest.iter_mut().zip(rest).zip(alternating) {
-                *x += weight * u;
+            for i in 0..8 {
+                y[i] += own[i] + next[i];
             }
         }
-        if (chunk.len - odd) % 2 == 1 {
-            *carried = next[chunk.len];
+        for (i, y) in rest.iter_mut().enumerate() {
+            let next = if i % 2 == 1 { sum(&self.next, after + i - 1) } else { 0.0 };
+            *y += sum(&self.own, after + i) + next;
         }
-        for ((y, own), next) in out.iter_mut().zip(own).zip(next) {
-            *y += own + next;
+        if rest.len() % 2 == 1 {
+            *carried = sum(&self.next, chunk.len - 1);
         }
     }
 }
 
-/// The sum over all lanes of one coefficient times the gain, which is 1 where there are no gains.
+/// The sums over all lanes of what an impulse sends to its own and to the next sample, times the gains, which
+/// are 1 where there are none.
 ///
 /// # Safety
 /// The processor has the instructions of V; there are no gains or those of all groups.
 #[inline(always)]
-unsafe fn lane_sum<V: Vector, const P: usize>(
-    groups: &[ModeGroup],
-    gains: &[LaneGains],
-    of: impl Fn(&ModeGroup) -> &Lanes,
-) -> f32 {
-    let mut row = Row([0.0; LANES]);
+unsafe fn lane_sums<V: Vector, const P: usize>(groups: &[ModeGroup], gains: &[LaneGains]) -> [f32; 2] {
+    let mut rows = [Row([0.0; LANES]); 2];
     // SAFETY: every pointer goes to lane p · LEN of an array of LANES = P · LEN values.
     unsafe {
-        let mut sum = [V::splat(0.0); P];
+        // Two sums each, of even and odd groups: one alone waits for itself.
+        let mut sums = [[[V::splat(0.0); P]; 2]; 2];
         for (i, group) in groups.iter().enumerate() {
-            for (p, sum) in sum.iter_mut().enumerate() {
-                let x = V::load(of(group).as_ptr().add(p * V::LEN));
-                *sum = match gains.get(i) {
-                    Some(gains) => x.mul_add(V::load(gains.0.as_ptr().add(p * V::LEN)), *sum),
-                    None => x.add(*sum),
-                };
+            for (sums, of) in sums.iter_mut().zip([&group.now[0], &group.first[0]]) {
+                for (p, sum) in sums[i % 2].iter_mut().enumerate() {
+                    let x = V::load(of.as_ptr().add(p * V::LEN));
+                    *sum = match gains.get(i) {
+                        Some(gains) => x.mul_add(V::load(gains.0.as_ptr().add(p * V::LEN)), *sum),
+                        None => x.add(*sum),
+                    };
+                }
             }
         }
-        for (p, sum) in sum.into_iter().enumerate() {
-            sum.store(row.0.as_mut_ptr().add(p * V::LEN));
+        for (row, [even, odd]) in rows.iter_mut().zip(sums) {
+            for p in 0..P {
+                even[p].add(odd[p]).store(row.0.as_mut_ptr().add(p * V::LEN));
+            }
         }
     }
-    super::vector::sum_row(&row)
+    rows.map(|row| super::vector::sum_row(&row))
 }
 
 /// Cuts the groups into sets of nearly equal size, at most `MAX` each: a set that is too small waits
