@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
-use super::design::{GRID_SAMPLES, GroupState, LaneGains, Lanes, ModeGroup};
+use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
 use super::kernel::Input;
 use super::set::{ANY, SHARED, SHARED_FIRST, set};
 use super::sleep::MAX_INPUTS;
