@@ -59,7 +59,7 @@ pub use design::{
 pub use kernel::{Input, Isa, Kernel};
 pub use reference::{ReferenceMode, ReferenceState};
 pub use retune::retune;
-pub use sleep::{Awake, Bank, MAX_INPUTS, SLEEP_AMPLITUDE, energy};
+pub use sleep::{Awake, Bank, MAX_INPUTS, SLEEP_AMPLITUDE, energy, ringing_s};
 
 /// Modes in a group.
 pub const LANES: usize = 16;
