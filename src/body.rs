@@ -17,6 +17,9 @@ use asperity_texture::height_field::MAX_BLOCK;
 /// 85 ms at 96 kHz.
 const BUS_SAMPLES: usize = 8192;
 
+/// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
+const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
+
 /// A body as the audio half owns it.
 pub(crate) struct BodySlot {
     groups: Vec<ModeGroup>,
@@ -77,9 +80,10 @@ impl BodySlot {
     /// Designs the bank at the engine's rate; modes at or above Nyquist stay silent.
     pub(crate) fn new(model: &ModalModel, sample_rate_hz: f64) -> Result<Self, DesignError> {
         let mut modes: Vec<_> = model.unit_modes().filter(|(mode, _)| mode.amplitude != 0.0).collect();
-        // Slow decays first, so that the groups still awake are always a prefix.
+        // What rings longest comes first, so that the groups still awake are always a prefix.
+        let rings = |mode: &Mode| modal_bank::ringing_s(mode, TYPICAL_IMPULSE_N_S);
         modes.sort_by(|(a, _), (b, _)| {
-            a.decay_per_s.total_cmp(&b.decay_per_s).then(a.frequency_hz.total_cmp(&b.frequency_hz))
+            rings(b).total_cmp(&rings(a)).then(a.frequency_hz.total_cmp(&b.frequency_hz))
         });
         let options = GroupOptions::IMPULSE_RING;
         let design = |chunk: &[(Mode, [f32; MAX_POSITIONS])]| {

@@ -2,9 +2,13 @@
 //!
 //! | level | what is left out |
 //! |---|---|
-//! | 1–4 | the groups of modes that decay fastest, a fifth of each body at a time: under a steady force a mode holds a²/2d of energy, so they sound least. They hear nothing more and ring out, without a click |
+//! | 1–4 | the groups of modes that would fall asleep first, weak and fast decays, a fifth of each body at a time: under a steady force a mode holds a²/2d of energy, so they sound least. They hear nothing more and ring out, without a click |
 //! | 5–8 | the finest octave of the micro-noise that still sounds, one a level |
 //! | 9–16 | the contacts of lowest priority, an eighth at a time; they fade, and a move revives them later |
+//!
+//! What it costs, ten fingers that stroke a body of 80 modes (`tests/only_what_is_needed.rs`): levels 1–3 leave an error of
+//! −108, −59 and −47 dB; level 4 takes all but 16 modes and 7 dB; levels 5–8 take 5–14 dB of sound and the grain of the
+//! touch. After recovery the sound is that of an engine that was never late.
 //!
 //! The level rises with every report above [`LATE`] and falls by one in [`RECOVERY_S`] below [`EASY`].
 //! It is a function of the reports and of the samples rendered alone: where no load is reported, as

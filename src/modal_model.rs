@@ -195,10 +195,14 @@ impl ModalModel {
     pub fn audible(&self, sample_rate_hz: f64, culling: &Culling) -> Self {
         let mut keep = vec![false; self.modes.len()];
         let mut audible = vec![false; self.modes.len()];
+        // Slow decays first: maskers come before what they mask.
+        let mut order: Vec<usize> = (0..self.modes.len()).collect();
+        order.sort_by(|&a, &b| self.modes[a].decay_per_s.total_cmp(&self.modes[b].decay_per_s));
         for position in 0..self.position_count() {
-            let modes: Vec<_> = self.modes_at(position).collect();
-            modal_bank::audible(&modes, sample_rate_hz, culling, &mut audible);
-            keep.iter_mut().zip(&audible).for_each(|(keep, audible)| *keep |= audible);
+            let at: Vec<_> = self.modes_at(position).collect();
+            let sorted: Vec<_> = order.iter().map(|&i| at[i]).collect();
+            modal_bank::audible(&sorted, sample_rate_hz, culling, &mut audible);
+            order.iter().zip(&audible).for_each(|(&i, audible)| keep[i] |= audible);
         }
         let kept = |i: &usize| keep[*i];
         Self {

@@ -152,10 +152,13 @@ fn an_undamped_pad_that_bounces_for_ten_seconds_never_rises_higher_than_its_ener
             run.begin(ContactSample { closing_m_s: speed_m_s, ..pressed(0.2, 0.0, force_n) });
             let what = format!("{integrator:?}, {contact_stiffness_n_m} N/m");
             let peaks: Vec<f64> = (0..5).map(|_| f64::from(run.render(2.0).haptic)).collect();
-            // All energy in height against the force, or all in the stretched pad, or both.
+            // At its highest the pad is s above the finger: energy ≥ k s²/2 + F (x − s), so x ≤ energy/F + F/2k. No
+            // slack: the energy may grow by the integrators' own bars alone.
             let energy_j = 0.5 * (probe.pad_mass_kg + probe.finger_mass_kg) * speed_m_s * speed_m_s;
-            let highest_m = energy_j / force_n + (2.0 * energy_j / probe.pad_stiffness_n_m).sqrt();
-            assert!(peaks.iter().all(|m| *m < highest_m), "{what}: {peaks:?} against {highest_m}");
+            let gain = if integrator == Integrator::ExactEvent { 1.002 } else { 1.0 + 1e-9 };
+            let highest_m = gain * energy_j / force_n + 0.5 * force_n / probe.pad_stiffness_n_m;
+            println!("{what}: {peaks:?} against {highest_m}");
+            assert!(peaks.iter().all(|m| *m <= highest_m), "{what}: {peaks:?} against {highest_m}");
             assert!(peaks[4] > 0.5 * peaks[0], "{what}: the bouncing dies out: {peaks:?}");
         }
     }

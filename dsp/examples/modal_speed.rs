@@ -78,7 +78,7 @@ fn best_and_median(mut rates: Vec<f64>) -> String {
 }
 
 fn main() {
-    let rounds = std::env::args().nth(1).and_then(|a| a.parse().ok()).unwrap_or(12);
+    let rounds: usize = std::env::args().nth(1).and_then(|a| a.parse().ok()).unwrap_or(12);
     let kernels: Vec<Kernel> =
         [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512].into_iter().filter_map(Kernel::find).collect();
     let peer = c_peer();

@@ -207,7 +207,7 @@ fn without_the_trim_the_decay_is_what_f32_can_store() {
     impulses[0] = 1.0;
     let y = render(Kernel::detect(), &[group], &impulses, 0, || 4096);
     let (_, t60) = pitch_and_t60_error(&y, &m, 192_000.0);
-    assert!(t60.abs() > 1e-3 && t60.abs() < 1e-2, "{t60}");
+    assert!(t60.abs() > 3e-4 && t60.abs() < 1e-2, "{t60}");
 }
 
 #[test]
@@ -237,9 +237,7 @@ fn two_seconds_of_white_force_on_the_lowest_mode_leave_no_error_above_minus_100_
         for kernel in kernels() {
             let db = error_db(&render(kernel, &design(&modes, rate), &impulses, 0, || 64), &exact);
             println!("{rate} Hz, {:?}: {db:.1} dB", kernel.isa());
-            // Rounding twice where the others round once costs the portable set a few dB in this extreme case.
-            let bar = if kernel.isa() == Isa::Portable { -95.0 } else { -100.0 };
-            assert!(db <= bar, "{rate} Hz, {:?}: {db} dB", kernel.isa());
+            assert!(db <= -100.0, "{rate} Hz, {:?}: {db} dB", kernel.isa());
         }
     }
 }
@@ -259,6 +257,38 @@ fn any_split_into_blocks_gives_the_same_bits() {
             let random =
                 render(kernel, &groups, &impulses, 1_000_003, || 1 + (sizes.uniform() * 700.0) as usize);
             assert_eq!(whole, random);
+        }
+    }
+}
+
+#[test]
+fn any_split_gives_the_same_bits_with_gained_inputs_too() {
+    let mut rng = Rng::new(15);
+    let groups = design(&body(70, &mut rng), 44_100.0);
+    for inputs in [1, 2, 3] {
+        let impulses: Vec<Vec<f32>> =
+            (0..inputs).map(|_| (0..1_000).map(|_| rng.normal() as f32).collect()).collect();
+        let gains: Vec<Vec<LaneGains>> = (0..inputs)
+            .map(|_| groups.iter().map(|_| LaneGains(std::array::from_fn(|_| rng.normal() as f32))).collect())
+            .collect();
+        for kernel in kernels() {
+            let split = |size: usize| {
+                let (mut states, mut out) = (vec![GroupState::REST; groups.len()], vec![0.0; 1_000]);
+                for at in (0..1_000).step_by(size) {
+                    let to = (at + size).min(1_000);
+                    let feed: Vec<Input> = impulses
+                        .iter()
+                        .zip(&gains)
+                        .map(|(impulses, gains)| Input { impulses: &impulses[at..to], gains })
+                        .collect();
+                    kernel.render_mixed(77 + at as u64, &groups, &mut states, &feed, &mut out[at..to]);
+                }
+                out
+            };
+            let whole = split(1_000);
+            for size in [1, 2, 3, 37, 64] {
+                assert_eq!(whole, split(size), "{inputs} inputs, {:?}, blocks of {size}", kernel.isa());
+            }
         }
     }
 }
@@ -501,6 +531,57 @@ fn culling_keeps_what_is_heard() {
     assert_eq!(keep, [true, false, true, true, false, false]);
     let everything = Culling { level_db: f64::INFINITY, masking: false, ..Culling::default() };
     assert_eq!(audible(&modes, 96_000.0, &everything, &mut keep), 6);
+}
+
+/// Masking as the equations say, every mode against every other.
+fn exactly_audible(modes: &[Mode]) -> Vec<bool> {
+    let bark = |f: f64| 26.81 * f / (1960.0 + f) - 0.53;
+    let loudest = modes.iter().fold(0.0_f64, |a, m| a.max(m.amplitude.abs()));
+    let level = |m: &Mode| 80.0 + 20.0 * (m.amplitude.abs() / loudest).log10();
+    let masks = |other: &Mode, mode: &Mode| {
+        let (l, dz) = (level(other), bark(mode.frequency_hz) - bark(other.frequency_hz));
+        let slope = if !(-3.0..8.0).contains(&dz) {
+            f64::NEG_INFINITY
+        } else if dz < -1.0 {
+            17.0 * dz - 0.4 * l + 11.0
+        } else if dz < 0.0 {
+            (0.4 * l + 6.0) * dz
+        } else if dz < 1.0 {
+            -17.0 * dz
+        } else {
+            -17.0 - (dz - 1.0) * (17.0 - 0.15 * l)
+        };
+        let below = l - 6.025 - 0.275 * bark(other.frequency_hz) + slope;
+        other.decay_per_s <= mode.decay_per_s && level(mode) < below
+    };
+    modes.iter().map(|m| level(m) >= 0.0 && !modes.iter().any(|other| masks(other, m))).collect()
+}
+
+#[test]
+fn masking_in_bands_loses_nothing_audible_and_finds_nearly_all_that_is_masked() {
+    let mut rng = Rng::new(31);
+    for (count, equal_decays) in [(20, false), (400, false), (400, true), (4000, false)] {
+        let mut modes = body(count, &mut rng);
+        for m in &mut modes {
+            m.amplitude = 10f64.powf(-4.0 * rng.uniform());
+            if equal_decays {
+                m.decay_per_s = 8.0;
+            }
+        }
+        sort_by_decay(&mut modes);
+        let mut keep = vec![false; count];
+        let start = std::time::Instant::now();
+        let kept = audible(&modes, 44_100.0, &Culling::default(), &mut keep);
+        let exact = exactly_audible(&modes);
+        println!("{count} modes: {kept} kept, exactly {:?}", exact.iter().filter(|k| **k).count());
+        assert!(
+            keep.iter().zip(&exact).all(|(keep, exact)| *keep || !exact),
+            "{count}: something audible went"
+        );
+        let superfluous = keep.iter().zip(&exact).filter(|(keep, exact)| **keep && !**exact).count();
+        assert!(superfluous * 50 <= count, "{count} modes: {superfluous} masked ones stay");
+        assert!(start.elapsed().as_millis() < 2_000);
+    }
 }
 
 #[test]

@@ -25,6 +25,7 @@ pub fn is_available(kernel: Kernel) -> bool {
 }
 
 #[cfg(target_arch = "x86_64")]
+// Two vectors wide: one alone waits for its own results.
 #[target_feature(enable = "avx2")]
 fn add_avx2(
     noise: &FractalNoise,
@@ -33,7 +34,7 @@ fn add_avx2(
     band: &[f32; OCTAVES],
     height_m: &mut [f64],
 ) {
-    lanes::add::<8>(noise, path, roughness, band, height_m);
+    lanes::add::<16>(noise, path, roughness, band, height_m);
 }
 
 #[cfg(target_arch = "x86_64")]

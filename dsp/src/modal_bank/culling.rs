@@ -41,30 +41,88 @@ impl Default for Culling {
 
 /// Marks in `keep` which modes are worth computing at `sample_rate_hz` and returns how many. Modes at or
 /// above Nyquist go as well. Entries of `keep` beyond the modes are left alone.
+///
+/// The time is proportional to the modes: maskers are looked up in bands of a tenth of a Bark, each of which remembers
+/// the loudest seen so far. Nothing audible goes for that; where modes are sorted by [`super::sort_by_decay`]
+/// hardly anything masked stays, in another order more may.
 pub fn audible(modes: &[Mode], sample_rate_hz: f64, culling: &Culling, keep: &mut [bool]) -> usize {
     let sounds = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * sample_rate_hz;
     let loudest = modes.iter().filter(|m| sounds(m)).fold(0.0_f64, |a, m| a.max(m.amplitude.abs()));
     let level = |mode: &Mode| culling.loudest_db_spl + 20.0 * libm::log10(mode.amplitude.abs() / loudest);
-    let mut count = 0;
     for (mode, keep) in modes.iter().zip(keep.iter_mut()) {
         *keep = sounds(mode) && level(mode) >= culling.loudest_db_spl - culling.level_db;
-        if *keep && culling.masking {
-            let masks = |other: &Mode| {
-                sounds(other)
-                    && other.decay_per_s <= mode.decay_per_s
-                    && level(mode) < masked_below_db(level(other), other.frequency_hz, mode.frequency_hz)
-            };
-            *keep = !modes.iter().any(masks);
-        }
-        count += usize::from(*keep);
     }
-    count
+    if culling.masking {
+        let mut hide = |pass: &mut dyn Iterator<Item = (&Mode, &mut bool)>| {
+            let mut maskers = Maskers::default();
+            for (mode, keep) in pass.filter(|(mode, _)| sounds(mode)) {
+                let tone = Tone {
+                    level_db: level(mode),
+                    bark: bark(mode.frequency_hz),
+                    decay_per_s: mode.decay_per_s,
+                };
+                *keep = *keep && !maskers.hide(&tone);
+                maskers.add(tone);
+            }
+        };
+        // Maskers last at least as long; the second pass is for equally long ones further on.
+        hide(&mut modes.iter().zip(keep.iter_mut()));
+        let count = modes.len().min(keep.len());
+        hide(&mut modes[..count].iter().zip(keep[..count].iter_mut()).rev());
+    }
+    keep.iter().take(modes.len()).filter(|keep| **keep).count()
 }
 
-/// The level below which a tone at `probe_hz` is hidden by one of `level_db` at `masker_hz`.
-fn masked_below_db(level_db: f64, masker_hz: f64, probe_hz: f64) -> f64 {
-    let z = bark(masker_hz);
-    let dz = bark(probe_hz) - z;
+/// A mode as the ear hears it.
+#[derive(Debug, Clone, Copy)]
+struct Tone {
+    level_db: f64,
+    bark: f64,
+    decay_per_s: f64,
+}
+
+/// Bands in a Bark.
+const BANDS_PER_BARK: f64 = 10.0;
+/// Up to the end of the scale, 26.28 Bark.
+const BANDS: usize = 270;
+
+/// The loudest tone of every band. What a tone hides grows with its level, so a quieter one in the same band hardly
+/// ever hides more.
+struct Maskers([Option<Tone>; BANDS]);
+
+impl Default for Maskers {
+    fn default() -> Self {
+        Self([None; BANDS])
+    }
+}
+
+impl Maskers {
+    fn band(bark: f64) -> usize {
+        // The scale begins at −0.53.
+        (((bark + 0.53) * BANDS_PER_BARK).max(0.0) as usize).min(BANDS - 1)
+    }
+
+    fn add(&mut self, tone: Tone) {
+        let loudest = &mut self.0[Self::band(tone.bark)];
+        if loudest.is_none_or(|known| known.level_db < tone.level_db) {
+            *loudest = Some(tone);
+        }
+    }
+
+    /// Whether a tone that lasts as long or longer hides this one.
+    fn hide(&self, tone: &Tone) -> bool {
+        // Maskers reach 8 Bark up and 3 down.
+        let near = Self::band(tone.bark - 8.0)..=Self::band(tone.bark + 3.0);
+        self.0[near].iter().flatten().any(|masker| {
+            masker.decay_per_s <= tone.decay_per_s && tone.level_db < masked_below_db(masker, tone.bark)
+        })
+    }
+}
+
+/// The level below which a tone at `bark` is hidden.
+fn masked_below_db(masker: &Tone, bark: f64) -> f64 {
+    let Tone { level_db, bark: z, .. } = *masker;
+    let dz = bark - z;
     let slope = match dz {
         dz if (-3.0..-1.0).contains(&dz) => 17.0 * dz - 0.4 * level_db + 11.0,
         dz if (-1.0..0.0).contains(&dz) => (0.4 * level_db + 6.0) * dz,

@@ -33,44 +33,44 @@ impl GroupOptions {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct ModeGroup {
-    /// R².
-    pub(super) r2: [f32; LANES],
-    /// m = 1 − 2R cos θ + R², for the R² that was really stored.
-    pub(super) m: [f32; LANES],
-    /// Output gain of y.
-    pub(super) out_y: [f32; LANES],
-    /// Output gain of d.
-    pub(super) out_d: [f32; LANES],
-    /// Once in [`GRID_SAMPLES`]: y gains `trim_yy` · y + `trim_yd` · d.
-    pub(super) trim_yy: [f32; LANES],
-    pub(super) trim_yd: [f32; LANES],
-    /// And d gains `trim_dy` · y + `trim_dd` · d.
-    pub(super) trim_dy: [f32; LANES],
-    pub(super) trim_dd: [f32; LANES],
-    /// a sin θ: one component of the lane's amplitude in output units is this · y.
-    pub(super) level: [f32; LANES],
-    /// a (cos θ − R): the other component is this · y + `quad_d` · d.
-    pub(super) quad_y: [f32; LANES],
-    /// a R.
-    pub(super) quad_d: [f32; LANES],
+    /// Two samples of free motion: v becomes `step[0][0]` · v + `step[0][1]` · w, w the same of row 1.
+    pub(super) step: [[Lanes; 2]; 2],
+    /// Output of the first sample of a pair: `first[0]` · v + `first[1]` · w.
+    pub(super) first: [Lanes; 2],
+    /// Output of the second.
+    pub(super) second: [Lanes; 2],
+    /// Once in [`GRID_SAMPLES`]: v gains `trim[0][0]` · v + `trim[0][1]` · w, w the same of row 1.
+    pub(super) trim: [[Lanes; 2]; 2],
+    /// The output at the pair's beginning, `now[0]` · v + `now[1]` · w; b₀ = `now[0]` is what an impulse sends to
+    /// the output of its own sample.
+    pub(super) now: [Lanes; 2],
+    /// The output a quarter period later, but for the decay: the other component of its phasor.
+    pub(super) quarter: [Lanes; 2],
 }
+
+/// One number for each mode of a group.
+pub(super) type Lanes = [f32; LANES];
 
 /// What 16 modes remember between samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct GroupState {
-    pub(super) y: [f32; LANES],
-    pub(super) d: [f32; LANES],
+    pub(super) v: Lanes,
+    pub(super) w: Lanes,
+    /// What the lanes heard in the first sample of a pair that is not complete; otherwise zero.
+    pub(super) pending: Lanes,
+    /// What that sample's inputs send to the output of the next; kept by the first group of a bank.
+    pub(super) carried: f32,
 }
 
 impl GroupState {
     /// At rest.
-    pub const REST: Self = Self { y: [0.0; LANES], d: [0.0; LANES] };
+    pub const REST: Self = Self { v: [0.0; LANES], w: [0.0; LANES], pending: [0.0; LANES], carried: 0.0 };
 
     /// True when every lane is exactly at rest.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.y.iter().chain(&self.d).all(|&x| x == 0.0)
+        self.carried == 0.0 && self.v.iter().chain(&self.w).chain(&self.pending).all(|&x| x == 0.0)
     }
 }
 
@@ -128,90 +128,63 @@ impl Pole {
 
 impl ModeGroup {
     /// Sixteen silent lanes.
-    pub const SILENT: Self = Self {
-        r2: [0.0; LANES],
-        // With R² = 0 and m = 1 a lane holds its last input and nothing older.
-        m: [1.0; LANES],
-        out_y: [0.0; LANES],
-        out_d: [0.0; LANES],
-        trim_yy: [0.0; LANES],
-        trim_yd: [0.0; LANES],
-        trim_dy: [0.0; LANES],
-        trim_dd: [0.0; LANES],
-        level: [0.0; LANES],
-        quad_y: [0.0; LANES],
-        quad_d: [0.0; LANES],
+    pub const SILENT: Self = {
+        let lanes = [0.0; LANES];
+        let (two, four) = ([lanes; 2], [[lanes; 2]; 2]);
+        Self { step: four, first: two, second: two, trim: four, now: two, quarter: two }
     };
 
     fn set_lane(&mut self, lane: usize, pole: &Pole, options: &GroupOptions) {
-        let r2 = libm::exp(-2.0 * pole.decay) as f32;
-        // The pole pair that f32 really stores: its radius is √r2, and m is chosen for that radius.
-        let stored = f64::from(r2);
-        let radius = libm::sqrt(stored);
-        let half = libm::sin(0.5 * pole.theta);
-        let gap = 1.0 - radius;
+        let radius = libm::exp(-pole.decay);
+        let (sin, cos) = (libm::sin(pole.theta), libm::cos(pole.theta));
+        let (gap, half) = (-libm::expm1(-pole.decay), libm::sin(0.5 * pole.theta));
+        let m = gap * gap + 4.0 * radius * half * half;
+        let g = 1.0 - (m - libm::expm1(-2.0 * pole.decay));
         let (b0, b1) = pole.numerator();
-        self.r2[lane] = r2;
-        self.m[lane] = (gap * gap + 4.0 * radius * half * half) as f32;
-        self.out_y[lane] = (b0 + b1) as f32;
-        self.out_d[lane] = -b1 as f32;
+        let next = [[1.0, -m], [1.0, g]];
+        let step = square(next);
+        let now = [b0, b0 * g + b1];
+        let [first] = product([now], next);
+        let [second] = product([first], next);
+        let quarter = [0, 1].map(|i| (first[i] / radius - cos * now[i]) / sin);
+        for i in 0..2 {
+            self.first[i][lane] = first[i] as f32;
+            self.second[i][lane] = second[i] as f32;
+            self.now[i][lane] = now[i] as f32;
+            self.quarter[i][lane] = quarter[i] as f32;
+            for (to, row) in self.step.iter_mut().zip(step) {
+                to[i][lane] = row[i] as f32;
+            }
+        }
         if options.true_t60 {
-            self.set_trim(lane, pole);
+            self.set_trim(lane, step);
         }
-        let a = pole.amplitude.abs();
-        self.level[lane] = (a * libm::sin(pole.theta)) as f32;
-        self.quad_y[lane] = (a * (gap - 2.0 * half * half)) as f32;
-        self.quad_d[lane] = (a * radius) as f32;
     }
-}
 
-impl ModeGroup {
-    /// The turn e^((λ − λ stored) · 64 samples) − 1 that the stored pole lacks, for the pair (y, d).
-    fn set_trim(&mut self, lane: usize, pole: &Pole) {
-        let Some(stored) = StoredPole::read(self.r2[lane], self.m[lane]) else { return };
-        let grid = GRID_SAMPLES as f64;
-        let grow = libm::expm1(grid * (-pole.decay - libm::log(stored.radius)));
-        let turn = grid * (pole.theta - stored.theta);
-        let (half, sin) = (libm::sin(0.5 * turn), libm::sin(turn));
-        // (1 + grow) e^(i turn) − 1
-        let a = grow - 2.0 * (1.0 + grow) * half * half;
-        let b = (1.0 + grow) * sin;
-        // q = k y + l d is the quadrature of y.
-        let (k, l) = (stored.cos_less_radius / stored.sin, stored.radius / stored.sin);
-        self.trim_yy[lane] = (a + b * k) as f32;
-        self.trim_yd[lane] = (b * l) as f32;
-        self.trim_dy[lane] = (-b * (1.0 + k * k) / l) as f32;
-        self.trim_dd[lane] = (a - b * k) as f32;
-    }
-}
-
-/// The pole pair that a lane's two stored numbers stand for.
-pub(super) struct StoredPole {
-    pub radius: f64,
-    pub theta: f64,
-    /// cos θ − R, without cancellation.
-    pub cos_less_radius: f64,
-    pub sin: f64,
-}
-
-impl StoredPole {
-    /// `None` for a silent lane.
-    pub fn read(r2: f32, m: f32) -> Option<Self> {
-        let radius = libm::sqrt(f64::from(r2));
-        let gap = 1.0 - radius;
-        let half_square = (f64::from(m) - gap * gap) / (4.0 * radius);
-        // False for the silent lane's 1/0 as well.
-        if !(half_square > 0.0 && half_square < 1.0) {
-            return None;
+    /// What the stored step of two samples lacks after a whole grid: (exact ^ 32) (stored ^ 32)⁻¹ − 1.
+    fn set_trim(&mut self, lane: usize, step: Matrix) {
+        let stored = self.step.map(|row| row.map(|x| f64::from(x[lane])));
+        let [exact, [[a, b], [c, d]]] = [step, stored].map(|x| (0..5).fold(x, |x, _| square(x)));
+        let det = a * d - b * c;
+        // What has decayed by 60 dB within the grid needs no exact decay.
+        if det > 1e-6 {
+            let [[vv, vw], [wv, ww]] = product(exact, [[d / det, -b / det], [-c / det, a / det]]);
+            for (to, row) in self.trim.iter_mut().zip([[vv - 1.0, vw], [wv, ww - 1.0]]) {
+                (to[0][lane], to[1][lane]) = (row[0] as f32, row[1] as f32);
+            }
         }
-        let half = libm::sqrt(half_square);
-        Some(Self {
-            radius,
-            theta: 2.0 * libm::asin(half),
-            cos_less_radius: gap - 2.0 * half_square,
-            sin: 2.0 * libm::sqrt(half_square * (1.0 - half_square)),
-        })
     }
+}
+
+/// Rows of a linear map of (v, w).
+type Matrix = [[f64; 2]; 2];
+
+fn product<const N: usize>(left: [[f64; 2]; N], right: Matrix) -> [[f64; 2]; N] {
+    left.map(|row| [0, 1].map(|i| row[0] * right[0][i] + row[1] * right[1][i]))
+}
+
+fn square(x: Matrix) -> Matrix {
+    product(x, x)
 }
 
 /// Designs one group from up to 16 modes; modes at or above Nyquist and unused lanes are silent.

@@ -1,11 +1,10 @@
-//! The hot loop: which instructions, how many groups at once, and the walk over the 64-sample grid.
+//! Which instructions the bank runs on, and its entry points.
 #![allow(unsafe_code)]
 
-use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
-use super::vector::{Baseline, Row, Vector};
-use super::{LANES, sleep};
-use core::array::from_fn;
-use core::mem::MaybeUninit;
+use super::design::{GroupState, LaneGains, ModeGroup};
+use super::sleep::{self, MAX_INPUTS};
+use super::vector::Baseline;
+use super::walk::{Feed, Job, walk};
 
 /// An instruction set the bank has code for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,9 +35,6 @@ pub struct Input<'a> {
     pub gains: &'a [LaneGains],
 }
 
-/// Chunks never cross the grid, so this many rows of lane sums are enough.
-const ROWS: usize = GRID_SAMPLES as usize;
-
 impl Kernel {
     /// Runs everywhere.
     pub const PORTABLE: Self = Self(Isa::Portable);
@@ -68,7 +64,7 @@ impl Kernel {
     }
 
     /// Adds the bank's response to `impulses_n_s` to `out`; sample 0 of both is the absolute sample
-    /// `first_sample`. Every lane hears the one input at gain 1. Slices of unequal length are used as far
+    /// `first_sample`, which goes on where the last call ended. Every lane hears the one input at gain 1. Slices of unequal length are used as far
     /// as the shortest reaches.
     pub fn render(
         self,
@@ -82,8 +78,8 @@ impl Kernel {
         self.walk(first_sample, groups, states, Feed { inputs: &input, shared: true }, out);
     }
 
-    /// As [`Kernel::render`] for several inputs, each with a gain for every lane. Two inputs cost two
-    /// more operations a mode and sample than the shared one.
+    /// As [`Kernel::render`] for up to [`MAX_INPUTS`] inputs (more are not heard), each with a gain for every
+    /// lane. Two inputs cost two to three more operations a mode and sample than the shared one.
     pub fn render_mixed(
         self,
         first_sample: u64,
@@ -92,6 +88,7 @@ impl Kernel {
         inputs: &[Input<'_>],
         out: &mut [f32],
     ) {
+        let inputs = &inputs[..inputs.len().min(MAX_INPUTS)];
         self.walk(first_sample, groups, states, Feed { inputs, shared: false }, out);
     }
 
@@ -111,8 +108,7 @@ impl Kernel {
         if feed.inputs.is_empty() || count == 0 || samples == 0 {
             return;
         }
-        let mut job =
-            Job { groups: &groups[..count], states: &mut states[..count], feed, ends_on_grid: false };
+        let mut job = Job { groups: &groups[..count], states: &mut states[..count], feed };
         let out = &mut out[..samples];
         match self.0 {
             // SAFETY: the plain vector needs no instruction beyond the baseline.
@@ -125,7 +121,7 @@ impl Kernel {
             Isa::Avx512 => unsafe { walk_avx512(first_sample, &mut job, out) },
             #[cfg(target_arch = "aarch64")]
             // SAFETY: NEON is part of the base of this architecture.
-            Isa::Neon => unsafe { walk::<super::vector::neon::Neon, 4, 2>(first_sample, &mut job, out) },
+            Isa::Neon => unsafe { walk::<super::vector::neon::Neon, 4, 3>(first_sample, &mut job, out) },
             // Sets of other architectures: `find` never makes such a kernel.
             #[allow(unreachable_patterns)]
             _ => {}
@@ -164,205 +160,22 @@ fn has_avx512() -> bool {
     cfg!(all(target_arch = "x86_64", target_feature = "avx512f"))
 }
 
-/// The inputs of one call; `shared` means one input, gain 1.
-#[derive(Clone, Copy)]
-struct Feed<'a> {
-    inputs: &'a [Input<'a>],
-    shared: bool,
-}
-
-struct Job<'a> {
-    groups: &'a [ModeGroup],
-    states: &'a mut [GroupState],
-    feed: Feed<'a>,
-    /// The present chunk ends on the grid, where states are trimmed.
-    ends_on_grid: bool,
-}
-
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 unsafe fn walk_avx2(first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
     // SAFETY: this function is only called where AVX2 and FMA are present.
-    unsafe { walk::<super::vector::x86::Avx2, 2, 3>(first_sample, job, out) }
+    unsafe { walk::<super::vector::x86::Avx2, 2, 4>(first_sample, job, out) }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx2,fma")]
 unsafe fn walk_avx512(first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
     // SAFETY: this function is only called where AVX-512F is present.
-    unsafe { walk::<super::vector::x86::Avx512, 1, 6>(first_sample, job, out) }
+    unsafe { walk::<super::vector::x86::Avx512, 1, 3>(first_sample, job, out) }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 unsafe fn settle_avx2(groups: &[ModeGroup], states: &mut [GroupState], threshold: f32) -> usize {
     sleep::settle(groups, states, threshold)
-}
-
-/// Walks the block in chunks that end on the absolute grid. `P` vectors make a group, and at most
-/// `MAX` groups are interleaved.
-#[inline(always)]
-unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
-    first_sample: u64,
-    job: &mut Job<'_>,
-    out: &mut [f32],
-) {
-    let mut sums: [MaybeUninit<Row>; ROWS] = [const { MaybeUninit::uninit() }; ROWS];
-    let (mut at, samples) = (0, out.len());
-    while at < samples {
-        let now = first_sample.wrapping_add(at as u64);
-        let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
-        let rows = &mut sums[..len];
-        job.ends_on_grid = now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES);
-        // SAFETY: the caller has the instructions of V; `at + len` is inside every input. The first set
-        // writes every row, and there is one: `walk` is not called without groups. So the rows may be read
-        // as what they are, in the same memory.
-        unsafe {
-            sets::<V, P, MAX>(job, at, rows);
-            let written = core::slice::from_raw_parts(rows.as_ptr().cast::<Row>(), len);
-            V::add_sums(written, &mut out[at..at + len]);
-        }
-        at += len;
-    }
-}
-
-/// Gives every lane the decay and the phase that `f32` could not store.
-#[inline(always)]
-unsafe fn trim<V: Vector>(group: &ModeGroup, lane: usize, y: &mut V, d: &mut V) {
-    // SAFETY: the caller has the instructions of V; `lane` + LEN is at most LANES.
-    unsafe {
-        let read = |lanes: &[f32; LANES]| V::load(lanes.as_ptr().add(lane));
-        // The small parts are added up before they meet the large one.
-        let nothing = V::splat(0.0);
-        let to_y = y.mul_add(read(&group.trim_yy), d.mul_add(read(&group.trim_yd), nothing));
-        let to_d = y.mul_add(read(&group.trim_dy), d.mul_add(read(&group.trim_dd), nothing));
-        (*y, *d) = (y.add(to_y), d.add(to_d));
-    }
-}
-
-/// Cuts the groups into sets of nearly equal size, at most `MAX` each: a set that is too small waits
-/// for its own results, one that is too large spills its registers.
-#[inline(always)]
-unsafe fn sets<V: Vector, const P: usize, const MAX: usize>(
-    job: &mut Job<'_>,
-    at: usize,
-    rows: &mut [MaybeUninit<Row>],
-) {
-    let count = job.groups.len();
-    let mut from = 0;
-    let mut left = count.div_ceil(MAX);
-    while left > 0 {
-        let size = (count - from).div_ceil(left);
-        // SAFETY: passed on from the caller; `from + size` is at most the number of groups.
-        unsafe {
-            match size {
-                1 => inputs::<V, P, 1>(job, from, at, rows),
-                2 if MAX >= 2 => inputs::<V, P, 2>(job, from, at, rows),
-                3 if MAX >= 3 => inputs::<V, P, 3>(job, from, at, rows),
-                4 if MAX >= 4 => inputs::<V, P, 4>(job, from, at, rows),
-                5 if MAX >= 5 => inputs::<V, P, 5>(job, from, at, rows),
-                6 if MAX >= 6 => inputs::<V, P, 6>(job, from, at, rows),
-                7 if MAX >= 7 => inputs::<V, P, 7>(job, from, at, rows),
-                _ if MAX >= 8 => inputs::<V, P, 8>(job, from, at, rows),
-                _ => {}
-            }
-        }
-        from += size;
-        left -= 1;
-    }
-}
-
-/// How many gained inputs a loop is compiled for; 0 is the shared input.
-const ANY: usize = usize::MAX;
-
-#[inline(always)]
-unsafe fn inputs<V: Vector, const P: usize, const S: usize>(
-    job: &mut Job<'_>,
-    from: usize,
-    at: usize,
-    rows: &mut [MaybeUninit<Row>],
-) {
-    // SAFETY: passed on from the caller.
-    unsafe {
-        match job.feed.inputs.len() {
-            _ if job.feed.shared => set::<V, P, S, 0>(job, from, at, rows),
-            1 => set::<V, P, S, 1>(job, from, at, rows),
-            2 => set::<V, P, S, 2>(job, from, at, rows),
-            _ => set::<V, P, S, ANY>(job, from, at, rows),
-        }
-    }
-}
-
-/// `S` groups of `P` vectors, sample by sample; each row of sums receives the groups in their order.
-#[inline(always)]
-unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usize>(
-    job: &mut Job<'_>,
-    from: usize,
-    at: usize,
-    rows: &mut [MaybeUninit<Row>],
-) {
-    let groups = &job.groups[from..from + S];
-    let feed = job.feed.inputs;
-    // SAFETY: the caller has the instructions of V. Every pointer below goes to lane p · LEN of an array
-    // of LANES = P · LEN values, or to sample `at + n` of an input that has `at + rows.len()` of them.
-    unsafe {
-        let mut y = [[V::splat(0.0); P]; S];
-        let mut d = y;
-        for s in 0..S {
-            let state = &job.states[from + s];
-            for p in 0..P {
-                y[s][p] = V::load(state.y.as_ptr().add(p * V::LEN));
-                d[s][p] = V::load(state.d.as_ptr().add(p * V::LEN));
-            }
-        }
-        // Read before the loop: the compiler cannot know that storing sums leaves them as they are.
-        let read = |lanes: &[f32; LANES], p: usize| V::load(lanes.as_ptr().add(p * V::LEN));
-        let r2: [[V; P]; S] = from_fn(|s| from_fn(|p| read(&groups[s].r2, p)));
-        let m: [[V; P]; S] = from_fn(|s| from_fn(|p| read(&groups[s].m, p)));
-        let out_y: [[V; P]; S] = from_fn(|s| from_fn(|p| read(&groups[s].out_y, p)));
-        let out_d: [[V; P]; S] = from_fn(|s| from_fn(|p| read(&groups[s].out_d, p)));
-        let shared = feed[0].impulses.as_ptr().add(at);
-        for (n, row) in rows.iter_mut().enumerate() {
-            let row = row.as_mut_ptr().cast::<f32>();
-            let mut sum = [V::splat(0.0); P];
-            if from > 0 {
-                for (p, sum) in sum.iter_mut().enumerate() {
-                    *sum = V::load(row.add(p * V::LEN));
-                }
-            }
-            let u = V::splat(if K == 0 { *shared.add(n) } else { 0.0 });
-            for s in 0..S {
-                for p in 0..P {
-                    let lane = p * V::LEN;
-                    let mut x = u;
-                    if K != 0 {
-                        let count = if K == ANY { feed.len() } else { K };
-                        for input in feed.get_unchecked(..count) {
-                            let gains = input.gains.get_unchecked(from + s).0.as_ptr().add(lane);
-                            let impulse = V::splat(*input.impulses.as_ptr().add(at + n));
-                            x = V::load(gains).mul_add(impulse, x);
-                        }
-                    }
-                    let kept = d[s][p].mul_add(r2[s][p], x);
-                    d[s][p] = y[s][p].neg_mul_add(m[s][p], kept);
-                    y[s][p] = y[s][p].add(d[s][p]);
-                    sum[p] = y[s][p].mul_add(out_y[s][p], sum[p]);
-                    sum[p] = d[s][p].mul_add(out_d[s][p], sum[p]);
-                }
-            }
-            for (p, sum) in sum.into_iter().enumerate() {
-                sum.store(row.add(p * V::LEN));
-            }
-        }
-        for s in 0..S {
-            let state = &mut job.states[from + s];
-            for p in 0..P {
-                if job.ends_on_grid {
-                    trim(&groups[s], p * V::LEN, &mut y[s][p], &mut d[s][p]);
-                }
-                y[s][p].store(state.y.as_mut_ptr().add(p * V::LEN));
-                d[s][p].store(state.d.as_mut_ptr().add(p * V::LEN));
-            }
-        }
-    }
 }

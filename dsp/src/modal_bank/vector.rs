@@ -16,6 +16,8 @@ pub(super) struct Row(pub [f32; LANES]);
 pub(super) trait Vector: Copy {
     /// `f32` in one vector; divides [`LANES`].
     const LEN: usize;
+    /// Whether there are registers for coefficients as well.
+    const MANY_REGISTERS: bool;
     /// All lanes `x`.
     unsafe fn splat(x: f32) -> Self;
     /// Reads `LEN` values.
@@ -26,8 +28,13 @@ pub(super) trait Vector: Copy {
     unsafe fn add(self, other: Self) -> Self;
     /// self · by + plus; one rounding where the processor has it.
     unsafe fn mul_add(self, by: Self, plus: Self) -> Self;
-    /// plus − self · by.
-    unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self;
+    /// The same for a large `self` and small `plus`. Where products are rounded apart, that of the part of `by` beyond
+    /// 1 is, which is exact from 0.5 on.
+    #[inline(always)]
+    unsafe fn mul_add_near_one(self, by: Self, plus: Self) -> Self {
+        // SAFETY: passed on from the caller.
+        unsafe { self.mul_add(by, plus) }
+    }
     /// Adds the sum over the lanes of each row to `out`, in the order of [`sum_row`].
     #[inline(always)]
     unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
@@ -61,6 +68,7 @@ pub(super) struct Plain([f32; 4]);
 #[cfg(not(target_arch = "x86_64"))]
 impl Vector for Plain {
     const LEN: usize = 4;
+    const MANY_REGISTERS: bool = false;
     #[inline(always)]
     unsafe fn splat(x: f32) -> Self {
         Self([x; 4])
@@ -85,8 +93,12 @@ impl Vector for Plain {
         Self(core::array::from_fn(|i| self.0[i] * by.0[i] + plus.0[i]))
     }
     #[inline(always)]
-    unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
-        Self(core::array::from_fn(|i| plus.0[i] - self.0[i] * by.0[i]))
+    unsafe fn mul_add_near_one(self, by: Self, plus: Self) -> Self {
+        let whole = |by: f32| if by >= 0.5 { 1.0 } else { 0.0 };
+        Self(core::array::from_fn(|i| {
+            let (x, whole) = (self.0[i], whole(by.0[i]));
+            x * whole + (x * (by.0[i] - whole) + plus.0[i])
+        }))
     }
 }
 
@@ -105,10 +117,11 @@ pub(super) mod x86 {
     use core::arch::x86_64::*;
 
     macro_rules! vector {
-        ($name:ident, $raw:ty, $len:literal, $set1:ident, $load:ident, $store:ident, $add:ident,
-         $fmadd:ident, $fnmadd:ident) => {
+        ($name:ident, $raw:ty, $len:literal, $many:literal, $set1:ident, $load:ident, $store:ident, $add:ident,
+         $fmadd:ident) => {
             impl Vector for $name {
                 const LEN: usize = $len;
+                const MANY_REGISTERS: bool = $many;
                 #[inline(always)]
                 unsafe fn splat(x: f32) -> Self {
                     // SAFETY: the trait's contract: the processor has this instruction set.
@@ -135,11 +148,6 @@ pub(super) mod x86 {
                     Self(unsafe { $fmadd(self.0, by.0, plus.0) })
                 }
                 #[inline(always)]
-                unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
-                    // SAFETY: the trait's contract.
-                    Self(unsafe { $fnmadd(self.0, by.0, plus.0) })
-                }
-                #[inline(always)]
                 unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
                     // SAFETY: both sets include AVX.
                     unsafe { add_sums_avx(rows, out) }
@@ -154,6 +162,7 @@ pub(super) mod x86 {
 
     impl Vector for Sse {
         const LEN: usize = 4;
+        const MANY_REGISTERS: bool = false;
         #[inline(always)]
         unsafe fn splat(x: f32) -> Self {
             // SAFETY: SSE is part of the base of this architecture.
@@ -180,9 +189,13 @@ pub(super) mod x86 {
             Self(unsafe { _mm_add_ps(_mm_mul_ps(self.0, by.0), plus.0) })
         }
         #[inline(always)]
-        unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
+        unsafe fn mul_add_near_one(self, by: Self, plus: Self) -> Self {
             // SAFETY: SSE is part of the base of this architecture.
-            Self(unsafe { _mm_sub_ps(plus.0, _mm_mul_ps(self.0, by.0)) })
+            unsafe {
+                let whole = _mm_and_ps(_mm_cmpge_ps(by.0, _mm_set1_ps(0.5)), _mm_set1_ps(1.0));
+                let rest = self.mul_add(Self(_mm_sub_ps(by.0, whole)), plus);
+                Self(_mm_add_ps(_mm_mul_ps(self.0, whole), rest.0))
+            }
         }
     }
 
@@ -193,12 +206,12 @@ pub(super) mod x86 {
         Avx2,
         __m256,
         8,
+        true,
         _mm256_set1_ps,
         _mm256_loadu_ps,
         _mm256_storeu_ps,
         _mm256_add_ps,
-        _mm256_fmadd_ps,
-        _mm256_fnmadd_ps
+        _mm256_fmadd_ps
     );
 
     /// Sixteen lanes.
@@ -208,12 +221,12 @@ pub(super) mod x86 {
         Avx512,
         __m512,
         16,
+        true,
         _mm512_set1_ps,
         _mm512_loadu_ps,
         _mm512_storeu_ps,
         _mm512_add_ps,
-        _mm512_fmadd_ps,
-        _mm512_fnmadd_ps
+        _mm512_fmadd_ps
     );
 
     /// The upper eight lanes of a row onto its lower eight.
@@ -256,6 +269,7 @@ pub(super) mod neon {
 
     impl Vector for Neon {
         const LEN: usize = 4;
+        const MANY_REGISTERS: bool = true;
         #[inline(always)]
         unsafe fn splat(x: f32) -> Self {
             // SAFETY: NEON is part of the base of this architecture.
@@ -280,11 +294,6 @@ pub(super) mod neon {
         unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
             // SAFETY: NEON is part of the base of this architecture.
             Self(unsafe { vfmaq_f32(plus.0, self.0, by.0) })
-        }
-        #[inline(always)]
-        unsafe fn neg_mul_add(self, by: Self, plus: Self) -> Self {
-            // SAFETY: NEON is part of the base of this architecture.
-            Self(unsafe { vfmsq_f32(plus.0, self.0, by.0) })
         }
     }
 }
