@@ -19,6 +19,7 @@ use super::detrend::{decimated, detrended};
 use super::feature_matrix::{feature_matrix, tapered_feature_matrix};
 use super::lattice::{Lattice, combine, cross, length, reduced, upright};
 use super::minima::{Fit, Minimum};
+use super::nodes::{CLEARLY_UNEVEN, COARSER, Mean, for_each_node, unevenness};
 use crate::raster::Raster;
 
 /// Numbers of deepest minima that propose lattices.
@@ -30,26 +31,8 @@ const DEPTH_SWEEP: [f64; 6] = [0.95, 0.9, 0.8, 0.65, 0.5, 0.35];
 /// Of each of them, this many shortest are paired.
 const PAIRED: usize = 7;
 
-/// Coarser lattices of index 2 and 3 within a lattice: (k, i, j) holds the nodes with i·m + j·n divisible by k.
-const COARSER: [(f64, f64, f64); 7] = [
-    (2.0, 1.0, 0.0),
-    (2.0, 0.0, 1.0),
-    (2.0, 1.0, 1.0),
-    (3.0, 1.0, 0.0),
-    (3.0, 0.0, 1.0),
-    (3.0, 1.0, 1.0),
-    (3.0, 1.0, 2.0),
-];
-
 /// The nodes outside every coarser lattice must fit at least this well, relative to those on it.
 const EVEN_LIMIT: f64 = 0.89;
-
-/// Nodes outside a coarser lattice that fit worse by less than this, relative, are as good as those on it: reading the matrix
-/// between texels costs as much.
-const UNEVEN_LIMIT: f64 = 0.02;
-
-/// Standard errors from which the difference is no chance.
-const CLEARLY_UNEVEN: f64 = 6.0;
 
 /// Half translations that fit better than this share of the nodes mean that the pattern does not
 /// repeat in one of the directions, or on no scale we can see. Above [`EVEN_LIMIT`]: what is too uneven to divide the cell must not refuse it.
@@ -229,51 +212,6 @@ fn coarse_enough(fit: &Fit, minima: &[Minimum], start: Candidate) -> Candidate {
     }
 }
 
-/// By how many standard errors the nodes outside a coarser lattice fit worse than those on it, beside what the distance does;
-/// 0 when the difference is too small to matter.
-fn unevenness(fit: &Fit, basis: [[f64; 2]; 2], (k, i, j): (f64, f64, f64)) -> f64 {
-    // Weighted least squares of depth = p + q·distance² + r·outside.
-    let (mut squares, mut products, mut energy, mut weights, mut count) =
-        ([[0.0; 3]; 3], [0.0; 3], 0.0, 0.0, 0.0);
-    for_each_node(fit, basis, [0.0; 2], |m, n, depth, weight| {
-        let outside = if (i * m + j * n).rem_euclid(k) == 0.0 { 0.0 } else { 1.0 };
-        // The weight is 1/(1 + distance²).
-        let row = [1.0, 1.0 / weight - 1.0, outside];
-        for r in 0..3 {
-            for c in 0..3 {
-                squares[r][c] += weight * row[r] * row[c];
-            }
-            products[r] += weight * row[r] * depth;
-        }
-        energy += weight * depth * depth;
-        weights += weight;
-        count += 1.0;
-    });
-    let determinant = |m: [[f64; 3]; 3]| {
-        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
-            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
-    };
-    let all = determinant(squares);
-    if count < 8.0 || all <= 1e-9 * squares[0][0] * squares[1][1] * squares[2][2] {
-        return 0.0;
-    }
-    let solution = [0, 1, 2].map(|column| {
-        let mut replaced = squares;
-        for r in 0..3 {
-            replaced[r][column] = products[r];
-        }
-        determinant(replaced) / all
-    });
-    let explained: f64 = (0..3).map(|r| solution[r] * products[r]).sum();
-    // Per node: the residual's variance times the third diagonal element of the inverse.
-    let variance = (energy - explained).max(0.0) / weights * count / (count - 3.0);
-    let error =
-        (variance * weights / count * (squares[0][0] * squares[1][1] - squares[0][1] * squares[1][0]) / all)
-            .sqrt();
-    let missing = -solution[2];
-    if missing < UNEVEN_LIMIT * solution[0] { 0.0 } else { missing / error.max(f64::MIN_POSITIVE) }
-}
-
 /// The reduced basis of two shifts, if a picture of this size can show it.
 fn usable(fit: &Fit, a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [short, long] = reduced(a, b);
@@ -362,59 +300,4 @@ fn halves_fit(fit: &Fit, lattice: &Candidate) -> bool {
         for_each_node(fit, lattice.basis, offset, |_, _, depth, weight| between.add(depth, weight));
         between.value() > HALF_LIMIT * lattice.score && unevenness(fit, finer, split) < CLEARLY_UNEVEN
     })
-}
-
-/// Calls `visit(m, n, depth, weight)` for the nodes (m, n) + offset within reach, one of each ± pair.
-fn for_each_node(
-    fit: &Fit,
-    basis: [[f64; 2]; 2],
-    offset: [f64; 2],
-    mut visit: impl FnMut(f64, f64, f64, f64),
-) {
-    let [width, height] = fit.reach();
-    let area = cross(basis[0], basis[1]).abs();
-    let limit = |t: [f64; 2]| ((t[0].abs() * height + t[1].abs() * width) / area).ceil() as i64 + 1;
-    let (most_m, most_n) = (limit(basis[1]), limit(basis[0]));
-    // Half the reach: where the overlap is three quarters along each axis.
-    let near = 0.5 * width.min(height);
-    for i in -most_m..=most_m {
-        for j in -most_n..=most_n {
-            let (m, n) = (i as f64 + offset[0], j as f64 + offset[1]);
-            if m < 0.0 || (m == 0.0 && n <= 0.0) {
-                continue;
-            }
-            let shift = combine(basis[0], basis[1], m, n);
-            if let Some(depth) = fit.at(shift) {
-                let distance = length(shift) / near;
-                visit(m, n, depth, 1.0 / (1.0 + distance * distance));
-            }
-        }
-    }
-}
-
-/// A weighted mean.
-#[derive(Default)]
-struct Mean {
-    sum: f64,
-    weight: f64,
-    squares: f64,
-    count: usize,
-}
-
-impl Mean {
-    fn add(&mut self, value: f64, weight: f64) {
-        self.sum += weight * value;
-        self.weight += weight;
-        self.squares += weight * weight;
-        self.count += 1;
-    }
-
-    /// Standard error for unit deviation: √Σw²/Σw.
-    fn spread(&self) -> f64 {
-        self.squares.sqrt() / self.weight
-    }
-
-    fn value(&self) -> f64 {
-        if self.count == 0 { 0.0 } else { self.sum / self.weight }
-    }
 }
