@@ -50,6 +50,8 @@ pub mod pyramid;
 #[cfg(feature = "offline")]
 pub mod shape_from_shading;
 #[cfg(feature = "offline")]
+pub mod spectral_envelope;
+#[cfg(feature = "offline")]
 pub mod spectral_resample;
 #[cfg(feature = "offline")]
 pub mod symmetry;

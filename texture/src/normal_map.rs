@@ -7,7 +7,8 @@
 //! v grows downwards. The slopes are integrated by [`crate::gradient_field`].
 //!
 //! What a map does not say is read from it by asking which answer makes it the normals of a surface:
-//! the convention of its green channel, and which differences of texels it was made with. 8-bit maps
+//! the convention of its green channel, and which differences of texels it was made with. A surface of one wavelength
+//! fits any differences: there the true derivative is taken, and differences made it lower by sin ω/ω at most. 8-bit maps
 //! have no number for 0 (127.5), so that a flat map tilts by 0.4 %: the mean slope of a map that tiles is
 //! dropped, and of one that does not, too, unless [`NormalMapOptions::keep_tilt`].
 
@@ -20,6 +21,11 @@ use asperity_dsp::DesignError;
 const STEEPEST: f64 = 10.0;
 /// A green convention is only decided when its curl is at most this fraction of the other's.
 const DECIDED: f64 = 0.8;
+
+/// Differences of texels are only believed when their curl is at most this fraction of the true derivative's. Source: ours.
+/// What is left of the curl by the right derivative is noise, 0.02–0.8 of that by a wrong one on surfaces of many
+/// wavelengths; on a surface of one wavelength along both axes all derivatives explain the slopes alike (0.92–1.15).
+const CLEARLY: f64 = 0.85;
 
 /// Which way green points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -154,7 +160,11 @@ fn which_green(field: &Slopes, borders: Borders, wanted: Green) -> (Green, bool)
     }
 }
 
+/// The true derivative, unless the slopes say clearly that it was another.
 fn which_derivative(field: &Slopes, borders: Borders) -> Derivative {
-    let measured = DERIVATIVES.map(|d| (d, curl_of(field, borders, d)));
-    measured.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(Derivative::Exact, |(d, _)| d)
+    let exact = curl_of(field, borders, Derivative::Exact);
+    let differences = DERIVATIVES.into_iter().filter(|&d| d != Derivative::Exact);
+    let measured = differences.map(|d| (d, curl_of(field, borders, d)));
+    let best = measured.min_by(|a, b| a.1.total_cmp(&b.1));
+    best.filter(|(_, curl)| *curl < CLEARLY * exact).map_or(Derivative::Exact, |(d, _)| d)
 }

@@ -77,22 +77,38 @@ fn fine_patterns_of_large_pictures_are_found_at_full_resolution() {
 
 #[test]
 fn all_seventeen_wallpaper_groups_are_named() {
-    const SEEDS: u64 = 3;
+    const SEEDS: u64 = 5;
     let mut right = 0;
     let mut wrong = String::new();
     for group in WallpaperGroup::ALL {
+        let mut right_here = 0;
         for seed in 0..SEEDS {
             let pattern = wallpaper::picture(group, 256, 31 * seed + 100);
             let found = find_lattice(&pattern)
                 .map(|lattice| wallpaper_group(&averaged_cell(&pattern, &lattice), &lattice).group);
             if found == Some(group) {
-                right += 1;
+                right_here += 1;
             } else {
                 wrong += &format!(" {}→{found:?}", group.name());
             }
         }
+        // Four random blobs may almost have a symmetry more; the example `analysis_table groups` asks 20 of each.
+        assert!(right_here + 1 >= SEEDS, "{}, wrong:{wrong}", group.name());
+        right += right_here;
     }
-    assert!(right as f64 >= 0.9 * (17 * SEEDS) as f64, "wrong:{wrong}");
+    assert!(right as f64 >= 0.95 * (17 * SEEDS) as f64, "wrong:{wrong}");
+}
+
+#[test]
+fn a_picture_of_five_cells_gives_them_to_a_fiftieth_of_a_texel() {
+    for (width, height, period) in [(96, 80, 16), (80, 64, 13), (100, 90, 16), (128, 128, 16)] {
+        let tiles =
+            Raster::from_fn(width, height, |x, y| if x % period < 2 || y % period < 2 { 0.2 } else { 0.7 });
+        let lattice = find_lattice(&tiles).unwrap();
+        let truth = period as f64;
+        let off = [lattice.t1_px[0] - truth, lattice.t1_px[1], lattice.t2_px[0], lattice.t2_px[1] - truth];
+        assert!(off.iter().all(|o| o.abs() < 0.02), "{width} × {height}, {period}: {lattice:?}");
+    }
 }
 
 #[test]

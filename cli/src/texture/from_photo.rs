@@ -365,7 +365,7 @@ mod tests {
         for file in report["files"].as_array().unwrap() {
             assert!(out.join(file.as_str().unwrap()).is_file(), "{file}");
         }
-        assert!((report["lattice"]["t1_px"][0].as_f64().unwrap() - 16.0).abs() < 0.2);
+        assert!((report["lattice"]["t1_px"][0].as_f64().unwrap() - 16.0).abs() < 0.05);
         render_scene(&out.join("scene_x2.toml"), &out.join("stroke"));
     }
 

@@ -52,30 +52,56 @@ fn without_quadratic(picture: &Raster) -> Raster {
 
 /// A Gaussian blur as three box blurs; at the border each box is cut and averages what is left.
 pub(super) fn blurred(picture: &Raster, sigma: f64) -> Raster {
-    // Three boxes of side 2r + 1 have the variance r (r + 1).
-    let reach = (0.5 * ((1.0 + 4.0 * sigma * sigma).sqrt() - 1.0)).round() as usize;
+    let mean = RunningMean::of_variance(sigma * sigma / 3.0);
     let mut result = picture.clone();
-    if reach == 0 {
-        return result;
-    }
-    for _ in 0..3 {
-        result = transposed_row_means(&transposed_row_means(&result, reach), reach);
+    if sigma > 0.0 {
+        for _ in 0..3 {
+            result = transposed_row_means(&transposed_row_means(&result, mean), mean);
+        }
     }
     result
 }
 
-/// Means over 2·reach + 1 texels of each row, with rows and columns swapped on the way out.
-fn transposed_row_means(picture: &Raster, reach: usize) -> Raster {
+/// Weights of a running mean: 1 up to `reach` texels to both sides, and `end` (0–1) one texel further.
+#[derive(Debug, Clone, Copy)]
+struct RunningMean {
+    reach: usize,
+    end: f64,
+}
+
+impl RunningMean {
+    /// The box of exactly this variance, texels²: between whole boxes the ends make up the difference.
+    fn of_variance(variance: f64) -> Self {
+        // A whole box of reach r has the variance r (r + 1)/3.
+        let reach = (0.5 * ((1.0 + 12.0 * variance).sqrt() - 1.0)).floor();
+        let outside = (reach + 1.0) * (reach + 1.0) - variance;
+        let end = (2.0 * reach + 1.0) * (variance - reach * (reach + 1.0) / 3.0) / (2.0 * outside);
+        Self { reach: reach as usize, end }
+    }
+}
+
+/// Means over a box of each row, with rows and columns swapped on the way out.
+fn transposed_row_means(picture: &Raster, mean: RunningMean) -> Raster {
     let (width, height) = (picture.width, picture.height);
     let mut values = vec![0.0; width * height];
     let mut sums = vec![0.0; width + 1];
     for y in 0..height {
-        for (x, value) in picture.row(y).iter().enumerate() {
+        let row = picture.row(y);
+        for (x, value) in row.iter().enumerate() {
             sums[x + 1] = sums[x] + value;
         }
         for x in 0..width {
-            let (left, right) = (x.saturating_sub(reach), (x + reach + 1).min(width));
-            values[x * height + y] = (sums[right] - sums[left]) / (right - left) as f64;
+            let (left, right) = (x.saturating_sub(mean.reach), (x + mean.reach + 1).min(width));
+            let (mut sum, mut weight) = (sums[right] - sums[left], (right - left) as f64);
+            if x > mean.reach {
+                sum += mean.end * row[x - mean.reach - 1];
+                weight += mean.end;
+            }
+            if x + mean.reach + 1 < width {
+                sum += mean.end * row[x + mean.reach + 1];
+                weight += mean.end;
+            }
+            values[x * height + y] = sum / weight;
         }
     }
     Raster { width: height, height: width, values }
@@ -103,10 +129,12 @@ mod tests {
         assert!(blurred(&Raster::constant(40, 30, 3.0), 4.0).values.iter().all(|v| (v - 3.0).abs() < 1e-12));
         let mut point = Raster::constant(65, 65, 0.0);
         point.values[32 * 65 + 32] = 1.0;
-        let spread = blurred(&point, 5.0);
-        let variance: f64 = (0..65).map(|x| (x as f64 - 32.0).powi(2) * spread.row(32)[x]).sum::<f64>()
-            / spread.row(32).iter().sum::<f64>();
-        assert!((variance.sqrt() - 5.0).abs() < 0.5, "{}", variance.sqrt());
+        for sigma in [0.4, 1.0, 1.7, 5.0] {
+            let spread = blurred(&point, sigma);
+            let variance: f64 = (0..65).map(|x| (x as f64 - 32.0).powi(2) * spread.row(32)[x]).sum::<f64>()
+                / spread.row(32).iter().sum::<f64>();
+            assert!((variance.sqrt() - sigma).abs() < 1e-9, "{} for {sigma}", variance.sqrt());
+        }
     }
 
     #[test]

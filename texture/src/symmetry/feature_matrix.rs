@@ -64,6 +64,36 @@ pub fn feature_matrix(picture: &Raster) -> FeatureMatrix {
     FeatureMatrix { reach_x, reach_y, values }
 }
 
+/// The feature matrix with every pair of texels weighted by w(p) w(p + s), w falling to zero over the outer quarters: what the
+/// border cuts off does not matter. For mean-free pictures.
+pub(super) fn tapered_feature_matrix(picture: &Raster) -> FeatureMatrix {
+    let (width, height) = (picture.width, picture.height);
+    let (reach_x, reach_y) = (width / 2, height / 2);
+    let taper = |i: usize, n: usize| {
+        let border = (i + 1).min(n - i) as f64 / (0.25 * n as f64 + 1.0);
+        (0.5 * std::f64::consts::PI * border.min(1.0)).sin().powi(2)
+    };
+    let window = Raster::from_fn(width, height, |x, y| taper(x, width) * taper(y, height));
+    let power = picture.values.iter().map(|g| g * g).sum::<f64>() / picture.values.len() as f64;
+    let scale = 1.0 / power.max(f64::MIN_POSITIVE).sqrt();
+    let weighted = |of: &dyn Fn(f64) -> f64| {
+        let values = picture.values.iter().zip(&window.values).map(|(g, w)| w * of(g * scale)).collect();
+        autocorrelation(&Raster { width, height, values }, reach_x, reach_y)
+    };
+    // Σ w w' (g² + g'²) by polarisation: the autocorrelations of w (g² ± 1).
+    let (plus, minus) = (weighted(&|g| g * g + 1.0), weighted(&|g| g * g - 1.0));
+    let (products, weights) = (weighted(&|g| g), weighted(&|_| 1.0));
+    let mut values = Raster::constant(2 * reach_x + 1, 2 * reach_y + 1, 0.0);
+    for (place, weight) in weights.into_iter().enumerate() {
+        let squares = 0.5 * (plus[place] - minus[place]);
+        let distortion = ((squares - 2.0 * products[place]) / weight.max(f64::MIN_POSITIVE)).max(0.0);
+        let (column, dy) = (place % (2 * reach_x + 1), place / (2 * reach_x + 1));
+        values.values[(reach_y + dy) * (2 * reach_x + 1) + column] = distortion;
+        values.values[(reach_y - dy) * (2 * reach_x + 1) + 2 * reach_x - column] = distortion;
+    }
+    FeatureMatrix { reach_x, reach_y, values }
+}
+
 /// Σ g(p) g(p + s) for s from −`reach_x` to `reach_x` in rows 0 to `reach_y`.
 fn autocorrelation(picture: &Raster, reach_x: usize, reach_y: usize) -> Vec<f64> {
     let (width, height) = (picture.width, picture.height);

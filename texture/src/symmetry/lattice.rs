@@ -4,8 +4,9 @@ use serde::Serialize;
 
 /// The lattice of a repeated pattern, in texels of the picture; x grows to the right, y downwards.
 ///
-/// The basis is reduced: `t1_px` is a shortest translation and points right (or straight down),
-/// `t2_px` a shortest one that is not parallel to it, turned from `t1_px` by 60° to 120° clockwise as seen on the picture.
+/// The basis is reduced: `t1_px` is a shortest translation and points right (or straight down; of several as short to within
+/// 2 % the one nearest to "right"), `t2_px` a shortest one that is not parallel to it, turned from `t1_px` by 60° to 120°
+/// clockwise as seen on the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Lattice {
     /// First translation, texels.
@@ -35,6 +36,11 @@ impl Lattice {
         solve(self.t1_px, self.t2_px, point)
     }
 }
+
+/// Relative difference up to which two translations count as equally short.
+const AS_SHORT: f64 = 0.02;
+/// Sine of the angle up to which a translation counts as straight down or up.
+const STRAIGHT: f64 = 0.01;
 
 /// a × b.
 pub(super) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -84,6 +90,29 @@ pub(super) fn reduced(a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
     [short, long]
 }
 
+/// The same lattice with the first translation as nearly to the right as one of the shortest can be, so that noise
+/// does not turn a square lattice by 90°.
+pub(super) fn upright([a, b]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    let shortest = length(a) * (1.0 + AS_SHORT);
+    let between = if dot(a, b) > 0.0 { combine(a, b, 1.0, -1.0) } else { combine(a, b, 1.0, 1.0) };
+    let slope = |t: &[f64; 2]| (t[1].abs() / length(*t), if t[1] < 0.0 { 1 } else { 0 });
+    let all = [a, b, between].map(|t| if t[0] < 0.0 { [-t[0], -t[1]] } else { t });
+    let best = all
+        .into_iter()
+        .filter(|t| length(*t) <= shortest)
+        .min_by(|s, t| slope(s).partial_cmp(&slope(t)).unwrap_or(std::cmp::Ordering::Equal));
+    let mut first = best.unwrap_or(a);
+    if first[0] < STRAIGHT * length(first) && first[1] < 0.0 {
+        first = [-first[0], -first[1]];
+    }
+    let others = all.into_iter().filter(|t| cross(first, *t).abs() > 0.5 * cross(a, b).abs());
+    let mut second = others.min_by(|s, t| length(*s).total_cmp(&length(*t))).unwrap_or(b);
+    if cross(first, second) < 0.0 {
+        second = [-second[0], -second[1]];
+    }
+    [first, second]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,6 +132,23 @@ mod tests {
         let [m, n] = lattice.coordinates(lattice.translation(2.25, -7.5));
         assert!((m - 2.25).abs() < 1e-12 && (n + 7.5).abs() < 1e-12);
         assert!((lattice.cell_area_px2() - 635.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_square_lattice_is_told_upright_however_it_was_found() {
+        for (a, b) in [
+            ([1e-4, 16.0], [-16.01, 0.0]),
+            ([16.0, 1e-4], [0.0, 16.02]),
+            ([1e-5, -16.0], [16.0, 0.0]),
+            ([-16.0, 0.0], [0.0, -16.0]),
+        ] {
+            let [s, t] = upright([a, b]);
+            let off = length([s[0] - 16.0, s[1]]).max(length([t[0], t[1] - 16.0]));
+            assert!(off < 0.05, "{a:?} {b:?}: {s:?} {t:?}");
+        }
+        // A clearly shorter translation straight up stays the first, straight down.
+        let [s, t] = upright([[1e-5, -13.0], [17.0, 0.1]]);
+        assert!((s[1] - 13.0).abs() < 1e-9 && (t[0] + 17.0).abs() < 1e-9, "{s:?} {t:?}");
     }
 
     #[test]

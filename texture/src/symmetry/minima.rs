@@ -5,7 +5,7 @@ use super::feature_matrix::FeatureMatrix;
 use crate::raster::Raster;
 
 /// Standard deviation of the blur that keeps a noisy floor from breaking one minimum into many, texels.
-const BLUR: f64 = 1.0;
+const BLUR: f64 = std::f64::consts::SQRT_2;
 
 /// A minimum must be the lowest within this many texels along x and y.
 const APART: usize = 2;
@@ -30,13 +30,23 @@ pub(super) struct Fit {
 impl Fit {
     /// Nothing if every shift fits perfectly: a picture without relief.
     pub fn new(matrix: &FeatureMatrix) -> Option<Self> {
+        Self::blurred(matrix, BLUR)
+    }
+
+    /// The same with a blur of one texel, for minima that are known to be there: less of it, less of a lopsided
+    /// neighbourhood pulls at them.
+    pub fn sharp(matrix: &FeatureMatrix) -> Option<Self> {
+        Self::blurred(matrix, 1.0)
+    }
+
+    fn blurred(matrix: &FeatureMatrix, sigma: f64) -> Option<Self> {
         let mut sorted = matrix.values.values.clone();
         let middle = sorted.len() / 2;
         let (_, &mut median, _) = sorted.select_nth_unstable_by(middle, f64::total_cmp);
         if median <= 0.0 {
             return None;
         }
-        let depth = blurred(&matrix.values, BLUR).map(|v| 1.0 - v / median);
+        let depth = blurred(&matrix.values, sigma).map(|v| 1.0 - v / median);
         let mean = depth.mean();
         let variance =
             depth.values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / depth.values.len() as f64;

@@ -8,7 +8,7 @@
 //! | light taken out | `detrend` |
 //! | distortion of every shift | `feature_matrix` |
 //! | its minima | `minima` |
-//! | lattice, or none | `search` |
+//! | lattice, or none | `search`, `nodes` |
 //! | averaged primitive, symmetric part, residual | `cell` |
 //! | point group, one of 17 groups, mean within the fundamental domain | `wallpaper`, `operation` |
 
@@ -17,6 +17,7 @@ mod detrend;
 mod feature_matrix;
 mod lattice;
 mod minima;
+mod nodes;
 mod operation;
 mod search;
 mod wallpaper;

@@ -16,9 +16,10 @@
 //! Measured (`analysis_table lattice`, five kinds, 256²): at least 0.98 in every row: noise to σ = 2, gradient, warp to 2 texels.
 
 use super::detrend::{decimated, detrended};
-use super::feature_matrix::feature_matrix;
-use super::lattice::{Lattice, combine, cross, length, reduced};
+use super::feature_matrix::{feature_matrix, tapered_feature_matrix};
+use super::lattice::{Lattice, combine, cross, length, reduced, upright};
 use super::minima::{Fit, Minimum};
+use super::nodes::{CLEARLY_UNEVEN, COARSER, Mean, for_each_node, unevenness};
 use crate::raster::Raster;
 
 /// Numbers of deepest minima that propose lattices.
@@ -29,17 +30,6 @@ const DEPTH_SWEEP: [f64; 6] = [0.95, 0.9, 0.8, 0.65, 0.5, 0.35];
 
 /// Of each of them, this many shortest are paired.
 const PAIRED: usize = 7;
-
-/// Coarser lattices of index 2 and 3 within a lattice: (k, i, j) holds the nodes with i·m + j·n divisible by k.
-const COARSER: [(f64, f64, f64); 7] = [
-    (2.0, 1.0, 0.0),
-    (2.0, 0.0, 1.0),
-    (2.0, 1.0, 1.0),
-    (3.0, 1.0, 0.0),
-    (3.0, 0.0, 1.0),
-    (3.0, 1.0, 1.0),
-    (3.0, 1.0, 2.0),
-];
 
 /// The nodes outside every coarser lattice must fit at least this well, relative to those on it.
 const EVEN_LIMIT: f64 = 0.89;
@@ -53,6 +43,9 @@ const SHORTEST: f64 = 4.0;
 
 /// Pictures are averaged down until the shorter side is at most twice this, texels.
 const SEARCH_SIDE: usize = 384;
+
+/// Cells in a picture up to which its lattice is sharpened. With more the border does not matter.
+const FEW_CELLS: f64 = 3000.0;
 
 /// Smallest width and height in which a pattern is sought, texels.
 pub const SMALLEST_SIDE: usize = 24;
@@ -95,14 +88,38 @@ fn central(picture: &Raster, side: usize) -> Raster {
 
 /// The best lattice of a picture, its translations multiplied by `scale`.
 fn search(picture: &Raster, scale: f64) -> Option<Lattice> {
-    let fit = Fit::new(&feature_matrix(&detrended(picture)))?;
+    let even = detrended(picture);
+    let fit = Fit::new(&feature_matrix(&even))?;
     let minima = fit.minima(SHORTEST);
     let scored = candidates(&fit, &minima);
     let best = scored.into_iter().filter(|c| c.even).max_by(|a, b| a.merit.total_cmp(&b.merit))?;
-    let chosen = finest(&fit, &minima, best);
+    let chosen = coarse_enough(&fit, &minima, finest(&fit, &minima, best));
     let merit = if halves_fit(&fit, &chosen) { 0.0 } else { chosen.merit };
-    let [t1_px, t2_px] = chosen.basis.map(|t| [t[0] * scale, t[1] * scale]);
-    Some(Lattice { t1_px, t2_px, confidence: confidence(merit) })
+    let confidence = confidence(merit);
+    let sharp = if confidence < 0.5 { chosen.basis } else { sharpened(&even, chosen.basis) };
+    let [t1_px, t2_px] = upright(sharp).map(|t| [t[0] * scale, t[1] * scale]);
+    Some(Lattice { t1_px, t2_px, confidence })
+}
+
+/// The basis of a picture of few cells, fitted again where its border counts less: a mark that the border cuts fits
+/// better a little further out, and pulls the minima there. (Five cells of 16 texels: 16.17 before, 16.02 after.)
+fn sharpened(even: &Raster, basis: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    let cells = (even.width * even.height) as f64 / cross(basis[0], basis[1]).abs();
+    if cells > FEW_CELLS {
+        return basis;
+    }
+    let again = Fit::sharp(&tapered_feature_matrix(even))
+        .and_then(|fit| refined(&fit, &fit.minima(SHORTEST), basis))
+        .filter(|again| near(again, &basis));
+    again.unwrap_or(basis)
+}
+
+/// Whether two bases span the same lattice to a tenth of a cell.
+fn near(a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]) -> bool {
+    let whole =
+        |t: &[f64; 2]| super::lattice::solve(b[0], b[1], *t).iter().all(|c| (c - c.round()).abs() < 0.1);
+    let area = cross(a[0], a[1]) / cross(b[0], b[1]);
+    a.iter().all(whole) && (area.abs() - 1.0).abs() < 0.2
 }
 
 /// 0 for no merit, 0.5 at the limit, towards 1 beyond.
@@ -166,6 +183,30 @@ fn finest(fit: &Fit, minima: &[Minimum], start: Candidate) -> Candidate {
         match finer.max_by(|x, y| x.merit.total_cmp(&y.merit)) {
             // A refinement that slid back to the old cell must not loop for ever.
             Some(c) if cross(c.basis[0], c.basis[1]) < 0.7 * cross(a, b) => best = c,
+            _ => return best,
+        }
+    }
+}
+
+/// Multiplies the cell by 2 or 3 as long as the nodes that are left out then fit worse than can be chance: a cell with two nearly
+/// equal halves. What is too even for the candidates, which must bear noise, may be clearly uneven in a clean picture.
+fn coarse_enough(fit: &Fit, minima: &[Minimum], start: Candidate) -> Candidate {
+    let mut best = start;
+    loop {
+        let [a, b] = best.basis;
+        let contrast = COARSER.iter().map(|split| (split, unevenness(fit, best.basis, *split)));
+        let worst =
+            contrast.filter(|(_, errors)| *errors > CLEARLY_UNEVEN).max_by(|x, y| x.1.total_cmp(&y.1));
+        let Some((&(k, i, j), _)) = worst else { return best };
+        // The coarser nodes: k·a and the first c·a + b on them, or a and k·b.
+        let on = (0..k as usize).map(|c| c as f64).find(|c| (i * c + j).rem_euclid(k) == 0.0);
+        let (p, q) = match on {
+            Some(c) if i != 0.0 => (combine(a, b, k, 0.0), combine(a, b, c, 1.0)),
+            _ => (a, combine(a, b, 0.0, k)),
+        };
+        let coarser = usable(fit, p, q).and_then(|t| refined(fit, minima, t)).and_then(|t| scored(fit, t));
+        match coarser {
+            Some(c) if cross(c.basis[0], c.basis[1]) > 1.5 * cross(a, b) => best = c,
             _ => return best,
         }
     }
@@ -243,66 +284,20 @@ fn scored(fit: &Fit, basis: [[f64; 2]; 2]) -> Option<Candidate> {
     })
 }
 
-/// Whether the nodes moved by half a translation fit nearly as well as the nodes.
+/// Whether the nodes moved by half a translation fit nearly as well as the nodes, and not clearly worse.
 fn halves_fit(fit: &Fit, lattice: &Candidate) -> bool {
-    [[0.5, 0.0], [0.0, 0.5], [0.5, 0.5]].iter().any(|&offset| {
+    let [a, b] = lattice.basis;
+    let half = |t: [f64; 2]| [0.5 * t[0], 0.5 * t[1]];
+    let (sum, difference) = (combine(a, b, 0.5, 0.5), combine(a, b, 0.5, -0.5));
+    // Each with the finer lattice it makes, in which the nodes are those of a coarser one.
+    let halves = [
+        ([0.5, 0.0], [half(a), b], (2.0, 1.0, 0.0)),
+        ([0.0, 0.5], [a, half(b)], (2.0, 0.0, 1.0)),
+        ([0.5, 0.5], [sum, difference], (2.0, 1.0, 1.0)),
+    ];
+    halves.into_iter().any(|(offset, finer, split)| {
         let mut between = Mean::default();
         for_each_node(fit, lattice.basis, offset, |_, _, depth, weight| between.add(depth, weight));
-        between.value() > HALF_LIMIT * lattice.score
+        between.value() > HALF_LIMIT * lattice.score && unevenness(fit, finer, split) < CLEARLY_UNEVEN
     })
-}
-
-/// Calls `visit(m, n, depth, weight)` for the nodes (m, n) + offset within reach, one of each ± pair.
-fn for_each_node(
-    fit: &Fit,
-    basis: [[f64; 2]; 2],
-    offset: [f64; 2],
-    mut visit: impl FnMut(f64, f64, f64, f64),
-) {
-    let [width, height] = fit.reach();
-    let area = cross(basis[0], basis[1]);
-    let limit = |t: [f64; 2]| ((t[0].abs() * height + t[1].abs() * width) / area).ceil() as i64 + 1;
-    let (most_m, most_n) = (limit(basis[1]), limit(basis[0]));
-    // Half the reach: where the overlap is three quarters along each axis.
-    let near = 0.5 * width.min(height);
-    for i in -most_m..=most_m {
-        for j in -most_n..=most_n {
-            let (m, n) = (i as f64 + offset[0], j as f64 + offset[1]);
-            if m < 0.0 || (m == 0.0 && n <= 0.0) {
-                continue;
-            }
-            let shift = combine(basis[0], basis[1], m, n);
-            if let Some(depth) = fit.at(shift) {
-                let distance = length(shift) / near;
-                visit(m, n, depth, 1.0 / (1.0 + distance * distance));
-            }
-        }
-    }
-}
-
-/// A weighted mean.
-#[derive(Default)]
-struct Mean {
-    sum: f64,
-    weight: f64,
-    squares: f64,
-    count: usize,
-}
-
-impl Mean {
-    fn add(&mut self, value: f64, weight: f64) {
-        self.sum += weight * value;
-        self.weight += weight;
-        self.squares += weight * weight;
-        self.count += 1;
-    }
-
-    /// Standard error for unit deviation: √Σw²/Σw.
-    fn spread(&self) -> f64 {
-        self.squares.sqrt() / self.weight
-    }
-
-    fn value(&self) -> f64 {
-        if self.count == 0 { 0.0 } else { self.sum / self.weight }
-    }
 }

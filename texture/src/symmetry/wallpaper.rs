@@ -19,12 +19,16 @@ use super::operation::{Matrix, Operation, closure, holohedry};
 use crate::raster::Raster;
 use rustfft::{FftPlanner, num_complex::Complex};
 
-/// A symmetry of a perfectly known cell correlates at least this much. Motifs of four blobs reach up to
-/// 0.96 under a false one, true ones 0.99 (`analysis_table groups`).
-const SYMMETRY_LIMIT: f64 = 0.97;
+/// A symmetry of a perfectly known cell correlates at least this much. Clean motifs of four blobs reach up to 0.989 under a
+/// false one, true ones at least 0.997 (`analysis_table groups`).
+const SYMMETRY_LIMIT: f64 = 0.99;
 
 /// How much less is asked for of a cell that is not perfectly known, per unit of missing reliability.
-const DOUBT: f64 = 0.7;
+const DOUBT: f64 = 2.0;
+
+/// The same for a cell that is known badly: what is asked for falls from here, and slower.
+const NOISY_LIMIT: f64 = 0.97;
+const NOISY_DOUBT: f64 = 0.7;
 
 /// Least that is asked for.
 const LEAST_LIMIT: f64 = 0.85;
@@ -125,7 +129,8 @@ pub fn wallpaper_group(averaged: &AveragedCell, lattice: &Lattice) -> CellSymmet
         .into_iter()
         .map(|matrix| spectrum.best_image(&averaged.cell, matrix, reliability))
         .collect();
-    let limit = (SYMMETRY_LIMIT - DOUBT * (1.0 - averaged.reliability)).max(LEAST_LIMIT);
+    let doubt = 1.0 - averaged.reliability;
+    let limit = (SYMMETRY_LIMIT - DOUBT * doubt).max(NOISY_LIMIT - NOISY_DOUBT * doubt).max(LEAST_LIMIT);
     let point_group = largest_symmetric_subgroup(&fits, limit);
     let agreement = point_group.iter().map(|fit| fit.agreement).fold(1.0, f64::min);
     CellSymmetry {
