@@ -10,6 +10,7 @@
 
 use crate::amplitudes::{contributions, fit_amplitudes};
 use crate::esprit::{energies, poles};
+use crate::merging::{MERGED_LOSS, merge_resonances};
 use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
@@ -100,11 +101,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         cost = left;
     }
     if work.capped || work.leaves_more_than_noise() {
-        let mut rounds = 0;
-        while rounds < SIMPLIFYING_ROUNDS && simplify(&mut work.partials, &work.noise, segment.len()) > 0 {
-            work.settle(LEVEL_STEPS);
-            rounds += 1;
-        }
+        work.make_plain();
     }
     work.settle(FINAL_STEPS);
     let residual = subtract(segment, &work.partials);
@@ -141,6 +138,24 @@ impl Work<'_> {
         let residual = subtract(self.segment, &self.partials);
         let quiet = NoiseFloor::estimate(&residual, self.limits.rate_hz, self.limits.least_noise);
         square_sum(&residual) / residual.len() as f64 > MISFIT * quiet.mean_variance()
+    }
+
+    /// Takes back what modes were spent on because the recording is no sum of modes: first what splits one
+    /// resonance, then what only mends a neighbour.
+    fn make_plain(&mut self) {
+        let count = self.segment.len();
+        for _ in 0..SIMPLIFYING_ROUNDS {
+            if merge_resonances(&mut self.partials, count, MERGED_LOSS) == 0 {
+                break;
+            }
+            self.settle(LEVEL_STEPS);
+        }
+        for _ in 0..SIMPLIFYING_ROUNDS {
+            if simplify(&mut self.partials, &self.noise, count) == 0 {
+                break;
+            }
+            self.settle(LEVEL_STEPS);
+        }
     }
 
     /// The noise as the residual shows it now.
