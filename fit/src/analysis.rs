@@ -15,7 +15,7 @@ use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
-use crate::pruning::{prune, prune_missed_by_nobody, simplify};
+use crate::pruning::{prune, prune_missed_by_nobody};
 use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
 use nalgebra::Complex;
@@ -30,8 +30,13 @@ const SPAN_NEPERS: f64 = 3.0;
 const LEVEL_STEPS: usize = 3;
 /// A residual with this many times the noise's power is no noise.
 const MISFIT: f64 = 2.0;
-/// Most rounds of taking out modes that only mend others.
-const SIMPLIFYING_ROUNDS: usize = 15;
+/// Singular values this far below a band's largest are no modes of their own once a recording has shown
+/// that it is no sum of modes.
+const MISMATCH: f64 = 3e-3;
+/// [`Bounds::energy_cost`] once a recording has shown that it is no sum of modes.
+const ENERGY_COST: f64 = 1e-3;
+/// Most rounds of merging and refitting.
+const MERGING_ROUNDS: usize = 15;
 /// Most rounds of one level.
 const LEVEL_ROUNDS: usize = 3;
 /// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
@@ -72,7 +77,7 @@ pub struct Analysis {
 pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
     let mut work = Work {
         segment,
-        limits,
+        limits: *limits,
         noise: NoiseFloor::estimate(segment, limits.rate_hz, limits.least_noise),
         partials: Vec::new(),
         capped: false,
@@ -101,8 +106,11 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         cost = left;
     }
     if work.capped || work.leaves_more_than_noise() {
+        work.limits.bounds.energy_cost = ENERGY_COST;
+        work.settle(FINAL_STEPS);
         work.make_plain();
     }
+    if std::env::var("DBG").is_ok() { eprintln!("simplified to {} capped {}", work.partials.len(), work.capped); }
     work.settle(FINAL_STEPS);
     let residual = subtract(segment, &work.partials);
     progress(1.0);
@@ -126,7 +134,7 @@ type Ranked = (Partial, f64);
 
 struct Work<'a> {
     segment: &'a [f64],
-    limits: &'a Limits,
+    limits: Limits,
     noise: NoiseFloor,
     partials: Vec<Partial>,
     capped: bool,
@@ -140,22 +148,18 @@ impl Work<'_> {
         square_sum(&residual) / residual.len() as f64 > MISFIT * quiet.mean_variance()
     }
 
-    /// Takes back what modes were spent on because the recording is no sum of modes: first what splits one
-    /// resonance, then what only mends a neighbour.
+    /// Takes back what modes were spent on because the recording is no sum of modes.
     fn make_plain(&mut self) {
+        let snr = |w: &Self| 10.0*(square_sum(w.segment)/square_sum(&subtract(w.segment,&w.partials))).log10();
+        if std::env::var("DBG").is_ok() { eprintln!("plain from {} {:.2} dB", self.partials.len(), snr(self)); }
         let count = self.segment.len();
-        for _ in 0..SIMPLIFYING_ROUNDS {
+        for _ in 0..MERGING_ROUNDS {
             if merge_resonances(&mut self.partials, count, MERGED_LOSS) == 0 {
                 break;
             }
             self.settle(LEVEL_STEPS);
         }
-        for _ in 0..SIMPLIFYING_ROUNDS {
-            if simplify(&mut self.partials, &self.noise, count) == 0 {
-                break;
-            }
-            self.settle(LEVEL_STEPS);
-        }
+        if std::env::var("DBG").is_ok() { eprintln!("merged to {} {:.2} dB", self.partials.len(), snr(self)); }
     }
 
     /// The noise as the residual shows it now.
@@ -177,7 +181,10 @@ impl Work<'_> {
             if self.capped {
                 self.measure_noise();
             }
+            let t0 = std::time::Instant::now();
             let (found, hidden) = self.candidates(level, &residual);
+            if std::env::var("DBG").is_ok() { eprintln!("level {} whole {whole} found {} hidden {hidden} capped {} known {} t {:.3}", level.decimation, found.len(), self.capped, self.partials.len(), t0.elapsed().as_secs_f64()); }
+            let t0 = std::time::Instant::now();
             if found.is_empty() {
                 break;
             }
@@ -185,6 +192,7 @@ impl Work<'_> {
             let known = self.partials.clone();
             self.join(&found, level.span(), if whole { 0 } else { level.span() });
             let mut after = square_sum(&subtract(self.segment, &self.partials));
+            if std::env::var("DBG").is_ok() { eprintln!("   join t {:.3} kept {} ratio {}", t0.elapsed().as_secs_f64(), self.partials.len(), after/before); }
             if self.capped && after > before && !whole {
                 // What fits late does not fit early: fit all of it.
                 self.partials.clone_from(&known);
@@ -249,6 +257,7 @@ impl Work<'_> {
         let before = partials.len();
         if partials.len() > self.limits.max_partials {
             self.capped = true;
+            self.limits.bounds.energy_cost = ENERGY_COST;
             let worth = contributions(partials, count);
             let mut ranked: Vec<(f64, Partial)> = worth.into_iter().zip(partials.drain(..)).collect();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -282,12 +291,20 @@ impl Work<'_> {
             }
             let noise_std = self.noise_std(level, &bands, k);
             if gate.opens(peaks, noise_std, &leak) {
-                open.push(k);
+                open.push((peaks.iter().copied().fold(0.0, f64::max), k));
             } else {
                 hidden |= gate.opens(peaks, noise_std, &[0.0; 4]);
             }
         }
-        let found = self.on_threads(open.len(), &|i| (open[i], self.band_partials(level, &bands, open[i])));
+        // Every open band holds a mode: more bands than modes allowed need not be looked into.
+        if open.len() > self.limits.max_partials {
+            hidden = true;
+            open.sort_by(|a, b| b.0.total_cmp(&a.0));
+            open.truncate(self.limits.max_partials);
+            open.sort_by_key(|(_, k)| *k);
+        }
+        if std::env::var("DBG").is_ok() { eprintln!("   open {} of {} samples {}", open.len(), bands.bands.len(), samples); }
+        let found = self.on_threads(open.len(), &|i| (open[i].1, self.band_partials(level, &bands, open[i].1)));
         let mut found = without_doubles(found, level, samples);
         // Of more than may be kept, the strongest; the others get their turn when these are subtracted.
         found.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -348,7 +365,9 @@ impl Work<'_> {
         let band = &bands.bands[k];
         let noise_std = self.noise_std(level, bands, k);
         let longest_delta = SPAN_NEPERS / (level.span() as f64).max(1.0);
-        let poles = poles(band, noise_std);
+        // A real decay is an exponential to some 40 dB; what lies far below the band's strongest mends it.
+        let least_share = if self.capped { MISMATCH } else { 0.0 };
+        let poles = poles(band, noise_std, least_share);
         let energies = energies(band, &poles);
         poles
             .into_iter()

@@ -31,6 +31,8 @@ const LEAST_SHARE: f64 = 1e-6;
 /// sound is made otherwise (echoes, layers, a soft codec), and without it little would be left.
 const LARGEST_SHARE: f64 = 0.15;
 const SHORT_S: f64 = 0.004;
+/// No striker touches longer; what is not ringing yet by then is the room or the instrument's resonator.
+const LONGEST_S: f64 = 0.005;
 /// Ridge relative to the mean square, for files without noise.
 const RIDGE: f64 = 1e-10;
 
@@ -61,7 +63,17 @@ pub fn contact_samples(strike: &[f64], rate_hz: f64, noise_variance: f64) -> usi
     }
     let energy = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
     let short = found <= (SHORT_S * rate_hz) as usize;
-    if short || energy(&strike[..found]) <= LARGEST_SHARE * energy(strike) { found } else { 0 }
+    let contact = found.min((LONGEST_S * rate_hz) as usize);
+    if short || energy(&strike[..contact]) <= LARGEST_SHARE * energy(strike) { contact } else { 0 }
+}
+
+/// Lets the ringing `samples`, extrapolated back to the onset, rise during a contact of `contact` samples as
+/// the momentum of a half-sine push does: (1 − cos πn/N)/2.
+pub fn rise(samples: &mut [f64], contact: usize) {
+    let step = std::f64::consts::PI / contact.max(1) as f64;
+    for (n, x) in samples.iter_mut().take(contact).enumerate() {
+        *x *= 0.5 - 0.5 * (step * (n as f64 + 0.5)).cos();
+    }
 }
 
 /// e of the first samples, learnt from `from` on; `None` when there is too little.

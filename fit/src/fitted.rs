@@ -1,5 +1,6 @@
 //! What a fit returns: modes with their standard deviations, and what can be said about the rest.
 
+use crate::contact::rise;
 use crate::partial::Partial;
 use crate::pruning::Uncertainty;
 use crate::residual::Residual;
@@ -211,12 +212,14 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The modes alone, from the onset, `count` samples.
+    /// The modes alone, from the onset, `count` samples; they rise while the striker pushes.
     #[must_use]
     pub fn resynthesise(&self, count: usize) -> Vec<f64> {
         let partials: Vec<Partial> =
             self.modes.iter().map(|mode| partial_of(&mode.mode(), self.sample_rate_hz)).collect();
-        crate::projection::synthesise(&partials, count)
+        let mut samples = crate::projection::synthesise(&partials, count);
+        rise(&mut samples, (self.start_offset_s * self.sample_rate_hz).round() as usize);
+        samples
     }
 
     /// The modes in the place of the strike, as long as the recording.

@@ -3,15 +3,15 @@
 //! A real resonance is an exponential to 20–40 dB. Over noise far below that, every criterion that
 //! knows noise alone (noise edge, Wald, Rao) spends two or three partials on the rest: a decay of 0.4 dB
 //! rms off the exponential came out as three modes within 1.4 Hz, the strongest with half its true T60.
-//! What decides here is how much of the *resonance* is lost. For partials i and j closer than their
-//! half-bandwidths together,
+//! What decides here is how much of the *resonance* is lost. For partials that lie within each other's
+//! half-bandwidths,
 //!
 //! ```text
-//! s[n] = c_i z_iⁿ + c_j z_jⁿ      loss = min_{c, z} ‖s − c zⁿ‖² / ‖s‖²
+//! s[n] = Σ c_i z_iⁿ      loss = min_{c, z} ‖s − c zⁿ‖² / ‖s‖²
 //! ```
-//! all in closed form ([`geometric_sums`]); the pair that loses least is merged first, as long as the
+//! all in closed form ([`geometric_sums`]); the group that loses least is merged first, as long as the
 //! loss stays under [`MERGED_LOSS`]. Real doublets beat: merging two equal modes 1 Hz apart with a T60 of
-//! 2 s loses a third. Used only on recordings whose residual is more than noise, so that what *is*
+//! 2 s loses 5 %. Used only on recordings whose residual is more than noise, so that what *is*
 //! a sum of exponentials in noise keeps every mode that the data prove.
 
 use crate::geometric_sum::geometric_sums;
@@ -22,49 +22,69 @@ type C = Complex<f64>;
 
 /// Largest part of a resonance's energy that its one mode may miss: 18 dB, a beat of 2 dB.
 pub const MERGED_LOSS: f64 = 0.016;
+/// Most partials that are tried as one resonance.
+const LARGEST_GROUP: usize = 4;
 /// Halvings of the search for the best single pole.
 const HALVINGS: usize = 18;
 
 /// Merges what is one resonance; says how many partials went. `loss` is [`MERGED_LOSS`] or a caller's own.
 pub fn merge_resonances(partials: &mut Vec<Partial>, count: usize, loss: f64) -> usize {
     let before = partials.len();
-    while let Some((i, j, merged)) = best_pair(partials, count, loss) {
-        partials[i] = merged;
-        partials.remove(j);
+    while let Some((gone, merged)) = best_group(partials, count, loss) {
+        for &k in gone.iter().rev() {
+            partials.remove(k);
+        }
+        partials.push(merged);
+        partials.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     }
     before - partials.len()
 }
 
-/// The pair whose merging loses least, and what it becomes.
-fn best_pair(partials: &[Partial], count: usize, most: f64) -> Option<(usize, usize, Partial)> {
-    let mut best: Option<(f64, usize, usize, Partial)> = None;
-    for j in 1..partials.len() {
-        for i in 0..j {
-            let (a, b) = (&partials[i], &partials[j]);
-            if (a.omega - b.omega).abs() > a.delta + b.delta + 1.0 / count as f64 {
-                continue;
-            }
-            let (loss, merged) = single(a, b, count);
+/// The group (ascending) whose merging loses least, and what it becomes.
+fn best_group(partials: &[Partial], count: usize, most: f64) -> Option<(Vec<usize>, Partial)> {
+    let mut best: Option<(f64, Vec<usize>, Partial)> = None;
+    for k in 0..partials.len() {
+        let near = around(partials, k, count);
+        // Two halves can each be further from one exponential than their sum with a third.
+        for size in 2..=near.len() {
+            let parts: Vec<Partial> = near[..size].iter().map(|&i| partials[i]).collect();
+            let (loss, merged) = single(parts, count);
             if loss < best.as_ref().map_or(most, |best| best.0) {
-                best = Some((loss, i, j, merged));
+                let mut group = near[..size].to_vec();
+                group.sort_unstable();
+                best = Some((loss, group, merged));
             }
         }
     }
-    best.map(|(_, i, j, merged)| (i, j, merged))
+    best.map(|(_, group, merged)| (group, merged))
 }
 
-/// The one partial nearest to the sum of two, and the part of the sum's energy it misses.
-fn single(a: &Partial, b: &Partial, count: usize) -> (f64, Partial) {
-    let sum = Sum { parts: [*a, *b], count };
+/// `k` and those its half-bandwidth touches, nearest pole first, at most [`LARGEST_GROUP`].
+fn around(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
+    let own = &partials[k];
+    let gap = |i: usize| (partials[i].omega - own.omega).hypot(partials[i].delta - own.delta);
+    let touches = |i: &usize| {
+        let other = &partials[*i];
+        (other.omega - own.omega).abs() <= other.delta + own.delta + 1.0 / count as f64
+    };
+    let mut near: Vec<usize> = (0..partials.len()).filter(touches).collect();
+    near.sort_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+    near.truncate(LARGEST_GROUP);
+    near
+}
+
+/// The one partial nearest to the sum of several, and the part of the sum's energy it misses.
+fn single(parts: Vec<Partial>, count: usize) -> (f64, Partial) {
+    let widest = parts.iter().map(|p| p.delta).fold(1.0 / count as f64, f64::max);
+    let sum = Sum { parts, count };
     let energy = sum.energy();
+    let nearest = sum.parts[0];
     if energy <= 1e-300 {
-        return (1.0, *a);
+        return (1.0, nearest);
     }
-    let mut best = [a, b]
-        .map(|start| (sum.explained(start.omega, start.delta), start.omega, start.delta))
-        .into_iter()
-        .fold((-1.0, 0.0, 0.0), |best, next| if next.0 > best.0 { next } else { best });
-    let mut step = 0.5 * (a.delta + b.delta).max((a.omega - b.omega).abs());
+    let starts = sum.parts.iter().map(|p| (sum.explained(p.omega, p.delta), p.omega, p.delta));
+    let mut best = starts.fold((-1.0, 0.0, 0.0), |best, next| if next.0 > best.0 { next } else { best });
+    let mut step = widest;
     for _ in 0..HALVINGS {
         // A step that helps is tried again, so that the search can walk.
         for _ in 0..8 {
@@ -85,9 +105,9 @@ fn single(a: &Partial, b: &Partial, count: usize) -> (f64, Partial) {
     (1.0 - explained / energy, Partial { omega, delta, c: sum.amplitude(omega, delta) })
 }
 
-/// c_a z_aⁿ + c_b z_bⁿ over `count` samples.
+/// Σ c zⁿ over `count` samples.
 struct Sum {
-    parts: [Partial; 2],
+    parts: Vec<Partial>,
     count: usize,
 }
 
@@ -99,9 +119,8 @@ impl Sum {
     }
 
     fn energy(&self) -> f64 {
-        let [a, b] = &self.parts;
-        let own = |p: &Partial| p.c.norm_sqr() * self.product(p, p).re;
-        own(a) + own(b) + 2.0 * (a.c.conj() * b.c * self.product(a, b)).re
+        let cross = |a: &Partial, b: &Partial| (a.c.conj() * b.c * self.product(a, b)).re;
+        self.parts.iter().map(|a| self.parts.iter().map(|b| cross(a, b)).sum::<f64>()).sum()
     }
 
     fn amplitude(&self, omega: f64, delta: f64) -> C {
@@ -148,7 +167,6 @@ mod tests {
     fn doublets_that_beat_stay_two() {
         for (gap_hz, level) in [(1.0, 1.0), (2.0, 0.3), (4.0, 0.2)] {
             let mut pair = vec![partial(700.0, 3.45, 1.0, 0.3), partial(700.0 + gap_hz, 3.45, level, 1.0)];
-            println!("{:?}", single(&pair[0], &pair[1], 88_200).0);
             assert_eq!(merge_resonances(&mut pair, 88_200, MERGED_LOSS), 0, "{gap_hz} Hz, {level}");
         }
     }

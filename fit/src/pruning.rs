@@ -174,37 +174,6 @@ fn rao_gains(residual: &[f64], others: &[Partial], candidates: &[Partial]) -> Ve
         .collect()
 }
 
-/// Share of a neighbour's energy that a partial within its bandwidth must explain to be a mode of its own
-/// in a recording that is not quite a sum of modes.
-const OWN_SHARE: f64 = 1e-4;
-
-/// Removes partials that only mend a neighbour: what their removal would cost is less than a share of
-/// the energy of a partial within the same bandwidth. A real decay is an exponential to some 40 dB; the
-/// rest of it is otherwise spent on pairs of giants that cancel. Says how many went.
-pub fn simplify(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize) -> usize {
-    let uncertainties = uncertainties(partials, noise, count);
-    let cost: Vec<f64> =
-        uncertainties.iter().zip(&*partials).map(|(u, p)| u.wald * noise.variance_at(p.omega)).collect();
-    let doomed: Vec<bool> = (0..partials.len())
-        .map(|k| {
-            let near: Vec<usize> = neighbours(partials, k, count)
-                .into_iter()
-                .filter(|&j| {
-                    j != k
-                        && (partials[j].omega - partials[k].omega).abs()
-                            < partials[j].delta + partials[k].delta + 4.0 / count as f64
-                })
-                .collect();
-            let most = near.iter().map(|&j| partials[j].energy(count)).fold(0.0, f64::max);
-            cost[k] < OWN_SHARE * most && near.iter().all(|&j| (cost[j], j) > (cost[k], k))
-        })
-        .collect();
-    let before = partials.len();
-    let mut doomed = doomed.into_iter();
-    partials.retain(|_| !doomed.next().unwrap_or(false));
-    before - partials.len()
-}
-
 /// Partials that share a neighbourhood with `k` (itself among them), at most a dozen.
 fn neighbours(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
     let gap = |j: usize| (partials[j].omega - partials[k].omega).abs();

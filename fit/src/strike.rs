@@ -4,12 +4,13 @@
 //! half-sine force: 27 dB with it in the analysed part, 75 dB without) → analysed from there on
 //! ([`crate::analysis`]) → hum and non-exponential decays named → residual.
 
-use crate::analysis::{Analysis, Limits, analyse, subtract};
-use crate::contact::contact_samples;
+use crate::analysis::{Analysis, Limits, analyse};
+use crate::contact::{contact_samples, rise};
 use crate::fitted::{Fit, FittedMode, Warning};
 use crate::noise_floor::NoiseFloor;
 use crate::onset;
 use crate::partial::Partial;
+use crate::projection::synthesise;
 use crate::pruning::uncertainties;
 use crate::recording::{FEWEST_SAMPLES, Recording};
 use crate::refinement::Bounds;
@@ -25,6 +26,10 @@ const UNTRIMMED_S: f64 = 5.0;
 const LEAST_DECAY_PER_S: f64 = 0.115;
 /// Largest amplitude of a mode, in peaks of the recording.
 const LARGEST_AMPLITUDE: f64 = 8.0;
+
+/// A mode that falls by more nepers than this during the contact is not known at the onset: it is part of
+/// the attack.
+const BACK_NEPERS: f64 = 3.0;
 
 /// What a fit may find and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,7 +137,11 @@ pub fn fit(
     warn_of_recording(recording, &strike.others, &found, &mut warnings);
     let offset = start_offset(&samples, &found, recording, options);
     let segment = &samples[found.onset + offset..end];
-    let analysis = analyse(segment, &limits(segment, recording, options), progress);
+    let mut limits = limits(segment, recording, options);
+    if offset > 0 {
+        limits.bounds.delta_high = limits.bounds.delta_high.min(BACK_NEPERS / offset as f64);
+    }
+    let analysis = analyse(segment, &limits, progress);
     Ok(assemble(recording, &samples, &found, offset, analysis, options, warnings))
 }
 
@@ -230,6 +239,7 @@ fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limit
             delta_low: LEAST_DECAY_PER_S / rate,
             delta_high: options.fastest_decay_per_s / rate,
             amplitude_high: LARGEST_AMPLITUDE * peak,
+            energy_cost: 0.0,
         },
         max_partials: options.max_modes,
         least_energy: 10.0_f64.powf(0.1 * options.least_level_db),
@@ -256,6 +266,9 @@ fn assemble(
     let (onset, end) = (found.onset, found.end);
     let mut partials = analysis.partials;
     let count = end - onset - offset;
+    let peak = samples[onset..end].iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+    let sane = |p: &Partial| p.moved(-(offset as f64)).c.norm() <= LARGEST_AMPLITUDE * peak;
+    partials.retain(sane);
     warnings.extend(crate::suspicion::take_hum(&mut partials, count, rate));
     warnings.extend(crate::suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
     let mut modes: Vec<FittedMode> = uncertainties(&partials, &analysis.noise, count)
@@ -271,8 +284,10 @@ fn assemble(
         warnings.push(Warning::ModesCapped { limit: options.max_modes });
     }
     let early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
-    let mut left = samples[..onset].to_vec();
-    left.extend(subtract(&samples[onset..], &early));
+    let mut ringing = synthesise(&early, samples.len() - onset);
+    rise(&mut ringing, offset);
+    let mut left = samples.to_vec();
+    left[onset..].iter_mut().zip(&ringing).for_each(|(left, ringing)| *left -= ringing);
     let snr = |from: usize| -ratio_db(&left[from..end], &samples[from..end]);
     let resynthesis_snr_db = snr(onset + offset);
     let snr_from_onset_db = snr(onset);
