@@ -7,8 +7,15 @@ fn main() {
         let s: Vec<f64> = r.samples.iter().map(|x| x - mean).collect();
         let strike = onset::find(&s, r.sample_rate_hz);
         let lead = &s[..strike.onset];
-        let noise = if lead.len() > 200 { lead.iter().map(|x| x * x).sum::<f64>() / lead.len() as f64 } else { 0.0 };
+        let noise =
+            if lead.len() > 200 { lead.iter().map(|x| x * x).sum::<f64>() / lead.len() as f64 } else { 0.0 };
         let c = contact_samples(&s[strike.onset..strike.end], r.sample_rate_hz, noise);
-        println!("{:40} onset {:.2} ms contact {:.2} ms others {:?}", r.name, 1e3 * strike.onset as f64 / r.sample_rate_hz, 1e3 * c as f64 / r.sample_rate_hz, strike.others.len());
+        println!(
+            "{:40} onset {:.2} ms contact {:.2} ms others {:?}",
+            r.name,
+            1e3 * strike.onset as f64 / r.sample_rate_hz,
+            1e3 * c as f64 / r.sample_rate_hz,
+            strike.others.len()
+        );
     }
 }

@@ -110,7 +110,6 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         work.settle(FINAL_STEPS);
         work.make_plain();
     }
-    if std::env::var("DBG").is_ok() { eprintln!("simplified to {} capped {}", work.partials.len(), work.capped); }
     work.settle(FINAL_STEPS);
     let residual = subtract(segment, &work.partials);
     progress(1.0);
@@ -150,8 +149,6 @@ impl Work<'_> {
 
     /// Takes back what modes were spent on because the recording is no sum of modes.
     fn make_plain(&mut self) {
-        let snr = |w: &Self| 10.0*(square_sum(w.segment)/square_sum(&subtract(w.segment,&w.partials))).log10();
-        if std::env::var("DBG").is_ok() { eprintln!("plain from {} {:.2} dB", self.partials.len(), snr(self)); }
         let count = self.segment.len();
         for _ in 0..MERGING_ROUNDS {
             if merge_resonances(&mut self.partials, count, MERGED_LOSS) == 0 {
@@ -159,7 +156,6 @@ impl Work<'_> {
             }
             self.settle(LEVEL_STEPS);
         }
-        if std::env::var("DBG").is_ok() { eprintln!("merged to {} {:.2} dB", self.partials.len(), snr(self)); }
     }
 
     /// The noise as the residual shows it now.
@@ -181,10 +177,7 @@ impl Work<'_> {
             if self.capped {
                 self.measure_noise();
             }
-            let t0 = std::time::Instant::now();
             let (found, hidden) = self.candidates(level, &residual);
-            if std::env::var("DBG").is_ok() { eprintln!("level {} whole {whole} found {} hidden {hidden} capped {} known {} t {:.3}", level.decimation, found.len(), self.capped, self.partials.len(), t0.elapsed().as_secs_f64()); }
-            let t0 = std::time::Instant::now();
             if found.is_empty() {
                 break;
             }
@@ -192,7 +185,6 @@ impl Work<'_> {
             let known = self.partials.clone();
             self.join(&found, level.span(), if whole { 0 } else { level.span() });
             let mut after = square_sum(&subtract(self.segment, &self.partials));
-            if std::env::var("DBG").is_ok() { eprintln!("   join t {:.3} kept {} ratio {}", t0.elapsed().as_secs_f64(), self.partials.len(), after/before); }
             if self.capped && after > before && !whole {
                 // What fits late does not fit early: fit all of it.
                 self.partials.clone_from(&known);
@@ -303,8 +295,8 @@ impl Work<'_> {
             open.truncate(self.limits.max_partials);
             open.sort_by_key(|(_, k)| *k);
         }
-        if std::env::var("DBG").is_ok() { eprintln!("   open {} of {} samples {}", open.len(), bands.bands.len(), samples); }
-        let found = self.on_threads(open.len(), &|i| (open[i].1, self.band_partials(level, &bands, open[i].1)));
+        let found =
+            self.on_threads(open.len(), &|i| (open[i].1, self.band_partials(level, &bands, open[i].1)));
         let mut found = without_doubles(found, level, samples);
         // Of more than may be kept, the strongest; the others get their turn when these are subtracted.
         found.sort_by(|a, b| b.1.total_cmp(&a.1));

@@ -48,12 +48,16 @@ pub fn contact_samples(strike: &[f64], rate_hz: f64, noise_variance: f64) -> usi
         let levels: Vec<Level> = (0..errors.len() + 1 - smoothing)
             .map(|n| {
                 let error = mean_square(&errors[n..n + smoothing]);
-                Level { error, share: error / mean_square(&strike[n..(n + 8 * smoothing).min(strike.len())]).max(1e-300) }
+                Level {
+                    error,
+                    share: error / mean_square(&strike[n..(n + 8 * smoothing).min(strike.len())]).max(1e-300),
+                }
             })
             .collect();
         let usual = Level::usual(&levels[from.min(levels.len())..]);
         let pushed = (0..from.min(levels.len())).rev().find(|&n| {
-            levels[n].error > EXCESS * usual.error && levels[n].share > (EXCESS * usual.share).max(LEAST_SHARE)
+            levels[n].error > EXCESS * usual.error
+                && levels[n].share > (EXCESS * usual.share).max(LEAST_SHARE)
         });
         found = pushed.map_or(0, |n| n + smoothing);
         // Well clear of the stretch it was learnt from: that stretch rang freely.
