@@ -3,7 +3,7 @@
 use crate::contact::rise;
 use crate::partial::Partial;
 use crate::pruning::Uncertainty;
-use crate::residual::Residual;
+use crate::residual::{Burst, Residual};
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 use std::fmt;
@@ -220,6 +220,12 @@ impl Fit {
         let mut samples = crate::projection::synthesise(&partials, count);
         rise(&mut samples, (self.start_offset_s * self.sample_rate_hz).round() as usize);
         samples
+    }
+
+    /// The first `length_s` of the residual after the onset, faded out: what a body plays at an impact.
+    #[must_use]
+    pub fn burst(&self, length_s: f64) -> Burst {
+        Burst::new(&self.residual.samples[self.onset_sample..], length_s, self.sample_rate_hz)
     }
 
     /// The modes in the place of the strike, as long as the recording.
