@@ -15,7 +15,7 @@ use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
-use crate::pruning::{prune, prune_missed_by_nobody};
+use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
 use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
 use nalgebra::Complex;
@@ -156,6 +156,15 @@ impl Work<'_> {
             }
             self.settle(LEVEL_STEPS);
         }
+        // What is left of the attack, the room and the codec is noise now, loudest at the start.
+        for _ in 0..MERGING_ROUNDS {
+            let residual = subtract(self.segment, &self.partials);
+            self.noise = NoiseFloor::by_time(&residual, self.limits.rate_hz, self.limits.least_noise);
+            if prune(&mut self.partials, &self.noise, count, WORTH_ITS_PARAMETERS) == 0 {
+                break;
+            }
+            self.settle(LEVEL_STEPS);
+        }
     }
 
     /// The noise as the residual shows it now.
@@ -221,7 +230,7 @@ impl Work<'_> {
         }
         refine(&target, &mut active, &bounds, LEVEL_STEPS);
         while if start > 0 {
-            prune(&mut active, &self.noise, target.len())
+            prune(&mut active, &self.noise, target.len(), threshold(target.len()))
         } else {
             prune_missed_by_nobody(&target, &mut active, &self.noise, &bounds)
         } > 0
