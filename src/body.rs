@@ -4,6 +4,7 @@ use crate::clock::Stamp;
 use crate::governor::Governor;
 use crate::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::queue::{Dead, Sender};
+use crate::residual::Bursts;
 use crate::voice::pulse_end;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::{self, HertzPulse};
@@ -26,6 +27,7 @@ pub(crate) struct BodySlot {
     states: Vec<GroupState>,
     awake: Awake,
     places: Vec<Place>,
+    bursts: Bursts,
 }
 
 /// One strike position: what reaches the body there.
@@ -103,7 +105,8 @@ impl BodySlot {
             1 => vec![Place::new(Vec::new())],
             count => (0..count).map(|position| Place::new(gains_at(position))).collect(),
         };
-        Ok(Self { groups, states, awake: Awake::default(), places })
+        let bursts = Bursts::new(model.residual.as_ref(), model.impulse_n_s, sample_rate_hz);
+        Ok(Self { groups, states, awake: Awake::default(), places, bursts })
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
@@ -118,6 +121,8 @@ impl BodySlot {
         pulse.deposit(&mut place.bus, stamp.sample(), stamp.fraction(), sample_rate_hz);
         let end = pulse_end(pulse, stamp.sample(), sample_rate_hz);
         place.bus_busy_until = place.bus_busy_until.max(end);
+        // A burst is noise-like: the whole sample is near enough.
+        self.bursts.strike(stamp.sample(), pulse.impulse_n_s);
     }
 
     /// Adds what one contact sends during the present stretch.
@@ -132,6 +137,7 @@ impl BodySlot {
     /// Whether nothing rings and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.awake.groups() == 0
+            && self.bursts.is_silent(position)
             && self.places.iter().all(|place| !place.touched && place.bus_busy_until <= position)
     }
 
@@ -159,6 +165,7 @@ impl BodySlot {
             threshold: modal_bank::SLEEP_AMPLITUDE,
         };
         self.awake.render_bank(bank, terms.position, &inputs[..count], out);
+        self.bursts.render(terms.position, out);
         self.groups.len() - driven
     }
 }

@@ -35,6 +35,7 @@ pub mod offline;
 mod queue;
 mod recording;
 mod renderer;
+pub mod residual;
 mod scene;
 mod seat;
 mod stats;
@@ -53,6 +54,7 @@ pub use event::{
 pub use material::Material;
 pub use modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use renderer::Renderer;
+pub use residual::Residual;
 pub use scene::Scene;
 pub use stats::Stats;
 pub use surface::{

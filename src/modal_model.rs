@@ -4,6 +4,7 @@
 //! to an impulse of `impulse_n_s`; the engine scales linearly, so an impulse J sounds as
 //! y · J / `impulse_n_s` (Hasti §III-D).
 
+use crate::residual::Residual;
 use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
 use serde::{Deserialize, Serialize};
@@ -28,6 +29,8 @@ pub struct ModalModel {
     /// Amplitudes when the body is struck elsewhere: strike position 1, 2, … (at most
     /// [`MAX_POSITIONS`] − 1), each with one amplitude for every mode. Position 0 is `modes` itself.
     pub positions: Vec<Vec<f64>>,
+    /// What the strike had besides modes, played at every impact.
+    pub residual: Option<Residual>,
 }
 
 /// Most strike positions a body may have, the first included.
@@ -75,6 +78,8 @@ struct File {
     modes: Vec<FileMode>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     positions: Vec<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    residual: Option<Residual>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -96,7 +101,7 @@ impl ModalModel {
     /// # Errors
     /// When a mode grows, has no frequency, or a number is not finite.
     pub fn new(modes: Vec<Mode>, impulse_n_s: f64) -> Result<Self, ModalModelError> {
-        let model = Self { source: String::new(), impulse_n_s, modes, positions: Vec::new() };
+        let model = Self { source: String::new(), impulse_n_s, modes, positions: Vec::new(), residual: None };
         model.check()?;
         Ok(model)
     }
@@ -144,8 +149,8 @@ impl ModalModel {
                 phase_rad: m.phase_rad,
             })
             .collect();
-        let positions = file.positions;
-        let model = Self { source: file.source, impulse_n_s: file.impulse_n_s, modes, positions };
+        let File { source, impulse_n_s, positions, residual, .. } = file;
+        let model = Self { source, impulse_n_s, modes, positions, residual };
         model.check()?;
         Ok(model)
     }
@@ -170,6 +175,7 @@ impl ModalModel {
             impulse_n_s: self.impulse_n_s,
             modes,
             positions: self.positions.clone(),
+            residual: self.residual.clone(),
         };
         serde_json::to_string(&file).unwrap_or_default()
     }
@@ -180,6 +186,19 @@ impl ModalModel {
     /// When a list is not as long as the modes, a number is not finite, or there are too many.
     pub fn with_positions(mut self, positions: Vec<Vec<f64>>) -> Result<Self, ModalModelError> {
         self.positions = positions;
+        self.check()?;
+        Ok(self)
+    }
+
+    /// The same model with what a strike has besides its modes; `gain` scales it, 0 leaves it out.
+    ///
+    /// # Errors
+    /// When the burst is longer than [`LONGEST_S`](crate::residual::LONGEST_S) or holds no finite numbers.
+    pub fn with_residual(mut self, residual: Option<Residual>, gain: f64) -> Result<Self, ModalModelError> {
+        self.residual = residual.filter(|_| gain != 0.0).map(|mut residual| {
+            residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
+            residual
+        });
         self.check()?;
         Ok(self)
     }
@@ -214,6 +233,7 @@ impl ModalModel {
                 .collect(),
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
+            residual: self.residual.clone(),
         }
     }
 
@@ -261,6 +281,9 @@ impl ModalModel {
             if let Some(bad) = amplitudes.iter().find(|a| !in_range(**a, -1e9, 1e9)) {
                 return Err(refuse(format!("positions[{p}]"), *bad, "finite, within ±1e9"));
             }
+        }
+        if let Some(Err((field, value, expected))) = self.residual.as_ref().map(Residual::check) {
+            return Err(refuse(field.into(), value, expected));
         }
         for (i, mode) in self.modes.iter().enumerate() {
             if !in_range(mode.frequency_hz, 1e-3, 1e7) {

@@ -4,8 +4,8 @@
 mod common;
 
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Excitation, Impact, Material, Renderer, Scene,
-    SurfaceId,
+    Actuator, Config, ContactEvent, ContactId, ContactSample, Excitation, Impact, Material, ModalModel,
+    Renderer, Residual, Scene, SurfaceId,
 };
 use asperity_dsp::rng::Rng;
 use common::{bar, grating, plate};
@@ -82,6 +82,12 @@ fn the_renderer_can_move_to_the_audio_thread() {
     is_send::<Scene>();
 }
 
+/// A body whose impacts also play a residual.
+fn clicking_bar() -> ModalModel {
+    let samples = (0..3000).map(|n| (0.7 * n as f32).sin() / (1.0 + n as f32)).collect();
+    bar().with_residual(Some(Residual { sample_rate_hz: 48_000.0, samples }), 1.0).unwrap()
+}
+
 struct Game {
     scene: Scene,
     surfaces: Vec<SurfaceId>,
@@ -148,7 +154,7 @@ impl Game {
                 }
             }
             2 => {
-                let _ = self.scene.replace_body(body, bar(), Material::GLASS);
+                let _ = self.scene.replace_body(body, clicking_bar(), Material::GLASS);
             }
             3 => {
                 let gain = self.rng.uniform();
@@ -169,7 +175,7 @@ impl Game {
 fn ten_minutes_of_randomised_events_touch_no_heap_on_the_audio_half() {
     let config = Config { max_contacts: 6, contact_timeout_s: 0.05, ..Config::default() };
     let (mut scene, mut renderer) = config.build().unwrap();
-    let bodies = vec![scene.add_body(bar()).unwrap(), scene.add_body(bar()).unwrap()];
+    let bodies = vec![scene.add_body(clicking_bar()).unwrap(), scene.add_body(bar()).unwrap()];
     let surfaces = vec![
         scene.add_surface(grating(1e-3, 5e-5).on(bodies[0])).unwrap(),
         scene.add_surface(plate(1.0).on(bodies[1])).unwrap(),

@@ -49,7 +49,13 @@ pub fn modes(count: usize) -> ModalModel {
             }
         })
         .collect();
-    ModalModel { source: "made for measuring".to_owned(), impulse_n_s: 0.01, modes, positions: Vec::new() }
+    ModalModel {
+        source: "made for measuring".to_owned(),
+        impulse_n_s: 0.01,
+        modes,
+        positions: Vec::new(),
+        residual: None,
+    }
 }
 
 fn plate() -> Option<HeightMap> {

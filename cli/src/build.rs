@@ -43,6 +43,7 @@ pub struct Built {
     /// Ids by the names of the scene file.
     pub names: Names,
     /// What has to run on threads of its own; empty unless [`Overrides::live`].
+    #[cfg_attr(not(feature = "device"), expect(dead_code, reason = "only a sound card needs them"))]
     pub workers: Vec<SandWorker>,
 }
 
@@ -59,15 +60,20 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
     let workers = RefCell::default();
     for body in &file.bodies {
         let place = |error: CliError| at(error.within(format!("body \"{}\"", body.name)));
-        let model = match &body.modes {
+        let mut model = match &body.modes {
             Some(path) => ModalModel::load(path).map_err(CliError::told)?,
             None => ModalModel {
                 source: String::new(),
                 impulse_n_s: 1.0,
                 modes: Vec::new(),
                 positions: Vec::new(),
+                residual: None,
             },
         };
+        if let Some(gain) = body.residual {
+            let residual = model.residual.take();
+            model = model.with_residual(residual, gain).map_err(|error| place(CliError::told(error)))?;
+        }
         let material = body.material.as_ref().map(material).transpose().map_err(place)?;
         let id = match material {
             Some(material) => scene.add_body_of(model, material),

@@ -16,11 +16,12 @@ fn main() {
                 continue;
             }
         };
-        let clock = std::time::Instant::now();
+        let clock = common::cpu_seconds();
         let options = FitOptions { max_modes, threads: 1, ..FitOptions::default() };
         match fit(&recording, &options, &mut |_| {}) {
             Err(error) => println!("error: {error}"),
             Ok(fit) => {
+                let seconds = common::cpu_seconds() - clock;
                 let top: Vec<String> = fit
                     .modes
                     .iter()
@@ -43,7 +44,7 @@ fn main() {
                     fit.resynthesis_snr_db,
                     fit.snr_from_onset_db,
                     fit.noise_floor_db,
-                    clock.elapsed().as_secs_f64(),
+                    seconds,
                     top.join(" ")
                 );
                 for warning in &fit.warnings {

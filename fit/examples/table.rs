@@ -18,20 +18,6 @@ fn to_mode(p: &Partial, rate: f64) -> Mode {
     }
 }
 
-/// Time this thread has run, which other work on the machine does not lengthen much.
-fn cpu_seconds() -> f64 {
-    std::fs::read_to_string("/proc/thread-self/schedstat")
-        .ok()
-        .and_then(|text| text.split(' ').next()?.parse::<f64>().ok())
-        .map_or_else(
-            || {
-                let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
-                now.map_or(0.0, |now| now.as_secs_f64())
-            },
-            |ns| ns * 1e-9,
-        )
-}
-
 fn main() {
     let args: Vec<String> = std::env::args().collect();
     let seeds: u64 = args.get(1).and_then(|s| s.parse().ok()).unwrap_or(3);
@@ -56,6 +42,7 @@ fn main() {
                         delta_low: 0.115 / 44_100.0,
                         delta_high: 1500.0 / 44_100.0,
                         amplitude_high: 8.0 * impact.noisy.iter().fold(0.0, |a: f64, x| a.max(x.abs())),
+                        energy_cost: 0.0,
                     },
                     max_partials: 200,
                     least_energy: 1e-9,

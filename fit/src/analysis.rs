@@ -10,11 +10,12 @@
 
 use crate::amplitudes::{contributions, fit_amplitudes};
 use crate::esprit::{energies, poles};
+use crate::merging::{MERGED_LOSS, merge_resonances};
 use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
-use crate::pruning::{prune, prune_missed_by_nobody, simplify};
+use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
 use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
 use nalgebra::Complex;
@@ -29,8 +30,13 @@ const SPAN_NEPERS: f64 = 3.0;
 const LEVEL_STEPS: usize = 3;
 /// A residual with this many times the noise's power is no noise.
 const MISFIT: f64 = 2.0;
-/// Most rounds of taking out modes that only mend others.
-const SIMPLIFYING_ROUNDS: usize = 15;
+/// Singular values this far below a band's largest are no modes of their own once a recording has shown
+/// that it is no sum of modes.
+const MISMATCH: f64 = 3e-3;
+/// [`Bounds::energy_cost`] once a recording has shown that it is no sum of modes.
+const ENERGY_COST: f64 = 1e-3;
+/// Most rounds of merging and refitting.
+const MERGING_ROUNDS: usize = 15;
 /// Most rounds of one level.
 const LEVEL_ROUNDS: usize = 3;
 /// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
@@ -71,7 +77,7 @@ pub struct Analysis {
 pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
     let mut work = Work {
         segment,
-        limits,
+        limits: *limits,
         noise: NoiseFloor::estimate(segment, limits.rate_hz, limits.least_noise),
         partials: Vec::new(),
         capped: false,
@@ -100,11 +106,9 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         cost = left;
     }
     if work.capped || work.leaves_more_than_noise() {
-        let mut rounds = 0;
-        while rounds < SIMPLIFYING_ROUNDS && simplify(&mut work.partials, &work.noise, segment.len()) > 0 {
-            work.settle(LEVEL_STEPS);
-            rounds += 1;
-        }
+        work.limits.bounds.energy_cost = ENERGY_COST;
+        work.settle(FINAL_STEPS);
+        work.make_plain();
     }
     work.settle(FINAL_STEPS);
     let residual = subtract(segment, &work.partials);
@@ -129,7 +133,7 @@ type Ranked = (Partial, f64);
 
 struct Work<'a> {
     segment: &'a [f64],
-    limits: &'a Limits,
+    limits: Limits,
     noise: NoiseFloor,
     partials: Vec<Partial>,
     capped: bool,
@@ -141,6 +145,26 @@ impl Work<'_> {
         let residual = subtract(self.segment, &self.partials);
         let quiet = NoiseFloor::estimate(&residual, self.limits.rate_hz, self.limits.least_noise);
         square_sum(&residual) / residual.len() as f64 > MISFIT * quiet.mean_variance()
+    }
+
+    /// Takes back what modes were spent on because the recording is no sum of modes.
+    fn make_plain(&mut self) {
+        let count = self.segment.len();
+        for _ in 0..MERGING_ROUNDS {
+            if merge_resonances(&mut self.partials, count, MERGED_LOSS) == 0 {
+                break;
+            }
+            self.settle(LEVEL_STEPS);
+        }
+        // What is left of the attack, the room and the codec is noise now, loudest at the start.
+        for _ in 0..MERGING_ROUNDS {
+            let residual = subtract(self.segment, &self.partials);
+            self.noise = NoiseFloor::by_time(&residual, self.limits.rate_hz, self.limits.least_noise);
+            if prune(&mut self.partials, &self.noise, count, WORTH_ITS_PARAMETERS) == 0 {
+                break;
+            }
+            self.settle(LEVEL_STEPS);
+        }
     }
 
     /// The noise as the residual shows it now.
@@ -206,7 +230,7 @@ impl Work<'_> {
         }
         refine(&target, &mut active, &bounds, LEVEL_STEPS);
         while if start > 0 {
-            prune(&mut active, &self.noise, target.len())
+            prune(&mut active, &self.noise, target.len(), threshold(target.len()))
         } else {
             prune_missed_by_nobody(&target, &mut active, &self.noise, &bounds)
         } > 0
@@ -234,6 +258,7 @@ impl Work<'_> {
         let before = partials.len();
         if partials.len() > self.limits.max_partials {
             self.capped = true;
+            self.limits.bounds.energy_cost = ENERGY_COST;
             let worth = contributions(partials, count);
             let mut ranked: Vec<(f64, Partial)> = worth.into_iter().zip(partials.drain(..)).collect();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -267,12 +292,20 @@ impl Work<'_> {
             }
             let noise_std = self.noise_std(level, &bands, k);
             if gate.opens(peaks, noise_std, &leak) {
-                open.push(k);
+                open.push((peaks.iter().copied().fold(0.0, f64::max), k));
             } else {
                 hidden |= gate.opens(peaks, noise_std, &[0.0; 4]);
             }
         }
-        let found = self.on_threads(open.len(), &|i| (open[i], self.band_partials(level, &bands, open[i])));
+        // Every open band holds a mode: more bands than modes allowed need not be looked into.
+        if open.len() > self.limits.max_partials {
+            hidden = true;
+            open.sort_by(|a, b| b.0.total_cmp(&a.0));
+            open.truncate(self.limits.max_partials);
+            open.sort_by_key(|(_, k)| *k);
+        }
+        let found =
+            self.on_threads(open.len(), &|i| (open[i].1, self.band_partials(level, &bands, open[i].1)));
         let mut found = without_doubles(found, level, samples);
         // Of more than may be kept, the strongest; the others get their turn when these are subtracted.
         found.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -333,7 +366,9 @@ impl Work<'_> {
         let band = &bands.bands[k];
         let noise_std = self.noise_std(level, bands, k);
         let longest_delta = SPAN_NEPERS / (level.span() as f64).max(1.0);
-        let poles = poles(band, noise_std);
+        // A real decay is an exponential to some 40 dB; what lies far below the band's strongest mends it.
+        let least_share = if self.capped { MISMATCH } else { 0.0 };
+        let poles = poles(band, noise_std, least_share);
         let energies = energies(band, &poles);
         poles
             .into_iter()

@@ -16,9 +16,10 @@ type C = Complex<f64>;
 /// Share of the window that is the height of the Hankel matrix.
 const HEIGHT: f64 = 0.4;
 
-/// The poles of `band` per decimated sample, those within the noise left out.
+/// The poles of `band` per decimated sample, those within the noise or below `least_share` of the strongest
+/// left out.
 #[must_use]
-pub fn poles(band: &[C], noise_std: f64) -> Vec<C> {
+pub fn poles(band: &[C], noise_std: f64, least_share: f64) -> Vec<C> {
     let rows = (HEIGHT * band.len() as f64) as usize;
     if rows < 3 {
         return Vec::new();
@@ -30,7 +31,8 @@ pub fn poles(band: &[C], noise_std: f64) -> Vec<C> {
     let mut ranked: Vec<usize> = (0..rows).collect();
     ranked.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
     let squares: Vec<f64> = ranked.iter().map(|&i| eigen.eigenvalues[i]).collect();
-    let order = order(&squares, rows, columns, noise_std).min(rows - 2);
+    let strong = squares.iter().take_while(|&&s| s > least_share * least_share * squares[0]).count();
+    let order = order(&squares, rows, columns, noise_std).min(strong).min(rows - 2);
     if order == 0 {
         return Vec::new();
     }
@@ -103,7 +105,7 @@ mod tests {
         let band: Vec<C> = (0..120)
             .map(|m| truth.iter().enumerate().map(|(k, z)| z.powu(m) * (1.0 + k as f64)).sum())
             .collect();
-        let found = poles(&band, 1e-5);
+        let found = poles(&band, 1e-5, 0.0);
         assert_eq!(found.len(), 3, "{found:?}");
         for z in truth {
             assert!(found.iter().any(|f| (f - z).norm() < 1e-6), "{z} {found:?}");
@@ -112,7 +114,7 @@ mod tests {
 
     #[test]
     fn silence_has_no_poles() {
-        assert!(poles(&[C::new(0.0, 0.0); 100], 1e-6).is_empty());
-        assert!(poles(&[C::new(0.0, 0.0); 4], 1e-6).is_empty());
+        assert!(poles(&[C::new(0.0, 0.0); 100], 1e-6, 0.0).is_empty());
+        assert!(poles(&[C::new(0.0, 0.0); 4], 1e-6, 0.0).is_empty());
     }
 }

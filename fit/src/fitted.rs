@@ -1,8 +1,9 @@
 //! What a fit returns: modes with their standard deviations, and what can be said about the rest.
 
+use crate::contact::rise;
 use crate::partial::Partial;
 use crate::pruning::Uncertainty;
-use crate::residual::Residual;
+use crate::residual::{Burst, Residual};
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 use std::fmt;
@@ -211,12 +212,20 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The modes alone, from the onset, `count` samples.
+    /// The modes alone, from the onset, `count` samples; they rise while the striker pushes.
     #[must_use]
     pub fn resynthesise(&self, count: usize) -> Vec<f64> {
         let partials: Vec<Partial> =
             self.modes.iter().map(|mode| partial_of(&mode.mode(), self.sample_rate_hz)).collect();
-        crate::projection::synthesise(&partials, count)
+        let mut samples = crate::projection::synthesise(&partials, count);
+        rise(&mut samples, (self.start_offset_s * self.sample_rate_hz).round() as usize);
+        samples
+    }
+
+    /// The first `length_s` of the residual after the onset, faded out: what a body plays at an impact.
+    #[must_use]
+    pub fn burst(&self, length_s: f64) -> Burst {
+        Burst::new(&self.residual.samples[self.onset_sample..], length_s, self.sample_rate_hz)
     }
 
     /// The modes in the place of the strike, as long as the recording.

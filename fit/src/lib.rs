@@ -28,10 +28,12 @@
 
 pub mod amplitudes;
 pub mod analysis;
+pub mod contact;
 pub mod esprit;
 pub mod fitted;
 pub mod geometric_sum;
 pub mod merge;
+pub mod merging;
 pub mod model_order;
 pub mod noise_floor;
 pub mod onset;

@@ -24,6 +24,20 @@ pub struct Merged {
     pub seen: Vec<usize>,
 }
 
+impl Merged {
+    /// Amplitudes of every strike but the first, signed: a mode that a strike drives the other way round has
+    /// a negative one. With the first strike's phases they are a body's further strike positions.
+    #[must_use]
+    pub fn positions(&self) -> Vec<Vec<f64>> {
+        let Some((first, others)) = self.strikes.split_first() else { return Vec::new() };
+        let signed = |(mode, first): (&Mode, &Mode)| {
+            let together = (mode.phase_rad - first.phase_rad).cos() >= 0.0;
+            if together { mode.amplitude } else { -mode.amplitude }
+        };
+        others.iter().map(|modes| modes.iter().zip(first).map(signed).collect()).collect()
+    }
+}
+
 /// Merges fits with the recordings they came from, in the same order.
 #[must_use]
 pub fn merge(strikes: &[(&Recording, &Fit)]) -> Merged {

@@ -7,6 +7,7 @@
 //! Cornish and Fisher's expansion. Edges of the spectrum are mirrored; the bins beside 0 Hz carry the
 //! removed mean and are replaced.
 
+use crate::partial::Partial;
 use nalgebra::Complex;
 use rustfft::FftPlanner;
 use std::f64::consts::PI;
@@ -19,6 +20,8 @@ const DEVIATE: f64 = -0.524_4;
 /// The first half counts when it is this much louder than its share: the larger of two estimates of the
 /// same noise would be biased.
 const LOUDER: f64 = 0.8;
+/// Length of the first epoch of noise by time, s.
+const FIRST_EPOCH_S: f64 = 0.02;
 /// Bins beside 0 Hz and half the rate that the window's main lobe reaches.
 const EDGE_BINS: usize = 5;
 
@@ -26,6 +29,8 @@ const EDGE_BINS: usize = 5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseFloor {
     variance: Vec<f64>,
+    /// For what is no steady noise: its first sample and the floor from there to the next.
+    epochs: Vec<(f64, Self)>,
 }
 
 impl NoiseFloor {
@@ -35,7 +40,7 @@ impl NoiseFloor {
         let part = &samples[samples.len() / 2..];
         let length = previous_power_of_two(part.len() / 4).clamp(16, 1 << 15);
         if part.len() < length {
-            return Self { variance: vec![least.max(mean_square(part)); 2] };
+            return Self::steady(vec![least.max(mean_square(part)); 2]);
         }
         let frames = 1 + (part.len() - length) / (length / 2);
         // At most a few hundred frames, spread evenly: enough for a steady median.
@@ -45,7 +50,44 @@ impl NoiseFloor {
         let half = (0.5 * SMOOTHING_HZ / rate_hz * length as f64).ceil() as usize;
         let scale = 1.0 / percentile_of_median(starts.len());
         let variance = percentiles(&medians, half.max(4)).iter().map(|v| (v * scale).max(least)).collect();
-        Self { variance }
+        Self::steady(variance)
+    }
+
+    fn steady(variance: Vec<f64>) -> Self {
+        Self { variance, epochs: Vec::new() }
+    }
+
+    /// [`of_residual`](Self::of_residual), and by time as well: in epochs that double in length from
+    /// [`FIRST_EPOCH_S`] on. What a real body leaves beside its modes dies away with them; a mode of 30 ms has
+    /// to stand above what is left in those 30 ms, not above the silence after it.
+    #[must_use]
+    pub fn by_time(samples: &[f64], rate_hz: f64, least: f64) -> Self {
+        let mut floor = Self::of_residual(samples, rate_hz, least);
+        let (mut from, mut length) = (0, ((FIRST_EPOCH_S * rate_hz) as usize).max(64));
+        while from + length <= samples.len() {
+            // The estimate looks at the second half of what it gets.
+            let epoch = &samples[from..from + length];
+            let mut twice = epoch.to_vec();
+            twice.extend_from_slice(epoch);
+            floor.epochs.push((from as f64, Self::estimate(&twice, rate_hz, least)));
+            from += length;
+            length *= 2;
+        }
+        floor
+    }
+
+    /// The noise that a partial stands in: of every epoch as much as it sounds there.
+    #[must_use]
+    pub fn variance_of(&self, partial: &Partial) -> f64 {
+        let ends = self.epochs.iter().skip(1).map(|(from, _)| *from).chain([f64::INFINITY]);
+        let (mut sum, mut total) = (0.0, 0.0);
+        for ((from, floor), to) in self.epochs.iter().zip(ends) {
+            let left = |n: f64| (-2.0 * partial.delta.max(1e-12) * n).exp();
+            let weight = left(*from) - left(to);
+            sum += weight * floor.variance_at(partial.omega);
+            total += weight;
+        }
+        if total > 0.0 { sum / total } else { self.variance_at(partial.omega) }
     }
 
     /// Estimates from what a fit left of a segment: the louder of its halves at every frequency, so that
@@ -61,7 +103,7 @@ impl NoiseFloor {
             .enumerate()
             .map(|(i, &v)| v.max(LOUDER * start.variance_at(PI * i as f64 / points as f64)))
             .collect();
-        Self { variance }
+        Self::steady(variance)
     }
 
     /// Variance at an angular frequency in radians a sample.
@@ -170,7 +212,6 @@ fn percentile_of_median(count: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::partial::Partial;
     use crate::projection::synthesise;
     use asperity_dsp::rng::Rng;
 
@@ -189,6 +230,22 @@ mod tests {
             }
             assert!((10.0 * (floor.mean_variance() / 0.01).log10()).abs() < 0.6);
         }
+    }
+
+    #[test]
+    fn a_short_mode_is_judged_by_the_noise_it_sounds_in() {
+        let mut samples = noise(7, 88_200);
+        samples.iter_mut().enumerate().for_each(|(n, x)| *x *= (-(n as f64) / 8820.0).exp() + 1e-3);
+        let floor = NoiseFloor::by_time(&samples, 44_100.0, 0.0);
+        let variance = |decay_per_s: f64| {
+            floor.variance_of(&Partial {
+                omega: 0.5,
+                delta: decay_per_s / 44_100.0,
+                c: Complex::new(1.0, 0.0),
+            })
+        };
+        assert!((0.004..0.015).contains(&variance(300.0)), "{}", variance(300.0));
+        assert!(variance(300.0) > 5.0 * variance(1.0), "{}", variance(1.0));
     }
 
     #[test]

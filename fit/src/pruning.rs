@@ -57,7 +57,7 @@ pub fn uncertainties(partials: &[Partial], noise: &NoiseFloor, count: usize) -> 
     partials
         .iter()
         .enumerate()
-        .map(|(k, partial)| uncertainty(partial, &inverse, k, noise.variance_at(partial.omega)))
+        .map(|(k, partial)| uncertainty(partial, &inverse, k, noise.variance_of(partial)))
         .collect()
 }
 
@@ -88,9 +88,13 @@ pub fn threshold(count: usize) -> f64 {
     2.0 * (5.0 * count as f64 / FALSE_ALARM).ln()
 }
 
-/// Removes the unproven partials that are weakest among their neighbours; says how many.
-pub fn prune(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize) -> usize {
-    let doomed = unproven(partials, noise, count);
+/// The least Wald statistic of a mode worth its four parameters where what is left is no noise: Akaike's
+/// criterion, two a parameter.
+pub const WORTH_ITS_PARAMETERS: f64 = 8.0;
+
+/// Removes the partials below `least` that are weakest among their neighbours; says how many.
+pub fn prune(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize, least: f64) -> usize {
+    let doomed = unproven(partials, noise, count, least);
     for &k in doomed.iter().rev() {
         partials.remove(k);
     }
@@ -111,7 +115,7 @@ pub fn prune_missed_by_nobody(
     noise: &NoiseFloor,
     bounds: &Bounds,
 ) -> usize {
-    let doomed = unproven(partials, noise, signal.len());
+    let doomed = unproven(partials, noise, signal.len(), threshold(signal.len()));
     if doomed.is_empty() {
         return 0;
     }
@@ -126,7 +130,7 @@ pub fn prune_missed_by_nobody(
     let missed: Vec<bool> = candidates
         .iter()
         .zip(&gains)
-        .map(|(candidate, gain)| gain / noise.variance_at(candidate.omega) >= least)
+        .map(|(candidate, gain)| gain / noise.variance_of(candidate) >= least)
         .collect();
     let removed = missed.iter().filter(|missed| !**missed).count();
     if removed == doomed.len() {
@@ -174,37 +178,6 @@ fn rao_gains(residual: &[f64], others: &[Partial], candidates: &[Partial]) -> Ve
         .collect()
 }
 
-/// Share of a neighbour's energy that a partial within its bandwidth must explain to be a mode of its own
-/// in a recording that is not quite a sum of modes.
-const OWN_SHARE: f64 = 1e-4;
-
-/// Removes partials that only mend a neighbour: what their removal would cost is less than a share of
-/// the energy of a partial within the same bandwidth. A real decay is an exponential to some 40 dB; the
-/// rest of it is otherwise spent on pairs of giants that cancel. Says how many went.
-pub fn simplify(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize) -> usize {
-    let uncertainties = uncertainties(partials, noise, count);
-    let cost: Vec<f64> =
-        uncertainties.iter().zip(&*partials).map(|(u, p)| u.wald * noise.variance_at(p.omega)).collect();
-    let doomed: Vec<bool> = (0..partials.len())
-        .map(|k| {
-            let near: Vec<usize> = neighbours(partials, k, count)
-                .into_iter()
-                .filter(|&j| {
-                    j != k
-                        && (partials[j].omega - partials[k].omega).abs()
-                            < partials[j].delta + partials[k].delta + 4.0 / count as f64
-                })
-                .collect();
-            let most = near.iter().map(|&j| partials[j].energy(count)).fold(0.0, f64::max);
-            cost[k] < OWN_SHARE * most && near.iter().all(|&j| (cost[j], j) > (cost[k], k))
-        })
-        .collect();
-    let before = partials.len();
-    let mut doomed = doomed.into_iter();
-    partials.retain(|_| !doomed.next().unwrap_or(false));
-    before - partials.len()
-}
-
 /// Partials that share a neighbourhood with `k` (itself among them), at most a dozen.
 fn neighbours(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
     let gap = |j: usize| (partials[j].omega - partials[k].omega).abs();
@@ -216,9 +189,8 @@ fn neighbours(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
 }
 
 /// Indices, ascending, of the partials below the threshold that are weakest among their neighbours.
-fn unproven(partials: &[Partial], noise: &NoiseFloor, count: usize) -> Vec<usize> {
+fn unproven(partials: &[Partial], noise: &NoiseFloor, count: usize, least: f64) -> Vec<usize> {
     let wald: Vec<f64> = uncertainties(partials, noise, count).iter().map(|u| u.wald).collect();
-    let least = threshold(count);
     (0..partials.len())
         .filter(|&k| {
             wald[k] < least

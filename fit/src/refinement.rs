@@ -36,6 +36,9 @@ pub struct Bounds {
     pub delta_high: f64,
     /// Largest |c| at the start of the segment: stops pairs of giants that cancel each other.
     pub amplitude_high: f64,
+    /// Cost of a partial's own energy, as a part of it, beside the squared residual: 0 for the likeliest fit;
+    /// a thousandth keeps pairs from growing against each other where nothing is an exponential.
+    pub energy_cost: f64,
 }
 
 impl Bounds {
@@ -48,6 +51,7 @@ impl Bounds {
             delta_low: 0.0,
             delta_high: f64::INFINITY,
             amplitude_high: f64::INFINITY,
+            energy_cost: 0.0,
         }
     }
 
@@ -153,14 +157,17 @@ pub struct Refined {
 
 /// Refines `partials` (amplitudes at `signal[0]`) by at most `steps` accepted steps.
 pub fn refine(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bounds, steps: usize) -> Refined {
-    let mut current = evaluate(signal, partials);
+    let mut current = evaluate(signal, partials, bounds);
     let mut ridge = 1e-6;
     for _ in 0..steps {
         if partials.is_empty() {
             break;
         }
-        let gram = gram_matrix(partials, signal.len());
-        let gradient = gradient(&current.residual, partials);
+        let mut gram = gram_matrix(partials, signal.len());
+        let mut gradient = gradient(&current.residual, partials);
+        if bounds.energy_cost > 0.0 {
+            charge(&mut gram, &mut gradient, partials, signal.len(), bounds.energy_cost);
+        }
         let before = current.cost;
         for _ in 0..6 {
             let Some(system) = Scaled::new(&gram, ridge) else {
@@ -168,7 +175,7 @@ pub fn refine(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bounds, step
                 continue;
             };
             let candidate = stepped(partials, &system.solve(&gradient), bounds, signal.len());
-            let next = evaluate(signal, &candidate);
+            let next = evaluate(signal, &candidate, bounds);
             if next.cost < current.cost {
                 *partials = candidate;
                 current = next;
@@ -185,12 +192,37 @@ pub fn refine(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bounds, step
     current
 }
 
-fn evaluate(signal: &[f64], partials: &[Partial]) -> Refined {
+/// Adds the cost of the partials' own energy, E = ½|c|² Σ e^(−2δn), to the normal equations.
+fn charge(
+    gram: &mut DMatrix<f64>,
+    gradient: &mut DVector<f64>,
+    partials: &[Partial],
+    count: usize,
+    cost: f64,
+) {
+    for (k, partial) in partials.iter().enumerate() {
+        let square = C::new((-2.0 * partial.delta).exp(), 0.0);
+        let power = C::new((-2.0 * partial.delta * count as f64).exp(), 0.0);
+        let [length, first, second] = geometric_sums(square, power, count).map(|s| cost * s.re);
+        let size = partial.c.norm_sqr();
+        for (i, part) in [partial.c.re, partial.c.im].into_iter().enumerate() {
+            gram[(4 * k + i, 4 * k + i)] += 0.5 * length;
+            gradient[4 * k + i] -= 0.5 * length * part;
+        }
+        gram[(4 * k + 3, 4 * k + 3)] += size * second;
+        gradient[4 * k + 3] += 0.5 * size * first;
+    }
+}
+
+fn evaluate(signal: &[f64], partials: &[Partial], bounds: &Bounds) -> Refined {
     let mut residual = synthesise(partials, signal.len());
     let mut cost = 0.0;
     for (r, s) in residual.iter_mut().zip(signal) {
         *r = s - *r;
         cost += *r * *r;
+    }
+    if bounds.energy_cost > 0.0 {
+        cost += bounds.energy_cost * partials.iter().map(|p| p.energy(signal.len())).sum::<f64>();
     }
     Refined { cost: if cost.is_finite() { cost } else { f64::INFINITY }, residual }
 }

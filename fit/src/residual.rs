@@ -23,6 +23,30 @@ pub struct BandEnvelope {
     pub rms: Vec<f64>,
 }
 
+/// A short residual excitation: what a body plays at an impact besides its modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Burst {
+    /// Sample rate, Hz.
+    pub sample_rate_hz: f64,
+    /// Samples from the onset on, faded out over their second half.
+    pub samples: Vec<f64>,
+}
+
+impl Burst {
+    /// The first `length_s` of `samples`.
+    #[must_use]
+    pub fn new(samples: &[f64], length_s: f64, sample_rate_hz: f64) -> Self {
+        let count = ((length_s * sample_rate_hz) as usize).min(samples.len());
+        let half = 0.5 * count as f64;
+        let fade = |n: usize| {
+            let x = ((n as f64 - half) / half.max(1.0)).max(0.0);
+            0.5 + 0.5 * (std::f64::consts::PI * x).cos()
+        };
+        let samples = samples[..count].iter().enumerate().map(|(n, x)| x * fade(n)).collect();
+        Self { sample_rate_hz, samples }
+    }
+}
+
 /// The residual of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Residual {

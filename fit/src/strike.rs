@@ -1,24 +1,22 @@
 //! From a recording to modes: the whole way, with the traps of real recordings.
 //!
-//! mean removed → strike found ([`crate::onset`]) → analysed ([`crate::analysis`]) from the onset, and
-//! again from later when the first milliseconds are no sum of modes (the striker still pushes) → hum
-//! and non-exponential decays named → residual.
+//! mean removed → strike found ([`crate::onset`]) → end of the contact found ([`crate::contact`]; 1 ms of
+//! half-sine force: 27 dB with it in the analysed part, 75 dB without) → analysed from there on
+//! ([`crate::analysis`]) → hum and non-exponential decays named → residual.
 
-use crate::analysis::{Analysis, Limits, analyse, subtract};
+use crate::analysis::{Analysis, Limits, analyse};
+use crate::contact::{contact_samples, rise};
 use crate::fitted::{Fit, FittedMode, Warning};
+use crate::noise_floor::NoiseFloor;
 use crate::onset;
 use crate::partial::Partial;
+use crate::projection::synthesise;
 use crate::pruning::uncertainties;
 use crate::recording::{FEWEST_SAMPLES, Recording};
 use crate::refinement::Bounds;
 use crate::residual::{Residual, ratio_db};
 use std::f64::consts::PI;
 
-/// Offsets after the onset that are tried, s (1 ms of half-sine force: 27 dB with the contact in the
-/// analysed part, 75 dB without).
-const START_OFFSETS_S: [f64; 3] = [0.0, 0.001, 0.003];
-/// The attack is modal when its first 5 ms leave at most this many times what later 5 ms leave.
-const ATTACK_EXCESS: f64 = 4.0;
 /// Sound shorter than this is warned of, s.
 const SHORT_S: f64 = 0.05;
 /// Longest analysed part, s; recordings above `UNTRIMMED_S` are trimmed where they reach their noise.
@@ -28,6 +26,10 @@ const UNTRIMMED_S: f64 = 5.0;
 const LEAST_DECAY_PER_S: f64 = 0.115;
 /// Largest amplitude of a mode, in peaks of the recording.
 const LARGEST_AMPLITUDE: f64 = 8.0;
+
+/// A mode that falls by more nepers than this during the contact is not known at the onset: it is part of
+/// the attack.
+const BACK_NEPERS: f64 = 3.0;
 
 /// What a fit may find and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,13 +135,13 @@ pub fn fit(
     }
     let found = Found { onset: strike.onset, end };
     warn_of_recording(recording, &strike.others, &found, &mut warnings);
-    let clipped = clipped_offset(recording, &found);
-    let offsets: Vec<usize> = match (options.start_offset_s, clipped) {
-        (Some(offset), _) => vec![(offset * rate).round() as usize],
-        (None, Some(after)) => vec![after],
-        (None, None) => START_OFFSETS_S.iter().map(|s| (s * rate).round() as usize).collect(),
-    };
-    let (offset, analysis) = analyse_from(&samples, &found, &offsets, recording, options, progress);
+    let offset = start_offset(&samples, &found, recording, options);
+    let segment = &samples[found.onset + offset..end];
+    let mut limits = limits(segment, recording, options);
+    if offset > 0 {
+        limits.bounds.delta_high = limits.bounds.delta_high.min(BACK_NEPERS / offset as f64);
+    }
+    let analysis = analyse(segment, &limits, progress);
     Ok(assemble(recording, &samples, &found, offset, analysis, options, warnings))
 }
 
@@ -202,6 +204,21 @@ fn warn_of_recording(recording: &Recording, others: &[usize], found: &Found, war
     }
 }
 
+/// From the onset to where it rings freely: after the clipping, or after the striker has let go.
+fn start_offset(samples: &[f64], found: &Found, recording: &Recording, options: &FitOptions) -> usize {
+    let rate = recording.sample_rate_hz;
+    let strike = &samples[found.onset..found.end];
+    let offset = match (options.start_offset_s, clipped_offset(recording, found)) {
+        (Some(offset), _) => (offset * rate).round() as usize,
+        (None, Some(after)) => after,
+        (None, None) => {
+            let noise = NoiseFloor::estimate(strike, rate, recording.quantum.powi(2) / 12.0);
+            contact_samples(strike, rate, noise.mean_variance())
+        }
+    };
+    if offset + FEWEST_SAMPLES <= strike.len() { offset } else { 0 }
+}
+
 /// From the onset to the end of the clipping, when it is over soon.
 fn clipped_offset(recording: &Recording, found: &Found) -> Option<usize> {
     let soon = found.onset + (0.1 * recording.sample_rate_hz) as usize;
@@ -209,58 +226,6 @@ fn clipped_offset(recording: &Recording, found: &Found) -> Option<usize> {
     let last = runs.iter().rev().find(|run| run.0 >= found.onset && run.1 < soon.min(found.end))?;
     let offset = last.1 + 2 - found.onset;
     (offset + FEWEST_SAMPLES < found.end - found.onset).then_some(offset)
-}
-
-/// The earliest offset when its attack is modal; otherwise the one with the best sum of the two
-/// signal-to-residual ratios that compete: from the onset on, and of the ringing after all offsets.
-fn analyse_from(
-    samples: &[f64],
-    found: &Found,
-    offsets: &[usize],
-    recording: &Recording,
-    options: &FitOptions,
-    progress: &mut dyn FnMut(f64),
-) -> (usize, Analysis) {
-    let rate = recording.sample_rate_hz;
-    let strike = &samples[found.onset..found.end];
-    let usable: Vec<usize> =
-        offsets.iter().copied().filter(|&o| o == 0 || o + FEWEST_SAMPLES <= strike.len()).collect();
-    let latest = usable.last().copied().unwrap_or(0);
-    let mut best: Option<(f64, usize, Analysis)> = None;
-    for (i, &offset) in usable.iter().enumerate() {
-        let segment = &strike[offset..];
-        let limits = limits(segment, recording, options);
-        let part = usable.len() as f64;
-        let analysis = analyse(segment, &limits, &mut |done| progress((i as f64 + done) / part));
-        if i == 0 && (usable.len() == 1 || attack_excess(&analysis, segment, rate) <= ATTACK_EXCESS) {
-            return (offset, analysis);
-        }
-        let early: Vec<Partial> = analysis.partials.iter().map(|p| p.moved(-(offset as f64))).collect();
-        let left = subtract(strike, &early);
-        let cost = ratio_db(&left, strike) + ratio_db(&left[latest..], &strike[latest..]);
-        if best.as_ref().is_none_or(|(least, _, _)| cost < *least) {
-            best = Some((cost, offset, analysis));
-        }
-    }
-    match best {
-        Some((_, offset, analysis)) => (offset, analysis),
-        None => (0, analyse(strike, &limits(strike, recording, options), progress)),
-    }
-}
-
-/// Residual energy of the first 5 ms over that of typical later 5 ms (or the noise).
-fn attack_excess(analysis: &Analysis, segment: &[f64], rate: f64) -> f64 {
-    let step = ((0.005 * rate) as usize).max(8);
-    let energies: Vec<f64> =
-        analysis.residual.chunks_exact(step).map(|c| c.iter().map(|x| x * x).sum::<f64>()).collect();
-    let Some((&first, later)) = energies.split_first() else { return 0.0 };
-    let mut later: Vec<f64> = later.iter().take(20).copied().collect();
-    later.sort_by(f64::total_cmp);
-    let typical = later.get(later.len() / 2).copied().unwrap_or(0.0);
-    let noise = analysis.noise.mean_variance() * step as f64;
-    // A residual 50 dB down is nobody's attack.
-    let unheard = 1e-5 * segment[..step.min(segment.len())].iter().map(|x| x * x).sum::<f64>();
-    first / typical.max(noise).max(unheard)
 }
 
 fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limits {
@@ -274,6 +239,7 @@ fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limit
             delta_low: LEAST_DECAY_PER_S / rate,
             delta_high: options.fastest_decay_per_s / rate,
             amplitude_high: LARGEST_AMPLITUDE * peak,
+            energy_cost: 0.0,
         },
         max_partials: options.max_modes,
         least_energy: 10.0_f64.powf(0.1 * options.least_level_db),
@@ -300,6 +266,9 @@ fn assemble(
     let (onset, end) = (found.onset, found.end);
     let mut partials = analysis.partials;
     let count = end - onset - offset;
+    let peak = samples[onset..end].iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
+    let sane = |p: &Partial| p.moved(-(offset as f64)).c.norm() <= LARGEST_AMPLITUDE * peak;
+    partials.retain(sane);
     warnings.extend(crate::suspicion::take_hum(&mut partials, count, rate));
     warnings.extend(crate::suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
     let mut modes: Vec<FittedMode> = uncertainties(&partials, &analysis.noise, count)
@@ -315,8 +284,10 @@ fn assemble(
         warnings.push(Warning::ModesCapped { limit: options.max_modes });
     }
     let early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
-    let mut left = samples[..onset].to_vec();
-    left.extend(subtract(&samples[onset..], &early));
+    let mut ringing = synthesise(&early, samples.len() - onset);
+    rise(&mut ringing, offset);
+    let mut left = samples.to_vec();
+    left[onset..].iter_mut().zip(&ringing).for_each(|(left, ringing)| *left -= ringing);
     let snr = |from: usize| -ratio_db(&left[from..end], &samples[from..end]);
     let resynthesis_snr_db = snr(onset + offset);
     let snr_from_onset_db = snr(onset);

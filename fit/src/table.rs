@@ -9,8 +9,8 @@
 //! | amplitude | `amplitude`, `gain`; or `level_db`, `op` (decibels) |
 //! | phase, rad | `phase_rad` (missing: 0) |
 //!
-//! A JSON object of equally long number lists under the same names (as sound-synthesis toolkits store
-//! modal data) is read as the same table.
+//! Number lists under the same names (as sound-synthesis toolkits store modal data in JSON) are the same
+//! table ([`from_columns`]).
 
 use crate::fitted::FittedMode;
 use asperity_dsp::mode::Mode;
@@ -70,6 +70,17 @@ pub fn to_csv(modes: &[FittedMode]) -> String {
             m.phase_std_rad,
             m.energy
         );
+    }
+    text
+}
+
+/// Modes as CSV, without standard deviations.
+#[must_use]
+pub fn modes_to_csv(modes: &[Mode]) -> String {
+    let mut text = String::from("frequency_hz,decay_per_s,amplitude,phase_rad\n");
+    for m in modes {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{},{},{},{}", m.frequency_hz, m.decay_per_s, m.amplitude, m.phase_rad);
     }
     text
 }

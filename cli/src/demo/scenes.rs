@@ -121,6 +121,7 @@ pub fn plate_modes() -> ModalModel {
         impulse_n_s: 0.01,
         modes,
         positions: Vec::new(),
+        residual: None,
     }
 }
 
@@ -146,6 +147,7 @@ pub fn bar_modes() -> ModalModel {
         impulse_n_s: 0.01,
         modes,
         positions: Vec::new(),
+        residual: None,
     }
 }
 

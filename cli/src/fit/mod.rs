@@ -2,10 +2,12 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | [`import`] | tables of other programs, in the recording's place |
 //! | [`modes_file`] | `NAME.modes.json` with standard deviations and the residual's summary |
 //! | [`picture`] | the three spectrograms |
 //! | [`report`] | what `--json` and the terminal say |
 
+mod import;
 mod modes_file;
 mod picture;
 mod report;
@@ -18,9 +20,11 @@ use crate::progress::Progress;
 use crate::wav;
 use asperity_dsp::mode::Mode;
 use asperity_fit::merge::merge;
+use asperity_fit::residual::Burst;
 use asperity_fit::scaling::{DampingLaw, scale_size, transfer_damping};
 use asperity_fit::{ChannelChoice, Fit, FitOptions, Recording, table};
 use clap::Args;
+use report::TableReport;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -30,7 +34,8 @@ const STEPS: u64 = 200;
 /// Turn one recorded impact into modes
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Recording of one strike: WAV, 8–32 bit or float, 1 kHz – 1 MHz
+    /// Recording of one strike: WAV, 8–32 bit or float, 1 kHz – 1 MHz; or a modal table (.csv, .json), or a
+    /// modes file
     #[arg(value_name = "RECORDING.wav")]
     pub recording: PathBuf,
     /// Modes file to write
@@ -63,7 +68,8 @@ pub struct Options {
     /// Give the body the damping of another: its modes file, or ALPHA,BETA of d = α + β ω²
     #[arg(long, value_name = "MODES.json|ALPHA,BETA")]
     pub material: Option<String>,
-    /// More strikes of the same object; writes OUT.strikeN.modes.json with common frequencies for each
+    /// More strikes of the same object: they become the body's further strike positions; each is also
+    /// written as OUT.strikeN.modes.json with the common frequencies
     #[arg(long, value_name = "STRIKE.wav", num_args = 1..)]
     pub merge: Vec<PathBuf>,
     /// Write what the modes do not explain
@@ -78,6 +84,21 @@ pub struct Options {
     /// Write the modes as a table
     #[arg(long, value_name = "OUT.csv")]
     pub csv: Option<PathBuf>,
+    /// Put this much of what the modes do not explain into the modes file; impacts will play it, ms
+    #[arg(long, value_name = "MS")]
+    pub burst_ms: Option<f64>,
+    /// Of a table with several bodies, the one to import
+    #[arg(long, value_name = "NAME")]
+    pub entry: Option<String>,
+    /// What a frequency ratio of 1 is in a table of ratios, Hz
+    #[arg(long, value_name = "HZ")]
+    pub base_hz: Option<f64>,
+    /// How long the modes of a table without decays ring (60 dB), s
+    #[arg(long, value_name = "S")]
+    pub t60: Option<f64>,
+    /// Sample rate of a table's pole radii, Hz
+    #[arg(long, value_name = "HZ", default_value_t = 44_100.0)]
+    pub table_rate: f64,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -104,6 +125,11 @@ impl Options {
             resynthesis: None,
             plot: None,
             csv: None,
+            burst_ms: None,
+            entry: None,
+            base_hz: None,
+            t60: None,
+            table_rate: 44_100.0,
             json: false,
         }
     }
@@ -124,6 +150,10 @@ impl Options {
 /// # Errors
 /// When the recording cannot be read or fitted, an option is out of range, or a file cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
+    if import::is_table(&options.recording) {
+        let report = import_table(options)?;
+        return if options.json { output::say_json(&report) } else { report.say(options) };
+    }
     let report = fit(options)?;
     if options.json { output::say_json(&report) } else { report.say(options) }
 }
@@ -138,14 +168,16 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     let channel = channel(&options.channel)?;
     let (recording, fit) = fitted(&options.recording, channel, options)?;
     let law = material(options)?;
-    let changed = |modes: &[Mode]| {
-        let sized = options.scale_size.map_or_else(|| modes.to_vec(), |size| scale_size(modes, size));
-        law.map_or_else(|| sized.clone(), |law| transfer_damping(&sized, &law))
-    };
+    let changed = |modes: &[Mode]| changed(options, law.as_ref(), modes);
     let mut outputs = Outputs::new();
     let plain: Vec<Mode> = fit.modes.iter().map(asperity_fit::FittedMode::mode).collect();
-    modes_file::write(&mut outputs, &options.output, &fit, &changed(&plain), options.impulse)?;
-    write_strikes(&mut outputs, options, channel, &recording, &fit, &changed)?;
+    let burst = options.burst_ms.map(|ms| fit.burst(1e-3 * ms));
+    if options.merge.is_empty() {
+        let body = modes_file::Body::fitted(&fit, &changed(&plain), options.impulse).with_burst(burst);
+        modes_file::write(&mut outputs, &options.output, &body)?;
+    } else {
+        write_strikes(&mut outputs, options, channel, &recording, &fit, burst, &changed)?;
+    }
     if let Some(path) = &options.csv {
         outputs.write(path, table::to_csv(&fit.modes).as_bytes())?;
     }
@@ -162,6 +194,49 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     Ok(Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()))
 }
 
+/// Modes of another size or material, as the options say.
+fn changed(options: &Options, law: Option<&DampingLaw>, modes: &[Mode]) -> Vec<Mode> {
+    let sized = options.scale_size.map_or_else(|| modes.to_vec(), |size| scale_size(modes, size));
+    law.map_or_else(|| sized.clone(), |law| transfer_damping(&sized, law))
+}
+
+/// Turns a table into a modes file.
+fn import_table(options: &Options) -> Result<TableReport, CliError> {
+    check_options(options)?;
+    let of_recording = [
+        ("--residual", options.residual.is_some()),
+        ("--resynthesis", options.resynthesis.is_some()),
+        ("--plot", options.plot.is_some()),
+        ("--merge", !options.merge.is_empty()),
+        ("--burst-ms", options.burst_ms.is_some()),
+    ];
+    if let Some((option, _)) = of_recording.into_iter().find(|(_, given)| *given) {
+        return Err(CliError::new(option, "a table has no sound", "leave it out, or name a recording"));
+    }
+    let missing = import::Missing {
+        entry: options.entry.clone(),
+        base_hz: options.base_hz,
+        t60_s: options.t60,
+        table_rate_hz: options.table_rate,
+    };
+    let mut table = import::read(&options.recording, &missing)?;
+    let law = material(options)?;
+    table.modes = changed(options, law.as_ref(), &table.modes);
+    let source = options.recording.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let mut outputs = Outputs::new();
+    let impulse_n_s = table.impulse_n_s.unwrap_or(options.impulse);
+    let body = modes_file::Body::plain(&source, &table.modes, impulse_n_s).with_positions(&table.positions);
+    modes_file::write(&mut outputs, &options.output, &body)?;
+    if let Some(path) = &options.csv {
+        outputs.write(path, table::modes_to_csv(&table.modes).as_bytes())?;
+    }
+    // What the engine would refuse is no body.
+    let model = asperity::ModalModel::new(table.modes.clone(), impulse_n_s);
+    model.and_then(|model| model.with_positions(table.positions.clone())).map_err(CliError::told)?;
+    outputs.commit()?;
+    Ok(TableReport::new(&table.modes, table.positions.len(), table.warnings))
+}
+
 /// Refuses what cannot work before the work.
 fn check_options(options: &Options) -> Result<(), CliError> {
     let positive = |name: &str, value: f64| {
@@ -173,6 +248,18 @@ fn check_options(options: &Options) -> Result<(), CliError> {
     };
     positive("--impulse", options.impulse)?;
     options.scale_size.map_or(Ok(()), |size| positive("--scale-size", size))?;
+    options.base_hz.map_or(Ok(()), |hz| positive("--base-hz", hz))?;
+    options.t60.map_or(Ok(()), |seconds| positive("--t60", seconds))?;
+    positive("--table-rate", options.table_rate)?;
+    let longest_ms = 1e3 * asperity::residual::LONGEST_S;
+    if let Some(ms) = options.burst_ms.filter(|ms| !(*ms > 0.0 && *ms <= longest_ms)) {
+        let right = format!("must be above 0 and at most {longest_ms} ms");
+        return Err(CliError::new("--burst-ms", format!("{ms} is refused"), right));
+    }
+    if options.merge.len() >= asperity::MAX_POSITIONS {
+        let right = format!("at most {} more strikes fit a body", asperity::MAX_POSITIONS - 1);
+        return Err(CliError::new("--merge", format!("{} are too many", options.merge.len()), right));
+    }
     check_destination(&options.output)?;
     for path in [&options.residual, &options.resynthesis, &options.plot, &options.csv].into_iter().flatten() {
         check_destination(path)?;
@@ -230,18 +317,16 @@ fn material(options: &Options) -> Result<Option<DampingLaw>, CliError> {
     })
 }
 
-/// `OUT.strike0.modes.json` and so on, when there are more strikes.
+/// Several strikes: one body with a strike position each, and `OUT.strike0.modes.json` and so on.
 fn write_strikes(
     outputs: &mut Outputs,
     options: &Options,
     channel: ChannelChoice,
     recording: &Recording,
     fit: &Fit,
+    burst: Option<Burst>,
     changed: &dyn Fn(&[Mode]) -> Vec<Mode>,
 ) -> Result<(), CliError> {
-    if options.merge.is_empty() {
-        return Ok(());
-    }
     let others = options
         .merge
         .iter()
@@ -250,11 +335,16 @@ fn write_strikes(
     let strikes: Vec<(&Recording, &Fit)> =
         std::iter::once((recording, fit)).chain(others.iter().map(|(r, f)| (r, f))).collect();
     let merged = merge(&strikes);
+    let body = modes_file::Body::plain(&fit.source, &changed(&merged.strikes[0]), options.impulse)
+        .with_positions(&merged.positions())
+        .with_burst(burst);
+    modes_file::write(outputs, &options.output, &body)?;
     for (s, modes) in merged.strikes.iter().enumerate() {
         let name = options.output.to_string_lossy();
         let stem = name.strip_suffix(".modes.json").unwrap_or(&name);
         let path = PathBuf::from(format!("{stem}.strike{s}.modes.json"));
-        modes_file::write_plain(outputs, &path, &strikes[s].1.source, &changed(modes), options.impulse)?;
+        let body = modes_file::Body::plain(&strikes[s].1.source, &changed(modes), options.impulse);
+        modes_file::write(outputs, &path, &body)?;
     }
     Ok(())
 }

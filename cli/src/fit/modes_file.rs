@@ -3,19 +3,32 @@
 use crate::error::CliError;
 use crate::output::Outputs;
 use asperity_dsp::mode::Mode;
+use asperity_fit::residual::{BandEnvelope, Burst};
 use asperity_fit::{Fit, FittedMode};
 use serde::Serialize;
 use std::path::Path;
 
+/// What a modes file holds.
 #[derive(Serialize)]
-struct File<'a> {
+pub struct Body<'a> {
     format: &'static str,
     version: u32,
     source: &'a str,
     impulse_n_s: f64,
     modes: Vec<FileMode>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    positions: Vec<Vec<f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     fit: Option<Details>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    residual: Option<Excitation>,
+}
+
+/// The residual that impacts play.
+#[derive(Serialize)]
+struct Excitation {
+    sample_rate_hz: f64,
+    samples: Vec<f32>,
 }
 
 #[derive(Serialize)]
@@ -64,59 +77,60 @@ struct Band {
     rms: Vec<f64>,
 }
 
-/// Writes a fit, with `modes` (rescaled ones, perhaps) in the place of its own.
-pub fn write(
-    outputs: &mut Outputs,
-    path: &Path,
-    fit: &Fit,
-    modes: &[Mode],
-    impulse_n_s: f64,
-) -> Result<(), CliError> {
-    let modes = modes.iter().zip(&fit.modes).map(|(mode, fitted)| detailed(mode, fitted)).collect();
-    let details = Details {
-        sample_rate_hz: fit.sample_rate_hz,
-        onset_s: fit.onset_s,
-        start_offset_s: fit.start_offset_s,
-        end_s: fit.end_s,
-        noise_floor_db: fit.noise_floor_db,
-        resynthesis_snr_db: fit.resynthesis_snr_db,
-        residual: ResidualSummary {
-            level_db: fit.residual.level_db,
-            attack_db: fit.residual.attack_db,
-            step_s: asperity_fit::residual::STEP_S,
-            bands: fit
-                .residual
-                .bands
-                .iter()
-                .map(|band| Band { low_hz: band.low_hz, high_hz: band.high_hz, rms: band.rms.clone() })
-                .collect(),
-        },
-    };
-    put(outputs, path, &fit.source, modes, impulse_n_s, Some(details))
+impl<'a> Body<'a> {
+    /// Modes alone.
+    pub fn plain(source: &'a str, modes: &[Mode], impulse_n_s: f64) -> Self {
+        let modes = modes.iter().map(plain).collect();
+        let (format, version) = ("asperity.modes", 1);
+        Self { format, version, source, impulse_n_s, modes, positions: Vec::new(), fit: None, residual: None }
+    }
+
+    /// A fit, with `modes` (rescaled ones, perhaps) in the place of its own.
+    pub fn fitted(fit: &'a Fit, modes: &[Mode], impulse_n_s: f64) -> Self {
+        let modes = modes.iter().zip(&fit.modes).map(|(mode, fitted)| detailed(mode, fitted)).collect();
+        Self { modes, fit: Some(Details::of(fit)), ..Self::plain(&fit.source, &[], impulse_n_s) }
+    }
+
+    /// With amplitudes at further strike positions.
+    pub fn with_positions(mut self, positions: &[Vec<f64>]) -> Self {
+        self.positions = positions.to_vec();
+        self
+    }
+
+    /// With a residual that impacts play.
+    pub fn with_burst(mut self, burst: Option<Burst>) -> Self {
+        self.residual = burst.map(|burst| Excitation {
+            sample_rate_hz: burst.sample_rate_hz,
+            samples: burst.samples.iter().map(|&x| x as f32).collect(),
+        });
+        self
+    }
 }
 
-/// Writes modes alone.
-pub fn write_plain(
-    outputs: &mut Outputs,
-    path: &Path,
-    source: &str,
-    modes: &[Mode],
-    impulse_n_s: f64,
-) -> Result<(), CliError> {
-    let modes = modes.iter().map(plain).collect();
-    put(outputs, path, source, modes, impulse_n_s, None)
+impl Details {
+    fn of(fit: &Fit) -> Self {
+        let band =
+            |band: &BandEnvelope| Band { low_hz: band.low_hz, high_hz: band.high_hz, rms: band.rms.clone() };
+        Self {
+            sample_rate_hz: fit.sample_rate_hz,
+            onset_s: fit.onset_s,
+            start_offset_s: fit.start_offset_s,
+            end_s: fit.end_s,
+            noise_floor_db: fit.noise_floor_db,
+            resynthesis_snr_db: fit.resynthesis_snr_db,
+            residual: ResidualSummary {
+                level_db: fit.residual.level_db,
+                attack_db: fit.residual.attack_db,
+                step_s: asperity_fit::residual::STEP_S,
+                bands: fit.residual.bands.iter().map(band).collect(),
+            },
+        }
+    }
 }
 
-fn put(
-    outputs: &mut Outputs,
-    path: &Path,
-    source: &str,
-    modes: Vec<FileMode>,
-    impulse_n_s: f64,
-    fit: Option<Details>,
-) -> Result<(), CliError> {
-    let file = File { format: "asperity.modes", version: 1, source, impulse_n_s, modes, fit };
-    let text = serde_json::to_string_pretty(&file)
+/// Writes a modes file.
+pub fn write(outputs: &mut Outputs, path: &Path, body: &Body<'_>) -> Result<(), CliError> {
+    let text = serde_json::to_string_pretty(body)
         .map_err(|error| CliError::file(path, error, "please report it with the input"))?;
     outputs.write(path, text.as_bytes())
 }

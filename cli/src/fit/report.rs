@@ -3,9 +3,13 @@
 use super::Options;
 use crate::error::CliError;
 use crate::output;
+use asperity_dsp::mode::Mode;
 use asperity_fit::Fit;
 use asperity_fit::scaling::DampingLaw;
 use serde::Serialize;
+
+/// A table's modes with a longer T60 are probably mistakes.
+const LONGEST_T60_S: f64 = 60.0;
 
 /// The object of `--json`.
 #[derive(Debug, Serialize)]
@@ -75,6 +79,49 @@ impl Report {
             let t60_s = 3.0 * std::f64::consts::LN_10 / decay_per_s;
             output::say(&format!("  {frequency_hz:10.2} Hz   T60 {t60_s:7.3} s   amplitude {amplitude:.4}"));
         }
+        for warning in &self.warnings {
+            output::say(&format!("  warning: {warning}"));
+        }
+        Ok(())
+    }
+}
+
+/// The object of `--json` for an imported table.
+#[derive(Debug, Serialize)]
+pub struct TableReport {
+    /// How many modes were imported.
+    pub modes: usize,
+    /// Strike positions, the first included.
+    pub positions: usize,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// α of d = α + β ω², 1/s.
+    pub damping_alpha_per_s: Option<f64>,
+    /// β, s.
+    pub damping_beta_s: Option<f64>,
+}
+
+impl TableReport {
+    /// Sums an import up; `more` strike positions beside the first.
+    pub fn new(modes: &[Mode], more: usize, mut warnings: Vec<String>) -> Self {
+        let endless = modes.iter().filter(|mode| mode.decay_per_s * LONGEST_T60_S < 6.9).count();
+        if endless > 0 {
+            warnings.push(format!("{endless} modes ring longer than {LONGEST_T60_S} s"));
+        }
+        let law = DampingLaw::of(modes);
+        Self {
+            modes: modes.len(),
+            positions: 1 + more,
+            warnings,
+            damping_alpha_per_s: law.map(|law| law.alpha_per_s),
+            damping_beta_s: law.map(|law| law.beta_s),
+        }
+    }
+
+    /// Tells a person.
+    pub fn say(&self, options: &Options) -> Result<(), CliError> {
+        let (modes, positions) = (self.modes, self.positions);
+        output::say(&format!("{}: {modes} modes, {positions} strike positions", options.output.display()));
         for warning in &self.warnings {
             output::say(&format!("  warning: {warning}"));
         }

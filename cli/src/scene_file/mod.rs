@@ -59,6 +59,8 @@ pub struct BodyEntry {
     pub modes: Option<PathBuf>,
     /// What it is made of; none = the engine's default.
     pub material: Option<MaterialEntry>,
+    /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
+    pub residual: Option<f64>,
 }
 
 /// A material by name or by constants.
@@ -245,8 +247,9 @@ fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, CliError> {
             return Err(fields.refuse("material", what, right));
         }
     };
+    let residual = fields.number("residual", Allowed::between(0.0, 1e3, "(a gain)"))?;
     fields.finish()?;
-    Ok(BodyEntry { name, modes, material })
+    Ok(BodyEntry { name, modes, material, residual })
 }
 
 fn read_material(mut fields: Fields) -> Result<MaterialEntry, CliError> {
