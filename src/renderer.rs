@@ -4,10 +4,13 @@
 //! made by [`Config::build`](crate::Config::build). Time is cut at events and on an absolute grid of
 //! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
 
+mod contacts;
+mod outputs;
+
 use crate::body::{BodySeat, Terms};
 use crate::clock::Stamp;
-use crate::config::{ActuatorSettings, AudioSettings, Config};
-use crate::event::{ContactEvent, ContactId, ContactSample, SurfaceId};
+use crate::config::Config;
+use crate::event::SurfaceId;
 use crate::governor::Governor;
 use crate::occupied::Occupied;
 use crate::queue::{Dead, Message, Receiver, Sender};
@@ -16,10 +19,7 @@ use crate::stats::Counters;
 use crate::tap::{NoTap, Tap};
 use crate::voice::{Phase, Scratch, Shared, Voice};
 use asperity_dsp::DesignError;
-use asperity_dsp::actuator::{
-    self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
-    Quantity, RELEASE_S,
-};
+use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::{MicroContact, Probe};
@@ -27,11 +27,10 @@ use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::sand::{SandFigures, SandPicture};
+use contacts::SilentContact;
+use outputs::{AudioBus, HapticChannel, Mix};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
-
-/// Where the audio limiter holds the peaks: full scale.
-const AUDIO_CEILING: f64 = 1.0;
 
 /// The audio half of an engine.
 pub struct Renderer {
@@ -58,34 +57,6 @@ pub struct Renderer {
     counters: Arc<Counters>,
     scratch: Box<Scratch>,
     mix: Box<Mix>,
-}
-
-struct HapticChannel {
-    output: ContactOutput,
-    design: actuator::Channel,
-    control: ChannelControl,
-    state: ChannelState,
-    /// Sum of the contacts, m or m/s².
-    sum: [f64; MAX_BLOCK],
-}
-
-struct AudioBus {
-    gain: f32,
-    limiter: Option<(PeakLimiter, PeakLimiterState)>,
-}
-
-struct Mix {
-    audio: [f32; MAX_BLOCK],
-    haptic: [f32; MAX_BLOCK],
-}
-
-/// A contact that goes on without a voice: it lapsed, or its voice was stolen. A later move revives it.
-#[derive(Clone, Copy)]
-struct SilentContact {
-    contact: ContactId,
-    surface: usize,
-    actuator: usize,
-    stolen: bool,
 }
 
 impl Renderer {
@@ -133,7 +104,7 @@ impl Renderer {
             to_game,
             counters,
             scratch: Scratch::new(),
-            mix: Box::new(Mix { audio: [0.0; MAX_BLOCK], haptic: [0.0; MAX_BLOCK] }),
+            mix: Mix::new(),
             shared,
         })
     }
@@ -306,164 +277,6 @@ impl Renderer {
         stamp.max(Stamp::whole(self.position))
     }
 
-    fn apply_event(&mut self, event: &ContactEvent, stamp: Stamp) {
-        match *event {
-            ContactEvent::Begin { contact, surface, actuator, sample } => {
-                let (surface, actuator) = (surface.0 as usize, usize::from(actuator.0));
-                if !self.resume(contact, surface, actuator, &sample, stamp) {
-                    self.end(contact);
-                    self.begin(contact, surface, actuator, &sample, stamp);
-                }
-            }
-            ContactEvent::Moved { contact, sample } => self.moved(contact, &sample, stamp),
-            ContactEvent::End { contact } => {
-                if !self.end(contact) {
-                    Counters::add(&self.counters.orphaned, 1);
-                }
-            }
-            // The scene turns impacts into strikes before they are sent.
-            ContactEvent::Impact(_) => {}
-        }
-    }
-
-    /// A landing right after a lift-off of the same contact at the same place is the physics engine's
-    /// flicker, not the finger's: while the contact still fades it goes on as if it had never ended,
-    /// its closing speed unheard. Whether it was so.
-    fn resume(
-        &mut self,
-        contact: ContactId,
-        surface: usize,
-        actuator: usize,
-        sample: &ContactSample,
-        stamp: Stamp,
-    ) -> bool {
-        let Some(slot) = self.seats[surface].current().filter(|_| self.seats[surface].is_open()) else {
-            return false;
-        };
-        // A contact that has landed again meanwhile sounds once, not twice.
-        if sounding(&mut self.voices, contact).is_some() || self.sounding_count() >= self.contact_limit() {
-            return false;
-        }
-        let Some(voice) = self.voices.iter_mut().find(|voice| {
-            voice.contact == contact
-                && (voice.surface, voice.actuator) == (surface, actuator)
-                && voice.ended
-                && matches!(voice.phase, Phase::Fading { .. })
-                && voice.is_near(sample, slot)
-        }) else {
-            return false;
-        };
-        voice.resume(&self.shared);
-        voice.moved(sample, slot, stamp, self.position);
-        self.silent.retain(|silent| silent.contact != contact);
-        Counters::add(&self.counters.debounced, 1);
-        true
-    }
-
-    fn begin(
-        &mut self,
-        contact: ContactId,
-        surface: usize,
-        actuator: usize,
-        sample: &ContactSample,
-        stamp: Stamp,
-    ) {
-        if !self.seats[surface].is_open() {
-            Counters::add(&self.counters.orphaned, 1);
-            return;
-        }
-        let due = self.due(stamp);
-        let voice = self.take_voice();
-        self.voices_used.insert(voice);
-        let voice = &mut self.voices[voice];
-        (voice.surface, voice.actuator) = (surface, actuator);
-        voice.begin(
-            contact,
-            sample,
-            &mut self.seats[surface],
-            &self.channels[actuator].output,
-            &self.shared,
-            due,
-            &mut self.scratch,
-        );
-    }
-
-    fn moved(&mut self, contact: ContactId, sample: &ContactSample, stamp: Stamp) {
-        if let Some(voice) = sounding(&mut self.voices, contact) {
-            if let Some(slot) = self.seats[voice.surface].current() {
-                voice.moved(sample, slot, stamp, self.position);
-            }
-            return;
-        }
-        let Some(index) = self.silent.iter().position(|silent| silent.contact == contact) else {
-            Counters::add(&self.counters.orphaned, 1);
-            return;
-        };
-        let silent = self.silent[index];
-        if silent.stolen && self.sounding_count() >= self.contact_limit() {
-            Counters::add(&self.counters.orphaned, 1);
-            return;
-        }
-        self.silent.swap_remove(index);
-        let landed = ContactSample { closing_m_s: 0.0, ..*sample };
-        self.begin(contact, silent.surface, silent.actuator, &landed, stamp);
-    }
-
-    /// Whether there was such a contact.
-    fn end(&mut self, contact: ContactId) -> bool {
-        let known_silent = self.silent.iter().position(|silent| silent.contact == contact);
-        if let Some(index) = known_silent {
-            self.silent.swap_remove(index);
-        }
-        let sounding = sounding(&mut self.voices, contact).map(|voice| {
-            voice.fade(&self.shared);
-            voice.ended = true;
-        });
-        sounding.is_some() || known_silent.is_some()
-    }
-
-    fn sounding_count(&self) -> usize {
-        self.voices_used.iter().filter(|&voice| self.voices[voice].phase == Phase::Sounding).count()
-    }
-
-    /// A voice for a new contact: a free one, after stealing the least important when all are taken.
-    fn take_voice(&mut self) -> usize {
-        if self.sounding_count() >= self.contact_limit() {
-            Counters::add(&self.counters.stolen, 1);
-            self.silence_least();
-        }
-        let remaining = |voice: &Voice| match voice.phase {
-            Phase::Free => 0,
-            Phase::Fading { left } => left,
-            Phase::Sounding => u32::MAX,
-        };
-        (0..self.voices.len()).min_by_key(|&i| remaining(&self.voices[i])).unwrap_or(0)
-    }
-
-    /// Fades the least important contact.
-    fn silence_least(&mut self) {
-        let priority = |i: &usize| self.voices[*i].priority();
-        let sounding = self.voices_used.iter().filter(|&i| self.voices[i].phase == Phase::Sounding);
-        if let Some(least) = sounding.min_by(|a, b| priority(a).total_cmp(&priority(b))) {
-            self.silence(least, true);
-        }
-    }
-
-    /// Fades a contact but remembers it, so that its next move can revive it.
-    fn silence(&mut self, voice: usize, stolen: bool) {
-        let voice = &mut self.voices[voice];
-        voice.fade(&self.shared);
-        if self.silent.len() == self.silent.capacity() {
-            self.silent.swap_remove(0);
-        }
-        self.silent.push(SilentContact {
-            contact: voice.contact,
-            surface: voice.surface,
-            actuator: voice.actuator,
-            stolen,
-        });
-    }
-
     fn set_surface(&mut self, slot: usize, surface: Box<crate::surface::SurfaceSlot>) {
         let rate = self.shared.sample_rate_hz;
         self.seats_used.insert(slot);
@@ -474,13 +287,6 @@ impl Renderer {
                 }
             }
         }
-    }
-
-    fn fade_contacts_on(&mut self, slot: usize) {
-        for voice in self.voices.iter_mut().filter(|voice| voice.surface == slot) {
-            voice.fade(&self.shared);
-        }
-        self.silent.retain(|silent| silent.surface != slot);
     }
 
     fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
@@ -590,44 +396,4 @@ fn restitution(probe: &Probe) -> f64 {
 /// Length of the shortest channel; `usize::MAX` when there is none.
 fn shortest(channels: &[&mut [f32]]) -> usize {
     channels.iter().map(|channel| channel.len()).min().unwrap_or(usize::MAX)
-}
-
-fn sounding(voices: &mut [Voice], contact: ContactId) -> Option<&mut Voice> {
-    voices.iter_mut().find(|voice| voice.contact == contact && voice.phase == Phase::Sounding)
-}
-
-impl HapticChannel {
-    fn new(settings: &ActuatorSettings, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let options = ChannelOptions {
-            quantity: settings.output,
-            full_scale: settings.full_scale,
-            soft_start_s: settings.soft_start_s,
-            equalise: settings.equalise,
-            limit: settings.limit,
-        };
-        Ok(Self {
-            output: ContactOutput::new(settings.output, settings.highpass_hz, sample_rate_hz)?,
-            design: actuator::Channel::new(&options, sample_rate_hz)?,
-            control: ChannelControl::default(),
-            state: ChannelState::default(),
-            sum: [0.0; MAX_BLOCK],
-        })
-    }
-}
-
-impl AudioBus {
-    fn new(settings: &AudioSettings, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let limiter = settings.limit.then(|| PeakLimiter::new(AUDIO_CEILING, sample_rate_hz)).transpose()?;
-        let limiter = limiter.map(|design| (design, PeakLimiterState::default()));
-        Ok(Self { gain: settings.gain as f32, limiter })
-    }
-
-    fn finish(&mut self, mix: &mut [f32]) {
-        for x in mix.iter_mut() {
-            *x *= self.gain;
-        }
-        if let Some((design, state)) = &mut self.limiter {
-            state.run(design, mix);
-        }
-    }
 }

@@ -1,0 +1,75 @@
+//! What leaves the engine: the haptic channels with their actuator stage, and the audio bus.
+
+use crate::config::{ActuatorSettings, AudioSettings};
+use asperity_dsp::DesignError;
+use asperity_dsp::actuator::{
+    self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
+};
+use asperity_texture::height_field::MAX_BLOCK;
+
+/// Where the audio limiter holds the peaks: full scale.
+const AUDIO_CEILING: f64 = 1.0;
+
+/// An actuator: what its contacts add up to, and the stage that drives it.
+pub(super) struct HapticChannel {
+    pub(super) output: ContactOutput,
+    pub(super) design: actuator::Channel,
+    pub(super) control: ChannelControl,
+    pub(super) state: ChannelState,
+    /// Sum of the contacts, m or m/s².
+    pub(super) sum: [f64; MAX_BLOCK],
+}
+
+/// The mono sound of all bodies.
+pub(super) struct AudioBus {
+    gain: f32,
+    limiter: Option<(PeakLimiter, PeakLimiterState)>,
+}
+
+impl HapticChannel {
+    pub(super) fn new(settings: &ActuatorSettings, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let options = ChannelOptions {
+            quantity: settings.output,
+            full_scale: settings.full_scale,
+            soft_start_s: settings.soft_start_s,
+            equalise: settings.equalise,
+            limit: settings.limit,
+        };
+        Ok(Self {
+            output: ContactOutput::new(settings.output, settings.highpass_hz, sample_rate_hz)?,
+            design: actuator::Channel::new(&options, sample_rate_hz)?,
+            control: ChannelControl::default(),
+            state: ChannelState::default(),
+            sum: [0.0; MAX_BLOCK],
+        })
+    }
+}
+
+impl AudioBus {
+    pub(super) fn new(settings: &AudioSettings, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        let limiter = settings.limit.then(|| PeakLimiter::new(AUDIO_CEILING, sample_rate_hz)).transpose()?;
+        let limiter = limiter.map(|design| (design, PeakLimiterState::default()));
+        Ok(Self { gain: settings.gain as f32, limiter })
+    }
+
+    pub(super) fn finish(&mut self, mix: &mut [f32]) {
+        for x in mix.iter_mut() {
+            *x *= self.gain;
+        }
+        if let Some((design, state)) = &mut self.limiter {
+            state.run(design, mix);
+        }
+    }
+}
+
+/// One stretch of each kind of output.
+pub(super) struct Mix {
+    pub(super) audio: [f32; MAX_BLOCK],
+    pub(super) haptic: [f32; MAX_BLOCK],
+}
+
+impl Mix {
+    pub(super) fn new() -> Box<Self> {
+        Box::new(Self { audio: [0.0; MAX_BLOCK], haptic: [0.0; MAX_BLOCK] })
+    }
+}
