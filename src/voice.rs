@@ -2,16 +2,16 @@
 //!
 //! path → profile → micro-contact → { pad displacement → actuator, impulses → body }
 
+mod events;
 mod excitation;
 mod fades;
 mod watching;
 
 pub(crate) use excitation::pulse_end;
 
-use crate::clock::Stamp;
-use crate::event::{ContactId, ContactSample};
+use crate::event::ContactId;
 use crate::seat::{Noise, Seat};
-use crate::surface::{Excitation, SurfaceSlot};
+use crate::surface::Excitation;
 use crate::tap::Tap;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth;
@@ -19,7 +19,7 @@ use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::{FORCE_HISTORY, OnsetMerge};
 use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact};
 use asperity_dsp::rng::Rng;
-use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
+use asperity_dsp::trajectory::{PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use fades::Rising;
 
@@ -35,10 +35,6 @@ const STILL_M: f64 = 1e-12;
 const STILL_M_S2: f64 = 1e-6;
 /// Impulse per sample below which a contact counts as silent, N·s: −120 dB of an ordinary stroke's.
 const STILL_N_S: f64 = 1e-12;
-
-/// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
-/// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
-const SAME_TOUCH_M: f64 = 0.01;
 
 /// Where a voice is before it is anybody's.
 const IDLE: PathEvent =
@@ -179,108 +175,9 @@ impl Voice {
         }
     }
 
-    /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed.
-    #[expect(clippy::too_many_arguments, reason = "what is borrowed apart cannot be handed over together")]
-    pub(crate) fn begin(
-        &mut self,
-        contact: ContactId,
-        sample: &ContactSample,
-        seat: &mut Seat,
-        output: &ContactOutput,
-        shared: &Shared,
-        stamp: Stamp,
-        scratch: &mut Scratch,
-    ) {
-        let Some(slot) = seat.current() else { return };
-        let event = path_event(sample, slot, stamp);
-        let position = stamp.sample();
-        self.contact = contact;
-        self.phase = Phase::Sounding;
-        (self.begun, self.refreshed) = (position, position);
-        self.asleep = false;
-        self.ended = false;
-        self.rising = None;
-        self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
-        self.trajectory = Trajectory::begin(&slot.trajectory, &event);
-        // The path may begin behind the event, by the filter's delay.
-        let mut path = self.trajectory;
-        path.advance(&slot.trajectory, &mut scratch.points[..1]);
-        self.last_point = scratch.points[0];
-        let force_n = event.normal_force_n;
-        let lands = sample.closing_m_s > 0.0;
-        if lands {
-            self.profile(seat, shared, position, 1, scratch);
-            let height_m = scratch.surface.height_m[0];
-            self.pad = shared.micro_contact.landing(height_m, force_n, sample.closing_m_s);
-            self.feel = ContactOutputState::begin(output, height_m, -sample.closing_m_s);
-        } else {
-            self.lead_in(seat, output, shared, position, scratch);
-        }
-        self.resets_told = self.pad.resets();
-        // The high-pass starts settled, so that beginning gives no step.
-        let pressed_n = if lands { 0.0 } else { force_n };
-        self.force_high_pass = butterworth::State::settled_at(pressed_n);
-        self.merge = OnsetMerge::default();
-        self.reaction = Reaction::default();
-        self.grains = Rng::new(contact.0 ^ position.rotate_left(32));
-        self.force_history_n_s = [0.0; FORCE_HISTORY];
-        if self.bus_busy_until > position {
-            self.bus.fill(0.0);
-        }
-        self.bus_busy_until = 0;
-    }
-
-    /// A finger that is suddenly there has been sliding already: the pad is led along the straight line
-    /// to where it appears, so that it moves with the surface from its first sample.
-    fn lead_in(
-        &mut self,
-        seat: &mut Seat,
-        output: &ContactOutput,
-        shared: &Shared,
-        position: u64,
-        scratch: &mut Scratch,
-    ) {
-        let PathPoint { position_m: end_m, velocity_m_s, normal_force_n } = self.last_point;
-        for (i, point) in scratch.points.iter_mut().enumerate() {
-            let before_s = (MAX_BLOCK - i) as f64 / shared.sample_rate_hz;
-            let position_m = [0, 1].map(|axis| end_m[axis] - velocity_m_s[axis] * before_s);
-            *point = PathPoint { position_m, velocity_m_s, normal_force_n };
-        }
-        self.profile(seat, shared, position, MAX_BLOCK, scratch);
-        let (heights_m, forces_n) = (&scratch.surface.height_m, &scratch.force_n);
-        self.pad = shared.micro_contact.at_rest(heights_m[0], forces_n[0]);
-        shared.micro_contact.run(&mut self.pad, heights_m, forces_n, &mut scratch.pad);
-        let last = &scratch.pad[MAX_BLOCK - 1];
-        self.feel = ContactOutputState::begin(output, last.pad_m, last.pad_velocity_m_s);
-    }
-
-    /// Goes on somewhere else; wakes a resting contact.
-    ///
-    /// `stamp` is when the event holds, which may lie before `position` when it arrives late:
-    /// the path reckons on from the stamp, so jitter of arrival does not become jitter of motion.
-    pub(crate) fn moved(&mut self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp, position: u64) {
-        self.refreshed = position;
-        self.asleep = false;
-        let event = path_event(sample, slot, stamp);
-        // A teleport is followed at once by the path itself; an event older than the last is dropped.
-        let _: Moved = self.trajectory.moved(&slot.trajectory, &event);
-    }
-
     /// Something changed under a resting contact.
     pub(crate) fn wake(&mut self) {
         self.asleep = false;
-    }
-
-    /// Whether a landing is so close that it can be the same touch.
-    pub(crate) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
-        let event = path_event(sample, slot, Stamp::default());
-        let period_m = slot.surface.wrap_period_m();
-        let apart_m = (0..2).map(|axis| {
-            let apart_m = event.position_m[axis] - self.last_point.position_m[axis];
-            let turns = if period_m[axis].is_finite() { (apart_m / period_m[axis]).round() } else { 0.0 };
-            apart_m - if turns == 0.0 { 0.0 } else { turns * period_m[axis] }
-        });
-        apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
     }
 
     /// How much would be missed: what presses harder and moves faster is heard and felt more.
@@ -469,16 +366,6 @@ impl Voice {
             self.last_felt = if felt.abs() < still { 0.0 } else { felt };
             self.force_history_n_s = [0.0; FORCE_HISTORY];
         }
-    }
-}
-
-fn path_event(sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> PathEvent {
-    PathEvent {
-        sample: stamp.sample(),
-        fraction: stamp.fraction(),
-        position_m: [sample.uv[0] * slot.surface.width_m, sample.uv[1] * slot.surface.height_m],
-        velocity_m_s: sample.velocity_m_s,
-        normal_force_n: sample.normal_force_n,
     }
 }
 
