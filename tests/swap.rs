@@ -11,11 +11,10 @@ use asperity::{
 use common::{grating, peak, plate};
 use steps::largest_step;
 
-/// Modes low enough for their own ringing not to look like steps, and loud, because modes fall asleep at
-/// an absolute level that must lie far below −60 dB of the signal.
+/// Modes low enough for their own ringing not to look like steps.
 fn low_body() -> ModalModel {
     let mode = |frequency_hz, amplitude| Mode { frequency_hz, decay_per_s: 8.0, amplitude, phase_rad: 0.0 };
-    ModalModel::new(vec![mode(180.0, 90.0), mode(310.0, 60.0), mode(470.0, 30.0)], 0.01).unwrap()
+    ModalModel::new(vec![mode(180.0, 0.3), mode(310.0, 0.2), mode(470.0, 0.1)], 0.01).unwrap()
 }
 
 struct Stroke {
