@@ -53,7 +53,7 @@ pub fn audible(modes: &[Mode], sample_rate_hz: f64, culling: &Culling, keep: &mu
         *keep = sounds(mode) && level(mode) >= culling.loudest_db_spl - culling.level_db;
     }
     if culling.masking {
-        let mut hide = |pass: &mut dyn Iterator<Item = (&Mode, &mut bool)>| {
+        let hide = |pass: &mut dyn Iterator<Item = (&Mode, &mut bool)>| {
             let mut maskers = Maskers::default();
             for (mode, keep) in pass.filter(|(mode, _)| sounds(mode)) {
                 let tone = Tone {
