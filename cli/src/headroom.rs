@@ -173,7 +173,7 @@ fn growth() -> Result<Vec<GrowthRow>, CliError> {
     }
     let load = |modes_per_body| Load { contacts: 1, bodies: 1, modes_per_body, lift: false };
     let without = quiet_ns(load(0))?;
-    for count in [64, 256, 1024, 4096] {
+    for count in [16, 64, 256, 1024, 4096] {
         let ns = quiet_ns(load(count))? - without;
         rows.push(GrowthRow { axis: "modes", count, ns_per_sample_each: ns / count as f64 });
     }
