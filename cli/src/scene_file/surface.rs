@@ -8,6 +8,8 @@ use toml::Value;
 /// Extents and translations, m.
 const EXTENT_M: Allowed = Allowed::above(0.0, 1_000.0, "m");
 const RELIEF_M: Allowed = Allowed::between(0.0, 10.0, "m");
+/// The engine's `MAX_POSITIONS`.
+const MOST_POSITIONS: u64 = 16;
 const ROUGHNESS: Allowed = Allowed::between(0.0, 1.0, "");
 
 /// One surface.
@@ -33,6 +35,8 @@ pub struct SurfaceEntry {
     pub excitation: Option<Excitation>,
     /// Coulomb friction coefficient, for the 3-D force; none = the engine's default.
     pub friction: Option<f64>,
+    /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is its own amplitudes.
+    pub strike_position: usize,
 }
 
 /// Where heights come from.
@@ -177,6 +181,7 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, CliError>
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?,
         friction: fields.number("friction", Allowed::between(0.0, 10.0, ""))?,
+        strike_position: fields.whole("strike_position", 0, MOST_POSITIONS - 1)?.unwrap_or(0) as usize,
     };
     fields.finish()?;
     Ok(surface)
