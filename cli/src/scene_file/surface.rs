@@ -8,8 +8,6 @@ use toml::Value;
 /// Extents and translations, m.
 const EXTENT_M: Allowed = Allowed::above(0.0, 1_000.0, "m");
 const RELIEF_M: Allowed = Allowed::between(0.0, 10.0, "m");
-/// The engine's `MAX_POSITIONS`.
-const MOST_POSITIONS: u64 = 16;
 const ROUGHNESS: Allowed = Allowed::between(0.0, 1.0, "");
 
 /// One surface.
@@ -19,6 +17,8 @@ pub struct SurfaceEntry {
     pub name: String,
     /// Body that rings when the surface is touched; none = silent.
     pub body: Option<String>,
+    /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is its own amplitudes.
+    pub strike_position: usize,
     /// Where its heights come from.
     pub source: Source,
     /// Perceptual roughness R.
@@ -35,8 +35,6 @@ pub struct SurfaceEntry {
     pub excitation: Option<Excitation>,
     /// Coulomb friction coefficient, for the 3-D force; none = the engine's default.
     pub friction: Option<f64>,
-    /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is its own amplitudes.
-    pub strike_position: usize,
 }
 
 /// Where heights come from.
@@ -173,6 +171,8 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, CliError>
     let surface = SurfaceEntry {
         name,
         body: fields.text("body")?,
+        // The engine takes 16 positions.
+        strike_position: fields.whole("strike_position", 0, 15)?.unwrap_or(0) as usize,
         source,
         roughness: read_roughness(&mut fields, folder)?,
         width_m: fields.needed_number("width_m", EXTENT_M)?,
@@ -181,7 +181,6 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, CliError>
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?,
         friction: fields.number("friction", Allowed::between(0.0, 10.0, ""))?,
-        strike_position: fields.whole("strike_position", 0, MOST_POSITIONS - 1)?.unwrap_or(0) as usize,
     };
     fields.finish()?;
     Ok(surface)
