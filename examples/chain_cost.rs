@@ -1,6 +1,7 @@
-//! What a contact costs: the whole chain, its stages alone, and how cost grows.
+//! What the stages of one contact cost, and how the cost of the whole grows with contacts and modes.
 //!
-//! `cargo run --release --example chain_cost`. One thread; medians, so that a busy machine matters less.
+//! `cargo run --release --example chain_cost`. One thread; the quickest tenth, so that a busy machine matters less.
+//! Whole scenes in real time are measured by `asperity headroom` and `cargo bench --bench headroom`.
 
 #[path = "../benches/scenes/mod.rs"]
 mod scenes;
@@ -19,17 +20,11 @@ const FRAMES: usize = 64;
 
 fn main() {
     stages();
-    chain();
     growth();
 }
 
-/// Median of the ns that one call of `work` takes, over `calls` calls.
-fn median_ns(calls: usize, mut work: impl FnMut()) -> f64 {
-    quantiles_ns(calls, &mut || (), &mut work)[0]
-}
-
-/// Median and 99.9 % quantile; `prepare` runs before each call, outside the clock.
-fn quantiles_ns(calls: usize, prepare: &mut dyn FnMut(), work: &mut dyn FnMut()) -> [f64; 2] {
+/// Ns that one call of `work` takes: the quickest tenth of `calls` calls. `prepare` runs before each, outside the clock.
+fn quiet_ns(calls: usize, prepare: &mut dyn FnMut(), work: &mut dyn FnMut()) -> f64 {
     let mut times: Vec<f64> = (0..calls)
         .map(|_| {
             prepare();
@@ -39,7 +34,11 @@ fn quantiles_ns(calls: usize, prepare: &mut dyn FnMut(), work: &mut dyn FnMut())
         })
         .collect();
     times.sort_by(f64::total_cmp);
-    [times[calls / 2], times[calls * 999 / 1000]]
+    times[calls / 10]
+}
+
+fn alone_ns(mut work: impl FnMut()) -> f64 {
+    quiet_ns(20_000, &mut || (), &mut work)
 }
 
 /// The stages of one contact, each alone on blocks of 64.
@@ -60,7 +59,7 @@ fn stages() {
     path.advance(&design, &mut points);
     show(
         "path",
-        median_ns(20_000, || {
+        alone_ns(|| {
             path = Trajectory::begin(&design, &event);
             path.advance(&design, &mut points);
         }),
@@ -77,18 +76,18 @@ fn stages() {
         contact: 0,
     };
     let mut out = SurfaceBlock::default();
-    show("both maps", median_ns(20_000, || map.sample(&block, &mut out)));
+    show("both maps", alone_ns(|| map.sample(&block, &mut out)));
     let noise = FractalNoise::new(1);
     let noise_path = NoisePath { position_m: &position_m, footprint_m: &footprint_m };
     let longest_m = map.band().shortest_m;
     let mut height_m = out.height_m;
     show(
         "noise below the map",
-        median_ns(20_000, || noise.add(&noise_path, &out.roughness, 2e-6, longest_m, &mut height_m)),
+        alone_ns(|| noise.add(&noise_path, &out.roughness, 2e-6, longest_m, &mut height_m)),
     );
     show(
         "noise, 12 octaves",
-        median_ns(20_000, || noise.add(&noise_path, &out.roughness, 2e-6, f64::INFINITY, &mut height_m)),
+        alone_ns(|| noise.add(&noise_path, &out.roughness, 2e-6, f64::INFINITY, &mut height_m)),
     );
     let force_n = [0.5; FRAMES];
     let mut rows = [ContactSample::default(); FRAMES];
@@ -97,7 +96,7 @@ fn stages() {
         let mut state = contact.at_rest(out.height_m[0], 0.5);
         show(
             &format!("{integrator:?}"),
-            median_ns(20_000, || contact.run(&mut state, &out.height_m, &force_n, &mut rows)),
+            alone_ns(|| contact.run(&mut state, &out.height_m, &force_n, &mut rows)),
         );
     }
     let output = ContactOutput::new(Quantity::Displacement, 10.0, RATE_HZ).expect("valid");
@@ -105,7 +104,7 @@ fn stages() {
     let mut felt = [0.0; FRAMES];
     show(
         "haptic high-pass",
-        median_ns(20_000, || {
+        alone_ns(|| {
             for (felt, row) in felt.iter_mut().zip(&rows) {
                 *felt = feel.tick(&output, row.pad_m, row.pad_velocity_m_s);
             }
@@ -114,76 +113,28 @@ fn stages() {
     std::hint::black_box(&felt);
 }
 
-fn busy(plan: Plan) -> [f64; 2] {
+fn busy_ns(plan: Plan) -> f64 {
     let blocks = (6000 / plan.contacts.max(1)).clamp(1500, 6000);
     let mut running = Running::new(Config::default(), plan, FRAMES);
     for _ in 0..400 {
         running.step();
         running.block();
     }
-    time(&mut running, blocks, true)
-}
-
-fn time(running: &mut Running, blocks: usize, report: bool) -> [f64; 2] {
     let running = std::cell::RefCell::new(running);
-    let mut prepare = || {
-        if report {
-            running.borrow_mut().step()
-        }
-    };
-    quantiles_ns(blocks, &mut prepare, &mut || running.borrow_mut().block())
-}
-
-/// What is left once every contact has ended and every body has rung out.
-fn rung_out(plan: Plan) -> f64 {
-    let mut running = Running::new(Config::default(), plan, FRAMES);
-    for _ in 0..400 {
-        running.step();
-        running.block();
-    }
-    running.lift();
-    for _ in 0..6000 {
-        running.block();
-    }
-    time(&mut running, 4000, false)[0]
-}
-
-fn chain() {
-    let period_ns = 1e9 * FRAMES as f64 / RATE_HZ;
-    println!(
-        "scene                                 ns/sample   × real time   p99.9 of the period   rung out / busy"
-    );
-    for (name, contacts, modes) in [
-        ("one contact, no modes", 1, 0),
-        ("one contact, 16 modes", 1, 16),
-        ("one contact, 100 modes", 1, 100),
-        ("ten fingers, ten bodies of 100", 10, 100),
-        ("ten fingers, ten bodies of 16", 10, 16),
-    ] {
-        let plan = Plan { contacts, modes, speed_m_s: 0.1 };
-        let [median, late] = busy(plan);
-        let share = rung_out(plan) / median;
-        println!(
-            "{name:<36} {:10.1} {:13.1} {:18.1} % {:16.1} %",
-            median / FRAMES as f64,
-            period_ns / median,
-            100.0 * late / period_ns,
-            100.0 * share
-        );
-    }
+    quiet_ns(blocks, &mut || running.borrow_mut().step(), &mut || running.borrow_mut().block())
+        / FRAMES as f64
 }
 
 fn growth() {
-    println!("contacts (16 modes each), ns/sample and contact");
+    println!("contacts (16 modes and a map of 1024² each), ns/sample and contact");
     for contacts in [1, 2, 4, 8, 16, 32, 64] {
-        let [median, _] = busy(Plan { contacts, modes: 16, speed_m_s: 0.1 });
-        println!("  {contacts:4} {:8.1}", median / FRAMES as f64 / contacts as f64);
+        let ns = busy_ns(Plan { contacts, modes: 16, speed_m_s: 0.1 });
+        println!("  {contacts:4} {:8.1}", ns / contacts as f64);
     }
-    println!("modes (one contact), ns/sample");
-    let [without, _] = busy(Plan { contacts: 1, modes: 0, speed_m_s: 0.1 });
+    println!("modes (one contact), ns/sample beyond a contact without");
+    let without = busy_ns(Plan { contacts: 1, modes: 0, speed_m_s: 0.1 });
     for modes in [16, 64, 256, 1024, 4096] {
-        let [median, _] = busy(Plan { contacts: 1, modes, speed_m_s: 0.1 });
-        let ns = (median - without) / FRAMES as f64;
+        let ns = busy_ns(Plan { contacts: 1, modes, speed_m_s: 0.1 }) - without;
         println!("  {modes:4} {ns:8.1}   {:.4} a mode", ns / modes as f64);
     }
 }

@@ -204,6 +204,7 @@ fn surface(
     if let Some(friction) = entry.friction {
         surface = surface.friction(friction);
     }
+    surface = surface.at_strike_position(entry.strike_position);
     if let Some(excitation) = entry.excitation {
         surface = surface.excitation(match excitation {
             ExcitationEntry::Collisions => Excitation::Collisions,

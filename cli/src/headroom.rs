@@ -1,7 +1,7 @@
 //! `asperity headroom`: how many fingers and modes fit on this machine.
 //!
 //! One thread. A scene is rendered in blocks of 64 frames with events at 60 Hz, as a game drives it, and
-//! every block is timed; the kernels are timed alone. Figures are medians.
+//! every block is timed; the kernels are timed alone, the quickest tenth of many short repetitions.
 
 use crate::bench_scene::{Bench, Load, modes};
 use crate::error::CliError;
@@ -39,6 +39,7 @@ struct Report {
     scenes: Vec<SceneRow>,
     modal_bank: Vec<BankRow>,
     contact: Vec<ContactRow>,
+    growth: Vec<GrowthRow>,
 }
 
 #[derive(Debug, Serialize)]
@@ -64,6 +65,16 @@ struct ContactRow {
     ns_per_sample: f64,
 }
 
+/// How the cost of a whole scene grows.
+#[derive(Debug, Serialize)]
+struct GrowthRow {
+    /// What there is more and more of: `contacts`, each on a body of its own, or `modes` of one body under one finger.
+    axis: &'static str,
+    count: usize,
+    /// Cost of each: for modes, what they add to a finger on a silent plate.
+    ns_per_sample_each: f64,
+}
+
 const SCENES: [(&str, Load); 11] = [
     ("nothing touched", Load { contacts: 0, bodies: 1, modes_per_body: 100, lift: false }),
     ("one finger, silent plate", Load { contacts: 1, bodies: 1, modes_per_body: 0, lift: false }),
@@ -83,7 +94,7 @@ const SCENES: [(&str, Load); 11] = [
 /// # Errors
 /// When the engine refuses a scene made for measuring.
 pub fn run(options: &Options) -> Result<(), CliError> {
-    let mut progress = Progress::new("measuring", (SCENES.len() + BANKS.len() + 3) as u64);
+    let mut progress = Progress::new("measuring", (SCENES.len() + BANKS.len() + 4) as u64);
     let mut scenes = Vec::new();
     for (name, load) in SCENES {
         scenes.push(scene(name, load)?);
@@ -99,6 +110,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         contact.push(contact_alone(integrator)?);
         progress.advance(1);
     }
+    let growth = growth()?;
+    progress.advance(1);
     drop(progress);
     let report = Report {
         sample_rate_hz: SAMPLE_RATE_HZ,
@@ -108,6 +121,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         scenes,
         modal_bank,
         contact,
+        growth,
     };
     if options.json {
         return output::say_json(&report);
@@ -144,6 +158,42 @@ fn scene(name: &str, load: Load) -> Result<SceneRow, CliError> {
         block_p99_9_us: quantile(&times_s, 0.999) * 1e6,
         ns_per_sample: total_s * 1e9 / (blocks * BLOCK_FRAMES) as f64,
     })
+}
+
+/// Signal rendered for each row of the growth, s.
+const GROWTH_S: f64 = 2.0;
+/// Modes under each finger while contacts are counted.
+const GROWTH_MODES: usize = 16;
+
+fn growth() -> Result<Vec<GrowthRow>, CliError> {
+    let mut rows = Vec::new();
+    for count in [1, 2, 4, 8, 16, 32, 64] {
+        let load = Load { contacts: count, bodies: count, modes_per_body: GROWTH_MODES, lift: false };
+        rows.push(GrowthRow { axis: "contacts", count, ns_per_sample_each: quiet_ns(load)? / count as f64 });
+    }
+    let load = |modes_per_body| Load { contacts: 1, bodies: 1, modes_per_body, lift: false };
+    let without = quiet_ns(load(0))?;
+    for count in [16, 64, 256, 1024, 4096] {
+        let ns = quiet_ns(load(count))? - without;
+        rows.push(GrowthRow { axis: "modes", count, ns_per_sample_each: ns / count as f64 });
+    }
+    Ok(rows)
+}
+
+/// Time of a sample of a scene in the quickest tenth of its blocks, so that other work on the machine counts for nothing.
+fn quiet_ns(load: Load) -> Result<f64, CliError> {
+    let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
+    let mut bench =
+        Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
+    let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
+    let mut block = || bench.block(&mut haptic, &mut audio);
+    for _ in 0..344 {
+        block();
+    }
+    let blocks = (GROWTH_S * SAMPLE_RATE_HZ) as usize / BLOCK_FRAMES;
+    let mut times_s: Vec<f64> = (0..blocks).map(|_| block()).collect();
+    times_s.sort_by(f64::total_cmp);
+    Ok(quantile(&times_s, 0.1) * 1e9 / BLOCK_FRAMES as f64)
 }
 
 /// The bank alone, force in every sample.
@@ -220,6 +270,17 @@ fn table(report: &Report) -> String {
     let _ = writeln!(text, "\n{:<28}{:>28}", "contact model", "ns a sample");
     for row in &report.contact {
         let _ = writeln!(text, "{:<28}{:>26.2}", row.integrator, row.ns_per_sample);
+    }
+    for (axis, title) in
+        [("contacts", "contacts, a body of 16 modes each"), ("modes", "modes under one finger")]
+    {
+        let rows = || report.growth.iter().filter(|row| row.axis == axis);
+        let first = rows().next().map_or(1.0, |row| row.ns_per_sample_each);
+        let _ = writeln!(text, "\n{title:<34}{:>22}{:>14}", "ns a sample and each", "against first");
+        for row in rows() {
+            let change = 100.0 * (row.ns_per_sample_each / first - 1.0);
+            let _ = writeln!(text, "{:<34}{:>22.3}{change:>+12.1} %", row.count, row.ns_per_sample_each);
+        }
     }
     text.trim_end().to_owned()
 }

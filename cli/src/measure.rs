@@ -1,19 +1,24 @@
-//! Timing on machines that do other things too: medians of many short repetitions.
+//! Timing on machines that do other things too: many repetitions, each shorter than a time slice, and the quickest tenth
+//! of them.
 
 use std::time::{Duration, Instant};
 
 /// Length of one repetition: long against the clock, short against a time slice.
-const REPETITION: Duration = Duration::from_millis(4);
-/// Repetitions; the median of them counts.
-const REPETITIONS: usize = 15;
+const REPETITION: Duration = Duration::from_micros(500);
+/// Repetitions (fewer where one call of the work is long), and the share of them that other work did not disturb.
+const REPETITIONS: std::ops::RangeInclusive<usize> = 5..=120;
+const UNDISTURBED: f64 = 0.1;
 
 /// Nanoseconds of one item when `work` does `items` of them.
 pub fn ns_per_item(items: usize, mut work: impl FnMut()) -> f64 {
     work();
     let once = Instant::now();
     work();
-    let calls = (REPETITION.as_secs_f64() / once.elapsed().as_secs_f64().max(1e-9)).ceil().clamp(1.0, 1e6);
-    let mut times: Vec<f64> = (0..REPETITIONS)
+    let once_s = once.elapsed().as_secs_f64().max(1e-9);
+    let calls = (REPETITION.as_secs_f64() / once_s).ceil().clamp(1.0, 1e6);
+    let most = *REPETITIONS.end();
+    let repetitions = (REPETITION.as_secs_f64() * most as f64 / (calls * once_s)) as usize;
+    let mut times: Vec<f64> = (0..repetitions.clamp(*REPETITIONS.start(), most))
         .map(|_| {
             let began = Instant::now();
             for _ in 0..calls as usize {
@@ -23,7 +28,7 @@ pub fn ns_per_item(items: usize, mut work: impl FnMut()) -> f64 {
         })
         .collect();
     times.sort_by(f64::total_cmp);
-    quantile(&times, 0.5) * 1e9 / (calls * items as f64)
+    quantile(&times, UNDISTURBED) * 1e9 / (calls * items as f64)
 }
 
 /// The value below which a share of the sorted values lies.

@@ -489,6 +489,33 @@ fn retuning_every_grid_step_adds_no_energy_and_no_jump() {
 }
 
 #[test]
+fn undamped_modes_keep_their_energy_for_three_million_samples() {
+    let rate = 44_100.0;
+    // From the lowest to near Nyquist; a quarter of the rate is where two samples turn a mode round.
+    let hertz =
+        [30.0, 55.3, 110.0, 440.0, 997.0, 3_001.0, 7_350.0, 11_025.0, 11_026.0, 15_000.0, 20_000.0, 21_900.0];
+    let modes: Vec<Mode> = hertz.iter().map(|&f| mode(f, 0.0, 1.0, 0.7)).collect();
+    for kernel in kernels() {
+        for m in &modes {
+            let groups = design(&[*m], rate);
+            let (mut state, mut out) = ([GroupState::REST], vec![0.0; 4096]);
+            let mut impulses = vec![0.0; 4096];
+            impulses[0] = 1.0;
+            kernel.render(0, &groups, &mut state, &impulses, &mut out);
+            let struck = energy(&groups[0], &state[0]);
+            impulses[0] = 0.0;
+            let blocks = 730;
+            for block in 1..blocks {
+                kernel.render(block * 4096, &groups, &mut state, &impulses, &mut out);
+            }
+            let gain = energy(&groups[0], &state[0]) / struck;
+            println!("{:?}, {} Hz: energy x {gain}", kernel.isa(), m.frequency_hz);
+            assert!((gain - 1.0).abs() < 1e-2, "{:?}, {} Hz: energy x {gain}", kernel.isa(), m.frequency_hz);
+        }
+    }
+}
+
+#[test]
 fn a_retuned_mode_goes_on_at_its_phase_with_its_new_frequency() {
     let rate = 44_100.0;
     let (old, new) = (mode(700.0, 10.0, 0.9, 0.4), mode(1_000.0, 30.0, 0.3, -1.0));

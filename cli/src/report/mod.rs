@@ -60,12 +60,14 @@ struct Report {
 type Axis = fn() -> Result<Vec<Row>, CliError>;
 
 /// Every axis, in the order of the report.
-const AXES: [Axis; 7] = [
+const AXES: [Axis; 9] = [
     integrator::rows,
     path::rows,
     map_filter::rows,
     noise::rows,
     modes::culling_rows,
+    modes::sleep_rows,
+    modes::shedding_rows,
     modes::format_rows,
     blocks::rows,
 ];

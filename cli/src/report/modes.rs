@@ -6,8 +6,8 @@ use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
 use asperity::Mode;
 use asperity_dsp::modal_bank::{
-    Culling, GroupOptions, GroupState, Isa, Kernel, LANES, ReferenceMode, ReferenceState, audible,
-    design_group, sort_by_decay,
+    Awake, Bank, Culling, GroupOptions, GroupState, Input, Isa, Kernel, LANES, ModeGroup, ReferenceMode,
+    ReferenceState, SLEEP_AMPLITUDE, audible, design_group, ringing_s, sort_by_decay,
 };
 use asperity_dsp::rng::Rng;
 
@@ -15,6 +15,10 @@ const MODES: usize = 256;
 const SAMPLES: usize = 16_384;
 const OPTIONS: GroupOptions = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
 const CULLING_REFERENCE: &str = "all 256 modes of a struck body, same numbers";
+const SLEEP_REFERENCE: &str = "256 modes of a body struck once that all ring on for 6 s";
+const SHEDDING_REFERENCE: &str = "all 256 modes of a body under white force";
+/// What is rendered of a struck body that falls asleep.
+const SLEEP_SAMPLES: usize = 6 * 44_100;
 const FORMAT_REFERENCE: &str = "the paper's two-pole filter in f64, 256 modes, white force in every sample";
 
 /// A body whose modes differ in loudness by 100 dB.
@@ -40,25 +44,90 @@ fn white() -> Vec<f32> {
     (0..SAMPLES).map(|_| rng.normal() as f32).collect()
 }
 
-/// The engine's bank.
-fn bank(modes: &[Mode], kernel: Kernel, impulses: &[f32]) -> Result<Vec<f32>, CliError> {
-    let groups = modes
-        .chunks(LANES)
-        .map(|chunk| design_group(chunk, SAMPLE_RATE_HZ, &OPTIONS))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(refused)?;
+/// The groups of a body, designed once.
+fn designed(modes: &[Mode]) -> Result<Vec<ModeGroup>, CliError> {
+    let design = |chunk: &[Mode]| design_group(chunk, SAMPLE_RATE_HZ, &OPTIONS);
+    modes.chunks(LANES).map(design).collect::<Result<Vec<_>, _>>().map_err(refused)
+}
+
+/// The engine's bank, block by block.
+fn bank(groups: &[ModeGroup], kernel: Kernel, impulses: &[f32]) -> Vec<f32> {
     let mut states = vec![GroupState::default(); groups.len()];
     let mut out = vec![0.0f32; impulses.len()];
     for (index, (input, block)) in impulses.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).enumerate() {
-        kernel.render((index * BLOCK) as u64, &groups, &mut states, input, block);
+        kernel.render((index * BLOCK) as u64, groups, &mut states, input, block);
     }
-    Ok(out)
+    out
 }
 
-fn bank_ns(modes: &[Mode], kernel: Kernel, impulses: &[f32]) -> f64 {
+/// The same where the groups that have rung out sleep, and only the first `driven` hear what strikes.
+fn sleeping_bank(groups: &[ModeGroup], driven: usize, threshold: f32, impulses: &[f32]) -> Vec<f32> {
+    let mut states = vec![GroupState::default(); groups.len()];
+    let mut out = vec![0.0f32; impulses.len()];
+    let mut awake = Awake::default();
+    for (index, (input, block)) in impulses.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).enumerate() {
+        let bank = Bank { kernel: Kernel::detect(), groups, states: &mut states, driven, threshold };
+        let inputs = [Input { impulses: input, gains: &[] }];
+        awake.render_bank(bank, (index * BLOCK) as u64, &inputs, block);
+    }
+    out
+}
+
+fn ns(work: impl Fn() -> Vec<f32>) -> f64 {
     ns_per_item(SAMPLES, || {
-        let _ = std::hint::black_box(bank(modes, kernel, impulses));
+        std::hint::black_box(work());
     })
+}
+
+fn wide(values: Vec<f32>) -> impl Iterator<Item = f64> {
+    values.into_iter().map(f64::from)
+}
+
+/// A struck body whose groups fall asleep, at several thresholds.
+pub fn sleep_rows() -> Result<Vec<Row>, CliError> {
+    let mut modes = body();
+    modes.sort_by(|a, b| ringing_s(b, 1.0).total_cmp(&ringing_s(a, 1.0)));
+    let groups = designed(&modes)?;
+    let mut impulses = strike();
+    impulses.resize(SLEEP_SAMPLES, 0.0);
+    let reference: Vec<f64> = wide(bank(&groups, Kernel::detect(), &impulses)).collect();
+    let row = |choice: String, ns_per_strike: f64, found: Vec<f32>| Row {
+        axis: "mode sleep",
+        choice,
+        ns_per_sample: ns_per_strike * SAMPLES as f64 / SLEEP_SAMPLES as f64,
+        error: relative_error(wide(found), &reference),
+        reference: SLEEP_REFERENCE,
+    };
+    let always = bank(&groups, Kernel::detect(), &impulses);
+    let mut rows = vec![row("never".to_owned(), ns(|| bank(&groups, Kernel::detect(), &impulses)), always)];
+    for level_db in [-160.0, -120.0, -100.0, -80.0, -60.0] {
+        let threshold = 10f32.powf(level_db / 20.0);
+        let note = if threshold == SLEEP_AMPLITUDE { " (the engine)" } else { "" };
+        let run = || sleeping_bank(&groups, groups.len(), threshold, &impulses);
+        rows.push(row(format!("−{} dB{note}", -level_db), ns(run), run()));
+    }
+    Ok(rows)
+}
+
+/// A stroked body of which some groups no longer hear the force, as the governor's first levels leave it.
+pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
+    let mut modes = body();
+    modes.sort_by(|a, b| ringing_s(b, 1e-4).total_cmp(&ringing_s(a, 1e-4)));
+    let groups = designed(&modes)?;
+    let impulses: Vec<f32> = white().into_iter().map(|u| 1e-6 * u).collect();
+    let run = |driven: usize| sleeping_bank(&groups, driven, SLEEP_AMPLITUDE, &impulses);
+    let reference: Vec<f64> = wide(run(groups.len())).collect();
+    let rows = (0..5).map(|level| {
+        let driven = groups.len() - groups.len() * level / 5;
+        Row {
+            axis: "load shedding",
+            choice: format!("level {level}: {driven} of {} groups", groups.len()),
+            ns_per_sample: ns(|| run(driven)),
+            error: relative_error(wide(run(driven)), &reference),
+            reference: SHEDDING_REFERENCE,
+        }
+    });
+    Ok(rows.collect())
 }
 
 /// Measures what leaving modes out saves and costs.
@@ -66,7 +135,7 @@ pub fn culling_rows() -> Result<Vec<Row>, CliError> {
     let all = body();
     let impulses = strike();
     let kernel = Kernel::detect();
-    let reference: Vec<f64> = bank(&all, kernel, &impulses)?.into_iter().map(f64::from).collect();
+    let reference: Vec<f64> = wide(bank(&designed(&all)?, kernel, &impulses)).collect();
     let cullings = [
         ("none", Culling { level_db: f64::INFINITY, masking: false, ..Culling::default() }),
         ("below −80 dB", Culling { level_db: 80.0, masking: false, ..Culling::default() }),
@@ -81,12 +150,13 @@ pub fn culling_rows() -> Result<Vec<Row>, CliError> {
             let count = audible(&all, SAMPLE_RATE_HZ, &culling, &mut keep);
             let kept: Vec<Mode> =
                 all.iter().zip(&keep).filter(|(_, keep)| **keep).map(|(mode, _)| *mode).collect();
-            let found = bank(&kept, kernel, &impulses)?;
+            let groups = designed(&kept)?;
+            let found = bank(&groups, kernel, &impulses);
             Ok(Row {
                 axis: "mode culling",
                 choice: format!("{name}: {count} of {MODES} modes"),
-                ns_per_sample: bank_ns(&kept, kernel, &impulses),
-                error: relative_error(found.into_iter().map(f64::from), &reference),
+                ns_per_sample: ns(|| bank(&groups, kernel, &impulses)),
+                error: relative_error(wide(found), &reference),
                 reference: CULLING_REFERENCE,
             })
         })
@@ -127,12 +197,12 @@ fn direct_f32(modes: &[Mode], impulses: &[f32]) -> Vec<f32> {
 pub fn format_rows() -> Result<Vec<Row>, CliError> {
     let modes = bench_scene::modes(MODES).modes;
     let impulses = white();
-    let designed = modes
+    let filters = modes
         .iter()
         .map(|mode| ReferenceMode::new(mode, SAMPLE_RATE_HZ, &OPTIONS))
         .collect::<Result<Vec<_>, _>>()
         .map_err(refused)?;
-    let reference = direct_f64(&designed, &impulses);
+    let reference = direct_f64(&filters, &impulses);
     let row = |choice: String, ns_per_sample: f64, error: f64| Row {
         axis: "number format",
         choice,
@@ -140,12 +210,11 @@ pub fn format_rows() -> Result<Vec<Row>, CliError> {
         error,
         reference: FORMAT_REFERENCE,
     };
-    let wide = |values: Vec<f32>| values.into_iter().map(f64::from);
     let mut rows = vec![
         row(
             "direct form, f64 (the reference itself)".to_owned(),
             ns_per_item(SAMPLES, || {
-                std::hint::black_box(direct_f64(&designed, &impulses));
+                std::hint::black_box(direct_f64(&filters, &impulses));
             }),
             0.0,
         ),
@@ -157,10 +226,12 @@ pub fn format_rows() -> Result<Vec<Row>, CliError> {
             relative_error(wide(direct_f32(&modes, &impulses)), &reference),
         ),
     ];
-    for isa in [Isa::Portable, Isa::Avx2, Isa::Avx512] {
+    let groups = designed(&modes)?;
+    for isa in [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512] {
         if let Some(kernel) = Kernel::find(isa) {
-            let error = relative_error(wide(bank(&modes, kernel, &impulses)?), &reference);
-            rows.push(row(format!("delta form, f32, {isa:?}"), bank_ns(&modes, kernel, &impulses), error));
+            let run = || bank(&groups, kernel, &impulses);
+            let error = relative_error(wide(run()), &reference);
+            rows.push(row(format!("delta form, f32, {isa:?}"), ns(run), error));
         }
     }
     Ok(rows)

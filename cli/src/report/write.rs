@@ -37,6 +37,9 @@ fn front(rows: &[&Row]) -> Vec<[f64; 2]> {
 
 fn panel(axis: &str, rows: &[&Row]) -> Panel {
     let points: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
+    let front = front(rows);
+    // What is on the front is larger.
+    let radius_px = points.iter().map(|point| if front.contains(point) { 6.0 } else { 3.5 }).collect();
     let ends = |of: usize| {
         let values = points.iter().map(|point| point[of]);
         (values.clone().fold(f64::INFINITY, f64::min), values.fold(0.0, f64::max))
@@ -53,13 +56,13 @@ fn panel(axis: &str, rows: &[&Row]) -> Panel {
         width_px: 1.2,
         fill: None,
         dashed: true,
-        data: Series::Points(front(rows)),
+        data: Series::Points(front),
     })
     .with(Layer::Dots {
         label: String::new(),
         colour: palette::PAD.to_owned(),
         points,
-        radius_px: vec![4.5],
+        radius_px,
         names: rows.iter().map(|row| row.choice.clone()).collect(),
     })
 }

@@ -16,6 +16,8 @@ pub struct SurfaceEntry {
     pub name: String,
     /// Body that rings when the surface is touched; none = silent.
     pub body: Option<String>,
+    /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is its own amplitudes.
+    pub strike_position: usize,
     /// Where its heights come from.
     pub source: Source,
     /// Perceptual roughness R.
@@ -83,6 +85,8 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, CliError>
     let surface = SurfaceEntry {
         name,
         body: fields.text("body")?,
+        // The engine takes 16 positions.
+        strike_position: fields.whole("strike_position", 0, 15)?.unwrap_or(0) as usize,
         source,
         roughness: read_roughness(&mut fields, folder)?,
         width_m: fields.needed_number("width_m", EXTENT_M)?,

@@ -61,6 +61,15 @@ limit = false
 }
 
 #[test]
+fn a_surface_may_lie_on_another_strike_position_of_its_body() {
+    let position =
+        |line: &str| parse(&format!("{SURFACE}{line}")).map(|scene| scene.surfaces[0].strike_position);
+    assert_eq!(position(""), Ok(0));
+    assert_eq!(position("strike_position = 3"), Ok(3));
+    assert!(position("strike_position = 16").unwrap_err().contains("strike_position"));
+}
+
+#[test]
 fn every_source_of_the_interface_is_read() {
     let source = |line: &str| parse(&format!("{SURFACE}{line}")).unwrap().surfaces[0].source.clone();
     assert_eq!(source(""), Source::Flat);
