@@ -238,7 +238,11 @@ mod tests {
         samples.iter_mut().enumerate().for_each(|(n, x)| *x *= (-(n as f64) / 8820.0).exp() + 1e-3);
         let floor = NoiseFloor::by_time(&samples, 44_100.0, 0.0);
         let variance = |decay_per_s: f64| {
-            floor.variance_of(&Partial { omega: 0.5, delta: decay_per_s / 44_100.0, c: Complex::new(1.0, 0.0) })
+            floor.variance_of(&Partial {
+                omega: 0.5,
+                delta: decay_per_s / 44_100.0,
+                c: Complex::new(1.0, 0.0),
+            })
         };
         assert!((0.004..0.015).contains(&variance(300.0)), "{}", variance(300.0));
         assert!(variance(300.0) > 5.0 * variance(1.0), "{}", variance(1.0));
