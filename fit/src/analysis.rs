@@ -18,6 +18,7 @@ use crate::projection::synthesise;
 use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
 use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
+use crate::suspicion::energy_spectrum;
 use nalgebra::Complex;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -157,11 +158,22 @@ impl Work<'_> {
         self.limits.bounds.energy_cost = ENERGY_COST;
     }
 
-    /// Whether the residual is more than what the quiet end of the segment has of noise.
+    /// Whether the residual, within the band looked at, is more than what the quiet end of the segment has
+    /// of noise.
     fn leaves_more_than_noise(&self) -> bool {
         let residual = subtract(self.segment, &self.partials);
         let quiet = NoiseFloor::estimate(&residual, self.limits.rate_hz, self.limits.least_noise);
-        square_sum(&residual) / residual.len() as f64 > MISFIT * quiet.mean_variance()
+        let spectrum = energy_spectrum(&residual);
+        let omega = |k: usize| PI * k as f64 / spectrum.len() as f64;
+        let bounds = &self.limits.bounds;
+        let (mut left, mut noise) = (0.0, 0.0);
+        for (k, energy) in spectrum.iter().enumerate() {
+            if (bounds.omega_low..=bounds.omega_high).contains(&omega(k)) {
+                left += energy;
+                noise += quiet.variance_at(omega(k)) * residual.len() as f64 / spectrum.len() as f64;
+            }
+        }
+        left > MISFIT * noise
     }
 
     /// Takes back what modes were spent on because the recording is no sum of modes.
