@@ -45,11 +45,9 @@ fn against_peaks(name: &str) -> Option<(f64, f64)> {
 /// The quick ones; `examples/recordings` prints all.
 #[test]
 fn sixty_modes_explain_more_than_sixty_spectral_peaks() {
-    for name in [
-        "kenney_impactGlass_light_000.wav",
-        "kenney_impactMetal_light_000.wav",
-        "vcsl_wood_click_ff.wav",
-    ] {
+    for name in
+        ["kenney_impactGlass_light_000.wav", "kenney_impactMetal_light_000.wav", "vcsl_wood_click_ff.wav"]
+    {
         let Some((baseline, ours)) = against_peaks(name) else { return };
         assert!(ours > baseline + 3.0, "{name}: {ours} dB against {baseline} dB");
     }
