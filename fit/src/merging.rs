@@ -42,15 +42,21 @@ pub fn merge_resonances(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bo
     let mut residual = synthesise(partials, signal.len());
     residual.iter_mut().zip(signal).for_each(|(r, s)| *r = s - *r);
     let mut refused: Vec<Vec<Partial>> = Vec::new();
-    while let Some(group) =
-        proposals(partials, signal.len()).into_iter().find(|g| !refused.contains(&g.parts))
-    {
-        match tried(&residual, partials, &group, bounds) {
-            Some((merged, left)) => {
-                *partials = merged;
-                residual = left;
+    let mut merged_one = true;
+    while std::mem::take(&mut merged_one) {
+        for group in proposals(partials, signal.len()) {
+            // A group whose members were refitted meanwhile is proposed again in the next round.
+            if refused.contains(&group.parts) || !group.parts.iter().all(|p| partials.contains(p)) {
+                continue;
             }
-            None => refused.push(group.parts),
+            match tried(&residual, partials, &group, bounds) {
+                Some((merged, left)) => {
+                    *partials = merged;
+                    residual = left;
+                    merged_one = true;
+                }
+                None => refused.push(group.parts),
+            }
         }
     }
     before - partials.len()
