@@ -43,7 +43,7 @@ impl Residual {
         if seconds > LONGEST_S {
             return Err(("residual.samples", seconds, "at most 0.5 s of samples"));
         }
-        match self.samples.iter().find(|x| !(x.abs() <= 1e9)) {
+        match self.samples.iter().find(|x| !(-1e9..=1e9).contains(*x)) {
             Some(bad) => Err(("residual.samples", f64::from(*bad), "finite, within ±1e9")),
             None => Ok(()),
         }

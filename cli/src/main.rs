@@ -52,7 +52,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Demo(demo::Options),
-    Fit(fit::Options),
+    Fit(Box<fit::Options>),
     Render(render::Options),
     Play(play::Options),
     /// Make surfaces from pictures and from other surfaces

@@ -10,7 +10,7 @@
 
 use crate::amplitudes::{contributions, fit_amplitudes};
 use crate::esprit::{energies, poles};
-use crate::merging::{MERGED_LOSS, merge_resonances};
+use crate::merging::merge_resonances;
 use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
@@ -18,6 +18,7 @@ use crate::projection::synthesise;
 use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
 use crate::refinement::{Bounds, refine};
 use crate::sub_band::{Bands, Level, split};
+use crate::suspicion::energy_spectrum;
 use nalgebra::Complex;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -35,6 +36,8 @@ const MISFIT: f64 = 2.0;
 const MISMATCH: f64 = 3e-3;
 /// [`Bounds::energy_cost`] once a recording has shown that it is no sum of modes.
 const ENERGY_COST: f64 = 1e-3;
+/// Most candidates of one round from then on: the cost of a joint fit grows with their cube.
+const MOST_AT_ONCE: usize = 60;
 /// Most rounds of merging and refitting.
 const MERGING_ROUNDS: usize = 15;
 /// Most rounds of one level.
@@ -81,6 +84,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         noise: NoiseFloor::estimate(segment, limits.rate_hz, limits.least_noise),
         partials: Vec::new(),
         capped: false,
+        mismatch: false,
     };
     let levels = Level::ladder(segment.len());
     let mut cost = f64::INFINITY;
@@ -100,15 +104,21 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
             work.settle(LEVEL_STEPS);
         }
         let left = square_sum(&subtract(segment, &work.partials));
-        if pass > 0 && (work.partials.len() <= known || work.capped && left > 0.95 * cost) {
+        if pass > 0 && (work.partials.len() <= known || work.mismatch && left > 0.95 * cost) {
             break;
+        }
+        if !work.mismatch && work.leaves_more_than_noise() {
+            work.distrust();
         }
         cost = left;
     }
     if work.capped || work.leaves_more_than_noise() {
-        work.limits.bounds.energy_cost = ENERGY_COST;
+        work.distrust();
         work.settle(FINAL_STEPS);
         work.make_plain();
+    } else if work.mismatch {
+        // It was only that modes were still missing.
+        work.limits.bounds.energy_cost = 0.0;
     }
     work.settle(FINAL_STEPS);
     let residual = subtract(segment, &work.partials);
@@ -137,25 +147,48 @@ struct Work<'a> {
     noise: NoiseFloor,
     partials: Vec<Partial>,
     capped: bool,
+    /// The recording has shown that it is no sum of modes in noise.
+    mismatch: bool,
 }
 
 impl Work<'_> {
-    /// Whether the residual is more than what the quiet end of the segment has of noise.
+    /// From now on energy has a cost, and little is looked for at a time.
+    fn distrust(&mut self) {
+        self.mismatch = true;
+        self.limits.bounds.energy_cost = ENERGY_COST;
+    }
+
+    /// Whether the residual, within the band looked at, is more than what the quiet end of the segment has
+    /// of noise.
     fn leaves_more_than_noise(&self) -> bool {
         let residual = subtract(self.segment, &self.partials);
         let quiet = NoiseFloor::estimate(&residual, self.limits.rate_hz, self.limits.least_noise);
-        square_sum(&residual) / residual.len() as f64 > MISFIT * quiet.mean_variance()
+        let spectrum = energy_spectrum(&residual);
+        let omega = |k: usize| PI * k as f64 / spectrum.len() as f64;
+        let bounds = &self.limits.bounds;
+        let (mut left, mut noise) = (0.0, 0.0);
+        for (k, energy) in spectrum.iter().enumerate() {
+            if (bounds.omega_low..=bounds.omega_high).contains(&omega(k)) {
+                left += energy;
+                noise += quiet.variance_at(omega(k)) * residual.len() as f64 / spectrum.len() as f64;
+            }
+        }
+        left > MISFIT * noise
     }
 
     /// Takes back what modes were spent on because the recording is no sum of modes.
     fn make_plain(&mut self) {
         let count = self.segment.len();
         for _ in 0..MERGING_ROUNDS {
-            if merge_resonances(&mut self.partials, count, MERGED_LOSS) == 0 {
+            if merge_resonances(self.segment, &mut self.partials, &self.limits.bounds) == 0 {
                 break;
             }
             self.settle(LEVEL_STEPS);
         }
+        // What dies as fast as anything may is the attack.
+        let fastest = 0.95 * self.limits.bounds.delta_high;
+        self.partials.retain(|p| p.delta < fastest);
+        self.settle(LEVEL_STEPS);
         // What is left of the attack, the room and the codec is noise now, loudest at the start.
         for _ in 0..MERGING_ROUNDS {
             let residual = subtract(self.segment, &self.partials);
@@ -183,7 +216,7 @@ impl Work<'_> {
         for _ in 0..LEVEL_ROUNDS {
             let residual = subtract(self.segment, &self.partials);
             let before = square_sum(&residual);
-            if self.capped {
+            if self.mismatch {
                 self.measure_noise();
             }
             let (found, hidden) = self.candidates(level, &residual);
@@ -194,18 +227,18 @@ impl Work<'_> {
             let known = self.partials.clone();
             self.join(&found, level.span(), if whole { 0 } else { level.span() });
             let mut after = square_sum(&subtract(self.segment, &self.partials));
-            if self.capped && after > before && !whole {
+            if self.mismatch && after > before && !whole {
                 // What fits late does not fit early: fit all of it.
                 self.partials.clone_from(&known);
                 let early: Vec<Partial> = found.iter().map(|p| p.moved(-(level.span() as f64))).collect();
                 self.join(&early, level.span(), 0);
                 after = square_sum(&subtract(self.segment, &self.partials));
             }
-            if self.capped && after > before {
+            if self.mismatch && after > before {
                 self.partials = known;
                 break;
             }
-            if !hidden || (self.capped && after > WORTHWHILE * before) {
+            if !hidden || (self.mismatch && after > WORTHWHILE * before) {
                 break;
             }
         }
@@ -258,7 +291,7 @@ impl Work<'_> {
         let before = partials.len();
         if partials.len() > self.limits.max_partials {
             self.capped = true;
-            self.limits.bounds.energy_cost = ENERGY_COST;
+            self.distrust();
             let worth = contributions(partials, count);
             let mut ranked: Vec<(f64, Partial)> = worth.into_iter().zip(partials.drain(..)).collect();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -298,10 +331,11 @@ impl Work<'_> {
             }
         }
         // Every open band holds a mode: more bands than modes allowed need not be looked into.
-        if open.len() > self.limits.max_partials {
+        let most = if self.mismatch { MOST_AT_ONCE } else { usize::MAX }.min(self.limits.max_partials);
+        if open.len() > most {
             hidden = true;
             open.sort_by(|a, b| b.0.total_cmp(&a.0));
-            open.truncate(self.limits.max_partials);
+            open.truncate(most);
             open.sort_by_key(|(_, k)| *k);
         }
         let found =
@@ -309,8 +343,8 @@ impl Work<'_> {
         let mut found = without_doubles(found, level, samples);
         // Of more than may be kept, the strongest; the others get their turn when these are subtracted.
         found.sort_by(|a, b| b.1.total_cmp(&a.1));
-        hidden |= found.len() > self.limits.max_partials;
-        found.truncate(self.limits.max_partials);
+        hidden |= found.len() > most;
+        found.truncate(most);
         (found.into_iter().map(|(partial, _)| partial).collect(), hidden)
     }
 
@@ -367,7 +401,7 @@ impl Work<'_> {
         let noise_std = self.noise_std(level, bands, k);
         let longest_delta = SPAN_NEPERS / (level.span() as f64).max(1.0);
         // A real decay is an exponential to some 40 dB; what lies far below the band's strongest mends it.
-        let least_share = if self.capped { MISMATCH } else { 0.0 };
+        let least_share = if self.mismatch { MISMATCH } else { 0.0 };
         let poles = poles(band, noise_std, least_share);
         let energies = energies(band, &poles);
         poles

@@ -26,16 +26,45 @@ pub struct Merged {
 
 impl Merged {
     /// Amplitudes of every strike but the first, signed: a mode that a strike drives the other way round has
-    /// a negative one. With the first strike's phases they are a body's further strike positions.
+    /// a negative one. With the first strike's phases they are a body's further strike positions. Onsets are
+    /// known to a fraction of a millisecond only, so the delay that makes the phases agree best (or oppose)
+    /// is taken out first.
     #[must_use]
     pub fn positions(&self) -> Vec<Vec<f64>> {
         let Some((first, others)) = self.strikes.split_first() else { return Vec::new() };
-        let signed = |(mode, first): (&Mode, &Mode)| {
-            let together = (mode.phase_rad - first.phase_rad).cos() >= 0.0;
-            if together { mode.amplitude } else { -mode.amplitude }
-        };
-        others.iter().map(|modes| modes.iter().zip(first).map(signed).collect()).collect()
+        others
+            .iter()
+            .map(|modes| {
+                let delay_s = delay_s(first, modes);
+                let sign =
+                    |(mode, first): (&Mode, &Mode)| mode.amplitude * agreement(first, mode, delay_s).signum();
+                modes.iter().zip(first).map(sign).collect()
+            })
+            .collect()
     }
+}
+
+/// Largest difference between two onsets, s, and the step of the search.
+const LARGEST_DELAY_S: f64 = 2e-3;
+const DELAY_STEP_S: f64 = 2e-6;
+
+/// Cosine of what two phases of a mode differ by when the second strike is `delay_s` late.
+fn agreement(a: &Mode, b: &Mode, delay_s: f64) -> f64 {
+    (b.phase_rad - a.phase_rad - 2.0 * std::f64::consts::PI * a.frequency_hz * delay_s).cos()
+}
+
+/// The delay at which the modes of two strikes are nearest to in phase or opposed.
+fn delay_s(first: &[Mode], other: &[Mode]) -> f64 {
+    let steps = (LARGEST_DELAY_S / DELAY_STEP_S) as i32;
+    let worth = |delay_s: f64| {
+        let pairs = first.iter().zip(other);
+        pairs.map(|(a, b)| a.amplitude * b.amplitude * agreement(a, b, delay_s).powi(2)).sum::<f64>()
+    };
+    (-steps..=steps)
+        .map(|step| f64::from(step) * DELAY_STEP_S)
+        .map(|delay_s| (worth(delay_s), delay_s))
+        .fold((f64::NEG_INFINITY, 0.0), |best, next| if next.0 > best.0 { next } else { best })
+        .1
 }
 
 /// Merges fits with the recordings they came from, in the same order.

@@ -27,6 +27,8 @@ const LEAST_DECAY_PER_S: f64 = 0.115;
 /// Largest amplitude of a mode, in peaks of the recording.
 const LARGEST_AMPLITUDE: f64 = 8.0;
 
+/// Lowest frequency analysed unless a lower one is asked for, Hz.
+const LOWEST_HZ: f64 = 20.0;
 /// A mode that falls by more nepers than this during the contact is not known at the onset: it is part of
 /// the attack.
 const BACK_NEPERS: f64 = 3.0;
@@ -231,11 +233,12 @@ fn clipped_offset(recording: &Recording, found: &Found) -> Option<usize> {
 fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limits {
     let rate = recording.sample_rate_hz;
     let peak = segment.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
-    let (low, high) = options.band_hz;
+    // Modes outside the band are found as well, or what they leave would be taken for noise in it.
+    let low = options.band_hz.0.min(LOWEST_HZ);
     Limits {
         bounds: Bounds {
             omega_low: 2.0 * PI * low.max(1.0) / rate,
-            omega_high: 2.0 * PI * high.min(0.49 * rate) / rate,
+            omega_high: 2.0 * PI * 0.49,
             delta_low: LEAST_DECAY_PER_S / rate,
             delta_high: options.fastest_decay_per_s / rate,
             amplitude_high: LARGEST_AMPLITUDE * peak,
@@ -269,6 +272,8 @@ fn assemble(
     let peak = samples[onset..end].iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
     let sane = |p: &Partial| p.moved(-(offset as f64)).c.norm() <= LARGEST_AMPLITUDE * peak;
     partials.retain(sane);
+    let (low, high) = options.band_hz;
+    partials.retain(|p| (low..=high).contains(&(p.omega * rate / (2.0 * PI))));
     warnings.extend(crate::suspicion::take_hum(&mut partials, count, rate));
     warnings.extend(crate::suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
     let mut modes: Vec<FittedMode> = uncertainties(&partials, &analysis.noise, count)

@@ -86,7 +86,8 @@ fn cancels(a: &Partial, b: &Partial) -> bool {
 }
 
 /// Energy of `samples` per frequency bin, 0 to half the rate.
-fn energy_spectrum(samples: &[f64]) -> Vec<f64> {
+#[must_use]
+pub fn energy_spectrum(samples: &[f64]) -> Vec<f64> {
     let size = samples.len().next_power_of_two().max(4);
     let mut buffer = vec![Complex::new(0.0, 0.0); size];
     buffer.iter_mut().zip(samples).for_each(|(b, &x)| b.re = x);

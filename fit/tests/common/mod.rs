@@ -295,3 +295,11 @@ pub fn cpu_seconds() -> f64 {
             |ns| ns * 1e-9,
         )
 }
+
+/// Most memory this process ever held, MiB; 0 where the system does not say.
+pub fn peak_mib() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<f64>().ok())
+        .map_or(0.0, |kb| kb / 1024.0)
+}

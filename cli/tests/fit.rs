@@ -1,0 +1,366 @@
+//! `asperity fit` from outside: what it writes, the round trip through the engine, tables, several strikes,
+//! and inputs that are no good recording of one strike.
+
+mod support;
+
+use serde_json::Value;
+use std::path::Path;
+use support::{asperity, assert_refused, told};
+
+const RATE_HZ: u32 = 44_100;
+
+/// Frequency Hz, decay 1/s, amplitude.
+const BODY: [(f64, f64, f64); 5] =
+    [(431.0, 9.0, 0.3), (1187.0, 14.0, 0.2), (1190.5, 17.0, 0.1), (2960.0, 30.0, 0.12), (5210.0, 55.0, 0.08)];
+
+fn ringing(seconds: f64, gains: [f64; 5]) -> Vec<f64> {
+    let count = (seconds * f64::from(RATE_HZ)) as usize;
+    let at = |n: usize| {
+        let t = n as f64 / f64::from(RATE_HZ);
+        let mode = |((hz, decay, amplitude), gain): (&(f64, f64, f64), f64)| {
+            gain * amplitude * (-decay * t).exp() * (2.0 * std::f64::consts::PI * hz * t).sin()
+        };
+        BODY.iter().zip(gains).map(mode).sum()
+    };
+    (0..count).map(at).collect()
+}
+
+/// A noise of the size of a 16-bit step and more, the same every time.
+fn noisy(samples: Vec<f64>, level: f64) -> Vec<f64> {
+    let mut state = 1u64;
+    let mut next = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    samples.into_iter().map(|x| x + level * (0..4).map(|_| next()).sum::<f64>()).collect()
+}
+
+fn write(path: &Path, samples: &[f64]) {
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: RATE_HZ,
+        bits_per_sample: 16,
+        sample_format: hound::SampleFormat::Int,
+    };
+    let mut writer = hound::WavWriter::create(path, spec).unwrap();
+    for x in samples {
+        writer.write_sample((32_767.0 * x.clamp(-1.0, 1.0)).round() as i16).unwrap();
+    }
+    writer.finalize().unwrap();
+}
+
+fn recording(folder: &Path, name: &str) {
+    let mut samples = vec![0.0; 4410];
+    samples.extend(ringing(1.0, [1.0; 5]));
+    write(&folder.join(name), &noisy(samples, 1e-4));
+}
+
+/// Runs `fit` with `--json` and returns the report.
+fn fit(folder: &Path, arguments: &[&str]) -> Value {
+    let mut all = vec!["fit", "--json"];
+    all.extend(arguments);
+    let (status, out, err) = told(&asperity(folder, &all));
+    assert_eq!((status, err.as_str()), (0, ""), "{arguments:?}");
+    serde_json::from_str(&out).unwrap()
+}
+
+fn modes(folder: &Path, name: &str) -> Vec<[f64; 3]> {
+    let text = std::fs::read_to_string(folder.join(name)).unwrap();
+    let file: Value = serde_json::from_str(&text).unwrap();
+    let list = file["modes"].as_array().unwrap();
+    let number = |mode: &Value, key: &str| mode[key].as_f64().unwrap();
+    list.iter().map(|m| ["frequency_hz", "decay_per_s", "amplitude"].map(|key| number(m, key))).collect()
+}
+
+fn nearest(modes: &[[f64; 3]], hz: f64) -> [f64; 3] {
+    *modes.iter().min_by(|a, b| (a[0] - hz).abs().total_cmp(&(b[0] - hz).abs())).unwrap()
+}
+
+fn says(report: &Value, warning: &str) -> bool {
+    report["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains(warning))
+}
+
+#[test]
+fn one_command_writes_modes_table_residual_resynthesis_and_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    recording(folder, "hit.wav");
+    let report = fit(
+        folder,
+        &[
+            "hit.wav",
+            "-o",
+            "hit.modes.json",
+            "--csv",
+            "hit.csv",
+            "--residual",
+            "left.wav",
+            "--resynthesis",
+            "alone.wav",
+            "--plot",
+            "hit.svg",
+            "--burst-ms",
+            "20",
+        ],
+    );
+    assert_eq!(report["modes"], 5);
+    assert!((report["onset_s"].as_f64().unwrap() - 0.1).abs() < 5e-4);
+    assert!(report["resynthesis_snr_db"].as_f64().unwrap() > 40.0, "{report}");
+    assert!(report["noise_floor_db"].as_f64().unwrap() < -70.0 && report["seconds"].is_number());
+    for (hz, decay, amplitude) in BODY {
+        let found = nearest(&modes(folder, "hit.modes.json"), hz);
+        assert!((found[0] / hz - 1.0).abs() < 1e-4, "{found:?}");
+        assert!(
+            (found[1] / decay - 1.0).abs() < 0.02 && (found[2] / amplitude - 1.0).abs() < 0.05,
+            "{found:?}"
+        );
+    }
+    let table = std::fs::read_to_string(folder.join("hit.csv")).unwrap();
+    assert_eq!(table.lines().count(), 6);
+    assert!(table.starts_with("frequency_hz,decay_per_s,amplitude,phase_rad"), "{table}");
+    assert!(std::fs::read_to_string(folder.join("hit.svg")).unwrap().ends_with("</svg>\n"));
+    let samples = |name: &str| {
+        let mut reader = hound::WavReader::open(folder.join(name)).unwrap();
+        reader.samples::<f32>().map(|x| f64::from(x.unwrap())).collect::<Vec<_>>()
+    };
+    let mut original = hound::WavReader::open(folder.join("hit.wav")).unwrap();
+    let sum = samples("left.wav").into_iter().zip(samples("alone.wav")).map(|(a, b)| a + b);
+    for (sum, x) in sum.zip(original.samples::<i16>()) {
+        assert!(
+            (sum - f64::from(x.unwrap()) / 32_768.0).abs() < 1e-3,
+            "residual and modes are the recording"
+        );
+    }
+    let body = asperity_model(folder, "hit.modes.json");
+    let burst = body.residual.unwrap();
+    assert_eq!((burst.samples.len(), burst.sample_rate_hz), (882, 44_100.0));
+}
+
+fn asperity_model(folder: &Path, name: &str) -> asperity::ModalModel {
+    asperity::ModalModel::load(folder.join(name)).unwrap()
+}
+
+#[test]
+fn a_fitted_body_struck_by_the_engine_and_fitted_again_is_the_same_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    std::fs::copy(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/tile_strike.wav"),
+        folder.join("tile.wav"),
+    )
+    .unwrap();
+    fit(folder, &["tile.wav", "-o", "tile.modes.json", "--max-modes", "32"]);
+    let scene =
+        "contacts = \"hit.jsonl\"\ntail_s = 1.5\n[[body]]\nname = \"tile\"\nmodes = \"tile.modes.json\"\n";
+    std::fs::write(folder.join("scene.toml"), scene).unwrap();
+    let hit = r#"{"t":0.1,"event":"impact","body":"tile","speed_m_s":0.5,"mass_kg":0.005,"radius_m":0.002,"striker":"steel"}"#;
+    std::fs::write(folder.join("hit.jsonl"), format!("{hit}\n")).unwrap();
+    let (status, _, err) = told(&asperity(folder, &["render", "scene.toml", "-o", "take"]));
+    assert_eq!((status, err.as_str()), (0, ""));
+    fit(folder, &["take.audio.wav", "-o", "again.modes.json"]);
+    let (first, again) = (modes(folder, "tile.modes.json"), modes(folder, "again.modes.json"));
+    assert!(first.len() >= 10, "{}", first.len());
+    for [hz, decay, _] in first {
+        let found = nearest(&again, hz);
+        assert!((found[0] / hz - 1.0).abs() < 1e-5, "{hz} Hz came back as {}", found[0]);
+        assert!((found[1] / decay - 1.0).abs() < 0.01, "{hz} Hz: {decay}/s came back as {}", found[1]);
+    }
+}
+
+#[test]
+fn limits_and_rescaling_do_what_they_say() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    recording(folder, "hit.wav");
+    let count = |arguments: &[&str]| {
+        let all = [&["hit.wav", "-o", "x.modes.json"], arguments].concat();
+        fit(folder, &all)["modes"].as_u64().unwrap()
+    };
+    assert_eq!(count(&["--from-hz", "1000", "--to-hz", "4000"]), 3);
+    assert_eq!(count(&["--min-level", "-12"]), 2);
+    assert!(count(&["--max-modes", "2"]) <= 2);
+    count(&["--scale-size", "2"]);
+    let half = modes(folder, "x.modes.json");
+    assert!(BODY.iter().all(|(hz, ..)| (nearest(&half, 0.5 * hz)[0] / (0.5 * hz) - 1.0).abs() < 1e-4));
+    count(&["--material", "100,0"]);
+    let damped = modes(folder, "x.modes.json").iter().map(|m| m[1]).sum::<f64>() / 5.0;
+    assert!((50.0..200.0).contains(&damped), "{damped}");
+}
+
+#[test]
+fn several_strikes_become_strike_positions_of_one_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    recording(folder, "a.wav");
+    let gains = [0.4, -0.8, 1.0, 1.5, 0.6];
+    write(&folder.join("b.wav"), &noisy(ringing(1.0, gains), 1e-4));
+    fit(folder, &["a.wav", "-o", "body.modes.json", "--merge", "b.wav"]);
+    let body = asperity_model(folder, "body.modes.json");
+    assert_eq!((body.modes.len(), body.position_count()), (5, 2));
+    for (i, mode) in body.modes.iter().enumerate() {
+        let k = BODY.iter().position(|(hz, ..)| (hz / mode.frequency_hz - 1.0).abs() < 1e-4).unwrap();
+        let share = body.positions[0][i] / mode.amplitude;
+        assert!((share - gains[k]).abs() < 0.05, "{} Hz: {share}", mode.frequency_hz);
+    }
+    assert_eq!(modes(folder, "body.strike1.modes.json").len(), 5);
+}
+
+#[test]
+fn tables_of_other_programs_become_bodies_that_the_engine_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let put = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    put("a.json", r#"{"cf":[440.0,880.0],"op":[-20.0,-40.0],"rt":[2.0,0.5],"synthMethod":"x"}"#);
+    put("b.json", r#"[{"name":"bar","freq_ratio":[1.0,3.3],"gains":[[1.0,0.5],[0.2,-0.9]]},{"name":"no"}]"#);
+    put("c.csv", "freq,t60,gain\n100,1,0.5\n250,0.5,0.25\n");
+    assert_eq!(fit(folder, &["a.json", "-o", "a.modes.json", "--csv", "a.csv"])["modes"], 2);
+    assert!((modes(folder, "a.modes.json")[0][2] - 0.1).abs() < 1e-12);
+    let bar = ["b.json", "-o", "b.modes.json", "--entry", "bar", "--base-hz", "200", "--t60", "0.5"];
+    assert_eq!(fit(folder, &bar)["positions"], 2);
+    assert_eq!(asperity_model(folder, "b.modes.json").positions, [vec![0.2, -0.9]]);
+    fit(folder, &["c.csv", "-o", "c.modes.json"]);
+    // What was exported is imported again, and a modes file can be rescaled.
+    fit(folder, &["a.csv", "-o", "again.modes.json"]);
+    assert_eq!(modes(folder, "a.modes.json"), modes(folder, "again.modes.json"));
+    fit(folder, &["c.modes.json", "-o", "d.modes.json", "--scale-size", "0.5"]);
+    assert!((modes(folder, "d.modes.json")[0][0] - 200.0).abs() < 1e-9);
+    put("bad.json", "[1, 2");
+    put("none.json", "{\"cf\":[1.0]}");
+    put("bad.csv", "freq\n1\n");
+    let refused = |arguments: &[&str], parts: &[&str]| {
+        let all = [&["fit", "-o", "x.modes.json"], arguments].concat();
+        assert_refused(&asperity(folder, &all), parts);
+        assert!(!folder.join("x.modes.json").exists());
+    };
+    refused(&["bad.json"], &["bad.json"]);
+    refused(&["none.json"], &["none.json", "--t60"]);
+    refused(&["bad.csv"], &["bad.csv", "decay"]);
+    refused(&["b.json"], &["--entry", "\"bar\""]);
+    refused(&["b.json", "--entry", "bar"], &["--base-hz"]);
+    refused(&["c.csv", "--plot", "x.svg"], &["--plot"]);
+}
+
+#[test]
+fn the_modal_tables_of_the_corpus_are_imported() {
+    let Some(corpus) = corpus() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    for (file, arguments, modes) in [
+        ("tdw_ceramic_0_mm.json", &[][..], 349),
+        ("tdw_wood_medium_0_mm.json", &[][..], 224),
+        ("tdw_stone_1_mm.json", &[][..], 10),
+        ("faust_measured_bodies.json", &["--entry", "roundBigCenter"][..], 40),
+        ("faust_bells_bars.json", &["--entry", "marimbaBar", "--base-hz", "220", "--t60", "0.4"][..], 50),
+        ("stk_modalbar.json", &["--entry", "Marimba", "--base-hz", "220"][..], 4),
+        ("csound_modal_ratios.json", &["--entry", "Dahina tabla", "--base-hz", "200", "--t60", "1"][..], 6),
+    ] {
+        let path = corpus.join("modal").join(file);
+        let all = [&[path.to_str().unwrap(), "-o", "x.modes.json"], arguments].concat();
+        let report = fit(folder.path(), &all);
+        assert_eq!(report["modes"], modes, "{file}: {report}");
+        assert_eq!(asperity_model(folder.path(), "x.modes.json").modes.len(), modes, "{file}");
+    }
+}
+
+fn corpus() -> Option<std::path::PathBuf> {
+    let root = std::env::var_os("ASPERITY_CORPUS").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus"),
+        std::path::PathBuf::from,
+    );
+    if root.is_dir() {
+        return Some(root);
+    }
+    assert!(std::env::var("CI").as_deref() != Ok("true"), "the corpus is missing in CI");
+    println!("skipped: no corpus at {}", root.display());
+    None
+}
+
+#[test]
+fn whatever_is_recorded_gives_a_result_with_warnings_and_no_absurd_mode() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let sine: Vec<f64> = (0..33_000).map(|n| 0.5 * (0.1431 * f64::from(n)).sin()).collect();
+    let loud = ringing(0.7, [1.0; 5]).into_iter().map(|x| (4.0 * x).clamp(-0.6, 0.6)).collect();
+    let mut twice = ringing(0.8, [1.0; 5]);
+    ringing(0.4, [0.8; 5]).into_iter().enumerate().for_each(|(n, x)| twice[17_000 + n] += x);
+    let offset = ringing(0.7, [1.0; 5]).into_iter().map(|x| x + 0.1).collect();
+    for (name, samples, warning) in [
+        ("noise.wav", vec![0.0; 33_000], "no modes"),
+        ("sine.wav", sine, "undamped"),
+        ("short.wav", ringing(0.008, [1.0; 5]), "too short"),
+        ("clipped.wav", loud, "clipping"),
+        ("dc.wav", offset, "offset"),
+        ("twice.wav", twice, "second strike"),
+    ] {
+        let level = match name {
+            "noise.wav" => 0.05,
+            "clipped.wav" => 0.0,
+            _ => 1e-4,
+        };
+        write(&folder.join(name), &noisy(samples, level));
+        let report = fit(folder, &[name, "-o", "x.modes.json", "--max-modes", "40"]);
+        assert!(says(&report, warning), "{name}: {report}");
+        for [hz, decay, amplitude] in modes(folder, "x.modes.json") {
+            assert!(
+                hz > 0.0 && decay > 0.0 && (0.0..=16.0).contains(&amplitude),
+                "{name}: {hz} {decay} {amplitude}"
+            );
+        }
+    }
+}
+
+#[test]
+fn files_that_are_no_recordings_are_refused_in_one_line_and_leave_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    recording(folder, "good.wav");
+    let bytes = std::fs::read(folder.join("good.wav")).unwrap();
+    write(&folder.join("silence.wav"), &vec![0.0; 30_000]);
+    write(&folder.join("constant.wav"), &vec![0.25; 30_000]);
+    std::fs::write(folder.join("text.wav"), "no sound at all\n".repeat(99)).unwrap();
+    std::fs::write(folder.join("empty.wav"), "").unwrap();
+    std::fs::write(folder.join("head.wav"), &bytes[..30]).unwrap();
+    for name in ["silence.wav", "constant.wav", "text.wav", "empty.wav", "head.wav", "missing.wav", "."] {
+        assert_refused(&asperity(folder, &["fit", name, "-o", "x.modes.json"]), &[name]);
+    }
+    for (option, value) in [
+        ("--impulse", "0"),
+        ("--max-modes", "0"),
+        ("--scale-size", "-1"),
+        ("--material", "x"),
+        ("--channel", "left"),
+        ("--channel", "3"),
+        ("--from-hz", "40000"),
+        ("--start-ms", "-4"),
+        ("--burst-ms", "9999"),
+    ] {
+        let argument = format!("{option}={value}");
+        let run = asperity(folder, &["fit", "good.wav", "-o", "x.modes.json", &argument]);
+        assert_refused(&run, &[]);
+    }
+    assert!(!folder.join("x.modes.json").exists());
+    // A file that breaks off is a recording with a warning.
+    std::fs::write(folder.join("cut.wav"), &bytes[..bytes.len() / 2 + 1]).unwrap();
+    assert!(says(&fit(folder, &["cut.wav", "-o", "x.modes.json"]), "truncated"));
+}
+
+#[test]
+fn of_ten_minutes_the_strike_is_found_and_fitted() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: 8_000,
+        bits_per_sample: 16,
+        sample_format: hound::SampleFormat::Int,
+    };
+    let mut writer = hound::WavWriter::create(folder.join("long.wav"), spec).unwrap();
+    for (n, noise) in noisy(vec![0.0; 600 * 8_000], 1e-4).into_iter().enumerate() {
+        let t = n as f64 / 8_000.0 - 300.0;
+        let ring = if t < 0.0 { 0.0 } else { 0.5 * (-2.0 * t).exp() * (6000.0 * t).sin() };
+        writer.write_sample((32_767.0 * (ring + noise)).round() as i16).unwrap();
+    }
+    writer.finalize().unwrap();
+    let report = fit(folder, &["long.wav", "-o", "x.modes.json"]);
+    assert_eq!(report["modes"], 1, "{report}");
+    assert!((report["onset_s"].as_f64().unwrap() - 300.0).abs() < 1e-3 && says(&report, "long file"));
+}
