@@ -14,6 +14,7 @@ use asperity::{
 };
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
+use asperity_texture::raster::Raster;
 use source::Ground;
 use std::path::Path;
 
@@ -156,19 +157,32 @@ fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
     }
 }
 
-fn surface(
-    entry: &SurfaceEntry,
-    body: Option<BodyId>,
-    seed: u64,
-    sample_rate_hz: f64,
-) -> Result<Surface, CliError> {
+/// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the heights
+/// do not belong to places, or the source cannot be made.
+pub fn relief(entry: &SurfaceEntry, seed: Option<u64>, longest: usize) -> Option<Raster> {
+    let default = Config::default();
+    let ground = ground(entry, seed.unwrap_or(default.seed), default.sample_rate_hz);
+    ground.relief(&entry.source, longest)
+}
+
+fn ground(entry: &SurfaceEntry, seed: u64, sample_rate_hz: f64) -> Ground {
     let wrap = match entry.wrap {
         WrapEntry::Repeat => Wrap::Repeat,
         WrapEntry::Clamp => Wrap::Clamp,
         WrapEntry::Mirror => Wrap::Mirror,
     };
     let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
-    let ground = Ground { extent, wrap, seed, sample_rate_hz };
+    Ground { extent, wrap, seed, sample_rate_hz }
+}
+
+fn surface(
+    entry: &SurfaceEntry,
+    body: Option<BodyId>,
+    seed: u64,
+    sample_rate_hz: f64,
+) -> Result<Surface, CliError> {
+    let ground = ground(entry, seed, sample_rate_hz);
+    let (extent, wrap) = (ground.extent, ground.wrap);
     let source = ground.source(&entry.source)?;
     let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
     let surface = surface.wraps(ground.repeats(&entry.source));
