@@ -12,7 +12,7 @@
 //!
 //! Why: pairs of cells that do not touch each other can slide at once, so that a whole row slides
 //! against the next one, or against itself shifted by a cell, in vector registers and without branches
-//! ([`row`]): 0.9 ns a cell for all eight neighbours, where the rule as printed takes 4 to 17. A random
+//! (`row`): 0.9 ns a cell for all eight neighbours, where the rule as printed takes 4 to 17. A random
 //! field settles 15 to 25 times faster than by repeating the document's pass over the whole grid until
 //! nothing moves. Cones come out rounder than the document's: within 2.6 % of the ideal radius along the
 //! axes and the diagonals (10 % with shares and cells taken row by row).

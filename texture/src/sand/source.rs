@@ -160,7 +160,7 @@ impl SandSource {
     }
 
     /// Lifts all tools, settles the sand and says what is left: volumes, slope, picture. `None` when
-    /// the simulation is elsewhere ([`SandThread::stop`] gives it back).
+    /// the simulation is elsewhere ([`super::SandThread::stop`] gives it back).
     pub fn finish(&mut self) -> Option<(SandFigures, SandPicture)> {
         let Link::Here(simulation) = &mut self.link else { return None };
         simulation.settle();
