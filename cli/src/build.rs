@@ -14,6 +14,7 @@ use asperity::{
 };
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
+use asperity_texture::raster::Raster;
 use asperity_texture::sand::SandWorker;
 use source::Ground;
 use std::cell::RefCell;
@@ -171,19 +172,36 @@ fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
     }
 }
 
-fn surface(
+/// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the heights
+/// do not belong to places, or the source cannot be made.
+pub fn relief(entry: &SurfaceEntry, seed: Option<u64>, longest: usize) -> Option<Raster> {
+    let default = Config::default();
+    let ground = ground(entry, (seed.unwrap_or(default.seed), default.sample_rate_hz), None);
+    ground.relief(&entry.source, longest)
+}
+
+fn ground<'a>(
     entry: &SurfaceEntry,
-    body: Option<BodyId>,
     (seed, sample_rate_hz): (u64, f64),
-    workers: Option<&RefCell<Vec<SandWorker>>>,
-) -> Result<Surface, CliError> {
+    workers: Option<&'a RefCell<Vec<SandWorker>>>,
+) -> Ground<'a> {
     let wrap = match entry.wrap {
         WrapEntry::Repeat => Wrap::Repeat,
         WrapEntry::Clamp => Wrap::Clamp,
         WrapEntry::Mirror => Wrap::Mirror,
     };
     let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
-    let ground = Ground { extent, wrap, seed, sample_rate_hz, workers };
+    Ground { extent, wrap, seed, sample_rate_hz, workers }
+}
+
+fn surface(
+    entry: &SurfaceEntry,
+    body: Option<BodyId>,
+    seed_and_rate: (u64, f64),
+    workers: Option<&RefCell<Vec<SandWorker>>>,
+) -> Result<Surface, CliError> {
+    let ground = ground(entry, seed_and_rate, workers);
+    let (extent, wrap) = (ground.extent, ground.wrap);
     let source = ground.source(&entry.source)?;
     let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
     let surface = surface.wraps(ground.repeats(&entry.source));

@@ -299,6 +299,19 @@ fn wet_sand_stands_steeper_and_gives_way_less() {
 }
 
 #[test]
+fn a_heap_that_dries_slides_down_and_keeps_its_volume() {
+    let wet = SandLaw { wetness: 1.0, ..SandLaw::default() };
+    let mut sand = SandSimulation::new(&SandDesign { law: wet, ..design(200, 0.1) }).unwrap();
+    sand.shape(|x, y| if x.abs_diff(100) < 10 && y.abs_diff(100) < 10 { 0.15 } else { 0.02 });
+    sand.settle();
+    assert!(sand.figures().max_slope_deg > 45.0);
+    sand.set_law(SandLaw::default());
+    sand.settle();
+    let figures = sand.figures();
+    assert!(figures.max_slope_deg <= TALUS_DEG + 0.5 && figures.drift_units == 0, "{figures:?}");
+}
+
+#[test]
 fn the_picture_shows_every_height_to_half_a_grey_step() {
     let mut sand = SandSimulation::new(&design(100, 0.1)).unwrap();
     write(&mut sand, 30, 3.0);

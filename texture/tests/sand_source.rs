@@ -207,6 +207,33 @@ fn a_simulation_on_its_own_thread_moves_sand_and_gives_it_back() {
 }
 
 #[test]
+fn the_force_of_another_law_comes_without_a_step() {
+    let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+    let mut forces = Vec::new();
+    let touch = |sample| Touch {
+        contact: 0,
+        sample,
+        position_m: [0.05, 0.05],
+        velocity_m_s: [0.08, 0.0],
+        normal_force_n: 1.0,
+    };
+    for sample in 0..20_000 {
+        if sample == 5000 {
+            assert!(
+                sand.change(
+                    &SurfaceChange::Sand(SandLaw { drag_s_per_m: 200.0, ..SandLaw::default() }),
+                    sample
+                )
+            );
+        }
+        forces.push(sand.react(&touch(sample)).force_n[0]);
+    }
+    let step = forces.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
+    assert!((forces[0] + 1.6).abs() < 1e-12 && (forces[19_999] + 16.0).abs() < 1e-12);
+    assert!(20.0 * (step / 16.0).log10() < -60.0, "{step} N a sample");
+}
+
+#[test]
 fn another_law_is_taken_at_run_time_and_an_impossible_one_is_not() {
     let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
     let wet = SandLaw { wetness: 1.0, ..SandLaw::default() };

@@ -11,7 +11,7 @@ use asperity_texture::brownian::BrownianDesign;
 use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface, Rendering};
 use asperity_texture::change::SurfaceChange;
 use asperity_texture::combine::{Crossfade, Mask, Scale, Sum};
-use asperity_texture::height_field::HeightField;
+use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
@@ -93,6 +93,51 @@ impl Ground<'_> {
                 Box::new(fade)
             }
         })
+    }
+
+    /// Whether heights belong to places.
+    fn has_places(source: &Source) -> bool {
+        match source {
+            Source::Brownian(brownian) => !brownian.graph,
+            Source::Sum(parts) => parts.iter().all(Self::has_places),
+            Source::Scale(source, _) => Self::has_places(source),
+            Source::Mask { inside: a, outside: b, .. } | Source::Crossfade { from: a, to: b, .. } => {
+                Self::has_places(a) && Self::has_places(b)
+            }
+            _ => true,
+        }
+    }
+
+    /// Heights of a source on a grid, as in [`super::relief`].
+    pub fn relief(self, source: &Source, longest: usize) -> Option<Raster> {
+        if !Self::has_places(source) {
+            return None;
+        }
+        let mut source = self.source(source).ok()?;
+        let step_m = self.extent.width_m.max(self.extent.height_m) / longest as f64;
+        let [width, height] =
+            [self.extent.width_m, self.extent.height_m].map(|e| ((e / step_m).round() as usize).max(1));
+        let mut values = Vec::with_capacity(width * height);
+        let mut out = SurfaceBlock::default();
+        for y in 0..height {
+            for first in (0..width).step_by(MAX_BLOCK) {
+                let columns = first..(first + MAX_BLOCK).min(width);
+                let place = |x: usize| [(x as f64 + 0.5) * step_m, (y as f64 + 0.5) * step_m];
+                let position_m: Vec<[f64; 2]> = columns.map(place).collect();
+                source.sample(
+                    &PathBlock {
+                        position_m: &position_m,
+                        velocity_m_s: &[[0.0; 2]; MAX_BLOCK][..position_m.len()],
+                        footprint_m: &[0.0; MAX_BLOCK][..position_m.len()],
+                        first_sample: 0,
+                        contact: 0,
+                    },
+                    &mut out,
+                );
+                values.extend_from_slice(&out.height_m[..position_m.len()]);
+            }
+        }
+        Some(Raster { width, height, values })
     }
 
     fn solid(self, entry: &SolidEntry) -> Result<SolidNoise, CliError> {

@@ -178,7 +178,8 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         return Err(CliError::file(stem, "is not a file name", "write -o FOLDER/NAME"));
     }
     check_destination(&with_suffix(stem, "audio.wav"))?;
-    let file = SceneFile::load(&options.scene)?;
+    let mut file = SceneFile::load(&options.scene)?;
+    file.seed = options.seed.or(file.seed);
     let log = load_log(&file)?;
     let overrides = Overrides {
         sample_rate_hz: options.rate,

@@ -100,6 +100,9 @@ pub fn draw(take: &Take<'_>) -> String {
         figure.row(120.0, [profile_panel(take)]);
         figure.row(70.0, [impulse_panel(take)]);
         figure.row(190.0, zoom_panels(take));
+        for row in take.grounds.chunks(GROUNDS_A_ROW).filter(|_| take.grounds.len() > 1) {
+            figure.row(130.0, row.iter().map(|ground| ground_panel(take, ground)).collect::<Vec<_>>());
+        }
     }
     for (index, channel) in take.haptic.iter().enumerate() {
         if channel.samples.iter().all(|&sample| sample == 0.0) {
@@ -273,9 +276,15 @@ fn zoom_panels(take: &Take<'_>) -> Vec<Panel> {
             names: Vec::new(),
         });
     let mut panels = vec![zoom, levels_panel(take)];
-    panels.extend(take.grounds.first().map(|ground| ground_panel(take, ground)));
+    // Several surfaces have rows of their own.
+    if let [ground] = &take.grounds[..] {
+        panels.push(ground_panel(take, ground));
+    }
     panels
 }
+
+/// Surfaces from above in a row of the picture.
+const GROUNDS_A_ROW: usize = 4;
 
 /// The finger's way over the surface, seen from above; v grows downwards, as in the image.
 fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
@@ -291,7 +300,11 @@ fn ground_panel(take: &Take<'_>, ground: &Ground) -> Panel {
     };
     let across = Axis::new("u", "m").range(0.0, width_m);
     let down = Axis::new("v", "m").range(height_m, 0.0);
-    let mut panel = Panel::new(ground.title.clone(), across, down).with(picture).true_scale();
+    let title = match take.grounds.len() {
+        1 => ground.title.clone(),
+        _ => ground.surface.trim_start_matches(" on ").to_owned(),
+    };
+    let mut panel = Panel::new(title, across, down).with(picture).true_scale();
     for (contact, colour) in drawn(take).filter(|(contact, _)| contact.label.ends_with(&ground.surface)) {
         panel = panel.with(Layer::Line {
             label: String::new(),

@@ -57,7 +57,7 @@ pub fn draw(
 /// Texels a side of a surface in the picture.
 const GROUND_PX: usize = 192;
 
-/// The surfaces that can be seen from above: maps as they are, sand as it lies afterwards.
+/// The surfaces as they are seen from above: what has a relief as it is at first, sand as it lies afterwards.
 fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> Vec<Ground> {
     file.surfaces
         .iter()
@@ -71,7 +71,8 @@ fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> 
                     let upright = if *invert { raster.map(|height| 1.0 - height) } else { raster };
                     ("from above", upright)
                 }
-                _ => return None,
+                (Source::Flat, _) => return None,
+                _ => ("from above", build::relief(surface, file.seed, GROUND_PX)?),
             };
             // Sand ends at its edges.
             let wrap = if sand.is_some() { Wrap::Clamp } else { surface.wrap };

@@ -12,7 +12,7 @@
 //!
 //! Why: pairs of cells that do not touch each other can slide at once, so that a whole row slides
 //! against the next one, or against itself shifted by a cell, in vector registers and without branches
-//! ([`row`]): 0.9 ns a cell for all eight neighbours, where the rule as printed takes 4 to 17. A random
+//! (`row`): 0.9 ns a cell for all eight neighbours, where the rule as printed takes 4 to 17. A random
 //! field settles 15 to 25 times faster than by repeating the document's pass over the whole grid until
 //! nothing moves. Cones come out rounder than the document's: within 2.6 % of the ideal radius along the
 //! axes and the diagonals (10 % with shares and cells taken row by row).
@@ -69,17 +69,10 @@ impl Erosion {
     /// # Errors
     /// When the angle is not 1° to 80°.
     pub fn new(grid: &SandGrid, talus_deg: f64) -> Result<Self, DesignError> {
-        DesignError::check("talus_deg", talus_deg, "1 to 80 degrees", |t| (1.0..=80.0).contains(&t))?;
-        let rise = |degrees: f64| degrees.to_radians().tan() * grid.cell_m() * UNITS_PER_M;
-        let (at, above) = (rise(talus_deg), rise(talus_deg + SETTLED_DEG) - rise(talus_deg));
-        let steepness = |run: f64| {
-            let limit = (at * run) as i32;
-            (limit, limit.saturating_add(((above * run) as i32).max(8)))
-        };
         let (tile_columns, tile_rows) = (grid.columns().div_ceil(TILE), grid.rows().div_ceil(TILE_ROWS));
         let tiles = tile_columns * tile_rows;
         Ok(Self {
-            steepness: Steepness { axis: steepness(1.0), diagonal: steepness(core::f64::consts::SQRT_2) },
+            steepness: steepness(grid, talus_deg)?,
             tile_columns,
             tile_rows,
             active: vec![0; tiles],
@@ -87,6 +80,15 @@ impl Erosion {
             pass: 0,
             rows: Rows::detect(),
         })
+    }
+
+    /// Another talus angle; nothing becomes active by it.
+    ///
+    /// # Errors
+    /// When the angle is not 1° to 80°.
+    pub fn set_talus(&mut self, grid: &SandGrid, talus_deg: f64) -> Result<(), DesignError> {
+        self.steepness = steepness(grid, talus_deg)?;
+        Ok(())
     }
 
     /// The same with the instructions every processor has: for tests, the sand is the same.
@@ -219,6 +221,19 @@ impl Erosion {
             beside(slides.right, |t| t + 1);
         }
     }
+}
+
+/// Differences of height at a talus angle and where it counts as too steep.
+fn steepness(grid: &SandGrid, talus_deg: f64) -> Result<Steepness, DesignError> {
+    DesignError::check("talus_deg", talus_deg, "1 to 80 degrees", |t| (1.0..=80.0).contains(&t))?;
+    let rise = |degrees: f64| degrees.to_radians().tan() * grid.cell_m() * UNITS_PER_M;
+    let (at, above) = (rise(talus_deg), rise(talus_deg + SETTLED_DEG) - rise(talus_deg));
+    let over = |run: f64| {
+        let limit = (at * run) as i32;
+        (limit, limit.saturating_add(((above * run) as i32).max(8)))
+    };
+
+    Ok(Steepness { axis: over(1.0), diagonal: over(core::f64::consts::SQRT_2) })
 }
 
 impl Slides {

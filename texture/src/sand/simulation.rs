@@ -106,6 +106,7 @@ pub struct SandSimulation {
     grid: SandGrid,
     erosion: Erosion,
     law: SandLaw,
+    dry_talus_deg: f64,
     tool: Tool,
     depth_m: f64,
     tracks: Vec<Track>,
@@ -141,6 +142,7 @@ impl SandSimulation {
             grid,
             erosion,
             law: design.law,
+            dry_talus_deg: design.talus_deg,
             tool: design.tool.clone(),
             depth_m: design.depth_m,
             tracks: vec![track; design.contacts],
@@ -163,11 +165,19 @@ impl SandSimulation {
         self.erosion.activate_all();
     }
 
-    /// Another force law; the talus angle stays as it was made.
+    /// Another force law; when the wetness is another, so is the talus angle, and what is now too steep
+    /// slides.
     pub fn set_law(&mut self, law: SandLaw) {
-        if law.check().is_ok() {
-            self.law = law;
+        if law.check().is_err() {
+            return;
         }
+        let talus_deg = law.talus_deg(self.dry_talus_deg);
+        if talus_deg != self.law.talus_deg(self.dry_talus_deg)
+            && self.erosion.set_talus(&self.grid, talus_deg).is_ok()
+        {
+            self.erosion.activate_all();
+        }
+        self.law = law;
     }
 
     /// The force law.

@@ -160,7 +160,7 @@ impl SandSource {
     }
 
     /// Lifts all tools, settles the sand and says what is left: volumes, slope, picture. `None` when
-    /// the simulation is elsewhere ([`SandThread::stop`] gives it back).
+    /// the simulation is elsewhere ([`super::SandThread::stop`] gives it back).
     pub fn finish(&mut self) -> Option<(SandFigures, SandPicture)> {
         let Link::Here(simulation) = &mut self.link else { return None };
         simulation.settle();
@@ -325,8 +325,12 @@ impl HeightField for SandSource {
         self.turn_over(touch.contact, touch.sample);
         let displaced_m2 =
             self.slots.get(touch.contact).and_then(|s| s.new.as_ref()).map_or(0.0, |p| p.displaced_m2);
+        let mut drag = [0.0; 2];
+        for (weight, law) in self.law.weights(touch.sample).iter().zip(self.law.values()) {
+            let part = law.drag_n(touch.velocity_m_s, touch.normal_force_n);
+            drag = [0, 1].map(|a| drag[a] + weight * part[a]);
+        }
         let law = self.law.target();
-        let drag = law.drag_n(touch.velocity_m_s, touch.normal_force_n);
         let speed = touch.velocity_m_s[0].hypot(touch.velocity_m_s[1]);
         let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
         Reaction { force_n: [drag[0], drag[1], 0.0], grain_rate_per_s, grain_impulse_n_s }

@@ -1,0 +1,117 @@
+//! Parameters of a surface changed under a sliding contact, through the scene: no sample step above −60 dB
+//! of the signal, felt or heard.
+
+mod common;
+#[path = "common/sliding.rs"]
+mod sliding;
+#[path = "common/steps.rs"]
+mod steps;
+
+use asperity::Surface;
+use asperity::texture::change::SurfaceChange;
+use asperity::texture::combine::{BandSplit, Crossfade, Mask, Scale, Sum};
+use asperity::texture::height_field::HeightField;
+use asperity::texture::height_map::{Extent, HeightMap};
+use asperity::texture::raster::Raster;
+use asperity::texture::sand::{Layer, SandDesign, SandLaw, SandSource};
+use asperity::texture::solid_materials::SolidMaterial;
+use asperity::texture::solid_noise::SolidNoise;
+use asperity::texture::wrap::Wrap;
+use common::SIDE_M;
+use sliding::{Stroke, assert_no_step};
+
+const RATE_HZ: f64 = 44_100.0;
+
+fn solid(material: SolidMaterial) -> Box<dyn HeightField> {
+    Box::new(SolidNoise::new(material.parameters(), 3, RATE_HZ).unwrap())
+}
+
+fn surface(source: impl HeightField + 'static) -> Surface {
+    Surface::new(source, SIDE_M, SIDE_M).unwrap().wraps(false).micro_relief_m(0.0)
+}
+
+/// Slides, changes, slides on, and looks for a step from before the first change.
+fn changed(what: &str, surface: Surface, changes: &[SurfaceChange]) -> Stroke {
+    let mut stroke = Stroke::on(surface, 1.0);
+    stroke.slide(0.4);
+    for change in changes {
+        let id = stroke.surface;
+        stroke.scene.change_surface(id, *change).unwrap();
+        stroke.slide(0.17);
+    }
+    assert_eq!(stroke.scene.stats().quarantined, 0, "{what}: every change is taken");
+    assert_no_step(&stroke, 0.3, what);
+    stroke
+}
+
+#[test]
+fn every_parameter_of_solid_noise() {
+    let start = SolidMaterial::RoughGlass.parameters();
+    let with = |spoil: fn(&mut asperity::texture::solid_noise::SolidNoiseParameters)| {
+        let mut parameters = start;
+        spoil(&mut parameters);
+        SurfaceChange::SolidNoise(parameters)
+    };
+    let changes = [
+        with(|p| p.modules[0].frequency = 6.0),
+        with(|p| p.modules[0].octaves = 3),
+        with(|p| (p.modules[0].octaves, p.modules[0].lacunarity) = (3, 1.7)),
+        with(|p| (p.modules[0].octaves, p.modules[0].persistence) = (2, 0.3)),
+        with(|p| p.modules[0].magnitude = 9.0),
+        with(|p| p.modules[1] = SolidMaterial::Granite.parameters().modules[0]),
+        with(|p| p.texture_factor_per_m = 250.0),
+        with(|p| p.amplitude_m = -2e-5),
+        with(|p| (p.limit_n, p.cap_n, p.viscosity_n_s_m, p.friction) = (0.5, 3.0, 5.0, 0.9)),
+        SurfaceChange::SolidNoise(start),
+    ];
+    changed("solid noise", surface(SolidNoise::new(start, 3, RATE_HZ).unwrap()), &changes);
+    let materials = [SolidMaterial::Pebbles, SolidMaterial::Gravel, SolidMaterial::Wood, SolidMaterial::Sand];
+    let changes = materials.map(|m| SurfaceChange::SolidNoise(m.parameters()));
+    changed("materials", surface(SolidNoise::new(start, 3, RATE_HZ).unwrap()), &changes);
+}
+
+#[test]
+fn scale_crossfade_band_split_and_a_part_of_a_sum_within_a_mask() {
+    let scale = Scale::new(solid(SolidMaterial::Gravel), 1.0, RATE_HZ).unwrap();
+    changed("scale", surface(scale), &[0.0, 3.0, -1.0, 0.2].map(SurfaceChange::Scale));
+    let fade = Crossfade::new(solid(SolidMaterial::Pebbles), solid(SolidMaterial::Gravel), RATE_HZ).unwrap();
+    changed("crossfade", surface(fade), &[1.0, 0.3, 0.0].map(SurfaceChange::Crossfade));
+    let split =
+        BandSplit::new(solid(SolidMaterial::Gravel), solid(SolidMaterial::Sand), 2e-3, RATE_HZ).unwrap();
+    let weights = [[0.0, 1.0], [2.0, 0.0], [1.0, 1.0]].map(SurfaceChange::BandSplit);
+    changed("band split", surface(split), &weights);
+    let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1.0 };
+    let half = Raster::from_fn(8, 8, |x, _| 0.5 + 0.4 * (x as f64 * std::f64::consts::FRAC_PI_4).sin());
+    let mask = Box::new(HeightMap::new(&half, extent, Wrap::Repeat).unwrap());
+    let sum = Box::new(Sum::new(vec![solid(SolidMaterial::Granite), solid(SolidMaterial::RoughGlass)]));
+    let scaled = Box::new(Scale::new(sum, 1.0, RATE_HZ).unwrap());
+    let masked = Mask::new(mask, scaled, solid(SolidMaterial::Pebbles));
+    changed("scaled sum in a mask", surface(masked), &[4.0, 0.0, 1.0].map(SurfaceChange::Scale));
+}
+
+#[test]
+fn the_law_of_sand() {
+    let design =
+        SandDesign { width_m: SIDE_M, height_m: SIDE_M, cells: 280, contacts: 96, ..SandDesign::default() };
+    let law = design.law;
+    let layers = [Some(Layer { from_m: 1e-4, hardness: 5.0 }), None, None, None];
+    let changes = [
+        SandLaw { wetness: 1.0, ..law },
+        SandLaw { stiffness_n: 100.0, drag_s_per_m: 50.0, ..law },
+        SandLaw { exponent_per_m: 8.0, layers, grain_m: 1e-3, ..law },
+        law,
+    ]
+    .map(SurfaceChange::Sand);
+    // Grains hit the body one by one: what is heard has onsets of its own, so only what is felt counts.
+    let sand = surface(SandSource::synchronous(&design, 1, RATE_HZ).unwrap());
+    let mut stroke = Stroke::on(sand.excitation(asperity::Excitation::Collisions), 1.0);
+    stroke.slide(0.4);
+    for change in changes {
+        stroke.scene.change_surface(stroke.surface, change).unwrap();
+        stroke.slide(0.17);
+    }
+    assert_eq!(stroke.scene.stats().quarantined, 0);
+    let [felt, _] = stroke.steps_db(0.3);
+    println!("sand: largest step felt {felt:.1} dB");
+    assert!(felt < -60.0, "{felt} dB");
+}
