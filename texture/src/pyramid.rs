@@ -295,7 +295,7 @@ impl Pyramid {
                 *to = from * gain * scale;
             }
         });
-        level.fft.inverse_unscaled(work, image);
+        level.fft.inverse_low_unscaled(work, image, level.crop[0]);
     }
 
     /// Adds what one pair of sub-bands contributes to the spectrum of the image, plus i times
@@ -310,7 +310,7 @@ impl Pyramid {
         let pair = &self.pairs[index];
         let level = &mut self.levels[pair.level];
         work.resize(level.fft.len(), Complex64::default());
-        level.fft.forward(image, work);
+        level.fft.forward_low(image, work, level.crop[0]);
         let scale = self.fft.len() as f64 / level.fft.len() as f64;
         level.runs(self.fft.width(), self.fft.height(), |run| {
             let filter = &pair.filter[run.crop..run.crop + run.len];
