@@ -161,5 +161,6 @@ fn numbers_that_are_not_finite_and_images_too_small_are_refused_by_name() {
     };
     assert_eq!(refused(&bad, &good), "original");
     assert_eq!(refused(&good, &bad), "reference");
-    assert_eq!(refused(&good, &ground(16)), "image side");
+    assert_eq!(refused(&good, &ground(16)), "reference side");
+    assert_eq!(refused(&ground(16), &good), "image side");
 }

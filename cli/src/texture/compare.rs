@@ -104,7 +104,8 @@ fn all_like_the_first(options: &Options, maps: &[Raster], method: Method) -> Res
         // Every map is spread over the same width, so that texels may differ in size.
         let scale = maps[0].width as f64 / map.width as f64;
         let settings = MetamerOptions { method, scale, ..MetamerOptions::default() };
-        let made = metamer(map, &maps[0], &settings, |_| {}).map_err(|error| refused(path, &error))?;
+        let made = metamer(map, &maps[0], &settings, |_| {})
+            .map_err(|error| refused(super::metamer::at(&error, path, &options.maps[0]), &error))?;
         all.push(made.image);
     }
     Ok(all)
