@@ -121,6 +121,32 @@ fn a_light_is_found_to_a_few_degrees_or_said_not_to_be_there() {
 }
 
 #[test]
+fn lights_are_found_on_renderings_that_set_no_limit() {
+    let mut rng = asperity_dsp::rng::Rng::new(2024);
+    let (mut found, mut worst_deg, mut invented) = (0, 0.0_f64, 0);
+    for seed in 0..24 {
+        let surface = fractal(160, 3.6 + 1.6 * rng.uniform(), 1.0, 900 + seed);
+        let power = slopes(&surface, Derivative::Exact).power();
+        let gain = (0.15 + 0.25 * rng.uniform()) / power.sqrt();
+        let surface = surface.map(|z| z * gain);
+        // Up the image, as light is taken to come from.
+        let tilt = -0.2 - (std::f64::consts::PI - 0.4) * rng.uniform();
+        let light = Light::at((30.0 + 30.0 * rng.uniform()).to_radians(), tilt).unwrap();
+        if let Some(light) = estimate_light(&photograph(&surface, light, 0.5 + 0.5 * rng.uniform())) {
+            let [x, y, _] = light.direction();
+            found += 1;
+            worst_deg = worst_deg.max((y.atan2(x) - tilt).to_degrees().abs());
+        }
+        // Without a side light: painted, or bright where it is high.
+        let paint = fractal(160, 2.0 + 2.0 * rng.uniform(), 1.0 + 3.0 * rng.uniform(), 700 + seed);
+        invented += usize::from(estimate_light(&paint).is_some());
+        invented += usize::from(estimate_light(&surface.map(|z| 0.5 + 0.02 * z)).is_some());
+    }
+    println!("found {found} of 24, off by at most {worst_deg:.1}°; invented {invented} of 48");
+    assert!(found >= 20 && worst_deg < 12.0 && invented <= 4);
+}
+
+#[test]
 fn a_diffuse_photograph_is_deep_where_it_is_dark() {
     let surface = fractal(128, 3.5, 1.0, 61);
     let shape = shape_from_shading(&surface, None, |_| {}).unwrap();
