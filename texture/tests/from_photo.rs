@@ -9,7 +9,7 @@ use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::light::Light;
 use asperity_texture::raster::Raster;
 use asperity_texture::shape_from_shading::Method;
-use surfaces::{fractal, ground};
+use surfaces::{correlation, fractal, ground};
 
 fn made(picture: &Raster, options: PhotoOptions) -> asperity_texture::from_photo::PhotoSurface {
     surface_from_photo(picture, &options, |_| {}).unwrap()
@@ -52,13 +52,6 @@ fn a_pattern_that_wanders_off_its_lattice_is_not_blurred_into_a_mean_cell() {
             let wave = |t: f64| (std::f64::consts::TAU * t / 12.0).cos();
             0.5 + 0.12 * (wave(x) + wave(y) + wave(x + y)) + noise * rng.normal()
         })
-    };
-    let correlation = |a: &Raster, b: &Raster| {
-        let (ma, mb) = (a.mean(), b.mean());
-        let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-            a.values.iter().zip(&b.values).map(|(a, b)| f(a - ma, b - mb)).sum()
-        };
-        sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt()
     };
     let bent = bumps(4.5, 0.0);
     let surface = made(&bent, PhotoOptions::default());

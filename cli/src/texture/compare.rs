@@ -23,7 +23,7 @@ pub struct Options {
     #[arg(long)]
     pub metamers: bool,
     /// Strokes on each surface
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(20..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(20..=10_000))]
     pub strokes: usize,
     /// Passes of the default metamer
     #[arg(long, default_value_t = PASSES, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000))]
