@@ -11,6 +11,7 @@ use crate::raster::Raster;
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Side of the square that is transposed at once: 16 × 16 complex numbers are 4 KiB.
@@ -74,9 +75,18 @@ impl Fft2 {
     /// # Panics
     /// When a slice does not hold [`Fft2::len`] values.
     pub fn forward(&mut self, image: &mut [Complex64], spectrum: &mut [Complex64]) {
+        self.forward_low(image, spectrum, self.width);
+    }
+
+    /// As [`Fft2::forward`], but only for the `kept` columns of lowest frequency along u: the others are left as
+    /// they are.
+    pub(crate) fn forward_low(&mut self, image: &mut [Complex64], spectrum: &mut [Complex64], kept: usize) {
         self.rows[0].process_with_scratch(image, &mut self.scratch);
-        transpose(image, self.width, self.height, spectrum);
-        self.columns[0].process_with_scratch(spectrum, &mut self.scratch);
+        for columns in low_columns(kept, self.width) {
+            let part = &mut spectrum[columns.start * self.height..columns.end * self.height];
+            transpose(image, self.width, self.height, columns, part);
+            self.columns[0].process_with_scratch(part, &mut self.scratch);
+        }
     }
 
     /// Transforms `spectrum` (which is left undefined) back into `image`.
@@ -94,8 +104,21 @@ impl Fft2 {
     /// # Panics
     /// When a slice does not hold [`Fft2::len`] values.
     pub fn inverse_unscaled(&mut self, spectrum: &mut [Complex64], image: &mut [Complex64]) {
-        self.columns[1].process_with_scratch(spectrum, &mut self.scratch);
-        transpose(spectrum, self.height, self.width, image);
+        self.inverse_low_unscaled(spectrum, image, self.width);
+    }
+
+    /// As [`Fft2::inverse_unscaled`] for a spectrum that is zero but for the `kept` columns of lowest frequency along u.
+    pub(crate) fn inverse_low_unscaled(
+        &mut self,
+        spectrum: &mut [Complex64],
+        image: &mut [Complex64],
+        kept: usize,
+    ) {
+        for columns in low_columns(kept, self.width) {
+            let part = &mut spectrum[columns.start * self.height..columns.end * self.height];
+            self.columns[1].process_with_scratch(part, &mut self.scratch);
+        }
+        transpose(spectrum, self.height, self.width, 0..self.height, image);
         self.rows[1].process_with_scratch(image, &mut self.scratch);
     }
 
@@ -139,14 +162,20 @@ pub fn angular_frequency(k: usize, n: usize) -> f64 {
     TAU * signed_bin(k, n) as f64 / n as f64
 }
 
-/// Writes the `width` × `height` matrix `from`, stored row by row, column by column into `to`.
-fn transpose(from: &[Complex64], width: usize, height: usize, to: &mut [Complex64]) {
+/// The columns of a spectrum `width` wide that hold its `kept` lowest frequencies along u: from zero up, and the negative ones.
+fn low_columns(kept: usize, width: usize) -> [Range<usize>; 2] {
+    let up = if kept < width { kept / 2 + 1 } else { width };
+    [0..up, width - kept.saturating_sub(up)..width]
+}
+
+/// Writes some columns of the `width` × `height` matrix `from`, stored row by row, one after the other into `to`.
+fn transpose(from: &[Complex64], width: usize, height: usize, columns: Range<usize>, to: &mut [Complex64]) {
     for y0 in (0..height).step_by(TRANSPOSE_TILE) {
-        for x0 in (0..width).step_by(TRANSPOSE_TILE) {
+        for x0 in columns.clone().step_by(TRANSPOSE_TILE) {
             let y1 = (y0 + TRANSPOSE_TILE).min(height);
-            for x in x0..(x0 + TRANSPOSE_TILE).min(width) {
-                let column = &mut to[x * height + y0..x * height + y1];
-                for (y, value) in (y0..y1).zip(column) {
+            for x in x0..(x0 + TRANSPOSE_TILE).min(columns.end) {
+                let start = (x - columns.start) * height;
+                for (y, value) in (y0..y1).zip(&mut to[start + y0..start + y1]) {
                     *value = from[y * width + x];
                 }
             }
@@ -191,6 +220,30 @@ mod tests {
             for (a, b) in image.values.iter().zip(&back.values) {
                 assert!((a - b).abs() < 1e-14);
             }
+        }
+    }
+
+    #[test]
+    fn low_frequencies_alone_are_those_of_the_whole_transform() {
+        let mut rng = Rng::new(5);
+        for (width, height, kept) in [(32, 12, 16), (33, 12, 17), (15, 8, 4), (16, 8, 1), (9, 9, 9)] {
+            let image: Vec<_> =
+                (0..width * height).map(|_| Complex64::new(rng.normal(), rng.normal())).collect();
+            let mut fft = Fft2::new(width, height);
+            let (mut whole, mut low) = (image.clone(), image.clone());
+            fft.forward(&mut image.clone(), &mut whole);
+            low.fill(Complex64::default());
+            fft.forward_low(&mut image.clone(), &mut low, kept);
+            let inside = |k: usize| low_columns(kept, width).iter().any(|range| range.contains(&k));
+            assert_eq!((0..width).filter(|&k| inside(k)).count(), kept);
+            for (place, value) in whole.iter_mut().enumerate().filter(|(place, _)| !inside(place / height)) {
+                *value = low[place];
+            }
+            assert_eq!(whole, low);
+            let (mut all, mut few) = (image.clone(), image);
+            fft.inverse_unscaled(&mut whole, &mut all);
+            fft.inverse_low_unscaled(&mut low, &mut few, kept);
+            assert!(all.iter().zip(&few).all(|(a, b)| (a - b).norm() < 1e-12));
         }
     }
 

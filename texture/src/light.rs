@@ -12,7 +12,9 @@
 //! octave has the c_2 of a light ([`LEAST_DIRECTION`]) and the c_4 of none ([`MOST_CORNER`]) and they agree
 //! ([`LEAST_AGREEMENT`]). Measured: renderings of ground, rock and metal maps at 30° and 60° have c_2 of
 //! 0.36–0.55 and c_4 below 0.15; seven photographs of brick, tile, walkway, reptile skin, nuts and
-//! gravel all break one of the rules, where a rule by c_2 alone took four of them for lit from a side.
+//! gravel all break one of the rules, where a rule by c_2 alone took four of them for lit from a side. **The three limits were
+//! set on these pictures**, so they are no evidence. On renderings made afterwards (24 random surfaces, random lights of 30–60°
+//! slant, 8 bits, random albedo) it finds 24 lights, off by at most 3.7°, and none in 48 pictures without one.
 //! The spectral argument is Pentland's (IJCV 4, 1990); the rule is ours.
 //!
 //! What one image cannot tell: the sign of τ (hollows lit from below look like bumps lit from above; we

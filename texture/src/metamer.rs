@@ -162,7 +162,7 @@ pub fn metamer(
     let borders = options.borders.decide(reference);
     let ours = SplitBorders::of(original, borders);
     let theirs = SplitBorders::of(&scaled(reference, options.scale), borders);
-    let target = Target::new(&theirs.periodic, options)?;
+    let target = Target::new(&theirs.periodic, options).map_err(of_the_reference)?;
     let mut work = Work::new(original, options)?;
     let (before, heights_before) = target.distances(&ours.periodic, &mut work.pyramid);
     let mut image = match options.method {
@@ -191,6 +191,12 @@ pub fn metamer(
 fn check_finite(field: &'static str, image: &Raster) -> Result<(), DesignError> {
     let bad = image.values.iter().copied().find(|v| !v.is_finite());
     bad.map_or(Ok(()), |value| Err(DesignError { field, value, expected: "an image of finite numbers" }))
+}
+
+/// An image that is too small is named.
+fn of_the_reference(error: DesignError) -> DesignError {
+    let field = if error.field == "image side" { "reference side" } else { error.field };
+    DesignError { field, ..error }
 }
 
 /// The reference on the original's texels.

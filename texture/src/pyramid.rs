@@ -26,11 +26,20 @@
 //! band needs by its bandwidth and no more; its values are those of the full band at fewer places.
 //! [`Sampling::Full`] is the document's: every band as large as the image.
 
-use crate::fft2::{Fft2, angular_frequency};
+mod coefficients;
+mod filter;
+mod level;
+#[cfg(test)]
+mod tests;
+
+pub use coefficients::Coefficients;
+
+use crate::fft2::Fft2;
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
+use level::Level;
 use rustfft::num_complex::Complex64;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 /// How many samples of a band are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -79,22 +88,6 @@ pub struct Pyramid {
     pairs: Vec<Pair>,
     subbands: Vec<Subband>,
     orientations: usize,
-}
-
-/// The sub-bands of one image, two real ones to a complex array; see [`Coefficients::get`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct Coefficients {
-    pairs: Vec<Vec<Complex64>>,
-    /// Pair and half (0 = real, 1 = imaginary) of each sub-band.
-    places: Vec<(usize, usize)>,
-}
-
-/// A rectangle of low frequencies and the grid on which they are sampled.
-#[derive(Debug, Clone)]
-struct Level {
-    /// Frequencies kept: at most `crop` of the image's in each direction.
-    crop: [usize; 2],
-    fft: Fft2,
 }
 
 /// Two filters on the frequencies of a level: Ψ_a + i Ψ_b.
@@ -234,7 +227,9 @@ impl Pyramid {
         for both in kinds.chunks(2) {
             let mut filter = vec![Complex64::default(); grid.crop[0] * grid.crop[1]];
             grid.visit(self.fft.width(), self.fft.height(), |place, _, omega| {
-                let gain = |kind: Option<&Kind>| kind.map_or(0.0, |k| self.gain(*k, level, omega));
+                let gain = |kind: Option<&Kind>| {
+                    kind.map_or(0.0, |k| filter::gain(*k, self.orientations, level, omega))
+                };
                 filter[place] = Complex64::new(gain(both.first()), gain(both.get(1)));
             });
             self.pairs.push(Pair { level, subbands: both.len(), filter });
@@ -248,24 +243,6 @@ impl Pyramid {
             };
             Subband { kind, width, height, wavelength_px }
         }));
-    }
-
-    /// Ψ at one frequency; `lows` is how often the low-pass has been applied before the band.
-    fn gain(&self, kind: Kind, lows: usize, [wx, wy]: [f64; 2]) -> f64 {
-        let r = wx.hypot(wy);
-        match kind {
-            Kind::HighResidual => high(r),
-            Kind::LowResidual => low_chain(r, lows),
-            Kind::Oriented { band, orientation } => {
-                let radial = low_chain(r, band) * high(r * (1_u64 << (band + 1)) as f64);
-                if radial == 0.0 {
-                    return 0.0;
-                }
-                let k = self.orientations;
-                let cos = (wy.atan2(wx) - PI * orientation as f64 / k as f64).cos().abs();
-                radial * angular_norm(k) * cos.powi(k as i32 - 1)
-            }
-        }
     }
 
     /// Where each sub-band sits.
@@ -295,7 +272,7 @@ impl Pyramid {
                 *to = from * gain * scale;
             }
         });
-        level.fft.inverse_unscaled(work, image);
+        level.fft.inverse_low_unscaled(work, image, level.crop[0]);
     }
 
     /// Adds what one pair of sub-bands contributes to the spectrum of the image, plus i times
@@ -310,7 +287,7 @@ impl Pyramid {
         let pair = &self.pairs[index];
         let level = &mut self.levels[pair.level];
         work.resize(level.fft.len(), Complex64::default());
-        level.fft.forward(image, work);
+        level.fft.forward_low(image, work, level.crop[0]);
         let scale = self.fft.len() as f64 / level.fft.len() as f64;
         level.runs(self.fft.width(), self.fft.height(), |run| {
             let filter = &pair.filter[run.crop..run.crop + run.len];
@@ -340,240 +317,5 @@ impl Pyramid {
     /// The transforms of whole images.
     pub(crate) fn fft(&mut self) -> &mut Fft2 {
         &mut self.fft
-    }
-}
-
-impl Coefficients {
-    /// Number of sub-bands.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.places.len()
-    }
-
-    /// Whether there is none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
-    }
-
-    /// The values of one sub-band, row by row, in the order of [`Pyramid::subbands`].
-    ///
-    /// # Panics
-    /// When there is no such sub-band.
-    #[must_use]
-    pub fn get(&self, index: usize) -> Vec<f64> {
-        let (pair, half) = self.places[index];
-        self.pairs[pair].iter().map(|v| if half == 0 { v.re } else { v.im }).collect()
-    }
-
-    /// Replaces the values of one sub-band.
-    ///
-    /// # Panics
-    /// When there is no such sub-band or `values` is not as long as it.
-    pub fn set(&mut self, index: usize, values: &[f64]) {
-        let (pair, half) = self.places[index];
-        assert_eq!(values.len(), self.pairs[pair].len(), "a sub-band keeps its size");
-        for (place, &value) in self.pairs[pair].iter_mut().zip(values) {
-            *(if half == 0 { &mut place.re } else { &mut place.im }) = value;
-        }
-    }
-}
-
-/// A run of frequencies that lie side by side in the image's spectrum, the crop and the level.
-struct Run {
-    full: usize,
-    crop: usize,
-    level: usize,
-    len: usize,
-}
-
-impl Level {
-    /// The frequencies that survive `halvings` of the band's upper edge, and their grid.
-    fn new(width: usize, height: usize, halvings: usize, sampling: Sampling) -> Self {
-        let side = |n: usize| n.div_ceil(1 << halvings);
-        let crop = [side(width), side(height)];
-        let [w, h] = if sampling == Sampling::Full { [width, height] } else { crop };
-        Self { crop, fft: Fft2::new(w, h) }
-    }
-
-    /// Calls `each` with the runs of frequencies of this level. The filters are zero at and above
-    /// the crop's own Nyquist frequency, so it does not matter on which side that bin is kept.
-    fn runs(&self, width: usize, height: usize, mut each: impl FnMut(Run)) {
-        let [crop_w, crop_h] = self.crop;
-        let (level_w, level_h) = (self.fft.width(), self.fft.height());
-        debug_assert!(crop_w <= width && crop_h <= level_h);
-        let upper = crop_h / 2 + 1;
-        for kx in 0..crop_w {
-            let below = crop_w - kx;
-            let negative = kx > crop_w / 2;
-            let full = if negative { width - below } else { kx } * height;
-            let level = if negative { level_w - below } else { kx } * level_h;
-            let crop = kx * crop_h;
-            let upper = upper.min(crop_h);
-            each(Run { full, crop, level, len: upper });
-            let len = crop_h - upper;
-            if len > 0 {
-                each(Run {
-                    full: full + height - len,
-                    crop: crop + upper,
-                    level: level + level_h - len,
-                    len,
-                });
-            }
-        }
-    }
-
-    /// Calls `each` with place in the crop, place in the image's spectrum and angular frequency.
-    fn visit(&self, width: usize, height: usize, mut each: impl FnMut(usize, usize, [f64; 2])) {
-        self.runs(width, height, |run| {
-            for i in 0..run.len {
-                let full = run.full + i;
-                let omega =
-                    [angular_frequency(full / height, width), angular_frequency(full % height, height)];
-                each(run.crop + i, full, omega);
-            }
-        });
-    }
-}
-
-/// H(r).
-fn high(r: f64) -> f64 {
-    if r >= PI {
-        1.0
-    } else if r <= FRAC_PI_2 {
-        0.0
-    } else {
-        (FRAC_PI_2 * (r / PI).log2()).cos()
-    }
-}
-
-/// L(r) L(2r) … L(2^last r).
-fn low_chain(r: f64, last: usize) -> f64 {
-    // Below half of the band edge every earlier factor is one, above it the last but one is zero
-    // unless r lies in its octave: only these two can differ from 0 and 1.
-    let low = |r: f64| {
-        if r >= PI {
-            0.0
-        } else if r <= FRAC_PI_2 {
-            1.0
-        } else {
-            // √(1 − cos²) without cancellation.
-            (FRAC_PI_2 * (r / PI).log2()).sin().abs()
-        }
-    };
-    (0..=last).map(|i| low(r * (1_u64 << i) as f64)).product()
-}
-
-/// 2^{K−1} (K−1)! / √(K (2K−2)!): the squared orientations sum to one.
-fn angular_norm(orientations: usize) -> f64 {
-    let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
-    let k = orientations;
-    2.0_f64.powi(k as i32 - 1) * factorial(k - 1) / (k as f64 * factorial(2 * k - 2)).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use asperity_dsp::rng::Rng;
-
-    fn noise(width: usize, height: usize, seed: u64) -> Raster {
-        let mut rng = Rng::new(seed);
-        Raster::from_fn(width, height, |_, _| rng.normal())
-    }
-
-    fn snr_db(signal: &[f64], other: &[f64]) -> f64 {
-        let error: f64 = signal.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum();
-        10.0 * (signal.iter().map(|a| a * a).sum::<f64>() / error).log10()
-    }
-
-    #[test]
-    fn the_round_trip_is_exact_at_even_odd_and_oblong_sizes() {
-        for (w, h, s, k) in
-            [(256, 256, 4, 4), (255, 255, 4, 4), (129, 200, 3, 5), (37, 41, 2, 1), (64, 48, 3, 2)]
-        {
-            for sampling in [Sampling::Reduced, Sampling::Full] {
-                let image = noise(w, h, 11);
-                let mut pyramid = Pyramid::new(w, h, s, k, sampling).unwrap();
-                let mut split = pyramid.split(&image.values);
-                let back = pyramid.join(&mut split);
-                let db = snr_db(&image.values, &back.values);
-                assert!(db > 290.0, "{w} × {h}, {s} × {k}, {sampling:?}: {db} dB");
-            }
-        }
-    }
-
-    #[test]
-    fn squared_filters_sum_to_one_at_every_frequency() {
-        for (w, h, s, k) in [(64, 64, 3, 4), (63, 45, 3, 6), (50, 64, 2, 3)] {
-            let pyramid = Pyramid::new(w, h, s, k, Sampling::Reduced).unwrap();
-            let mut sum = vec![0.0; w * h];
-            for pair in &pyramid.pairs {
-                pyramid.levels[pair.level].visit(w, h, |place, full, _| {
-                    sum[full] += pair.filter[place].norm_sqr();
-                });
-            }
-            for value in sum {
-                assert!((value - 1.0).abs() < 1e-12, "{w} × {h}: {value}");
-            }
-        }
-    }
-
-    #[test]
-    fn reduced_bands_are_the_full_bands_at_fewer_places() {
-        let image = noise(64, 64, 12);
-        let full = Pyramid::new(64, 64, 3, 4, Sampling::Full).unwrap().split(&image.values);
-        let mut reduced = Pyramid::new(64, 64, 3, 4, Sampling::Reduced).unwrap();
-        let few = reduced.split(&image.values);
-        for (index, band) in reduced.subbands().iter().enumerate() {
-            let (many, few) = (full.get(index), few.get(index));
-            let step = 64 / band.width;
-            for y in 0..band.height {
-                for x in 0..band.width {
-                    let difference = few[y * band.width + x] - many[y * step * 64 + x * step];
-                    assert!(difference.abs() < 1e-13, "{band:?}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_wave_lands_in_the_band_of_its_length_and_direction() {
-        // 8 texels long, running along v: band 1, orientation 2 of 4.
-        let wave = Raster::from_fn(64, 64, |_, y| (2.0 * PI * y as f64 / 8.0).cos());
-        let mut pyramid = Pyramid::new(64, 64, 3, 4, Sampling::Reduced).unwrap();
-        let split = pyramid.split(&wave.values);
-        let energy = |i: usize| {
-            let values = split.get(i);
-            values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64
-        };
-        let strongest = (0..split.len()).max_by(|&a, &b| energy(a).total_cmp(&energy(b))).unwrap();
-        assert_eq!(pyramid.subbands()[strongest].kind, Kind::Oriented { band: 1, orientation: 2 });
-        // In closed form: Ψ = a at the peak of the band (H = L-chain = 1 there), cos² has mean ½.
-        let expected = 0.5 * angular_norm(4).powi(2);
-        assert!((energy(strongest) - expected).abs() < 1e-12);
-    }
-
-    #[test]
-    fn complex_bands_have_the_real_bands_as_real_parts_and_steady_moduli() {
-        let wave = Raster::from_fn(48, 64, |_, y| (2.0 * PI * y as f64 / 8.0 + 0.3).cos());
-        let mut pyramid = Pyramid::new(48, 64, 3, 4, Sampling::Reduced).unwrap();
-        let split = pyramid.split(&wave.values);
-        let complex = pyramid.split_complex(&wave.values);
-        assert_eq!(complex.len(), 12);
-        for (i, (band, values)) in complex.iter().enumerate() {
-            let real = split.get(i + 1);
-            assert!(values.iter().zip(&real).all(|(c, r)| (c.re - r).abs() < 1e-13), "{band:?}");
-        }
-        let (_, values) = &complex[4 + 2];
-        let modulus = values[0].norm();
-        assert!(modulus > 0.5 && values.iter().all(|v| (v.norm() - modulus).abs() < 1e-12));
-    }
-
-    #[test]
-    fn impossible_designs_are_refused_by_name() {
-        let refused = |w, h, s, k| Pyramid::new(w, h, s, k, Sampling::Full).unwrap_err().field;
-        assert_eq!(refused(64, 64, 0, 4), "bands");
-        assert_eq!(refused(64, 64, 4, 0), "orientations");
-        assert_eq!(refused(31, 64, 4, 4), "image side");
     }
 }

@@ -8,7 +8,7 @@ use asperity_texture::borders::Borders;
 use asperity_texture::gradient_field::{DERIVATIVES, Derivative, Slopes, differences, slopes};
 use asperity_texture::normal_map::{Green, NormalMapOptions, heights_from_normals};
 use asperity_texture::raster::Raster;
-use surfaces::{fractal, ridges};
+use surfaces::{correlation, fractal, ridges};
 
 /// An 8-bit normal map with the slopes of a surface, as red, green and blue.
 fn normal_map(field: &Slopes, green: Green) -> [Raster; 3] {
@@ -180,12 +180,7 @@ fn a_stone_wall_made_by_others_gives_its_displacement_back() {
     let truth = load("Displacement", Channel::Luma);
     let made = heights_from_normals(&r, &g, &b, &NormalMapOptions::default()).unwrap();
     // Their displacement was levelled over many stones, which normals cannot know: compare within 64 texels.
-    let (a, b) = (&within(&made.height_px, 64), &within(&truth, 64));
-    let (ma, mb) = (a.mean(), b.mean());
-    let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-        a.values.iter().zip(&b.values).map(|(x, y)| f(x - ma, y - mb)).sum()
-    };
-    let r = sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt();
+    let r = correlation(&within(&made.height_px, 64), &within(&truth, 64));
     println!("stone wall: r = {r:.3}, {:?}, {:?}, tileable {}", made.green, made.derivative, made.tileable);
     assert_eq!(made.green, Green::OpenGl);
     assert!(r > 0.9, "{r}");

@@ -9,7 +9,7 @@ use asperity_texture::light::{Light, estimate_light};
 use asperity_texture::raster::Raster;
 use asperity_texture::shape_from_shading::{Method, STEPS, shape_by, shape_from_shading};
 use std::f64::consts::TAU;
-use surfaces::fractal;
+use surfaces::{correlation, fractal};
 
 /// The image of a surface under a light, 8 bits, with an albedo.
 fn photograph(surface: &Raster, light: Light, albedo: f64) -> Raster {
@@ -19,14 +19,6 @@ fn photograph(surface: &Raster, light: Light, albedo: f64) -> Raster {
     let lit = both.map(|(p, q)| (sz - sx * p - sy * q) / (1.0 + p * p + q * q).sqrt());
     let values = lit.map(|r| (r.max(0.0) * albedo * 255.0).round() / 255.0).collect();
     Raster { width: surface.width, height: surface.height, values }
-}
-
-fn correlation(a: &Raster, b: &Raster) -> f64 {
-    let (ma, mb) = (a.mean(), b.mean());
-    let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
-        a.values.iter().zip(&b.values).map(|(x, y)| f(x - ma, y - mb)).sum()
-    };
-    sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
 }
 
 fn known_surfaces() -> Vec<(&'static str, Raster)> {
@@ -118,6 +110,32 @@ fn a_light_is_found_to_a_few_degrees_or_said_not_to_be_there() {
         // Skylight: brightness follows height, no direction.
         assert_eq!(estimate_light(&surface.map(|z| 0.5 + 0.02 * z)), None);
     }
+}
+
+#[test]
+fn lights_are_found_on_renderings_that_set_no_limit() {
+    let mut rng = asperity_dsp::rng::Rng::new(2024);
+    let (mut found, mut worst_deg, mut invented) = (0, 0.0_f64, 0);
+    for seed in 0..24 {
+        let surface = fractal(160, 3.6 + 1.6 * rng.uniform(), 1.0, 900 + seed);
+        let power = slopes(&surface, Derivative::Exact).power();
+        let gain = (0.15 + 0.25 * rng.uniform()) / power.sqrt();
+        let surface = surface.map(|z| z * gain);
+        // Up the image, as light is taken to come from.
+        let tilt = -0.2 - (std::f64::consts::PI - 0.4) * rng.uniform();
+        let light = Light::at((30.0 + 30.0 * rng.uniform()).to_radians(), tilt).unwrap();
+        if let Some(light) = estimate_light(&photograph(&surface, light, 0.5 + 0.5 * rng.uniform())) {
+            let [x, y, _] = light.direction();
+            found += 1;
+            worst_deg = worst_deg.max((y.atan2(x) - tilt).to_degrees().abs());
+        }
+        // Without a side light: painted, or bright where it is high.
+        let paint = fractal(160, 2.0 + 2.0 * rng.uniform(), 1.0 + 3.0 * rng.uniform(), 700 + seed);
+        invented += usize::from(estimate_light(&paint).is_some());
+        invented += usize::from(estimate_light(&surface.map(|z| 0.5 + 0.02 * z)).is_some());
+    }
+    println!("found {found} of 24, off by at most {worst_deg:.1}°; invented {invented} of 48");
+    assert!(found >= 23 && worst_deg < 6.0 && invented <= 1);
 }
 
 #[test]

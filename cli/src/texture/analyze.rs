@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::output;
+use crate::progress::Progress;
 use asperity_texture::fractal_dimension::{
     COLOUR_LIMIT, Condition, FractalDimension, colour_fraction, fractal_dimension,
 };
@@ -64,16 +65,23 @@ pub fn run(arguments: &AnalyzeArgs) -> Result<(), CliError> {
     }
 }
 
+/// Reading, dimensions, lattice, pattern: what the progress bar counts.
+const STEPS: u64 = 4;
+
 /// The analysis of a file.
 fn analyze(path: &Path) -> Result<Analysis, CliError> {
+    let mut progress = Progress::new("analyze", STEPS);
     let picture = load_channel(path, Channel::Luma).map_err(CliError::told)?.raster;
+    progress.advance(1);
     let mut report = fractal_dimension(&picture)
         .map_err(|error| CliError::file(path, error, "give a picture of at least 64 × 64 with relief"))?;
     let colour = colour(path)?;
     if colour > COLOUR_LIMIT {
         report.conditions.push(Condition::Coloured(colour));
     }
+    progress.advance(1);
     let lattice = find_lattice(&picture);
+    progress.advance(1);
     let found = lattice.map(|lattice| describe(&picture, &lattice));
     if let Some(lattice) = lattice {
         report.conditions.push(Condition::Symmetric(lattice.confidence));

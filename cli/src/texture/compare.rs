@@ -23,7 +23,7 @@ pub struct Options {
     #[arg(long)]
     pub metamers: bool,
     /// Strokes on each surface
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(20..=10_000))]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(20..=10_000))]
     pub strokes: usize,
     /// Passes of the default metamer
     #[arg(long, default_value_t = PASSES, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000))]
@@ -104,7 +104,8 @@ fn all_like_the_first(options: &Options, maps: &[Raster], method: Method) -> Res
         // Every map is spread over the same width, so that texels may differ in size.
         let scale = maps[0].width as f64 / map.width as f64;
         let settings = MetamerOptions { method, scale, ..MetamerOptions::default() };
-        let made = metamer(map, &maps[0], &settings, |_| {}).map_err(|error| refused(path, &error))?;
+        let made = metamer(map, &maps[0], &settings, |_| {})
+            .map_err(|error| refused(super::metamer::at(&error, path, &options.maps[0]), &error))?;
         all.push(made.image);
     }
     Ok(all)

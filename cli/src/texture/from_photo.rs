@@ -80,6 +80,8 @@ struct LatticeReport {
     confidence: f64,
     /// Fraction of the picture's variance that repeats.
     share: f64,
+    /// Whether the pattern wanders off the lattice: heights are then the whole picture's.
+    wanders: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -135,7 +137,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     let lattice = report.lattice.as_ref().map_or("nothing repeats".to_owned(), |lattice| {
         let group = report.wallpaper_group.unwrap_or("p1");
-        format!("repeats along {:.1?} and {:.1?} texels ({group})", lattice.t1_px, lattice.t2_px)
+        let wanders = if lattice.wanders { ", but wanders: nothing is averaged" } else { "" };
+        format!("repeats along {:.1?} and {:.1?} texels ({group}){wanders}", lattice.t1_px, lattice.t2_px)
     });
     output::say(&format!(
         "{lattice}; heights by {}, relief {:.2} mm, roughness {:.2}\nwrote {} files to {}\n\
@@ -226,6 +229,7 @@ fn report(
             t2_px: found.lattice.t2_px,
             confidence: found.lattice.confidence,
             share: found.share,
+            wanders: found.wanders,
         }),
         wallpaper_group: repetition.map(|found| found.group.name()),
         fractal_dimension: surface.dimension,

@@ -4,13 +4,14 @@
 use super::{bar, grey, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
+use asperity_dsp::DesignError;
 use asperity_texture::borders::Borders;
 use asperity_texture::image_io;
 use asperity_texture::metamer::{self as core, MetamerOptions, Method};
 use asperity_texture::pyramid::Kind;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Make one height map feel like another
@@ -130,7 +131,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     };
     let start = Instant::now();
     let made = core::metamer(&original, &reference, &settings, bar("metamer"))
-        .map_err(|error| refused(&options.original, &error))?;
+        .map_err(|error| refused(at(&error, &options.original, &options.reference), &error))?;
     let seconds = start.elapsed().as_secs_f64();
     let outside = made.image.values.iter().filter(|v| !(0.0..=1.0).contains(*v)).count();
     let mut outputs = Outputs::new();
@@ -162,6 +163,11 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         options.output.display()
     ));
     Ok(())
+}
+
+/// The map that an error is about.
+pub(super) fn at<'a>(error: &DesignError, original: &'a Path, reference: &'a Path) -> &'a Path {
+    if error.field.starts_with("reference") { reference } else { original }
 }
 
 fn band(distance: &core::BandDistance) -> Band {

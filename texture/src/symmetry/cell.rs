@@ -83,6 +83,30 @@ pub fn averaged_cell(picture: &Raster, lattice: &Lattice) -> AveragedCell {
     }
 }
 
+/// How faithfully a pattern keeps to its lattice all over the picture, 0–1: the variance of its mean cell over what texels have
+/// in common with those one translation on. 1 for a strict pattern, however noisy or unevenly lit; near 0 when cells are like
+/// their neighbours but drift, as scales on a bent skin do, and the mean of all of them is a blur.
+#[must_use]
+pub fn steadiness(picture: &Raster, lattice: &Lattice, averaged: &AveragedCell) -> f64 {
+    let even = detrended(picture);
+    let [one, other] = [lattice.t1_px, lattice.t2_px].map(|t| {
+        let (mut product, mut count) = (0.0, 0.0);
+        for y in 0..even.height {
+            for x in 0..even.width {
+                if let Some(next) = read(&even, [x as f64 + t[0], y as f64 + t[1]]) {
+                    product += even.at(x, y) * next;
+                    count += 1.0;
+                }
+            }
+        }
+        product / f64::max(count, 1.0)
+    });
+    let cell = &averaged.cell.values;
+    let kept = cell.iter().map(|v| v * v).sum::<f64>() / cell.len().max(1) as f64;
+    let common = 0.5 * (one + other);
+    if common > kept { kept / common } else { 1.0 }
+}
+
 /// Takes a picture apart into its averaged cell, the repeated cell and the rest.
 #[must_use]
 pub fn separate(picture: &Raster, lattice: &Lattice) -> Separation {
@@ -188,6 +212,23 @@ mod tests {
         assert!(error.sqrt() < 0.07 && back < 1e-12, "{} {back}", error.sqrt());
         let cell = averaged_cell(&picture, &lattice);
         assert!(cell.reliability > 0.98 && cell.repeats > 60 && cell.cell.width.is_multiple_of(12));
+    }
+
+    #[test]
+    fn a_strict_pattern_is_steady_in_noise_and_light_and_a_drifting_one_is_not() {
+        let lattice = Lattice { t1_px: [17.3, 2.1], t2_px: [-4.4, 21.7], confidence: 1.0 };
+        let mut rng = asperity_dsp::rng::Rng::new(11);
+        let mut seen = |noise: f64, light: f64, drift: f64| {
+            let picture = Raster::from_fn(200, 200, |x, y| {
+                let bend = drift * (TAU * y as f64 / 200.0).sin();
+                wave(&lattice, x as f64 + bend, y as f64) + noise * rng.normal() + light * x as f64
+            });
+            steadiness(&picture, &lattice, &averaged_cell(&picture, &lattice))
+        };
+        for (noise, light) in [(0.0, 0.0), (1.5, 0.0), (0.3, 0.02)] {
+            assert!(seen(noise, light, 0.0) > 0.9);
+        }
+        assert!(seen(0.2, 0.0, 8.0) < 0.5);
     }
 
     #[test]

@@ -22,7 +22,7 @@ mod operation;
 mod search;
 mod wallpaper;
 
-pub use cell::{AveragedCell, Separation, averaged_cell, separate, with_cell};
+pub use cell::{AveragedCell, Separation, averaged_cell, separate, steadiness, with_cell};
 pub use feature_matrix::{FeatureMatrix, feature_matrix};
 pub use lattice::Lattice;
 pub use search::{MERIT_LIMIT, SMALLEST_SIDE, best_lattice, find_lattice};

@@ -13,7 +13,11 @@
 //! 5. *Refuse* scores below [`MERIT_LIMIT`], and lattices at whose half translations the picture fits nearly as well:
 //!    stripes fit themselves at any shift along them.
 //!
-//! Measured (`analysis_table lattice`, five kinds, 256²): at least 0.98 in every row: noise to σ = 2, gradient, warp to 2 texels.
+//! 6. *Sharpen.* A cell with two nearly equal halves is doubled when the difference is no chance, and the basis is fitted again
+//!    where the border of the picture counts less.
+//!
+//! Measured (`analysis_table lattice`, five kinds, 24 patterns each, 256²): all right under noise to σ = 2, gradient and warp of 1
+//! texel, 0.97 under warp of 2 texels (0.875 of the rectangular ones).
 
 use super::detrend::{decimated, detrended};
 use super::feature_matrix::{feature_matrix, tapered_feature_matrix};

@@ -40,3 +40,12 @@ pub fn ridges(n: usize) -> Raster {
 pub fn ground(n: usize) -> Raster {
     fractal(n, 3.0, 1.0, 1)
 }
+
+/// Correlation of two equally large rasters.
+pub fn correlation(a: &Raster, b: &Raster) -> f64 {
+    let (ma, mb) = (a.mean(), b.mean());
+    let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+        a.values.iter().zip(&b.values).map(|(x, y)| f(x - ma, y - mb)).sum()
+    };
+    sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
+}

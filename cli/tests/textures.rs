@@ -1,0 +1,306 @@
+//! The texture verbs from outside: what they print and write, that their results go on into a render, and what they
+//! say to inputs that are wrong, damaged or absurd.
+
+mod support;
+#[path = "../../texture/tests/surfaces/mod.rs"]
+mod surfaces;
+
+use asperity_texture::image_io::{Channel, load_channel, save_gray16};
+use asperity_texture::raster::Raster;
+use serde_json::Value;
+use std::path::Path;
+use support::{Scene, TOML, asperity, assert_refused, stroke, told};
+use surfaces::{fractal, grid, ground, ridges, wood};
+
+/// A folder with these maps in it.
+fn with_maps(maps: &[(&str, Raster)]) -> Scene {
+    let scene = Scene::new();
+    for (name, map) in maps {
+        save_gray16(scene.path(name), map).unwrap();
+    }
+    scene
+}
+
+/// Runs a verb with `--json`, which must succeed.
+fn report(scene: &Scene, arguments: &[&str]) -> Value {
+    let mut all = vec!["texture"];
+    all.extend(arguments);
+    all.push("--json");
+    let (status, out, err) = told(&asperity(scene.folder.path(), &all));
+    assert_eq!((status, err.as_str()), (0, ""), "{arguments:?}");
+    serde_json::from_str(&out).unwrap()
+}
+
+fn number(report: &Value, field: &str) -> f64 {
+    report[field].as_f64().unwrap_or_else(|| panic!("{field} in {report}"))
+}
+
+fn grey(scene: &Scene, name: &str) -> Raster {
+    load_channel(scene.path(name), Channel::Luma).unwrap().raster
+}
+
+/// An OpenGL or DirectX normal map of heights that tile, with true derivatives taken by central differences of a fine sine.
+fn save_normal_map(path: &Path, slope: impl Fn(f64, f64) -> [f64; 2], green_up: bool, size: u32) {
+    let picture = image::RgbImage::from_fn(size, size, |x, y| {
+        let [p, q] = slope(f64::from(x), f64::from(y));
+        let up = 1.0 / (1.0 + p * p + q * q).sqrt();
+        let level = |n: f64| ((0.5 * n + 0.5) * 255.0).round() as u8;
+        image::Rgb([level(-p * up), level(if green_up { q * up } else { -q * up }), level(up)])
+    });
+    picture.save(path).unwrap();
+}
+
+const WAVE: f64 = std::f64::consts::TAU / 32.0;
+
+fn bumps(x: f64, y: f64) -> f64 {
+    2.0 * (WAVE * x).sin() * (2.0 * WAVE * y).cos() + (WAVE * (x + y)).sin()
+}
+
+fn slopes_of_bumps(x: f64, y: f64) -> [f64; 2] {
+    let both = WAVE * (WAVE * (x + y)).cos();
+    [
+        2.0 * WAVE * (WAVE * x).cos() * (2.0 * WAVE * y).cos() + both,
+        -4.0 * WAVE * (WAVE * x).sin() * (2.0 * WAVE * y).sin() + both,
+    ]
+}
+
+#[test]
+fn a_metamer_is_as_large_as_the_original_and_as_rough_as_the_reference_in_every_band() {
+    let scene = with_maps(&[("look.png", wood(96)), ("feel.png", ground(128))]);
+    let made = report(&scene, &["metamer", "look.png", "feel.png", "-o", "both.png", "--bands", "3"]);
+    let bands = made["bands"].as_array().unwrap();
+    // Three bands of four orientations and two residuals.
+    assert_eq!(bands.len(), 14);
+    for band in bands.iter().filter(|band| band["kind"] == "oriented") {
+        assert!(number(band, "after") < 0.05 && number(band, "before") > number(band, "after"), "{band}");
+    }
+    assert!(number(&made, "mean_after") < 0.02 && number(&made, "mean_before") > 0.2, "{made}");
+    let picture = image::open(scene.path("both.png")).unwrap();
+    assert_eq!((picture.width(), picture.height(), picture.color()), (96, 96, image::ColorType::L16));
+    let single =
+        ["metamer", "look.png", "feel.png", "-o", "one.png", "--bands", "3", "--method", "single-pass"];
+    let single = report(&scene, &single);
+    assert!(number(&single, "mean_after") > 3.0 * number(&made, "mean_after"));
+    assert!(single["iterations"].is_null());
+}
+
+#[test]
+fn a_map_matched_to_itself_is_the_same_file_whatever_the_options() {
+    let scene = with_maps(&[("map.png", ridges(64))]);
+    for more in [
+        &["--bands", "2", "--orientations", "3", "--iterations", "4"][..],
+        &["--bands", "3", "--method", "spectrum"],
+        &["--bands", "3", "--method", "single-pass", "--borders", "smooth"],
+        &["--bands", "3", "--mm-per-px", "0.2", "--reference-mm-per-px", "0.2"],
+    ] {
+        let mut arguments = vec!["metamer", "map.png", "map.png", "-o", "same.png"];
+        arguments.extend(more);
+        report(&scene, &arguments);
+        let (before, after) = (grey(&scene, "map.png"), grey(&scene, "same.png"));
+        let worst = before.values.iter().zip(&after.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst < 2.0 / 65_535.0, "{more:?} moved it by {worst}");
+    }
+}
+
+#[test]
+fn five_textures_are_told_apart_and_their_metamers_are_not() {
+    let scene = with_maps(&[
+        ("1.png", fractal(256, 3.4, 1.6, 9)),
+        ("2.png", wood(256)),
+        ("3.png", grid(256)),
+        ("4.png", ground(256)),
+        ("5.png", ridges(256)),
+    ]);
+    let maps = ["compare", "1.png", "2.png", "3.png", "4.png", "5.png"];
+    let mut arguments = maps.to_vec();
+    arguments.extend(["--metamers", "--strokes", "60"]);
+    let told = report(&scene, &arguments);
+    let mean = |table: &str| number(&told[table], "mean");
+    let (originals, single, metamers) = (mean("originals"), mean("single_pass"), mean("metamers"));
+    println!("originals {originals:.2}, single pass {single:.2}, metamers {metamers:.2}");
+    assert!(originals > 0.95 && single > 0.8, "{told}");
+    assert!(metamers <= 0.65, "{told}");
+    for table in ["originals", "single_pass", "metamers"] {
+        let same = number(&told[table], "same");
+        assert!((same - 0.5).abs() <= 0.09, "{table}: a surface against itself {same}");
+        let rows = told[table]["rows"].as_array().unwrap();
+        assert!(rows.len() == 5 && rows.iter().all(|row| row.as_array().unwrap().len() == 5));
+    }
+}
+
+#[test]
+fn a_normal_map_of_either_green_becomes_heights_that_render() {
+    for green_up in [true, false] {
+        let scene = Scene::new();
+        save_normal_map(&scene.path("normal.png"), slopes_of_bumps, green_up, 96);
+        let made = report(&scene, &["from-normals", "normal.png", "-o", "height.png", "--width-m", "0.04"]);
+        assert_eq!(made["green"], if green_up { "opengl" } else { "directx" });
+        assert_eq!((&made["green_is_certain"], &made["tileable"]), (&Value::Bool(true), &Value::Bool(true)));
+        let (relief_px, relief_m) = (number(&made, "relief_per_px"), number(&made, "relief_m"));
+        assert!((relief_m - relief_px * 0.04 / 96.0).abs() < 1e-12);
+        let heights = grey(&scene, "height.png");
+        let truth = Raster::from_fn(96, 96, |x, y| bumps(x as f64, y as f64));
+        let (mean, offset) = (heights.mean() * relief_px, truth.mean());
+        let both = heights.values.iter().zip(&truth.values);
+        let error: f64 = both.map(|(h, t)| (h * relief_px - mean - (t - offset)).powi(2)).sum();
+        let power: f64 = truth.values.iter().map(|t| (t - offset).powi(2)).sum();
+        assert!((error / power).sqrt() < 0.006, "{}", (error / power).sqrt());
+        let map = format!("displacement = \"height.png\"\nrelief_m = {relief_m}");
+        scene.write("scene.toml", TOML.replace("roughness = 0.7", &map));
+        scene.write("stroke.jsonl", stroke(1, 0.3));
+        assert!(scene.report(&[])["haptic_peak"][0].as_f64().unwrap() > 1e-7);
+    }
+}
+
+#[test]
+fn a_photograph_is_a_rendered_stroke_in_two_commands() {
+    let rough = ground(96);
+    let tiles = Raster::from_fn(96, 80, |x, y| {
+        let mortar = x % 16 < 2 || y % 16 < 2;
+        (if mortar { 0.2 } else { 0.7 }) + 0.05 * rough.at(x, y)
+    });
+    let scene = with_maps(&[("photo.png", tiles)]);
+    let made = report(&scene, &["from-photo", "photo.png", "-o", "wall", "--variants"]);
+    for axis in 0..2 {
+        let lattice = &made["lattice"];
+        let (t1, t2) = (lattice["t1_px"][axis].as_f64().unwrap(), lattice["t2_px"][axis].as_f64().unwrap());
+        let truth = [16.0, 0.0];
+        assert!((t1 - truth[axis]).abs() < 0.05 && (t2 - truth[1 - axis]).abs() < 0.05, "{lattice}");
+    }
+    for file in made["files"].as_array().unwrap() {
+        assert!(scene.path("wall").join(file.as_str().unwrap()).is_file(), "{file}");
+    }
+    let mut peaks = Vec::new();
+    for name in ["scene_x1", "scene_x2", "scene_x4", "scene"] {
+        let file = format!("wall/{name}.toml");
+        let (status, out, err) =
+            told(&asperity(scene.folder.path(), &["render", &file, "-o", "take", "--json"]));
+        assert_eq!((status, err.as_str()), (0, ""));
+        let told: Value = serde_json::from_str(&out).unwrap();
+        assert_eq!((number(&told, "quarantined"), number(&told, "dropped")), (0.0, 0.0));
+        assert!(number(&told, "audio_peak") > 0.0 && number(&told, "duration_s") > 1.9);
+        peaks.push(told["haptic_peak"][0].as_f64().unwrap());
+    }
+    assert!(peaks[0] < peaks[1] && peaks[1] < peaks[2] && peaks[0] == peaks[3], "{peaks:?}");
+}
+
+/// A PNG that promises 100 000 × 100 000 texels.
+fn bomb() -> Vec<u8> {
+    let mut header = b"IHDR".to_vec();
+    header.extend([0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0, 8, 2, 0, 0, 0]);
+    let checksum = header.iter().fold(!0_u32, |crc, byte| {
+        (0..8).fold(
+            crc ^ u32::from(*byte),
+            |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 },
+        )
+    });
+    let mut file = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
+    file.extend(header);
+    file.extend((!checksum).to_be_bytes());
+    file
+}
+
+#[test]
+fn pictures_that_are_none_are_refused_by_name_and_leave_nothing() {
+    let scene = with_maps(&[("good.png", ground(64)), ("tiny.png", ground(64).clone())]);
+    save_gray16(scene.path("tiny.png"), &Raster::constant(3, 2, 0.4)).unwrap();
+    let whole = std::fs::read(scene.path("good.png")).unwrap();
+    scene.write("cut.png", &whole[..whole.len() / 2]);
+    scene.write("text.png", "this is no picture");
+    scene.write("empty.png", "");
+    scene.write("bomb.png", bomb());
+    std::fs::create_dir(scene.path("folder.png")).unwrap();
+    for bad in ["missing.png", "cut.png", "text.png", "empty.png", "bomb.png", "folder.png", "tiny.png"] {
+        for arguments in [
+            &["texture", "metamer", bad, "good.png", "-o", "out.png"][..],
+            &["texture", "metamer", "good.png", bad, "-o", "out.png"],
+            &["texture", "from-normals", bad, "-o", "out.png"],
+            &["texture", "from-photo", bad, "-o", "out"],
+            &["texture", "analyze", bad],
+        ] {
+            // Six texels are too few for every verb, each in its own words.
+            assert_refused(&asperity(scene.folder.path(), arguments), &[bad]);
+            assert!(!scene.path("out.png").exists() && !scene.path("out/scene.toml").exists());
+        }
+        if bad != "tiny.png" {
+            assert_refused(&asperity(scene.folder.path(), &["texture", "compare", "good.png", bad]), &[bad]);
+        }
+    }
+    assert_refused(
+        &asperity(
+            scene.folder.path(),
+            &["texture", "metamer", "good.png", "good.png", "-o", "no/such/folder.png"],
+        ),
+        &["folder"],
+    );
+}
+
+#[test]
+fn options_that_make_no_sense_are_refused() {
+    let scene = with_maps(&[("a.png", ground(64))]);
+    let run = |arguments: &[&str]| {
+        let mut all = vec!["texture"];
+        all.extend(arguments);
+        asperity(scene.folder.path(), &all)
+    };
+    for usage in [
+        &["metamer", "a.png", "a.png", "-o", "o.png", "--iterations", "0"][..],
+        &["metamer", "a.png", "a.png", "-o", "o.png", "--mm-per-px", "0.1"],
+        &["metamer", "a.png", "a.png", "-o", "o.png", "--mm-per-px", "nan", "--reference-mm-per-px", "1"],
+        &["metamer", "a.png", "a.png"],
+        &["compare", "a.png"],
+        &["compare", "a.png", "a.png", "--strokes", "3"],
+        &["compare", "a.png", "a.png", "--relief-m", "-1"],
+        &["from-normals", "a.png", "-o", "o.png", "--green", "sideways"],
+        &["from-normals", "a.png", "-o", "o.png", "--width-m", "inf"],
+        &["from-photo", "a.png", "-o", "o", "--light", "0,0,-1"],
+        &["from-photo", "a.png", "-o", "o", "--light", "1,2"],
+        &["from-photo", "a.png", "-o", "o", "--exaggerate", "0"],
+    ] {
+        let (status, out, err) = told(&run(usage));
+        assert_eq!((status, out.as_str()), (2, ""), "{usage:?}: {err}");
+    }
+    for (bad, field) in [
+        (&["metamer", "a.png", "a.png", "-o", "o.png", "--bands", "9"][..], "bands"),
+        (&["metamer", "a.png", "a.png", "-o", "o.png", "--bands", "0"], "bands"),
+        (&["metamer", "a.png", "a.png", "-o", "o.png", "--orientations", "99"], "orientations"),
+        (
+            &[
+                "metamer",
+                "a.png",
+                "a.png",
+                "-o",
+                "o.png",
+                "--mm-per-px",
+                "1000",
+                "--reference-mm-per-px",
+                "1",
+            ],
+            "scale",
+        ),
+        (&["from-photo", "a.png", "-o", "o", "--relief-m", "1e9"], "relief_m"),
+    ] {
+        assert_refused(&run(bad), &[field]);
+    }
+    assert!(!scene.path("o.png").exists());
+}
+
+#[test]
+fn maps_without_relief_and_of_one_texel_s_height_are_no_reason_to_fail() {
+    let flat = || Raster::constant(64, 64, 0.5);
+    let step = Raster::from_fn(64, 64, |x, _| if x < 32 { 0.0 } else { 1.0 });
+    let scene = with_maps(&[("flat.png", flat()), ("other.png", flat()), ("step.png", step)]);
+    for pair in [["flat.png", "step.png"], ["step.png", "flat.png"], ["flat.png", "other.png"]] {
+        let made = report(&scene, &["metamer", pair[0], pair[1], "-o", "out.png"]);
+        assert!(made["mean_after"].as_f64().is_some_and(f64::is_finite), "{made}");
+    }
+    let made = report(&scene, &["compare", "flat.png", "other.png", "--strokes", "20"]);
+    assert!((0.0..=1.0).contains(&number(&made["originals"], "mean")));
+    // A grey picture as a normal map, and one that is flat.
+    let heights = report(&scene, &["from-normals", "flat.png", "-o", "height.png"]);
+    assert!(number(&heights, "relief_per_px").is_finite());
+    save_normal_map(&scene.path("normal.png"), |_, _| [0.0, 0.0], true, 32);
+    let heights = report(&scene, &["from-normals", "normal.png", "-o", "height.png"]);
+    assert!(number(&heights, "relief_per_px").abs() < 1e-6, "{heights}");
+    assert!(grey(&scene, "height.png").values.iter().all(|v| (0.0..=1.0).contains(v)));
+}
