@@ -20,7 +20,7 @@
 //! analysis/synthesis", SIGGRAPH 1995, do from noise): at most 0.02 is left (0.004–0.013 measured). It imposes the reference's
 //! spectral envelope ([`crate::spectral_envelope`]) between passes, because a sub-band is an octave wide and a finger feels
 //! how the power lies within it: without it a machine tells such metamers apart in 0.62–0.78 of the strokes, with it in
-//! 0.50–0.54, and 0.5 is chance. Matching overshoots on purpose from the third pass on only: a sub-band far stronger
+//! 0.50–0.56, and 0.5 is chance. Matching overshoots on purpose from the third pass on only: a sub-band far stronger
 //! than the reference's would turn over, and the arrangement with it. [`Method::Spectrum`] takes
 //! the amplitude spectrum of the reference instead, as the document's claims allow.
 //!

@@ -16,7 +16,7 @@
 //!
 //! Measured (machine ABX, `asperity texture compare`, metamers of four textures and their reference): octave-wide sub-bands
 //! alone leave 0.78 (synthetic), 0.72 (displacement maps) and 0.62 (photographs), all of it by the spectrum within the bands;
-//! with third-octave tents 0.50–0.54, which is chance. Finer tents (6 an octave by 8) gain nothing more and spoil the arrangement
+//! with third-octave tents 0.50–0.56, which is next to chance. Finer tents (6 an octave by 8) gain nothing more and spoil the arrangement
 //! of regular originals, whose few waves have to be made to fill every tent; three directions leave 0.60.
 
 use crate::fft2::angular_frequency;
