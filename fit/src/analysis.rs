@@ -10,7 +10,7 @@
 
 use crate::amplitudes::{contributions, fit_amplitudes};
 use crate::esprit::{energies, poles};
-use crate::merging::merge_resonances;
+use crate::merging::{merge_cancelling, merge_resonances};
 use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
@@ -121,6 +121,12 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         work.limits.bounds.energy_cost = 0.0;
     }
     work.settle(FINAL_STEPS);
+    for _ in 0..MERGING_ROUNDS {
+        if merge_cancelling(segment, &mut work.partials, &work.limits.bounds) == 0 {
+            break;
+        }
+        work.settle(FINAL_STEPS);
+    }
     let residual = subtract(segment, &work.partials);
     progress(1.0);
     Analysis { partials: work.partials, noise: work.noise, residual, capped: work.capped }

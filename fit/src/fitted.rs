@@ -4,6 +4,7 @@ use crate::contact::rise;
 use crate::partial::Partial;
 use crate::pruning::Uncertainty;
 use crate::residual::{Burst, Residual};
+use crate::strike::LEAST_DECAY_PER_S;
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 use std::fmt;
@@ -56,7 +57,7 @@ impl FittedMode {
         let growth = at_onset.c.norm() / partial.c.norm().max(1e-300);
         Self {
             frequency_hz: partial.omega * rate_hz / (2.0 * PI),
-            decay_per_s: partial.delta * rate_hz,
+            decay_per_s: (partial.delta * rate_hz).max(LEAST_DECAY_PER_S),
             amplitude: at_onset.c.norm(),
             // Re(c z^n) is a cosine.
             phase_rad: wrapped(at_onset.c.arg() + 0.5 * PI),

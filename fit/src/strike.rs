@@ -23,7 +23,7 @@ const SHORT_S: f64 = 0.05;
 const LONGEST_S: f64 = 40.0;
 const UNTRIMMED_S: f64 = 5.0;
 /// Longest decay a mode may have: T60 = 60 s.
-const LEAST_DECAY_PER_S: f64 = 0.115;
+pub const LEAST_DECAY_PER_S: f64 = 0.115;
 /// Largest amplitude of a mode, in peaks of the recording.
 const LARGEST_AMPLITUDE: f64 = 8.0;
 
@@ -239,7 +239,8 @@ fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limit
         bounds: Bounds {
             omega_low: 2.0 * PI * low.max(1.0) / rate,
             omega_high: 2.0 * PI * 0.49,
-            delta_low: LEAST_DECAY_PER_S / rate,
+            // An undamped tone is fitted as it is; only what is written down must die some day.
+            delta_low: 1e-3 * LEAST_DECAY_PER_S / rate,
             delta_high: options.fastest_decay_per_s / rate,
             amplitude_high: LARGEST_AMPLITUDE * peak,
             energy_cost: 0.0,

@@ -80,7 +80,8 @@ pub fn doubts(partials: &[Partial], residual: &[f64], noise: &NoiseFloor, rate_h
 }
 
 /// Whether two partials at nearly the same pole are far louder apart than together.
-fn cancels(a: &Partial, b: &Partial) -> bool {
+#[must_use]
+pub fn cancels(a: &Partial, b: &Partial) -> bool {
     let near = (a.omega - b.omega).abs() < 0.5 * (a.delta + b.delta);
     near && (a.c + b.c).norm() < 0.15 * a.c.norm().max(b.c.norm())
 }
