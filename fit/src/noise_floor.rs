@@ -58,7 +58,7 @@ impl NoiseFloor {
     }
 
     /// [`of_residual`](Self::of_residual), and by time as well: in epochs that double in length from
-    /// [`FIRST_EPOCH_S`] on. What a real body leaves beside its modes dies away with them; a mode of 30 ms has
+    /// 20 ms on. What a real body leaves beside its modes dies away with them; a mode of 30 ms has
     /// to stand above what is left in those 30 ms, not above the silence after it.
     #[must_use]
     pub fn by_time(samples: &[f64], rate_hz: f64, least: f64) -> Self {

@@ -132,7 +132,7 @@ impl Kernel {
     /// many leading groups still ring; the rest need no rendering until the next input. Lanes that
     /// hold no finite number are put to rest as well.
     ///
-    /// Call it at absolute multiples of [`GRID_SAMPLES`], or the output depends on the split into blocks.
+    /// Call it at absolute multiples of [`super::GRID_SAMPLES`], or the output depends on the split into blocks.
     pub fn settle(self, groups: &[ModeGroup], states: &mut [GroupState], threshold: f32) -> usize {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
