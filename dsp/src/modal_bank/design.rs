@@ -33,12 +33,8 @@ impl GroupOptions {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct ModeGroup {
-    /// Two samples of free motion: v becomes `step[0][0]` · v + `step[0][1]` · w, w the same of row 1.
-    pub(super) step: [[Lanes; 2]; 2],
-    /// Output of the first sample of a pair: `first[0]` · v + `first[1]` · w.
-    pub(super) first: [Lanes; 2],
-    /// Output of the second.
-    pub(super) second: [Lanes; 2],
+    /// What every step reads: [`STEP`], [`FIRST`] and [`SECOND`]; lane l at [`place`].
+    pub(super) hot: [Lanes; HOT],
     /// Once in [`GRID_SAMPLES`]: v gains `trim[0][0]` · v + `trim[0][1]` · w, w the same of row 1.
     pub(super) trim: [[Lanes; 2]; 2],
     /// The output at the pair's beginning, `now[0]` · v + `now[1]` · w; b₀ = `now[0]` is what an impulse sends to
@@ -46,6 +42,21 @@ pub struct ModeGroup {
     pub(super) now: [Lanes; 2],
     /// The output a quarter period later, but for the decay: the other component of its phasor.
     pub(super) quarter: [Lanes; 2],
+}
+
+/// Two samples of free motion: v becomes coefficient 0 · v + 1 · w, w becomes 2 · v + 3 · w.
+pub(super) const STEP: usize = 0;
+/// Output of the first sample of a pair: coefficient 4 · v + 5 · w.
+pub(super) const FIRST: usize = 4;
+/// Output of the second.
+pub(super) const SECOND: usize = 6;
+/// Coefficients that every step reads.
+pub(super) const HOT: usize = 8;
+
+/// Where in coefficient `i` of [`ModeGroup::hot`] a lane lies: the halves of every other one change places. Vectors of eight
+/// from the same half of several cache lines come at 1.9 a cycle, from either half in turn at 2.5.
+pub(super) const fn place(i: usize, lane: usize) -> usize {
+    lane ^ (i % 2 * (LANES / 2))
 }
 
 /// One number for each mode of a group.
@@ -131,7 +142,7 @@ impl ModeGroup {
     pub const SILENT: Self = {
         let lanes = [0.0; LANES];
         let (two, four) = ([lanes; 2], [[lanes; 2]; 2]);
-        Self { step: four, first: two, second: two, trim: four, now: two, quarter: two }
+        Self { hot: [lanes; HOT], trim: four, now: two, quarter: two }
     };
 
     fn set_lane(&mut self, lane: usize, pole: &Pole, options: &GroupOptions) {
@@ -147,14 +158,15 @@ impl ModeGroup {
         let [first] = product([now], next);
         let [second] = product([first], next);
         let quarter = [0, 1].map(|i| (first[i] / radius - cos * now[i]) / sin);
+        let mut set = |i: usize, x: f64| self.hot[i][place(i, lane)] = x as f32;
         for i in 0..2 {
-            self.first[i][lane] = first[i] as f32;
-            self.second[i][lane] = second[i] as f32;
+            set(FIRST + i, first[i]);
+            set(SECOND + i, second[i]);
+            for (row, step) in step.iter().enumerate() {
+                set(STEP + 2 * row + i, step[i]);
+            }
             self.now[i][lane] = now[i] as f32;
             self.quarter[i][lane] = quarter[i] as f32;
-            for (to, row) in self.step.iter_mut().zip(step) {
-                to[i][lane] = row[i] as f32;
-            }
         }
         if options.true_t60 {
             self.set_trim(lane, step);
@@ -163,7 +175,8 @@ impl ModeGroup {
 
     /// What the stored step of two samples lacks after a whole grid: (exact ^ 32) (stored ^ 32)⁻¹ − 1.
     fn set_trim(&mut self, lane: usize, step: Matrix) {
-        let stored = self.step.map(|row| row.map(|x| f64::from(x[lane])));
+        let stored =
+            [[0, 1], [2, 3]].map(|row| row.map(|i| f64::from(self.hot[STEP + i][place(STEP + i, lane)])));
         let [exact, [[a, b], [c, d]]] = [step, stored].map(|x| (0..5).fold(x, |x, _| square(x)));
         let det = a * d - b * c;
         // What has decayed by 60 dB within the grid needs no exact decay.

@@ -4,7 +4,7 @@
 use super::design::{GroupState, LaneGains, ModeGroup};
 use super::sleep::{self, MAX_INPUTS};
 use super::vector::Baseline;
-use super::walk::{Feed, Job, walk};
+use super::walk::{Feed, Job, ROWS, walk};
 
 /// An instruction set the bank has code for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -108,7 +108,8 @@ impl Kernel {
         if feed.inputs.is_empty() || count == 0 || samples == 0 {
             return;
         }
-        let mut job = Job { groups: &groups[..count], states: &mut states[..count], feed };
+        let mut job =
+            Job { groups: &groups[..count], states: &mut states[..count], feed, pairs: [0.0; ROWS / 2] };
         let out = &mut out[..samples];
         match self.0 {
             // SAFETY: the plain vector needs no instruction beyond the baseline.

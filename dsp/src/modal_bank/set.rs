@@ -3,11 +3,14 @@
 // `s` counts groups and `p` vectors of each, in several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
-use super::design::{Lanes, ModeGroup};
+use super::LANES;
+use super::design::{FIRST, HOT, Lanes, ModeGroup, SECOND, STEP, place};
 use super::kernel::Input;
 use super::vector::{Row, Vector};
 use super::walk::{Chunk, Feed, Job, Part};
 use core::array::from_fn;
+use core::hint::black_box;
+use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 
 /// What a loop is compiled for: a number of gained inputs, any number of them, or the shared input (apart for the
@@ -74,12 +77,13 @@ unsafe fn keep<V: Vector, const P: usize>(row: &mut MaybeUninit<Row>, part: Part
     }
 }
 
-/// The coefficients of `S` groups: step, first and second, eight vectors for each.
+/// The coefficients of `S` groups, [`HOT`] vectors for each vector of modes.
 struct Coefficients<'a, V, const P: usize, const S: usize> {
-    groups: &'a [ModeGroup],
-    lane: usize,
-    /// Kept in registers where there are enough; otherwise every use reads memory.
-    kept: [[[V; P]; S]; 8],
+    /// Where the first lane lies in coefficient 0 of the first group, and in coefficient 1 but for the 16 lanes between.
+    lanes: [*const f32; 2],
+    groups: PhantomData<&'a [ModeGroup]>,
+    /// Only where V keeps them.
+    kept: [[[V; P]; S]; HOT],
 }
 
 impl<'a, V: Vector, const P: usize, const S: usize> Coefficients<'a, V, P, S> {
@@ -87,30 +91,42 @@ impl<'a, V: Vector, const P: usize, const S: usize> Coefficients<'a, V, P, S> {
     /// The processor has the instructions of V; there are `S` groups, and `P` · LEN lanes from `lane` on.
     #[inline(always)]
     unsafe fn new(groups: &'a [ModeGroup], lane: usize) -> Self {
+        let first = groups.as_ptr().cast::<f32>();
+        // One register each: an address of a base and an index costs another operation at every use.
+        let lanes = [0, 1].map(|i| black_box(first.wrapping_add(place(i, lane))));
         // SAFETY: the caller's promise.
         unsafe {
-            let mut all = Self { groups, lane, kept: [[[V::splat(0.0); P]; S]; 8] };
-            if V::MANY_REGISTERS {
+            let mut all = Self { lanes, groups: PhantomData, kept: [[[V::splat(0.0); P]; S]; HOT] };
+            if V::KEEPS_COEFFICIENTS {
                 // The compiler cannot know that storing sums leaves them as they are.
-                all.kept = from_fn(|i| from_fn(|s| from_fn(|p| all.read(i, s, p))));
+                for i in 0..HOT {
+                    for s in 0..S {
+                        for p in 0..P {
+                            all.kept[i][s][p] = all.read(i, s, p);
+                        }
+                    }
+                }
             }
             all
         }
     }
 
     /// # Safety
-    /// As [`Self::new`]; `i` is below 8, `s` and `p` below `S` and `P`.
+    /// As [`Self::new`]; `i` is below [`HOT`], `s` and `p` below `S` and `P`.
     #[inline(always)]
     unsafe fn read(&self, i: usize, s: usize, p: usize) -> V {
+        const { assert!(core::mem::offset_of!(ModeGroup, hot) == 0) };
+        let group = s * (size_of::<ModeGroup>() / size_of::<f32>()) + i * LANES;
+        // Whole groups begin with lane 0, halves have one vector.
+        let vector = if P > 1 { place(i, p * V::LEN).wrapping_sub(place(i, 0)) } else { 0 };
+        let from = self.lanes[i % 2].wrapping_add(group).wrapping_add(vector);
         // SAFETY: the caller's promise.
         unsafe {
-            let group = self.groups.get_unchecked(s);
-            let lanes = match i {
-                0..4 => &group.step[i / 2][i % 2],
-                4..6 => &group.first[i - 4],
-                _ => &group.second[i - 6],
-            };
-            V::load(lanes.as_ptr().add(self.lane + p * V::LEN))
+            if V::LEN == LANES && i % 2 == 1 {
+                V::load_swapped(from.wrapping_sub(place(1, 0)))
+            } else {
+                V::load(from)
+            }
         }
     }
 
@@ -119,13 +135,9 @@ impl<'a, V: Vector, const P: usize, const S: usize> Coefficients<'a, V, P, S> {
     #[inline(always)]
     unsafe fn get(&self, i: usize, s: usize, p: usize) -> V {
         // SAFETY: the caller's promise.
-        if V::MANY_REGISTERS { self.kept[i][s][p] } else { unsafe { self.read(i, s, p) } }
+        if V::KEEPS_COEFFICIENTS { self.kept[i][s][p] } else { unsafe { self.read(i, s, p) } }
     }
 }
-
-/// First of the two coefficients of an output.
-const FIRST: usize = 4;
-const SECOND: usize = 6;
 
 /// What `S` groups remember, v and w.
 struct States<V, const P: usize, const S: usize> {
@@ -156,9 +168,9 @@ impl<V: Vector, const P: usize, const S: usize> States<V, P, S> {
         let (v, w) = (self.v[s][p], self.w[s][p]);
         // SAFETY: the caller's promise.
         unsafe {
-            let to_v = v.mul_add_near_one(by.get(0, s, p), w.mul_add(by.get(1, s, p), both));
+            let to_v = v.mul_add_near_one(by.get(STEP, s, p), w.mul_add(by.get(STEP + 1, s, p), both));
             // In the order of sizes: v is the smaller one.
-            let to_w = v.mul_add(by.get(2, s, p), w.mul_add_near_one(by.get(3, s, p), x));
+            let to_w = v.mul_add(by.get(STEP + 2, s, p), w.mul_add_near_one(by.get(STEP + 3, s, p), x));
             (self.v[s][p], self.w[s][p]) = (to_v, to_w);
         }
     }
@@ -178,6 +190,7 @@ pub(super) unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usi
     let groups = &job.groups[part.from..part.from + S];
     let states = &mut job.states[part.from..part.from + S];
     let feed = job.feed;
+    let pairs = job.pairs.as_ptr();
     // SAFETY: the caller has the instructions of V. Every pointer below goes to a lane of an array of LANES
     // values, or to a row or sample of the chunk.
     unsafe {
@@ -207,14 +220,23 @@ pub(super) unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usi
         while n + 1 < len {
             let mut first = so_far::<V, P, K>(rows.get_unchecked_mut(n), part);
             let mut second = so_far::<V, P, K>(rows.get_unchecked_mut(n + 1), part);
+            let shared = K == SHARED_FIRST || K == SHARED;
+            let (x, both) = match shared {
+                true => (heard::<V, K>(feed, part, chunk.at + n, 0, 0), V::splat(*pairs.add(n / 2))),
+                false => (V::splat(0.0), V::splat(0.0)),
+            };
             // Both sums and the steps in turn: each waits for itself.
             for s in 0..S {
                 for p in 0..P {
                     z.hear(s, p, &by, FIRST, &mut first[p]);
                     z.hear(s, p, &by, SECOND, &mut second[p]);
-                    let x = heard::<V, K>(feed, part, chunk.at + n, s, p);
-                    let y = heard::<V, K>(feed, part, chunk.at + n + 1, s, p);
-                    z.step(s, p, &by, x, x.add(y));
+                    let (x, both) = if shared {
+                        (x, both)
+                    } else {
+                        let x = heard::<V, K>(feed, part, chunk.at + n, s, p);
+                        (x, x.add(heard::<V, K>(feed, part, chunk.at + n + 1, s, p)))
+                    };
+                    z.step(s, p, &by, x, both);
                 }
             }
             keep(rows.get_unchecked_mut(n), part, first);

@@ -16,12 +16,19 @@ pub(super) struct Row(pub [f32; LANES]);
 pub(super) trait Vector: Copy {
     /// `f32` in one vector; divides [`LANES`].
     const LEN: usize;
-    /// Whether there are registers for coefficients as well.
-    const MANY_REGISTERS: bool;
+    /// Whether coefficients are read once a chunk, into registers or the stack; otherwise every use reads the group, which
+    /// is faster where it is one operand of the multiplication.
+    const KEEPS_COEFFICIENTS: bool;
     /// All lanes `x`.
     unsafe fn splat(x: f32) -> Self;
     /// Reads `LEN` values.
     unsafe fn load(from: *const f32) -> Self;
+    /// Reads `LEN` values of an array whose halves have changed places; `from` is where they lie.
+    #[inline(always)]
+    unsafe fn load_swapped(from: *const f32) -> Self {
+        // SAFETY: passed on from the caller. A vector no longer than a half lies in one piece.
+        unsafe { Self::load(from) }
+    }
     /// Writes `LEN` values.
     unsafe fn store(self, to: *mut f32);
     /// self + other.
@@ -68,7 +75,7 @@ pub(super) struct Plain([f32; 4]);
 #[cfg(not(target_arch = "x86_64"))]
 impl Vector for Plain {
     const LEN: usize = 4;
-    const MANY_REGISTERS: bool = false;
+    const KEEPS_COEFFICIENTS: bool = true;
     #[inline(always)]
     unsafe fn splat(x: f32) -> Self {
         Self([x; 4])
@@ -117,11 +124,11 @@ pub(super) mod x86 {
     use core::arch::x86_64::*;
 
     macro_rules! vector {
-        ($name:ident, $raw:ty, $len:literal, $many:literal, $set1:ident, $load:ident, $store:ident, $add:ident,
+        ($name:ident, $raw:ty, $len:literal, $many:literal, $set1:ident, $load:ident, $load_swapped:ident, $store:ident, $add:ident,
          $fmadd:ident) => {
             impl Vector for $name {
                 const LEN: usize = $len;
-                const MANY_REGISTERS: bool = $many;
+                const KEEPS_COEFFICIENTS: bool = $many;
                 #[inline(always)]
                 unsafe fn splat(x: f32) -> Self {
                     // SAFETY: the trait's contract: the processor has this instruction set.
@@ -131,6 +138,11 @@ pub(super) mod x86 {
                 unsafe fn load(from: *const f32) -> Self {
                     // SAFETY: as above, and the caller hands LEN readable values.
                     Self(unsafe { $load(from) })
+                }
+                #[inline(always)]
+                unsafe fn load_swapped(from: *const f32) -> Self {
+                    // SAFETY: as above.
+                    Self(unsafe { $load_swapped(from) })
                 }
                 #[inline(always)]
                 unsafe fn store(self, to: *mut f32) {
@@ -162,7 +174,7 @@ pub(super) mod x86 {
 
     impl Vector for Sse {
         const LEN: usize = 4;
-        const MANY_REGISTERS: bool = false;
+        const KEEPS_COEFFICIENTS: bool = true;
         #[inline(always)]
         unsafe fn splat(x: f32) -> Self {
             // SAFETY: SSE is part of the base of this architecture.
@@ -206,9 +218,10 @@ pub(super) mod x86 {
         Avx2,
         __m256,
         8,
-        true,
+        false,
         _mm256_set1_ps,
         _mm256_loadu_ps,
+        load_swapped_eight,
         _mm256_storeu_ps,
         _mm256_add_ps,
         _mm256_fmadd_ps
@@ -224,10 +237,28 @@ pub(super) mod x86 {
         true,
         _mm512_set1_ps,
         _mm512_loadu_ps,
+        load_swapped_sixteen,
         _mm512_storeu_ps,
         _mm512_add_ps,
         _mm512_fmadd_ps
     );
+
+    /// One vector of eight lanes is one half.
+    #[inline(always)]
+    unsafe fn load_swapped_eight(from: *const f32) -> __m256 {
+        // SAFETY: passed on from the caller.
+        unsafe { _mm256_loadu_ps(from) }
+    }
+
+    /// Sixteen lanes whose halves have changed places.
+    #[inline(always)]
+    unsafe fn load_swapped_sixteen(from: *const f32) -> __m512 {
+        // SAFETY: the caller has AVX-512F and hands 16 readable values.
+        unsafe {
+            let x = _mm512_loadu_ps(from);
+            _mm512_shuffle_f32x4::<0b01_00_11_10>(x, x)
+        }
+    }
 
     /// The upper eight lanes of a row onto its lower eight.
     #[inline(always)]
@@ -269,7 +300,7 @@ pub(super) mod neon {
 
     impl Vector for Neon {
         const LEN: usize = 4;
-        const MANY_REGISTERS: bool = true;
+        const KEEPS_COEFFICIENTS: bool = true;
         #[inline(always)]
         unsafe fn splat(x: f32) -> Self {
             // SAFETY: NEON is part of the base of this architecture.

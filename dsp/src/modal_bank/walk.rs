@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
-use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
+use super::design::{FIRST, GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
 use super::kernel::Input;
 use super::set::{ANY, SHARED, SHARED_FIRST, set};
 use super::sleep::MAX_INPUTS;
@@ -10,7 +10,7 @@ use super::vector::{Row, Vector};
 use core::mem::MaybeUninit;
 
 /// Chunks never cross the grid, so this many rows of lane sums are enough.
-const ROWS: usize = GRID_SAMPLES as usize;
+pub(super) const ROWS: usize = GRID_SAMPLES as usize;
 
 /// The inputs of one call; `shared` means one input, gain 1.
 #[derive(Clone, Copy)]
@@ -23,6 +23,21 @@ pub(super) struct Job<'a> {
     pub groups: &'a [ModeGroup],
     pub states: &'a mut [GroupState],
     pub feed: Feed<'a>,
+    /// The two impulses of each whole pair of the chunk, added; of the shared input only.
+    pub pairs: [f32; ROWS / 2],
+}
+
+impl Job<'_> {
+    /// Once for all modes what each would add up again.
+    #[inline(always)]
+    fn add_pairs(&mut self, chunk: Chunk) {
+        if let (true, [input]) = (self.feed.shared, self.feed.inputs) {
+            let heard = &input.impulses[chunk.at + usize::from(chunk.odd)..chunk.at + chunk.len];
+            for (sum, pair) in self.pairs.iter_mut().zip(heard.as_chunks::<2>().0) {
+                *sum = pair[0] + pair[1];
+            }
+        }
+    }
 }
 
 /// Some samples within one turn of the grid.
@@ -58,6 +73,7 @@ pub(super) unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
         let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
         let ends_on_grid = now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES);
         let chunk = Chunk { at, len, odd: !now.is_multiple_of(2), ends_on_grid };
+        job.add_pairs(chunk);
         // SAFETY: `at + len` is inside every input. The first set writes every row, and there is one. So the
         // rows may be read as what they are, in the same memory.
         unsafe {
@@ -141,19 +157,23 @@ unsafe fn lane_sums<V: Vector, const P: usize>(groups: &[ModeGroup], gains: &[La
     // SAFETY: every pointer goes to lane p · LEN of an array of LANES = P · LEN values.
     unsafe {
         // Two sums each, of even and odd groups: one alone waits for itself.
-        let mut sums = [[[V::splat(0.0); P]; 2]; 2];
+        let (mut own, mut next) = ([[V::splat(0.0); P]; 2], [[V::splat(0.0); P]; 2]);
         for (i, group) in groups.iter().enumerate() {
-            for (sums, of) in sums.iter_mut().zip([&group.now[0], &group.first[0]]) {
-                for (p, sum) in sums[i % 2].iter_mut().enumerate() {
-                    let x = V::load(of.as_ptr().add(p * V::LEN));
-                    *sum = match gains.get(i) {
-                        Some(gains) => x.mul_add(V::load(gains.0.as_ptr().add(p * V::LEN)), *sum),
-                        None => x.add(*sum),
-                    };
-                }
+            for p in 0..P {
+                let lane = p * V::LEN;
+                let to_own = V::load(group.now[0].as_ptr().add(lane));
+                let to_next = V::load(group.hot[FIRST].as_ptr().add(lane));
+                let (own, next) = (&mut own[i % 2][p], &mut next[i % 2][p]);
+                (*own, *next) = match gains.get(i) {
+                    Some(gains) => {
+                        let gains = V::load(gains.0.as_ptr().add(lane));
+                        (to_own.mul_add(gains, *own), to_next.mul_add(gains, *next))
+                    }
+                    None => (to_own.add(*own), to_next.add(*next)),
+                };
             }
         }
-        for (row, [even, odd]) in rows.iter_mut().zip(sums) {
+        for (row, [even, odd]) in rows.iter_mut().zip([own, next]) {
             for p in 0..P {
                 even[p].add(odd[p]).store(row.0.as_mut_ptr().add(p * V::LEN));
             }
