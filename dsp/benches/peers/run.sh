@@ -20,7 +20,7 @@ Like for like? All take a force in every sample, sum all modes to one output, ha
              "by block" keeps eight modes' states in registers for 64 samples, which its interface allows as well.
              resonator_hz: one mode a call. Default build (what its users get), then target-cpu=native.
   Faust      direct form, phase 0 only, unrolled into straight code; best of scalar and -vec
-The direct forms do less for a mode than we do: they are cheaper where they are in tune, and they are not below.
+So the job is the same but for phase and tune: every direct form in f32 is out of tune at low frequencies, see the end.
 
 TEXT
 
