@@ -11,7 +11,7 @@ const FARTHEST_M: f64 = 1e7;
 
 /// An octave is slow if its cells are so many times as long as the way of the samples side by side. In
 /// faster ones the samples are too often in different cells for a search to pay.
-const SLOW: f32 = 3.0;
+const SLOW: f32 = 2.5;
 
 /// Samples a cell at which an octave's weight is surely 0 everywhere, and 1, whatever the rounding.
 const GONE: f32 = 1.999;
@@ -63,7 +63,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         if !v.equal(roughness, last_gains.0) {
             *last_gains = (roughness, gains(v, roughness));
         }
-        let slow = slow_octaves(noise, N as f32 * longest_footprint_m);
+        let slow = slow_octaves(noise, way_m(position_m));
         Self {
             v,
             lattices,
@@ -170,6 +170,13 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         let row = y.index(v, i as u32, offset[1], from_centre[1]);
         corners(v, column, row, key)
     }
+}
+
+/// About how far it is from the first to the last sample.
+#[inline(always)]
+fn way_m<const N: usize>(position_m: &[[f64; 2]; N]) -> f32 {
+    let ([x, y], [u, v]) = (position_m[0], position_m[N - 1]);
+    ((u - x).abs() + (v - y).abs()) as f32
 }
 
 /// How many octaves, from the coarsest, have cells so long that samples along this way are mostly in one.
