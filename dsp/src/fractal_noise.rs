@@ -29,7 +29,13 @@
 //!
 //! Everything a sample needs is its own position, footprint and roughness, and every instruction set
 //! performs the same operations in the same order: the bits depend neither on blocks nor on the machine.
+//!
+//! *Speed.* The eight or sixteen samples side by side are mostly in one cell of a slow octave. Its four
+//! gradients are hashed once and kept until a sample leaves the cell, which one comparison of the
+//! samples' bounds tells. This changes no bit and saves a quarter of the time (AVX2, 12 octaves, 0.09 m/s).
 
+mod cells;
+mod gains;
 mod lanes;
 mod simd;
 #[cfg(test)]
@@ -37,6 +43,7 @@ mod tests;
 
 use crate::gradient_noise_2d::PEAK_WAVELENGTH_CELLS;
 use crate::rng::Rng;
+use cells::Offset;
 
 /// Number of octaves.
 pub const OCTAVES: usize = 12;
@@ -54,7 +61,7 @@ const ROTATION_RAD: [f64; ROTATIONS] =
 /// Where a contact is, sample by sample. Both slices are equally long.
 #[derive(Debug, Clone, Copy)]
 pub struct NoisePath<'a> {
-    /// Position on the surface, metres, not wrapped.
+    /// Position on the surface, metres, not wrapped. Beyond ±10⁷ m (and for a NaN) it is that edge.
     pub position_m: &'a [[f64; 2]],
     /// Distance travelled between two samples, metres.
     pub footprint_m: &'a [f64],
@@ -74,8 +81,12 @@ pub enum Kernel {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Octave {
     cell_m: f32,
-    offset: [u64; 2],
+    offset: [Offset; 2],
     key: u32,
+    /// Which of the orientations it has.
+    rotation: u32,
+    /// Its index.
+    index: u32,
 }
 
 /// A field of micro-relief: the same seed is the same field for ever.
@@ -111,11 +122,19 @@ impl FractalNoise {
     #[must_use]
     pub fn with_kernel(seed: u64, kernel: Kernel) -> Self {
         let mut rng = Rng::new(seed);
-        let mut octaves = [Octave { cell_m: 0.0, offset: [0; 2], key: 0 }; OCTAVES];
+        let mut octaves =
+            [Octave { cell_m: 0.0, offset: [Offset::new(0); 2], key: 0, rotation: 0, index: 0 }; OCTAVES];
         for (i, octave) in octaves.iter_mut().enumerate() {
             let mut bits = || u64::from(rng.next_u32()) << 32 | u64::from(rng.next_u32());
             let cell_m = (LONGEST_CELL_M / (1u64 << i) as f64) as f32;
-            *octave = Octave { cell_m, offset: [bits(), bits()], key: bits() as u32 };
+            let offset = [Offset::new(bits()), Offset::new(bits())];
+            *octave = Octave {
+                cell_m,
+                offset,
+                key: bits() as u32,
+                rotation: (i % ROTATIONS) as u32,
+                index: i as u32,
+            };
         }
         let kernel = if kernel.is_available() { kernel } else { Kernel::Portable };
         Self { octaves, rotations: lanes::rotations(), kernel }
@@ -156,65 +175,4 @@ impl FractalNoise {
 fn band_weight(cell_m: f64, longest_wavelength_m: f64) -> f32 {
     let excess = PEAK_WAVELENGTH_CELLS * cell_m / longest_wavelength_m - 1.0;
     (1.0 - excess).clamp(0.0, 1.0) as f32
-}
-
-/// r = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser one, within 1e-6.
-#[inline(always)]
-fn octave_ratio(roughness: f32) -> f32 {
-    const C: [f32; 5] = [0.594_603_8, 0.309_091_63, 0.080_510_76, 0.013_454_678, 0.002_338_592];
-    C[0] + roughness * (C[1] + roughness * (C[2] + roughness * (C[3] + roughness * C[4])))
-}
-
-/// 1/r, within 1e-6.
-#[inline(always)]
-fn inverse_octave_ratio(roughness: f32) -> f32 {
-    const C: [f32; 5] = [1.681_791_9, -0.874_249, 0.226_884_53, -0.038_360_09, 0.003_933_027_4];
-    C[0] + roughness * (C[1] + roughness * (C[2] + roughness * (C[3] + roughness * C[4])))
-}
-
-/// L(R): gain of the octave of 1.024 mm cells that makes the octave about 1 mm have an rms of 1.
-#[inline(always)]
-fn level(roughness: f32) -> f32 {
-    const C: [f32; 5] = [6.141_755, -2.561_869_4, -0.443_945_3, 0.239_734_56, -0.097_434_45];
-    C[0] + roughness * (C[1] + roughness * (C[2] + roughness * (C[3] + roughness * C[4])))
-}
-
-/// What the finest living octave gains beyond 1 to stand in for the tails of all finer ones.
-#[inline(always)]
-fn tail_boost(roughness: f32) -> f32 {
-    const C: [f32; 4] = [0.092_212_5, 0.124_280_17, -0.010_080_097, 0.167_875_62];
-    C[0] + roughness * (C[1] + roughness * (C[2] + roughness * C[3]))
-}
-
-/// The nearest number within 0–1; two vector instructions, and 0 for a NaN.
-#[inline(always)]
-fn within_0_1(x: f32) -> f32 {
-    let x = if x > 0.0 { x } else { 0.0 };
-    if x < 1.0 { x } else { 1.0 }
-}
-
-/// Smooth fade from 1 at 4 samples a cell to 0 at 2; exactly 1 above and 0 below.
-#[inline(always)]
-fn footprint_weight(samples_per_cell: f32) -> f32 {
-    let s = within_0_1(0.5 * samples_per_cell - 1.0);
-    s * s * (3.0 - 2.0 * s)
-}
-
-/// Gain of the finest octave for an rms of 1 in the octave about 1 mm.
-#[inline(always)]
-fn finest_gain(roughness: f32) -> f32 {
-    let r = octave_ratio(roughness);
-    let r2 = r * r;
-    level(roughness) * (r2 * r2) * (r2 * r)
-}
-
-/// u cells of the coarsest octave in fixed point: index in the upper 32 bits, fraction in the lower.
-/// The two additions of a large constant round to a whole number and to 2⁻³², the same everywhere.
-#[inline(always)]
-fn fixed_point(u: f64) -> u64 {
-    const TO_WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
-    const TO_FRACTION: f64 = 1_572_864.0; // 1.5 · 2²⁰
-    let whole = u + TO_WHOLE;
-    let fraction = (u - (whole - TO_WHOLE)) + TO_FRACTION;
-    (whole.to_bits() << 32).wrapping_add(fraction.to_bits().wrapping_sub(TO_FRACTION.to_bits()))
 }

@@ -7,7 +7,7 @@
 //!
 //! | symbol | here |
 //! |---|---|
-//! | x, y | [`Cells`]: fixed point, 32 bits of fraction and 32 of cell index, wrapping |
+//! | x, y | fixed point, 32 bits of fraction and 32 of cell index, wrapping |
 //! | g | a diagonal (±1, ±1) from two bits of the corner's hash |
 //!
 //! Source: K. Perlin, "Improving Noise", SIGGRAPH 2002 (quintic fade). What we changed: gradients are
@@ -20,14 +20,13 @@
 //! set gives the same bits. The variance is [`VARIANCE`] and the spectrum peaks at
 //! [`PEAK_WAVELENGTH_CELLS`] (both computed from the equation, `tests/independent/noise_spectrum.py`).
 
+use crate::vector::Vector;
+
 /// Mean square of the noise.
 pub const VARIANCE: f64 = 0.092_94;
 
 /// Wavelength at which a straight cut through the noise has most power per octave, cells.
 pub const PEAK_WAVELENGTH_CELLS: f64 = 1.92;
-
-/// Positions along one axis, in cells: the index in the upper 32 bits, the fraction in the lower.
-pub type Cells<const N: usize> = [u64; N];
 
 /// Odd constants that spread neighbouring cell indices over 32 bits (2³²/φ and a prime of xxHash's
 /// avalanche family), and the multipliers of the finishing step (C. Wellons, "hash-prospector").
@@ -39,74 +38,118 @@ const FINISH_Y: u32 = 0x297A_2D39;
 /// Sign bits.
 const SIGN: u32 = 0x8000_0000;
 
-/// Hash of a corner from what its column and its row contribute.
+/// The sign bits of the two components of a gradient.
+type Gradient<W> = [W; 2];
+
+/// The gradients at the four corners of a cell: upper left, upper right, lower left, lower right.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Corners<W>([Gradient<W>; 4]);
+
+/// Those of the cells in N columns and rows; `key` tells lattices apart.
 #[inline(always)]
-fn corner(column: u32, row: u32) -> u32 {
-    let h = column ^ row;
-    h ^ (h >> 15)
+pub(crate) fn corners<const N: usize, V: Vector<N>>(
+    v: V,
+    column: V::Word,
+    row: V::Word,
+    key: u32,
+) -> Corners<V::Word> {
+    let (spread_x, spread_y) = (v.splat_word(SPREAD_X), v.splat_word(SPREAD_Y));
+    let column = v.add_word(v.mul_word(column, spread_x), v.splat_word(key));
+    let row = v.mul_word(row, spread_y);
+    let (next_column, next_row) = (v.add_word(column, spread_x), v.add_word(row, spread_y));
+    Corners([
+        gradient(v, column, row),
+        gradient(v, next_column, row),
+        gradient(v, column, next_row),
+        gradient(v, next_column, next_row),
+    ])
 }
 
-/// ±x ± y, signs from the top bits of two products of the hash.
+impl<W: Copy> Corners<W> {
+    /// No cell.
+    #[inline(always)]
+    pub(crate) fn none<const N: usize, V: Vector<N, Word = W>>(v: V) -> Self {
+        Self([[v.splat_word(0); 2]; 4])
+    }
+
+    /// The cell of the last lane in all lanes.
+    #[inline(always)]
+    pub(crate) fn splat_last<const N: usize, V: Vector<N, Word = W>>(&self, v: V) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([splat_last(v, a), splat_last(v, b), splat_last(v, c), splat_last(v, d)])
+    }
+}
+
 #[inline(always)]
-fn along(hash: u32, x: f32, y: f32) -> f32 {
-    let (a, b) = (hash.wrapping_mul(FINISH_X), hash.wrapping_mul(FINISH_Y));
-    f32::from_bits(x.to_bits() ^ (a & SIGN)) + f32::from_bits(y.to_bits() ^ (b & SIGN))
+fn splat_last<const N: usize, V: Vector<N>>(v: V, [x, y]: Gradient<V::Word>) -> Gradient<V::Word> {
+    [v.splat_last(x), v.splat_last(y)]
+}
+
+/// The gradient of a corner from what its column and its row contribute: the top bits of two products
+/// of their hash.
+#[inline(always)]
+fn gradient<const N: usize, V: Vector<N>>(v: V, column: V::Word, row: V::Word) -> Gradient<V::Word> {
+    let h = v.xor(column, row);
+    let h = v.xor(h, v.right(h, 15));
+    let (a, b) = (v.mul_word(h, v.splat_word(FINISH_X)), v.mul_word(h, v.splat_word(FINISH_Y)));
+    [v.and(a, v.splat_word(SIGN)), v.and(b, v.splat_word(SIGN))]
+}
+
+/// g · d
+#[inline(always)]
+fn along<const N: usize, V: Vector<N>>(
+    v: V,
+    gradient: Gradient<V::Word>,
+    x: V::Single,
+    y: V::Single,
+) -> V::Single {
+    v.add(v.flip(x, gradient[0]), v.flip(y, gradient[1]))
 }
 
 /// fade(t + ½) for t in [−½, ½].
 #[inline(always)]
-fn centred_fade(t: f32) -> f32 {
-    let q = t * t;
-    0.5 + t * (1.875 + q * (6.0 * q - 5.0))
+fn centred_fade<const N: usize, V: Vector<N>>(v: V, t: V::Single) -> V::Single {
+    let q = v.mul(t, t);
+    let slope = v.sub(v.mul(v.splat(6.0), q), v.splat(5.0));
+    v.add(v.splat(0.5), v.mul(t, v.add(v.splat(1.875), v.mul(q, slope))))
 }
 
-/// Place in the cell, −½ to ½ about its centre, from the fraction's 32 bits.
+/// The noise at N places in cells with these corners. Places are measured from the centre of the cell,
+/// in 2⁻³² cells, signed.
 #[inline(always)]
-fn place(fraction: u32) -> f32 {
-    ((fraction ^ SIGN) as i32) as f32 * (1.0 / 4_294_967_296.0)
+pub(crate) fn gradient_noise<const N: usize, V: Vector<N>>(
+    v: V,
+    corners: &Corners<V::Word>,
+    from_centre: [V::Word; 2],
+) -> V::Single {
+    let (half, cell) = (v.splat(0.5), v.splat(1.0 / 4_294_967_296.0));
+    let (x, y) =
+        (v.mul(v.signed_to_single(from_centre[0]), cell), v.mul(v.signed_to_single(from_centre[1]), cell));
+    let (left, right, top, bottom) = (v.add(x, half), v.sub(x, half), v.add(y, half), v.sub(y, half));
+    let a = along(v, corners.0[0], left, top);
+    let b = along(v, corners.0[1], right, top);
+    let c = along(v, corners.0[2], left, bottom);
+    let d = along(v, corners.0[3], right, bottom);
+    let (fx, fy) = (centred_fade(v, x), centred_fade(v, y));
+    between(v, [between(v, [a, b], fx), between(v, [c, d], fx)], fy)
 }
 
-/// The noise at N positions; `key` tells lattices apart.
+/// a + f (b − a)
 #[inline(always)]
-pub fn gradient_noise<const N: usize>(x: &Cells<N>, y: &Cells<N>, key: u32) -> [f32; N] {
-    // 64-bit work apart from 32-bit work, so that each fills its vectors.
-    let (mut column, mut row, mut u, mut v) = ([0; N], [0; N], [0; N], [0; N]);
-    for n in 0..N {
-        (column[n], u[n]) = ((x[n] >> 32) as u32, x[n] as u32);
-        (row[n], v[n]) = ((y[n] >> 32) as u32, y[n] as u32);
-    }
-    let mut out = [0.0; N];
-    for n in 0..N {
-        out[n] = in_cell(column[n], row[n], place(u[n]), place(v[n]), key);
-    }
-    out
-}
-
-/// The noise at a place of the cell in a column and a row.
-#[inline(always)]
-fn in_cell(column: u32, row: u32, x: f32, y: f32, key: u32) -> f32 {
-    let column = column.wrapping_mul(SPREAD_X).wrapping_add(key);
-    let row = row.wrapping_mul(SPREAD_Y);
-    let (next_column, next_row) = (column.wrapping_add(SPREAD_X), row.wrapping_add(SPREAD_Y));
-    let (left, right, top, bottom) = (x + 0.5, x - 0.5, y + 0.5, y - 0.5);
-    let a = along(corner(column, row), left, top);
-    let b = along(corner(next_column, row), right, top);
-    let c = along(corner(column, next_row), left, bottom);
-    let d = along(corner(next_column, next_row), right, bottom);
-    let (fx, fy) = (centred_fade(x), centred_fade(y));
-    let upper = a + fx * (b - a);
-    let lower = c + fx * (d - c);
-    upper + fy * (lower - upper)
+fn between<const N: usize, V: Vector<N>>(v: V, [a, b]: [V::Single; 2], f: V::Single) -> V::Single {
+    v.add(a, v.mul(f, v.sub(b, a)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::Portable;
     use std::vec::Vec;
 
     fn at(x: f64, y: f64, key: u32) -> f64 {
-        let cells = |t: f64| (t * 4_294_967_296.0) as i64 as u64;
-        f64::from(gradient_noise::<1>(&[cells(x)], &[cells(y)], key)[0])
+        let [x, y] = [x, y].map(|t| (t * 4_294_967_296.0) as i64 as u64);
+        let corners = corners(Portable, [(x >> 32) as u32], [(y >> 32) as u32], key);
+        f64::from(gradient_noise(Portable, &corners, [x, y].map(|t| [t as u32 ^ SIGN]))[0])
     }
 
     #[test]
@@ -146,13 +189,11 @@ mod tests {
     fn neighbouring_gradients_are_unrelated() {
         const N: usize = 128;
         for key in [1, 0x1234_5678, 0x8000_0000] {
-            let sign = |x: usize, y: usize, finish: u32| {
-                let column = (x as u32).wrapping_mul(SPREAD_X).wrapping_add(key);
-                let h = corner(column, (y as u32).wrapping_mul(SPREAD_Y)).wrapping_mul(finish);
-                1 - 2 * (h >> 31) as i32
+            let sign = |x: usize, y: usize, axis: usize| {
+                1 - 2 * (corners(Portable, [x as u32], [y as u32], key).0[0][axis][0] >> 31) as i32
             };
-            let field = |finish| -> Vec<i32> { (0..N * N).map(|i| sign(i % N, i / N, finish)).collect() };
-            let (a, b) = (field(FINISH_X), field(FINISH_Y));
+            let field = |axis| -> Vec<i32> { (0..N * N).map(|i| sign(i % N, i / N, axis)).collect() };
+            let (a, b) = (field(0), field(1));
             for (dx, dy) in (0..6).flat_map(|dx| (0..6).map(move |dy| (dx, dy))) {
                 for (from, to) in [(&a, &a), (&b, &b), (&a, &b)] {
                     if dx == 0 && dy == 0 && core::ptr::eq(from, to) {

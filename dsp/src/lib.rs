@@ -36,5 +36,6 @@ pub mod modal_bank;
 pub mod mode;
 pub mod rng;
 pub mod trajectory;
+mod vector;
 
 pub use error::DesignError;

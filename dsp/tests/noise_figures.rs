@@ -238,6 +238,45 @@ fn blocks_and_instruction_sets_do_not_change_a_bit() {
     assert!(height == portable, "blocks differ");
 }
 
+/// Alone, a sample finds no cell that another has left behind.
+#[test]
+fn cells_kept_from_sample_to_sample_do_not_change_a_bit() {
+    const LEN: usize = 1500;
+    let mut rng = Rng::new(21);
+    for step in [0.0, 1e-9, 1e-7, 2e-6, 1e-5, 1e-3] {
+        let mut position_m = stroke(&mut rng, LEN, step);
+        for n in 0..40 {
+            position_m[600 - n] = position_m[560 + n]; // back on itself
+        }
+        position_m[700] = [f64::NAN, 0.3];
+        position_m[801] = [f64::INFINITY, -1e300];
+        position_m[902] = [3e6, -2e7]; // a jump there and back
+        let footprint_m: Vec<f64> =
+            (0..LEN).map(|n| if n % 97 == 0 { step * 3.9 } else { step.min(3e-6) }).collect();
+        let roughness: Vec<f64> = (0..LEN).map(|n| if n < 300 { 0.4 } else { n as f64 / 1000.0 }).collect();
+        let heights = |noise: &FractalNoise, block: usize| {
+            let mut height = vec![0.0; LEN];
+            for start in (0..LEN).step_by(block) {
+                let range = start..(start + block).min(LEN);
+                let path = NoisePath {
+                    position_m: &position_m[range.clone()],
+                    footprint_m: &footprint_m[range.clone()],
+                };
+                noise.add(&path, &roughness[range.clone()], 2e-6, f64::INFINITY, &mut height[range]);
+            }
+            height
+        };
+        for kernel in
+            [Kernel::Portable, Kernel::Avx2, Kernel::Avx512].into_iter().filter(|k| k.is_available())
+        {
+            let noise = FractalNoise::with_kernel(9, kernel);
+            let alone = heights(&noise, 1);
+            assert!(alone.iter().all(|h| h.is_finite()));
+            assert!(heights(&noise, LEN) == alone, "{kernel:?}, {step} m a sample");
+        }
+    }
+}
+
 #[test]
 fn octaves_longer_than_the_sources_own_band_are_left_to_the_source() {
     let noise = FractalNoise::new(3);

@@ -1,5 +1,6 @@
 // Times the C code that Faust generates for faust_bank.dsp, force in every sample: the best of many segments, in
-// mode-samples a nanosecond. MODES and GENERATED come from run.sh.
+// mode-samples a nanosecond. MODES and GENERATED come from run.sh. With RESPONSE defined, writes that many samples of
+// the impulse response instead, raw f32.
 #define FAUSTFLOAT float
 #include <faust/gui/CInterface.h>
 #include GENERATED
@@ -19,6 +20,14 @@ int main(void) {
     initmydsp(bank, 44100);
     float in[BLOCK], out[BLOCK];
     float *inputs[] = {in}, *outputs[] = {out};
+#ifdef RESPONSE
+    for (long n = 0; n < RESPONSE; n += BLOCK) {
+        for (int i = 0; i < BLOCK; ++i) in[i] = n + i == 0;
+        computemydsp(bank, BLOCK, inputs, outputs);
+        fwrite(out, sizeof *out, BLOCK, stdout);
+    }
+    return 0;
+#endif
     unsigned seed = 1;
     double best = 0;
     int blocks = 1 + 2000000 / (MODES * BLOCK);

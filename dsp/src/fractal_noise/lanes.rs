@@ -1,112 +1,204 @@
-//! The noise of up to N samples side by side.
+//! The noise of N samples side by side.
 
-use super::{
-    FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, ROTATION_RAD, ROTATIONS, finest_gain, fixed_point,
-    footprint_weight, inverse_octave_ratio, tail_boost, within_0_1,
-};
-use crate::gradient_noise_2d::{Cells, gradient_noise};
+use super::cells::{Bounds, Cells, LastCell, cells};
+use super::gains::{Gains, footprint_weight, gains};
+use super::{FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, Octave, ROTATION_RAD, ROTATIONS};
+use crate::gradient_noise_2d::{Corners, corners, gradient_noise};
+use crate::vector::Vector;
+
+/// Positions are kept within ± this many metres, where fixed point keeps their order.
+const FARTHEST_M: f64 = 1e7;
+
+/// An octave is slow if its cells are so many times as long as the way of the samples side by side. In
+/// faster ones the samples are too often in different cells for a search to pay.
+const SLOW: f32 = 2.5;
+
+/// Samples a cell at which an octave's weight is surely 0 everywhere, and 1, whatever the rounding.
+const GONE: f32 = 1.999;
+const WHOLE: f32 = 4.001;
+
+/// Positions on the lattices of one orientation, in cells of the coarsest octave.
+#[derive(Clone, Copy)]
+struct Lattice<W> {
+    cells: [Cells<W>; 2],
+    bounds: Bounds,
+}
 
 /// N samples of a path in the form the octaves need.
-struct Lanes<const N: usize> {
-    /// Position in cells of the coarsest octave, by orientation and axis.
-    cells: [[Cells<N>; 2]; ROTATIONS],
-    samples_per_metre: [f32; N],
-    finest_gain: [f32; N],
-    coarser: [f32; N],
-    boost: [f32; N],
+struct Lanes<const N: usize, V: Vector<N>> {
+    v: V,
+    lattices: [Lattice<V::Word>; ROTATIONS],
+    /// So many octaves, from the coarsest, have cells much longer than all samples together.
+    slow: usize,
+    gains: Gains<V::Single>,
+    samples_per_metre: V::Single,
     shortest_footprint_m: f32,
     longest_footprint_m: f32,
 }
 
-impl<const N: usize> Lanes<N> {
+impl<const N: usize, V: Vector<N>> Lanes<N, V> {
     #[inline(always)]
     fn new(
+        v: V,
         noise: &FractalNoise,
-        position: &[[f64; 2]; N],
-        footprint: &[f64; N],
+        position_m: &[[f64; 2]; N],
+        footprint_m: &[f64; N],
         roughness: &[f64; N],
+        last_gains: &mut (V::Single, Gains<V::Single>),
     ) -> Self {
-        let mut lanes = Self {
-            cells: [[[0; N]; 2]; ROTATIONS],
-            samples_per_metre: [0.0; N],
-            finest_gain: [0.0; N],
-            coarser: [0.0; N],
-            boost: [0.0; N],
-            shortest_footprint_m: 0.0,
-            longest_footprint_m: 0.0,
-        };
-        let (mut x, mut y) = ([0.0; N], [0.0; N]);
-        for n in 0..N {
-            (x[n], y[n]) = (position[n][0], position[n][1]);
+        let [x, y] = v.load_points(position_m);
+        let (x, y) = (within_reach(v, x), within_reach(v, y));
+        let mut lattices = [Lattice { cells: [cells(v, x); 2], bounds: [0.0; 4] }; ROTATIONS];
+        for (lattice, [cosine, sine]) in lattices.iter_mut().zip(noise.rotations) {
+            let (cosine, sine) = (v.splat_double(cosine), v.splat_double(sine));
+            let first = v.sub_double(v.mul_double(cosine, x), v.mul_double(sine, y));
+            let second = v.add_double(v.mul_double(sine, x), v.mul_double(cosine, y));
+            lattice.cells = [cells(v, first), cells(v, second)];
+            lattice.bounds = v.bounds(first, second);
         }
-        for (rotation, [u, v]) in lanes.cells.iter_mut().enumerate() {
-            let [cosine, sine] = noise.rotations[rotation];
-            for n in 0..N {
-                u[n] = fixed_point(cosine * x[n] - sine * y[n]);
-                v[n] = fixed_point(sine * x[n] + cosine * y[n]);
-            }
+        // Backwards or not a number is standing still.
+        let footprint = v.max(v.load(footprint_m), v.splat(0.0));
+        let (shortest_footprint_m, longest_footprint_m) = v.extremes(footprint);
+        let roughness = v.load(roughness);
+        if !v.equal(roughness, last_gains.0) {
+            *last_gains = (roughness, gains(v, roughness));
         }
-        let mut step = [0.0; N];
-        for n in 0..N {
-            step[n] = footprint[n] as f32;
-            lanes.samples_per_metre[n] = 1.0 / (step[n] + f32::MIN_POSITIVE);
+        let slow = slow_octaves(noise, way_m(position_m));
+        Self {
+            v,
+            lattices,
+            slow,
+            gains: last_gains.1,
+            samples_per_metre: v.div(v.splat(1.0), v.add(footprint, v.splat(f32::MIN_POSITIVE))),
+            shortest_footprint_m,
+            longest_footprint_m,
         }
-        (lanes.shortest_footprint_m, lanes.longest_footprint_m) = range(step);
-        let gains = lanes.finest_gain.iter_mut().zip(&mut lanes.coarser).zip(&mut lanes.boost);
-        for (((finest, coarser), boost), &r) in gains.zip(roughness) {
-            let r = within_0_1(r as f32);
-            (*finest, *coarser, *boost) = (finest_gain(r), inverse_octave_ratio(r), tail_boost(r));
-        }
-        lanes
     }
 
     /// Sum of all octaves, from the finest to the coarsest.
     #[inline(always)]
-    fn sum(&self, noise: &FractalNoise, band: &[f32; OCTAVES]) -> [f32; N] {
-        let mut sum = [0.0; N];
-        let mut gain = self.finest_gain;
-        let mut finer = [0.0; N]; // footprint weight of the next finer octave
+    fn sum(
+        &self,
+        noise: &FractalNoise,
+        band: &[f32; OCTAVES],
+        coarsest: usize,
+        last: &mut [LastCell<V::Word>; OCTAVES],
+    ) -> V::Single {
+        let v = self.v;
+        let one = v.splat(1.0);
+        let mut sum = v.splat(0.0);
+        let mut gain = self.gains.finest;
+        let mut finer = v.splat(0.0); // footprint weight of the next finer octave
         let mut all_finer = false; // … is exactly 1 everywhere
-        for (i, octave) in noise.octaves.iter().enumerate().rev() {
-            let gone = octave.cell_m <= 2.0 * self.shortest_footprint_m;
-            let whole = octave.cell_m >= 4.0 * self.longest_footprint_m;
-            let mut weight = [1.0; N];
+        let mut i = OCTAVES;
+        // The finest octaves: some fade, one stands in for finer ones, cells change every few samples.
+        while i > coarsest {
+            let cell_m = noise.octaves[i - 1].cell_m;
+            let whole = cell_m >= WHOLE * self.longest_footprint_m;
+            if whole && all_finer && i <= self.slow {
+                break;
+            }
+            i -= 1;
+            let gone = cell_m <= GONE * self.shortest_footprint_m;
+            let mut weight = one;
             if !whole {
-                for (weight, samples) in weight.iter_mut().zip(&self.samples_per_metre) {
-                    *weight = footprint_weight(octave.cell_m * samples);
-                }
+                weight = footprint_weight(v, v.mul(v.splat(cell_m), self.samples_per_metre));
             }
-            if !gone && band[i] != 0.0 {
-                let [u, v] = &self.cells[i % ROTATIONS];
-                let (mut x, mut y) = ([0; N], [0; N]);
-                for n in 0..N {
-                    x[n] = (u[n] << i).wrapping_add(octave.offset[0]);
-                    y[n] = (v[n] << i).wrapping_add(octave.offset[1]);
-                }
-                let value = gradient_noise(&x, &y, octave.key);
-                let mut scale = [band[i]; N];
+            if !gone {
+                let mut scale = v.splat(band[i]);
                 if !(whole && all_finer) {
-                    for n in 0..N {
-                        scale[n] *= weight[n] * (1.0 + self.boost[n] * (1.0 - finer[n]));
-                    }
+                    let boost = v.add(one, v.mul(self.gains.tail_boost, v.sub(one, finer)));
+                    scale = v.mul(scale, v.mul(weight, boost));
                 }
-                for n in 0..N {
-                    sum[n] += gain[n] * scale[n] * value[n];
-                }
+                let value = if i < self.slow {
+                    self.slow_octave(noise, i, &mut last[i])
+                } else {
+                    self.octave(noise, i)
+                };
+                sum = v.add(sum, v.mul(v.mul(gain, scale), value));
             }
-            for (gain, coarser) in gain.iter_mut().zip(self.coarser) {
-                *gain *= coarser;
-            }
+            gain = v.mul(gain, self.gains.coarser);
             finer = weight;
             all_finer = whole;
         }
+        while i > coarsest {
+            i -= 1;
+            let value = self.slow_octave(noise, i, &mut last[i]);
+            sum = v.add(sum, v.mul(v.mul(gain, v.splat(band[i])), value));
+            gain = v.mul(gain, self.gains.coarser);
+        }
         sum
     }
+
+    /// One octave at every sample.
+    #[inline(always)]
+    fn octave(&self, noise: &FractalNoise, i: usize) -> V::Single {
+        let from_centre = self.places(noise, i);
+        gradient_noise(self.v, &self.corners(noise, i, from_centre), from_centre)
+    }
+
+    /// The same bits for an octave whose cells are long: while all samples are in the cell that was last
+    /// found, nothing is hashed.
+    #[inline(always)]
+    fn slow_octave(&self, noise: &FractalNoise, i: usize, last: &mut LastCell<V::Word>) -> V::Single {
+        let v = self.v;
+        let lattice = &self.lattices[noise.octaves[i].rotation as usize];
+        let from_centre = self.places(noise, i);
+        if last.contains(v, &lattice.bounds) {
+            return gradient_noise(v, &last.corners, from_centre);
+        }
+        let corners = self.corners(noise, i, from_centre);
+        last.follow(v, i as u32, &lattice.cells, from_centre, &corners);
+        gradient_noise(v, &corners, from_centre)
+    }
+
+    /// Places in the cells of an octave, by axis.
+    #[inline(always)]
+    fn places(&self, noise: &FractalNoise, i: usize) -> [V::Word; 2] {
+        let [x, y] = &self.lattices[noise.octaves[i].rotation as usize].cells;
+        let Octave { offset, index, .. } = noise.octaves[i];
+        [x.place(self.v, index, offset[0]), y.place(self.v, index, offset[1])]
+    }
+
+    /// The gradients about those places.
+    #[inline(always)]
+    fn corners(&self, noise: &FractalNoise, i: usize, from_centre: [V::Word; 2]) -> Corners<V::Word> {
+        let v = self.v;
+        let [x, y] = &self.lattices[noise.octaves[i].rotation as usize].cells;
+        let Octave { offset, key, .. } = noise.octaves[i];
+        let column = x.index(v, i as u32, offset[0], from_centre[0]);
+        let row = y.index(v, i as u32, offset[1], from_centre[1]);
+        corners(v, column, row, key)
+    }
+}
+
+/// About how far it is from the first to the last sample.
+#[inline(always)]
+fn way_m<const N: usize>(position_m: &[[f64; 2]; N]) -> f32 {
+    let ([x, y], [u, v]) = (position_m[0], position_m[N - 1]);
+    ((u - x).abs() + (v - y).abs()) as f32
+}
+
+/// How many octaves, from the coarsest, have cells so long that samples along this way are mostly in one.
+#[inline(always)]
+fn slow_octaves(noise: &FractalNoise, way_m: f32) -> usize {
+    let mut slow = OCTAVES;
+    while slow > 0 && noise.octaves[slow - 1].cell_m < SLOW * way_m {
+        slow -= 1;
+    }
+    slow
+}
+
+/// The nearest number within [`FARTHEST_M`], for a NaN its lower end.
+#[inline(always)]
+fn within_reach<const N: usize, V: Vector<N>>(v: V, x: V::Double) -> V::Double {
+    v.min_double(v.max_double(x, v.splat_double(-FARTHEST_M)), v.splat_double(FARTHEST_M))
 }
 
 /// Adds the noise along a path to `height_m`, N samples at a time.
 #[inline(always)]
-pub fn add<const N: usize>(
+pub(super) fn add<const N: usize, V: Vector<N>>(
+    v: V,
     noise: &FractalNoise,
     path: &NoisePath<'_>,
     roughness: &[f64],
@@ -117,49 +209,43 @@ pub fn add<const N: usize>(
     let (footprints, footprints_left) = path.footprint_m.as_chunks::<N>();
     let (roughness, roughness_left) = roughness.as_chunks::<N>();
     let (heights, heights_left) = height_m.as_chunks_mut::<N>();
+    let coarsest = band.iter().position(|band| *band != 0.0).unwrap_or(OCTAVES);
+    let mut last = [LastCell::none(v); OCTAVES];
+    let nothing = v.splat(f32::NAN);
+    let mut last_gains = (nothing, Gains { finest: nothing, coarser: nothing, tail_boost: nothing });
     let inputs = positions.iter().zip(footprints).zip(roughness);
     for (((position, footprint), roughness), height) in inputs.zip(heights) {
-        let sum = Lanes::new(noise, position, footprint, roughness).sum(noise, band);
-        for n in 0..N {
-            height[n] += f64::from(sum[n]);
-        }
+        let lanes = Lanes::new(v, noise, position, footprint, roughness, &mut last_gains);
+        v.add_to(lanes.sum(noise, band, coarsest, &mut last), height);
     }
-    if let Some(&first) = footprints_left.first() {
-        // Lanes to spare repeat a footprint, so that they skip no octave.
-        let position = padded(positions_left, [0.0; 2]);
-        let lanes =
-            Lanes::<N>::new(noise, &position, &padded(footprints_left, first), &padded(roughness_left, 0.0));
-        for (height, sum) in heights_left.iter_mut().zip(lanes.sum(noise, band)) {
-            *height += f64::from(sum);
-        }
+    if heights_left.is_empty() {
+        return;
+    }
+    let lanes = Lanes::new(
+        v,
+        noise,
+        &padded(positions_left, [0.0; 2]),
+        &padded(footprints_left, 0.0),
+        &padded(roughness_left, 0.0),
+        &mut last_gains,
+    );
+    let mut out = padded(heights_left, 0.0);
+    v.add_to(lanes.sum(noise, band, coarsest, &mut last), &mut out);
+    for (height, out) in heights_left.iter_mut().zip(out) {
+        *height = out;
     }
 }
 
-/// Fewer than N values, and `fill` behind them.
-fn padded<T: Copy, const N: usize>(values: &[T], fill: T) -> [T; N] {
-    let mut out = [fill; N];
+/// Fewer than N values, and the last of them again and again: spare lanes make no work of their own.
+fn padded<T: Copy, const N: usize>(values: &[T], none: T) -> [T; N] {
+    let mut out = [values.last().copied().unwrap_or(none); N];
     for (out, value) in out.iter_mut().zip(values) {
         *out = *value;
     }
     out
 }
 
-/// Smallest and largest of N values, N a power of two.
-#[inline(always)]
-fn range<const N: usize>(values: [f32; N]) -> (f32, f32) {
-    let (mut low, mut high) = (values, values);
-    let mut half = N / 2;
-    while half > 0 {
-        for n in 0..half {
-            low[n] = if low[n + half] < low[n] { low[n + half] } else { low[n] };
-            high[n] = if high[n + half] > high[n] { high[n + half] } else { high[n] };
-        }
-        half /= 2;
-    }
-    (low[0], high[0])
-}
-
 /// Cosine and sine of each orientation, per metre in cells of the coarsest octave.
-pub fn rotations() -> [[f64; 2]; ROTATIONS] {
+pub(super) fn rotations() -> [[f64; 2]; ROTATIONS] {
     ROTATION_RAD.map(|angle| [libm::cos(angle) / LONGEST_CELL_M, libm::sin(angle) / LONGEST_CELL_M])
 }

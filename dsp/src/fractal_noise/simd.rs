@@ -1,10 +1,12 @@
 //! The same lanes compiled for several instruction sets, and which of them this machine has.
 //!
-//! Nothing here but `#[target_feature]`: the compiler vectorises the lanes for each. Fused
-//! multiply-adds are not enabled, because they would change the bits.
+//! Fused multiply-adds are not used, because they would change the bits.
 #![allow(unsafe_code)]
 
 use super::{FractalNoise, Kernel, NoisePath, OCTAVES, lanes};
+use crate::vector::Portable;
+#[cfg(target_arch = "x86_64")]
+use crate::vector::{Avx2, Avx512};
 
 /// Whether this machine can run a kernel.
 pub fn is_available(kernel: Kernel) -> bool {
@@ -25,7 +27,6 @@ pub fn is_available(kernel: Kernel) -> bool {
 }
 
 #[cfg(target_arch = "x86_64")]
-// Two vectors wide: one alone waits for its own results.
 #[target_feature(enable = "avx2")]
 fn add_avx2(
     noise: &FractalNoise,
@@ -34,7 +35,8 @@ fn add_avx2(
     band: &[f32; OCTAVES],
     height_m: &mut [f64],
 ) {
-    lanes::add::<16>(noise, path, roughness, band, height_m);
+    // SAFETY: this function is called only where the processor has the instruction set.
+    lanes::add(unsafe { Avx2::new() }, noise, path, roughness, band, height_m);
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -46,7 +48,8 @@ fn add_avx512(
     band: &[f32; OCTAVES],
     height_m: &mut [f64],
 ) {
-    lanes::add::<16>(noise, path, roughness, band, height_m);
+    // SAFETY: as above.
+    lanes::add(unsafe { Avx512::new() }, noise, path, roughness, band, height_m);
 }
 
 /// Adds the noise on the field's instruction set.
@@ -64,6 +67,6 @@ pub fn add(
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
         Kernel::Avx2 => unsafe { add_avx2(noise, path, roughness, band, height_m) },
-        _ => lanes::add::<8>(noise, path, roughness, band, height_m),
+        _ => lanes::add::<8, _>(Portable, noise, path, roughness, band, height_m),
     }
 }

@@ -19,6 +19,8 @@ use super::{ContactSample, ContactState, EulerLanes, LANES, LaneRow, Lanes, Micr
 /// A kernel and all it works on.
 trait Work {
     /// Whether it has more values at hand than 16 registers hold.
+    // Nobody asks where there is no choice.
+    #[cfg_attr(not(all(target_arch = "x86_64", feature = "std")), allow(dead_code))]
     const MANY_REGISTERS: bool;
     /// Does it with whichever of the two kinds of vectors suits its scheme. Inlines into the caller, whose instructions it
     /// uses.

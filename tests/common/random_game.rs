@@ -1,0 +1,116 @@
+//! Randomised events of every kind, hostile numbers, surfaces and bodies swapped and removed while they
+//! sound: what the tests of the audio half live through, under the counting allocator and under the
+//! real-time sanitizer.
+
+use crate::common::{bar, grating, plate};
+use asperity::{
+    Actuator, BodyId, Config, ContactEvent, ContactId, ContactSample, Excitation, Impact, Material,
+    ModalModel, Renderer, Residual, Scene, SurfaceId,
+};
+use asperity_dsp::rng::Rng;
+
+/// A body whose impacts also play a residual.
+fn clicking_bar() -> ModalModel {
+    let samples = (0..3000).map(|n| (0.7 * n as f32).sin() / (1.0 + n as f32)).collect();
+    bar().with_residual(Some(Residual { sample_rate_hz: 48_000.0, samples }), 1.0).unwrap()
+}
+
+/// A game at random, and what it has registered.
+pub struct RandomGame {
+    pub scene: Scene,
+    surfaces: [SurfaceId; 3],
+    bodies: [BodyId; 2],
+    pub rng: Rng,
+    /// How far it has come.
+    pub time_s: f64,
+}
+
+impl RandomGame {
+    /// A game that is the same for the same seed, with fewer voices than fingers and a short time-out.
+    pub fn new(seed: u64) -> (Self, Renderer) {
+        let config = Config { max_contacts: 6, contact_timeout_s: 0.05, ..Config::default() };
+        let (mut scene, renderer) = config.build().unwrap();
+        let bodies = [scene.add_body(clicking_bar()).unwrap(), scene.add_body(bar()).unwrap()];
+        let surfaces = [
+            scene.add_surface(grating(1e-3, 5e-5).on(bodies[0])).unwrap(),
+            scene.add_surface(plate(1.0).on(bodies[1])).unwrap(),
+            scene.add_surface(plate(0.0)).unwrap(),
+        ];
+        (Self { scene, surfaces, bodies, rng: Rng::new(seed), time_s: 0.0 }, renderer)
+    }
+
+    /// Mostly 0–1, and now and then what no game should report.
+    fn number(&mut self) -> f64 {
+        match self.rng.next_u32() % 40 {
+            0 => f64::NAN,
+            1 => f64::INFINITY,
+            2 => 1e300,
+            3 => -0.3,
+            _ => self.rng.uniform(),
+        }
+    }
+
+    /// Up to 4 ms on: four events, and once in a while something is swapped or removed.
+    pub fn step(&mut self) {
+        self.time_s += 0.004 * self.rng.uniform();
+        for _ in 0..4 {
+            let contact = ContactId(u64::from(self.rng.next_u32() % 12));
+            let sample = ContactSample {
+                uv: [self.number(), self.number()],
+                velocity_m_s: (!self.rng.next_u32().is_multiple_of(5)).then(|| [0.3 * self.number(), 0.0]),
+                normal_force_n: 3.0 * self.number(),
+                closing_m_s: (0.1 * self.number()).abs(),
+            };
+            let surface = self.surfaces[self.rng.next_u32() as usize % self.surfaces.len()];
+            let event = match self.rng.next_u32() % 12 {
+                0 | 1 => ContactEvent::begin(contact, surface, Actuator(0), sample),
+                2 => ContactEvent::end(contact),
+                3 => ContactEvent::Impact(Impact {
+                    body: self.bodies[0],
+                    other: Some(self.bodies[1]),
+                    speed_m_s: 1.0,
+                    mass_kg: 0.01,
+                    radius_m: 0.005,
+                    striker: Material::STEEL,
+                    restitution: 0.7,
+                    position: 0,
+                }),
+                _ => ContactEvent::moved(contact, sample),
+            };
+            // Refusals are part of the game.
+            let _ = self.scene.report(self.time_s, event);
+        }
+        self.swap();
+    }
+
+    fn swap(&mut self) {
+        let which = self.rng.next_u32() as usize % self.surfaces.len();
+        let body = self.bodies[which % 2];
+        match self.rng.next_u32() % 50 {
+            0 => {
+                let surface = plate(0.5).on(body).excitation(Excitation::Both);
+                let _ = self.scene.replace_surface(self.surfaces[which], surface);
+            }
+            1 => {
+                let removed = self.scene.remove_surface(self.surfaces[which]).is_ok();
+                if removed && let Ok(id) = self.scene.add_surface(grating(2e-3, 1e-4).on(body)) {
+                    self.surfaces[which] = id;
+                }
+            }
+            2 => {
+                let _ = self.scene.replace_body(body, clicking_bar(), Material::GLASS);
+            }
+            3 => {
+                let gain = self.rng.uniform();
+                let _ = self.scene.set_haptic_gain(Actuator(0), gain);
+            }
+            4 => {
+                let removed = self.scene.remove_body(self.bodies[which % 2]).is_ok();
+                if removed && let Ok(id) = self.scene.add_body(bar()) {
+                    self.bodies[which % 2] = id;
+                }
+            }
+            _ => {}
+        }
+    }
+}
