@@ -49,7 +49,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// The weights of a difference at position `i` of `n`: (first neighbour, weights). Inside, eighth order
 /// for the true derivative; fewer neighbours where there are no more.
-fn stencil(derivative: Derivative, i: usize, n: usize) -> (usize, &'static [f64]) {
+fn stencil(derivative: Derivative, i: usize, n: usize) -> (usize, Vec<f64>) {
     const ORDERS: [&[f64]; 4] = [
         &[-0.5, 0.0, 0.5],
         &[1.0 / 12.0, -2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 12.0],
@@ -57,19 +57,33 @@ fn stencil(derivative: Derivative, i: usize, n: usize) -> (usize, &'static [f64]
         &[1.0 / 280.0, -4.0 / 105.0, 0.2, -0.8, 0.0, 0.8, -0.2, 4.0 / 105.0, -1.0 / 280.0],
     ];
     if n < 3 {
-        return if n == 2 { (0, &[-1.0, 1.0]) } else { (0, &[0.0]) };
+        return (0, if n == 2 { vec![-1.0, 1.0] } else { vec![0.0] });
     }
+    if derivative == Derivative::ExactOrCentral {
+        return half_way(stencil(Derivative::Exact, i, n), &stencil(Derivative::Central, i, n));
+    }
+    let exact = derivative == Derivative::Exact;
     let room = i.min(n - 1 - i);
-    if room == 0 {
-        return match (derivative, i) {
-            (Derivative::Exact, 0) => (0, &[-1.5, 2.0, -0.5]),
-            (Derivative::Exact, _) => (n - 3, &[0.5, -2.0, 1.5]),
-            (_, 0) => (0, &[-1.0, 1.0]),
-            _ => (n - 2, &[-1.0, 1.0]),
-        };
+    if room > 0 {
+        let order = if exact { room.min(4) } else { 1 };
+        return (i - order, ORDERS[order - 1].to_vec());
     }
-    let order = if derivative == Derivative::Exact { room.min(4) } else { 1 };
-    (i - order, ORDERS[order - 1])
+    match (exact, i) {
+        (true, 0) => (0, vec![-1.5, 2.0, -0.5]),
+        (true, _) => (n - 3, vec![0.5, -2.0, 1.5]),
+        (false, 0) => (0, vec![-1.0, 1.0]),
+        (false, _) => (n - 2, vec![-1.0, 1.0]),
+    }
+}
+
+/// The mean of two stencils, the first of which spans the second.
+fn half_way(wide: (usize, Vec<f64>), narrow: &(usize, Vec<f64>)) -> (usize, Vec<f64>) {
+    let (first, mut weights) = wide;
+    weights.iter_mut().for_each(|weight| *weight *= 0.5);
+    for (weight, other) in weights[narrow.0 - first..].iter_mut().zip(&narrow.1) {
+        *weight += 0.5 * other;
+    }
+    (first, weights)
 }
 
 /// Calls `each(texel, neighbour, weight along u or 0, weight along v or 0)`.
