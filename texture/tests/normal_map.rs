@@ -2,56 +2,15 @@
 
 #![cfg(feature = "offline")]
 
+mod normals;
 mod surfaces;
 
 use asperity_texture::borders::Borders;
 use asperity_texture::gradient_field::{DERIVATIVES, Derivative, Slopes, differences, slopes};
 use asperity_texture::normal_map::{Green, NormalMapOptions, heights_from_normals};
 use asperity_texture::raster::Raster;
-use surfaces::{correlation, fractal, ridges};
-
-/// An 8-bit normal map with the slopes of a surface, as red, green and blue.
-fn normal_map(field: &Slopes, green: Green) -> [Raster; 3] {
-    let (w, h) = (field.along_u.width, field.along_u.height);
-    let level = |n: f64| ((n * 0.5 + 0.5) * 255.0).round() / 255.0;
-    let channel = |which: usize| {
-        Raster::from_fn(w, h, |x, y| {
-            let (p, q) = (field.along_u.at(x, y), field.along_v.at(x, y));
-            let up = 1.0 / (1.0 + p * p + q * q).sqrt();
-            let side = if green == Green::DirectX { -q } else { q };
-            level([-p * up, side * up, up][which])
-        })
-    };
-    [channel(0), channel(1), channel(2)]
-}
-
-/// Root mean square error over the root mean square of the truth, both about their means.
-fn relative_error(made: &Raster, truth: &Raster) -> f64 {
-    let mean = truth.mean();
-    let error: f64 = made.values.iter().zip(&truth.values).map(|(a, b)| (a - (b - mean)).powi(2)).sum();
-    (error / truth.values.iter().map(|b| (b - mean).powi(2)).sum::<f64>()).sqrt()
-}
-
-/// Surfaces 256 texels wide with an rms slope of about 0.3.
-fn known_surfaces() -> Vec<(&'static str, Raster)> {
-    let scaled = |surface: Raster| {
-        let power = slopes(&surface, Derivative::Exact).power();
-        surface.map(|z| z * 0.3 / power.sqrt())
-    };
-    vec![
-        ("rough ground", scaled(fractal(256, 4.0, 1.0, 31))),
-        ("smooth ground", scaled(fractal(256, 5.0, 1.0, 32))),
-        ("wood", scaled(fractal(256, 4.0, 6.0, 33))),
-        ("ridges", scaled(ridges(256))),
-        (
-            "bumps",
-            scaled(Raster::from_fn(256, 256, |x, y| {
-                let wave = |i: usize| (i as f64 * std::f64::consts::TAU / 32.0).sin();
-                wave(x) * wave(y)
-            })),
-        ),
-    ]
-}
+use normals::{normal_map, relative_error};
+use surfaces::{correlation, fractal, known_surfaces};
 
 #[test]
 fn heights_of_8_bit_maps_are_within_six_thousandths_whatever_made_the_map() {
