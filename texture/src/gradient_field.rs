@@ -28,7 +28,7 @@ mod turning;
 pub use open::{differences, integrate_open};
 pub use periodic::{Projection, integrate_periodic, slopes};
 pub use rounded::integrate_rounded;
-pub use turning::{curl, possible_derivatives};
+pub use turning::{curl, possible_derivatives, possible_derivatives_inside};
 
 use crate::fft2::angular_frequency;
 use crate::raster::Raster;
@@ -83,10 +83,13 @@ impl Derivative {
         [dx, dy]
     }
 
+    fn square_at(self, place: usize, width: usize, height: usize) -> f64 {
+        self.at_bin(place, width, height).iter().map(|d| d * d).sum()
+    }
+
     /// 1/|D|², or 0 where the derivative is blind.
     fn inverse_square(self, place: usize, width: usize, height: usize) -> f64 {
-        let [dx, dy] = self.at_bin(place, width, height);
-        let square = dx * dx + dy * dy;
+        let square = self.square_at(place, width, height);
         let (wx, wy) = (angular_frequency(place / height, width), angular_frequency(place % height, height));
         let upper_half = wx.hypot(wy) > std::f64::consts::FRAC_PI_2;
         let blind = if self == Self::Sobel { SOBEL_BLIND } else { BLIND };

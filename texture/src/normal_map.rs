@@ -23,6 +23,7 @@
 use crate::borders::{Borders, SplitBorders};
 use crate::gradient_field::{
     Derivative, Slopes, curl, integrate_open, integrate_periodic, integrate_rounded, possible_derivatives,
+    possible_derivatives_inside,
 };
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
@@ -178,13 +179,10 @@ fn rounding_noise(field: &Slopes, step: f64) -> f64 {
     step * step / 12.0 * gains.sum::<f64>() / field.along_u.values.len() as f64
 }
 
-fn periodic_part(field: &Slopes, borders: Borders) -> Slopes {
-    let periodic = |slope: &Raster| SplitBorders::of(slope, borders).periodic;
-    Slopes { along_u: periodic(&field.along_u), along_v: periodic(&field.along_v) }
-}
-
 fn curl_of(field: &Slopes, borders: Borders, derivative: Derivative) -> f64 {
-    curl(&periodic_part(field, borders), derivative)
+    let periodic = |slope: &Raster| SplitBorders::of(slope, borders).periodic;
+    let field = Slopes { along_u: periodic(&field.along_u), along_v: periodic(&field.along_v) };
+    curl(&field, derivative)
 }
 
 fn which_green(field: &Slopes, borders: Borders, wanted: Green) -> (Green, bool) {
@@ -205,7 +203,8 @@ fn which_derivative(field: &Slopes, borders: Borders, told: Option<Derivative>) 
     if let Some(derivative) = told {
         return (derivative, true);
     }
-    let possible = possible_derivatives(&periodic_part(field, borders));
+    let tiles = borders == Borders::Periodic;
+    let possible = if tiles { possible_derivatives(field) } else { possible_derivatives_inside(field) };
     let both = [Derivative::Exact, Derivative::Central].iter().all(|d| possible.contains(d));
     match possible[..] {
         [only] => (only, true),
