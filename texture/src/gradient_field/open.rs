@@ -1,5 +1,9 @@
 //! Fields that do not tile: one-sided differences at the borders, and conjugate gradients with the formula for a mirrored
 //! image as preconditioner.
+//!
+//! Converters differ at the borders, where a central difference lacks a neighbour: they take the whole difference to the only one, or
+//! half of it (the image goes on as its last texel), or none (it goes on mirrored). Which share it was is read from the field, by
+//! regression of the border's slopes on those expected from the two next to them, 3/2 s₁ − 1/2 s₂.
 
 use super::{Derivative, Slopes};
 use crate::fft2::{Fft2, angular_frequency};
@@ -15,8 +19,9 @@ const SOLVED: f64 = 1e-5;
 #[must_use]
 pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
     let (w, h) = (field.along_u.width, field.along_u.height);
+    let share = border_share(field, derivative);
     let mut mirrored = Mirrored::new(w, h, derivative);
-    let mut residual = transposed_difference(field, derivative);
+    let mut residual = transposed_difference(field, derivative, share);
     let mut solution = vec![0.0; w * h];
     let mut direction = mirrored.precondition(&residual);
     let mut product = dot(&residual, &direction);
@@ -26,7 +31,7 @@ pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
             break;
         }
         let surface = Raster { width: w, height: h, values: direction.clone() };
-        let image = transposed_difference(&differences(&surface, derivative), derivative);
+        let image = transposed_difference(&differences_with(&surface, derivative, share), derivative, share);
         let step = product / dot(&direction, &image);
         for ((z, d), (r, a)) in solution.iter_mut().zip(&direction).zip(residual.iter_mut().zip(&image)) {
             *z += step * d;
@@ -43,13 +48,42 @@ pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
     Raster { width: w, height: h, values: solution.iter().map(|z| z - mean).collect() }
 }
 
+/// The share of a one-sided difference that the field's borders hold: 1, ½ or 0.
+fn border_share(field: &Slopes, derivative: Derivative) -> f64 {
+    let (w, h) = (field.along_u.width, field.along_u.height);
+    if derivative == Derivative::Exact || w.min(h) < 6 {
+        return 1.0;
+    }
+    let (mut both, mut expected) = (0.0, 0.0);
+    let mut regress = |border: f64, next: f64, after: f64| {
+        let slope = 1.5 * next - 0.5 * after;
+        both += border * slope;
+        expected += slope * slope;
+    };
+    for y in 0..h {
+        let row = field.along_u.row(y);
+        regress(row[0], row[1], row[2]);
+        regress(row[w - 1], row[w - 2], row[w - 3]);
+    }
+    for x in 0..w {
+        let at = |y| field.along_v.at(x, y);
+        regress(at(0), at(1), at(2));
+        regress(at(h - 1), at(h - 2), at(h - 3));
+    }
+    match both / expected {
+        share if share < 0.25 => 0.0,
+        share if share < 0.75 => 0.5,
+        _ => 1.0,
+    }
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The weights of a difference at position `i` of `n`: (first neighbour, weights). Inside, eighth order
-/// for the true derivative; fewer neighbours where there are no more.
-fn stencil(derivative: Derivative, i: usize, n: usize) -> (usize, Vec<f64>) {
+/// for the true derivative; fewer neighbours where there are no more, and `share` of the difference to the only one.
+fn stencil(derivative: Derivative, share: f64, i: usize, n: usize) -> (usize, Vec<f64>) {
     const ORDERS: [&[f64]; 4] = [
         &[-0.5, 0.0, 0.5],
         &[1.0 / 12.0, -2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 12.0],
@@ -60,7 +94,7 @@ fn stencil(derivative: Derivative, i: usize, n: usize) -> (usize, Vec<f64>) {
         return (0, if n == 2 { vec![-1.0, 1.0] } else { vec![0.0] });
     }
     if derivative == Derivative::ExactOrCentral {
-        return half_way(stencil(Derivative::Exact, i, n), &stencil(Derivative::Central, i, n));
+        return half_way(stencil(Derivative::Exact, share, i, n), &stencil(Derivative::Central, share, i, n));
     }
     let exact = derivative == Derivative::Exact;
     let room = i.min(n - 1 - i);
@@ -71,8 +105,8 @@ fn stencil(derivative: Derivative, i: usize, n: usize) -> (usize, Vec<f64>) {
     match (exact, i) {
         (true, 0) => (0, vec![-1.5, 2.0, -0.5]),
         (true, _) => (n - 3, vec![0.5, -2.0, 1.5]),
-        (false, 0) => (0, vec![-1.0, 1.0]),
-        (false, _) => (n - 2, vec![-1.0, 1.0]),
+        (false, 0) => (0, vec![-share, share]),
+        (false, _) => (n - 2, vec![-share, share]),
     }
 }
 
@@ -87,14 +121,19 @@ fn half_way(wide: (usize, Vec<f64>), narrow: &(usize, Vec<f64>)) -> (usize, Vec<
 }
 
 /// Calls `each(texel, neighbour, weight along u or 0, weight along v or 0)`.
-fn visit(w: usize, h: usize, derivative: Derivative, mut each: impl FnMut(usize, usize, [f64; 2])) {
-    let columns: Vec<_> = (0..w).map(|x| stencil(derivative, x, w)).collect();
+fn visit(
+    (w, h): (usize, usize),
+    derivative: Derivative,
+    share: f64,
+    mut each: impl FnMut(usize, usize, [f64; 2]),
+) {
+    let columns: Vec<_> = (0..w).map(|x| stencil(derivative, share, x, w)).collect();
     // Sobel's average across, folded back at the borders.
     let across: &[(isize, f64)] =
         if derivative == Derivative::Sobel { &[(-1, 0.25), (0, 0.5), (1, 0.25)] } else { &[(0, 1.0)] };
     let fold = |i: usize, by: isize, n: usize| i.saturating_add_signed(by).min(n - 1);
     for y in 0..h {
-        let row = stencil(derivative, y, h);
+        let row = stencil(derivative, share, y, h);
         for (x, (first, weights)) in columns.iter().enumerate() {
             for &(by, share) in across {
                 let (yy, xx) = (fold(y, by, h), fold(x, by, w));
@@ -112,20 +151,24 @@ fn visit(w: usize, h: usize, derivative: Derivative, mut each: impl FnMut(usize,
 /// Slopes of a surface that does not tile.
 #[must_use]
 pub fn differences(surface: &Raster, derivative: Derivative) -> Slopes {
+    differences_with(surface, derivative, 1.0)
+}
+
+fn differences_with(surface: &Raster, derivative: Derivative, share: f64) -> Slopes {
     let (w, h) = (surface.width, surface.height);
     let mut out = Slopes { along_u: Raster::constant(w, h, 0.0), along_v: Raster::constant(w, h, 0.0) };
-    visit(w, h, derivative, |at, from, [u, v]| {
+    visit((w, h), derivative, share, |at, from, [u, v]| {
         out.along_u.values[at] += u * surface.values[from];
         out.along_v.values[at] += v * surface.values[from];
     });
     out
 }
 
-/// The transpose of [`differences`].
-fn transposed_difference(field: &Slopes, derivative: Derivative) -> Vec<f64> {
+/// The transpose of [`differences_with`].
+fn transposed_difference(field: &Slopes, derivative: Derivative, share: f64) -> Vec<f64> {
     let (w, h) = (field.along_u.width, field.along_u.height);
     let mut out = vec![0.0; w * h];
-    visit(w, h, derivative, |at, from, [u, v]| {
+    visit((w, h), derivative, share, |at, from, [u, v]| {
         out[from] += u * field.along_u.values[at] + v * field.along_v.values[at];
     });
     out
