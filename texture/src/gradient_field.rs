@@ -18,6 +18,7 @@
 //! conjugate gradients, one-sided differences at the borders, with the formula above for a mirrored
 //! image as preconditioner.
 
+mod mirrored;
 mod open;
 mod periodic;
 mod rounded;
@@ -25,7 +26,7 @@ mod rounded;
 mod tests;
 mod turning;
 
-pub use open::{differences, integrate_open};
+pub use open::{differences, integrate_open, integrate_open_rounded};
 pub use periodic::{Projection, integrate_periodic, slopes};
 pub use rounded::integrate_rounded;
 pub use turning::{curl, possible_derivatives, possible_derivatives_inside};

@@ -22,8 +22,8 @@
 
 use crate::borders::{Borders, SplitBorders};
 use crate::gradient_field::{
-    Derivative, Slopes, curl, integrate_open, integrate_periodic, integrate_rounded, possible_derivatives,
-    possible_derivatives_inside,
+    Derivative, Slopes, curl, integrate_open_rounded, integrate_periodic, integrate_rounded,
+    possible_derivatives, possible_derivatives_inside,
 };
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
@@ -104,10 +104,11 @@ pub fn heights_from_normals(
             slope.values.iter_mut().for_each(|v| *v -= mean);
         }
     }
-    let height_px = match rounding_step([red, green, blue]) {
-        Some(step) if tileable => integrate_rounded(&field, derivative, rounding_noise(&field, step)),
+    let noise = rounding_step([red, green, blue]).map(|step| rounding_noise(&field, step));
+    let height_px = match noise {
+        Some(noise) if tileable => integrate_rounded(&field, derivative, noise),
         None if tileable => integrate_periodic(&field, derivative),
-        _ => integrate_open(&field, derivative),
+        _ => integrate_open_rounded(&field, derivative, noise.unwrap_or(f64::INFINITY)),
     };
     let curl = curl_of(&field, borders, derivative);
     Ok(NormalMapHeights {

@@ -1,10 +1,9 @@
 //! Fields that do not tile: one-sided differences at the borders, and conjugate gradients with the formula for a mirrored
 //! image as preconditioner.
 //!
-//! Converters differ at the borders, where a central difference lacks a neighbour: they take the whole difference to the only one, or
-//! half of it (the image goes on as its last texel), or none (it goes on mirrored). Which share it was is read from the field, by
-//! regression of the border's slopes on those expected from the two next to them, 3/2 s₁ − 1/2 s₂.
+//! That is for true derivatives; differences of neighbours are put together by mirroring the field ([`super::mirrored`]).
 
+use super::mirrored::{BorderShare, integrate_mirrored};
 use super::{Derivative, Slopes};
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
@@ -14,12 +13,31 @@ use rustfft::num_complex::Complex64;
 const MOST_STEPS: usize = 60;
 /// Residual of the normal equations, over its first value, at which they are solved.
 const SOLVED: f64 = 1e-5;
+
 /// The surface that need not tile and has these slopes as nearly as possible, mean 0. A constant slope
 /// is kept: a plane comes out as a plane.
 #[must_use]
 pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
+    integrate_open_rounded(field, derivative, f64::INFINITY)
+}
+
+/// The same where the slopes have a noise of variance `noise` at the most. Only differences of neighbours, which are blind to short waves, need
+/// to know.
+#[must_use]
+pub fn integrate_open_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
+    match derivative {
+        Derivative::Central | Derivative::Sobel => integrate_mirrored(field, derivative, noise),
+        Derivative::Exact | Derivative::ExactOrCentral => integrate_by_steps(field, derivative),
+    }
+}
+
+fn integrate_by_steps(field: &Slopes, derivative: Derivative) -> Raster {
     let (w, h) = (field.along_u.width, field.along_u.height);
-    let share = border_share(field, derivative);
+    let share = match (derivative, BorderShare::of(field)) {
+        (Derivative::Exact, _) | (_, BorderShare::Whole) => 1.0,
+        (_, BorderShare::Half) => 0.5,
+        (_, BorderShare::None) => 0.0,
+    };
     let mut mirrored = Mirrored::new(w, h, derivative);
     let mut residual = transposed_difference(field, derivative, share);
     let mut solution = vec![0.0; w * h];
@@ -46,35 +64,6 @@ pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
     }
     let mean = solution.iter().sum::<f64>() / solution.len() as f64;
     Raster { width: w, height: h, values: solution.iter().map(|z| z - mean).collect() }
-}
-
-/// The share of a one-sided difference that the field's borders hold: 1, ½ or 0.
-fn border_share(field: &Slopes, derivative: Derivative) -> f64 {
-    let (w, h) = (field.along_u.width, field.along_u.height);
-    if derivative == Derivative::Exact || w.min(h) < 6 {
-        return 1.0;
-    }
-    let (mut both, mut expected) = (0.0, 0.0);
-    let mut regress = |border: f64, next: f64, after: f64| {
-        let slope = 1.5 * next - 0.5 * after;
-        both += border * slope;
-        expected += slope * slope;
-    };
-    for y in 0..h {
-        let row = field.along_u.row(y);
-        regress(row[0], row[1], row[2]);
-        regress(row[w - 1], row[w - 2], row[w - 3]);
-    }
-    for x in 0..w {
-        let at = |y| field.along_v.at(x, y);
-        regress(at(0), at(1), at(2));
-        regress(at(h - 1), at(h - 2), at(h - 3));
-    }
-    match both / expected {
-        share if share < 0.25 => 0.0,
-        share if share < 0.75 => 0.5,
-        _ => 1.0,
-    }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
