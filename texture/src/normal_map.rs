@@ -18,7 +18,10 @@
 //! ```
 //! and [`integrate_rounded`] takes no more height from the slopes than that leaves. They have no number for 0 (127.5),
 //! so that a flat map tilts by 0.4 %: the mean slope of a map that tiles is
-//! dropped, and of one that does not, too, unless [`NormalMapOptions::keep_tilt`].
+//! dropped, and of one that does not, too, unless [`NormalMapOptions::keep_tilt`]. What is flat in a map comes out at the step next to 0:
+//! where that step stands out of the others, its texels are taken for what they are on average.
+
+mod next_to_zero;
 
 use crate::borders::{Borders, SplitBorders};
 use crate::gradient_field::{
@@ -27,6 +30,7 @@ use crate::gradient_field::{
 };
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
+use next_to_zero::NextToZero;
 
 /// Steepest slope that is believed (84°); beyond it 8 bits say nothing.
 const STEEPEST: f64 = 10.0;
@@ -90,7 +94,8 @@ pub fn heights_from_normals(
     options: &NormalMapOptions,
 ) -> Result<NormalMapHeights, DesignError> {
     check([red, green, blue])?;
-    let mut field = slopes_of_normals(red, green, blue);
+    let steps = rounding_steps([red, green, blue]);
+    let mut field = slopes_of_normals(red, green, blue, steps);
     let borders = borders_of(&field, options.borders);
     let (way, green_is_certain) = which_green(&field, borders, options.green);
     if way == Green::DirectX {
@@ -104,7 +109,7 @@ pub fn heights_from_normals(
             slope.values.iter_mut().for_each(|v| *v -= mean);
         }
     }
-    let noise = rounding_step([red, green, blue]).map(|step| rounding_noise(&field, step));
+    let noise = steps.map(|steps| rounding_noise(&field, 2.0 / steps));
     let height_px = match noise {
         Some(noise) if tileable => integrate_rounded(&field, derivative, noise),
         None if tileable => integrate_periodic(&field, derivative),
@@ -139,11 +144,14 @@ fn check(channels: [&Raster; 3]) -> Result<(), DesignError> {
 }
 
 /// Slopes with green taken as OpenGL's.
-fn slopes_of_normals(red: &Raster, green: &Raster, blue: &Raster) -> Slopes {
+fn slopes_of_normals(red: &Raster, green: &Raster, blue: &Raster, steps: Option<f64>) -> Slopes {
     let (w, h) = (red.width, red.height);
     let (mut along_u, mut along_v) = (Raster::constant(w, h, 0.0), Raster::constant(w, h, 0.0));
+    let [centre_x, centre_y] = [red, green].map(|c| steps.map(|steps| NextToZero::of(c, steps)));
     for i in 0..w * h {
         let [x, y, z] = [red, green, blue].map(|c| 2.0 * c.values[i] - 1.0);
+        let x = centre_x.as_ref().map_or(x, |c| c.value(x));
+        let y = centre_y.as_ref().map_or(y, |c| c.value(y));
         let flat = x * x + y * y;
         let length = (flat + z * z).sqrt();
         // Gentle slopes: the other two channels tell n_z better than blue does. Steep ones: blue,
@@ -163,11 +171,11 @@ fn borders_of(field: &Slopes, wanted: Borders) -> Borders {
     }
 }
 
-/// The step to which all components of the normals were rounded; `None`: they were not.
-fn rounding_step(channels: [&Raster; 3]) -> Option<f64> {
+/// The number of steps from 0 to 1 to which all channels were rounded; `None`: they were not.
+fn rounding_steps(channels: [&Raster; 3]) -> Option<f64> {
     let rounded = |value: f64, steps: f64| (value * steps - (value * steps).round()).abs() < 1e-6 * steps;
     let all = |steps| channels.iter().all(|c| c.values.iter().all(|&v| rounded(v, steps)));
-    STEPS.into_iter().find(|&steps| all(steps)).map(|steps| 2.0 / steps)
+    STEPS.into_iter().find(|&steps| all(steps))
 }
 
 /// Variance of a slope whose normal was rounded, mean over the map.
