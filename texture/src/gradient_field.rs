@@ -11,21 +11,27 @@
 //! Source: R. T. Frankot and R. Chellappa, "A method for enforcing integrability in shape from shading
 //! algorithms", IEEE PAMI 10, 1988. Changed: the paper divides by i ω; slopes that somebody computed by
 //! differences of texels are put together by the same differences. Which ones they were can be read
-//! from the slopes: only with the right ones is D_y P = D_x Q ([`curl`]).
+//! from the slopes ([`possible_derivatives`]): only with the right ones is D_y P = D_x Q. Slopes that were rounded are put
+//! together by [`integrate_rounded`].
 //!
 //! A field that does not tile is not taken to repeat: there the same least squares are solved by
 //! conjugate gradients, one-sided differences at the borders, with the formula above for a mirrored
 //! image as preconditioner.
 
+mod mirrored;
 mod open;
 mod periodic;
+mod rounded;
 #[cfg(test)]
 mod tests;
+mod turning;
 
-pub use open::{differences, integrate_open};
+pub use open::{differences, integrate_open, integrate_open_rounded};
 pub use periodic::{Projection, integrate_periodic, slopes};
+pub use rounded::integrate_rounded;
+pub use turning::{curl, possible_derivatives, possible_derivatives_inside};
 
-use crate::fft2::{Fft2, angular_frequency};
+use crate::fft2::angular_frequency;
 use crate::raster::Raster;
 use rustfft::num_complex::Complex64;
 
@@ -38,20 +44,19 @@ pub enum Derivative {
     Central,
     /// The same, averaged across with weights ¼, ½, ¼, as many height-to-normal converters do.
     Sobel,
+    /// Half way between [`Derivative::Exact`] and [`Derivative::Central`]: for slopes that either may have made. With D_x the smaller of two
+    /// symbols and D_x' the larger, (D_x' − D_x)/(D_x' + D_x) is the least relative error of a wave's height that can be had in the worse case.
+    ExactOrCentral,
 }
 
-/// Every [`Derivative`].
+/// Every [`Derivative`] that makes slopes.
 pub const DERIVATIVES: [Derivative; 3] = [Derivative::Exact, Derivative::Central, Derivative::Sobel];
 
 /// |D|² below which a frequency in the upper half of the spectrum is left at zero: a difference that
 /// does not see a wave (neighbours two apart are equal) cannot tell its height.
 const BLIND: f64 = 0.004;
-/// The same for [`Derivative::Sobel`], which is nearly blind to many more. Less of it keeps more of sharp creases (2.2 % of
-/// the heights of ridges are lost at 0.002, 2.6 % here; 8 bits cost 1.9 % even if the true spectrum is known) and
-/// lets more noise into smooth surfaces.
+/// The same for [`Derivative::Sobel`], which is nearly blind to many more.
 const SOBEL_BLIND: f64 = 0.01;
-/// Power over the median power from which a frequency counts as signal.
-const CLEAR_OF_NOISE: f64 = 8.0;
 
 impl Derivative {
     /// D_x / i and D_y / i at one frequency, radians per texel.
@@ -61,6 +66,7 @@ impl Derivative {
             Self::Exact => [wx, wy],
             Self::Central => [wx.sin(), wy.sin()],
             Self::Sobel => [wx.sin() * 0.5 * (1.0 + wy.cos()), wy.sin() * 0.5 * (1.0 + wx.cos())],
+            Self::ExactOrCentral => [0.5 * (wx + wx.sin()), 0.5 * (wy + wy.sin())],
         }
     }
 
@@ -78,10 +84,13 @@ impl Derivative {
         [dx, dy]
     }
 
+    fn square_at(self, place: usize, width: usize, height: usize) -> f64 {
+        self.at_bin(place, width, height).iter().map(|d| d * d).sum()
+    }
+
     /// 1/|D|², or 0 where the derivative is blind.
     fn inverse_square(self, place: usize, width: usize, height: usize) -> f64 {
-        let [dx, dy] = self.at_bin(place, width, height);
-        let square = dx * dx + dy * dy;
+        let square = self.square_at(place, width, height);
         let (wx, wy) = (angular_frequency(place / height, width), angular_frequency(place % height, height));
         let upper_half = wx.hypot(wy) > std::f64::consts::FRAC_PI_2;
         let blind = if self == Self::Sobel { SOBEL_BLIND } else { BLIND };
@@ -119,33 +128,4 @@ fn unpack(packed: &[Complex64], place: usize, width: usize, height: usize) -> [C
     let mirror = (width - kx) % width * height + (height - ky) % height;
     let (a, b) = (packed[place], packed[mirror].conj());
     [(a + b) * 0.5, (a - b) * Complex64::new(0.0, -0.5)]
-}
-
-/// How far slopes are from being those of any surface, 0–1: the share of their power that lies across D,
-/// Σ |D_y P − D_x Q|²/|D|² / Σ (|P|² + |Q|²), where the slopes stand out of their noise (eight times the median
-/// power). A field that does not tile must come as its periodic component.
-#[must_use]
-pub fn curl(field: &Slopes, derivative: Derivative) -> f64 {
-    let (w, h) = (field.along_u.width, field.along_u.height);
-    let mut image = field.packed();
-    let mut packed = vec![Complex64::default(); image.len()];
-    Fft2::new(w, h).forward(&mut image, &mut packed);
-    let power = |place| unpack(&packed, place, w, h).iter().map(Complex64::norm_sqr).sum::<f64>();
-    let mut powers: Vec<f64> = (1..packed.len()).map(power).collect();
-    let middle = powers.len() / 2;
-    let floor = CLEAR_OF_NOISE * *powers.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let (mut turning, mut all) = (0.0, 0.0);
-    for place in 1..packed.len() {
-        let [p, q] = unpack(&packed, place, w, h);
-        let [dx, dy] = derivative.at_bin(place, w, h);
-        if p.norm_sqr() + q.norm_sqr() < floor {
-            continue;
-        }
-        let square = dx * dx + dy * dy;
-        if square > 0.0 {
-            turning += (p * dy - q * dx).norm_sqr() / square;
-            all += p.norm_sqr() + q.norm_sqr();
-        }
-    }
-    if all == 0.0 { 0.0 } else { turning / all }
 }

@@ -14,7 +14,7 @@ use asperity_texture::raster::Raster;
 use asperity_texture::symmetry::{
     WallpaperGroup, averaged_cell, best_lattice, find_lattice, wallpaper_group,
 };
-use patterns::{KINDS, ROWS, is_lattice, picture};
+use patterns::{KINDS, Kind, ROWS, Stress, is_lattice, picture};
 use std::path::PathBuf;
 
 #[test]
@@ -34,6 +34,22 @@ fn lattices_are_found_in_every_row_of_the_stress_table() {
         mean += found / ROWS.len() as f64;
     }
     assert!(mean >= 0.95, "{mean}");
+}
+
+/// Once taken for a multiple of their cell, or for translations of 4 texels at which every smooth picture fits itself.
+#[test]
+fn a_warped_cell_is_neither_doubled_nor_lost_among_fine_ones() {
+    for seed in [4, 23, 24] {
+        let (pattern, truth) = picture(Kind::Rectangular, Stress::Warp(2.0), 256, 1000 + seed);
+        let found = find_lattice(&pattern);
+        assert!(found.is_some_and(|l| is_lattice([l.t1_px, l.t2_px], truth)), "{seed}: {found:?}");
+    }
+    for seed in [12, 16] {
+        let pattern = wallpaper::picture(WallpaperGroup::Pgg, 256, 31 * seed + 7);
+        let lattice = find_lattice(&pattern).unwrap();
+        let group = wallpaper_group(&averaged_cell(&pattern, &lattice), &lattice).group;
+        assert_eq!(group, WallpaperGroup::Pgg, "{seed}");
+    }
 }
 
 #[test]

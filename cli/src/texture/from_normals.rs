@@ -22,6 +22,9 @@ pub struct Options {
     /// Which way green points; found out unless given
     #[arg(long, value_name = "WAY")]
     pub green: Option<GreenName>,
+    /// What took the map's slopes from heights; found out unless given
+    #[arg(long, value_name = "HOW")]
+    pub derivative: Option<DerivativeName>,
     /// Keep the mean slope of a map that does not tile
     #[arg(long)]
     pub keep_tilt: bool,
@@ -45,6 +48,40 @@ pub enum GreenName {
     DirectX,
 }
 
+/// Ways of taking slopes from heights.
+#[derive(Debug, Clone, Copy, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DerivativeName {
+    /// The true derivative: normals baked from geometry.
+    Exact,
+    /// Half the difference of the texels on both sides.
+    Central,
+    /// The same, averaged across (¼, ½, ¼): many height-to-normal converters.
+    Sobel,
+    /// Half way between the first two: what is taken when the map does not tell them apart.
+    ExactOrCentral,
+}
+
+impl DerivativeName {
+    fn derivative(self) -> Derivative {
+        match self {
+            Self::Exact => Derivative::Exact,
+            Self::Central => Derivative::Central,
+            Self::Sobel => Derivative::Sobel,
+            Self::ExactOrCentral => Derivative::ExactOrCentral,
+        }
+    }
+
+    fn of(derivative: Derivative) -> Self {
+        match derivative {
+            Derivative::Exact => Self::Exact,
+            Derivative::Central => Self::Central,
+            Derivative::Sobel => Self::Sobel,
+            Derivative::ExactOrCentral => Self::ExactOrCentral,
+        }
+    }
+}
+
 #[derive(Debug, Serialize)]
 struct Report {
     width: usize,
@@ -54,7 +91,9 @@ struct Report {
     relief_m: Option<f64>,
     green: GreenName,
     green_is_certain: bool,
-    derivative: &'static str,
+    derivative: DerivativeName,
+    /// Whether it was told or the map says so.
+    derivative_is_certain: bool,
     tileable: bool,
     /// What no surface has of the map's slopes, 0–1.
     curl: f64,
@@ -79,6 +118,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
             Some(GreenName::OpenGl) => Green::OpenGl,
             Some(GreenName::DirectX) => Green::DirectX,
         },
+        derivative: options.derivative.map(DerivativeName::derivative),
         keep_tilt: options.keep_tilt,
         ..NormalMapOptions::default()
     };
@@ -96,11 +136,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         relief_m: options.width_m.map(|width_m| relief_per_px * width_m / scaled.width as f64),
         green: if found.green == Green::DirectX { GreenName::DirectX } else { GreenName::OpenGl },
         green_is_certain: found.green_is_certain,
-        derivative: match found.derivative {
-            Derivative::Exact => "exact",
-            Derivative::Central => "central",
-            Derivative::Sobel => "sobel",
-        },
+        derivative: DerivativeName::of(found.derivative),
+        derivative_is_certain: found.derivative_is_certain,
         tileable: found.tileable,
         curl: found.curl,
         files: outputs.commit()?,
@@ -108,12 +145,15 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     if options.json {
         return output::say_json(&report);
     }
+    let sure = |certain: bool| if certain { "" } else { " (the map does not tell)" };
     output::say(&format!(
-        "{} × {} texels; white is {relief_per_px:.2} texels above black; {:?} green{}\nwrote {}",
+        "{} × {} texels; white is {relief_per_px:.2} texels above black; {:?} green{}; {:?} slopes{}\nwrote {}",
         report.width,
         report.height,
         report.green,
-        if report.green_is_certain { "" } else { " (the map does not tell)" },
+        sure(report.green_is_certain),
+        report.derivative,
+        sure(report.derivative_is_certain),
         options.output.display()
     ));
     Ok(())

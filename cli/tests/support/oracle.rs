@@ -19,27 +19,31 @@ pub struct Row {
     pub normal_force_n: f64,
 }
 
-/// 0.3 s in a bow at 0.06 to 0.1 m/s, 60 events a second.
-pub fn bow() -> String {
+/// A stroke of `count` events, 60 a second, and its end at `end_s`: place (metres) and velocity at a time.
+fn stroke(count: u32, end_s: f64, normal_force_n: f64, path: impl Fn(f64) -> [[f64; 2]; 2]) -> String {
     let mut lines = String::new();
-    for index in 0..18 {
+    for index in 0..count {
         let t = f64::from(index) / 60.0;
         let kind = if index == 0 {
             r#""event":"begin","surface":"plate","actuator":0,"closing_m_s":0.0"#
         } else {
             r#""event":"move""#
         };
-        let at = [0.031 + 0.07 * t, 0.043 + 0.02 * t + 0.005 * (9.0 * t).sin()];
-        let velocity = [0.07, 0.02 + 0.045 * (9.0 * t).cos()];
+        let [at, velocity] = path(t);
+        let [u, v] = [0, 1].map(|axis| at[axis] / EXTENT_M[axis]);
         lines += &format!(
-            "{{\"t\":{t},{kind},\"contact\":1,\"uv\":[{},{}],\"velocity_m_s\":[{},{}],\"normal_force_n\":0.6}}\n",
-            at[0] / EXTENT_M[0],
-            at[1] / EXTENT_M[1],
-            velocity[0],
-            velocity[1]
+            "{{\"t\":{t},{kind},\"contact\":1,\"uv\":[{u},{v}],\"velocity_m_s\":{velocity:?},\"normal_force_n\":{normal_force_n:?}}}\n",
         );
     }
-    lines + "{\"t\":0.3,\"event\":\"end\",\"contact\":1}\n"
+    lines + &format!("{{\"t\":{end_s:?},\"event\":\"end\",\"contact\":1}}\n")
+}
+
+/// 0.3 s in a bow at 0.06 to 0.1 m/s, 60 events a second.
+pub fn bow() -> String {
+    stroke(18, 0.3, 0.6, |t| {
+        let at = [0.031 + 0.07 * t, 0.043 + 0.02 * t + 0.005 * (9.0 * t).sin()];
+        [at, [0.07, 0.02 + 0.045 * (9.0 * t).cos()]]
+    })
 }
 
 /// Velocity of [`straight`], m/s.
@@ -47,20 +51,7 @@ pub const STRAIGHT_M_S: [f64; 2] = [0.06, 0.01];
 
 /// A second straight on, pressed with 2 N.
 pub fn straight() -> String {
-    let mut lines = String::new();
-    for index in 0..60 {
-        let t = f64::from(index) / 60.0;
-        let kind = if index == 0 {
-            r#""event":"begin","surface":"plate","actuator":0,"closing_m_s":0.0"#
-        } else {
-            r#""event":"move""#
-        };
-        let [u, v] = [0, 1].map(|a| ([0.02, 0.03][a] + STRAIGHT_M_S[a] * t) / EXTENT_M[a]);
-        lines += &format!(
-            "{{\"t\":{t},{kind},\"contact\":1,\"uv\":[{u},{v}],\"velocity_m_s\":{STRAIGHT_M_S:?},\"normal_force_n\":2.0}}\n",
-        );
-    }
-    lines + "{\"t\":1.0,\"event\":\"end\",\"contact\":1}\n"
+    stroke(60, 1.0, 2.0, |t| [[0.02 + STRAIGHT_M_S[0] * t, 0.03 + STRAIGHT_M_S[1] * t], STRAIGHT_M_S])
 }
 
 /// A scene whose surface has the given source and no micro-relief.

@@ -1,6 +1,9 @@
 //! Fields that do not tile: one-sided differences at the borders, and conjugate gradients with the formula for a mirrored
 //! image as preconditioner.
+//!
+//! That is for true derivatives; differences of neighbours are put together by mirroring the field ([`super::mirrored`]).
 
+use super::mirrored::{BorderShare, integrate_mirrored};
 use super::{Derivative, Slopes};
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
@@ -10,13 +13,33 @@ use rustfft::num_complex::Complex64;
 const MOST_STEPS: usize = 60;
 /// Residual of the normal equations, over its first value, at which they are solved.
 const SOLVED: f64 = 1e-5;
+
 /// The surface that need not tile and has these slopes as nearly as possible, mean 0. A constant slope
 /// is kept: a plane comes out as a plane.
 #[must_use]
 pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
+    integrate_open_rounded(field, derivative, f64::INFINITY)
+}
+
+/// The same where the slopes have a noise of variance `noise` at the most. Only differences of neighbours, which are blind to short waves, need
+/// to know.
+#[must_use]
+pub fn integrate_open_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
+    match derivative {
+        Derivative::Central | Derivative::Sobel => integrate_mirrored(field, derivative, noise),
+        Derivative::Exact | Derivative::ExactOrCentral => integrate_by_steps(field, derivative),
+    }
+}
+
+fn integrate_by_steps(field: &Slopes, derivative: Derivative) -> Raster {
     let (w, h) = (field.along_u.width, field.along_u.height);
+    let share = match (derivative, BorderShare::of(field)) {
+        (Derivative::Exact, _) | (_, BorderShare::Whole) => 1.0,
+        (_, BorderShare::Half) => 0.5,
+        (_, BorderShare::None) => 0.0,
+    };
     let mut mirrored = Mirrored::new(w, h, derivative);
-    let mut residual = transposed_difference(field, derivative);
+    let mut residual = transposed_difference(field, derivative, share);
     let mut solution = vec![0.0; w * h];
     let mut direction = mirrored.precondition(&residual);
     let mut product = dot(&residual, &direction);
@@ -26,7 +49,7 @@ pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
             break;
         }
         let surface = Raster { width: w, height: h, values: direction.clone() };
-        let image = transposed_difference(&differences(&surface, derivative), derivative);
+        let image = transposed_difference(&differences_with(&surface, derivative, share), derivative, share);
         let step = product / dot(&direction, &image);
         for ((z, d), (r, a)) in solution.iter_mut().zip(&direction).zip(residual.iter_mut().zip(&image)) {
             *z += step * d;
@@ -48,8 +71,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The weights of a difference at position `i` of `n`: (first neighbour, weights). Inside, eighth order
-/// for the true derivative; fewer neighbours where there are no more.
-fn stencil(derivative: Derivative, i: usize, n: usize) -> (usize, &'static [f64]) {
+/// for the true derivative; fewer neighbours where there are no more, and `share` of the difference to the only one.
+fn stencil(derivative: Derivative, share: f64, i: usize, n: usize) -> (usize, Vec<f64>) {
     const ORDERS: [&[f64]; 4] = [
         &[-0.5, 0.0, 0.5],
         &[1.0 / 12.0, -2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 12.0],
@@ -57,30 +80,49 @@ fn stencil(derivative: Derivative, i: usize, n: usize) -> (usize, &'static [f64]
         &[1.0 / 280.0, -4.0 / 105.0, 0.2, -0.8, 0.0, 0.8, -0.2, 4.0 / 105.0, -1.0 / 280.0],
     ];
     if n < 3 {
-        return if n == 2 { (0, &[-1.0, 1.0]) } else { (0, &[0.0]) };
+        return (0, if n == 2 { vec![-1.0, 1.0] } else { vec![0.0] });
     }
+    if derivative == Derivative::ExactOrCentral {
+        return half_way(stencil(Derivative::Exact, share, i, n), &stencil(Derivative::Central, share, i, n));
+    }
+    let exact = derivative == Derivative::Exact;
     let room = i.min(n - 1 - i);
-    if room == 0 {
-        return match (derivative, i) {
-            (Derivative::Exact, 0) => (0, &[-1.5, 2.0, -0.5]),
-            (Derivative::Exact, _) => (n - 3, &[0.5, -2.0, 1.5]),
-            (_, 0) => (0, &[-1.0, 1.0]),
-            _ => (n - 2, &[-1.0, 1.0]),
-        };
+    if room > 0 {
+        let order = if exact { room.min(4) } else { 1 };
+        return (i - order, ORDERS[order - 1].to_vec());
     }
-    let order = if derivative == Derivative::Exact { room.min(4) } else { 1 };
-    (i - order, ORDERS[order - 1])
+    match (exact, i) {
+        (true, 0) => (0, vec![-1.5, 2.0, -0.5]),
+        (true, _) => (n - 3, vec![0.5, -2.0, 1.5]),
+        (false, 0) => (0, vec![-share, share]),
+        (false, _) => (n - 2, vec![-share, share]),
+    }
+}
+
+/// The mean of two stencils, the first of which spans the second.
+fn half_way(wide: (usize, Vec<f64>), narrow: &(usize, Vec<f64>)) -> (usize, Vec<f64>) {
+    let (first, mut weights) = wide;
+    weights.iter_mut().for_each(|weight| *weight *= 0.5);
+    for (weight, other) in weights[narrow.0 - first..].iter_mut().zip(&narrow.1) {
+        *weight += 0.5 * other;
+    }
+    (first, weights)
 }
 
 /// Calls `each(texel, neighbour, weight along u or 0, weight along v or 0)`.
-fn visit(w: usize, h: usize, derivative: Derivative, mut each: impl FnMut(usize, usize, [f64; 2])) {
-    let columns: Vec<_> = (0..w).map(|x| stencil(derivative, x, w)).collect();
+fn visit(
+    (w, h): (usize, usize),
+    derivative: Derivative,
+    share: f64,
+    mut each: impl FnMut(usize, usize, [f64; 2]),
+) {
+    let columns: Vec<_> = (0..w).map(|x| stencil(derivative, share, x, w)).collect();
     // Sobel's average across, folded back at the borders.
     let across: &[(isize, f64)] =
         if derivative == Derivative::Sobel { &[(-1, 0.25), (0, 0.5), (1, 0.25)] } else { &[(0, 1.0)] };
     let fold = |i: usize, by: isize, n: usize| i.saturating_add_signed(by).min(n - 1);
     for y in 0..h {
-        let row = stencil(derivative, y, h);
+        let row = stencil(derivative, share, y, h);
         for (x, (first, weights)) in columns.iter().enumerate() {
             for &(by, share) in across {
                 let (yy, xx) = (fold(y, by, h), fold(x, by, w));
@@ -98,20 +140,24 @@ fn visit(w: usize, h: usize, derivative: Derivative, mut each: impl FnMut(usize,
 /// Slopes of a surface that does not tile.
 #[must_use]
 pub fn differences(surface: &Raster, derivative: Derivative) -> Slopes {
+    differences_with(surface, derivative, 1.0)
+}
+
+fn differences_with(surface: &Raster, derivative: Derivative, share: f64) -> Slopes {
     let (w, h) = (surface.width, surface.height);
     let mut out = Slopes { along_u: Raster::constant(w, h, 0.0), along_v: Raster::constant(w, h, 0.0) };
-    visit(w, h, derivative, |at, from, [u, v]| {
+    visit((w, h), derivative, share, |at, from, [u, v]| {
         out.along_u.values[at] += u * surface.values[from];
         out.along_v.values[at] += v * surface.values[from];
     });
     out
 }
 
-/// The transpose of [`differences`].
-fn transposed_difference(field: &Slopes, derivative: Derivative) -> Vec<f64> {
+/// The transpose of [`differences_with`].
+fn transposed_difference(field: &Slopes, derivative: Derivative, share: f64) -> Vec<f64> {
     let (w, h) = (field.along_u.width, field.along_u.height);
     let mut out = vec![0.0; w * h];
-    visit(w, h, derivative, |at, from, [u, v]| {
+    visit((w, h), derivative, share, |at, from, [u, v]| {
         out[from] += u * field.along_u.values[at] + v * field.along_v.values[at];
     });
     out

@@ -23,6 +23,8 @@ pub(super) struct Minimum {
 pub(super) struct Fit {
     depth: Raster,
     reach: [f64; 2],
+    /// Mean over all shifts.
+    pub mean: f64,
     /// Standard deviation over all shifts.
     pub deviation: f64,
 }
@@ -53,6 +55,7 @@ impl Fit {
         Some(Self {
             depth,
             reach: [matrix.reach_x as f64, matrix.reach_y as f64],
+            mean,
             deviation: variance.sqrt(),
         })
     }

@@ -7,10 +7,14 @@
 //! others.
 #![allow(dead_code)]
 
+#[path = "../../../dsp/tests/spectrum/mod.rs"]
+mod spectrum;
+
 use asperity_dsp::rng::Rng;
 use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::{SolidNoise, SolidNoiseParameters};
+use spectrum::fft;
 use std::f64::consts::TAU;
 
 pub const RATE: f64 = 4096.0;
@@ -69,45 +73,19 @@ pub fn force(source: &SolidNoise, path: &[([f64; 2], [f64; 2])]) -> Vec<f64> {
         .collect()
 }
 
-/// Power spectrum of a Hann window, radix 2.
-fn spectrum(signal: &[f64]) -> Vec<f64> {
+/// Power spectrum of a Hann window.
+fn power_spectrum(signal: &[f64]) -> Vec<f64> {
     let n = signal.len();
-    let mut data: Vec<(f64, f64)> = signal
-        .iter()
-        .enumerate()
-        .map(|(i, s)| (s * (0.5 - 0.5 * (TAU * i as f64 / n as f64).cos()), 0.0))
-        .collect();
-    let mut j = 0;
-    for i in 1..n {
-        let mut bit = n >> 1;
-        while j & bit != 0 {
-            j ^= bit;
-            bit >>= 1;
-        }
-        j |= bit;
-        if i < j {
-            data.swap(i, j);
-        }
-    }
-    let mut length = 2;
-    while length <= n {
-        for start in (0..n).step_by(length) {
-            for k in 0..length / 2 {
-                let (s, c) = (-TAU * k as f64 / length as f64).sin_cos();
-                let (a, b) = (data[start + k], data[start + k + length / 2]);
-                let b = (b.0 * c - b.1 * s, b.0 * s + b.1 * c);
-                data[start + k] = (a.0 + b.0, a.1 + b.1);
-                data[start + k + length / 2] = (a.0 - b.0, a.1 - b.1);
-            }
-        }
-        length *= 2;
-    }
-    data[..n / 2].iter().map(|c| (c.0 * c.0 + c.1 * c.1) / n as f64).collect()
+    let hann = |i: usize| 0.5 - 0.5 * (TAU * i as f64 / n as f64).cos();
+    let mut re: Vec<f64> = signal.iter().enumerate().map(|(i, s)| s * hann(i)).collect();
+    let mut im = vec![0.0; n];
+    fft(&mut re, &mut im);
+    re.iter().zip(&im).take(n / 2).map(|(re, im)| (re * re + im * im) / n as f64).collect()
 }
 
 /// Levels in dB below 4 Hz and in third octaves from 5 to 1000 Hz.
 fn features(signal: &[f64]) -> Vec<f64> {
-    let power = spectrum(signal);
+    let power = power_spectrum(signal);
     let level = |from: f64, to: f64| {
         let bins = (from.ceil() as usize)..(to.ceil() as usize).min(power.len());
         10.0 * (power[bins].iter().sum::<f64>() + 1e-16).log10()

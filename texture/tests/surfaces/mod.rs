@@ -4,6 +4,7 @@
 
 use asperity_dsp::rng::Rng;
 use asperity_texture::fft2::{Fft2, angular_frequency};
+use asperity_texture::gradient_field::{Derivative, slopes};
 use asperity_texture::raster::Raster;
 
 /// A random surface with power spectral density ∝ r^−`beta`, stretched along u by `stretch`.
@@ -39,6 +40,27 @@ pub fn ridges(n: usize) -> Raster {
 /// Rough ground.
 pub fn ground(n: usize) -> Raster {
     fractal(n, 3.0, 1.0, 1)
+}
+
+/// Surfaces 256 texels wide with an rms slope of about 0.3.
+pub fn known_surfaces() -> Vec<(&'static str, Raster)> {
+    let scaled = |surface: Raster| {
+        let power = slopes(&surface, Derivative::Exact).power();
+        surface.map(|z| z * 0.3 / power.sqrt())
+    };
+    vec![
+        ("rough ground", scaled(fractal(256, 4.0, 1.0, 31))),
+        ("smooth ground", scaled(fractal(256, 5.0, 1.0, 32))),
+        ("wood", scaled(fractal(256, 4.0, 6.0, 33))),
+        ("ridges", scaled(ridges(256))),
+        (
+            "bumps",
+            scaled(Raster::from_fn(256, 256, |x, y| {
+                let wave = |i: usize| (i as f64 * std::f64::consts::TAU / 32.0).sin();
+                wave(x) * wave(y)
+            })),
+        ),
+    ]
 }
 
 /// Correlation of two equally large rasters.
