@@ -19,6 +19,7 @@ fn fitted(samples: Vec<f64>) -> asperity_fit::Fit {
 }
 
 fn main() {
+    if std::env::args().nth(1).as_deref() == Some("long") { long(30.0); return; }
     println!("pairs 1 Hz apart, both found: {} of 50 (48 or more)", pairs(50, 4242));
     println!("white noise, without a mode: {} of 20 (19 or more)", silent(20, 9000, 1.0));
     println!("coloured noise, without a mode: {} of 20 (19 or more)", silent(20, 9100, 0.25));
@@ -85,7 +86,7 @@ fn long(seconds: f64) {
     let mut writer = hound::WavWriter::create(&path, spec).expect("a temporary file can be written");
     for n in 0..count {
         let x = 0.3 * ringing.get(n).copied().unwrap_or(0.0) + 1e-4 * rng.normal();
-        writer.write_sample((32_767.0 * x) as i16).expect("a sample can be written");
+        writer.write_sample((32_767.0 * x).round() as i16).expect("a sample can be written");
     }
     writer.finalize().expect("the file can be finished");
     drop(ringing);
@@ -103,5 +104,12 @@ fn long(seconds: f64) {
         fit.modes.len(),
         peak_mib()
     );
+    for m in &fit.modes {
+        if !modes.iter().any(|t| (m.frequency_hz / t.frequency_hz - 1.0).abs() < 1e-4) {
+            println!("  spurious {m:?}");
+        }
+    }
+    for w in &fit.warnings { println!("  {w}"); }
+    println!("  {} {} {} {}", fit.onset_s, fit.start_offset_s, fit.end_s, fit.noise_floor_db);
     std::fs::remove_file(path).expect("the temporary file can be removed");
 }

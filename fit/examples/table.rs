@@ -59,6 +59,10 @@ fn main() {
                 spurious += score.spurious;
                 total += score.identifiable;
                 if verbose {
+                    let mut all: Vec<(f64, String)> = impact.truth.iter().zip(&bounds).map(|(t, b)| (t.frequency_hz, format!("truth {:?} {t:?} {:.2e} {:.2e}", identifiable(t, b), b[0], b[1]))).collect();
+                    all.extend(found.iter().map(|m| (m.frequency_hz, format!("      found {m:?}"))));
+                    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+                    for (_, line) in all { println!("    {line}"); }
                     println!("seed {seed}: {} found", found.len());
                     for (mode, bound) in &score.missed_modes {
                         println!("  missed {mode:?} {bound:?}");

@@ -260,7 +260,7 @@ impl Work<'_> {
         let target = subtract(&self.segment[start..], &frozen_late);
         let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(offset)).collect();
         active.extend(found);
-        fit_amplitudes(&target, &mut active);
+        fit_amplitudes(&target, &mut active, self.limits.bounds.energy_cost);
         self.drop_faint(&mut active, target.len());
         let mut bounds = self.limits.bounds;
         if start > 0 {

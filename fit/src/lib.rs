@@ -24,7 +24,7 @@
 //! | [`scaling`] | modes → modes of another size or material |
 //! | [`merge`] | fits of several strikes → one body with amplitudes per strike |
 //! | [`table`] | modes ↔ CSV, and other programs' tables |
-//! | [`partial`], [`geometric_sum`], [`projection`] | the damped sinusoid, its sums, its passes over samples |
+//! | [`partial`], [`geometric_sum`], [`projection`], [`normal_equations`] | the damped sinusoid, its sums, its passes over samples, its least squares |
 
 pub mod amplitudes;
 pub mod analysis;
@@ -36,6 +36,7 @@ pub mod merge;
 pub mod merging;
 pub mod model_order;
 pub mod noise_floor;
+pub mod normal_equations;
 pub mod onset;
 pub mod partial;
 pub mod projection;

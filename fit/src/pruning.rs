@@ -9,8 +9,9 @@
 //! two stays and is refitted.
 
 use crate::noise_floor::NoiseFloor;
+use crate::normal_equations::Scaled;
 use crate::partial::Partial;
-use crate::refinement::{Bounds, Scaled, gradient, gram_matrix, refine};
+use crate::refinement::{Bounds, gradient, gram_matrix, refine};
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use std::f64::consts::PI;
 
