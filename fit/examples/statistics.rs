@@ -19,7 +19,10 @@ fn fitted(samples: Vec<f64>) -> asperity_fit::Fit {
 }
 
 fn main() {
-    if std::env::args().nth(1).as_deref() == Some("long") { long(30.0); return; }
+    if std::env::args().nth(1).as_deref() == Some("long") {
+        long(30.0);
+        return;
+    }
     println!("pairs 1 Hz apart, both found: {} of 50 (48 or more)", pairs(50, 4242));
     println!("white noise, without a mode: {} of 20 (19 or more)", silent(20, 9000, 1.0));
     println!("coloured noise, without a mode: {} of 20 (19 or more)", silent(20, 9100, 0.25));
@@ -109,7 +112,9 @@ fn long(seconds: f64) {
             println!("  spurious {m:?}");
         }
     }
-    for w in &fit.warnings { println!("  {w}"); }
+    for w in &fit.warnings {
+        println!("  {w}");
+    }
     println!("  {} {} {} {}", fit.onset_s, fit.start_offset_s, fit.end_s, fit.noise_floor_db);
     std::fs::remove_file(path).expect("the temporary file can be removed");
 }

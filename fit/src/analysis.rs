@@ -45,6 +45,9 @@ const LEVEL_ROUNDS: usize = 3;
 /// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
 const WORTHWHILE: f64 = 0.9;
 const FINAL_STEPS: usize = 12;
+/// Of the last refinement of what is a sum of modes: until it has converged, which modes closer than their
+/// bandwidths, whose valley is narrow and bent, may take long to.
+const LAST_STEPS: usize = 200;
 
 /// What bounds an analysis, in units of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,6 +88,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         partials: Vec::new(),
         capped: false,
         mismatch: false,
+        missed: Vec::new(),
     };
     let levels = Level::ladder(segment.len());
     let mut cost = f64::INFINITY;
@@ -100,7 +104,8 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         }
         work.settle(FINAL_STEPS);
         work.measure_noise();
-        while prune_missed_by_nobody(segment, &mut work.partials, &work.noise, &limits.bounds) > 0 {
+        work.missed.clear();
+        while work.prune_proven() > 0 {
             work.settle(LEVEL_STEPS);
         }
         let left = square_sum(&subtract(segment, &work.partials));
@@ -120,7 +125,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         // It was only that modes were still missing.
         work.limits.bounds.energy_cost = 0.0;
     }
-    work.settle(FINAL_STEPS);
+    work.settle(if work.mismatch { FINAL_STEPS } else { LAST_STEPS });
     for _ in 0..MERGING_ROUNDS {
         if merge_cancelling(segment, &mut work.partials, &work.limits.bounds) == 0 {
             break;
@@ -155,6 +160,8 @@ struct Work<'a> {
     capped: bool,
     /// The recording has shown that it is no sum of modes in noise.
     mismatch: bool,
+    /// Poles that were tried without, and missed.
+    missed: Vec<Partial>,
 }
 
 impl Work<'_> {
@@ -204,6 +211,12 @@ impl Work<'_> {
             }
             self.settle(LEVEL_STEPS);
         }
+    }
+
+    /// Removes what the whole segment does not miss; says how many.
+    fn prune_proven(&mut self) -> usize {
+        let (noise, bounds) = (&self.noise, &self.limits.bounds);
+        prune_missed_by_nobody(self.segment, &mut self.partials, noise, bounds, &mut self.missed)
     }
 
     /// The noise as the residual shows it now.
@@ -271,7 +284,7 @@ impl Work<'_> {
         while if start > 0 {
             prune(&mut active, &self.noise, target.len(), threshold(target.len()))
         } else {
-            prune_missed_by_nobody(&target, &mut active, &self.noise, &bounds)
+            prune_missed_by_nobody(&target, &mut active, &self.noise, &bounds, &mut self.missed)
         } > 0
         {
             refine(&target, &mut active, &bounds, LEVEL_STEPS);

@@ -19,6 +19,8 @@ use std::f64::consts::PI;
 pub const FALSE_ALARM: f64 = 0.01;
 /// Steps of the refit without the partials in doubt.
 const TEST_STEPS: usize = 4;
+/// A pole that has moved by less than this part of its half-bandwidth is where it was.
+const SAME: f64 = 0.01;
 
 /// Standard deviations of one partial's parameters, in units of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,13 +112,17 @@ pub fn prune(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize, leas
 /// The statistic is Rao's: with r the residual of the refit, J the Jacobian of the others and A the two
 /// amplitude columns of the pole, h = Aᵀr − AᵀJ (JᵀJ)⁻¹ Jᵀr and S = AᵀA − AᵀJ (JᵀJ)⁻¹ JᵀA give
 /// hᵀ S⁻¹ h / σ², what the squared residual would fall by.
+///
+/// `kept` remembers the poles that were missed: while they stay where they are, they are not tried again.
 pub fn prune_missed_by_nobody(
     signal: &[f64],
     partials: &mut Vec<Partial>,
     noise: &NoiseFloor,
     bounds: &Bounds,
+    kept: &mut Vec<Partial>,
 ) -> usize {
-    let doomed = unproven(partials, noise, signal.len(), threshold(signal.len()));
+    let mut doomed = unproven(partials, noise, signal.len(), threshold(signal.len()));
+    doomed.retain(|&k| !kept.iter().any(|known| same(known, &partials[k], signal.len())));
     if doomed.is_empty() {
         return 0;
     }
@@ -133,6 +139,7 @@ pub fn prune_missed_by_nobody(
         .zip(&gains)
         .map(|(candidate, gain)| gain / noise.variance_of(candidate) >= least)
         .collect();
+    kept.extend(candidates.iter().zip(&missed).filter(|(_, missed)| **missed).map(|(c, _)| *c));
     let removed = missed.iter().filter(|missed| !**missed).count();
     if removed == doomed.len() {
         *partials = others;
@@ -142,6 +149,12 @@ pub fn prune_missed_by_nobody(
         }
     }
     removed
+}
+
+/// Whether two states of a partial are one pole to a hundredth of its half-bandwidth.
+fn same(a: &Partial, b: &Partial, count: usize) -> bool {
+    let reach = SAME * b.delta.max(1.0 / count as f64);
+    (a.omega - b.omega).abs() < reach && (a.delta - b.delta).abs() < reach
 }
 
 /// What adding each candidate pole to `others` would take off the squared residual.
