@@ -117,6 +117,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         }
         cost = left;
     }
+    work.follow_tilt();
     if work.capped || work.leaves_more_than_noise() {
         work.distrust();
         work.settle(FINAL_STEPS);
@@ -165,6 +166,12 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
+    /// There is more than the limit allows.
+    fn cap(&mut self) {
+        self.capped = true;
+        self.distrust();
+    }
+
     /// From now on energy has a cost, and little is looked for at a time.
     fn distrust(&mut self) {
         self.mismatch = true;
@@ -207,6 +214,20 @@ impl Work<'_> {
             let residual = subtract(self.segment, &self.partials);
             self.noise = NoiseFloor::by_time(&residual, self.limits.rate_hz, self.limits.least_noise);
             if prune(&mut self.partials, &self.noise, count, WORTH_ITS_PARAMETERS) == 0 {
+                break;
+            }
+            self.settle(LEVEL_STEPS);
+        }
+    }
+
+    /// Removes what only steep noise proves.
+    fn follow_tilt(&mut self) {
+        loop {
+            let residual = subtract(self.segment, &self.partials);
+            self.measure_noise();
+            self.noise = self.noise.clone().following(&residual);
+            self.missed.clear();
+            if self.prune_proven() == 0 {
                 break;
             }
             self.settle(LEVEL_STEPS);
@@ -274,6 +295,7 @@ impl Work<'_> {
         let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(offset)).collect();
         active.extend(found);
         fit_amplitudes(&target, &mut active, self.limits.bounds.energy_cost);
+        let too_many = active.len() > self.limits.max_partials;
         self.drop_faint(&mut active, target.len());
         let mut bounds = self.limits.bounds;
         if start > 0 {
@@ -289,6 +311,10 @@ impl Work<'_> {
         {
             refine(&target, &mut active, &bounds, LEVEL_STEPS);
         }
+        // Candidates are many; what counts is how many of them are proven.
+        if too_many && 10 * active.len() >= 9 * self.limits.max_partials {
+            self.cap();
+        }
         self.partials = frozen;
         // What would have been absurdly loud at the start was over before the window.
         let early = active.iter().map(|p| p.moved(-offset));
@@ -299,6 +325,9 @@ impl Work<'_> {
     fn settle(&mut self, steps: usize) {
         refine(self.segment, &mut self.partials, &self.limits.bounds, steps);
         let mut partials = std::mem::take(&mut self.partials);
+        if partials.len() > self.limits.max_partials {
+            self.cap();
+        }
         if self.drop_faint(&mut partials, self.segment.len()) > 0 {
             refine(self.segment, &mut partials, &self.limits.bounds, steps);
         }
@@ -306,11 +335,9 @@ impl Work<'_> {
     }
 
     /// Keeps the strongest by energy, within the cap and the level limit; says how many went.
-    fn drop_faint(&mut self, partials: &mut Vec<Partial>, count: usize) -> usize {
+    fn drop_faint(&self, partials: &mut Vec<Partial>, count: usize) -> usize {
         let before = partials.len();
         if partials.len() > self.limits.max_partials {
-            self.capped = true;
-            self.distrust();
             let worth = contributions(partials, count);
             let mut ranked: Vec<(f64, Partial)> = worth.into_iter().zip(partials.drain(..)).collect();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -332,7 +359,7 @@ impl Work<'_> {
         if samples < 8 {
             return (Vec::new(), false);
         }
-        let gate = Gate::new(samples);
+        let gate = Gate::new(samples, bands.bands.len());
         let real = level.decimation == 1;
         let peaks = self.on_threads(bands.bands.len(), &|k| gate.peaks(&bands.bands[k], real));
         let leak = strongest(&peaks);
