@@ -1,6 +1,6 @@
 //! The statistics that a test suite has no time for, in full: `statistics`
 //!
-//! 50 draws of two modes 1 Hz apart (T60 2 s, 20 dB), 20 draws of white and 20 of coloured noise, 30 s and 10
+//! 50 draws of two modes 1 Hz apart (T60 2 s, 20 dB), 20 draws of every colour of noise, 30 s and 10
 //! minutes of audio, and the most memory the process ever held.
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -19,10 +19,17 @@ fn fitted(samples: Vec<f64>) -> asperity_fit::Fit {
 }
 
 fn main() {
+    if std::env::args().nth(1).as_deref() == Some("long") {
+        long(30.0);
+        return;
+    }
     println!("pairs 1 Hz apart, both found: {} of 50 (48 or more)", pairs(50, 4242));
     println!("white noise, without a mode: {} of 20 (19 or more)", silent(20, 9000, 1.0));
     println!("coloured noise, without a mode: {} of 20 (19 or more)", silent(20, 9100, 0.25));
-    println!("coloured noise (1/f²), without a mode: {} of 20", silent(20, 9200, 0.02));
+    for pole in [0.02, 0.005] {
+        println!("1/f² noise, pole {pole}, without a mode: {} of 20 (19 or more)", silent(20, 9200, pole));
+    }
+    println!("1/f noise, without a mode: {} of 20 (19 or more)", silent_pink(20, 9300));
     long(30.0);
     long(600.0);
     println!("most memory held so far: {:.0} MiB", peak_mib());
@@ -62,6 +69,27 @@ fn silent(draws: u64, seed: u64, pole: f64) -> usize {
         .count()
 }
 
+/// The same for 1/f noise: ten low-passes an octave apart, of equal power.
+fn silent_pink(draws: u64, seed: u64) -> usize {
+    (0..draws)
+        .filter(|draw| {
+            let (mut rng, mut last) = (Rng::new(seed + draw), [0.0; 10]);
+            let mut next = || {
+                let mut pole = 0.5_f64;
+                let mut sum = 0.0;
+                for last in &mut last {
+                    *last += pole * (rng.normal() - *last);
+                    sum += *last / pole.sqrt();
+                    pole *= 0.5;
+                }
+                0.05 * sum
+            };
+            let samples = (0..88_200).map(|_| next()).collect();
+            fitted(samples).modes.is_empty()
+        })
+        .count()
+}
+
 /// A file of so many seconds, 30 modes that ring up to 20 s, 50 dB over the noise.
 fn long(seconds: f64) {
     let mut rng = Rng::new(31);
@@ -85,7 +113,7 @@ fn long(seconds: f64) {
     let mut writer = hound::WavWriter::create(&path, spec).expect("a temporary file can be written");
     for n in 0..count {
         let x = 0.3 * ringing.get(n).copied().unwrap_or(0.0) + 1e-4 * rng.normal();
-        writer.write_sample((32_767.0 * x) as i16).expect("a sample can be written");
+        writer.write_sample((32_767.0 * x).round() as i16).expect("a sample can be written");
     }
     writer.finalize().expect("the file can be finished");
     drop(ringing);

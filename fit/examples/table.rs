@@ -4,8 +4,9 @@ mod common;
 
 use asperity_dsp::mode::Mode;
 use asperity_fit::analysis::{Limits, analyse};
+use asperity_fit::fitted::partial_of;
 use asperity_fit::partial::Partial;
-use asperity_fit::refinement::Bounds;
+use asperity_fit::refinement::{Bounds, refine};
 use common::*;
 use std::f64::consts::PI;
 
@@ -16,6 +17,13 @@ fn to_mode(p: &Partial, rate: f64) -> Mode {
         amplitude: p.c.norm(),
         phase_rad: p.c.arg() + 0.5 * PI,
     }
+}
+
+/// The likeliest modes as refinement from the truth finds them: what no fit that has to search can beat.
+fn likeliest(impact: &Impact, limits: &Limits) -> Vec<Mode> {
+    let mut partials: Vec<Partial> = impact.truth.iter().map(|m| partial_of(m, impact.rate_hz)).collect();
+    refine(&impact.noisy, &mut partials, &limits.bounds, 200);
+    partials.iter().map(|p| to_mode(p, impact.rate_hz)).collect()
 }
 
 fn main() {
@@ -59,6 +67,14 @@ fn main() {
                 spurious += score.spurious;
                 total += score.identifiable;
                 if verbose {
+                    let likeliest = likeliest(&impact, &limits);
+                    let best = common::score(&impact, &bounds, &likeliest);
+                    println!(
+                        "from the truth: f/CRB {:.2}, {:.2} dB below limit; found: f/CRB {:.2}",
+                        robust_rms(&best.f_ratio),
+                        best.limit_db - best.snr_db,
+                        robust_rms(&score.f_ratio)
+                    );
                     println!("seed {seed}: {} found", found.len());
                     for (mode, bound) in &score.missed_modes {
                         println!("  missed {mode:?} {bound:?}");

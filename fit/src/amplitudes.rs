@@ -4,9 +4,10 @@
 //! Gram matrix, again without touching samples; the right side is one pass over the signal.
 
 use crate::geometric_sum::geometric_sums;
+use crate::normal_equations::Scaled;
 use crate::partial::Partial;
-use crate::projection::correlate;
-use crate::refinement::Scaled;
+use crate::projection::correlate_values;
+
 use nalgebra::{Complex, DMatrix, DVector, Vector2};
 
 /// Relative weight of keeping amplitudes small: decides between modes that coincide to rounding.
@@ -16,7 +17,7 @@ const RIDGE: f64 = 1e-11;
 pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial]) {
     let right = DVector::from_iterator(
         2 * partials.len(),
-        correlate(signal, partials).into_iter().flat_map(|[p0, _]| [p0.re, -p0.im]),
+        correlate_values(signal, partials).into_iter().flat_map(|p0| [p0.re, -p0.im]),
     );
     let Some(system) = factored(partials, signal.len()) else { return };
     let solution = system.solve(&right);
@@ -32,14 +33,13 @@ pub fn contributions(partials: &[Partial], count: usize) -> Vec<f64> {
     let Some(system) = factored(partials, count) else {
         return partials.iter().map(|p| p.energy(count)).collect();
     };
-    let inverse = system.inverse();
+    let inverse = system.inverse_blocks::<2>();
     partials
         .iter()
         .enumerate()
         .map(|(k, partial)| {
-            let block = inverse.fixed_view::<2, 2>(2 * k, 2 * k).into_owned();
             let c = Vector2::new(partial.c.re, partial.c.im);
-            block.try_inverse().map_or(0.0, |inverse| c.dot(&(inverse * c)))
+            inverse[k].try_inverse().map_or(0.0, |inverse| c.dot(&(inverse * c)))
         })
         .collect()
 }

@@ -9,15 +9,18 @@
 //! two stays and is refitted.
 
 use crate::noise_floor::NoiseFloor;
+use crate::normal_equations::Scaled;
 use crate::partial::Partial;
-use crate::refinement::{Bounds, Scaled, gradient, gram_matrix, refine};
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use crate::refinement::{Bounds, gradient, gram_matrix, refine};
+use nalgebra::{Matrix4, Vector2};
 use std::f64::consts::PI;
 
 /// Chance of one false mode in a recording.
 pub const FALSE_ALARM: f64 = 0.01;
 /// Steps of the refit without the partials in doubt.
 const TEST_STEPS: usize = 4;
+/// A pole that has moved by less than this part of its half-bandwidth is where it was.
+const SAME: f64 = 0.01;
 
 /// Standard deviations of one partial's parameters, in units of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,29 +56,23 @@ pub fn uncertainties(partials: &[Partial], noise: &NoiseFloor, count: usize) -> 
         };
         return vec![unknown; partials.len()];
     };
-    let inverse = system.inverse();
+    let inverse = system.inverse_blocks::<4>();
     partials
         .iter()
         .enumerate()
-        .map(|(k, partial)| uncertainty(partial, &inverse, k, noise.variance_of(partial)))
+        .map(|(k, partial)| uncertainty(partial, &inverse[k], noise.variance_of(partial)))
         .collect()
 }
 
-fn uncertainty(partial: &Partial, inverse: &DMatrix<f64>, k: usize, variance: f64) -> Uncertainty {
-    let at = 4 * k;
-    let block = Matrix2::new(
-        inverse[(at, at)],
-        inverse[(at, at + 1)],
-        inverse[(at + 1, at)],
-        inverse[(at + 1, at + 1)],
-    ) * variance;
+fn uncertainty(partial: &Partial, inverse: &Matrix4<f64>, variance: f64) -> Uncertainty {
+    let block = inverse.fixed_view::<2, 2>(0, 0).into_owned() * variance;
     let c = Vector2::new(partial.c.re, partial.c.im);
     let size = c.norm().max(1e-300);
     let along = c / size;
     let across = Vector2::new(-along.y, along.x);
     Uncertainty {
-        omega: (inverse[(at + 2, at + 2)] * variance).max(0.0).sqrt(),
-        delta: (inverse[(at + 3, at + 3)] * variance).max(0.0).sqrt(),
+        omega: (inverse[(2, 2)] * variance).max(0.0).sqrt(),
+        delta: (inverse[(3, 3)] * variance).max(0.0).sqrt(),
         amplitude: along.dot(&(block * along)).max(0.0).sqrt(),
         phase: across.dot(&(block * across)).max(0.0).sqrt() / size,
         wald: block.try_inverse().map_or(0.0, |inverse| c.dot(&(inverse * c))),
@@ -109,13 +106,17 @@ pub fn prune(partials: &mut Vec<Partial>, noise: &NoiseFloor, count: usize, leas
 /// The statistic is Rao's: with r the residual of the refit, J the Jacobian of the others and A the two
 /// amplitude columns of the pole, h = Aᵀr − AᵀJ (JᵀJ)⁻¹ Jᵀr and S = AᵀA − AᵀJ (JᵀJ)⁻¹ JᵀA give
 /// hᵀ S⁻¹ h / σ², what the squared residual would fall by.
+///
+/// `kept` remembers the poles that were missed: while they stay where they are, they are not tried again.
 pub fn prune_missed_by_nobody(
     signal: &[f64],
     partials: &mut Vec<Partial>,
     noise: &NoiseFloor,
     bounds: &Bounds,
+    kept: &mut Vec<Partial>,
 ) -> usize {
-    let doomed = unproven(partials, noise, signal.len(), threshold(signal.len()));
+    let mut doomed = unproven(partials, noise, signal.len(), threshold(signal.len()));
+    doomed.retain(|&k| !kept.iter().any(|known| same(known, &partials[k], signal.len())));
     if doomed.is_empty() {
         return 0;
     }
@@ -132,6 +133,7 @@ pub fn prune_missed_by_nobody(
         .zip(&gains)
         .map(|(candidate, gain)| gain / noise.variance_of(candidate) >= least)
         .collect();
+    kept.extend(candidates.iter().zip(&missed).filter(|(_, missed)| **missed).map(|(c, _)| *c));
     let removed = missed.iter().filter(|missed| !**missed).count();
     if removed == doomed.len() {
         *partials = others;
@@ -141,6 +143,12 @@ pub fn prune_missed_by_nobody(
         }
     }
     removed
+}
+
+/// Whether two states of a partial are one pole to a hundredth of its half-bandwidth.
+fn same(a: &Partial, b: &Partial, count: usize) -> bool {
+    let reach = SAME * b.delta.max(1.0 / count as f64);
+    (a.omega - b.omega).abs() < reach && (a.delta - b.delta).abs() < reach
 }
 
 /// What adding each candidate pole to `others` would take off the squared residual.

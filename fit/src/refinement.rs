@@ -15,10 +15,12 @@
 //! [`correlate`]. Levenberg–Marquardt (Marquardt 1963) with column scaling; a step moves a mode by at
 //! most half of its half-bandwidth.
 
+use crate::amplitudes::fit_amplitudes;
 use crate::geometric_sum::geometric_sums;
+use crate::normal_equations::Scaled;
 use crate::partial::Partial;
 use crate::projection::{correlate, synthesise};
-use nalgebra::{Cholesky, Complex, DMatrix, DVector, Dyn};
+use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::PI;
 
 type C = Complex<f64>;
@@ -108,44 +110,6 @@ pub fn gradient(residual: &[f64], partials: &[Partial]) -> DVector<f64> {
     out
 }
 
-/// A symmetric positive matrix scaled to unit diagonal and factored, with `ridge` added.
-pub struct Scaled {
-    factor: Cholesky<f64, Dyn>,
-    scale: DVector<f64>,
-}
-
-impl Scaled {
-    /// `None` when the matrix is not positive even with the ridge.
-    #[must_use]
-    pub fn new(gram: &DMatrix<f64>, ridge: f64) -> Option<Self> {
-        let scale = gram.diagonal().map(|d| if d > 1e-280 { 1.0 / d.sqrt() } else { 0.0 });
-        let mut scaled = gram.clone();
-        for (j, mut column) in scaled.column_iter_mut().enumerate() {
-            column.component_mul_assign(&scale);
-            column *= scale[j];
-            column[j] = 1.0 + ridge;
-        }
-        Some(Self { factor: Cholesky::new(scaled)?, scale })
-    }
-
-    /// Solves the unscaled system.
-    #[must_use]
-    pub fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
-        self.factor.solve(&right.component_mul(&self.scale)).component_mul(&self.scale)
-    }
-
-    /// Inverse of the unscaled matrix.
-    #[must_use]
-    pub fn inverse(&self) -> DMatrix<f64> {
-        let mut inverse = self.factor.inverse();
-        for (j, mut column) in inverse.column_iter_mut().enumerate() {
-            column.component_mul_assign(&self.scale);
-            column *= self.scale[j];
-        }
-        inverse
-    }
-}
-
 /// What a refinement came to.
 #[derive(Debug, Clone)]
 pub struct Refined {
@@ -174,7 +138,11 @@ pub fn refine(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bounds, step
                 ridge = (ridge * 30.0).max(1e-12);
                 continue;
             };
-            let candidate = stepped(partials, &system.solve(&gradient), bounds, signal.len());
+            let mut candidate = stepped(partials, &system.solve(&gradient), bounds, signal.len());
+            if bounds.energy_cost == 0.0 {
+                fit_amplitudes(signal, &mut candidate);
+                candidate.iter_mut().for_each(|partial| bounds.apply(partial));
+            }
             let next = evaluate(signal, &candidate, bounds);
             if next.cost < current.cost {
                 *partials = candidate;

@@ -71,24 +71,50 @@ fn two_modes_a_hertz_apart_are_told_apart_at_20_db() {
     assert!(both >= 9, "{both} of 10");
 }
 
+/// Noise through a one-pole low-pass: white at 1, 1/f² above `pole` · 7 kHz.
+fn coloured(pole: f64, count: usize, rng: &mut Rng) -> Vec<f64> {
+    let mut last = 0.0;
+    let mut next = || {
+        last += pole * (rng.normal() - last);
+        0.1 * last
+    };
+    (0..count).map(|_| next()).collect()
+}
+
 #[test]
-fn noise_has_no_modes() {
-    let mut with_modes = 0;
-    for seed in 0..10 {
-        let mut rng = Rng::new(500 + seed);
-        let mut last = 0.0;
-        let samples: Vec<f64> = (0..66_150)
-            .map(|_| {
-                let white = rng.normal();
-                // Every other draw is coloured: 6 dB an octave above 2 kHz.
-                last += 0.25 * (white - last);
-                0.1 * if seed % 2 == 0 { white } else { last }
-            })
-            .collect();
-        let fit = fitted(&samples, 44_100.0);
-        with_modes += usize::from(!fit.modes.is_empty());
+fn noise_of_any_colour_has_no_modes() {
+    // The full count of draws is `--example statistics`.
+    for (pole, draws, count) in [(1.0, 5, 66_150), (0.25, 5, 66_150), (0.02, 2, 33_075), (0.005, 1, 22_050)] {
+        for seed in 0..draws {
+            let samples = coloured(pole, count, &mut Rng::new(500 + seed));
+            let fit = fitted(&samples, 44_100.0);
+            assert!(fit.modes.is_empty(), "{pole} {seed}: {:?}", fit.modes);
+            assert!(fit.warnings.contains(&asperity_fit::Warning::NoModes), "{pole} {seed}");
+        }
     }
-    assert!(with_modes <= 1, "{with_modes} of 10");
+}
+
+#[test]
+fn a_strike_in_rumble_has_its_modes_and_no_others() {
+    let truth = [
+        Mode { frequency_hz: 180.0, decay_per_s: 6.0, amplitude: 0.3, phase_rad: 0.4 },
+        Mode { frequency_hz: 712.4, decay_per_s: 9.0, amplitude: 0.3, phase_rad: 1.4 },
+        Mode { frequency_hz: 2210.0, decay_per_s: 20.0, amplitude: 0.2, phase_rad: -2.0 },
+    ];
+    for seed in 0..2 {
+        // 1/f² from 140 Hz on, a quarter of a second of it before the strike.
+        let mut samples = coloured(0.02, 44_100, &mut Rng::new(40 + seed));
+        let ringing = render(&truth, 44_100.0, 33_075);
+        samples[11_025..].iter_mut().zip(ringing).for_each(|(x, y)| *x = 0.1 * *x + y);
+        samples[..11_025].iter_mut().for_each(|x| *x *= 0.1);
+        let fit = fitted(&samples, 44_100.0);
+        let found = modes(&fit);
+        assert_eq!(found.len(), truth.len(), "{seed}: {found:?}");
+        for t in &truth {
+            let near = found.iter().any(|m| (m.frequency_hz - t.frequency_hz).abs() < 0.05);
+            assert!(near, "{seed}: {t:?} {found:?}");
+        }
+    }
 }
 
 #[test]
