@@ -42,6 +42,8 @@ const MOST_AT_ONCE: usize = 60;
 const MERGING_ROUNDS: usize = 15;
 /// Most rounds of one level.
 const LEVEL_ROUNDS: usize = 3;
+/// Until they are proven there may be this many times as many partials as are allowed in the end.
+const UNPROVEN: usize = 2;
 /// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
 const WORTHWHILE: f64 = 0.9;
 const FINAL_STEPS: usize = 12;
@@ -108,6 +110,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         while work.prune_proven() > 0 {
             work.settle(LEVEL_STEPS);
         }
+        work.cap_all();
         let left = square_sum(&subtract(segment, &work.partials));
         if pass > 0 && (work.partials.len() <= known || work.mismatch && left > 0.95 * cost) {
             break;
@@ -213,6 +216,17 @@ impl Work<'_> {
         }
     }
 
+    /// [`Self::cap`] for all of them, refined again if any went.
+    fn cap_all(&mut self) {
+        let mut partials = std::mem::take(&mut self.partials);
+        let before = partials.len();
+        self.cap(&mut partials, self.segment.len());
+        self.partials = partials;
+        if self.partials.len() < before {
+            self.settle(LEVEL_STEPS);
+        }
+    }
+
     /// Removes what the whole segment does not miss; says how many.
     fn prune_proven(&mut self) -> usize {
         let (noise, bounds) = (&self.noise, &self.limits.bounds);
@@ -274,7 +288,7 @@ impl Work<'_> {
         let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(offset)).collect();
         active.extend(found);
         fit_amplitudes(&target, &mut active, self.limits.bounds.energy_cost);
-        self.drop_faint(&mut active, target.len());
+        self.drop_faint(&mut active, target.len(), UNPROVEN * self.limits.max_partials);
         let mut bounds = self.limits.bounds;
         if start > 0 {
             bounds.amplitude_high = f64::INFINITY;
@@ -289,6 +303,7 @@ impl Work<'_> {
         {
             refine(&target, &mut active, &bounds, LEVEL_STEPS);
         }
+        self.cap(&mut active, target.len());
         self.partials = frozen;
         // What would have been absurdly loud at the start was over before the window.
         let early = active.iter().map(|p| p.moved(-offset));
@@ -299,22 +314,30 @@ impl Work<'_> {
     fn settle(&mut self, steps: usize) {
         refine(self.segment, &mut self.partials, &self.limits.bounds, steps);
         let mut partials = std::mem::take(&mut self.partials);
-        if self.drop_faint(&mut partials, self.segment.len()) > 0 {
+        if self.drop_faint(&mut partials, self.segment.len(), UNPROVEN * self.limits.max_partials) > 0 {
             refine(self.segment, &mut partials, &self.limits.bounds, steps);
         }
         self.partials = partials;
     }
 
-    /// Keeps the strongest by energy, within the cap and the level limit; says how many went.
-    fn drop_faint(&mut self, partials: &mut Vec<Partial>, count: usize) -> usize {
-        let before = partials.len();
-        if partials.len() > self.limits.max_partials {
+    /// No more proven partials than are allowed; a recording that has more is taken for no sum of modes.
+    fn cap(&mut self, partials: &mut Vec<Partial>, count: usize) {
+        let most = self.limits.max_partials;
+        if partials.len() > most {
             self.capped = true;
             self.distrust();
+            self.drop_faint(partials, count, most);
+        }
+    }
+
+    /// Keeps the `most` strongest by energy, within the level limit; says how many went.
+    fn drop_faint(&self, partials: &mut Vec<Partial>, count: usize, most: usize) -> usize {
+        let before = partials.len();
+        if partials.len() > most {
             let worth = contributions(partials, count);
             let mut ranked: Vec<(f64, Partial)> = worth.into_iter().zip(partials.drain(..)).collect();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-            partials.extend(ranked.into_iter().take(self.limits.max_partials).map(|(_, p)| p));
+            partials.extend(ranked.into_iter().take(most).map(|(_, p)| p));
         }
         let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
         if strongest > 0.0 {
