@@ -42,8 +42,6 @@ const MOST_AT_ONCE: usize = 60;
 const MERGING_ROUNDS: usize = 15;
 /// Most rounds of one level.
 const LEVEL_ROUNDS: usize = 3;
-/// Until they are proven there may be this many times as many partials as are allowed in the end.
-const UNPROVEN: usize = 2;
 /// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
 const WORTHWHILE: f64 = 0.9;
 const FINAL_STEPS: usize = 12;
@@ -110,7 +108,6 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         while work.prune_proven() > 0 {
             work.settle(LEVEL_STEPS);
         }
-        work.cap_all();
         let left = square_sum(&subtract(segment, &work.partials));
         if pass > 0 && (work.partials.len() <= known || work.mismatch && left > 0.95 * cost) {
             break;
@@ -120,6 +117,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         }
         cost = left;
     }
+    work.follow_tilt();
     if work.capped || work.leaves_more_than_noise() {
         work.distrust();
         work.settle(FINAL_STEPS);
@@ -168,6 +166,12 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
+    /// There is more than the limit allows.
+    fn cap(&mut self) {
+        self.capped = true;
+        self.distrust();
+    }
+
     /// From now on energy has a cost, and little is looked for at a time.
     fn distrust(&mut self) {
         self.mismatch = true;
@@ -216,13 +220,16 @@ impl Work<'_> {
         }
     }
 
-    /// [`Self::cap`] for all of them, refined again if any went.
-    fn cap_all(&mut self) {
-        let mut partials = std::mem::take(&mut self.partials);
-        let before = partials.len();
-        self.cap(&mut partials, self.segment.len());
-        self.partials = partials;
-        if self.partials.len() < before {
+    /// Removes what only steep noise proves.
+    fn follow_tilt(&mut self) {
+        loop {
+            let residual = subtract(self.segment, &self.partials);
+            self.measure_noise();
+            self.noise = self.noise.clone().following(&residual);
+            self.missed.clear();
+            if self.prune_proven() == 0 {
+                break;
+            }
             self.settle(LEVEL_STEPS);
         }
     }
@@ -288,7 +295,8 @@ impl Work<'_> {
         let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(offset)).collect();
         active.extend(found);
         fit_amplitudes(&target, &mut active, self.limits.bounds.energy_cost);
-        self.drop_faint(&mut active, target.len(), UNPROVEN * self.limits.max_partials);
+        let too_many = active.len() > self.limits.max_partials;
+        self.drop_faint(&mut active, target.len());
         let mut bounds = self.limits.bounds;
         if start > 0 {
             bounds.amplitude_high = f64::INFINITY;
@@ -303,7 +311,10 @@ impl Work<'_> {
         {
             refine(&target, &mut active, &bounds, LEVEL_STEPS);
         }
-        self.cap(&mut active, target.len());
+        // Candidates are many; what counts is how many of them are proven.
+        if too_many && 10 * active.len() >= 9 * self.limits.max_partials {
+            self.cap();
+        }
         self.partials = frozen;
         // What would have been absurdly loud at the start was over before the window.
         let early = active.iter().map(|p| p.moved(-offset));
@@ -314,30 +325,23 @@ impl Work<'_> {
     fn settle(&mut self, steps: usize) {
         refine(self.segment, &mut self.partials, &self.limits.bounds, steps);
         let mut partials = std::mem::take(&mut self.partials);
-        if self.drop_faint(&mut partials, self.segment.len(), UNPROVEN * self.limits.max_partials) > 0 {
+        if partials.len() > self.limits.max_partials {
+            self.cap();
+        }
+        if self.drop_faint(&mut partials, self.segment.len()) > 0 {
             refine(self.segment, &mut partials, &self.limits.bounds, steps);
         }
         self.partials = partials;
     }
 
-    /// No more proven partials than are allowed; a recording that has more is taken for no sum of modes.
-    fn cap(&mut self, partials: &mut Vec<Partial>, count: usize) {
-        let most = self.limits.max_partials;
-        if partials.len() > most {
-            self.capped = true;
-            self.distrust();
-            self.drop_faint(partials, count, most);
-        }
-    }
-
-    /// Keeps the `most` strongest by energy, within the level limit; says how many went.
-    fn drop_faint(&self, partials: &mut Vec<Partial>, count: usize, most: usize) -> usize {
+    /// Keeps the strongest by energy, within the cap and the level limit; says how many went.
+    fn drop_faint(&self, partials: &mut Vec<Partial>, count: usize) -> usize {
         let before = partials.len();
-        if partials.len() > most {
+        if partials.len() > self.limits.max_partials {
             let worth = contributions(partials, count);
             let mut ranked: Vec<(f64, Partial)> = worth.into_iter().zip(partials.drain(..)).collect();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-            partials.extend(ranked.into_iter().take(most).map(|(_, p)| p));
+            partials.extend(ranked.into_iter().take(self.limits.max_partials).map(|(_, p)| p));
         }
         let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
         if strongest > 0.0 {
@@ -355,7 +359,7 @@ impl Work<'_> {
         if samples < 8 {
             return (Vec::new(), false);
         }
-        let gate = Gate::new(samples);
+        let gate = Gate::new(samples, bands.bands.len());
         let real = level.decimation == 1;
         let peaks = self.on_threads(bands.bands.len(), &|k| gate.peaks(&bands.bands[k], real));
         let leak = strongest(&peaks);

@@ -13,6 +13,7 @@
 //! | [`analysis`] | segment → partials: levels, refinement, proof |
 //! | [`sub_band`] | segment → decimated bands |
 //! | [`noise_floor`] | segment → noise variance per frequency |
+//! | [`tilt`] | residual → noise that is steep over frequency |
 //! | [`model_order`] | band → does it hold modes, how many |
 //! | [`esprit`] | band → poles |
 //! | [`amplitudes`] | poles → amplitudes |
@@ -49,6 +50,7 @@ pub mod strike;
 pub mod sub_band;
 pub mod suspicion;
 pub mod table;
+pub mod tilt;
 
 pub use fitted::{Fit, FittedMode, Warning};
 pub use recording::{ChannelChoice, Recording, RecordingError, load};

@@ -2,7 +2,8 @@
 //!
 //! *Gate.* A band is looked at only if a periodogram (over the full, half, quarter or eighth window,
 //! for modes that die early) peaks in its central half above what q samples of noise reach,
-//! σ √(q (ln q + 4)), and above what the strongest band leaks into it.
+//! σ √(q (ln q + 4)) — more than 4 where a level has so many bands that noise would open more than a few —
+//! and above what the strongest band leaks into it.
 //!
 //! *Order.* The number of singular values of the L × M Hankel matrix above 1.05 σ (√L + √M), the edge
 //! a random matrix has. It errs towards too many; significance is tested afterwards on the joint fit,
@@ -21,6 +22,9 @@ pub const KEPT_HALF_WIDTH: f64 = 0.27;
 /// How far above ln q, in noise powers, a peak must be: noise opens one band in twenty, and a mode at
 /// the edge of proof (squared amplitude 35 variances) has about 12.
 const GATE_MARGIN: f64 = 4.0;
+/// The same beneath the logarithm of the number of bands: noise opens about twenty of them, however many there
+/// are (a file of 30 s has 8193, and four hundred open bands of noise are all the modes a fit may have).
+const OPENED_BY_NOISE: f64 = 2.2;
 /// Gain of the band filter's stop band, doubled: a weaker peak may be another band's.
 const LEAKAGE: f64 = 2e-4;
 const EDGE_MARGIN: f64 = 1.05;
@@ -37,17 +41,19 @@ pub struct Gate {
     fft: Arc<dyn Fft<f64>>,
     size: usize,
     samples: usize,
+    margin: f64,
 }
 
 /// Parts of the window that are looked at, for modes that die early.
 const PARTS: [usize; 4] = [1, 2, 4, 8];
 
 impl Gate {
-    /// For bands of `samples` samples.
+    /// For `bands` bands of `samples` samples.
     #[must_use]
-    pub fn new(samples: usize) -> Self {
+    pub fn new(samples: usize, bands: usize) -> Self {
+        let margin = GATE_MARGIN.max((bands.max(1) as f64).ln() - OPENED_BY_NOISE);
         let size = (2 * samples).next_power_of_two();
-        Self { fft: FftPlanner::new().plan_fft_forward(size), size, samples }
+        Self { fft: FftPlanner::new().plan_fft_forward(size), size, samples, margin }
     }
 
     /// Largest squared periodogram magnitude in the central half of `band`, per part of the window.
@@ -72,7 +78,7 @@ impl Gate {
     pub fn opens(&self, peaks: &[f64; 4], noise_std: f64, strongest: &[f64; 4]) -> bool {
         PARTS.iter().zip(peaks).zip(strongest).any(|((part, &peak), most)| {
             let q = (self.samples / part).max(1) as f64;
-            peak > noise_std * noise_std * q * (q.ln() + GATE_MARGIN) && peak > LEAKAGE * LEAKAGE * most
+            peak > noise_std * noise_std * q * (q.ln() + self.margin) && peak > LEAKAGE * LEAKAGE * most
         })
     }
 }
@@ -84,7 +90,7 @@ mod tests {
 
     #[test]
     fn noise_rarely_opens_the_gate_and_a_sinusoid_above_it_always_does() {
-        let gate = Gate::new(160);
+        let gate = Gate::new(160, 1);
         let mut rng = Rng::new(5);
         let half = 0.5_f64.sqrt();
         let mut opened = 0;

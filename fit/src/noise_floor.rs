@@ -2,21 +2,19 @@
 //!
 //! Blackman–Harris frames over the quieter half of the recording; median over time in every bin (a
 //! click or a decaying mode touches few frames), then the 30th percentile over 1.5 kHz (modes touch
-//! few bins). Both order statistics of exponentially distributed powers are calibrated: the k-th of M
-//! is Σ E_i/(M − i), whose cumulants are sums of powers of 1/i, and the percentile follows from them by
-//! Cornish and Fisher's expansion. Edges of the spectrum are mirrored; the bins beside 0 Hz carry the
-//! removed mean and are replaced.
+//! few bins). Both order statistics of exponentially distributed powers are calibrated together, exactly.
+//! Edges of the spectrum are mirrored; the bins beside 0 Hz carry the removed mean and are replaced.
 
 use crate::partial::Partial;
+use crate::tilt::Tilt;
 use nalgebra::Complex;
 use rustfft::FftPlanner;
 use std::f64::consts::PI;
 
 /// Width over which the percentile is taken, Hz.
 const SMOOTHING_HZ: f64 = 1500.0;
-/// The percentile over frequency, and its normal deviate.
-const PERCENTILE: f64 = 0.3;
-const DEVIATE: f64 = -0.524_4;
+/// The percentile over frequency.
+pub(crate) const PERCENTILE: f64 = 0.3;
 /// The first half counts when it is this much louder than its share: the larger of two estimates of the
 /// same noise would be biased.
 const LOUDER: f64 = 0.8;
@@ -31,6 +29,8 @@ pub struct NoiseFloor {
     variance: Vec<f64>,
     /// For what is no steady noise: its first sample and the floor from there to the next.
     epochs: Vec<(f64, Self)>,
+    /// Where noise is steeper over frequency than the variances can follow.
+    tilt: Option<Tilt>,
 }
 
 impl NoiseFloor {
@@ -42,10 +42,12 @@ impl NoiseFloor {
         if part.len() < length {
             return Self::steady(vec![least.max(mean_square(part)); 2]);
         }
-        let frames = 1 + (part.len() - length) / (length / 2);
+        // Blackman–Harris frames are nearly independent at half, and still add something at a third.
+        let hop = length / 3;
+        let frames = 1 + (part.len() - length) / hop;
         // At most a few hundred frames, spread evenly: enough for a steady median.
         let stride = frames.div_ceil(300);
-        let starts: Vec<usize> = (0..frames).step_by(stride).map(|f| f * (length / 2)).collect();
+        let starts: Vec<usize> = (0..frames).step_by(stride).map(|f| f * hop).collect();
         let medians = medians(part, length, &starts);
         let half = (0.5 * SMOOTHING_HZ / rate_hz * length as f64).ceil() as usize;
         let scale = 1.0 / percentile_of_median(starts.len());
@@ -54,7 +56,7 @@ impl NoiseFloor {
     }
 
     fn steady(variance: Vec<f64>) -> Self {
-        Self { variance, epochs: Vec::new() }
+        Self { variance, epochs: Vec::new(), tilt: None }
     }
 
     /// [`of_residual`](Self::of_residual), and by time as well: in epochs that double in length from
@@ -87,7 +89,19 @@ impl NoiseFloor {
             sum += weight * floor.variance_at(partial.omega);
             total += weight;
         }
-        if total > 0.0 { sum / total } else { self.variance_at(partial.omega) }
+        let steady = self.variance_at(partial.omega);
+        if total > 0.0 { self.tilted(sum / total, partial.omega) } else { steady }
+    }
+
+    /// The same floor, and louder where `residual` is over a part of an octave.
+    #[must_use]
+    pub fn following(mut self, residual: &[f64]) -> Self {
+        self.tilt = Tilt::of(residual);
+        self
+    }
+
+    fn tilted(&self, smooth: f64, omega: f64) -> f64 {
+        self.tilt.as_ref().map_or(smooth, |tilt| tilt.above(smooth, omega))
     }
 
     /// Estimates from what a fit left of a segment: the louder of its halves at every frequency, so that
@@ -113,7 +127,7 @@ impl NoiseFloor {
         let low = position.floor() as usize;
         let high = (low + 1).min(self.variance.len() - 1);
         let part = position - low as f64;
-        self.variance[low] * (1.0 - part) + self.variance[high] * part
+        self.tilted(self.variance[low] * (1.0 - part) + self.variance[high] * part, omega)
     }
 
     /// Mean variance over all frequencies: the noise power of the recording.
@@ -123,7 +137,7 @@ impl NoiseFloor {
     }
 }
 
-fn previous_power_of_two(n: usize) -> usize {
+pub(crate) fn previous_power_of_two(n: usize) -> usize {
     if n == 0 { 1 } else { 1 << n.ilog2() }
 }
 
@@ -132,7 +146,7 @@ fn mean_square(samples: &[f64]) -> f64 {
 }
 
 /// Median over time of the normalised power in every bin from 0 Hz to half the rate.
-fn medians(samples: &[f64], length: usize, starts: &[usize]) -> Vec<f64> {
+pub(crate) fn medians(samples: &[f64], length: usize, starts: &[usize]) -> Vec<f64> {
     let window: Vec<f64> = (0..length).map(|i| blackman_harris(i as f64 / length as f64)).collect();
     let norm: f64 = window.iter().map(|w| w * w).sum();
     let fft = FftPlanner::new().plan_fft_forward(length);
@@ -193,20 +207,29 @@ fn percentiles(values: &[f64], half: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The 30th percentile of the median of `count` unit exponentials.
-fn percentile_of_median(count: usize) -> f64 {
-    let (mut k1, mut k2, mut k3) = (0.0, 0.0, 0.0);
-    for i in 0..median_rank(count) {
-        let e = 1.0 / (count - i) as f64;
-        k1 += e;
-        k2 += e * e;
-        k3 += 2.0 * e * e * e;
+/// The 30th percentile of the median of `count` unit exponentials: the median is below x when at least its
+/// rank of them are, each with probability p = 1 − e^(−x).
+pub(crate) fn percentile_of_median(count: usize) -> f64 {
+    let least = median_rank(count);
+    let below = |p: f64| {
+        // Σ C(count, j) p^j (1 − p)^(count − j), j < least, from the logarithm of each term.
+        let (mut term, mut sum) = (count as f64 * (1.0 - p).ln(), 0.0);
+        for j in 0..least {
+            sum += term.exp();
+            term += ((count - j) as f64 / (j + 1) as f64 * p / (1.0 - p)).ln();
+        }
+        1.0 - sum
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if below(middle) < PERCENTILE {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
-    let spread = k2.sqrt();
-    let skew = k3 / (k2 * spread);
-    let (z, z2) = (DEVIATE, DEVIATE * DEVIATE);
-    let bent = z + skew * (z2 - 1.0) / 6.0 - skew * skew * (2.0 * z2 - 5.0) * z / 36.0;
-    (k1 + spread * bent).max(0.05)
+    -(-low).ln_1p()
 }
 
 #[cfg(test)]
@@ -229,6 +252,17 @@ mod tests {
                 assert!(db.abs() < 2.0, "{count}: {i} {db}");
             }
             assert!((10.0 * (floor.mean_variance() / 0.01).log10()).abs() < 0.6);
+        }
+    }
+
+    /// Figures of scipy 1.17: −ln(1 − beta.ppf(0.3, k, M − k + 1)).
+    #[test]
+    fn the_percentile_of_the_median_is_the_one_scipy_computes() {
+        for (count, theirs) in
+            [(1, 0.356_674_943_9), (4, 0.317_981_762_9), (9, 0.537_178_846_7), (100, 0.632_786_936_2)]
+        {
+            let ours = percentile_of_median(count);
+            assert!((ours / theirs - 1.0).abs() < 1e-9, "{count}: {ours} {theirs}");
         }
     }
 
