@@ -55,7 +55,7 @@ impl Default for FitOptions {
         Self {
             max_modes: 150,
             band_hz: (20.0, f64::INFINITY),
-            least_level_db: -80.0,
+            least_level_db: -90.0,
             fastest_decay_per_s: 1500.0,
             start_offset_s: None,
             threads: 0,
