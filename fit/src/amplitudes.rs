@@ -13,14 +13,13 @@ use nalgebra::{Complex, DMatrix, DVector, Vector2};
 /// Relative weight of keeping amplitudes small: decides between modes that coincide to rounding.
 const RIDGE: f64 = 1e-11;
 
-/// Sets every `c` to the least-squares amplitude at `signal[0]`; a partial's own energy costs `energy_cost` of
-/// itself beside the squared residual.
-pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial], energy_cost: f64) {
+/// Sets every `c` to the least-squares amplitude at `signal[0]`.
+pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial]) {
     let right = DVector::from_iterator(
         2 * partials.len(),
         correlate_values(signal, partials).into_iter().flat_map(|p0| [p0.re, -p0.im]),
     );
-    let Some(system) = factored(partials, signal.len(), energy_cost) else { return };
+    let Some(system) = factored(partials, signal.len()) else { return };
     let solution = system.solve(&right);
     for (k, partial) in partials.iter_mut().enumerate() {
         partial.c = Complex::new(solution[2 * k], solution[2 * k + 1]);
@@ -31,25 +30,23 @@ pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial], energy_cost: f64
 /// refitted. Never more than its energy, and next to nothing for one of two giants that cancel.
 #[must_use]
 pub fn contributions(partials: &[Partial], count: usize) -> Vec<f64> {
-    let Some(system) = factored(partials, count, 0.0) else {
+    let Some(system) = factored(partials, count) else {
         return partials.iter().map(|p| p.energy(count)).collect();
     };
-    let inverse = system.inverse();
+    let inverse = system.inverse_blocks::<2>();
     partials
         .iter()
         .enumerate()
         .map(|(k, partial)| {
-            let block = inverse.fixed_view::<2, 2>(2 * k, 2 * k).into_owned();
             let c = Vector2::new(partial.c.re, partial.c.im);
-            block.try_inverse().map_or(0.0, |inverse| c.dot(&(inverse * c)))
+            inverse[k].try_inverse().map_or(0.0, |inverse| c.dot(&(inverse * c)))
         })
         .collect()
 }
 
-/// A ridge on the scaled diagonal is a cost of the partials' own energies.
-fn factored(partials: &[Partial], count: usize, energy_cost: f64) -> Option<Scaled> {
+fn factored(partials: &[Partial], count: usize) -> Option<Scaled> {
     let gram = amplitude_gram(partials, count);
-    (0..4).find_map(|power| Scaled::new(&gram, energy_cost.max(RIDGE * 1e3_f64.powi(power))))
+    (0..4).find_map(|power| Scaled::new(&gram, RIDGE * 1e3_f64.powi(power)))
 }
 
 /// The (Re c, Im c) rows and columns of the Gram matrix.
@@ -95,7 +92,7 @@ mod tests {
         let signal = synthesise(&truth, 4000);
         let mut found: Vec<Partial> =
             truth.iter().map(|p| Partial { c: Complex::new(0.0, 0.0), ..*p }).collect();
-        fit_amplitudes(&signal, &mut found, 0.0);
+        fit_amplitudes(&signal, &mut found);
         for (found, truth) in found.iter().zip(&truth) {
             assert!((found.c - truth.c).norm() < 1e-7, "{found:?} {truth:?}");
         }

@@ -9,35 +9,25 @@
 //! 3. The same on the residual, with the noise measured again in the residual, until nothing is added.
 
 use crate::amplitudes::{contributions, fit_amplitudes};
-use crate::esprit::{energies, poles};
+use crate::candidates::{SPAN_NEPERS, Search};
 use crate::merging::{merge_cancelling, merge_resonances};
-use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
 use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
 use crate::refinement::{Bounds, refine};
-use crate::sub_band::{Bands, Level, split};
+use crate::sub_band::Level;
 use crate::suspicion::energy_spectrum;
-use nalgebra::Complex;
 use std::f64::consts::PI;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Most passes over the levels.
 const PASSES: usize = 3;
-/// Nepers by which a mode may have decayed within a level's span and still be that level's business.
-const SPAN_NEPERS: f64 = 3.0;
 /// Accepted steps of a refinement within a level, after removals, and at the end.
 const LEVEL_STEPS: usize = 3;
 /// A residual with this many times the noise's power is no noise.
 const MISFIT: f64 = 2.0;
-/// Singular values this far below a band's largest are no modes of their own once a recording has shown
-/// that it is no sum of modes.
-const MISMATCH: f64 = 3e-3;
 /// [`Bounds::energy_cost`] once a recording has shown that it is no sum of modes.
 const ENERGY_COST: f64 = 1e-3;
-/// Most candidates of one round from then on: the cost of a joint fit grows with their cube.
-const MOST_AT_ONCE: usize = 60;
 /// Most rounds of merging and refitting.
 const MERGING_ROUNDS: usize = 15;
 /// Most rounds of one level.
@@ -150,9 +140,6 @@ pub fn subtract(signal: &[f64], partials: &[Partial]) -> Vec<f64> {
     residual
 }
 
-/// A partial without amplitude, and its energy in its band.
-type Ranked = (Partial, f64);
-
 struct Work<'a> {
     segment: &'a [f64],
     limits: Limits,
@@ -259,7 +246,8 @@ impl Work<'_> {
             if self.mismatch {
                 self.measure_noise();
             }
-            let (found, hidden) = self.candidates(level, &residual);
+            let search = Search { limits: &self.limits, noise: &self.noise, mismatch: self.mismatch };
+            let (found, hidden) = search.candidates(level, &residual);
             if found.is_empty() {
                 break;
             }
@@ -294,8 +282,11 @@ impl Work<'_> {
         let target = subtract(&self.segment[start..], &frozen_late);
         let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(offset)).collect();
         active.extend(found);
-        fit_amplitudes(&target, &mut active, self.limits.bounds.energy_cost);
+        fit_amplitudes(&target, &mut active);
         let too_many = active.len() > self.limits.max_partials;
+        if 2 * active.len() > 3 * self.limits.max_partials {
+            self.cap();
+        }
         self.drop_faint(&mut active, target.len());
         let mut bounds = self.limits.bounds;
         if start > 0 {
@@ -324,10 +315,10 @@ impl Work<'_> {
     /// Joint refinement over the whole segment.
     fn settle(&mut self, steps: usize) {
         refine(self.segment, &mut self.partials, &self.limits.bounds, steps);
-        let mut partials = std::mem::take(&mut self.partials);
-        if partials.len() > self.limits.max_partials {
+        if self.partials.len() > self.limits.max_partials {
             self.cap();
         }
+        let mut partials = std::mem::take(&mut self.partials);
         if self.drop_faint(&mut partials, self.segment.len()) > 0 {
             refine(self.segment, &mut partials, &self.limits.bounds, steps);
         }
@@ -350,150 +341,4 @@ impl Work<'_> {
         partials.sort_by(|a, b| a.omega.total_cmp(&b.omega));
         before - partials.len()
     }
-
-    /// Poles of all bands of a level, as partials without amplitudes, and whether bands were left out
-    /// because what they hold may have leaked from stronger ones.
-    fn candidates(&self, level: Level, residual: &[f64]) -> (Vec<Partial>, bool) {
-        let bands = split(residual, level);
-        let samples = bands.bands[0].len();
-        if samples < 8 {
-            return (Vec::new(), false);
-        }
-        let gate = Gate::new(samples, bands.bands.len());
-        let real = level.decimation == 1;
-        let peaks = self.on_threads(bands.bands.len(), &|k| gate.peaks(&bands.bands[k], real));
-        let leak = strongest(&peaks);
-        let mut open = Vec::new();
-        let mut hidden = false;
-        for (k, peaks) in peaks.iter().enumerate() {
-            if !self.within_limits(level, k) {
-                continue;
-            }
-            let noise_std = self.noise_std(level, &bands, k);
-            if gate.opens(peaks, noise_std, &leak) {
-                open.push((peaks.iter().copied().fold(0.0, f64::max), k));
-            } else {
-                hidden |= gate.opens(peaks, noise_std, &[0.0; 4]);
-            }
-        }
-        // Every open band holds a mode: more bands than modes allowed need not be looked into.
-        let most = if self.mismatch { MOST_AT_ONCE } else { usize::MAX }.min(self.limits.max_partials);
-        if open.len() > most {
-            hidden = true;
-            open.sort_by(|a, b| b.0.total_cmp(&a.0));
-            open.truncate(most);
-            open.sort_by_key(|(_, k)| *k);
-        }
-        let found =
-            self.on_threads(open.len(), &|i| (open[i].1, self.band_partials(level, &bands, open[i].1)));
-        let mut found = without_doubles(found, level, samples);
-        // Of more than may be kept, the strongest; the others get their turn when these are subtracted.
-        found.sort_by(|a, b| b.1.total_cmp(&a.1));
-        hidden |= found.len() > most;
-        found.truncate(most);
-        (found.into_iter().map(|(partial, _)| partial).collect(), hidden)
-    }
-
-    /// `work(0 .. count)` in order, shared among the threads allowed.
-    fn on_threads<T: Send>(&self, count: usize, work: &(dyn Fn(usize) -> T + Sync)) -> Vec<T> {
-        let threads = self.limits.threads.clamp(1, count.max(1));
-        if threads == 1 {
-            return (0..count).map(work).collect();
-        }
-        let next = AtomicUsize::new(0);
-        let take = || {
-            let mut mine = Vec::new();
-            loop {
-                let i = next.fetch_add(1, Ordering::Relaxed);
-                if i >= count {
-                    break mine;
-                }
-                mine.push((i, work(i)));
-            }
-        };
-        let mut all = std::thread::scope(|scope| {
-            let others: Vec<_> = (1..threads).map(|_| scope.spawn(take)).collect();
-            let mut all = take();
-            for other in others {
-                match other.join() {
-                    Ok(results) => all.extend(results),
-                    Err(panic) => std::panic::resume_unwind(panic),
-                }
-            }
-            all
-        });
-        all.sort_by_key(|(i, _)| *i);
-        all.into_iter().map(|(_, result)| result).collect()
-    }
-
-    fn reach(level: Level) -> f64 {
-        if level.decimation == 1 { PI } else { 2.0 * PI * KEPT_HALF_WIDTH / level.decimation as f64 }
-    }
-
-    fn within_limits(&self, level: Level, k: usize) -> bool {
-        let (centre, reach) = (level.centre(k), Self::reach(level));
-        centre + reach >= self.limits.bounds.omega_low && centre - reach <= self.limits.bounds.omega_high
-    }
-
-    fn noise_std(&self, level: Level, bands: &Bands, k: usize) -> f64 {
-        (self.noise.variance_at(level.centre(k)) * bands.noise_gain).sqrt()
-    }
-
-    fn band_partials(&self, level: Level, bands: &Bands, k: usize) -> Vec<Ranked> {
-        let (centre, reach) = (level.centre(k), Self::reach(level));
-        let bounds = &self.limits.bounds;
-        let d = level.decimation as f64;
-        let band = &bands.bands[k];
-        let noise_std = self.noise_std(level, bands, k);
-        let longest_delta = SPAN_NEPERS / (level.span() as f64).max(1.0);
-        // A real decay is an exponential to some 40 dB; what lies far below the band's strongest mends it.
-        let least_share = if self.mismatch { MISMATCH } else { 0.0 };
-        let poles = poles(band, noise_std, least_share);
-        let energies = energies(band, &poles);
-        poles
-            .into_iter()
-            .zip(energies)
-            .filter_map(|(z, energy)| {
-                let omega = centre + z.arg() / d;
-                let delta = -z.norm().ln() / d;
-                let growth = -delta * d * band.len() as f64;
-                let kept = (omega - centre).abs() <= reach
-                    && (bounds.omega_low..=bounds.omega_high).contains(&omega)
-                    && delta <= bounds.delta_high.min(longest_delta)
-                    && growth < 1.0;
-                let c = Complex::new(0.0, 0.0);
-                kept.then(|| (Partial { omega, delta: delta.max(bounds.delta_low), c }, energy))
-            })
-            .collect()
-    }
-}
-
-/// The largest peak of every window over all bands.
-fn strongest(peaks: &[[f64; 4]]) -> [f64; 4] {
-    peaks.iter().fold([0.0; 4], |most, peaks| std::array::from_fn(|w| most[w].max(peaks[w])))
-}
-
-/// Joins the bands' partials; a pole that two neighbouring bands saw is kept once, from the band whose
-/// centre is nearer.
-fn without_doubles(found: Vec<(usize, Vec<Ranked>)>, level: Level, samples: usize) -> Vec<Ranked> {
-    let tolerance = 1.0 / (samples * level.decimation) as f64;
-    let mut kept: Vec<(usize, Ranked)> = Vec::new();
-    for (k, partials) in found {
-        for ranked in partials {
-            let partial = ranked.0;
-            let double = kept.iter().rposition(|(other, (p, _))| {
-                *other + 1 == k && (p.omega - partial.omega).abs() < tolerance + 0.2 * partial.delta
-            });
-            match double {
-                None => kept.push((k, ranked)),
-                Some(i) => {
-                    let distance = |k: usize| (partial.omega - level.centre(k)).abs();
-                    if distance(k) < distance(kept[i].0) {
-                        kept[i] = (k, ranked);
-                    }
-                }
-            }
-        }
-    }
-    kept.into_iter().map(|(_, ranked)| ranked).collect()
 }

@@ -11,6 +11,7 @@
 //! | [`onset`] | channel → one strike |
 //! | [`strike`] | strike → modes: the whole way ([`fit`]) |
 //! | [`analysis`] | segment → partials: levels, refinement, proof |
+//! | `candidates` | residual → what may be modes |
 //! | [`sub_band`] | segment → decimated bands |
 //! | [`noise_floor`] | segment → noise variance per frequency |
 //! | [`tilt`] | residual → noise that is steep over frequency |
@@ -29,6 +30,7 @@
 
 pub mod amplitudes;
 pub mod analysis;
+mod candidates;
 pub mod contact;
 pub mod esprit;
 pub mod fitted;

@@ -138,7 +138,7 @@ fn weights(recording: &Recording, fit: &Fit, common: &[Mode]) -> Vec<Mode> {
     let segment: Vec<f64> =
         recording.samples[from..to.min(recording.samples.len())].iter().map(|x| x - mean).collect();
     let mut partials: Vec<_> = common.iter().map(|mode| partial_of(mode, rate)).collect();
-    fit_amplitudes(&segment, &mut partials, 0.0);
+    fit_amplitudes(&segment, &mut partials);
     partials
         .iter()
         .zip(common)

@@ -12,7 +12,7 @@ use crate::noise_floor::NoiseFloor;
 use crate::normal_equations::Scaled;
 use crate::partial::Partial;
 use crate::refinement::{Bounds, gradient, gram_matrix, refine};
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use nalgebra::{Matrix4, Vector2};
 use std::f64::consts::PI;
 
 /// Chance of one false mode in a recording.
@@ -56,29 +56,23 @@ pub fn uncertainties(partials: &[Partial], noise: &NoiseFloor, count: usize) -> 
         };
         return vec![unknown; partials.len()];
     };
-    let inverse = system.inverse();
+    let inverse = system.inverse_blocks::<4>();
     partials
         .iter()
         .enumerate()
-        .map(|(k, partial)| uncertainty(partial, &inverse, k, noise.variance_of(partial)))
+        .map(|(k, partial)| uncertainty(partial, &inverse[k], noise.variance_of(partial)))
         .collect()
 }
 
-fn uncertainty(partial: &Partial, inverse: &DMatrix<f64>, k: usize, variance: f64) -> Uncertainty {
-    let at = 4 * k;
-    let block = Matrix2::new(
-        inverse[(at, at)],
-        inverse[(at, at + 1)],
-        inverse[(at + 1, at)],
-        inverse[(at + 1, at + 1)],
-    ) * variance;
+fn uncertainty(partial: &Partial, inverse: &Matrix4<f64>, variance: f64) -> Uncertainty {
+    let block = inverse.fixed_view::<2, 2>(0, 0).into_owned() * variance;
     let c = Vector2::new(partial.c.re, partial.c.im);
     let size = c.norm().max(1e-300);
     let along = c / size;
     let across = Vector2::new(-along.y, along.x);
     Uncertainty {
-        omega: (inverse[(at + 2, at + 2)] * variance).max(0.0).sqrt(),
-        delta: (inverse[(at + 3, at + 3)] * variance).max(0.0).sqrt(),
+        omega: (inverse[(2, 2)] * variance).max(0.0).sqrt(),
+        delta: (inverse[(3, 3)] * variance).max(0.0).sqrt(),
         amplitude: along.dot(&(block * along)).max(0.0).sqrt(),
         phase: across.dot(&(block * across)).max(0.0).sqrt() / size,
         wald: block.try_inverse().map_or(0.0, |inverse| c.dot(&(inverse * c))),

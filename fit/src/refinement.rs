@@ -139,8 +139,10 @@ pub fn refine(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bounds, step
                 continue;
             };
             let mut candidate = stepped(partials, &system.solve(&gradient), bounds, signal.len());
-            fit_amplitudes(signal, &mut candidate, bounds.energy_cost);
-            candidate.iter_mut().for_each(|partial| bounds.apply(partial));
+            if bounds.energy_cost == 0.0 {
+                fit_amplitudes(signal, &mut candidate);
+                candidate.iter_mut().for_each(|partial| bounds.apply(partial));
+            }
             let next = evaluate(signal, &candidate, bounds);
             if next.cost < current.cost {
                 *partials = candidate;
