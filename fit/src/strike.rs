@@ -5,7 +5,7 @@
 //! ([`crate::analysis`]) → hum and non-exponential decays named → residual.
 
 use crate::analysis::{Analysis, Limits, analyse};
-use crate::contact::{contact_samples, rise};
+use crate::contact::{contact_samples, rise, unexplained};
 use crate::fitted::{Fit, FittedMode, Warning};
 use crate::noise_floor::NoiseFloor;
 use crate::onset;
@@ -55,7 +55,7 @@ impl Default for FitOptions {
         Self {
             max_modes: 150,
             band_hz: (20.0, f64::INFINITY),
-            least_level_db: -80.0,
+            least_level_db: -90.0,
             fastest_decay_per_s: 1500.0,
             start_offset_s: None,
             threads: 0,
@@ -137,14 +137,40 @@ pub fn fit(
     }
     let found = Found { onset: strike.onset, end };
     warn_of_recording(recording, &strike.others, &found, &mut warnings);
-    let offset = start_offset(&samples, &found, recording, options);
-    let segment = &samples[found.onset + offset..end];
+    let mut offset = start_offset(&samples, &found, recording, options);
+    let strike = &samples[found.onset..end];
+    let mut analysis = analyse_from(strike, offset, recording, options, progress);
+    if offset > 0 && options.start_offset_s.is_none() && clipped_offset(recording, &found).is_none() {
+        let early: Vec<Partial> = analysis.partials.iter().map(|p| p.moved(-(offset as f64))).collect();
+        let left = unexplained(
+            strike,
+            &synthesise(&early, 2 * offset),
+            offset,
+            rate,
+            analysis.noise.mean_variance(),
+        );
+        if left < offset {
+            offset = left;
+            analysis = analyse_from(strike, offset, recording, options, progress);
+        }
+    }
+    Ok(assemble(recording, &samples, &found, offset, analysis, options, warnings))
+}
+
+/// The modes of what follows the first `offset` samples of `strike`.
+fn analyse_from(
+    strike: &[f64],
+    offset: usize,
+    recording: &Recording,
+    options: &FitOptions,
+    progress: &mut dyn FnMut(f64),
+) -> Analysis {
+    let segment = &strike[offset..];
     let mut limits = limits(segment, recording, options);
     if offset > 0 {
         limits.bounds.delta_high = limits.bounds.delta_high.min(BACK_NEPERS / offset as f64);
     }
-    let analysis = analyse(segment, &limits, progress);
-    Ok(assemble(recording, &samples, &found, offset, analysis, options, warnings))
+    analyse(segment, &limits, progress)
 }
 
 /// The analysed part, in samples of the recording.

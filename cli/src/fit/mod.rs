@@ -54,7 +54,7 @@ pub struct Options {
     #[arg(long, value_name = "HZ")]
     pub to_hz: Option<f64>,
     /// Drop modes this far below the strongest in energy, dB
-    #[arg(long, value_name = "DB", default_value_t = -80.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DB", default_value_t = -90.0, allow_negative_numbers = true)]
     pub min_level: f64,
     /// Channel: loudest, mix, or its number from 0
     #[arg(long, value_name = "CHANNEL", default_value = "loudest")]
@@ -115,7 +115,7 @@ impl Options {
             max_modes: FitOptions::default().max_modes,
             from_hz: 20.0,
             to_hz: None,
-            min_level: -80.0,
+            min_level: -90.0,
             channel: "loudest".to_owned(),
             start_ms: None,
             scale_size: None,
