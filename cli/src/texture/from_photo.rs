@@ -3,6 +3,7 @@
 use super::{bar, grey, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
+use asperity::ActuatorSettings;
 use asperity_texture::from_photo::{PhotoOptions, PhotoSurface, TEXEL_M, surface_from_photo};
 use asperity_texture::image_io;
 use asperity_texture::light::Light;
@@ -15,6 +16,8 @@ use std::time::Instant;
 
 /// Steps of the document's solver. Source: ours; more only add noise.
 const TSAI_SHAH_STEPS: usize = 5;
+/// Exaggerations of the relief that the document's study compared.
+const VARIANTS: [f64; 3] = [1.0, 2.0, 4.0];
 /// The generated stroke: speed, m/s, force, N, length, s, and events a second.
 const STROKE: (f64, f64, f64, f64) = (0.1, 0.6, 2.0, 60.0);
 /// A free bar struck in the middle, 420 Hz: ratios of a uniform bar, decays and levels assumed.
@@ -180,10 +183,15 @@ fn write(
         files.push(name.to_owned());
         outputs.write(&folder.join(name), text.as_bytes())
     };
-    text_file(&mut outputs, "scene.toml", &scene(surface, size_m, 1.0))?;
+    let variants =
+        if options.variants { VARIANTS.map(|factor| factor / options.exaggerate) } else { [1.0; 3] };
+    // No stroke leaves the relief; the variants share the largest one's, or they would not differ.
+    let deepest_m = surface.relief_m * variants.iter().copied().fold(1.0, f64::max);
+    let full_scale_m = deepest_m.max(ActuatorSettings::default().full_scale);
+    text_file(&mut outputs, "scene.toml", &scene(surface, size_m, 1.0, full_scale_m))?;
     if options.variants {
-        for factor in [1.0, 2.0, 4.0] {
-            let text = scene(surface, size_m, factor / options.exaggerate);
+        for (factor, relative) in VARIANTS.into_iter().zip(variants) {
+            let text = scene(surface, size_m, relative, full_scale_m);
             text_file(&mut outputs, &format!("scene_x{factor}.toml"), &text)?;
         }
     }
@@ -241,7 +249,7 @@ fn report(
 }
 
 /// A scene that renders at once.
-fn scene(surface: &PhotoSurface, [width_m, height_m]: [f64; 2], factor: f64) -> String {
+fn scene(surface: &PhotoSurface, [width_m, height_m]: [f64; 2], factor: f64, full_scale_m: f64) -> String {
     let wrap = if surface.tileable { "repeat" } else { "mirror" };
     format!(
         "# A stroke over the surface of a photograph.\n\
@@ -251,7 +259,7 @@ fn scene(surface: &PhotoSurface, [width_m, height_m]: [f64; 2], factor: f64) -> 
          displacement = \"displacement.png\"\nroughness = \"roughness.png\"\n\
          width_m = {width_m:?}\nheight_m = {height_m:?}\nrelief_m = {:?}\n\
          micro_relief_m = {:?}\nwrap = \"{wrap}\"\n\n\
-         [[actuator]]\noutput = \"displacement\"\n",
+         [[actuator]]\noutput = \"displacement\"\nfull_scale = {full_scale_m:?}\n",
         surface.relief_m * factor,
         surface.micro_relief_m * factor,
     )
@@ -370,10 +378,13 @@ mod tests {
             assert!(out.join(file.as_str().unwrap()).is_file(), "{file}");
         }
         assert!((report["lattice"]["t1_px"][0].as_f64().unwrap() - 16.0).abs() < 0.05);
-        render_scene(&out.join("scene_x2.toml"), &out.join("stroke"));
+        let [once, twice, four] =
+            ["1", "2", "4"].map(|x| render_scene(&out.join(format!("scene_x{x}.toml")), &out.join("stroke")));
+        assert!(once < twice && twice < four && four <= 1.0, "{once} {twice} {four}");
     }
 
-    fn render_scene(scene: &Path, stem: &Path) {
+    /// Peak of what is felt, as a part of full scale.
+    fn render_scene(scene: &Path, stem: &Path) -> f64 {
         let options = render::Options {
             scene: scene.to_owned(),
             output: stem.to_owned(),
@@ -390,5 +401,6 @@ mod tests {
         let report = render::render(&options).unwrap();
         assert!(report.haptic_peak[0] > 0.0 && report.audio_peak > 0.0);
         assert_eq!(report.quarantined + report.dropped, 0);
+        f64::from(report.haptic_peak[0])
     }
 }
