@@ -10,7 +10,7 @@
 //! 3. the same again on the spectrum divided by that line, so that the slope within an octave does not bias
 //!    the percentile.
 //!
-//! Only where this exceeds the smooth floor by [`TRUSTED`] does it count: the percentile of few bins scatters, and
+//! Only where this exceeds the smooth floor by `TRUSTED` does it count: the percentile of few bins scatters, and
 //! what is white must stay so.
 
 use crate::noise_floor::{PERCENTILE, medians, percentile_of_median, previous_power_of_two};
