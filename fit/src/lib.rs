@@ -33,7 +33,7 @@
 //!
 //! | recording | peaks | modes kept | fit |
 //! |---|---|---|---|
-//! | `glockenspiel_2096.57` | 8.6 | 27 | 16.3 |
+//! | `glockenspiel_2096.57` | 8.6 | 15 | 14.9 |
 //! | `js30_metal-ping-1` | 0.8 | 55 | 13.2 |
 //! | `kenney_impactBell_heavy_000` | 1.6 | 42 | 25.2 |
 //! | `kenney_impactGlass_light_000` | 15.5 | 24 | 29.1 |
@@ -46,7 +46,7 @@
 //! | `vcsl_wood_click_ff` | 0.5 | 42 | 15.2 |
 //! | `vcsl_xylo_medium_C5_ff` | 9.7 | 28 | 14.8 |
 //! | `vcsl_xylo_medium_C5_pp` | 10.3 | 36 | 11.4 |
-//! | `vibraphone_1255.513` | 13.8 | 20 | 15.0 |
+//! | `vibraphone_1255.513` | 13.8 | 16 | 15.9 |
 
 pub mod amplitudes;
 pub mod analysis;
