@@ -34,6 +34,13 @@ const MERGING_ROUNDS: usize = 15;
 const LEVEL_ROUNDS: usize = 3;
 /// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
 const WORTHWHILE: f64 = 0.9;
+/// Until they are proven there may be this many times as many partials as are allowed in the end: a hundred modes at
+/// 60 dB need 1.6 times the usual 150.
+const UNPROVEN: f64 = 2.0;
+/// The same where fewer than `FEW` are asked for: then most recordings hold more than that, and the sooner this shows the
+/// likelier the few are the same in every strike of one bell.
+const UNPROVEN_FEW: f64 = 1.5;
+const FEW: usize = 100;
 const FINAL_STEPS: usize = 12;
 /// Of the last refinement of what is a sum of modes: until it has converged, which modes closer than their
 /// bandwidths, whose valley is narrow and bent, may take long to.
@@ -98,6 +105,7 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         while work.prune_proven() > 0 {
             work.settle(LEVEL_STEPS);
         }
+        work.cap_all();
         let left = square_sum(&subtract(segment, &work.partials));
         if pass > 0 && (work.partials.len() <= known || work.mismatch && left > 0.95 * cost) {
             break;
@@ -153,12 +161,6 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// There is more than the limit allows.
-    fn cap(&mut self) {
-        self.capped = true;
-        self.distrust();
-    }
-
     /// From now on energy has a cost, and little is looked for at a time.
     fn distrust(&mut self) {
         self.mismatch = true;
@@ -283,11 +285,10 @@ impl Work<'_> {
         let mut active: Vec<Partial> = alive.iter().map(|p| p.moved(offset)).collect();
         active.extend(found);
         fit_amplitudes(&target, &mut active);
-        let too_many = active.len() > self.limits.max_partials;
-        if 2 * active.len() > 3 * self.limits.max_partials {
-            self.cap();
+        if active.len() > self.unproven() {
+            self.cap(&mut active, target.len());
         }
-        self.drop_faint(&mut active, target.len());
+        self.drop_faint(&mut active, target.len(), self.unproven());
         let mut bounds = self.limits.bounds;
         if start > 0 {
             bounds.amplitude_high = f64::INFINITY;
@@ -302,10 +303,7 @@ impl Work<'_> {
         {
             refine(&target, &mut active, &bounds, LEVEL_STEPS);
         }
-        // Candidates are many; what counts is how many of them are proven.
-        if too_many && 10 * active.len() >= 9 * self.limits.max_partials {
-            self.cap();
-        }
+        self.cap(&mut active, target.len());
         self.partials = frozen;
         // What would have been absurdly loud at the start was over before the window.
         let early = active.iter().map(|p| p.moved(-offset));
@@ -315,24 +313,48 @@ impl Work<'_> {
     /// Joint refinement over the whole segment.
     fn settle(&mut self, steps: usize) {
         refine(self.segment, &mut self.partials, &self.limits.bounds, steps);
-        if self.partials.len() > self.limits.max_partials {
-            self.cap();
-        }
         let mut partials = std::mem::take(&mut self.partials);
-        if self.drop_faint(&mut partials, self.segment.len()) > 0 {
+        if self.drop_faint(&mut partials, self.segment.len(), self.unproven()) > 0 {
             refine(self.segment, &mut partials, &self.limits.bounds, steps);
         }
         self.partials = partials;
     }
 
-    /// Keeps the strongest by energy, within the cap and the level limit; says how many went.
-    fn drop_faint(&self, partials: &mut Vec<Partial>, count: usize) -> usize {
+    fn unproven(&self) -> usize {
+        let most = self.limits.max_partials;
+        (if most < FEW { UNPROVEN_FEW } else { UNPROVEN } * most as f64) as usize
+    }
+
+    /// No more proven partials than are allowed; a recording that has more is taken for no sum of modes. Candidates are
+    /// many, and no sign of it.
+    fn cap(&mut self, partials: &mut Vec<Partial>, count: usize) {
+        let most = self.limits.max_partials;
+        if partials.len() > most {
+            self.capped = true;
+            self.distrust();
+            self.drop_faint(partials, count, most);
+        }
+    }
+
+    /// [`Self::cap`] for all of them, refined again if any went.
+    fn cap_all(&mut self) {
+        let mut partials = std::mem::take(&mut self.partials);
         let before = partials.len();
-        if partials.len() > self.limits.max_partials {
+        self.cap(&mut partials, self.segment.len());
+        self.partials = partials;
+        if self.partials.len() < before {
+            self.settle(LEVEL_STEPS);
+        }
+    }
+
+    /// Keeps the `most` strongest by energy, within the level limit; says how many went.
+    fn drop_faint(&self, partials: &mut Vec<Partial>, count: usize, most: usize) -> usize {
+        let before = partials.len();
+        if partials.len() > most {
             let worth = contributions(partials, count);
             let mut ranked: Vec<(f64, Partial)> = worth.into_iter().zip(partials.drain(..)).collect();
             ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-            partials.extend(ranked.into_iter().take(self.limits.max_partials).map(|(_, p)| p));
+            partials.extend(ranked.into_iter().take(most).map(|(_, p)| p));
         }
         let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
         if strongest > 0.0 {

@@ -33,8 +33,8 @@ const LARGEST_SHARE: f64 = 0.15;
 const SHORT_S: f64 = 0.004;
 /// No striker touches longer; what is not ringing yet by then is the room or the instrument's resonator.
 const LONGEST_S: f64 = 0.005;
-/// Free decay that leaves less than this part of the power explains a sample.
-const EXPLAINED: f64 = 0.01;
+/// Free decay that leaves less than this part of the power explains a sample: a push leaves more, even its faint end.
+const EXPLAINED: f64 = 1e-5;
 /// Ridge relative to the mean square, for files without noise.
 const RIDGE: f64 = 1e-10;
 
