@@ -8,6 +8,13 @@ impacts   damped sinusoids made here (10, 30, 100 modes; 50 Hz-16 kHz, T60 30 ms
           the joint Cramer-Rao bound of numpy
 noise     files in which nothing rings: white, pink, brown, one-pole coloured noise
 normals   8-bit normal maps of surfaces made here, their slopes taken exactly, by central differences and by Sobel
+
+What it printed when it was written (seeds 61 and 62, 7, 1 and 2):
+
+    impacts   0 of 612 modes missed, none invented; median f/bound 1.03, d/bound 1.03; 97.6-100 % within 4 bounds
+    noise     white, pink, one-pole at 0.25 and 0.02: no mode in ten draws each; brown down to 20 Hz: in 2 of 10
+    normals   0.06-0.35 % however the slopes were taken, told nothing, but for waves of one length (11-25 pixels): 0.9-6 %,
+              told 0.2-0.5 %: such a map does not tell which differences made it
 """
 
 import json
