@@ -7,7 +7,6 @@ use crate::geometric_sum::geometric_sums;
 use crate::normal_equations::Scaled;
 use crate::partial::Partial;
 use crate::projection::correlate_values;
-
 use nalgebra::{Complex, DMatrix, DVector, Vector2};
 
 /// Relative weight of keeping amplitudes small: decides between modes that coincide to rounding.
