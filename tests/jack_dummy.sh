@@ -8,8 +8,8 @@
 # 1. Four ports are recorded with jack_rec: four different signals on four channels, no underrun in 30 s.
 # 2. The server is killed while it plays: one error line, no panic, no hang.
 # 3. The server is killed and comes back: the stream is built anew and plays to its end.
-# Says that it skips where jackd is not installed. Underruns fail it when the engine used half of the time or more,
-# and always with JACK_STRICT=1; otherwise they are the machine's.
+# Says that it skips where jackd is not installed or its dummy driver does not start. Underruns fail it when the
+# engine used half of the time or more, and always with JACK_STRICT=1; otherwise they are the machine's.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 play="$PWD/${1:-target/release/asperity}"
@@ -19,14 +19,16 @@ for tool in jackd jack_rec jack_lsp python3; do
 done
 
 folder="$(mktemp -d)"
-export JACK_DEFAULT_SERVER="asperity-test-$$" JACK_NO_AUDIO_RESERVATION=1 JACK_NO_START_SERVER=1
+# JACK keeps a register of eight servers. One that is killed stays in it until a server of its name starts, so the
+# name is the same in every run, and every run ends its last server in order.
+export JACK_DEFAULT_SERVER="asperity-test" JACK_NO_AUDIO_RESERVATION=1 JACK_NO_START_SERVER=1
 server=""
-stop_server() {
-    [ -z "$server" ] || { kill -9 "$server" 2>/dev/null || true; wait "$server" 2>/dev/null || true; }
+stop_server() { # [signal]
+    [ -z "$server" ] || { kill "-${1:-TERM}" "$server" 2>/dev/null || true; wait "$server" 2>/dev/null || true; }
     server=""
 }
 trap 'stop_server; rm -rf "$folder"' EXIT
-start_server() {
+try_server() {
     # With real-time priority where the system grants it (-R), else without (-r).
     for priority in "-R -P 20" "-r"; do
         # shellcheck disable=SC2086
@@ -37,9 +39,24 @@ start_server() {
             kill -0 "$server" 2>/dev/null || break
             sleep 0.1
         done
-        stop_server
+        stop_server KILL
     done
-    echo "error: jackd did not start"; cat "$folder/jackd.log"; exit 1
+    return 1
+}
+start_server() {
+    try_server && return
+    echo "error: jackd did not start again"; cat "$folder/jackd.log"; exit 1
+}
+# The first start tells whether this machine can run a server at all. A register that is full of servers that are
+# gone (runs that were cut off) refuses every new one; where none is running (a killed one nobody has waited for
+# does not count) it is removed, and JACK makes a new one.
+start_first_server() {
+    try_server && return
+    if ! pgrep -r R,S,D -x 'jackd|jackdbus' >/dev/null; then
+        rm -f /dev/shm/jack-shm-registry
+        try_server && return
+    fi
+    echo "skipped: the dummy driver of jackd does not start on this machine:"; cat "$folder/jackd.log"; exit 0
 }
 
 # Three fingers on gratings that vibrate at 60, 100 and 180 Hz, and a body of 440 Hz struck twice a second.
@@ -93,10 +110,10 @@ wait_for_player() {
 }
 
 echo "== four channels, $seconds s"
-start_server
+start_first_server
 start_play
 sleep 2
-ports="$(jack_lsp | grep -v '^system:' | sort)"
+ports="$(jack_lsp | sed '/^system:/d' | sort)"
 [ "$(wc -l <<<"$ports")" = 4 ] || { echo "error: four ports were expected: $ports"; cat "$folder/play.err"; exit 1; }
 # shellcheck disable=SC2086
 jack_rec -f "$folder/rec.wav" -d 3 -b 16 $ports >/dev/null 2>&1
@@ -136,7 +153,7 @@ PY
 echo "== server killed"
 start_play
 sleep 2
-stop_server
+stop_server KILL
 wait_for_player 20
 grep -v '^Cannot\|^JACK\|^Jack\|^jack\|^$' "$folder/play.err" || true
 [ "$status" = 1 ] || { echo "error: status $status instead of 1"; cat "$folder/play.err"; exit 1; }
@@ -147,7 +164,7 @@ echo "== server killed and started again"
 start_server
 start_play
 sleep 2
-stop_server
+stop_server KILL
 start_server
 wait_for_player $((${seconds%.*} + 30))
 cat "$folder/play.json"
