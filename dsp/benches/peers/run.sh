@@ -16,9 +16,10 @@ Like for like? All take a force in every sample, sum all modes to one output, ha
   asperity   any phase a mode; coefficients as the difference from 1 (pitch: see the end)
   C loop     direct form, 2 products for the pole pair and 1 for the gain: phase 0 only ("with phase": 1 more)
   fundsp     BiquadBank<F32x>: eight whole biquads (5 products a mode, 2 of them with 0; a phase would be free),
-             direct form, states in memory, one call a sample and eight modes; that is all its interface offers.
-             "by block" keeps eight modes' states in registers for 64 samples, which its interface allows as well.
-             resonator_hz: one mode a call. Default build (what its users get), then target-cpu=native.
+             direct form, states in memory. Its interface has process (a block) and tick (a sample and eight modes).
+             "by hand" is ours, for the sake of the comparison: a loop around tick on a local copy of each bank, so
+             that eight modes' states stay in registers for 64 samples. resonator_hz: one mode a call.
+             Default build (what its users get), then target-cpu=native.
   Faust      direct form, phase 0 only, unrolled into straight code; best of scalar and -vec
 So the job is the same but for phase and tune: every direct form in f32 is out of tune at low frequencies, see the end.
 
@@ -27,15 +28,16 @@ TEXT
 (cd "$root" && cargo run --release --quiet -p asperity-dsp --example modal_speed 8 ${sizes[*]}) | tee "$work/ours"
 
 echo
-printf '%-22s %6s %10s %10s %12s\n' fundsp modes "by sample" "by block" resonator_hz
+printf '%-22s %6s %10s %10s %10s %12s\n' fundsp modes process tick "by hand" resonator_hz
 for flags in "" "-C target-cpu=native"; do
     target="$root/target/peers/${flags:+native}"
     (cd "$here/fundsp" && CARGO_TARGET_DIR="$target" RUSTFLAGS="$flags" cargo build --release --quiet)
     for modes in ${sizes[*]}; do
-        read -r sample block single <<<"$("$target/release/fundsp-bank" speed "$modes")"
-        printf '%-22s %6s %10s %10s %12s\n' "${flags:-default build}" "$modes" "$sample" "$block" "$single"
-        printf '%s fundsp%s %s\n' "$modes" "${flags:+-native}" "$(printf '%s\n' "$sample" "$block" | sort -n | tail -1)" \
-            >>"$work/peers"
+        read -r process tick by_hand single <<<"$("$target/release/fundsp-bank" speed "$modes")"
+        printf '%-22s %6s %10s %10s %10s %12s\n' "${flags:-default build}" "$modes" "$process" "$tick" "$by_hand" "$single"
+        of="fundsp${flags:+-native}"
+        printf '%s %s %s\n' "$modes" "$of" "$(printf '%s\n' "$process" "$tick" | sort -n | tail -1)" \
+            "$modes" "$of-by-hand" "$by_hand" >>"$work/peers"
     done
 done
 listen="$root/target/peers/release/fundsp-bank"
@@ -78,7 +80,7 @@ awk -v ours="$work/ours" -v peers="$work/peers" 'BEGIN {
     }
     while ((getline line <peers) > 0) {
         split(line, f, " ")
-        out = sprintf("%6s  %-14s", f[1], f[2])
+        out = sprintf("%6s  %-22s", f[1], f[2])
         for (k = 1; k <= sets; k++) out = out sprintf("  %s %5.2f x", set[k], rate[f[1], k] / f[3])
         print out
     }

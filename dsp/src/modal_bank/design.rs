@@ -33,25 +33,29 @@ impl GroupOptions {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct ModeGroup {
-    /// What every step reads: [`STEP`], [`FIRST`] and [`SECOND`]; lane l at [`place`].
+    /// What every turn reads: [`STEP`] and [`OUT`]; lane l at [`place`].
     pub(super) hot: [Lanes; HOT],
     /// Once in [`GRID_SAMPLES`]: v gains `trim[0][0]` · v + `trim[0][1]` · w, w the same of row 1.
     pub(super) trim: [[Lanes; 2]; 2],
-    /// The output at the pair's beginning, `now[0]` · v + `now[1]` · w; b₀ = `now[0]` is what an impulse sends to
-    /// the output of its own sample.
+    /// The output at the turn's beginning, `now[0]` · v + `now[1]` · w; `now[0]` is h₀.
     pub(super) now: [Lanes; 2],
     /// The output a quarter period later, but for the decay: the other component of its phasor.
     pub(super) quarter: [Lanes; 2],
+    /// What an impulse that all lanes hear sends to the output of its own and of the next three samples: h₀…h₃.
+    pub(super) heard_as: [f32; TURN],
 }
 
 /// Two samples of free motion: v becomes coefficient 0 · v + 1 · w, w becomes 2 · v + 3 · w.
 pub(super) const STEP: usize = 0;
-/// Output of the first sample of a pair: coefficient 4 · v + 5 · w.
-pub(super) const FIRST: usize = 4;
-/// Output of the second.
-pub(super) const SECOND: usize = 6;
-/// Coefficients that every step reads.
-pub(super) const HOT: usize = 8;
+/// The turn's outputs, of five products where eight would be the obvious way. An impulse is heard n samples later as hₙ, and
+/// the states are as good as two impulses: w in the last but one sample, v − w in the last. So output n is
+/// hₙ₊₁ (v − w) + hₙ₊₂ w: a filter of two taps over h₁…h₅, for which the shortest method (Toom and Cook's, Winograd's
+/// F(4, 2)) multiplies v − w, v, v − 2w, v + w and w by these. [`super::sums::outputs`] puts the products together.
+pub(super) const OUT: usize = 4;
+/// Coefficients that every turn reads.
+pub(super) const HOT: usize = 9;
+/// Samples in a turn of the hot loop, which begins at absolute multiples of it.
+pub(super) const TURN: usize = 4;
 
 /// Where in coefficient `i` of [`ModeGroup::hot`] a lane lies: the halves of every other one change places. Vectors of eight
 /// from the same half of several cache lines come at 1.9 a cycle, from either half in turn at 2.5.
@@ -68,20 +72,22 @@ pub(super) type Lanes = [f32; LANES];
 pub struct GroupState {
     pub(super) v: Lanes,
     pub(super) w: Lanes,
-    /// What the lanes heard in the first sample of a pair that is not complete; otherwise zero.
-    pub(super) pending: Lanes,
-    /// What that sample's inputs send to the output of the next; kept by the first group of a bank.
-    pub(super) carried: f32,
+    /// What the lanes heard in the samples so far of a turn that is not complete; otherwise zero.
+    pub(super) pending: [Lanes; TURN - 1],
+    /// What those samples' inputs send to the outputs of the turn's other samples; kept by the first group of a bank.
+    pub(super) carried: [f32; TURN],
 }
 
 impl GroupState {
     /// At rest.
-    pub const REST: Self = Self { v: [0.0; LANES], w: [0.0; LANES], pending: [0.0; LANES], carried: 0.0 };
+    pub const REST: Self =
+        Self { v: [0.0; LANES], w: [0.0; LANES], pending: [[0.0; LANES]; TURN - 1], carried: [0.0; TURN] };
 
     /// True when every lane is exactly at rest.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.carried == 0.0 && self.v.iter().chain(&self.w).chain(&self.pending).all(|&x| x == 0.0)
+        let lanes = self.v.iter().chain(&self.w).chain(self.pending.as_flattened());
+        lanes.chain(&self.carried).all(|&x| x == 0.0)
     }
 }
 
@@ -142,7 +148,7 @@ impl ModeGroup {
     pub const SILENT: Self = {
         let lanes = [0.0; LANES];
         let (two, four) = ([lanes; 2], [[lanes; 2]; 2]);
-        Self { hot: [lanes; HOT], trim: four, now: two, quarter: two }
+        Self { hot: [lanes; HOT], trim: four, now: two, quarter: two, heard_as: [0.0; TURN] }
     };
 
     fn set_lane(&mut self, lane: usize, pole: &Pole, options: &GroupOptions) {
@@ -155,16 +161,25 @@ impl ModeGroup {
         let next = [[1.0, -m], [1.0, g]];
         let step = square(next);
         let now = [b0, b0 * g + b1];
-        let [first] = product([now], next);
-        let [second] = product([first], next);
-        let quarter = [0, 1].map(|i| (first[i] / radius - cos * now[i]) / sin);
+        // Rows of (v, w): the output in each sample of the turn and the next. What is times v is h₁, h₂, …
+        let mut row = now;
+        let h: [[f64; 2]; 5] = core::array::from_fn(|_| {
+            [row] = product([row], next);
+            row
+        });
+        let quarter = [0, 1].map(|i| (h[0][i] / radius - cos * now[i]) / sin);
         let mut set = |i: usize, x: f64| self.hot[i][place(i, lane)] = x as f32;
+        for (i, x) in step.into_iter().flatten().enumerate() {
+            set(STEP + i, x);
+        }
+        let [h1, h2, h3, h4, h5] = h.map(|row| row[0]);
+        for (i, x) in out_of([h1, h2, h3, h4, h5]).into_iter().enumerate() {
+            set(OUT + i, x);
+        }
+        for (sum, h) in self.heard_as.iter_mut().zip([b0, h1, h2, h3]) {
+            *sum += h as f32;
+        }
         for i in 0..2 {
-            set(FIRST + i, first[i]);
-            set(SECOND + i, second[i]);
-            for (row, step) in step.iter().enumerate() {
-                set(STEP + 2 * row + i, step[i]);
-            }
             self.now[i][lane] = now[i] as f32;
             self.quarter[i][lane] = quarter[i] as f32;
         }
@@ -187,6 +202,17 @@ impl ModeGroup {
             }
         }
     }
+}
+
+/// The coefficients at [`OUT`] of h₁…h₅.
+pub(super) fn out_of([h1, h2, h3, h4, h5]: [f64; 5]) -> [f64; 5] {
+    [
+        (2.0 * h1 - h2 - 2.0 * h3 + h4) / 2.0,
+        (2.0 * h2 + h3 - h4) / 2.0,
+        (3.0 * h3 - 2.0 * h2 - h4) / 6.0,
+        (h4 - h2) / 6.0,
+        2.0 * h2 - h3 - 2.0 * h4 + h5,
+    ]
 }
 
 /// Rows of a linear map of (v, w).

@@ -1,10 +1,10 @@
 //! Which instructions the bank runs on, and its entry points.
 #![allow(unsafe_code)]
 
-use super::design::{GroupState, LaneGains, ModeGroup};
+use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
 use super::sleep::{self, MAX_INPUTS};
 use super::vector::Baseline;
-use super::walk::{Feed, Job, ROWS, walk};
+use super::walk::{Feed, Job, walk};
 
 /// An instruction set the bank has code for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -108,8 +108,12 @@ impl Kernel {
         if feed.inputs.is_empty() || count == 0 || samples == 0 {
             return;
         }
-        let mut job =
-            Job { groups: &groups[..count], states: &mut states[..count], feed, pairs: [0.0; ROWS / 2] };
+        let mut job = Job {
+            groups: &groups[..count],
+            states: &mut states[..count],
+            feed,
+            pairs: [0.0; GRID_SAMPLES as usize / 2],
+        };
         let out = &mut out[..samples];
         match self.0 {
             // SAFETY: the plain vector needs no instruction beyond the baseline.
@@ -172,7 +176,7 @@ unsafe fn walk_avx2(first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
 #[target_feature(enable = "avx512f,avx2,fma")]
 unsafe fn walk_avx512(first_sample: u64, job: &mut Job<'_>, out: &mut [f32]) {
     // SAFETY: this function is only called where AVX-512F is present.
-    unsafe { walk::<super::vector::x86::Avx512, 1, 3>(first_sample, job, out) }
+    unsafe { walk::<super::vector::x86::Avx512, 1, 4>(first_sample, job, out) }
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -1,12 +1,13 @@
-//! The hot loop: some groups of modes through one chunk, two samples a step.
+//! The hot loop: some groups of modes through one chunk, four samples a turn.
 #![allow(unsafe_code)]
-// `s` counts groups and `p` vectors of each, in several arrays at once.
+// `s` counts groups, `p` vectors of each and `i` rows, in several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
 use super::LANES;
-use super::design::{FIRST, HOT, Lanes, ModeGroup, SECOND, STEP, place};
+use super::design::{HOT, Lanes, ModeGroup, OUT, STEP, TURN, place};
 use super::kernel::Input;
-use super::vector::{Row, Vector};
+use super::sums::{SUMS, TurnSums};
+use super::vector::Vector;
 use super::walk::{Chunk, Feed, Job, Part};
 use core::array::from_fn;
 use core::hint::black_box;
@@ -41,39 +42,32 @@ unsafe fn heard<V: Vector, const K: usize>(feed: Feed<'_>, part: Part, at: usize
     }
 }
 
-/// Where the sums of vector `p` of a row begin.
-#[inline(always)]
-fn lane_of<V: Vector>(row: &mut MaybeUninit<Row>, part: Part, p: usize) -> *mut f32 {
-    row.as_mut_ptr().cast::<f32>().wrapping_add(part.lane + p * V::LEN)
-}
-
-/// What the sets before this one left in a row.
+/// What the sets before this one sent to a turn: one vector column of [`TurnSums`].
 ///
 /// # Safety
-/// The processor has the instructions of V; there are `P` · LEN lanes from `part.lane` on; the row is written
-/// unless this is the first set.
+/// The processor has the instructions of V; there are LEN lanes from `lane` on; `turn` is written unless this is the
+/// first set.
 #[inline(always)]
-unsafe fn so_far<V: Vector, const P: usize, const K: usize>(
-    row: &mut MaybeUninit<Row>,
-    part: Part,
-) -> [V; P] {
-    // SAFETY: the caller's promise.
-    from_fn(|p| unsafe {
-        if K == SHARED_FIRST || (K != SHARED && part.from == 0) {
-            V::splat(0.0)
-        } else {
-            V::load(lane_of::<V>(row, part, p))
+unsafe fn so_far<V: Vector>(turn: &MaybeUninit<TurnSums>, lane: usize, is_first: bool) -> [V; SUMS] {
+    // SAFETY: the caller's promise; the rows of a turn lie one after the other.
+    unsafe {
+        let mut sums = [V::splat(0.0); SUMS];
+        if !is_first {
+            for i in 0..SUMS {
+                sums[i] = V::load(turn.as_ptr().cast::<f32>().add(i * LANES + lane));
+            }
         }
-    })
+        sums
+    }
 }
 
 /// # Safety
 /// As [`so_far`].
 #[inline(always)]
-unsafe fn keep<V: Vector, const P: usize>(row: &mut MaybeUninit<Row>, part: Part, sum: [V; P]) {
-    for (p, sum) in sum.into_iter().enumerate() {
-        // SAFETY: the caller's promise.
-        unsafe { sum.store(lane_of::<V>(row, part, p)) }
+unsafe fn keep<V: Vector>(turn: &mut MaybeUninit<TurnSums>, lane: usize, sums: [V; SUMS]) {
+    for i in 0..SUMS {
+        // SAFETY: the caller's promise; the rows of a turn lie one after the other.
+        unsafe { sums[i].store(turn.as_mut_ptr().cast::<f32>().add(i * LANES + lane)) }
     }
 }
 
@@ -146,37 +140,69 @@ struct States<V, const P: usize, const S: usize> {
 }
 
 impl<V: Vector, const P: usize, const S: usize> States<V, P, S> {
-    /// Adds to `sum` what group `s` sends to one sample of the pair.
-    ///
-    /// # Safety
-    /// As [`Coefficients::read`]; `of` is an output.
-    #[inline(always)]
-    unsafe fn hear(&self, s: usize, p: usize, by: &Coefficients<'_, V, P, S>, of: usize, sum: &mut V) {
-        // SAFETY: the caller's promise.
-        unsafe {
-            *sum = self.v[s][p].mul_add(by.get(of, s, p), *sum);
-            *sum = self.w[s][p].mul_add(by.get(of + 1, s, p), *sum);
-        }
-    }
-
-    /// Moves one vector on by the two samples in which it hears x and y.
+    /// Adds what a vector sends to a turn.
     ///
     /// # Safety
     /// As [`Coefficients::read`].
     #[inline(always)]
-    unsafe fn step(&mut self, s: usize, p: usize, by: &Coefficients<'_, V, P, S>, x: V, both: V) {
+    unsafe fn hear(&self, s: usize, p: usize, by: &Coefficients<'_, V, P, S>, sums: &mut [V; SUMS]) {
         let (v, w) = (self.v[s][p], self.w[s][p]);
         // SAFETY: the caller's promise.
         unsafe {
-            let to_v = v.mul_add_near_one(by.get(STEP, s, p), w.mul_add(by.get(STEP + 1, s, p), both));
-            // In the order of sizes: v is the smaller one.
-            let to_w = v.mul_add(by.get(STEP + 2, s, p), w.mul_add_near_one(by.get(STEP + 3, s, p), x));
-            (self.v[s][p], self.w[s][p]) = (to_v, to_w);
+            let last = v.sub(w);
+            for (i, x) in [last, v, last.sub(w), v.add(w), w].into_iter().enumerate() {
+                sums[i] = x.mul_add(by.get(OUT + i, s, p), sums[i]);
+            }
         }
+    }
+
+    /// Adds what all vectors send to the sums of a turn.
+    ///
+    /// # Safety
+    /// As [`so_far`].
+    #[inline(always)]
+    unsafe fn send(
+        &self,
+        by: &Coefficients<'_, V, P, S>,
+        turn: &mut MaybeUninit<TurnSums>,
+        lane: usize,
+        is_first: bool,
+    ) {
+        for p in 0..P {
+            // SAFETY: the caller's promise.
+            unsafe {
+                let mut sums = so_far(turn, lane + p * V::LEN, is_first);
+                for s in 0..S {
+                    self.hear(s, p, by, &mut sums);
+                }
+                keep(turn, lane + p * V::LEN, sums);
+            }
+        }
+    }
+
+    /// Moves one vector on by a turn; `heard` is each pair's first impulse and the sum of both.
+    ///
+    /// # Safety
+    /// As [`Coefficients::read`].
+    #[inline(always)]
+    unsafe fn step(&mut self, s: usize, p: usize, by: &Coefficients<'_, V, P, S>, heard: [[V; 2]; TURN / 2]) {
+        let (mut v, mut w) = (self.v[s][p], self.w[s][p]);
+        // SAFETY: the caller's promise.
+        unsafe {
+            let c =
+                [by.get(STEP, s, p), by.get(STEP + 1, s, p), by.get(STEP + 2, s, p), by.get(STEP + 3, s, p)];
+            for [x, both] in heard {
+                let to_v = v.mul_add_near_one(c[0], w.mul_add(c[1], both));
+                // In the order of sizes: v is the smaller one.
+                let to_w = v.mul_add(c[2], w.mul_add_near_one(c[3], x));
+                (v, w) = (to_v, to_w);
+            }
+        }
+        (self.v[s][p], self.w[s][p]) = (v, w);
     }
 }
 
-/// `S` groups of `P` vectors, two samples a step; each row of sums receives the groups in their order.
+/// `S` groups of `P` vectors, four samples a turn; each row of sums receives the groups in their order.
 ///
 /// # Safety
 /// As [`inputs`].
@@ -185,75 +211,57 @@ pub(super) unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usi
     job: &mut Job<'_>,
     part: Part,
     chunk: Chunk,
-    rows: &mut [MaybeUninit<Row>],
+    turns: &mut [MaybeUninit<TurnSums>],
 ) {
-    let groups = &job.groups[part.from..part.from + S];
-    let states = &mut job.states[part.from..part.from + S];
-    let feed = job.feed;
-    let pairs = job.pairs.as_ptr();
     // SAFETY: the caller has the instructions of V. Every pointer below goes to a lane of an array of LANES
-    // values, or to a row or sample of the chunk.
+    // values, or to a turn or sample of the chunk.
     unsafe {
         let lane = |p: usize| part.lane + p * V::LEN;
+        let by = Coefficients::<V, P, S>::new(&job.groups[part.from..part.from + S], part.lane);
+        let states = &job.states[part.from..part.from + S];
         let read = |lanes: &Lanes, p: usize| V::load(lanes.as_ptr().add(lane(p)));
-        let by = Coefficients::<V, P, S>::new(groups, part.lane);
         let mut z = States::<V, P, S> {
             v: from_fn(|s| from_fn(|p| read(&states[s].v, p))),
             w: from_fn(|s| from_fn(|p| read(&states[s].w, p))),
         };
-
-        let (mut n, len) = (0, rows.len());
-        if chunk.odd {
-            let mut sum = so_far::<V, P, K>(&mut rows[0], part);
-            for s in 0..S {
-                for p in 0..P {
-                    let x = read(&states[s].pending, p);
-                    z.hear(s, p, &by, SECOND, &mut sum[p]);
-                    let y = heard::<V, K>(feed, part, chunk.at, s, p);
-                    z.step(s, p, &by, x, x.add(y));
-                    V::splat(0.0).store(states[s].pending.as_mut_ptr().add(lane(p)));
+        let (feed, pairs) = (job.feed, job.pairs.as_ptr());
+        let shared = K == SHARED_FIRST || K == SHARED;
+        let is_first = K == SHARED_FIRST || (K != SHARED && part.from == 0);
+        let head = chunk.skipped();
+        let whole = usize::from(chunk.phase > 0)..(chunk.phase + chunk.len) / TURN;
+        if chunk.phase > 0 {
+            z.send(&by, &mut turns[0], part.lane, is_first);
+            z = cut::<V, P, S, K>(job, part, (chunk.at, chunk.phase, head), &by, z);
+        }
+        let mut n = head;
+        for t in whole.clone() {
+            z.send(&by, turns.get_unchecked_mut(t), part.lane, is_first);
+            let mut hears = [[V::splat(0.0); 2]; TURN / 2];
+            if shared {
+                for (i, [first, both]) in hears.iter_mut().enumerate() {
+                    *first = heard::<V, K>(feed, part, chunk.at + n + 2 * i, 0, 0);
+                    *both = V::splat(*pairs.add((n - head) / 2 + i));
                 }
             }
-            keep(&mut rows[0], part, sum);
-            n = 1;
-        }
-        while n + 1 < len {
-            let mut first = so_far::<V, P, K>(rows.get_unchecked_mut(n), part);
-            let mut second = so_far::<V, P, K>(rows.get_unchecked_mut(n + 1), part);
-            let shared = K == SHARED_FIRST || K == SHARED;
-            let (x, both) = match shared {
-                true => (heard::<V, K>(feed, part, chunk.at + n, 0, 0), V::splat(*pairs.add(n / 2))),
-                false => (V::splat(0.0), V::splat(0.0)),
-            };
-            // Both sums and the steps in turn: each waits for itself.
             for s in 0..S {
                 for p in 0..P {
-                    z.hear(s, p, &by, FIRST, &mut first[p]);
-                    z.hear(s, p, &by, SECOND, &mut second[p]);
-                    let (x, both) = if shared {
-                        (x, both)
-                    } else {
-                        let x = heard::<V, K>(feed, part, chunk.at + n, s, p);
-                        (x, x.add(heard::<V, K>(feed, part, chunk.at + n + 1, s, p)))
-                    };
-                    z.step(s, p, &by, x, both);
+                    if !shared {
+                        for (i, [first, both]) in hears.iter_mut().enumerate() {
+                            *first = heard::<V, K>(feed, part, chunk.at + n + 2 * i, s, p);
+                            *both = first.add(heard::<V, K>(feed, part, chunk.at + n + 2 * i + 1, s, p));
+                        }
+                    }
+                    z.step(s, p, &by, hears);
                 }
             }
-            keep(rows.get_unchecked_mut(n), part, first);
-            keep(rows.get_unchecked_mut(n + 1), part, second);
-            n += 2;
+            n += TURN;
         }
-        if n < len {
-            let mut sum = so_far::<V, P, K>(&mut rows[n], part);
-            for s in 0..S {
-                for p in 0..P {
-                    z.hear(s, p, &by, FIRST, &mut sum[p]);
-                    let x = heard::<V, K>(feed, part, chunk.at + n, s, p);
-                    x.store(states[s].pending.as_mut_ptr().add(lane(p)));
-                }
-            }
-            keep(&mut rows[n], part, sum);
+        if n < chunk.len {
+            z.send(&by, &mut turns[whole.end], part.lane, is_first);
+            z = cut::<V, P, S, K>(job, part, (chunk.at + n, 0, chunk.len - n), &by, z);
         }
+        let groups = &job.groups[part.from..part.from + S];
+        let states = &mut job.states[part.from..part.from + S];
         for s in 0..S {
             for p in 0..P {
                 if chunk.ends_on_grid {
@@ -264,6 +272,46 @@ pub(super) unsafe fn set<V: Vector, const P: usize, const S: usize, const K: usi
             }
         }
     }
+}
+
+/// What the modes hear in a turn of which the block has only `count` samples, from `phase` on, the first of them being
+/// sample `at` of the block: when they complete the turn, the states move on; until then it is kept.
+///
+/// # Safety
+/// As [`set`].
+#[inline(always)]
+unsafe fn cut<V: Vector, const P: usize, const S: usize, const K: usize>(
+    job: &mut Job<'_>,
+    part: Part,
+    (at, phase, count): (usize, usize, usize),
+    by: &Coefficients<'_, V, P, S>,
+    mut z: States<V, P, S>,
+) -> States<V, P, S> {
+    for s in 0..S {
+        for p in 0..P {
+            let lane = part.lane + p * V::LEN;
+            let pending = &mut job.states[part.from + s].pending;
+            // SAFETY: the caller's promise.
+            unsafe {
+                let mut hears = [V::splat(0.0); TURN];
+                for (hears, pending) in hears.iter_mut().zip(pending.iter()) {
+                    *hears = V::load(pending.as_ptr().add(lane));
+                }
+                for i in 0..count {
+                    hears[phase + i] = heard::<V, K>(job.feed, part, at + i, s, p);
+                }
+                if phase + count == TURN {
+                    let [a, b, c, d] = hears;
+                    z.step(s, p, by, [[a, a.add(b)], [c, c.add(d)]]);
+                    hears = [V::splat(0.0); TURN];
+                }
+                for (hears, pending) in hears.into_iter().zip(pending) {
+                    hears.store(pending.as_mut_ptr().add(lane));
+                }
+            }
+        }
+    }
+    z
 }
 
 /// Gives every lane the decay and the phase that `f32` could not store.

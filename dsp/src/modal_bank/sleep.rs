@@ -35,8 +35,8 @@ pub(super) fn settle(groups: &[ModeGroup], states: &mut [GroupState], threshold:
     awake
 }
 
-/// Energy of a group's ringing: the sum over its lanes of the squared amplitude, output units squared; in the
-/// middle of a pair of samples that of its beginning.
+/// Energy of a group's ringing: the sum over its lanes of the squared amplitude, output units squared; within
+/// a turn of four samples that of its beginning.
 #[must_use]
 pub fn energy(group: &ModeGroup, state: &GroupState) -> f32 {
     let mut sum = 0.0;

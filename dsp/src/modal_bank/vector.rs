@@ -6,11 +6,8 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
-
-/// The lane sums of one sample. Aligned, because a vector across two cache lines costs two.
-#[derive(Clone, Copy)]
-#[repr(C, align(64))]
-pub(super) struct Row(pub [f32; LANES]);
+use super::design::{HOT, Lanes, TURN, place};
+use super::sums::{self, TurnSums};
 
 /// A few `f32` side by side.
 pub(super) trait Vector: Copy {
@@ -19,6 +16,8 @@ pub(super) trait Vector: Copy {
     /// Whether coefficients are read once a chunk, into registers or the stack; otherwise every use reads the group, which
     /// is faster where it is one operand of the multiplication.
     const KEEPS_COEFFICIENTS: bool;
+    /// How many groups go best at once.
+    const GROUPS_AT_ONCE: usize;
     /// All lanes `x`.
     unsafe fn splat(x: f32) -> Self;
     /// Reads `LEN` values.
@@ -29,10 +28,23 @@ pub(super) trait Vector: Copy {
         // SAFETY: passed on from the caller. A vector no longer than a half lies in one piece.
         unsafe { Self::load(from) }
     }
+    /// The lanes from `lane` on of coefficient `i`, wherever [`place`] has put them.
+    #[inline(always)]
+    unsafe fn load_placed(hot: &[Lanes; HOT], i: usize, lane: usize) -> Self {
+        // SAFETY: passed on from the caller: there are LEN lanes from `lane` on.
+        unsafe {
+            match i % 2 {
+                1 if Self::LEN == LANES => Self::load_swapped(hot[i].as_ptr()),
+                _ => Self::load(hot[i].as_ptr().add(place(i, lane))),
+            }
+        }
+    }
     /// Writes `LEN` values.
     unsafe fn store(self, to: *mut f32);
     /// self + other.
     unsafe fn add(self, other: Self) -> Self;
+    /// self − other.
+    unsafe fn sub(self, other: Self) -> Self;
     /// self · by + plus; one rounding where the processor has it.
     unsafe fn mul_add(self, by: Self, plus: Self) -> Self;
     /// The same for a large `self` and small `plus`. Where products are rounded apart, that of the part of `by` beyond
@@ -42,22 +54,11 @@ pub(super) trait Vector: Copy {
         // SAFETY: passed on from the caller.
         unsafe { self.mul_add(by, plus) }
     }
-    /// Adds the sum over the lanes of each row to `out`, in the order of [`sum_row`].
+    /// As [`sums::samples`].
     #[inline(always)]
-    unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
-        for (row, y) in rows.iter().zip(out) {
-            *y += sum_row(row);
-        }
+    unsafe fn samples(turn: &TurnSums) -> [f32; TURN] {
+        sums::samples(turn)
     }
-}
-
-/// The one order of summation: halves onto each other, then neighbours, then neighbours, then halves.
-#[inline(always)]
-pub(super) fn sum_row(row: &Row) -> f32 {
-    let half = |i: usize| row.0[i] + row.0[i + 8];
-    let low = (half(0) + half(1)) + (half(2) + half(3));
-    let high = (half(4) + half(5)) + (half(6) + half(7));
-    low + high
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -76,6 +77,7 @@ pub(super) struct Plain([f32; 4]);
 impl Vector for Plain {
     const LEN: usize = 4;
     const KEEPS_COEFFICIENTS: bool = true;
+    const GROUPS_AT_ONCE: usize = 4;
     #[inline(always)]
     unsafe fn splat(x: f32) -> Self {
         Self([x; 4])
@@ -93,6 +95,10 @@ impl Vector for Plain {
     #[inline(always)]
     unsafe fn add(self, other: Self) -> Self {
         Self(core::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+    #[inline(always)]
+    unsafe fn sub(self, other: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i] - other.0[i]))
     }
     #[inline(always)]
     unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
@@ -120,15 +126,17 @@ impl From<[f32; 4]> for Plain {
 #[cfg(target_arch = "x86_64")]
 pub(super) mod x86 {
     //! AVX2 with FMA, and AVX-512.
-    use super::{Row, Vector};
+    use super::super::sums::Row;
+    use super::{TURN, TurnSums, Vector};
     use core::arch::x86_64::*;
 
     macro_rules! vector {
-        ($name:ident, $raw:ty, $len:literal, $many:literal, $set1:ident, $load:ident, $load_swapped:ident, $store:ident, $add:ident,
-         $fmadd:ident) => {
+        ($name:ident, $raw:ty, $len:literal, $many:literal, $groups:literal, $set1:ident, $load:ident, $load_swapped:ident, $store:ident, $add:ident,
+         $sub:ident, $fmadd:ident) => {
             impl Vector for $name {
                 const LEN: usize = $len;
                 const KEEPS_COEFFICIENTS: bool = $many;
+                const GROUPS_AT_ONCE: usize = $groups;
                 #[inline(always)]
                 unsafe fn splat(x: f32) -> Self {
                     // SAFETY: the trait's contract: the processor has this instruction set.
@@ -155,14 +163,19 @@ pub(super) mod x86 {
                     Self(unsafe { $add(self.0, other.0) })
                 }
                 #[inline(always)]
+                unsafe fn sub(self, other: Self) -> Self {
+                    // SAFETY: the trait's contract.
+                    Self(unsafe { $sub(self.0, other.0) })
+                }
+                #[inline(always)]
                 unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
                     // SAFETY: the trait's contract.
                     Self(unsafe { $fmadd(self.0, by.0, plus.0) })
                 }
                 #[inline(always)]
-                unsafe fn add_sums(rows: &[Row], out: &mut [f32]) {
+                unsafe fn samples(turn: &TurnSums) -> [f32; TURN] {
                     // SAFETY: both sets include AVX.
-                    unsafe { add_sums_avx(rows, out) }
+                    unsafe { samples_avx(turn) }
                 }
             }
         };
@@ -175,6 +188,7 @@ pub(super) mod x86 {
     impl Vector for Sse {
         const LEN: usize = 4;
         const KEEPS_COEFFICIENTS: bool = true;
+        const GROUPS_AT_ONCE: usize = 4;
         #[inline(always)]
         unsafe fn splat(x: f32) -> Self {
             // SAFETY: SSE is part of the base of this architecture.
@@ -194,6 +208,11 @@ pub(super) mod x86 {
         unsafe fn add(self, other: Self) -> Self {
             // SAFETY: SSE is part of the base of this architecture.
             Self(unsafe { _mm_add_ps(self.0, other.0) })
+        }
+        #[inline(always)]
+        unsafe fn sub(self, other: Self) -> Self {
+            // SAFETY: SSE is part of the base of this architecture.
+            Self(unsafe { _mm_sub_ps(self.0, other.0) })
         }
         #[inline(always)]
         unsafe fn mul_add(self, by: Self, plus: Self) -> Self {
@@ -219,11 +238,13 @@ pub(super) mod x86 {
         __m256,
         8,
         false,
+        4,
         _mm256_set1_ps,
         _mm256_loadu_ps,
         load_swapped_eight,
         _mm256_storeu_ps,
         _mm256_add_ps,
+        _mm256_sub_ps,
         _mm256_fmadd_ps
     );
 
@@ -235,11 +256,13 @@ pub(super) mod x86 {
         __m512,
         16,
         true,
+        3,
         _mm512_set1_ps,
         _mm512_loadu_ps,
         load_swapped_sixteen,
         _mm512_storeu_ps,
         _mm512_add_ps,
+        _mm512_sub_ps,
         _mm512_fmadd_ps
     );
 
@@ -267,24 +290,25 @@ pub(super) mod x86 {
         unsafe { _mm256_add_ps(_mm256_loadu_ps(row.0.as_ptr()), _mm256_loadu_ps(row.0.as_ptr().add(8))) }
     }
 
-    /// Four rows at a time through the horizontal adds, in the order of `sum_row`.
+    /// As [`super::sums::samples`], eight lanes at a time, then by horizontal adds.
     #[inline(always)]
-    unsafe fn add_sums_avx(rows: &[Row], out: &mut [f32]) {
-        let (four_rows, last_rows) = rows.as_chunks::<4>();
-        let (four_out, last_out) = out.as_chunks_mut::<4>();
-        for (rows, y) in four_rows.iter().zip(four_out) {
-            // SAFETY: `y` holds 4 values; the processor has AVX.
-            unsafe {
-                let first = _mm256_hadd_ps(halves(&rows[0]), halves(&rows[1]));
-                let second = _mm256_hadd_ps(halves(&rows[2]), halves(&rows[3]));
-                let quads = _mm256_hadd_ps(first, second);
-                let sums = _mm_add_ps(_mm256_castps256_ps128(quads), _mm256_extractf128_ps::<1>(quads));
-                _mm_storeu_ps(y.as_mut_ptr(), _mm_add_ps(_mm_loadu_ps(y.as_ptr()), sums));
-            }
+    unsafe fn samples_avx(turn: &TurnSums) -> [f32; TURN] {
+        let mut sums = [0.0; TURN];
+        // SAFETY: `sums` holds 4 values; the processor has AVX.
+        unsafe {
+            let (last, one, minus) = (halves(&turn.0[0]), halves(&turn.0[1]), halves(&turn.0[2]));
+            let (two, first) = (halves(&turn.0[3]), halves(&turn.0[4]));
+            let (even, odd) = (_mm256_add_ps(one, minus), _mm256_sub_ps(one, minus));
+            let second = _mm256_fmadd_ps(two, _mm256_set1_ps(2.0), odd);
+            let third = _mm256_fmadd_ps(two, _mm256_set1_ps(4.0), even);
+            let fourth = _mm256_add_ps(_mm256_fmadd_ps(two, _mm256_set1_ps(8.0), odd), first);
+            let a = _mm256_hadd_ps(_mm256_add_ps(_mm256_add_ps(last, two), even), second);
+            let b = _mm256_hadd_ps(third, fourth);
+            let quads = _mm256_hadd_ps(a, b);
+            let low_and_high = (_mm256_castps256_ps128(quads), _mm256_extractf128_ps::<1>(quads));
+            _mm_storeu_ps(sums.as_mut_ptr(), _mm_add_ps(low_and_high.0, low_and_high.1));
         }
-        for (row, y) in last_rows.iter().zip(last_out) {
-            *y += super::sum_row(row);
-        }
+        sums
     }
 }
 
@@ -301,6 +325,7 @@ pub(super) mod neon {
     impl Vector for Neon {
         const LEN: usize = 4;
         const KEEPS_COEFFICIENTS: bool = true;
+        const GROUPS_AT_ONCE: usize = 4;
         #[inline(always)]
         unsafe fn splat(x: f32) -> Self {
             // SAFETY: NEON is part of the base of this architecture.
@@ -320,6 +345,11 @@ pub(super) mod neon {
         unsafe fn add(self, other: Self) -> Self {
             // SAFETY: NEON is part of the base of this architecture.
             Self(unsafe { vaddq_f32(self.0, other.0) })
+        }
+        #[inline(always)]
+        unsafe fn sub(self, other: Self) -> Self {
+            // SAFETY: NEON is part of the base of this architecture.
+            Self(unsafe { vsubq_f32(self.0, other.0) })
         }
         #[inline(always)]
         unsafe fn mul_add(self, by: Self, plus: Self) -> Self {

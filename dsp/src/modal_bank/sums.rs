@@ -1,0 +1,81 @@
+//! From the sums over the modes to the samples of a turn.
+
+use super::LANES;
+use super::design::TURN;
+use core::array::from_fn;
+
+/// One number for each lane. Aligned, because a vector across two cache lines costs two.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Row(pub [f32; LANES]);
+
+/// What all modes send to a turn, lane by lane: the sums of the products with the coefficients at [`super::design::OUT`].
+#[derive(Clone, Copy)]
+#[repr(C)]
+pub(super) struct TurnSums(pub [Row; SUMS]);
+
+/// Rows of them.
+pub(super) const SUMS: usize = 5;
+
+/// The outputs of a turn, from the products with v − w, v, v − 2w, v + w and w.
+#[inline(always)]
+pub(super) fn outputs([last, one, minus, two, first]: [f32; SUMS]) -> [f32; TURN] {
+    let (even, odd) = (one + minus, one - minus);
+    [last + two + even, 2.0 * two + odd, 4.0 * two + even, 8.0 * two + odd + first]
+}
+
+/// The sum over all lanes of the outputs of a turn.
+#[inline(always)]
+pub(super) fn samples(turn: &TurnSums) -> [f32; TURN] {
+    let lane = |l: usize| outputs(from_fn(|i| turn.0[i].0[l] + turn.0[i].0[l + 8]));
+    let lanes: [_; LANES / 2] = from_fn(lane);
+    from_fn(|i| sum_halves(lanes.map(|outputs| outputs[i])))
+}
+
+/// The one order of summation: halves onto each other, then neighbours, then neighbours, then halves.
+#[inline(always)]
+pub(super) fn sum_row(row: &Row) -> f32 {
+    sum_halves(from_fn(|l| row.0[l] + row.0[l + 8]))
+}
+
+#[inline(always)]
+fn sum_halves(half: [f32; LANES / 2]) -> f32 {
+    let low = (half[0] + half[1]) + (half[2] + half[3]);
+    let high = (half[4] + half[5]) + (half[6] + half[7]);
+    low + high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::design::out_of;
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn five_products_are_the_filter_of_two_taps() {
+        let mut rng = Rng::new(5);
+        for _ in 0..1000 {
+            let h: [f64; 5] = from_fn(|_| rng.normal());
+            let [v, w] = [rng.normal(), rng.normal()];
+            let by = out_of(h);
+            let products = [(v - w) * by[0], v * by[1], (v - 2.0 * w) * by[2], (v + w) * by[3], w * by[4]];
+            for (n, y) in outputs(products.map(|x| x as f32)).into_iter().enumerate() {
+                let exact = h[n] * (v - w) + h[n + 1] * w;
+                assert!(
+                    (f64::from(y) - exact).abs() < 1e-5 * (1.0 + exact.abs() + w.abs()),
+                    "{n}: {y} {exact}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_lanes_of_a_turn_add_up_to_its_samples() {
+        let mut rng = Rng::new(6);
+        let turn = TurnSums(from_fn(|_| Row(from_fn(|_| rng.normal() as f32))));
+        let by_row = outputs(from_fn(|i| sum_row(&turn.0[i])));
+        for (of_lanes, of_rows) in samples(&turn).into_iter().zip(by_row) {
+            assert!((of_lanes - of_rows).abs() < 1e-4, "{of_lanes} {of_rows}");
+        }
+    }
+}
