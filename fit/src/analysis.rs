@@ -16,6 +16,7 @@ use crate::partial::Partial;
 use crate::projection::synthesise;
 use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
 use crate::refinement::{Bounds, refine};
+use crate::ringing::anything_rings;
 use crate::sub_band::Level;
 use crate::suspicion::energy_spectrum;
 use std::f64::consts::PI;
@@ -87,6 +88,16 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         mismatch: false,
         missed: Vec::new(),
     };
+    let band = (limits.bounds.omega_low, limits.bounds.omega_high);
+    if !anything_rings(segment, band, limits.least_noise) {
+        progress(1.0);
+        return Analysis {
+            partials: Vec::new(),
+            noise: work.noise,
+            residual: segment.to_vec(),
+            capped: false,
+        };
+    }
     let levels = Level::ladder(segment.len());
     let mut cost = f64::INFINITY;
     for pass in 0..PASSES {
