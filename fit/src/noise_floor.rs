@@ -20,6 +20,8 @@ pub(crate) const PERCENTILE: f64 = 0.3;
 const LOUDER: f64 = 0.8;
 /// Length of the first epoch of noise by time, s.
 const FIRST_EPOCH_S: f64 = 0.02;
+/// The local noise over the smoothed one that makes noise steep: no scatter of the local one reaches that.
+const STEEP: f64 = 4.0;
 /// Bins beside 0 Hz and half the rate that the window's main lobe reaches.
 const EDGE_BINS: usize = 5;
 
@@ -98,6 +100,15 @@ impl NoiseFloor {
     pub fn following(mut self, residual: &[f64]) -> Self {
         self.tilt = Tilt::of(residual);
         self
+    }
+
+    /// The highest angular frequency at which the noise is so much louder than smoothed over 1.5 kHz that it is steep
+    /// from there down; 0 when it is nowhere.
+    #[must_use]
+    pub fn steep_below(&self) -> f64 {
+        let Some(tilt) = &self.tilt else { return 0.0 };
+        let smooth = Self { tilt: None, ..self.clone() };
+        tilt.places().filter(|&omega| tilt.at(omega) > STEEP * smooth.variance_at(omega)).fold(0.0, f64::max)
     }
 
     fn tilted(&self, smooth: f64, omega: f64) -> f64 {

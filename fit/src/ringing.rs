@@ -1,29 +1,31 @@
-//! Whether anything rings at all, or all of it is noise that goes on as it began.
+//! What rings, and what is noise that goes on as it began.
 //!
 //! Modes fitted to steep noise (rumble, wind, 1/f²) take the loudest part of it with them: the noise measured in
-//! what they leave is then too low, and they pass every test against it. So before anything is fitted, the
-//! segment is held against the noise it would be: stationary, with any spectrum that is smooth over some dozen bins.
-//! Nothing has to be known of that spectrum, for a mode differs from it in two ways:
+//! what they leave is then too low, and they pass every test against it. So the recording itself is held against
+//! the noise it would be: stationary, with any spectrum that is smooth over some dozen bins. Nothing else has to be
+//! known of that spectrum, for a mode differs from it in two ways:
 //!
 //! * *it decays*: seen through a window of L samples at the segment's start, its bin is louder than the same bin
 //!   seen through the same window later on. L = 64, 128, … a quarter of the segment;
 //! * *it is a line*: its bin is louder than bins above and below it. L = the segment and half of it.
 //!
-//! The windows are w(n) = n³ e^(−a n), a = 20 / L, nearest to the exponential e^(−a n / 7): it keeps 63 % (−2 dB) of
-//! what the exponential itself would, but has no jump at its start, so that steep noise does not leak through
+//! The windows are w(n) = (a n)³ e^(−a n), a = 20 / L, nearest to the exponential e^(−a n / 7): it keeps 63 % (−2 dB)
+//! of what the exponential itself would, but has no jump at its start, so that steep noise does not leak through
 //! (a⁸ / ω⁸). What they see are the differences of successive samples, in which a mode is the same mode and a slow
 //! wander is none.
 //!
-//! The power P of a bin of noise over the mean Q of n others, independent and alike, exceeds r with the probability
-//! of an F(2, 2n) variable, which bounds the ratio r of the least that counts:
+//! The power P of a bin of noise over the mean Q of n others, independent and alike, is an F(2, 2n) variable, which says
+//! how large the ratio r must be to count:
 //!
 //! ```text
 //! p = (1 + r / n)^(−n)            r = n (p^(−1/n) − 1)            p = FALSE_ALARM / samples
 //! ```
 //! The mean of others is arithmetic and taken on both sides: where the noise is steep, it is too high rather than too low.
-//! A mode that is alone in a recording must have 2 to 4 dB more than [`crate::pruning`] asks for: the price of
-//! not knowing the noise.
+//! A mode must have 2 to 4 dB more than [`crate::pruning`] asks for: the price of not knowing the noise. It is paid
+//! only by a mode that is alone, or stands in noise that is steep.
 
+use crate::partial::Partial;
+use crate::projection::synthesise;
 use nalgebra::Complex;
 use rustfft::FftPlanner;
 use std::f64::consts::PI;
@@ -42,7 +44,7 @@ const LOWEST_BIN: usize = 10;
 const GUARD: usize = 4;
 /// Neighbouring bins are not independent: this many are worth one.
 const BINS_A_CELL: f64 = 4.45;
-/// Farthest bins compared, as a part of the bin's number and in bins.
+/// Farthest bins compared, as a part of the bin's number and in bins at least and at most.
 const LINE_REACH: (f64, usize, usize) = (0.5, 12, 48);
 const DECAY_REACH: (f64, usize, usize) = (1.0 / 6.0, 0, 12);
 /// Independent cells that are enough.
@@ -52,93 +54,146 @@ const ENOUGH: f64 = 60.0;
 /// that counts as noise in any case (rounding).
 #[must_use]
 pub fn anything_rings(segment: &[f64], omega: (f64, f64), least_noise: f64) -> bool {
-    let differences: Vec<f64> = segment.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let count = differences.len();
-    if count < 8 * SHORTEST {
-        // Too short to be compared with itself.
-        return true;
-    }
-    let chance = FALSE_ALARM / count as f64;
-    let test = |length: usize| Cells::of(&differences, length, omega, least_noise);
-    let mut length = SHORTEST;
-    while 4 * length <= count {
-        if test(length).decay(chance) {
-            return true;
-        }
-        length *= 2;
-    }
-    test(count / 4).decay(chance) || [2, 1].into_iter().any(|part| test(count / part).line(chance))
+    let differences = differences(segment);
+    let Some(views) = views(differences.len()) else { return true };
+    let chance = FALSE_ALARM / differences.len() as f64;
+    views.into_iter().any(|view| {
+        let cells = Cells::of(&differences, view, least_noise);
+        cells.bins(omega).any(|k| cells.first[k] > cells.least(k, chance))
+    })
 }
 
-/// Powers per frame and bin through windows of one length.
-struct Cells {
-    powers: Vec<Vec<f64>>,
-    bins: (usize, usize),
-    /// Power of the rounding noise in bin k: its first factor times 1 − cos(2π k / L).
-    rounding: f64,
+/// Which of `partials`, fitted to a segment and leaving `residual` of it, stand out of steady noise; those above
+/// `steep_below` radians a sample are taken to. One that does is taken away before the others are looked at again.
+#[must_use]
+pub fn standing_out(residual: &[f64], partials: &[Partial], steep_below: f64, least_noise: f64) -> Vec<bool> {
+    let mut standing: Vec<bool> = partials.iter().map(|p| p.omega > steep_below).collect();
+    let Some(views) = views(residual.len().saturating_sub(1)) else { return vec![true; partials.len()] };
+    let chance = FALSE_ALARM / residual.len() as f64;
+    while standing.contains(&false) {
+        let doubtful: Vec<Partial> =
+            partials.iter().zip(&standing).filter(|(_, standing)| !**standing).map(|(p, _)| *p).collect();
+        let mut left = synthesise(&doubtful, residual.len());
+        left.iter_mut().zip(residual).for_each(|(x, r)| *x += r);
+        let left = differences(&left);
+        let before = standing.clone();
+        for &view in &views {
+            let cells = Cells::of(&left, view, least_noise);
+            for (standing, partial) in standing.iter_mut().zip(partials) {
+                *standing |= cells.show(partial, chance);
+            }
+        }
+        if standing == before {
+            break;
+        }
+    }
+    standing
+}
+
+fn differences(samples: &[f64]) -> Vec<f64> {
+    samples.windows(2).map(|pair| pair[1] - pair[0]).collect()
+}
+
+/// One way of looking at a segment.
+#[derive(Debug, Clone, Copy)]
+struct View {
+    /// Of the window, samples.
     length: usize,
+    /// What the first frame's bins are compared with: later frames, or other bins.
+    with_later: bool,
+}
+
+/// All views of `count` samples, `None` when these are too few to be compared with each other.
+fn views(count: usize) -> Option<Vec<View>> {
+    let decays = std::iter::successors(Some(SHORTEST), |length| Some(2 * length))
+        .take_while(|length| 4 * length < count)
+        .chain([count / 4])
+        .map(|length| View { length, with_later: true });
+    let lines = [count / 2, count].map(|length| View { length, with_later: false });
+    (count >= 8 * SHORTEST).then(|| decays.chain(lines).collect())
+}
+
+/// Powers per bin through windows of one length.
+struct Cells {
+    view: View,
+    /// Of the first frame.
+    first: Vec<f64>,
+    /// Running sums, over bins, of what these are compared with, and of how many frames that is.
+    sums: Vec<f64>,
+    frames: f64,
+    least_noise: f64,
 }
 
 impl Cells {
-    fn of(samples: &[f64], length: usize, omega: (f64, f64), least_noise: f64) -> Self {
+    fn of(samples: &[f64], view: View, least_noise: f64) -> Self {
+        let length = view.length;
         let rate = WINDOW_NEPERS / length as f64;
-        let window: Vec<f64> = (0..length)
-            .map(|n| (n as f64 + 0.5) * rate)
-            .map(|x| x.powi(3) * (-x).exp())
-            .collect();
+        let window: Vec<f64> = (0..length).map(|n| n as f64 * rate).map(|x| x.powi(3) * (-x).exp()).collect();
         let norm: f64 = window.iter().map(|w| w * w).sum();
         let fft = FftPlanner::new().plan_fft_forward(length);
         let mut frame = vec![Complex::new(0.0, 0.0); length];
-        let powers = (0..=samples.len() - length)
-            .step_by((length / HOPS).max(1))
-            .map(|start| {
-                for ((value, x), w) in frame.iter_mut().zip(&samples[start..]).zip(&window) {
-                    *value = Complex::new(x * w, 0.0);
-                }
-                fft.process(&mut frame);
-                frame[..=length / 2].iter().map(|value| value.norm_sqr() / norm).collect()
-            })
-            .collect();
-        let bin = |omega: f64| omega * length as f64 / (2.0 * PI);
+        let mut powers = |start: usize| -> Vec<f64> {
+            for ((value, x), w) in frame.iter_mut().zip(&samples[start..]).zip(&window) {
+                *value = Complex::new(x * w, 0.0);
+            }
+            fft.process(&mut frame);
+            frame[..=length / 2].iter().map(|value| value.norm_sqr() / norm).collect()
+        };
+        let first = powers(0);
+        let (mut compared, mut frames) = (first.clone(), 1.0);
+        if view.with_later {
+            compared.fill(0.0);
+            frames = 0.0;
+            for start in (length..=samples.len() - length).step_by(length / HOPS) {
+                compared.iter_mut().zip(powers(start)).for_each(|(sum, power)| *sum += power);
+                frames += 1.0;
+            }
+        }
+        Self { view, first, sums: running_sums(&compared), frames, least_noise }
+    }
+
+    /// The bins between two angular frequencies.
+    fn bins(&self, omega: (f64, f64)) -> std::ops::RangeInclusive<usize> {
+        let bin = |omega: f64| omega * self.view.length as f64 / (2.0 * PI);
         let low = (bin(omega.0).ceil() as usize).max(LOWEST_BIN);
-        let high = (bin(omega.1) as usize).min(length / 2 - 1);
-        Self { powers, bins: (low, high), rounding: 2.0 * least_noise, length }
+        low..=(bin(omega.1) as usize).min(self.first.len() - 2)
     }
 
-    /// Whether any bin of the first frame is louder than what later frames have there.
-    fn decay(&self, chance: f64) -> bool {
-        let Some(later) = self.powers.get(HOPS..).filter(|later| !later.is_empty()) else { return false };
-        let frames = later.len() as f64;
-        let sums: Vec<f64> =
-            (0..self.powers[0].len()).map(|k| later.iter().map(|frame| frame[k]).sum()).collect();
-        let sums = running_sums(&sums);
-        (self.bins.0..=self.bins.1).any(|k| {
-            let wanted = (0.5 * ENOUGH / frames * BINS_A_CELL) as usize;
-            let reach = if frames >= ENOUGH { 0 } else { reach(DECAY_REACH, k).min(wanted) };
-            let (from, to) = (k - reach, (k + reach + 1).min(sums.len() - 1));
-            let bins = (to - from) as f64;
-            let mean = (sums[to] - sums[from]) / (bins * frames);
-            self.exceeds(k, mean, frames * (bins / BINS_A_CELL).max(1.0), chance)
-        })
-    }
-
-    /// Whether any bin of the first frame is louder than its neighbours.
-    fn line(&self, chance: f64) -> bool {
-        let sums = running_sums(&self.powers[0]);
-        (self.bins.0..=self.bins.1).any(|k| {
+    /// The power that counts in bin `k`, where noise has more with this `chance`.
+    fn least(&self, k: usize, chance: f64) -> f64 {
+        let end = self.first.len();
+        let (sum, bins) = if self.view.with_later {
+            let wanted = (0.5 * ENOUGH / self.frames * BINS_A_CELL) as usize;
+            let reach = if self.frames >= ENOUGH { 0 } else { reach(DECAY_REACH, k).min(wanted) };
+            let (from, to) = (k - reach, (k + reach + 1).min(end));
+            (self.sums[to] - self.sums[from], to - from)
+        } else {
             let reach = reach(LINE_REACH, k);
             let below = (k.saturating_sub(reach).max(1), k - GUARD + 1);
-            let above = ((k + GUARD).min(sums.len() - 1), (k + reach + 1).min(sums.len() - 1));
-            let bins = (below.1 - below.0 + above.1 - above.0) as f64;
-            let sum = sums[below.1] - sums[below.0] + sums[above.1] - sums[above.0];
-            self.exceeds(k, sum / bins, bins / BINS_A_CELL, chance)
-        })
+            let above = ((k + GUARD).min(end), (k + reach + 1).min(end));
+            let sum = self.sums[below.1] - self.sums[below.0] + self.sums[above.1] - self.sums[above.0];
+            (sum, below.1 - below.0 + above.1 - above.0)
+        };
+        let mean = sum / (self.frames * bins as f64);
+        let independent = self.frames * (bins as f64 / BINS_A_CELL).max(1.0);
+        let turn = 2.0 * PI * k as f64 / self.view.length as f64;
+        let rounding = 2.0 * self.least_noise * (1.0 - turn.cos());
+        independent * ((-chance.ln() / independent).exp() - 1.0) * mean.max(rounding)
     }
 
-    fn exceeds(&self, k: usize, mean: f64, cells: f64, chance: f64) -> bool {
-        let rounding = self.rounding * (1.0 - (2.0 * PI * k as f64 / self.length as f64).cos());
-        let least = cells * ((-chance.ln() / cells).exp() - 1.0);
-        self.powers[0][k] > least * mean.max(rounding)
+    /// Whether the first frame shows `partial`: both what it would have there alone and what is there count.
+    fn show(&self, partial: &Partial, chance: f64) -> bool {
+        let per_bin = 2.0 * PI / self.view.length as f64;
+        let k = (partial.omega / per_bin).round() as usize;
+        if !self.bins((0.0, PI)).contains(&k) {
+            return false;
+        }
+        let a = WINDOW_NEPERS / self.view.length as f64;
+        let difference = (partial.c * (partial.pole() - 1.0)).norm_sqr();
+        let away = partial.omega - k as f64 * per_bin;
+        // |Σ w c zⁿ / 2|² / Σ w² with Σ (a n)³ e^(−s n) = 6 a³ / s⁴.
+        let own = 1.6 * difference * a.powi(7) / ((a + partial.delta).powi(2) + away * away).powi(4);
+        own.min(self.first[k]) > self.least(k, chance)
     }
 }
 
@@ -148,12 +203,9 @@ fn reach((part, least, most): (f64, usize, usize), k: usize) -> usize {
 
 /// Sums of the first 0, 1, 2, … values.
 fn running_sums(values: &[f64]) -> Vec<f64> {
-    let mut sums = Vec::with_capacity(values.len() + 1);
-    let mut sum = 0.0;
-    sums.push(sum);
-    for value in values {
-        sum += value;
-        sums.push(sum);
-    }
-    sums
+    let sums = values.iter().scan(0.0, |sum, value| {
+        *sum += value;
+        Some(*sum)
+    });
+    std::iter::once(0.0).chain(sums).collect()
 }
