@@ -16,7 +16,7 @@ use crate::partial::Partial;
 use crate::projection::synthesise;
 use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
 use crate::refinement::{Bounds, refine};
-use crate::ringing::{anything_rings, standing_out};
+use crate::ringing::{anything_rings, is_steep_noise, standing_out};
 use crate::sub_band::Level;
 use crate::suspicion::energy_spectrum;
 use std::f64::consts::PI;
@@ -223,9 +223,11 @@ impl Work<'_> {
     /// Removes what only steep noise proves.
     fn follow_tilt(&mut self) {
         self.prune_by_tilt();
-        let steep_below = self.noise.steep_below();
         let residual = subtract(self.segment, &self.partials);
-        let standing = standing_out(&residual, &self.partials, steep_below, self.limits.least_noise);
+        if !is_steep_noise(&residual, self.limits.rate_hz, self.limits.least_noise) {
+            return;
+        }
+        let standing = standing_out(&residual, &self.partials, self.limits.least_noise);
         if standing.contains(&false) {
             let mut standing = standing.into_iter();
             self.partials.retain(|_| standing.next() != Some(false));

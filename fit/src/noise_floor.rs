@@ -102,13 +102,12 @@ impl NoiseFloor {
         self
     }
 
-    /// The highest angular frequency at which the noise is so much louder than smoothed over 1.5 kHz that it is steep
-    /// from there down; 0 when it is nowhere.
+    /// Whether the noise [followed](Self::following) is anywhere far louder than smoothed over 1.5 kHz.
     #[must_use]
-    pub fn steep_below(&self) -> f64 {
-        let Some(tilt) = &self.tilt else { return 0.0 };
+    pub fn is_steep(&self) -> bool {
         let smooth = Self { tilt: None, ..self.clone() };
-        tilt.places().filter(|&omega| tilt.at(omega) > STEEP * smooth.variance_at(omega)).fold(0.0, f64::max)
+        let steep = |tilt: &Tilt, omega: f64| tilt.at(omega) > STEEP * smooth.variance_at(omega);
+        self.tilt.as_ref().is_some_and(|tilt| tilt.places().any(|omega| steep(tilt, omega)))
     }
 
     fn tilted(&self, smooth: f64, omega: f64) -> f64 {
