@@ -1,5 +1,7 @@
 //! The whole analysis of one segment: levels from long to short, joint refinement, proof, once more.
 //!
+//! Nothing of this is done where nothing rings ([`crate::ringing`]).
+//!
 //! 1. Levels D = 512, 128, 32, 8, 2 (at 2 s and 44.1 kHz; the first leaves about 170 samples a band).
 //!    At each: split what is unexplained into bands, take the poles of every band whose gate opens,
 //!    join them to what is known, refit all jointly on the part of the segment after the level's span,
@@ -7,6 +9,7 @@
 //!    one window never has to suit both.
 //! 2. Joint refinement over the whole segment, proof, refinement.
 //! 3. The same on the residual, with the noise measured again in the residual, until nothing is added.
+//! 4. Proof once more where the noise is steep over frequency.
 
 use crate::amplitudes::{contributions, fit_amplitudes};
 use crate::candidates::{SPAN_NEPERS, Search};
