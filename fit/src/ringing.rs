@@ -278,7 +278,6 @@ mod tests {
                 }
             }
         }
-        println!("seen {seen} of {tried}");
         assert!(10 * seen >= 9 * tried, "{seen} of {tried}");
     }
 
