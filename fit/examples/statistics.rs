@@ -1,6 +1,6 @@
 //! The statistics that a test suite has no time for, in full: `statistics`
 //!
-//! 50 draws of two modes 1 Hz apart (T60 2 s, 20 dB), 20 draws of every colour of noise, 30 s and 10
+//! 50 draws of two modes 1 Hz apart (T60 2 s, 20 dB), 40 draws of every colour of noise, 30 s and 10
 //! minutes of audio, and the most memory the process ever held.
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -8,6 +8,7 @@ mod common;
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
 use asperity_fit::{ChannelChoice, FitOptions, FittedMode, Recording, fit, load};
+use common::noise::{COLOURS, Colour, noise};
 use common::*;
 
 const RATE_HZ: f64 = 44_100.0;
@@ -24,12 +25,13 @@ fn main() {
         return;
     }
     println!("pairs 1 Hz apart, both found: {} of 50 (48 or more)", pairs(50, 4242));
-    println!("white noise, without a mode: {} of 20 (19 or more)", silent(20, 9000, 1.0));
-    println!("coloured noise, without a mode: {} of 20 (19 or more)", silent(20, 9100, 0.25));
-    for pole in [0.02, 0.005] {
-        println!("1/f² noise, pole {pole}, without a mode: {} of 20 (19 or more)", silent(20, 9200, pole));
+    for (name, colour) in COLOURS {
+        println!("{name:22} without a mode: {} of 40 (38 or more)", silent(40, 9000, colour));
     }
-    println!("1/f noise, without a mode: {} of 20 (19 or more)", silent_pink(20, 9300));
+    for pole in [0.02, 0.005] {
+        let silent = from_rest(20, 9200, pole);
+        println!("one-pole {pole} from rest, without a mode: {silent} of 20 (19 or more)");
+    }
     long(30.0);
     long(600.0);
     println!("most memory held so far: {:.0} MiB", peak_mib());
@@ -54,35 +56,19 @@ fn pairs(draws: u32, seed: u64) -> usize {
         .count()
 }
 
-/// How many draws of noise, white or through a one-pole low-pass of this coefficient, give no mode.
-fn silent(draws: u64, seed: u64, pole: f64) -> usize {
+/// How many draws of 2 s of noise give no mode.
+fn silent(draws: u64, seed: u64, colour: Colour) -> usize {
+    (0..draws).filter(|draw| fitted(noise(colour, 88_200, RATE_HZ, 0, seed + draw)).modes.is_empty()).count()
+}
+
+/// The same of a one-pole low-pass of white noise that begins with nothing.
+fn from_rest(draws: u64, seed: u64, pole: f64) -> usize {
     (0..draws)
         .filter(|draw| {
             let (mut rng, mut last) = (Rng::new(seed + draw), 0.0);
             let mut next = || {
                 last += pole * (rng.normal() - last);
                 0.1 * last
-            };
-            let samples = (0..88_200).map(|_| next()).collect();
-            fitted(samples).modes.is_empty()
-        })
-        .count()
-}
-
-/// The same for 1/f noise: ten low-passes an octave apart, of equal power.
-fn silent_pink(draws: u64, seed: u64) -> usize {
-    (0..draws)
-        .filter(|draw| {
-            let (mut rng, mut last) = (Rng::new(seed + draw), [0.0; 10]);
-            let mut next = || {
-                let mut pole = 0.5_f64;
-                let mut sum = 0.0;
-                for last in &mut last {
-                    *last += pole * (rng.normal() - *last);
-                    sum += *last / pole.sqrt();
-                    pole *= 0.5;
-                }
-                0.05 * sum
             };
             let samples = (0..88_200).map(|_| next()).collect();
             fitted(samples).modes.is_empty()

@@ -1,5 +1,7 @@
 //! The whole analysis of one segment: levels from long to short, joint refinement, proof, once more.
 //!
+//! Nothing of this is done where nothing rings ([`crate::ringing`]).
+//!
 //! 1. Levels D = 512, 128, 32, 8, 2 (at 2 s and 44.1 kHz; the first leaves about 170 samples a band).
 //!    At each: split what is unexplained into bands, take the poles of every band whose gate opens,
 //!    join them to what is known, refit all jointly on the part of the segment after the level's span,
@@ -7,6 +9,7 @@
 //!    one window never has to suit both.
 //! 2. Joint refinement over the whole segment, proof, refinement.
 //! 3. The same on the residual, with the noise measured again in the residual, until nothing is added.
+//! 4. Proof once more where the noise is steep over frequency.
 
 use crate::amplitudes::{contributions, fit_amplitudes};
 use crate::candidates::{SPAN_NEPERS, Search};
@@ -16,6 +19,7 @@ use crate::partial::Partial;
 use crate::projection::synthesise;
 use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
 use crate::refinement::{Bounds, refine};
+use crate::ringing::{anything_rings, is_steep_noise, standing_out};
 use crate::sub_band::Level;
 use crate::suspicion::energy_spectrum;
 use std::f64::consts::PI;
@@ -87,6 +91,16 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         mismatch: false,
         missed: Vec::new(),
     };
+    let band = (limits.bounds.omega_low, limits.bounds.omega_high);
+    if !anything_rings(segment, band, limits.least_noise) {
+        progress(1.0);
+        return Analysis {
+            partials: Vec::new(),
+            noise: work.noise,
+            residual: segment.to_vec(),
+            capped: false,
+        };
+    }
     let levels = Level::ladder(segment.len());
     let mut cost = f64::INFINITY;
     for pass in 0..PASSES {
@@ -211,6 +225,22 @@ impl Work<'_> {
 
     /// Removes what only steep noise proves.
     fn follow_tilt(&mut self) {
+        self.prune_by_tilt();
+        let residual = subtract(self.segment, &self.partials);
+        if !is_steep_noise(&residual, self.limits.rate_hz, self.limits.least_noise) {
+            return;
+        }
+        let standing = standing_out(&residual, &self.partials, self.limits.least_noise);
+        if standing.contains(&false) {
+            let mut standing = standing.into_iter();
+            self.partials.retain(|_| standing.next() != Some(false));
+            self.settle(FINAL_STEPS);
+            self.prune_by_tilt();
+        }
+    }
+
+    /// Removes what is not proven against noise that is followed over parts of an octave.
+    fn prune_by_tilt(&mut self) {
         loop {
             let residual = subtract(self.segment, &self.partials);
             self.measure_noise();

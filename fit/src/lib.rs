@@ -10,6 +10,7 @@
 //! | [`recording`] | file → one channel |
 //! | [`onset`] | channel → one strike |
 //! | [`strike`] | strike → modes: the whole way ([`fit`]) |
+//! | [`ringing`] | segment → is there anything but noise; partials → which stand out of steep noise |
 //! | [`analysis`] | segment → partials: levels, refinement, proof |
 //! | `candidates` | residual → what may be modes |
 //! | [`sub_band`] | segment → decimated bands |
@@ -67,6 +68,7 @@ pub mod pruning;
 pub mod recording;
 pub mod refinement;
 pub mod residual;
+pub mod ringing;
 pub mod scaling;
 pub mod strike;
 pub mod sub_band;

@@ -20,6 +20,8 @@ pub(crate) const PERCENTILE: f64 = 0.3;
 const LOUDER: f64 = 0.8;
 /// Length of the first epoch of noise by time, s.
 const FIRST_EPOCH_S: f64 = 0.02;
+/// The local noise over the smoothed one that makes noise steep: no scatter of the local one reaches that.
+const STEEP: f64 = 4.0;
 /// Bins beside 0 Hz and half the rate that the window's main lobe reaches.
 const EDGE_BINS: usize = 5;
 
@@ -98,6 +100,14 @@ impl NoiseFloor {
     pub fn following(mut self, residual: &[f64]) -> Self {
         self.tilt = Tilt::of(residual);
         self
+    }
+
+    /// Whether the noise [followed](Self::following) is anywhere far louder than smoothed over 1.5 kHz.
+    #[must_use]
+    pub fn is_steep(&self) -> bool {
+        let smooth = Self { tilt: None, ..self.clone() };
+        let steep = |tilt: &Tilt, omega: f64| tilt.at(omega) > STEEP * smooth.variance_at(omega);
+        self.tilt.as_ref().is_some_and(|tilt| tilt.places().any(|omega| steep(tilt, omega)))
     }
 
     fn tilted(&self, smooth: f64, omega: f64) -> f64 {

@@ -90,6 +90,11 @@ impl Tilt {
         (a.1 + (b.1 - a.1) * part.min(1.0)).exp()
     }
 
+    /// The angular frequencies of the knots.
+    pub(crate) fn places(&self) -> impl Iterator<Item = f64> {
+        self.knots.iter().map(|knot| knot.0.exp())
+    }
+
     /// The variance at `omega` where the smooth floor says `smooth`.
     #[must_use]
     pub fn above(&self, smooth: f64, omega: f64) -> f64 {

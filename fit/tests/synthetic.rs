@@ -6,6 +6,7 @@ mod common;
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
 use asperity_fit::{FitOptions, FittedMode, Recording, fit};
+use common::noise::{COLOURS, Colour, noise};
 use common::*;
 
 fn fitted(samples: &[f64], rate_hz: f64) -> asperity_fit::Fit {
@@ -116,6 +117,33 @@ fn noise_of_any_colour_has_no_modes() {
             assert!(fit.modes.is_empty(), "{pole} {seed}: {:?}", fit.modes);
             assert!(fit.warnings.contains(&asperity_fit::Warning::NoModes), "{pole} {seed}");
         }
+    }
+}
+
+#[test]
+fn steep_noise_of_any_colour_has_no_modes_however_long_it_is() {
+    // Forty draws of each, of 0.5, 2 and 10 s: `--example colours`.
+    for (name, colour) in COLOURS {
+        for (seconds, rate_hz, bits, seed) in [(0.5, 44_100.0, 16, 61), (1.0, 48_000.0, 0, 62)] {
+            let samples = noise(colour, (seconds * rate_hz) as usize, rate_hz, bits, seed);
+            let fit = fitted(&samples, rate_hz);
+            assert!(fit.modes.is_empty(), "{name} {seconds} s: {:?}", fit.modes);
+        }
+    }
+}
+
+#[test]
+fn a_strike_in_brown_noise_has_its_modes_and_no_others() {
+    // These came with 33 others that were fitted to the noise below 100 Hz and took it with them.
+    let mode = |frequency_hz, decay_per_s| Mode { frequency_hz, decay_per_s, amplitude: 0.2, phase_rad: 1.0 };
+    let truth = [mode(180.0, 6.0), mode(712.4, 9.0), mode(2210.0, 20.0), mode(5100.0, 40.0)];
+    let mut samples = noise(Colour::Power(2.0, 20.0), 88_200, 44_100.0, 0, 1000);
+    samples.iter_mut().for_each(|x| *x *= 0.1);
+    samples[11_025..].iter_mut().zip(render(&truth, 44_100.0, 77_175)).for_each(|(x, y)| *x += y);
+    let found = modes(&fitted(&samples, 44_100.0));
+    assert_eq!(found.len(), truth.len(), "{found:?}");
+    for t in &truth {
+        assert!(found.iter().any(|m| (m.frequency_hz - t.frequency_hz).abs() < 0.3), "{t:?} {found:?}");
     }
 }
 

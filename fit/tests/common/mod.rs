@@ -1,6 +1,8 @@
 //! Synthetic impacts with known truth, the joint Cramér–Rao bound, and scoring against both.
 #![allow(dead_code)]
 
+pub mod noise;
+
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
 use nalgebra::{Cholesky, DMatrix};
