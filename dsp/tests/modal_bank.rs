@@ -599,6 +599,7 @@ fn masking_in_bands_loses_nothing_audible_and_finds_nearly_all_that_is_masked() 
         let mut keep = vec![false; count];
         let start = std::time::Instant::now();
         let kept = audible(&modes, 44_100.0, &Culling::default(), &mut keep);
+        let took = start.elapsed();
         let exact = exactly_audible(&modes);
         println!("{count} modes: {kept} kept, exactly {:?}", exact.iter().filter(|k| **k).count());
         assert!(
@@ -607,7 +608,7 @@ fn masking_in_bands_loses_nothing_audible_and_finds_nearly_all_that_is_masked() 
         );
         let superfluous = keep.iter().zip(&exact).filter(|(keep, exact)| **keep && !**exact).count();
         assert!(superfluous * 50 <= count, "{count} modes: {superfluous} masked ones stay");
-        assert!(start.elapsed().as_millis() < 2_000);
+        assert!(took.as_millis() < 2_000, "{took:?}");
     }
 }
 
