@@ -3,8 +3,9 @@
 mod common;
 
 use asperity_dsp::mode::Mode;
-use asperity_fit::analysis::{Limits, analyse};
+use asperity_fit::analysis::analyse;
 use asperity_fit::fitted::partial_of;
+use asperity_fit::limits::Limits;
 use asperity_fit::partial::Partial;
 use asperity_fit::refinement::{Bounds, refine};
 use common::*;

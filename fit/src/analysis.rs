@@ -13,12 +13,13 @@
 
 use crate::amplitudes::{contributions, fit_amplitudes};
 use crate::candidates::{SPAN_NEPERS, Search};
+use crate::limits::Limits;
 use crate::merging::{merge_cancelling, merge_resonances};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
 use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
-use crate::refinement::{Bounds, refine};
+use crate::refinement::refine;
 use crate::ringing::{anything_rings, is_steep_noise, standing_out};
 use crate::sub_band::Level;
 use crate::suspicion::energy_spectrum;
@@ -30,7 +31,7 @@ const PASSES: usize = 3;
 const LEVEL_STEPS: usize = 3;
 /// A residual with this many times the noise's power is no noise.
 const MISFIT: f64 = 2.0;
-/// [`Bounds::energy_cost`] once a recording has shown that it is no sum of modes.
+/// [`crate::refinement::Bounds::energy_cost`] once a recording has shown that it is no sum of modes.
 const ENERGY_COST: f64 = 1e-3;
 /// Most rounds of merging and refitting.
 const MERGING_ROUNDS: usize = 15;
@@ -49,23 +50,6 @@ const FINAL_STEPS: usize = 12;
 /// Of the last refinement of what is a sum of modes: until it has converged, which modes closer than their
 /// bandwidths, whose valley is narrow and bent, may take long to.
 const LAST_STEPS: usize = 200;
-
-/// What bounds an analysis, in units of samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// Bounds of every parameter.
-    pub bounds: Bounds,
-    /// Most partials.
-    pub max_partials: usize,
-    /// Partials whose energy lies further than this below the strongest are dropped, as a ratio.
-    pub least_energy: f64,
-    /// Threads to use.
-    pub threads: usize,
-    /// Sample rate, for the width of the noise estimate.
-    pub rate_hz: f64,
-    /// Least noise variance (quantisation, rounding).
-    pub least_noise: f64,
-}
 
 /// What an analysis found.
 #[derive(Debug, Clone)]

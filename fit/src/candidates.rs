@@ -2,8 +2,8 @@
 //!
 //! Bands and the poles in them are independent of each other and shared among the threads allowed.
 
-use crate::analysis::Limits;
 use crate::esprit::{energies, poles};
+use crate::limits::Limits;
 use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;

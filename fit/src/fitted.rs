@@ -4,10 +4,12 @@ use crate::contact::rise;
 use crate::partial::Partial;
 use crate::pruning::Uncertainty;
 use crate::residual::{Burst, Residual};
-use crate::strike::LEAST_DECAY_PER_S;
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 use std::fmt;
+
+/// Slowest decay a mode may have, 1/s: T60 = 60 s.
+pub const LEAST_DECAY_PER_S: f64 = 0.115;
 
 /// One mode of the struck body as the recording shows it:
 /// `amplitude · e^(−decay_per_s t) · sin(2π frequency_hz t + phase_rad)`, t from the onset.

@@ -56,6 +56,8 @@ pub mod contact;
 pub mod esprit;
 pub mod fitted;
 pub mod geometric_sum;
+pub mod limits;
+mod median_spectrum;
 pub mod merge;
 pub mod merging;
 pub mod model_order;

@@ -5,16 +5,13 @@
 //! few bins). Both order statistics of exponentially distributed powers are calibrated together, exactly.
 //! Edges of the spectrum are mirrored; the bins beside 0 Hz carry the removed mean and are replaced.
 
+use crate::median_spectrum::{PERCENTILE, medians, percentile_of_median, previous_power_of_two};
 use crate::partial::Partial;
 use crate::tilt::Tilt;
-use nalgebra::Complex;
-use rustfft::FftPlanner;
 use std::f64::consts::PI;
 
 /// Width over which the percentile is taken, Hz.
 const SMOOTHING_HZ: f64 = 1500.0;
-/// The percentile over frequency.
-pub(crate) const PERCENTILE: f64 = 0.3;
 /// The first half counts when it is this much louder than its share: the larger of two estimates of the
 /// same noise would be biased.
 const LOUDER: f64 = 0.8;
@@ -22,9 +19,6 @@ const LOUDER: f64 = 0.8;
 const FIRST_EPOCH_S: f64 = 0.02;
 /// The local noise over the smoothed one that makes noise steep: no scatter of the local one reaches that.
 const STEEP: f64 = 4.0;
-/// Bins beside 0 Hz and half the rate that the window's main lobe reaches.
-const EDGE_BINS: usize = 5;
-
 /// Noise variance per frequency, as if the noise at that frequency were white.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NoiseFloor {
@@ -147,49 +141,8 @@ impl NoiseFloor {
     }
 }
 
-pub(crate) fn previous_power_of_two(n: usize) -> usize {
-    if n == 0 { 1 } else { 1 << n.ilog2() }
-}
-
 fn mean_square(samples: &[f64]) -> f64 {
     samples.iter().map(|x| x * x).sum::<f64>() / samples.len().max(1) as f64
-}
-
-/// Median over time of the normalised power in every bin from 0 Hz to half the rate.
-pub(crate) fn medians(samples: &[f64], length: usize, starts: &[usize]) -> Vec<f64> {
-    let window: Vec<f64> = (0..length).map(|i| blackman_harris(i as f64 / length as f64)).collect();
-    let norm: f64 = window.iter().map(|w| w * w).sum();
-    let fft = FftPlanner::new().plan_fft_forward(length);
-    let mut powers = vec![Vec::with_capacity(starts.len()); length / 2 + 1];
-    let mut frame = vec![Complex::new(0.0, 0.0); length];
-    for &start in starts {
-        for ((value, x), w) in frame.iter_mut().zip(&samples[start..]).zip(&window) {
-            *value = Complex::new(x * w, 0.0);
-        }
-        fft.process(&mut frame);
-        for (bin, value) in powers.iter_mut().zip(&frame) {
-            bin.push(value.norm_sqr() / norm);
-        }
-    }
-    let middle = median_rank(starts.len()) - 1;
-    let mut medians: Vec<f64> =
-        powers.iter_mut().map(|bin| *bin.select_nth_unstable_by(middle, f64::total_cmp).1).collect();
-    let last = medians.len() - 1;
-    for bin in 0..EDGE_BINS.min(last / 4) {
-        medians[bin] = medians[2 * EDGE_BINS.min(last / 4) - bin];
-        medians[last - bin] = medians[last - (2 * EDGE_BINS.min(last / 4) - bin)];
-    }
-    medians
-}
-
-fn blackman_harris(x: f64) -> f64 {
-    let c = |k: f64| (2.0 * PI * k * x).cos();
-    0.358_75 - 0.488_29 * c(1.0) + 0.141_28 * c(2.0) - 0.011_68 * c(3.0)
-}
-
-/// The rank (from 1) taken as the median of `count` values.
-fn median_rank(count: usize) -> usize {
-    count.div_ceil(2)
 }
 
 /// Running percentile over ± `half` bins with mirrored edges, evaluated on a coarse grid.
@@ -217,36 +170,12 @@ fn percentiles(values: &[f64], half: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The 30th percentile of the median of `count` unit exponentials: the median is below x when at least its
-/// rank of them are, each with probability p = 1 − e^(−x).
-pub(crate) fn percentile_of_median(count: usize) -> f64 {
-    let least = median_rank(count);
-    let below = |p: f64| {
-        // Σ C(count, j) p^j (1 − p)^(count − j), j < least, from the logarithm of each term.
-        let (mut term, mut sum) = (count as f64 * (1.0 - p).ln(), 0.0);
-        for j in 0..least {
-            sum += term.exp();
-            term += ((count - j) as f64 / (j + 1) as f64 * p / (1.0 - p)).ln();
-        }
-        1.0 - sum
-    };
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if below(middle) < PERCENTILE {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    -(-low).ln_1p()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::projection::synthesise;
     use asperity_dsp::rng::Rng;
+    use nalgebra::Complex;
 
     fn noise(seed: u64, count: usize) -> Vec<f64> {
         let mut rng = Rng::new(seed);
@@ -262,17 +191,6 @@ mod tests {
                 assert!(db.abs() < 2.0, "{count}: {i} {db}");
             }
             assert!((10.0 * (floor.mean_variance() / 0.01).log10()).abs() < 0.6);
-        }
-    }
-
-    /// Figures of scipy 1.17: −ln(1 − beta.ppf(0.3, k, M − k + 1)).
-    #[test]
-    fn the_percentile_of_the_median_is_the_one_scipy_computes() {
-        for (count, theirs) in
-            [(1, 0.356_674_943_9), (4, 0.317_981_762_9), (9, 0.537_178_846_7), (100, 0.632_786_936_2)]
-        {
-            let ours = percentile_of_median(count);
-            assert!((ours / theirs - 1.0).abs() < 1e-9, "{count}: {ours} {theirs}");
         }
     }
 

@@ -4,9 +4,10 @@
 //! half-sine force: 27 dB with it in the analysed part, 75 dB without) → analysed from there on
 //! ([`crate::analysis`]) → hum and non-exponential decays named → residual.
 
-use crate::analysis::{Analysis, Limits, analyse};
+use crate::analysis::{Analysis, analyse};
 use crate::contact::{contact_samples, rise, unexplained};
-use crate::fitted::{Fit, FittedMode, Warning};
+use crate::fitted::{Fit, FittedMode, LEAST_DECAY_PER_S, Warning};
+use crate::limits::Limits;
 use crate::noise_floor::NoiseFloor;
 use crate::onset;
 use crate::partial::Partial;
@@ -22,8 +23,6 @@ const SHORT_S: f64 = 0.05;
 /// Longest analysed part, s; recordings above `UNTRIMMED_S` are trimmed where they reach their noise.
 const LONGEST_S: f64 = 40.0;
 const UNTRIMMED_S: f64 = 5.0;
-/// Longest decay a mode may have: T60 = 60 s.
-pub const LEAST_DECAY_PER_S: f64 = 0.115;
 /// Largest amplitude of a mode, in peaks of the recording.
 const LARGEST_AMPLITUDE: f64 = 8.0;
 

@@ -13,7 +13,7 @@
 //! Only where this exceeds the smooth floor by `TRUSTED` does it count: the percentile of few bins scatters, and
 //! what is white must stay so.
 
-use crate::noise_floor::{PERCENTILE, medians, percentile_of_median, previous_power_of_two};
+use crate::median_spectrum::{PERCENTILE, medians, percentile_of_median, previous_power_of_two};
 
 /// How much louder than the smooth floor the local one must be to count, as a part of it, when it is the
 /// percentile of one bin: some three standard deviations, which fall with the root of the number of bins.

@@ -6,11 +6,9 @@
 
 use super::LANES;
 use super::design::{LaneGains, ModeGroup, OUT, TURN};
-use super::kernel::Input;
-use super::sleep::MAX_INPUTS;
+use super::job::{Chunk, Input, Job, MAX_INPUTS};
 use super::sums::{Row, SUMS, outputs, sum_row};
 use super::vector::Vector;
-use super::walk::{Chunk, Job};
 use core::array::from_fn;
 
 pub(super) struct Direct {

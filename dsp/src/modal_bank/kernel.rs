@@ -1,10 +1,11 @@
 //! Which instructions the bank runs on, and its entry points.
 #![allow(unsafe_code)]
 
-use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
-use super::sleep::{self, MAX_INPUTS};
+use super::design::{GRID_SAMPLES, GroupState, ModeGroup};
+use super::job::{Feed, Input, Job, MAX_INPUTS};
+use super::sleep;
 use super::vector::Baseline;
-use super::walk::{Feed, Job, walk};
+use super::walk::walk;
 
 /// An instruction set the bank has code for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,15 +26,6 @@ pub enum Isa {
 /// last digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Kernel(Isa);
-
-/// One of several inputs of a bank.
-#[derive(Debug, Clone, Copy)]
-pub struct Input<'a> {
-    /// Impulse of each sample, N·s.
-    pub impulses: &'a [f32],
-    /// What each lane takes from it, one entry a group.
-    pub gains: &'a [LaneGains],
-}
 
 impl Kernel {
     /// Runs everywhere.

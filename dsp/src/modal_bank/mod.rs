@@ -56,6 +56,7 @@
 mod culling;
 mod design;
 mod direct;
+mod job;
 mod kernel;
 mod reference;
 mod retune;
@@ -69,10 +70,11 @@ pub use culling::{Culling, audible};
 pub use design::{
     GRID_SAMPLES, GroupOptions, GroupState, LaneGains, ModeGroup, design_group, groups_for, sort_by_decay,
 };
-pub use kernel::{Input, Isa, Kernel};
+pub use job::{Input, MAX_INPUTS};
+pub use kernel::{Isa, Kernel};
 pub use reference::{ReferenceMode, ReferenceState};
 pub use retune::retune;
-pub use sleep::{Awake, Bank, MAX_INPUTS, SLEEP_AMPLITUDE, energy, ringing_s};
+pub use sleep::{Awake, Bank, SLEEP_AMPLITUDE, energy, ringing_s};
 
 /// Modes in a group.
 pub const LANES: usize = 16;

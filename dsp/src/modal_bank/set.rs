@@ -5,10 +5,9 @@
 
 use super::LANES;
 use super::design::{HOT, Lanes, ModeGroup, OUT, STEP, TURN, place};
-use super::kernel::Input;
+use super::job::{Chunk, Feed, Input, Job, Part};
 use super::sums::{SUMS, TurnSums};
 use super::vector::Vector;
-use super::walk::{Chunk, Feed, Job, Part};
 use core::array::from_fn;
 use core::hint::black_box;
 use core::marker::PhantomData;

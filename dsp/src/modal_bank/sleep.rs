@@ -1,7 +1,8 @@
 //! Sleep: what has rung out is put exactly to rest and costs nothing until it is struck again.
 
+use super::Kernel;
 use super::design::{GRID_SAMPLES, GroupState, ModeGroup};
-use super::{Input, Kernel};
+use super::job::{Input, MAX_INPUTS};
 use crate::mode::Mode;
 
 /// Amplitudes beyond this are no vibration but a broken state, which is put to rest.
@@ -157,9 +158,6 @@ pub struct Bank<'a> {
     /// Amplitude below which a mode is put to rest, output units.
     pub threshold: f32,
 }
-
-/// Most inputs of [`Awake::render_bank`].
-pub const MAX_INPUTS: usize = 16;
 
 const SILENCE: [f32; GRID_SAMPLES as usize] = [0.0; GRID_SAMPLES as usize];
 

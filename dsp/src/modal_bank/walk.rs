@@ -1,9 +1,9 @@
 //! The walk over the 64-sample grid, and how many groups go at once.
 #![allow(unsafe_code)]
 
-use super::design::{GRID_SAMPLES, GroupState, ModeGroup, TURN};
+use super::design::{GRID_SAMPLES, TURN};
 use super::direct::Direct;
-use super::kernel::Input;
+use super::job::{Chunk, Job, Part};
 use super::set::{ANY, SHARED, SHARED_FIRST, set};
 use super::sums::TurnSums;
 use super::vector::Vector;
@@ -11,53 +11,6 @@ use core::mem::MaybeUninit;
 
 /// Chunks never cross the grid, so they touch no more turns than this.
 pub(super) const TURNS: usize = GRID_SAMPLES as usize / TURN;
-
-/// The inputs of one call; `shared` means one input, gain 1.
-#[derive(Clone, Copy)]
-pub(super) struct Feed<'a> {
-    pub inputs: &'a [Input<'a>],
-    pub shared: bool,
-}
-
-pub(super) struct Job<'a> {
-    pub groups: &'a [ModeGroup],
-    pub states: &'a mut [GroupState],
-    pub feed: Feed<'a>,
-    /// The two impulses of each pair of the chunk's whole turns, added; of the shared input only.
-    pub pairs: [f32; GRID_SAMPLES as usize / 2],
-}
-
-impl Job<'_> {
-    /// Once for all modes what each would add up again.
-    #[inline(always)]
-    fn add_pairs(&mut self, chunk: Chunk) {
-        if let (true, [input]) = (self.feed.shared, self.feed.inputs) {
-            let heard = &input.impulses[chunk.at + chunk.skipped()..chunk.at + chunk.len];
-            for (sum, pair) in self.pairs.iter_mut().zip(heard.as_chunks::<2>().0) {
-                *sum = pair[0] + pair[1];
-            }
-        }
-    }
-}
-
-/// Some samples within one turn of the grid.
-#[derive(Clone, Copy)]
-pub(super) struct Chunk {
-    /// Where in the block it begins.
-    pub at: usize,
-    pub len: usize,
-    /// Which sample of a turn it begins with.
-    pub phase: usize,
-    /// It ends on the grid, where states are trimmed.
-    pub ends_on_grid: bool,
-}
-
-impl Chunk {
-    /// Samples before its first whole turn.
-    pub fn skipped(&self) -> usize {
-        ((TURN - self.phase) % TURN).min(self.len)
-    }
-}
 
 /// Walks the block in chunks that end on the absolute grid. `P` vectors make a group, and at most
 /// `MAX` groups are interleaved.
@@ -157,13 +110,6 @@ unsafe fn parts<V: Vector, const P: usize, const S: usize>(
             }
         }
     }
-}
-
-/// Which group and which lane of it a set begins with.
-#[derive(Clone, Copy)]
-pub(super) struct Part {
-    pub from: usize,
-    pub lane: usize,
 }
 
 /// # Safety
