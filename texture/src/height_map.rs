@@ -15,10 +15,10 @@
 //! the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid as well, so
 //! that a seamless map has no seam.
 
-use crate::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
+use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
 use crate::raster::Raster;
 use crate::resample::halve;
-use crate::spline::{Sample, Samples, Spline};
+use crate::spline::{Places, Sample, Samples, Spline};
 use crate::wrap::Wrap;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
@@ -229,21 +229,24 @@ impl Pyramid {
         self.sample_blurred(position_m, 2.0 * footprint_m * along(velocity_m_s, [u, v]))
     }
 
-    /// The map along a path; `take` is given every sample.
-    fn sample_block(&self, path: &PathBlock<'_>, mut take: impl FnMut(usize, Sample)) {
-        match self.levels.first() {
-            Some(finest) if path.footprint_m.iter().all(|&f| is_sharp(f, finest.texels_per_metre())) => {
-                let mut samples = Samples::EMPTY;
-                finest.sample_block(path.position_m, &mut samples);
-                for n in 0..path.len() {
-                    let gradient = [samples.slope_u[n], samples.slope_v[n]];
-                    take(n, Sample { value: samples.value[n], gradient });
-                }
-            }
-            _ => {
-                for n in 0..path.len() {
-                    take(n, self.sample(path.position_m[n], path.velocity_m_s[n], path.footprint_m[n]));
-                }
+    /// The map along a path, and its slopes if `SLOPES`; no footprint is longer than `widest_m`.
+    fn sample_block<const SLOPES: bool>(
+        &self,
+        path: &PathBlock<'_>,
+        widest_m: f64,
+        places: &mut Places,
+        out: &mut Samples,
+    ) {
+        if let Some(finest) = self.levels.first()
+            && is_sharp(widest_m, finest.texels_per_metre())
+        {
+            return finest.sample_block::<SLOPES>(path.position_m, places, out);
+        }
+        for n in 0..path.len() {
+            let sample = self.sample(path.position_m[n], path.velocity_m_s[n], path.footprint_m[n]);
+            out.value[n] = sample.value;
+            if SLOPES {
+                [out.slope_u[n], out.slope_v[n]] = sample.gradient;
             }
         }
     }
@@ -270,6 +273,19 @@ impl Pyramid {
     }
 }
 
+/// The longest of some footprints; looked at side by side.
+fn widest_m(footprint_m: &[f64]) -> f64 {
+    let mut widest = [0.0; 8];
+    let wider =
+        |widest: &mut f64, footprint: &f64| *widest = if *footprint > *widest { *footprint } else { *widest };
+    let (eights, rest) = footprint_m.as_chunks::<8>();
+    for eight in eights {
+        widest.iter_mut().zip(eight).for_each(|(widest, footprint)| wider(widest, footprint));
+    }
+    widest.iter_mut().zip(rest).for_each(|(widest, footprint)| wider(widest, footprint));
+    widest.into_iter().fold(0.0, f64::max)
+}
+
 /// Whether the finest level needs no blur in any direction.
 #[inline]
 fn is_sharp(footprint_m: f64, texels_per_metre: [f64; 2]) -> bool {
@@ -293,14 +309,21 @@ impl HeightField for HeightMap {
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        self.heights.sample_block(path, |n, sample| {
-            out.height_m[n] = sample.value;
-            out.gradient[n] = sample.gradient;
-        });
+        let widest_m = widest_m(path.footprint_m);
+        let (mut places, mut samples) = (Places::EMPTY, Samples::EMPTY);
+        self.heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
+        out.height_m.copy_from_slice(&samples.value[..MAX_BLOCK]);
+        let slopes = samples.slope_u.iter().zip(&samples.slope_v);
+        for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
+            *gradient = [*u, *v];
+        }
         match &self.roughness {
             Roughness::Constant(roughness) => out.roughness[..path.len()].fill(*roughness),
             Roughness::Map(map) => {
-                map.sample_block(path, |n, sample| out.roughness[n] = sample.value.clamp(0.0, 1.0));
+                map.sample_block::<false>(path, widest_m, &mut places, &mut samples);
+                for (roughness, value) in out.roughness.iter_mut().zip(&samples.value) {
+                    *roughness = value.clamp(0.0, 1.0);
+                }
             }
         }
         out.friction[..path.len()].fill(self.friction);

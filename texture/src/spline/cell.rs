@@ -1,0 +1,130 @@
+//! The spline between four texels.
+
+use super::Sample;
+use super::place::{AxisPlaces, Place, ROOM};
+use super::vector::{Rows, Vector};
+
+/// Values and slopes of a block, each on its own so that lanes fill vectors.
+pub struct Samples {
+    /// Values of the map.
+    pub value: [f64; ROOM],
+    /// Slopes along u, per metre.
+    pub slope_u: [f64; ROOM],
+    /// Slopes along v, per metre.
+    pub slope_v: [f64; ROOM],
+}
+
+impl Samples {
+    /// Nothing yet.
+    pub const EMPTY: Self = Self { value: [0.0; ROOM], slope_u: [0.0; ROOM], slope_v: [0.0; ROOM] };
+}
+
+/// The spline between four texels as a polynomial, Σ aᵢⱼ xⁱ yʲ with x, y the fractions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cell {
+    /// aᵢⱼ by i, then j.
+    powers: [[f64; 4]; 4],
+}
+
+/// Four rows of B-spline coefficients c₀ … c₃ → the powers 0 … 3 of the fraction from c₁ to c₂, in every column.
+#[inline(always)]
+fn to_powers<V: Rows>(v: V, c: [V::Lanes; 4]) -> [V::Lanes; 4] {
+    let (half, sixth) = (v.splat(0.5), v.splat(1.0 / 6.0));
+    let outer = v.add(c[0], c[2]);
+    [
+        v.mul(v.add(v.mul(v.splat(4.0), c[1]), outer), sixth),
+        v.mul(half, v.sub(c[2], c[0])),
+        v.sub(v.mul(half, outer), c[1]),
+        v.mul(v.add(v.sub(c[3], c[0]), v.mul(v.splat(3.0), v.sub(c[1], c[2]))), sixth),
+    ]
+}
+
+impl Cell {
+    /// The cell amid four rows of four coefficients.
+    #[inline(always)]
+    pub(super) fn new<V: Rows>(v: V, coefficients: [&[f32; 4]; 4]) -> Self {
+        let [a, b, c, d] = coefficients;
+        let along_v = v.transpose(to_powers(v, [v.widen(a), v.widen(b), v.widen(c), v.widen(d)]));
+        let mut powers = [[0.0; 4]; 4];
+        for (to, row) in powers.iter_mut().zip(to_powers(v, along_v)) {
+            v.store(row, to);
+        }
+        Self { powers }
+    }
+
+    /// [`Self::at`] for the places `start..end`, N side by side: values, and slopes if `SLOPES`. What is written beyond
+    /// `end`, up to whole vectors, means nothing.
+    #[inline(always)]
+    pub(super) fn block<const N: usize, V: Vector<N>, const SLOPES: bool>(
+        &self,
+        v: V,
+        [x, y]: [&AxisPlaces; 2],
+        (start, end): (usize, usize),
+        out: &mut Samples,
+    ) {
+        // By power of y: a polynomial in x, and its derivative.
+        let p = &self.powers;
+        let (mut heights, mut slopes) = ([[v.splat(0.0); 4]; 4], [[v.splat(0.0); 3]; 4]);
+        for j in 0..4 {
+            heights[j] = [v.splat(p[0][j]), v.splat(p[1][j]), v.splat(p[2][j]), v.splat(p[3][j])];
+            slopes[j] = [heights[j][1], v.splat(2.0 * p[2][j]), v.splat(3.0 * p[3][j])];
+        }
+        let (two, three) = (v.splat(2.0), v.splat(3.0));
+        for n in (start..end).step_by(N) {
+            let (t, u) = (v.load(x.fraction(n)), v.load(y.fraction(n)));
+            let mut level = [v.splat(0.0); 4];
+            for j in 0..4 {
+                level[j] = cubic(v, heights[j], t);
+            }
+            v.store(cubic(v, level, u), room(&mut out.value, n));
+            if SLOPES {
+                let mut rise = [v.splat(0.0); 4];
+                for j in 0..4 {
+                    rise[j] = quadratic(v, slopes[j], t);
+                }
+                let along_u = cubic(v, rise, u);
+                let along_v = quadratic(v, [level[1], v.mul(two, level[2]), v.mul(three, level[3])], u);
+                v.store(v.mul(along_u, v.load(x.slope(n))), room(&mut out.slope_u, n));
+                v.store(v.mul(along_v, v.load(y.slope(n))), room(&mut out.slope_v, n));
+            }
+        }
+    }
+
+    #[inline]
+    pub(super) fn at(&self, x: &Place, y: &Place) -> Sample {
+        // The four powers of y side by side.
+        let p = &self.powers;
+        let t = x.fraction;
+        let (mut level, mut rise) = ([0.0; 4], [0.0; 4]);
+        for j in 0..4 {
+            level[j] = ((p[3][j] * t + p[2][j]) * t + p[1][j]) * t + p[0][j];
+            rise[j] = (3.0 * p[3][j] * t + 2.0 * p[2][j]) * t + p[1][j];
+        }
+        let t = y.fraction;
+        Sample {
+            value: ((level[3] * t + level[2]) * t + level[1]) * t + level[0],
+            gradient: [
+                (((rise[3] * t + rise[2]) * t + rise[1]) * t + rise[0]) * x.slope,
+                ((3.0 * level[3] * t + 2.0 * level[2]) * t + level[1]) * y.slope,
+            ],
+        }
+    }
+}
+
+/// a₀ + a₁ t + a₂ t² + a₃ t³.
+#[inline(always)]
+fn cubic<const N: usize, V: Vector<N>>(v: V, a: [V::Lanes; 4], t: V::Lanes) -> V::Lanes {
+    v.add(v.mul(quadratic(v, [a[1], a[2], a[3]], t), t), a[0])
+}
+
+/// a₀ + a₁ t + a₂ t².
+#[inline(always)]
+fn quadratic<const N: usize, V: Vector<N>>(v: V, a: [V::Lanes; 3], t: V::Lanes) -> V::Lanes {
+    v.add(v.mul(v.add(v.mul(a[2], t), a[1]), t), a[0])
+}
+
+/// N places from `n` on; a block has room for whole vectors.
+#[inline(always)]
+fn room<const N: usize>(values: &mut [f64; ROOM], n: usize) -> &mut [f64; N] {
+    values[n..].first_chunk_mut().expect("the room beyond a block")
+}

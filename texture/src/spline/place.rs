@@ -1,0 +1,211 @@
+//! Where positions lie among the texels of a map.
+
+use super::vector::Vector;
+use super::{PAD, REACH};
+use crate::height_field::MAX_BLOCK;
+use crate::wrap::Wrap;
+
+/// Most positions that a processor looks at side by side.
+const MOST_LANES: usize = 8;
+/// Places of a block and of the lanes beyond its end.
+pub(super) const ROOM: usize = MAX_BLOCK + MOST_LANES;
+
+/// What turns a texel coordinate into a place along one axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Axis {
+    wrap: Wrap,
+    len: f64,
+    per_period: f64,
+    texels_per_metre: f64,
+    last_first: i64,
+}
+
+/// Where along one axis: the texel before, how far beyond it (0–1), and slope per metre for a slope of
+/// 1 per texel (negative in a mirrored copy, 0 beyond a clamped edge).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Place {
+    pub(super) texel: f64,
+    pub(super) fraction: f64,
+    pub(super) slope: f64,
+}
+
+/// [`Place`]s of a block along one axis, each number on its own so that lanes fill vectors.
+pub(super) struct AxisPlaces {
+    texel: [f64; ROOM],
+    fraction: [f64; ROOM],
+    slope: [f64; ROOM],
+}
+
+/// Where the positions of a block lie; found once for all maps of one grid.
+pub struct Places {
+    /// The grid that they were found for.
+    axes: Option<[Axis; 2]>,
+    len: usize,
+    columns: AxisPlaces,
+    rows: AxisPlaces,
+}
+
+impl Places {
+    /// None yet.
+    pub const EMPTY: Self = Self { axes: None, len: 0, columns: AxisPlaces::EMPTY, rows: AxisPlaces::EMPTY };
+
+    /// Finds the places of positions, up to [`MAX_BLOCK`] of them, unless they are those of this grid already.
+    #[inline(always)]
+    pub(super) fn find(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]]) {
+        if self.axes == Some(*axes) {
+            return;
+        }
+        self.axes = Some(*axes);
+        self.len = position_m.len().min(MAX_BLOCK);
+        let mut along = [[0.0; ROOM]; 2];
+        for (n, [u, v]) in position_m.iter().take(MAX_BLOCK).enumerate() {
+            (along[0][n], along[1][n]) = (*u, *v);
+        }
+        axes[0].places(&along[0], &mut self.columns);
+        axes[1].places(&along[1], &mut self.rows);
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Column and row of the texel before a place.
+    #[inline(always)]
+    pub(super) fn texel(&self, n: usize) -> [f64; 2] {
+        [self.columns.texel[n], self.rows.texel[n]]
+    }
+
+    /// One past the last place in a row that lies between the same texels as place `start`.
+    #[inline(always)]
+    pub(super) fn end_of_cell<const N: usize, V: Vector<N>>(&self, v: V, start: usize) -> usize {
+        let [column, row] = self.texel(start).map(|texel| v.splat(texel));
+        let mut end = start;
+        while end < self.len {
+            let columns = v.equal_lanes(v.load(room(&self.columns.texel, end)), column);
+            let rows = v.equal_lanes(v.load(room(&self.rows.texel, end)), row);
+            let same = columns.min(rows);
+            end += same;
+            if same < N {
+                break;
+            }
+        }
+        end.min(self.len)
+    }
+
+    /// The texel at the end of the block, and how far it is from the one at its beginning: as far again, the next block
+    /// will end. `None` for a finger that stays.
+    #[inline(always)]
+    pub(super) fn ahead(&self) -> Option<([f64; 2], [f64; 2])> {
+        let last = self.texel(self.len.checked_sub(1)?);
+        let first = self.texel(0);
+        let step = [last[0] - first[0], last[1] - first[1]];
+        (step != [0.0; 2]).then_some((last, step))
+    }
+
+    /// The places along u and along v.
+    #[inline(always)]
+    pub(super) fn by_axis(&self) -> [&AxisPlaces; 2] {
+        [&self.columns, &self.rows]
+    }
+}
+
+impl AxisPlaces {
+    const EMPTY: Self = Self { texel: [0.0; ROOM], fraction: [0.0; ROOM], slope: [0.0; ROOM] };
+
+    /// How far beyond their texels N places from `n` on are.
+    #[inline(always)]
+    pub(super) fn fraction<const N: usize>(&self, n: usize) -> &[f64; N] {
+        room(&self.fraction, n)
+    }
+
+    /// Their slopes.
+    #[inline(always)]
+    pub(super) fn slope<const N: usize>(&self, n: usize) -> &[f64; N] {
+        room(&self.slope, n)
+    }
+}
+
+/// N places from `n` on; a block has room for whole vectors.
+#[inline(always)]
+fn room<const N: usize>(values: &[f64; ROOM], n: usize) -> &[f64; N] {
+    values[n..].first_chunk().expect("the room beyond a block")
+}
+
+/// Largest whole number not above x, for |x| < 2⁵¹: adding a large number rounds. `f64::floor` is a
+/// library call on plain x86-64.
+#[inline(always)]
+fn floor(x: f64) -> f64 {
+    const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
+    let rounded = (x + ROUND) - ROUND;
+    if rounded > x { rounded - 1.0 } else { rounded }
+}
+
+impl Axis {
+    pub(super) fn new(len: usize, extent_m: f64, wrap: Wrap) -> Self {
+        let period = if wrap == Wrap::Mirror { 2 * len } else { len };
+        Self {
+            wrap,
+            len: len as f64,
+            per_period: 1.0 / period as f64,
+            texels_per_metre: len as f64 / extent_m,
+            last_first: (len + 2 * PAD - 4) as i64,
+        }
+    }
+
+    /// Where the positions of a block are; for the usual maps, which repeat, in a loop without branches.
+    #[inline(always)]
+    fn places(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
+        if self.wrap == Wrap::Repeat {
+            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out);
+        } else {
+            self.places_one_by_one(position_m, out);
+        }
+    }
+
+    #[inline(always)]
+    fn places_one_by_one(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
+        for n in 0..ROOM {
+            let place = self.place(position_m[n]);
+            (out.texel[n], out.fraction[n], out.slope[n]) = (place.texel, place.fraction, place.slope);
+        }
+    }
+
+    /// Texels per metre.
+    #[inline(always)]
+    pub(super) fn texels_per_metre(&self) -> f64 {
+        self.texels_per_metre
+    }
+
+    /// Where a position is.
+    #[inline(always)]
+    pub(super) fn place(&self, position_m: f64) -> Place {
+        let n = self.len;
+        let t = position_m * self.texels_per_metre - 0.5;
+        // Beyond this no fraction of a texel is left in an f64.
+        let t = if t.abs() < 1e15 { t } else { 0.0 };
+        let (t, slope) = match self.wrap {
+            Wrap::Repeat => (t - n * floor((t + 0.5) * self.per_period), self.texels_per_metre),
+            Wrap::Clamp => {
+                let inside = t.clamp(-REACH, n - 1.0 + REACH);
+                (inside, if inside == t { self.texels_per_metre } else { 0.0 })
+            }
+            Wrap::Mirror => {
+                let t = t - 2.0 * n * floor((t + 0.5) * self.per_period);
+                if t <= n - 0.5 {
+                    (t, self.texels_per_metre)
+                } else {
+                    (2.0 * n - 1.0 - t, -self.texels_per_metre)
+                }
+            }
+        };
+        let texel = floor(t);
+        Place { texel, fraction: t - texel, slope }
+    }
+
+    /// Index of the first of the four coefficients around a texel and the next. Rounding at the seam may
+    /// reach one texel beyond it, which is there; the clamp is for certainty.
+    #[inline]
+    pub(super) fn first(&self, texel: f64) -> usize {
+        (texel as i64 + PAD as i64 - 1).clamp(0, self.last_first) as usize
+    }
+}
