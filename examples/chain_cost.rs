@@ -74,6 +74,7 @@ fn stages() {
         footprint_m: &footprint_m,
         first_sample: 0,
         contact: 0,
+        slopes: false,
     };
     let mut out = SurfaceBlock::default();
     show("both maps", alone_ns(|| map.sample(&block, &mut out)));

@@ -221,7 +221,7 @@ impl Voice {
             if at_grid {
                 self.press(seat, position);
             }
-            self.profile(seat, shared, position, n, scratch);
+            self.profile(seat, shared, position, n, tap.is_watching(), scratch);
             self.touch(shared, n, scratch);
             self.filter(seat, shared, output, n, scratch);
             self.excite(seat, shared, position, n, scratch);
@@ -243,18 +243,32 @@ impl Voice {
         }
     }
 
-    /// Heights along the path: the source, and the paper's micro-noise below the source's own band.
-    fn profile(&self, seat: &mut Seat, shared: &Shared, position: u64, n: usize, scratch: &mut Scratch) {
+    /// Heights along the path: the source, and the paper's micro-noise below the source's own band. Slopes only if a tap is
+    /// `watched`: neither sound nor feel needs them.
+    fn profile(
+        &self,
+        seat: &mut Seat,
+        shared: &Shared,
+        position: u64,
+        n: usize,
+        watched: bool,
+        scratch: &mut Scratch,
+    ) {
         let step_s = 1.0 / shared.sample_rate_hz;
         let widened = f64::from(1u32 << shared.noise_octaves_gone);
         for (i, point) in scratch.points[..n].iter().enumerate() {
             let [u, v] = point.velocity_m_s;
             scratch.position_m[i] = point.position_m;
             scratch.velocity_m_s[i] = point.velocity_m_s;
-            scratch.footprint_m[i] = (u * u + v * v).sqrt() * step_s;
-            // A footprint twice as wide hides the finest octave that is left.
-            scratch.noise_footprint_m[i] = scratch.footprint_m[i] * widened;
+            scratch.footprint_m[i] = u * u + v * v;
             scratch.force_n[i] = point.normal_force_n;
+        }
+        // On their own, because roots go side by side.
+        for (footprint_m, noise_m) in scratch.footprint_m[..n].iter_mut().zip(&mut scratch.noise_footprint_m)
+        {
+            *footprint_m = footprint_m.sqrt() * step_s;
+            // A footprint twice as wide hides the finest octave that is left.
+            *noise_m = *footprint_m * widened;
         }
         let path = PathBlock {
             position_m: &scratch.position_m[..n],
@@ -262,6 +276,7 @@ impl Voice {
             footprint_m: &scratch.footprint_m[..n],
             first_sample: position,
             contact: self.slot,
+            slopes: watched,
         };
         let noise = Noise { field: &shared.noise, footprint_m: &scratch.noise_footprint_m[..n] };
         seat.sample(&path, &noise, &mut scratch.surface, &mut scratch.rough);
@@ -313,16 +328,20 @@ impl Voice {
         // A force that is not to sound counts as 0 N.
         let sounds = slot.surface.excitation != Excitation::Collisions;
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
-        let (mut force, mut feel) = (self.force_high_pass, self.feel);
         let rows = scratch.pad[..n].iter();
-        let outputs = scratch.force_impulse_n_s[FORCE_HISTORY..].iter_mut().zip(&mut scratch.out.haptic);
-        for (row, (impulse_n_s, out)) in rows.zip(outputs) {
-            let alternating_n = force.tick(&high_pass, row.contact_force_n).high;
-            *impulse_n_s = if alternating_n.abs() < ROUNDING_N { 0.0 } else { alternating_n * step_s };
-            let felt = feel.tick(output, row.pad_m, row.pad_velocity_m_s);
-            *out = if felt.abs() < ROUNDING { 0.0 } else { felt };
-        }
+        let input = rows.map(|row| ([row.pad_m, row.pad_velocity_m_s], row.contact_force_n));
+        let impulse_n_s = &mut scratch.force_impulse_n_s[FORCE_HISTORY..][..n];
+        let haptic = &mut scratch.out.haptic[..n];
+        let (mut force, mut feel) = (self.force_high_pass, self.feel);
+        feel.run_beside(output, (&high_pass, &mut force), input, |i, felt, alternating_n| {
+            haptic[i] = felt;
+            impulse_n_s[i] = alternating_n;
+        });
         (self.force_high_pass, self.feel) = (force, feel);
+        for (impulse_n_s, felt) in impulse_n_s.iter_mut().zip(haptic) {
+            *impulse_n_s = if impulse_n_s.abs() < ROUNDING_N { 0.0 } else { *impulse_n_s * step_s };
+            *felt = if felt.abs() < ROUNDING { 0.0 } else { *felt };
+        }
         self.last_felt = scratch.out.haptic[n - 1];
     }
 

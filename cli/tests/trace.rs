@@ -215,6 +215,7 @@ fn sand_again(design: &SandDesign, rows: &[Row]) -> Vec<f64> {
             footprint_m: &vec![step; block.len()],
             first_sample: block[0].sample,
             contact: 0,
+            slopes: true,
         };
         sand.sample(&path, &mut out);
         // The sand lies lower by as much as the finger presses it in.

@@ -18,6 +18,7 @@
 //! √2/ω = 7.5 ms at 30 Hz.
 
 use crate::DesignError;
+use crate::pair::Pair;
 use core::f64::consts::{PI, SQRT_2};
 
 /// Coefficients of one filter; shared by every channel and contact at the same rate.
@@ -123,6 +124,68 @@ impl State {
     }
 }
 
+/// Two filters that run side by side, each as [`Butterworth`] does: alone a filter waits for itself most of the time.
+#[derive(Debug, Clone, Copy)]
+pub struct Two {
+    a1: Pair,
+    a2: Pair,
+    a3: Pair,
+    band_to_band: Pair,
+    cross: Pair,
+    input_to_low: Pair,
+    root_two: Pair,
+    band: Pair,
+    low: Pair,
+}
+
+/// The responses of two filters side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct Outputs {
+    /// Low-pass responses.
+    pub low: Pair,
+    /// Band-pass responses.
+    pub band: Pair,
+    /// High-pass responses.
+    pub high: Pair,
+}
+
+impl Two {
+    /// Filters and where they stand.
+    #[inline]
+    pub fn new([a, b]: [&Butterworth; 2], [of_a, of_b]: [State; 2]) -> Self {
+        Self {
+            a1: [a.a1, b.a1].into(),
+            a2: [a.a2, b.a2].into(),
+            a3: [a.a3, b.a3].into(),
+            band_to_band: [a.band_to_band, b.band_to_band].into(),
+            cross: [a.cross, b.cross].into(),
+            input_to_low: [a.input_to_low, b.input_to_low].into(),
+            root_two: [SQRT_2; 2].into(),
+            band: [of_a.band, of_b.band].into(),
+            low: [of_a.low, of_b.low].into(),
+        }
+    }
+
+    /// Where they stand.
+    #[inline]
+    pub fn states(&self) -> [State; 2] {
+        let ([band_a, band_b], [low_a, low_b]): ([f64; 2], [f64; 2]) = (self.band.into(), self.low.into());
+        [State { band: band_a, low: low_a }, State { band: band_b, low: low_b }]
+    }
+
+    /// Filters one sample each: the same bits as [`State::tick`].
+    #[inline(always)]
+    pub fn tick(&mut self, input: Pair) -> Outputs {
+        let v3 = input - self.low;
+        let band = self.a1 * self.band + self.a2 * v3;
+        let low = (self.low + self.a2 * self.band) + self.a3 * v3;
+        let before = self.band;
+        self.band = self.band_to_band * before + self.cross * v3;
+        self.low = (self.low + self.cross * before) + self.input_to_low * v3;
+        Outputs { low, band, high: input - self.root_two * band - low }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -192,6 +255,25 @@ mod tests {
             assert!((line - out.low - slope * filter.group_delay_s()).abs() < 1e-8, "sample {n}");
             assert!((out.band * filter.angular_cutoff_per_s() / slope - 1.0).abs() < 1e-5, "sample {n}");
         }
+    }
+
+    #[test]
+    fn two_filters_side_by_side_give_the_bits_of_each_alone() {
+        let mut rng = crate::rng::Rng::new(11);
+        let filters = [30.0, 900.0].map(|cutoff_hz| Butterworth::new(cutoff_hz, 44_100.0).unwrap());
+        let mut alone = [State::settled_at(0.25), State::default()];
+        let mut two = Two::new([&filters[0], &filters[1]], alone);
+        for _ in 0..5000 {
+            let input = [rng.uniform() - 0.5, 1e3 * rng.uniform()];
+            let together = two.tick(input.into());
+            let (low, band, high): ([f64; 2], [f64; 2], [f64; 2]) =
+                (together.low.into(), together.band.into(), together.high.into());
+            for i in 0..2 {
+                let expected = alone[i].tick(&filters[i], input[i]);
+                assert_eq!(Output { low: low[i], band: band[i], high: high[i] }, expected);
+            }
+        }
+        assert_eq!(two.states(), alone);
     }
 
     #[test]

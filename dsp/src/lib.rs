@@ -34,6 +34,7 @@ pub mod hertz;
 pub mod micro_contact;
 pub mod modal_bank;
 pub mod mode;
+pub mod pair;
 pub mod rng;
 pub mod trajectory;
 mod vector;

@@ -5,6 +5,7 @@ use asperity_dsp::actuator::{
     DeviceProfile, DeviceState, Equaliser, EqualiserState, PeakLimiter, PeakLimiterState, Protection,
     ProtectionState, Quantity, RELEASE_S,
 };
+use asperity_dsp::butterworth::{Butterworth, State};
 use asperity_dsp::rng::Rng;
 use std::f64::consts::PI;
 
@@ -112,6 +113,37 @@ fn device_and_high_pass_agree_with_scipy() {
     let passed: Vec<f64> = (0..4_000).map(|n| state.tick(&design, pad(n), 0.0)).collect();
     for (n, expected) in HIGH_PASS {
         assert!((passed[n] - expected).abs() < 1e-14, "sample {n}: {}", passed[n]);
+    }
+}
+
+#[test]
+fn a_contact_beside_another_high_pass_gives_the_bits_of_each_alone() {
+    let rate = 44_100.0;
+    let other = Butterworth::new(900.0, rate).unwrap();
+    for (quantity, highpass_hz) in
+        [(Quantity::Displacement, 10.0), (Quantity::Acceleration, 40.0), (Quantity::Displacement, 0.0)]
+    {
+        let design = ContactOutput::new(quantity, highpass_hz, rate).unwrap();
+        let mut rng = Rng::new(7);
+        let input: Vec<_> =
+            (0..500).map(|_| ([1e-4 * rng.uniform(), rng.uniform() - 0.5], 3.0 * rng.uniform())).collect();
+        let mut alone = (ContactOutputState::begin(&design, 5e-5, 0.0), State::settled_at(1.0));
+        let mut beside = alone;
+        // In two runs, because a run may end anywhere.
+        for run in [0..123, 123..500] {
+            let first = run.start;
+            beside.0.run_beside(
+                &design,
+                (&other, &mut beside.1),
+                input[run].iter().copied(),
+                |n, felt, passed| {
+                    let ([pad_m, velocity_m_s], force_n) = input[first + n];
+                    assert_eq!(felt, alone.0.tick(&design, pad_m, velocity_m_s));
+                    assert_eq!(passed, alone.1.tick(&other, force_n).high);
+                },
+            );
+        }
+        assert_eq!(beside, alone);
     }
 }
 

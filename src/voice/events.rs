@@ -47,7 +47,7 @@ impl Voice {
         let force_n = event.normal_force_n;
         let lands = sample.closing_m_s > 0.0;
         if lands {
-            self.profile(seat, shared, position, 1, scratch);
+            self.profile(seat, shared, position, 1, false, scratch);
             let height_m = scratch.surface.height_m[0];
             self.pad = shared.micro_contact.landing(height_m, force_n, sample.closing_m_s);
             self.feel = ContactOutputState::begin(output, height_m, -sample.closing_m_s);
@@ -84,7 +84,7 @@ impl Voice {
             let position_m = [0, 1].map(|axis| end_m[axis] - velocity_m_s[axis] * before_s);
             *point = PathPoint { position_m, velocity_m_s, normal_force_n };
         }
-        self.profile(seat, shared, position, MAX_BLOCK, scratch);
+        self.profile(seat, shared, position, MAX_BLOCK, false, scratch);
         let (heights_m, forces_n) = (&scratch.surface.height_m, &scratch.force_n);
         self.pad = shared.micro_contact.at_rest(heights_m[0], forces_n[0]);
         shared.micro_contact.run(&mut self.pad, heights_m, forces_n, &mut scratch.pad);

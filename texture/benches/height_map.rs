@@ -42,6 +42,7 @@ fn height_map(c: &mut Criterion) {
                         footprint_m: &footprint_m,
                         first_sample: 0,
                         contact: 0,
+                        slopes: true,
                     };
                     map_under.sample(&path, &mut out);
                     sum += out.height_m[7];

@@ -64,6 +64,7 @@ fn blocks(c: &mut Criterion) {
                             footprint_m: &[2e-6; MAX_BLOCK],
                             first_sample,
                             contact: 0,
+                            slopes: true,
                         }),
                         &mut out,
                     );

@@ -25,6 +25,7 @@ fn block_ns(source: &mut dyn HeightField) -> f64 {
             footprint_m: &[2e-6; MAX_BLOCK],
             first_sample: 64 * block,
             contact: 0,
+            slopes: true,
         };
         let clock = Instant::now();
         source.sample(black_box(&path), &mut out);

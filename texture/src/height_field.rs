@@ -25,6 +25,8 @@ pub struct PathBlock<'a> {
     pub first_sample: u64,
     /// Which contact this is (its slot in the engine), so that a source can keep state per contact.
     pub contact: usize,
+    /// Whether anybody will look at [`SurfaceBlock::gradient`]; a source may leave it as it is otherwise.
+    pub slopes: bool,
 }
 
 impl PathBlock<'_> {

@@ -311,12 +311,16 @@ impl HeightField for HeightMap {
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let widest_m = widest_m(path.footprint_m);
         let (mut places, mut samples) = (Places::EMPTY, Samples::EMPTY);
-        self.heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
-        out.height_m.copy_from_slice(&samples.value[..MAX_BLOCK]);
-        let slopes = samples.slope_u.iter().zip(&samples.slope_v);
-        for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
-            *gradient = [*u, *v];
+        if path.slopes {
+            self.heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
+            let slopes = samples.slope_u.iter().zip(&samples.slope_v);
+            for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
+                *gradient = [*u, *v];
+            }
+        } else {
+            self.heights.sample_block::<false>(path, widest_m, &mut places, &mut samples);
         }
+        out.height_m.copy_from_slice(&samples.value[..MAX_BLOCK]);
         match &self.roughness {
             Roughness::Constant(roughness) => out.roughness[..path.len()].fill(*roughness),
             Roughness::Map(map) => {

@@ -186,6 +186,7 @@ fn rms_force(source: &mut dyn HeightField, rate: f64) -> f64 {
             footprint_m: &[stroke.footprint_m()],
             first_sample: 1 + n as u64,
             contact: 0,
+            slopes: true,
         };
         source.sample(&path, &mut out);
         if n % 64 == 0 {

@@ -41,6 +41,7 @@ fn along_at(
             footprint_m: &[footprint; MAX_BLOCK][..position_m.len()],
             first_sample: seen.len() as u64,
             contact: 0,
+            slopes: true,
         };
         map.sample(&path, &mut out);
         seen.extend((0..position_m.len()).map(|n| Seen {
@@ -361,4 +362,38 @@ fn a_finely_quantised_or_constant_map_is_left_alone() {
     assert_eq!(deband(&fine, 1.0 / 65_535.0, Wrap::Repeat), fine);
     let constant = Raster::constant(64, 64, 0.5);
     assert_eq!(deband(&constant, 1.0 / 255.0, Wrap::Clamp), constant);
+}
+
+#[test]
+fn heights_are_the_same_bits_whether_or_not_anybody_asks_for_slopes() {
+    for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
+        let mut rng = Rng::new(12);
+        let texels = Raster::from_fn(48, 31, |_, _| rng.uniform());
+        let mut map = HeightMap::new(&texels, EXTENT, wrap).unwrap().with_roughness_map(&texels).unwrap();
+        let untouched = [7.0; 2];
+        // Slow, across many texels a block, and so fast that the map is blurred.
+        for velocity in [[0.05, 0.03], [30.0, -20.0], [300.0, 0.0]] {
+            let velocities = [velocity; MAX_BLOCK];
+            let all = stroke([-0.01, 0.02], velocity, 1024);
+            for start in (0..1024).step_by(MAX_BLOCK) {
+                let positions = &all[start..start + MAX_BLOCK];
+                let footprints_m = [velocity[0].hypot(velocity[1]) / RATE_HZ; MAX_BLOCK];
+                let path = |slopes| PathBlock {
+                    position_m: positions,
+                    velocity_m_s: &velocities,
+                    footprint_m: &footprints_m,
+                    first_sample: start as u64,
+                    contact: 0,
+                    slopes,
+                };
+                let (mut asked, mut not_asked) = (SurfaceBlock::default(), SurfaceBlock::default());
+                not_asked.gradient = [untouched; MAX_BLOCK];
+                map.sample(&path(true), &mut asked);
+                map.sample(&path(false), &mut not_asked);
+                assert_eq!(asked.height_m, not_asked.height_m, "{wrap:?}, {velocity:?}");
+                assert_eq!(asked.roughness, not_asked.roughness, "{wrap:?}, {velocity:?}");
+                assert_eq!(not_asked.gradient, [untouched; MAX_BLOCK]);
+            }
+        }
+    }
 }

@@ -74,6 +74,7 @@ fn heap_operations(source: &mut Source, change: SurfaceChange) -> u64 {
                 footprint_m: &[1e-6; MAX_BLOCK],
                 first_sample: sample,
                 contact: 0,
+                slopes: true,
             },
             &mut out,
         );

@@ -45,6 +45,7 @@ fn stroke(raster: &Raster, len: usize) -> Vec<f64> {
             footprint_m: &[0.1 / RATE_HZ; MAX_BLOCK][..position_m.len()],
             first_sample: heights.len() as u64,
             contact: 0,
+            slopes: true,
         };
         map.sample(&path, &mut out);
         heights.extend_from_slice(&out.height_m[..position_m.len()]);
@@ -193,6 +194,7 @@ fn the_coin_has_its_millimetres() {
             footprint_m: &[0.0],
             first_sample: 0,
             contact: 0,
+            slopes: true,
         };
         map.sample(&path, &mut out);
         let expected = coin.raster.at(x, y) * 350.987e-6;

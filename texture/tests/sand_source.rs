@@ -51,6 +51,7 @@ fn play(
             footprint_m: &vec![0.0806 / RATE; length],
             first_sample: sample,
             contact: 0,
+            slopes: true,
         };
         source.sample(&block, &mut out);
         heights.extend_from_slice(&out.height_m[..length]);

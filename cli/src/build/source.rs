@@ -131,6 +131,7 @@ impl Ground<'_> {
                         footprint_m: &[0.0; MAX_BLOCK][..position_m.len()],
                         first_sample: 0,
                         contact: 0,
+                        slopes: true,
                     },
                     &mut out,
                 );

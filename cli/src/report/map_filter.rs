@@ -78,6 +78,7 @@ fn spline(map: &mut HeightMap, course: &Course) -> Vec<f64> {
             footprint_m: &footprint_m[..part.len()],
             first_sample: (index * BLOCK) as u64,
             contact: 0,
+            slopes: true,
         };
         map.sample(&path, &mut out);
         heights.extend_from_slice(&out.height_m[..part.len()]);

@@ -1,7 +1,7 @@
 //! What one contact sends to its actuator: the pad's motion, without the resting position.
 
 use crate::DesignError;
-use crate::butterworth::{Butterworth, State};
+use crate::butterworth::{Butterworth, State, Two};
 use core::f64::consts::PI;
 
 /// Which quantity of the pad is played.
@@ -74,16 +74,49 @@ impl ContactOutputState {
     /// step that ends here.
     #[inline]
     pub fn tick(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
-        let value = match design.quantity {
-            Quantity::Displacement => pad_m,
-            Quantity::Acceleration => (pad_velocity_m_s - self.velocity_m_s) * design.sample_rate_hz,
-        };
-        self.velocity_m_s = pad_velocity_m_s;
+        let value = self.quantity(design, pad_m, pad_velocity_m_s);
         self.last = match &design.highpass {
             Some(filter) => self.highpass.tick(filter, value).high,
             None => value,
         };
         self.last
+    }
+
+    /// A run of samples, each as [`Self::tick`] would make it, beside the high-pass of something else: `input` gives the pad's
+    /// displacement and velocity and that other thing, `output` takes the output quantity and the other's high-pass.
+    #[inline]
+    pub fn run_beside(
+        &mut self,
+        design: &ContactOutput,
+        (other, of_other): (&Butterworth, &mut State),
+        input: impl Iterator<Item = ([f64; 2], f64)>,
+        mut output: impl FnMut(usize, f64, f64),
+    ) {
+        let Some(filter) = &design.highpass else {
+            for (n, ([pad_m, pad_velocity_m_s], beside)) in input.enumerate() {
+                let felt = self.tick(design, pad_m, pad_velocity_m_s);
+                output(n, felt, of_other.tick(other, beside).high);
+            }
+            return;
+        };
+        let mut two = Two::new([filter, other], [self.highpass, *of_other]);
+        for (n, ([pad_m, pad_velocity_m_s], beside)) in input.enumerate() {
+            let value = self.quantity(design, pad_m, pad_velocity_m_s);
+            let [felt, passed] = two.tick([value, beside].into()).high.into();
+            self.last = felt;
+            output(n, felt, passed);
+        }
+        [self.highpass, *of_other] = two.states();
+    }
+
+    /// What is played of the pad's motion, before the high-pass.
+    #[inline(always)]
+    fn quantity(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
+        let before_m_s = core::mem::replace(&mut self.velocity_m_s, pad_velocity_m_s);
+        match design.quantity {
+            Quantity::Displacement => pad_m,
+            Quantity::Acceleration => (pad_velocity_m_s - before_m_s) * design.sample_rate_hz,
+        }
     }
 
     /// One sample after the contact has ended: the last value along a raised cosine to exactly zero.

@@ -36,7 +36,8 @@ mod reckoning;
 #[cfg(test)]
 mod tests;
 
-use crate::butterworth::State;
+use crate::butterworth::{State, Two};
+use crate::pair::Pair;
 pub use design::{HERMITE_DELAY_S, PathMode, TrajectoryDesign};
 use history::History;
 use reckoning::Reckoning;
@@ -128,6 +129,13 @@ fn is_sane(event: &PathEvent) -> bool {
 /// Where a contact that holds a fraction after its sample was at that sample, relative to the event.
 fn carried_back(design: &TrajectoryDesign, velocity_m_s: [f64; 2], fraction: f64) -> [f64; 2] {
     velocity_m_s.map(|v| -v * fraction * design.sample_period_s)
+}
+
+/// Whether the filters have come to their inputs.
+fn is_settled(input: &[f64; 3], low: [f64; 3], point: &PathPoint) -> bool {
+    (low[0] - input[0]).abs().max((low[1] - input[1]).abs()) < STILL_DISTANCE_M
+        && point.velocity_m_s.iter().all(|v| v.abs() < STILL_SPEED_M_S)
+        && (low[2] - input[2]).abs() < STILL_FORCE_N
 }
 
 impl Trajectory {
@@ -226,18 +234,27 @@ impl Trajectory {
 
     /// Makes the next `out.len()` samples.
     pub fn advance(&mut self, design: &TrajectoryDesign, out: &mut [PathPoint]) {
-        for point in out {
-            if !self.still {
-                *point = self.tick(design);
+        let mut rest = out;
+        while !rest.is_empty() {
+            // Never beyond the grid on which stillness is looked for.
+            let to_grid = (STILL_GRID - self.sample % STILL_GRID) as usize;
+            let (next, later) = rest.split_at_mut(to_grid.min(rest.len()));
+            if self.still {
+                self.stay(next);
             } else {
-                *point = PathPoint {
-                    position_m: self.origin_m,
-                    velocity_m_s: [0.0; 2],
-                    normal_force_n: self.reckoning.force_n().max(0.0),
-                };
-                self.sample += 1;
+                self.follow(design, next);
             }
+            rest = later;
         }
+    }
+
+    fn stay(&mut self, out: &mut [PathPoint]) {
+        self.sample += out.len() as u64;
+        out.fill(PathPoint {
+            position_m: self.origin_m,
+            velocity_m_s: [0.0; 2],
+            normal_force_n: self.reckoning.force_n().max(0.0),
+        });
     }
 
     /// Whether the output no longer changes until the next event: at rest, at its place, force
@@ -259,34 +276,51 @@ impl Trajectory {
         self.reckoning.sample()
     }
 
-    #[inline]
-    fn tick(&mut self, design: &TrajectoryDesign) -> PathPoint {
-        let (input, force) = match design.mode {
-            PathMode::Extrapolate => (self.reckoning.tick(design, self.sample), self.reckoning.force_n()),
-            PathMode::Hold => ([0.0; 2], self.reckoning.force_n()),
+    /// Up to [`STILL_GRID`] samples, none of them beyond the grid.
+    fn follow(&mut self, design: &TrajectoryDesign, out: &mut [PathPoint]) {
+        let mut inputs = [[0.0; 3]; STILL_GRID as usize];
+        let inputs = &mut inputs[..out.len()];
+        self.inputs(design, inputs);
+        let filter = &design.filter;
+        let (mut axes, mut pressing) = (Two::new([filter; 2], self.axes), self.force);
+        let (origin_m, to_speed) = (Pair::from(self.origin_m), Pair::from([design.band_to_speed; 2]));
+        let mut low = [0.0; 3];
+        for ([u, v, force_n], point) in inputs.iter().zip(&mut *out) {
+            let smooth = axes.tick([*u, *v].into());
+            let force = pressing.tick(filter, *force_n);
+            let at: [f64; 2] = smooth.low.into();
+            low = [at[0], at[1], force.low];
+            *point = PathPoint {
+                position_m: (origin_m + smooth.low).into(),
+                velocity_m_s: (smooth.band * to_speed).into(),
+                normal_force_n: force.low.max(0.0),
+            };
+        }
+        (self.axes, self.force) = (axes.states(), pressing);
+        self.sample += out.len() as u64;
+        if let (Some(input), Some(point)) = (inputs.last(), out.last())
+            && self.sample.is_multiple_of(STILL_GRID)
+            && is_settled(input, low, point)
+            && self.has_arrived(design)
+        {
+            self.fall_still([input[0], input[1]], input[2]);
+        }
+    }
+
+    /// What the filters are given for the next samples: position along u and v from the origin, and force.
+    fn inputs(&mut self, design: &TrajectoryDesign, out: &mut [[f64; 3]]) {
+        let force_n = self.reckoning.force_n();
+        match design.mode {
+            PathMode::Extrapolate => self.reckoning.run(design, self.sample, out),
+            PathMode::Hold => out.fill([0.0, 0.0, force_n]),
             PathMode::Hermite => {
                 let glide = self.reckoning.glide_limit_samples(design);
-                self.history.at(design, self.sample, glide)
-            }
-        };
-        let x = self.axes[0].tick(&design.filter, input[0]);
-        let y = self.axes[1].tick(&design.filter, input[1]);
-        let f = self.force.tick(&design.filter, force);
-        let point = PathPoint {
-            position_m: [self.origin_m[0] + x.low, self.origin_m[1] + y.low],
-            velocity_m_s: [x.band * design.band_to_speed, y.band * design.band_to_speed],
-            normal_force_n: f.low.max(0.0),
-        };
-        self.sample += 1;
-        if self.sample.is_multiple_of(STILL_GRID) {
-            let settled = (x.low - input[0]).abs().max((y.low - input[1]).abs()) < STILL_DISTANCE_M
-                && point.velocity_m_s.iter().all(|v| v.abs() < STILL_SPEED_M_S)
-                && (f.low - force).abs() < STILL_FORCE_N;
-            if settled && self.has_arrived(design) {
-                self.fall_still(input, force);
+                for (sample, out) in (self.sample..).zip(out) {
+                    let ([u, v], force_n) = self.history.at(design, sample, glide);
+                    *out = [u, v, force_n];
+                }
             }
         }
-        point
     }
 
     /// Whether the input has come to its end: nothing moves it until the next event.

@@ -131,21 +131,30 @@ impl Reckoning {
         self.glide.after_samples = self.glide_limit_samples(design);
     }
 
-    /// The input at `sample`, relative to the latest event. Once the velocity is no longer believed it
-    /// must be called for every sample in turn.
+    /// The input from `sample` on, relative to the latest event, and the force. Once the velocity is no longer believed
+    /// every sample must be asked for in turn.
     #[inline]
-    pub fn tick(&mut self, design: &TrajectoryDesign, sample: u64) -> [f64; 2] {
+    pub fn run(&mut self, design: &TrajectoryDesign, sample: u64, out: &mut [[f64; 3]]) {
         let age = sample.wrapping_sub(self.sample) as i64;
         if self.glide.after_samples < 0 {
             self.glide.after_samples = self.glide_limit_samples(design);
             self.glide.keep = libm::exp(-design.sample_period_s / (DECAY_PERIODS * self.period_s));
         }
-        if age <= self.glide.after_samples {
-            // An event stamped ahead of its sample is followed back no further than ahead.
-            let believed = age.max(-self.glide.after_samples) as f64 * design.sample_period_s;
-            return [self.velocity_m_s[0] * believed, self.velocity_m_s[1] * believed];
+        let after = self.glide.after_samples;
+        let believed = (after - age + 1).clamp(0, out.len() as i64) as usize;
+        let (believed, late) = out.split_at_mut(believed);
+        // An event stamped ahead of its sample is followed back no further than ahead.
+        let earliest = -after as f64;
+        let mut samples = age as f64;
+        for out in believed {
+            let since_s = if samples > earliest { samples } else { earliest } * design.sample_period_s;
+            *out = [self.velocity_m_s[0] * since_s, self.velocity_m_s[1] * since_s, self.force_n];
+            samples += 1.0;
         }
-        self.glide(design)
+        for out in late {
+            let [u, v] = self.glide(design);
+            *out = [u, v, self.force_n];
+        }
     }
 
     fn glide(&mut self, design: &TrajectoryDesign) -> [f64; 2] {

@@ -119,6 +119,7 @@ impl HeightField for BrownianSurface {
             footprint_m: &[0.0],
             first_sample: touch.sample,
             contact: touch.contact,
+            slopes: true,
         };
         self.relief.sample(&path, &mut self.here);
         Reaction {

@@ -51,3 +51,62 @@ pub fn sample_block<const SLOPES: bool>(
     }
     spline.sample_block_in_lanes::<4, _, _, SLOPES>(Portable, Portable, position_m, places, out);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raster::Raster;
+    use crate::wrap::Wrap;
+    use asperity_dsp::rng::Rng;
+
+    type Kernel = (&'static str, fn(&Spline, &[[f64; 2]], &mut Places, &mut Samples));
+
+    /// Every kernel that this machine can run.
+    fn kernels() -> Vec<Kernel> {
+        let portable: Kernel = ("portable", |spline, position_m, places, out| {
+            spline.sample_block_in_lanes::<4, _, _, true>(Portable, Portable, position_m, places, out);
+        });
+        let mut kernels = vec![portable];
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            kernels.push(("AVX2", |spline, position_m, places, out| {
+                // SAFETY: just detected.
+                unsafe { sample_block_avx2::<true>(spline, position_m, places, out) }
+            }));
+        }
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx512f") {
+            kernels.push(("AVX-512", |spline, position_m, places, out| {
+                // SAFETY: just detected.
+                unsafe { sample_block_avx512::<true>(spline, position_m, places, out) }
+            }));
+        }
+        kernels
+    }
+
+    #[test]
+    fn blocks_on_every_instruction_set_give_the_bits_of_single_samples() {
+        let mut rng = Rng::new(5);
+        let raster = Raster::from_fn(19, 23, |_, _| rng.uniform());
+        for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
+            let spline = Spline::new(&raster, [0.19, 0.23], wrap);
+            for (name, kernel) in kernels() {
+                // From many samples a texel to several texels a sample, blocks of every length.
+                for len in 1..=64 {
+                    let step = [1e-4, 1e-3, 0.03][len % 3];
+                    let start = [rng.uniform() - 0.5, rng.uniform() - 0.5];
+                    let position_m: Vec<_> = (0..len)
+                        .map(|n| [start[0] + step * n as f64, start[1] - 0.7 * step * n as f64])
+                        .collect();
+                    let mut out = Samples::EMPTY;
+                    kernel(&spline, &position_m, &mut Places::EMPTY, &mut out);
+                    for (n, position_m) in position_m.iter().enumerate() {
+                        let alone = spline.sample(*position_m);
+                        let block = (out.value[n], [out.slope_u[n], out.slope_v[n]]);
+                        assert_eq!(block, (alone.value, alone.gradient), "{name}, {wrap:?}, {position_m:?}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -50,6 +50,7 @@ pub fn height_rate(source: &mut SolidNoise, path: &[([f64; 2], [f64; 2])]) -> Ve
             footprint_m: &footprint,
             first_sample: 64 * k as u64,
             contact: 0,
+            slopes: true,
         };
         source.sample(&path, &mut out);
         signal.extend(

@@ -50,6 +50,7 @@ impl Stroke {
                 footprint_m: &vec![self.footprint_m(); length],
                 first_sample,
                 contact: 0,
+                slopes: true,
             };
             source.sample(&path, &mut out);
             for i in 0..length {
