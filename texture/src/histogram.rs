@@ -19,9 +19,9 @@ use asperity_dsp::rng::hash_u32;
 pub const TIE: f64 = 1e-9;
 
 /// Bits sorted in one pass.
-const DIGIT_BITS: u32 = 12;
+const DIGIT_BITS: u32 = 11;
 const DIGITS: usize = 1 << DIGIT_BITS;
-/// Where the two digits lie that are sorted by: the upper 24 bits of the 32 of a key, which lie above its position.
+/// Where the two digits lie that are sorted by: the upper 22 bits of the 32 of a key, which lie above its position.
 /// What these leave together, a few neighbours as a rule, is sorted by comparing.
 const DIGIT_SHIFTS: [u32; 2] = [64 - 2 * DIGIT_BITS, 64 - DIGIT_BITS];
 
@@ -63,6 +63,10 @@ impl Histogram {
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         let count = self.sorted.len().max(other.sorted.len());
+        if self.sorted.len() == other.sorted.len() {
+            let both = self.sorted.iter().zip(&other.sorted);
+            return both.map(|(a, b)| (a - b).abs()).sum::<f64>() / count.max(1) as f64;
+        }
         let sum: f64 = (0..count).map(|k| (self.quantile(k, count) - other.quantile(k, count)).abs()).sum();
         sum / count.max(1) as f64
     }
@@ -114,9 +118,10 @@ impl Matcher {
             for slot in count.iter_mut() {
                 start += std::mem::replace(slot, start);
             }
+            let sorted = self.other.as_mut_slice();
             for &key in &self.keys {
                 let slot = &mut count[(key >> shift) as usize & (DIGITS - 1)];
-                self.other[*slot as usize] = key;
+                sorted[*slot as usize] = key;
                 *slot += 1;
             }
             std::mem::swap(&mut self.keys, &mut self.other);

@@ -177,6 +177,21 @@ mod tests {
     }
 
     #[test]
+    fn what_an_envelope_leaves_is_the_spectrum_of_a_real_image() {
+        let (width, height) = (32, 24);
+        let mut spectrum = noise(width, height, 9);
+        let envelope = Envelope::new(width, height);
+        let wanted: Vec<f64> = (0..envelope.power(&spectrum).len()).map(|tent| 1.0 + tent as f64).collect();
+        envelope.impose(&mut spectrum, &wanted, 100.0);
+        for column in [&spectrum[..height], &spectrum[width / 2 * height..]] {
+            for ky in 0..height {
+                let mirrored = column[(height - ky) % height].conj();
+                assert!((column[ky] - mirrored).norm() < 1e-6 * column[ky].norm());
+            }
+        }
+    }
+
+    #[test]
     fn a_few_rounds_give_an_image_the_envelope_of_one_of_another_size_and_keep_its_phases() {
         let wide = Envelope::new(128, 96);
         let mut coloured = noise(128, 96, 7);

@@ -12,7 +12,7 @@ use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
 /// Bytes of the rows or columns that are transformed at once: two thirds of a first-level cache of 48 KiB.
-const BLOCK_BYTES: usize = 32 * 1024;
+const BLOCK_BYTES: usize = 16 * 1024;
 /// Fewest of them: as many complex numbers as lie in one cache line, so that each line is read once.
 const FEWEST_IN_BLOCK: usize = 4;
 
@@ -94,9 +94,9 @@ impl RealFft2 {
         let at_once = in_block(self.height);
         for start in (0..kept).step_by(at_once) {
             let columns = &mut block[..at_once.min(kept - start) * self.height];
-            for (y, row) in rows.chunks_exact(stride).take(self.height).enumerate() {
-                for (column, &value) in columns.chunks_exact_mut(self.height).zip(&row[start..]) {
-                    column[y] = value;
+            for (column, kx) in columns.chunks_exact_mut(self.height).zip(start..) {
+                for (to, from) in column.iter_mut().zip(rows.chunks_exact(stride)) {
+                    *to = from[kx];
                 }
             }
             self.columns[0].process_with_scratch(columns, scratch);
@@ -124,9 +124,9 @@ impl RealFft2 {
             let columns = &mut block[..at_once.min(kept - start) * self.height];
             columns.chunks_exact_mut(self.height).zip(start..).for_each(|(column, kx)| give(kx, column));
             self.columns[1].process_with_scratch(columns, scratch);
-            for (y, row) in rows.chunks_exact_mut(stride).take(self.height).enumerate() {
-                for (value, column) in row[start..].iter_mut().zip(columns.chunks_exact(self.height)) {
-                    *value = column[y];
+            for (column, kx) in columns.chunks_exact(self.height).zip(start..) {
+                for (&from, to) in column.iter().zip(rows.chunks_exact_mut(stride)) {
+                    to[kx] = from;
                 }
             }
         }
@@ -175,12 +175,14 @@ fn pack_image_rows(pair: &[f64], packed: &mut [Complex64]) {
     }
 }
 
-/// The spectra A and B of two real rows from that of a + i b.
+/// The spectra A and B of two real rows from that of a + i b, as far as they are wanted.
 fn unpack_spectra(packed: &[Complex64], first: &mut [Complex64], second: &mut [Complex64]) {
     first[0] = Complex64::new(packed[0].re, 0.0);
     second[0] = Complex64::new(packed[0].im, 0.0);
-    let both = first.iter_mut().zip(second).skip(1);
-    for ((a, b), (up, down)) in both.zip(packed[1..].iter().zip(packed.iter().rev())) {
+    let (first, second) = (&mut first[1..], &mut second[1..]);
+    let up = &packed[1..=first.len()];
+    let down = packed[packed.len() - first.len()..].iter().rev();
+    for (((a, b), up), down) in first.iter_mut().zip(second).zip(up).zip(down) {
         *a = Complex64::new(0.5 * (up.re + down.re), 0.5 * (up.im - down.im));
         *b = Complex64::new(0.5 * (up.im + down.im), 0.5 * (down.re - up.re));
     }
@@ -197,8 +199,10 @@ fn pack_spectra(first: &[Complex64], second: &[Complex64], packed: &mut [Complex
         packed[paired] = Complex64::new(first[paired].re, second[paired].re);
     }
     let (low, high) = packed.split_at_mut(paired);
-    let both = first.iter().zip(second).take(paired).skip(1);
-    for ((a, b), (up, down)) in both.zip(low[1..].iter_mut().zip(high.iter_mut().rev())) {
+    let up = &mut low[1..];
+    let from = high.len() - up.len();
+    let down = high[from..].iter_mut().rev();
+    for (((a, b), up), down) in first[1..paired].iter().zip(&second[1..paired]).zip(up).zip(down) {
         *up = Complex64::new(a.re - b.im, a.im + b.re);
         *down = Complex64::new(a.re + b.im, b.re - a.im);
     }
