@@ -26,8 +26,8 @@ fn transforms(c: &mut Criterion) {
         let mut pyramid = Pyramid::new(256, 256, 4, 4, sampling).expect("256² holds four bands");
         c.bench_function(&format!("pyramid 256², 4 × 4, build and reconstruct, {name} (bar 6 ms)"), |b| {
             b.iter(|| {
-                let mut split = pyramid.split(black_box(&image.values));
-                pyramid.join(&mut split)
+                let split = pyramid.split(black_box(&image.values));
+                pyramid.join(&split)
             });
         });
     }

@@ -7,15 +7,18 @@
 //! That saves a transposition each way. The forward transform is not scaled, the inverse divides by
 //! `width · height`, so that one after the other gives the image back.
 
+mod real;
+
+pub(crate) use real::{RealFft2, Workspace};
+
 use crate::raster::Raster;
 use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
-use std::ops::Range;
 use std::sync::Arc;
 
-/// Side of the square that is transposed at once: 16 × 16 complex numbers are 4 KiB.
-const TRANSPOSE_TILE: usize = 16;
+/// Columns that are transposed and transformed at once: 8 of 256 complex numbers are 32 KiB.
+const BLOCK: usize = 8;
 
 /// Plans and scratch memory for images of one size.
 #[derive(Clone)]
@@ -25,6 +28,8 @@ pub struct Fft2 {
     rows: [Arc<dyn Fft<f64>>; 2],
     columns: [Arc<dyn Fft<f64>>; 2],
     scratch: Vec<Complex64>,
+    real: RealFft2,
+    work: Workspace,
 }
 
 impl std::fmt::Debug for Fft2 {
@@ -43,7 +48,8 @@ impl Fft2 {
         let columns = [planner.plan_fft_forward(height), planner.plan_fft_inverse(height)];
         let needed = rows.iter().chain(&columns).map(|plan| plan.get_inplace_scratch_len()).max();
         let scratch = vec![Complex64::default(); needed.unwrap_or(0)];
-        Self { width, height, rows, columns, scratch }
+        let real = RealFft2::new(&mut planner, width, height);
+        Self { width, height, rows, columns, scratch, real, work: Workspace::default() }
     }
 
     /// Texels in a row.
@@ -75,17 +81,16 @@ impl Fft2 {
     /// # Panics
     /// When a slice does not hold [`Fft2::len`] values.
     pub fn forward(&mut self, image: &mut [Complex64], spectrum: &mut [Complex64]) {
-        self.forward_low(image, spectrum, self.width);
-    }
-
-    /// As [`Fft2::forward`], but only for the `kept` columns of lowest frequency along u: the others are left as
-    /// they are.
-    pub(crate) fn forward_low(&mut self, image: &mut [Complex64], spectrum: &mut [Complex64], kept: usize) {
+        assert_eq!(spectrum.len(), self.len(), "a spectrum of the size that was planned");
         self.rows[0].process_with_scratch(image, &mut self.scratch);
-        for columns in low_columns(kept, self.width) {
-            let part = &mut spectrum[columns.start * self.height..columns.end * self.height];
-            transpose(image, self.width, self.height, columns, part);
-            self.columns[0].process_with_scratch(part, &mut self.scratch);
+        // Columns are transformed while they are still in the cache.
+        for (block, columns) in spectrum.chunks_mut(BLOCK * self.height).enumerate() {
+            for (y, row) in image.chunks_exact(self.width).enumerate() {
+                for (column, &value) in columns.chunks_exact_mut(self.height).zip(&row[block * BLOCK..]) {
+                    column[y] = value;
+                }
+            }
+            self.columns[0].process_with_scratch(columns, &mut self.scratch);
         }
     }
 
@@ -104,21 +109,16 @@ impl Fft2 {
     /// # Panics
     /// When a slice does not hold [`Fft2::len`] values.
     pub fn inverse_unscaled(&mut self, spectrum: &mut [Complex64], image: &mut [Complex64]) {
-        self.inverse_low_unscaled(spectrum, image, self.width);
-    }
-
-    /// As [`Fft2::inverse_unscaled`] for a spectrum that is zero but for the `kept` columns of lowest frequency along u.
-    pub(crate) fn inverse_low_unscaled(
-        &mut self,
-        spectrum: &mut [Complex64],
-        image: &mut [Complex64],
-        kept: usize,
-    ) {
-        for columns in low_columns(kept, self.width) {
-            let part = &mut spectrum[columns.start * self.height..columns.end * self.height];
-            self.columns[1].process_with_scratch(part, &mut self.scratch);
+        assert_eq!(spectrum.len(), self.len(), "a spectrum of the size that was planned");
+        for (block, columns) in spectrum.chunks_mut(BLOCK * self.height).enumerate() {
+            self.columns[1].process_with_scratch(columns, &mut self.scratch);
+            for (y, row) in image.chunks_exact_mut(self.width).enumerate() {
+                for (value, column) in row[block * BLOCK..].iter_mut().zip(columns.chunks_exact(self.height))
+                {
+                    *value = column[y];
+                }
+            }
         }
-        transpose(spectrum, self.height, self.width, 0..self.height, image);
         self.rows[1].process_with_scratch(image, &mut self.scratch);
     }
 
@@ -128,25 +128,41 @@ impl Fft2 {
     /// When `values` does not hold [`Fft2::len`] values.
     #[must_use]
     pub fn spectrum(&mut self, values: &[f64]) -> Vec<Complex64> {
-        let mut image: Vec<Complex64> = values.iter().map(|&v| Complex64::new(v, 0.0)).collect();
-        let mut spectrum = vec![Complex64::default(); self.len()];
-        self.forward(&mut image, &mut spectrum);
+        let (height, half) = (self.height, self.real.half_columns());
+        let mut spectrum = Vec::with_capacity(self.len());
+        self.real.forward(values, half, &mut self.work, |_, column| spectrum.extend_from_slice(column));
+        // X(−kx, −ky) = conj X(kx, ky).
+        for kx in half..self.width {
+            let mirrored = (self.width - kx) * height;
+            spectrum.push(spectrum[mirrored].conj());
+            for ky in 1..height {
+                spectrum.push(spectrum[mirrored + height - ky].conj());
+            }
+        }
         spectrum
     }
 
-    /// The real part of the image with this spectrum (which is left undefined).
+    /// The real part of the image with this spectrum, which may be used as working memory.
     ///
     /// # Panics
     /// When `spectrum` does not hold [`Fft2::len`] values.
     #[must_use]
     pub fn image(&mut self, spectrum: &mut [Complex64]) -> Raster {
-        let mut image = vec![Complex64::default(); self.len()];
-        self.inverse(spectrum, &mut image);
-        Raster {
-            width: self.width,
-            height: self.height,
-            values: image.iter().map(|value| value.re).collect(),
-        }
+        assert_eq!(spectrum.len(), self.len(), "a spectrum of the size that was planned");
+        let (width, height) = (self.width, self.height);
+        let scale = 0.5 / self.len() as f64;
+        let mut values = Vec::with_capacity(self.len());
+        self.real.inverse_unscaled(self.real.half_columns(), &mut self.work, &mut values, |kx, column| {
+            // The real part has the spectrum (X(k) + conj X(−k)) / 2.
+            let own = &spectrum[kx * height..][..height];
+            let mirrored = &spectrum[(width - kx) % width * height..][..height];
+            column[0] = (own[0] + mirrored[0].conj()) * scale;
+            let both = own[1..].iter().zip(mirrored[1..].iter().rev());
+            for (to, (own, mirrored)) in column[1..].iter_mut().zip(both) {
+                *to = (own + mirrored.conj()) * scale;
+            }
+        });
+        Raster { width, height, values }
     }
 }
 
@@ -160,27 +176,6 @@ pub fn signed_bin(k: usize, n: usize) -> isize {
 #[must_use]
 pub fn angular_frequency(k: usize, n: usize) -> f64 {
     TAU * signed_bin(k, n) as f64 / n as f64
-}
-
-/// The columns of a spectrum `width` wide that hold its `kept` lowest frequencies along u: from zero up, and the negative ones.
-fn low_columns(kept: usize, width: usize) -> [Range<usize>; 2] {
-    let up = if kept < width { kept / 2 + 1 } else { width };
-    [0..up, width - kept.saturating_sub(up)..width]
-}
-
-/// Writes some columns of the `width` × `height` matrix `from`, stored row by row, one after the other into `to`.
-fn transpose(from: &[Complex64], width: usize, height: usize, columns: Range<usize>, to: &mut [Complex64]) {
-    for y0 in (0..height).step_by(TRANSPOSE_TILE) {
-        for x0 in columns.clone().step_by(TRANSPOSE_TILE) {
-            let y1 = (y0 + TRANSPOSE_TILE).min(height);
-            for x in x0..(x0 + TRANSPOSE_TILE).min(columns.end) {
-                let start = (x - columns.start) * height;
-                for (y, value) in (y0..y1).zip(&mut to[start + y0..start + y1]) {
-                    *value = from[y * width + x];
-                }
-            }
-        }
-    }
 }
 
 #[cfg(test)]
@@ -220,30 +215,6 @@ mod tests {
             for (a, b) in image.values.iter().zip(&back.values) {
                 assert!((a - b).abs() < 1e-14);
             }
-        }
-    }
-
-    #[test]
-    fn low_frequencies_alone_are_those_of_the_whole_transform() {
-        let mut rng = Rng::new(5);
-        for (width, height, kept) in [(32, 12, 16), (33, 12, 17), (15, 8, 4), (16, 8, 1), (9, 9, 9)] {
-            let image: Vec<_> =
-                (0..width * height).map(|_| Complex64::new(rng.normal(), rng.normal())).collect();
-            let mut fft = Fft2::new(width, height);
-            let (mut whole, mut low) = (image.clone(), image.clone());
-            fft.forward(&mut image.clone(), &mut whole);
-            low.fill(Complex64::default());
-            fft.forward_low(&mut image.clone(), &mut low, kept);
-            let inside = |k: usize| low_columns(kept, width).iter().any(|range| range.contains(&k));
-            assert_eq!((0..width).filter(|&k| inside(k)).count(), kept);
-            for (place, value) in whole.iter_mut().enumerate().filter(|(place, _)| !inside(place / height)) {
-                *value = low[place];
-            }
-            assert_eq!(whole, low);
-            let (mut all, mut few) = (image.clone(), image);
-            fft.inverse_unscaled(&mut whole, &mut all);
-            fft.inverse_low_unscaled(&mut low, &mut few, kept);
-            assert!(all.iter().zip(&few).all(|(a, b)| (a - b).norm() < 1e-12));
         }
     }
 

@@ -18,9 +18,12 @@ use asperity_dsp::rng::hash_u32;
 /// Fraction of the range within which two numbers count as tied.
 pub const TIE: f64 = 1e-9;
 
-/// Bits sorted in one pass; three passes cover a 32-bit key.
+/// Bits sorted in one pass.
 const DIGIT_BITS: u32 = 11;
 const DIGITS: usize = 1 << DIGIT_BITS;
+/// Where the two digits lie that are sorted by: the upper 22 bits of the 32 of a key, which lie above its position.
+/// What these leave together, a few neighbours as a rule, is sorted by comparing.
+const DIGIT_SHIFTS: [u32; 2] = [64 - 2 * DIGIT_BITS, 64 - DIGIT_BITS];
 
 /// A sorted set of numbers: a reference's histogram.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,16 +35,7 @@ impl Histogram {
     /// The histogram of `values`, which must be finite.
     #[must_use]
     pub fn new(values: &[f64]) -> Self {
-        let mut matcher = Matcher::default();
-        matcher.order(values, 0.0);
-        let mut sorted: Vec<f64> = matcher.keys.iter().map(|&key| values[position(key)]).collect();
-        // Keys grow with the values, so that only equal keys are still to be told apart.
-        let mut start = 0;
-        for tied in matcher.keys.chunk_by(|a, b| a >> 32 == b >> 32) {
-            sorted[start..start + tied.len()].sort_unstable_by(f64::total_cmp);
-            start += tied.len();
-        }
-        Self { sorted }
+        Matcher::default().histogram(values)
     }
 
     /// The value below which the fraction (rank + ½)/count lies.
@@ -69,6 +63,10 @@ impl Histogram {
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         let count = self.sorted.len().max(other.sorted.len());
+        if self.sorted.len() == other.sorted.len() {
+            let both = self.sorted.iter().zip(&other.sorted);
+            return both.map(|(a, b)| (a - b).abs()).sum::<f64>() / count.max(1) as f64;
+        }
         let sum: f64 = (0..count).map(|k| (self.quantile(k, count) - other.quantile(k, count)).abs()).sum();
         sum / count.max(1) as f64
     }
@@ -82,15 +80,22 @@ pub struct Matcher {
 }
 
 impl Matcher {
+    /// As [`Histogram::new`].
+    #[must_use]
+    pub fn histogram(&mut self, values: &[f64]) -> Histogram {
+        // Keys grow with the values.
+        self.order(values, 0.0, |run| {
+            run.sort_unstable_by(|&a, &b| value(values, a).total_cmp(&value(values, b)))
+        });
+        Histogram { sorted: self.keys.iter().map(|&key| value(values, key)).collect() }
+    }
+
     /// Changes `values`, which must be finite, so that they have the histogram of `reference` and
     /// keep their order.
     pub fn run(&mut self, values: &mut [f64], reference: &Histogram) {
         let count = values.len();
-        self.order(values, TIE);
         // What is still equal keeps no trace of its position either.
-        for tied in self.keys.chunk_by_mut(|a, b| a >> 32 == b >> 32).filter(|tied| tied.len() > 1) {
-            tied.sort_unstable_by_key(|&key| hash_u32(key as u32));
-        }
+        self.order(values, TIE, |run| run.sort_unstable_by_key(|&key| (key >> 32, hash_u32(key as u32))));
         if count == reference.sorted.len() {
             for (&key, &value) in self.keys.iter().zip(&reference.sorted) {
                 values[position(key)] = value;
@@ -103,38 +108,82 @@ impl Matcher {
     }
 
     /// Leaves in `keys` the positions of `values` (low halves) in ascending order of value, where
-    /// values closer than `tie` of the range come in random order: a radix sort.
-    fn order(&mut self, values: &[f64], tie: f64) {
-        let (low, high) =
-            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-        let tie_steps = tie * 4_294_967_296.0;
-        // The sum of key and jitter stays below 2³².
-        let scale = if high > low { (4_294_967_295.0 - tie_steps) / (high - low) } else { 0.0 };
-        let mut counts = [[0_u32; DIGITS]; 3];
-        self.keys.clear();
-        self.keys.extend(values.iter().enumerate().map(|(i, &v)| {
-            let jitter = f64::from(hash_u32(i as u32)) * tie;
-            let key = ((v - low) * scale + jitter) as u32;
-            for (digit, count) in counts.iter_mut().enumerate() {
-                count[(key >> (DIGIT_BITS * digit as u32)) as usize & (DIGITS - 1)] += 1;
-            }
-            u64::from(key) << 32 | i as u64
-        }));
+    /// values closer than `tie` of the range come in random order: a radix sort. `sort` brings keys in order
+    /// that it leaves together.
+    fn order(&mut self, values: &[f64], tie: f64, sort: impl Fn(&mut [u64])) {
+        let mut counts = self.make_keys(values, tie);
         self.other.resize(values.len(), 0);
-        for (digit, count) in counts.iter_mut().enumerate() {
+        for (count, shift) in counts.iter_mut().zip(DIGIT_SHIFTS) {
             let mut start = 0;
             for slot in count.iter_mut() {
                 start += std::mem::replace(slot, start);
             }
-            let shift = 32 + DIGIT_BITS * digit as u32;
+            let sorted = self.other.as_mut_slice();
             for &key in &self.keys {
                 let slot = &mut count[(key >> shift) as usize & (DIGITS - 1)];
-                self.other[*slot as usize] = key;
+                sorted[*slot as usize] = key;
                 *slot += 1;
             }
             std::mem::swap(&mut self.keys, &mut self.other);
         }
+        sort_what_is_left(&mut self.keys, sort);
     }
+
+    /// Makes the keys of `values`, in the order of the values, and counts their digits.
+    fn make_keys(&mut self, values: &[f64], tie: f64) -> [[u32; DIGITS]; 2] {
+        let (low, high) = range(values);
+        let tie_steps = tie * 4_294_967_296.0;
+        // The sum of key and jitter stays below 2³².
+        let scale = if high > low { (4_294_967_295.0 - tie_steps) / (high - low) } else { 0.0 };
+        let mut counts = [[0_u32; DIGITS]; 2];
+        self.keys.clear();
+        self.keys.extend(values.iter().enumerate().map(|(i, &v)| {
+            let jitter = f64::from(hash_u32(i as u32)) * tie;
+            let key = u64::from(((v - low) * scale + jitter) as u32) << 32 | i as u64;
+            for (count, shift) in counts.iter_mut().zip(DIGIT_SHIFTS) {
+                count[(key >> shift) as usize & (DIGITS - 1)] += 1;
+            }
+            key
+        }));
+        counts
+    }
+}
+
+/// Sorts by `sort` all runs of keys with equal digits in which upper halves do not grow from each to the next.
+fn sort_what_is_left(keys: &mut [u64], sort: impl Fn(&mut [u64])) {
+    let mut at = 1;
+    while at < keys.len() {
+        if keys[at - 1] >> 32 < keys[at] >> 32 {
+            at += 1;
+            continue;
+        }
+        let digits = keys[at] >> DIGIT_SHIFTS[0];
+        let same = |key: &&u64| **key >> DIGIT_SHIFTS[0] == digits;
+        let start = at - keys[..at].iter().rev().take_while(same).count();
+        let end = at + keys[at..].iter().take_while(same).count();
+        sort(&mut keys[start..end]);
+        at = end + 1;
+    }
+}
+
+/// Smallest and largest of finite values.
+fn range(values: &[f64]) -> (f64, f64) {
+    // Several at once: one comparison need not wait for the one before.
+    let (mut low, mut high) = ([f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
+    let (chunks, rest) = values.as_chunks::<8>();
+    for chunk in chunks {
+        for ((low, high), &v) in low.iter_mut().zip(&mut high).zip(chunk) {
+            *low = if v < *low { v } else { *low };
+            *high = if v > *high { v } else { *high };
+        }
+    }
+    let low = low.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
+    (low, high.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max))
+}
+
+/// The value that a key stands for.
+fn value(values: &[f64], key: u64) -> f64 {
+    values[position(key)]
 }
 
 /// The position in the low half of a key.

@@ -162,15 +162,18 @@ pub fn metamer(
     let borders = options.borders.decide(reference);
     let ours = SplitBorders::of(original, borders);
     let theirs = SplitBorders::of(&scaled(reference, options.scale), borders);
-    let target = Target::new(&theirs.periodic, options).map_err(of_the_reference)?;
-    let mut work = Work::new(original, options)?;
-    let (before, heights_before) = target.distances(&ours.periodic, &mut work.pyramid);
+    let mut work = Work::new(&theirs.periodic, options).map_err(of_the_reference)?;
+    let target = work.target(&theirs.periodic);
+    if (theirs.periodic.width, theirs.periodic.height) != (original.width, original.height) {
+        work = Work::new(original, options)?;
+    }
+    let (before, heights_before) = work.distances(&ours.periodic, &target);
     let mut image = match options.method {
-        Method::SinglePass => work.pass(&ours.periodic, &target, Parts::OrientedBands),
+        Method::SinglePass => work.single_pass(&ours.periodic, &target),
         Method::Iterated(passes) => work.iterate(&ours.periodic, &target, passes, progress),
-        Method::Spectrum => with_amplitudes(&ours.periodic, &theirs.periodic, work.pyramid.fft()),
+        Method::Spectrum => with_amplitudes(&ours.periodic, &theirs.periodic),
     };
-    let (after, heights_after) = target.distances(&image, &mut work.pyramid);
+    let (after, heights_after) = work.distances(&image, &target);
     ours.add_borders(&mut image, &theirs);
     let subbands = work.pyramid.subbands().iter().zip(before.into_iter().zip(after));
     let distance = |(subband, (before, after)): (&Subband, (f64, f64))| BandDistance {
@@ -216,33 +219,6 @@ struct Target {
     envelope: Vec<f64>,
 }
 
-impl Target {
-    fn new(reference: &Raster, options: &MetamerOptions) -> Result<Self, DesignError> {
-        let split = design(reference, options)?.split(&reference.values);
-        let bands = (0..split.len()).map(|i| Histogram::new(&split.get(i))).collect();
-        let (w, h) = (reference.width, reference.height);
-        let spectrum = Fft2::new(w, h).spectrum(&reference.values);
-        let envelope = Envelope::new(w, h).power(&spectrum);
-        Ok(Self { bands, heights: Histogram::new(&reference.values), envelope })
-    }
-
-    /// Distances of an image's sub-bands and of its heights.
-    fn distances(&self, image: &Raster, pyramid: &mut Pyramid) -> (Vec<f64>, f64) {
-        // A sub-band that the reference does not have cannot be measured in its own deviations.
-        let floor = EMPTY_BAND * self.heights.deviation().max(f64::MIN_POSITIVE);
-        let relative =
-            |values: &[f64], to: &Histogram| Histogram::new(values).distance(to) / to.deviation().max(floor);
-        let split = pyramid.split(&image.values);
-        let bands = self.bands.iter().enumerate().map(|(i, to)| relative(&split.get(i), to)).collect();
-        (bands, relative(&image.values, &self.heights))
-    }
-}
-
-/// A pyramid with every band as large as the image, as in the document.
-fn design(image: &Raster, options: &MetamerOptions) -> Result<Pyramid, DesignError> {
-    Pyramid::new(image.width, image.height, options.bands, options.orientations, Sampling::Full)
-}
-
 /// What a pass changes.
 #[derive(Clone, Copy, PartialEq)]
 enum Parts {
@@ -251,27 +227,64 @@ enum Parts {
     SubbandsAndEnvelope,
 }
 
-/// Plans and buffers of the passes.
+/// Plans and memory for images of one size.
 struct Work {
+    /// Every band is as large as the image, as in the document.
     pyramid: Pyramid,
     envelope: Envelope,
     matcher: Matcher,
-    pair: Vec<Complex64>,
-    half: Vec<f64>,
-    spare: Vec<Complex64>,
+    /// Half the spectra of an image and of what its matched sub-bands add up to.
+    spectrum: Vec<Complex64>,
+    sum: Vec<Complex64>,
+    subband: Vec<f64>,
 }
 
 impl Work {
-    fn new(original: &Raster, options: &MetamerOptions) -> Result<Self, DesignError> {
-        let pyramid = design(original, options)?;
+    fn new(image: &Raster, options: &MetamerOptions) -> Result<Self, DesignError> {
+        let (width, height) = (image.width, image.height);
         Ok(Self {
-            pyramid,
-            envelope: Envelope::new(original.width, original.height),
+            pyramid: Pyramid::new(width, height, options.bands, options.orientations, Sampling::Full)?,
+            envelope: Envelope::new(width, height),
             matcher: Matcher::default(),
-            pair: Vec::new(),
-            half: Vec::new(),
-            spare: Vec::new(),
+            spectrum: Vec::new(),
+            sum: Vec::new(),
+            subband: Vec::new(),
         })
+    }
+
+    /// What an image is to be matched to.
+    fn target(&mut self, reference: &Raster) -> Target {
+        let mut bands = Vec::new();
+        self.each_subband(reference, |_, histogram| bands.push(histogram));
+        let envelope = self.envelope.power(&self.spectrum);
+        Target { bands, heights: self.matcher.histogram(&reference.values), envelope }
+    }
+
+    /// Distances of an image's sub-bands and of its heights.
+    fn distances(&mut self, image: &Raster, target: &Target) -> (Vec<f64>, f64) {
+        // A sub-band that the reference does not have cannot be measured in its own deviations.
+        let floor = EMPTY_BAND * target.heights.deviation().max(f64::MIN_POSITIVE);
+        let relative = |of: Histogram, to: &Histogram| of.distance(to) / to.deviation().max(floor);
+        let mut bands = Vec::new();
+        self.each_subband(image, |index, histogram| bands.push(relative(histogram, &target.bands[index])));
+        (bands, relative(self.matcher.histogram(&image.values), &target.heights))
+    }
+
+    /// Calls `each` with the sub-bands of an image and leaves its spectrum in `spectrum`.
+    fn each_subband(&mut self, image: &Raster, mut each: impl FnMut(usize, Histogram)) {
+        self.pyramid.half_spectrum(&image.values, &mut self.spectrum);
+        for index in 0..self.pyramid.subbands().len() {
+            self.subband.clear();
+            self.pyramid.split_subband(&self.spectrum, index, &mut self.subband);
+            each(index, self.matcher.histogram(&self.subband));
+        }
+    }
+
+    /// The document's: the oriented bands once.
+    fn single_pass(&mut self, original: &Raster, target: &Target) -> Raster {
+        let mut made = original.clone();
+        self.pass(original, target, Parts::OrientedBands, &mut made.values);
+        made
     }
 
     /// Repeats passes over everything; the last one goes all the way and no further.
@@ -283,54 +296,38 @@ impl Work {
         mut progress: impl FnMut(f64),
     ) -> Raster {
         let mut image = original.clone();
-        let mut matched = Vec::new();
+        let mut made = Vec::new();
         for pass in 1..=passes {
-            matched.clone_from(&image.values);
-            self.matcher.run(&mut matched, &target.heights);
-            step(&mut image.values, &matched, HEIGHT_STEP * (passes - pass) as f64 / passes as f64);
+            made.clone_from(&image.values);
+            self.matcher.run(&mut made, &target.heights);
+            step(&mut image.values, &made, HEIGHT_STEP * (passes - pass) as f64 / passes as f64);
             let last = pass == passes;
             let parts = if last { Parts::Subbands } else { Parts::SubbandsAndEnvelope };
-            let made = self.pass(&image, target, parts);
-            step(
-                &mut image.values,
-                &made.values,
-                if last || pass <= GENTLE_PASSES { 1.0 } else { BAND_STEP },
-            );
+            self.pass(&image, target, parts, &mut made);
+            let all_the_way = last || pass <= GENTLE_PASSES;
+            step(&mut image.values, &made, if all_the_way { 1.0 } else { BAND_STEP });
             progress(pass as f64 / passes as f64);
         }
         image
     }
 
     /// Splits, matches every sub-band and joins.
-    fn pass(&mut self, image: &Raster, target: &Target, parts: Parts) -> Raster {
-        let mut spectrum = self.pyramid.fft().spectrum(&image.values);
+    fn pass(&mut self, image: &Raster, target: &Target, parts: Parts, made: &mut Vec<f64>) {
+        self.pyramid.half_spectrum(&image.values, &mut self.spectrum);
         if parts == Parts::SubbandsAndEnvelope {
-            self.envelope.impose(&mut spectrum, &target.envelope, MOST_GAIN);
+            self.envelope.impose(&mut self.spectrum, &target.envelope, MOST_GAIN);
         }
-        let mut sum = vec![Complex64::default(); spectrum.len()];
-        let mut next = 0;
-        for index in 0..self.pyramid.pair_count() {
-            self.pair.resize(self.pyramid.pair_len(index), Complex64::default());
-            self.pyramid.split_pair(&spectrum, index, &mut self.spare, &mut self.pair);
-            for half in 0..self.pyramid.pair_subbands(index) {
-                let kind = self.pyramid.subbands()[next].kind;
-                if parts != Parts::OrientedBands || matches!(kind, Kind::Oriented { .. }) {
-                    self.match_half(half, &target.bands[next]);
-                }
-                next += 1;
+        self.pyramid.clear_half_spectrum(&mut self.sum);
+        for (index, reference) in target.bands.iter().enumerate() {
+            self.subband.clear();
+            self.pyramid.split_subband(&self.spectrum, index, &mut self.subband);
+            let kind = self.pyramid.subbands()[index].kind;
+            if parts != Parts::OrientedBands || matches!(kind, Kind::Oriented { .. }) {
+                self.matcher.run(&mut self.subband, reference);
             }
-            self.pyramid.join_pair(&mut self.pair, index, &mut self.spare, &mut sum);
+            self.pyramid.join_subband(&self.subband, index, &mut self.sum);
         }
-        self.pyramid.fft().image(&mut sum)
-    }
-
-    fn match_half(&mut self, half: usize, reference: &Histogram) {
-        self.half.clear();
-        self.half.extend(self.pair.iter().map(|v| if half == 0 { v.re } else { v.im }));
-        self.matcher.run(&mut self.half, reference);
-        for (place, &value) in self.pair.iter_mut().zip(&self.half) {
-            *(if half == 0 { &mut place.re } else { &mut place.im }) = value;
-        }
+        self.pyramid.image(&self.sum, made);
     }
 }
 
@@ -342,7 +339,8 @@ fn step(values: &mut [f64], goal: &[f64], fraction: f64) {
 }
 
 /// The original's phases with the reference's amplitudes.
-fn with_amplitudes(original: &Raster, reference: &Raster, fft: &mut Fft2) -> Raster {
+fn with_amplitudes(original: &Raster, reference: &Raster) -> Raster {
+    let mut fft = Fft2::new(original.width, original.height);
     let amplitudes = resample_spectrum(reference, original.width, original.height);
     let mut spectrum = fft.spectrum(&original.values);
     for (value, &amplitude) in spectrum.iter_mut().zip(&amplitudes) {

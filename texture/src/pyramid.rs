@@ -22,7 +22,7 @@
 //!
 //! Changed: the filters are evaluated, not looked up (pyrtools stops at 110 dB for its tables, and at
 //! 44 dB for odd sizes). A real sub-band is the real part of the complex one, as in the document;
-//! two of them travel through one complex transform. [`Sampling::Reduced`] keeps the samples that a
+//! images and sub-bands are transformed as what they are, real, and filters known by half of the plane. [`Sampling::Reduced`] keeps the samples that a
 //! band needs by its bandwidth and no more; its values are those of the full band at fewer places.
 //! [`Sampling::Full`] is the document's: every band as large as the image.
 
@@ -34,10 +34,11 @@ mod tests;
 
 pub use coefficients::Coefficients;
 
-use crate::fft2::Fft2;
+use crate::fft2::{Fft2, Workspace, signed_bin};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 use level::Level;
+use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -80,22 +81,24 @@ pub struct Subband {
     pub wavelength_px: f64,
 }
 
-/// Filters and plans for images of one size.
+/// Filters, plans and working memory for images of one size.
 #[derive(Debug, Clone)]
 pub struct Pyramid {
-    fft: Fft2,
+    /// The first has the grid of the image itself.
     levels: Vec<Level>,
-    pairs: Vec<Pair>,
+    filters: Vec<Filter>,
     subbands: Vec<Subband>,
     orientations: usize,
+    work: Workspace,
+    /// Half the spectrum of an image, between two calls of no meaning.
+    spectrum: Vec<Complex64>,
 }
 
-/// Two filters on the frequencies of a level: Ψ_a + i Ψ_b.
+/// Ψ on the frequencies of a level.
 #[derive(Debug, Clone)]
-struct Pair {
+struct Filter {
     level: usize,
-    subbands: usize,
-    filter: Vec<Complex64>,
+    gains: Vec<f64>,
 }
 
 impl Pyramid {
@@ -116,17 +119,17 @@ impl Pyramid {
         let least = (1_u64 << (bands + 1)) as f64;
         let smaller = width.min(height) as f64;
         DesignError::check("image side", smaller, "at least 2^(bands + 1) texels", |n| n >= least)?;
+        let mut planner = FftPlanner::new();
+        let level = |level| Level::new(&mut planner, [width, height], level, sampling);
         let mut pyramid = Self {
-            fft: Fft2::new(width, height),
-            levels: Vec::new(),
-            pairs: Vec::new(),
+            levels: (0..=bands).map(level).collect(),
+            filters: Vec::new(),
             subbands: Vec::new(),
             orientations,
+            work: Workspace::default(),
+            spectrum: Vec::new(),
         };
-        for level in 0..=bands {
-            pyramid.levels.push(Level::new(width, height, level, sampling));
-            pyramid.add_filters(level, bands);
-        }
+        (0..=bands).for_each(|level| pyramid.add_filters(level, bands));
         Ok(pyramid)
     }
 
@@ -140,13 +143,13 @@ impl Pyramid {
     /// Texels in a row of the images it takes.
     #[must_use]
     pub fn width(&self) -> usize {
-        self.fft.width()
+        self.levels[0].fft.width()
     }
 
     /// Rows of the images it takes.
     #[must_use]
     pub fn height(&self) -> usize {
-        self.fft.height()
+        self.levels[0].fft.height()
     }
 
     /// Splits an image into its real sub-bands.
@@ -155,30 +158,53 @@ impl Pyramid {
     /// When `values` does not hold width · height values.
     #[must_use]
     pub fn split(&mut self, values: &[f64]) -> Coefficients {
-        let spectrum = self.fft.spectrum(values);
-        let mut pairs = Vec::with_capacity(self.pairs.len());
-        let mut work = Vec::new();
-        for index in 0..self.pairs.len() {
-            let mut image = vec![Complex64::default(); self.levels[self.pairs[index].level].fft.len()];
-            self.split_pair(&spectrum, index, &mut work, &mut image);
-            pairs.push(image);
-        }
-        Coefficients { pairs, places: self.places() }
+        let mut coefficients = Coefficients::default();
+        self.split_into(values, &mut coefficients);
+        coefficients
     }
 
-    /// Puts an image together from its sub-bands, edited or not. The coefficients are used as
-    /// working memory and left undefined.
+    /// As [`Pyramid::split`] into coefficients of an earlier image, whose memory is used again.
+    ///
+    /// # Panics
+    /// When `values` does not hold width · height values.
+    pub fn split_into(&mut self, values: &[f64], coefficients: &mut Coefficients) {
+        let mut spectrum = std::mem::take(&mut self.spectrum);
+        self.half_spectrum(values, &mut spectrum);
+        coefficients.values.clear();
+        coefficients.ends.clear();
+        coefficients.values.reserve_exact(self.subbands.iter().map(|band| band.width * band.height).sum());
+        for index in 0..self.subbands.len() {
+            self.split_subband(&spectrum, index, &mut coefficients.values);
+            coefficients.ends.push(coefficients.values.len());
+        }
+        self.spectrum = spectrum;
+    }
+
+    /// Puts an image together from its sub-bands, edited or not.
     ///
     /// # Panics
     /// When the coefficients are those of another pyramid.
     #[must_use]
-    pub fn join(&mut self, coefficients: &mut Coefficients) -> Raster {
-        let mut spectrum = vec![Complex64::default(); self.fft.len()];
-        let mut work = Vec::new();
-        for (index, image) in coefficients.pairs.iter_mut().enumerate() {
-            self.join_pair(image, index, &mut work, &mut spectrum);
+    pub fn join(&mut self, coefficients: &Coefficients) -> Raster {
+        let mut image = Raster::default();
+        self.join_into(coefficients, &mut image);
+        image
+    }
+
+    /// As [`Pyramid::join`] into an earlier image, whose memory is used again.
+    ///
+    /// # Panics
+    /// When the coefficients are those of another pyramid.
+    pub fn join_into(&mut self, coefficients: &Coefficients, image: &mut Raster) {
+        assert_eq!(coefficients.len(), self.subbands.len(), "the coefficients of this pyramid");
+        let mut spectrum = std::mem::take(&mut self.spectrum);
+        self.clear_half_spectrum(&mut spectrum);
+        for index in 0..self.subbands.len() {
+            self.join_subband(coefficients.get(index), index, &mut spectrum);
         }
-        self.fft.image(&mut spectrum)
+        (image.width, image.height) = (self.width(), self.height());
+        self.image(&spectrum, &mut image.values);
+        self.spectrum = spectrum;
     }
 
     /// The complex (analytic) sub-bands of the oriented kinds: their real parts are those of
@@ -188,134 +214,117 @@ impl Pyramid {
     /// When `values` does not hold width · height values.
     #[must_use]
     pub fn split_complex(&mut self, values: &[f64]) -> Vec<(Subband, Vec<Complex64>)> {
-        let spectrum = self.fft.spectrum(values);
-        let (mut work, mut out) = (Vec::new(), Vec::new());
-        for (index, (pair, half)) in self.places().into_iter().enumerate() {
-            let Kind::Oriented { orientation, .. } = self.subbands[index].kind else { continue };
-            let mut filter = self.pairs[pair].clone();
-            let (sin, cos) = (PI * orientation as f64 / self.orientations as f64).sin_cos();
-            let level = &self.levels[filter.level];
-            level.visit(self.fft.width(), self.fft.height(), |place, _, [wx, wy]| {
-                let gain = if half == 0 { filter.filter[place].re } else { filter.filter[place].im };
-                let along = wx * cos + wy * sin;
-                let side = if along > 0.0 { 2.0 } else { 0.0 };
-                filter.filter[place] = Complex64::new(gain * side, 0.0);
-            });
-            let mut image = vec![Complex64::default(); level.fft.len()];
-            std::mem::swap(&mut self.pairs[pair], &mut filter);
-            self.split_pair(&spectrum, pair, &mut work, &mut image);
-            std::mem::swap(&mut self.pairs[pair], &mut filter);
-            out.push((self.subbands[index], image));
+        let spectrum = Fft2::new(self.width(), self.height()).spectrum(values);
+        let oriented = self.subbands.iter().zip(&self.filters);
+        let complex = |(subband, filter): (&Subband, &Filter)| match subband.kind {
+            Kind::Oriented { orientation, .. } => {
+                Some((*subband, self.analytic(&spectrum, filter, orientation)))
+            }
+            _ => None,
+        };
+        oriented.filter_map(complex).collect()
+    }
+
+    /// One sub-band of waves that run along its orientation, not against it.
+    fn analytic(&self, spectrum: &[Complex64], filter: &Filter, orientation: usize) -> Vec<Complex64> {
+        let (width, height) = (self.width(), self.height());
+        let grid = &self.levels[filter.level];
+        let (level_w, level_h) = (grid.fft.width(), grid.fft.height());
+        let (sin, cos) = (PI * orientation as f64 / self.orientations as f64).sin_cos();
+        let scale = 1.0 / spectrum.len() as f64;
+        let mut filtered = vec![Complex64::default(); grid.fft.len()];
+        for ((place, [wx, wy]), gain) in grid.frequencies(width).zip(&filter.gains) {
+            let bin = [place / height, place % height];
+            let mirrored = [(width - bin[0]) % width, (height - bin[1]) % height];
+            let along = wx * cos + wy * sin;
+            let [kx, ky] = if along < 0.0 { mirrored } else { bin };
+            // A wave across the orientation (in a pyramid without any) runs neither way.
+            let side = if along == 0.0 { 1.0 } else { 2.0 };
+            let level_kx = signed_bin(kx, width).rem_euclid(level_w as isize) as usize;
+            let level_ky = signed_bin(ky, height).rem_euclid(level_h as isize) as usize;
+            filtered[level_kx * level_h + level_ky] = spectrum[kx * height + ky] * (gain * side * scale);
         }
-        out
+        let mut image = vec![Complex64::default(); grid.fft.len()];
+        Fft2::new(level_w, level_h).inverse_unscaled(&mut filtered, &mut image);
+        image
     }
 
     /// Adds the filters of one level: the oriented band λ = `level` (and the high residual on the
     /// first), or the low residual on the level after the last band.
     fn add_filters(&mut self, level: usize, bands: usize) {
-        let mut kinds = Vec::new();
         if level == 0 {
-            kinds.push(Kind::HighResidual);
+            self.add_filter(level, Kind::HighResidual, |_| 1.0);
         }
         if level == bands {
-            kinds.push(Kind::LowResidual);
-        } else {
-            let oriented = |orientation| Kind::Oriented { band: level, orientation };
-            kinds.extend((0..self.orientations).map(oriented));
+            self.add_filter(level, Kind::LowResidual, |_| 1.0);
+            return;
         }
+        for orientation in 0..self.orientations {
+            let angular = filter::angular(orientation, self.orientations);
+            self.add_filter(level, Kind::Oriented { band: level, orientation }, angular);
+        }
+    }
+
+    fn add_filter(&mut self, level: usize, kind: Kind, angular: impl Fn([f64; 2]) -> f64) {
         let grid = &self.levels[level];
-        for both in kinds.chunks(2) {
-            let mut filter = vec![Complex64::default(); grid.crop[0] * grid.crop[1]];
-            grid.visit(self.fft.width(), self.fft.height(), |place, _, omega| {
-                let gain = |kind: Option<&Kind>| {
-                    kind.map_or(0.0, |k| filter::gain(*k, self.orientations, level, omega))
-                };
-                filter[place] = Complex64::new(gain(both.first()), gain(both.get(1)));
-            });
-            self.pairs.push(Pair { level, subbands: both.len(), filter });
-        }
-        let (width, height) = (grid.fft.width(), grid.fft.height());
-        self.subbands.extend(kinds.into_iter().map(|kind| {
-            let wavelength_px = match kind {
-                Kind::HighResidual => 2.0,
-                Kind::Oriented { band, .. } => 4.0 * (1_u64 << band) as f64,
-                Kind::LowResidual => f64::INFINITY,
-            };
-            Subband { kind, width, height, wavelength_px }
+        let mut gains = Vec::with_capacity(grid.len());
+        gains.extend(grid.frequencies(self.width()).map(|(_, [wx, wy])| {
+            let r = wx.hypot(wy);
+            let radial = filter::radial(kind, level, r);
+            if radial == 0.0 || r == 0.0 { radial } else { radial * angular([wx / r, wy / r]) }
         }));
+        let (width, height) = (grid.fft.width(), grid.fft.height());
+        let wavelength_px = match kind {
+            Kind::HighResidual => 2.0,
+            Kind::Oriented { band, .. } => 4.0 * (1_u64 << band) as f64,
+            Kind::LowResidual => f64::INFINITY,
+        };
+        self.filters.push(Filter { level, gains });
+        self.subbands.push(Subband { kind, width, height, wavelength_px });
     }
 
-    /// Where each sub-band sits.
-    fn places(&self) -> Vec<(usize, usize)> {
-        let pairs = self.pairs.iter().enumerate();
-        pairs.flat_map(|(pair, of)| (0..of.subbands).map(move |half| (pair, half))).collect()
+    /// Columns kx = 0 … width/2 of the spectrum of an image.
+    pub(crate) fn half_spectrum(&mut self, values: &[f64], spectrum: &mut Vec<Complex64>) {
+        let Level { fft, columns, .. } = &self.levels[0];
+        spectrum.clear();
+        spectrum.reserve_exact(columns * fft.height());
+        fft.forward(values, *columns, &mut self.work, |_, column| spectrum.extend_from_slice(column));
     }
 
-    /// One pair of sub-bands from the spectrum of an image.
-    pub(crate) fn split_pair(
-        &mut self,
-        spectrum: &[Complex64],
-        index: usize,
-        work: &mut Vec<Complex64>,
-        image: &mut [Complex64],
-    ) {
-        let pair = &self.pairs[index];
-        let level = &mut self.levels[pair.level];
-        work.clear();
-        work.resize(level.fft.len(), Complex64::default());
-        let scale = 1.0 / self.fft.len() as f64;
-        level.runs(self.fft.width(), self.fft.height(), |run| {
-            let filter = &pair.filter[run.crop..run.crop + run.len];
-            let from = &spectrum[run.full..run.full + run.len];
-            let to = &mut work[run.level..run.level + run.len];
-            for ((to, &from), &gain) in to.iter_mut().zip(from).zip(filter) {
-                *to = from * gain * scale;
-            }
-        });
-        level.fft.inverse_low_unscaled(work, image, level.crop[0]);
+    /// Half the spectrum of nothing, for [`Pyramid::join_subband`] to add to.
+    pub(crate) fn clear_half_spectrum(&self, spectrum: &mut Vec<Complex64>) {
+        spectrum.clear();
+        spectrum.resize(self.levels[0].columns * self.height(), Complex64::default());
     }
 
-    /// Adds what one pair of sub-bands contributes to the spectrum of the image, plus i times
-    /// something whose image is real: the real part of the inverse transform is the image.
-    pub(crate) fn join_pair(
-        &mut self,
-        image: &mut [Complex64],
-        index: usize,
-        work: &mut Vec<Complex64>,
-        spectrum: &mut [Complex64],
-    ) {
-        let pair = &self.pairs[index];
-        let level = &mut self.levels[pair.level];
-        work.resize(level.fft.len(), Complex64::default());
-        level.fft.forward_low(image, work, level.crop[0]);
-        let scale = self.fft.len() as f64 / level.fft.len() as f64;
-        level.runs(self.fft.width(), self.fft.height(), |run| {
-            let filter = &pair.filter[run.crop..run.crop + run.len];
-            let from = &work[run.level..run.level + run.len];
-            let to = &mut spectrum[run.full..run.full + run.len];
-            for ((to, &from), gain) in to.iter_mut().zip(from).zip(filter) {
-                *to += from * gain.conj() * scale;
-            }
+    /// Appends one sub-band of the image with this half spectrum to `values`.
+    pub(crate) fn split_subband(&mut self, spectrum: &[Complex64], index: usize, values: &mut Vec<f64>) {
+        let filter = &self.filters[index];
+        let level = &self.levels[filter.level];
+        let scale = 1.0 / self.levels[0].fft.len() as f64;
+        level.fft.inverse_unscaled(level.columns, &mut self.work, values, |kx, column| {
+            level.filtered(kx, spectrum, &filter.gains, scale, column);
         });
     }
 
-    /// Number of complex arrays in [`Coefficients`].
-    pub(crate) fn pair_count(&self) -> usize {
-        self.pairs.len()
+    /// Adds what one sub-band contributes to half the spectrum of the image.
+    pub(crate) fn join_subband(&mut self, values: &[f64], index: usize, spectrum: &mut [Complex64]) {
+        let filter = &self.filters[index];
+        let level = &self.levels[filter.level];
+        let scale = self.levels[0].fft.len() as f64 / level.fft.len() as f64;
+        level.fft.forward(values, level.columns, &mut self.work, |kx, column| {
+            level.add_filtered(kx, column, &filter.gains, scale, spectrum);
+        });
     }
 
-    /// Sub-bands in the pair: 2, or 1 in the last one of a level with an odd count.
-    pub(crate) fn pair_subbands(&self, index: usize) -> usize {
-        self.pairs[index].subbands
-    }
-
-    /// Samples of each sub-band in the pair.
-    pub(crate) fn pair_len(&self, index: usize) -> usize {
-        self.levels[self.pairs[index].level].fft.len()
-    }
-
-    /// The transforms of whole images.
-    pub(crate) fn fft(&mut self) -> &mut Fft2 {
-        &mut self.fft
+    /// Replaces `values` by the image with this half spectrum.
+    pub(crate) fn image(&mut self, spectrum: &[Complex64], values: &mut Vec<f64>) {
+        let Level { fft, columns, .. } = &self.levels[0];
+        let scale = 1.0 / fft.len() as f64;
+        values.clear();
+        fft.inverse_unscaled(*columns, &mut self.work, values, |kx, column| {
+            let from = &spectrum[kx * fft.height()..][..fft.height()];
+            column.iter_mut().zip(from).for_each(|(to, from)| *to = from * scale);
+        });
     }
 }

@@ -32,74 +32,78 @@ const LONGEST_PX: f64 = 8192.0;
 /// Power over the largest of the envelope below which there is nothing to change (−300 dB).
 const NOTHING: f64 = 1e-30;
 
-/// Where a wave lies among the tents.
+/// Where a wave lies among the tents: in this ring and the next one, and how much of it in each direction.
 #[derive(Debug, Clone, Copy)]
 struct Place {
-    tents: [(u32, f32); 4],
+    ring: u32,
+    /// They sum to one, for the mean to zero.
+    parts: [[f32; DIRECTIONS]; 2],
 }
 
-/// The tents on the spectra of images of one size, as [`crate::fft2::Fft2`] stores them.
+impl Place {
+    /// Of the wave of bins kx, ky in images of `width` × `height`.
+    fn new([kx, width]: [usize; 2], [ky, height]: [usize; 2]) -> Self {
+        let (wx, wy) = (angular_frequency(kx, width), angular_frequency(ky, height));
+        let ring = ring(wx.hypot(wy));
+        let mut parts = [[0.0; DIRECTIONS]; 2];
+        // A wave at the Nyquist frequency of one side runs in two directions at once.
+        let both = if 2 * kx == width || 2 * ky == height { [wy, -wy] } else { [wy, wy] };
+        for wy in if kx + ky > 0 { &both[..] } else { &[] } {
+            let turn = (wy.atan2(wx) / PI).rem_euclid(1.0) * DIRECTIONS as f64;
+            for (parts, share) in parts.iter_mut().zip([1.0 - ring.fract(), ring.fract()]) {
+                parts[turn as usize % DIRECTIONS] += 0.5 * (share * (1.0 - turn.fract())) as f32;
+                parts[(turn as usize + 1) % DIRECTIONS] += 0.5 * (share * turn.fract()) as f32;
+            }
+        }
+        Self { ring: ring as u32, parts }
+    }
+}
+
+/// One number a tent: rings of directions.
+type Tents = Vec<[f64; DIRECTIONS]>;
+
+/// The tents on the spectra of images of one size: on columns 0 … width/2 of what [`crate::fft2::Fft2`] gives, which
+/// determine the others.
 #[derive(Debug, Clone)]
 pub struct Envelope {
     places: Vec<Place>,
-    weights: Vec<f64>,
-    texels: f64,
+    weights: Tents,
+    width: usize,
+    height: usize,
 }
 
 impl Envelope {
     /// For images of `width` × `height`.
     #[must_use]
     pub fn new(width: usize, height: usize) -> Self {
-        let rings = ring(PI * std::f64::consts::SQRT_2) as usize + 2;
-        let place = |at: usize| {
-            let (wx, wy) = (angular_frequency(at / height, width), angular_frequency(at % height, height));
-            let r = ring(wx.hypot(wy));
-            let turn = (wy.atan2(wx) / PI).rem_euclid(1.0) * DIRECTIONS as f64;
-            let (ar, at) = (r.fract(), turn.fract());
-            let (r, t) = (r as usize, turn as usize % DIRECTIONS);
-            let index = |r: usize, t: usize| (r * DIRECTIONS + t % DIRECTIONS) as u32;
-            Place {
-                tents: [
-                    (index(r, t), ((1.0 - ar) * (1.0 - at)) as f32),
-                    (index(r + 1, t), (ar * (1.0 - at)) as f32),
-                    (index(r, t + 1), ((1.0 - ar) * at) as f32),
-                    (index(r + 1, t + 1), (ar * at) as f32),
-                ],
-            }
-        };
-        let places: Vec<Place> = (0..width * height).map(place).collect();
-        let mut weights = vec![0.0; rings * DIRECTIONS];
-        for place in &places[1..] {
-            for (tent, weight) in place.tents {
-                weights[tent as usize] += f64::from(weight);
-            }
-        }
-        Self { places, weights, texels: (width * height) as f64 }
+        let waves = (0..=width / 2).flat_map(|kx| (0..height).map(move |ky| (kx, ky)));
+        let places = waves.map(|(kx, ky)| Place::new([kx, width], [ky, height])).collect();
+        let mut envelope = Self { places, weights: Vec::new(), width, height };
+        envelope.weights = envelope.sums(std::iter::repeat(1.0));
+        envelope
     }
 
     /// Power in each tent: variance per frequency interval, the same for images of any size; negative
-    /// where an image of this size has no wave.
-    #[must_use]
-    pub fn power(&self, spectrum: &[Complex64]) -> Vec<f64> {
-        let mut power = vec![0.0; self.weights.len()];
-        for (value, place) in spectrum.iter().zip(&self.places).skip(1) {
-            let square = value.norm_sqr();
-            for (tent, weight) in place.tents {
-                power[tent as usize] += square * f64::from(weight);
-            }
-        }
-        let of =
-            |(power, weight): (f64, &f64)| if *weight > 0.0 { power / (weight * self.texels) } else { -1.0 };
-        power.into_iter().zip(&self.weights).map(of).collect()
-    }
-
-    /// Changes amplitudes so that the envelope comes nearer to `wanted`, which may come from an image of another
-    /// size, by at most a factor `most` either way. Phases stay.
+    /// where an image of this size has no wave. Columns of `spectrum` after the first half are not read.
     ///
     /// # Panics
     /// When `spectrum` is not that of an image of this size.
+    #[must_use]
+    pub fn power(&self, spectrum: &[Complex64]) -> Vec<f64> {
+        assert!(spectrum.len() >= self.places.len(), "the spectrum of an image of this size");
+        let sums = self.sums(spectrum.iter().map(Complex64::norm_sqr));
+        let texels = (self.width * self.height) as f64;
+        let of = |(power, weight): (&f64, &f64)| if *weight > 0.0 { power / (weight * texels) } else { -1.0 };
+        sums.as_flattened().iter().zip(self.weights.as_flattened()).map(of).collect()
+    }
+
+    /// Changes the amplitudes of half a spectrum (columns 0 … width/2) so that the envelope comes nearer to `wanted`,
+    /// which may come from an image of another size, by at most a factor `most` either way. Phases stay.
+    ///
+    /// # Panics
+    /// When `spectrum` is not half that of an image of this size.
     pub fn impose(&self, spectrum: &mut [Complex64], wanted: &[f64], most: f64) {
-        assert_eq!(spectrum.len(), self.places.len(), "the spectrum of an image of this size");
+        assert_eq!(spectrum.len(), self.places.len(), "half the spectrum of an image of this size");
         let least = f64::MIN_POSITIVE + NOTHING * wanted.iter().copied().fold(0.0, f64::max);
         let gain = |(now, wanted): (f64, &f64)| {
             if now < 0.0 || *wanted < 0.0 {
@@ -109,11 +113,26 @@ impl Envelope {
             }
         };
         let gains: Vec<f64> = self.power(spectrum).into_iter().zip(wanted).map(gain).collect();
-        for (value, place) in spectrum.iter_mut().zip(&self.places).skip(1) {
-            let log: f64 =
-                place.tents.iter().map(|&(tent, weight)| gains[tent as usize] * f64::from(weight)).sum();
-            *value *= log.exp();
+        let (gains, _) = gains.as_chunks::<DIRECTIONS>();
+        for (value, place) in spectrum.iter_mut().zip(&self.places) {
+            let rings = &gains[place.ring as usize..place.ring as usize + 2];
+            let both = rings.as_flattened().iter().zip(place.parts.as_flattened());
+            *value *= both.map(|(gain, part)| gain * f64::from(*part)).sum::<f64>().exp();
         }
+    }
+
+    /// Sums over both halves of the spectrum of numbers that belong to the waves of one half.
+    fn sums(&self, numbers: impl Iterator<Item = f64>) -> Tents {
+        let mut sums = vec![[0.0; DIRECTIONS]; ring(PI * std::f64::consts::SQRT_2) as usize + 2];
+        for (at, (number, place)) in numbers.zip(&self.places).enumerate() {
+            let alone = (2 * (at / self.height)).is_multiple_of(self.width);
+            let number = if alone { number } else { 2.0 * number };
+            let rings = &mut sums[place.ring as usize..place.ring as usize + 2];
+            for (sum, part) in rings.as_flattened_mut().iter_mut().zip(place.parts.as_flattened()) {
+                *sum += number * f64::from(*part);
+            }
+        }
+        sums
     }
 }
 
@@ -132,7 +151,9 @@ mod tests {
     fn noise(width: usize, height: usize, seed: u64) -> Vec<Complex64> {
         let mut rng = Rng::new(seed);
         let image = Raster::from_fn(width, height, |_, _| rng.normal());
-        Fft2::new(width, height).spectrum(&image.values)
+        let mut spectrum = Fft2::new(width, height).spectrum(&image.values);
+        spectrum.truncate((width / 2 + 1) * height);
+        spectrum
     }
 
     #[test]
@@ -153,6 +174,21 @@ mod tests {
         let wanted = envelope.power(&spectrum);
         envelope.impose(&mut spectrum, &wanted, 2.0);
         assert!(spectrum.iter().zip(&before).all(|(a, b)| (a - b).norm() < 1e-12 * (1.0 + b.norm())));
+    }
+
+    #[test]
+    fn what_an_envelope_leaves_is_the_spectrum_of_a_real_image() {
+        let (width, height) = (32, 24);
+        let mut spectrum = noise(width, height, 9);
+        let envelope = Envelope::new(width, height);
+        let wanted: Vec<f64> = (0..envelope.power(&spectrum).len()).map(|tent| 1.0 + tent as f64).collect();
+        envelope.impose(&mut spectrum, &wanted, 100.0);
+        for column in [&spectrum[..height], &spectrum[width / 2 * height..]] {
+            for ky in 0..height {
+                let mirrored = column[(height - ky) % height].conj();
+                assert!((column[ky] - mirrored).norm() < 1e-6 * column[ky].norm());
+            }
+        }
     }
 
     #[test]

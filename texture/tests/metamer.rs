@@ -64,7 +64,7 @@ fn kept(a: &Raster, b: &Raster) -> f64 {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let correlation = |i: usize| {
         let (a, b) = (a.get(i), b.get(i));
-        dot(&a, &b) / (dot(&a, &a) * dot(&b, &b)).sqrt()
+        dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
     };
     (1..17).map(correlation).sum::<f64>() / 16.0
 }

@@ -1,36 +1,44 @@
 //! The sub-bands of one image, to be read and edited.
 
-use rustfft::num_complex::Complex64;
-
-/// The sub-bands of one image, two real ones to a complex array; see [`Coefficients::get`].
-#[derive(Debug, Clone, PartialEq)]
+/// The sub-bands of one image in the order of [`super::Pyramid::subbands`]; empty by default, to be filled by
+/// [`super::Pyramid::split_into`].
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Coefficients {
-    pub(super) pairs: Vec<Vec<Complex64>>,
-    /// Pair and half (0 = real, 1 = imaginary) of each sub-band.
-    pub(super) places: Vec<(usize, usize)>,
+    /// One sub-band after the other: in one piece, allocators keep the memory from one image to the next.
+    pub(super) values: Vec<f64>,
+    /// Where each sub-band ends.
+    pub(super) ends: Vec<usize>,
 }
 
 impl Coefficients {
     /// Number of sub-bands.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.places.len()
+        self.ends.len()
     }
 
     /// Whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.places.is_empty()
+        self.ends.is_empty()
     }
 
-    /// The values of one sub-band, row by row, in the order of [`super::Pyramid::subbands`].
+    /// The values of one sub-band, row by row.
     ///
     /// # Panics
     /// When there is no such sub-band.
     #[must_use]
-    pub fn get(&self, index: usize) -> Vec<f64> {
-        let (pair, half) = self.places[index];
-        self.pairs[pair].iter().map(|v| if half == 0 { v.re } else { v.im }).collect()
+    pub fn get(&self, index: usize) -> &[f64] {
+        &self.values[self.range(index)]
+    }
+
+    /// The values of one sub-band, to be edited.
+    ///
+    /// # Panics
+    /// When there is no such sub-band.
+    pub fn get_mut(&mut self, index: usize) -> &mut [f64] {
+        let range = self.range(index);
+        &mut self.values[range]
     }
 
     /// Replaces the values of one sub-band.
@@ -38,10 +46,11 @@ impl Coefficients {
     /// # Panics
     /// When there is no such sub-band or `values` is not as long as it.
     pub fn set(&mut self, index: usize, values: &[f64]) {
-        let (pair, half) = self.places[index];
-        assert_eq!(values.len(), self.pairs[pair].len(), "a sub-band keeps its size");
-        for (place, &value) in self.pairs[pair].iter_mut().zip(values) {
-            *(if half == 0 { &mut place.re } else { &mut place.im }) = value;
-        }
+        self.get_mut(index).copy_from_slice(values);
+    }
+
+    fn range(&self, index: usize) -> std::ops::Range<usize> {
+        let start = if index == 0 { 0 } else { self.ends[index - 1] };
+        start..self.ends[index]
     }
 }

@@ -3,22 +3,20 @@
 use super::Kind;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Ψ at one frequency; `lows` is how often the low-pass has been applied before the band.
-pub(super) fn gain(kind: Kind, orientations: usize, lows: usize, [wx, wy]: [f64; 2]) -> f64 {
-    let r = wx.hypot(wy);
+/// Which part of Ψ depends on r alone; `lows` is how often the low-pass has been applied before the band.
+pub(super) fn radial(kind: Kind, lows: usize, r: f64) -> f64 {
     match kind {
         Kind::HighResidual => high(r),
         Kind::LowResidual => low_chain(r, lows),
-        Kind::Oriented { band, orientation } => {
-            let radial = low_chain(r, band) * high(r * (1_u64 << (band + 1)) as f64);
-            if radial == 0.0 {
-                return 0.0;
-            }
-            let k = orientations;
-            let cos = (wy.atan2(wx) - PI * orientation as f64 / k as f64).cos().abs();
-            radial * angular_norm(k) * cos.powi(k as i32 - 1)
-        }
+        Kind::Oriented { band, .. } => low_chain(r, band) * high(r * (1_u64 << (band + 1)) as f64),
     }
+}
+
+/// a |cos(θ − πμ/K)|^{K−1} as a function of the direction (cos θ, sin θ).
+pub(super) fn angular(orientation: usize, orientations: usize) -> impl Fn([f64; 2]) -> f64 {
+    let (sin, cos) = (PI * orientation as f64 / orientations as f64).sin_cos();
+    let norm = angular_norm(orientations);
+    move |[x, y]| norm * (x * cos + y * sin).abs().powi(orientations as i32 - 1)
 }
 
 /// H(r).

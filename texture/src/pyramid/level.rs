@@ -1,69 +1,99 @@
 //! Rectangles of low frequencies: which frequencies of an image a level keeps, and where they lie on its own grid.
 
 use super::Sampling;
-use crate::fft2::{Fft2, angular_frequency};
+use crate::fft2::{RealFft2, angular_frequency};
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex64;
 
-/// A rectangle of low frequencies and the grid on which they are sampled.
+/// A rectangle of low frequencies and the grid on which they are sampled. Of the frequencies along u only those
+/// from zero up count: the others follow, as images are real.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
-    /// Frequencies kept: at most `crop` of the image's in each direction.
-    pub crop: [usize; 2],
-    pub fft: Fft2,
-}
-
-/// A run of frequencies that lie side by side in the image's spectrum, the crop and the level.
-pub(super) struct Run {
-    pub full: usize,
-    pub crop: usize,
-    pub level: usize,
-    pub len: usize,
+    /// Frequencies along u that are kept: zero and up.
+    pub columns: usize,
+    /// Frequencies along v that are kept: zero and up, and negative ones.
+    rows: [usize; 2],
+    /// Rows of the image, and so frequencies along v in its spectrum.
+    height: usize,
+    pub fft: RealFft2,
 }
 
 impl Level {
     /// The frequencies that survive `halvings` of the band's upper edge, and their grid.
-    pub fn new(width: usize, height: usize, halvings: usize, sampling: Sampling) -> Self {
+    pub fn new(
+        planner: &mut FftPlanner<f64>,
+        [width, height]: [usize; 2],
+        halvings: usize,
+        sampling: Sampling,
+    ) -> Self {
         let side = |n: usize| n.div_ceil(1 << halvings);
         let crop = [side(width), side(height)];
         let [w, h] = if sampling == Sampling::Full { [width, height] } else { crop };
-        Self { crop, fft: Fft2::new(w, h) }
+        // Filters are zero at and above the Nyquist frequency of a crop that is not the whole spectrum.
+        let columns = if halvings == 0 { width / 2 + 1 } else { crop[0].div_ceil(2) };
+        let upper = if halvings == 0 { height / 2 + 1 } else { crop[1].div_ceil(2) };
+        let rows = [upper, crop[1].div_ceil(2) - 1];
+        Self { columns, rows, height, fft: RealFft2::new(planner, w, h) }
     }
 
-    /// Calls `each` with the runs of frequencies of this level. The filters are zero at and above
-    /// the crop's own Nyquist frequency, so it does not matter on which side that bin is kept.
-    pub fn runs(&self, width: usize, height: usize, mut each: impl FnMut(Run)) {
-        let [crop_w, crop_h] = self.crop;
-        let (level_w, level_h) = (self.fft.width(), self.fft.height());
-        debug_assert!(crop_w <= width && crop_h <= level_h);
-        let upper = crop_h / 2 + 1;
-        for kx in 0..crop_w {
-            let below = crop_w - kx;
-            let negative = kx > crop_w / 2;
-            let full = if negative { width - below } else { kx } * height;
-            let level = if negative { level_w - below } else { kx } * level_h;
-            let crop = kx * crop_h;
-            let upper = upper.min(crop_h);
-            each(Run { full, crop, level, len: upper });
-            let len = crop_h - upper;
-            if len > 0 {
-                each(Run {
-                    full: full + height - len,
-                    crop: crop + upper,
-                    level: level + level_h - len,
-                    len,
-                });
-            }
-        }
+    /// Frequencies that are kept.
+    pub fn len(&self) -> usize {
+        self.columns * (self.rows[0] + self.rows[1])
     }
 
-    /// Calls `each` with place in the crop, place in the image's spectrum and angular frequency.
-    pub fn visit(&self, width: usize, height: usize, mut each: impl FnMut(usize, usize, [f64; 2])) {
-        self.runs(width, height, |run| {
-            for i in 0..run.len {
-                let full = run.full + i;
-                let omega =
-                    [angular_frequency(full / height, width), angular_frequency(full % height, height)];
-                each(run.crop + i, full, omega);
+    /// A column of the level's spectrum: that of the image where it is kept, times the filter and `scale`.
+    pub fn filtered(
+        &self,
+        kx: usize,
+        spectrum: &[Complex64],
+        filter: &[f64],
+        scale: f64,
+        to: &mut [Complex64],
+    ) {
+        let [upper, lower] = self.rows;
+        let from = &spectrum[kx * self.height..][..self.height];
+        let filter = &filter[kx * (upper + lower)..][..upper + lower];
+        let product = |to: &mut [Complex64], from: &[Complex64], filter: &[f64]| {
+            for ((to, from), gain) in to.iter_mut().zip(from).zip(filter) {
+                *to = from * (gain * scale);
             }
-        });
+        };
+        let negative = to.len() - lower;
+        product(&mut to[..upper], &from[..upper], &filter[..upper]);
+        to[upper..negative].fill(Complex64::default());
+        product(&mut to[negative..], &from[self.height - lower..], &filter[upper..]);
+    }
+
+    /// Adds to the spectrum of the image a column of the level's, times the filter and `scale`.
+    pub fn add_filtered(
+        &self,
+        kx: usize,
+        column: &[Complex64],
+        filter: &[f64],
+        scale: f64,
+        spectrum: &mut [Complex64],
+    ) {
+        let [upper, lower] = self.rows;
+        let to = &mut spectrum[kx * self.height..][..self.height];
+        let filter = &filter[kx * (upper + lower)..][..upper + lower];
+        let add = |to: &mut [Complex64], from: &[Complex64], filter: &[f64]| {
+            for ((to, from), gain) in to.iter_mut().zip(from).zip(filter) {
+                *to += from * (gain * scale);
+            }
+        };
+        add(&mut to[..upper], &column[..upper], &filter[..upper]);
+        add(&mut to[self.height - lower..], &column[column.len() - lower..], &filter[upper..]);
+    }
+
+    /// The kept frequencies of an image `width` wide in the order of the filters: place in half the spectrum of
+    /// the image and angular frequency along u and v.
+    pub fn frequencies(&self, width: usize) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let ([upper, lower], height) = (self.rows, self.height);
+        (0..self.columns).flat_map(move |kx| {
+            let rows = (0..upper).chain(height - lower..height);
+            rows.map(move |ky| {
+                (kx * height + ky, [angular_frequency(kx, width), angular_frequency(ky, height)])
+            })
+        })
     }
 }
