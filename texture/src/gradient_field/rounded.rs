@@ -35,7 +35,7 @@ const LINE: f64 = 12.0;
 const NOT_ROUNDING: f64 = 2.0;
 /// Standard deviations of gathered noise that a ring has to exceed. Source: ours.
 const SURE: f64 = 3.0;
-/// How often lines are looked for, weaker ones once the stronger are known.
+/// How often lines are looked for at the most, weaker ones once the stronger are known.
 const ROUNDS: usize = 4;
 /// |D|² from which a line is believed.
 const LEAST_OF_LINE: f64 = 0.01;
@@ -139,7 +139,12 @@ impl Power {
             for ([over, under], places) in sums.iter_mut().zip(places) {
                 *over -= noise.excess(*under, places);
             }
-            found.power = sums.chunks(rings).flat_map(never_rising).collect();
+            let power: Vec<f64> = sums.chunks(rings).flat_map(never_rising).collect();
+            let settled = power == found.power;
+            found.power = power;
+            if settled {
+                break;
+            }
         }
         found
     }
