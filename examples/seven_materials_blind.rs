@@ -12,8 +12,6 @@
 mod common;
 #[path = "../tests/common/materials.rs"]
 mod materials;
-#[path = "../tests/common/spectrum.rs"]
-mod spectrum;
 
 use asperity::texture::solid_materials::SolidMaterial;
 use asperity_dsp::rng::Rng;

@@ -3,8 +3,8 @@
 mod common;
 
 use asperity::offline::Options;
+use asperity_measure::spectrum::strongest_bin;
 use common::{grating, render, si_config, stroke};
-use rustfft::{FftPlanner, num_complex::Complex};
 
 #[test]
 fn the_fundamental_is_speed_over_wavelength_within_one_bin() {
@@ -26,10 +26,4 @@ fn the_fundamental_is_speed_over_wavelength_within_one_bin() {
             "λ = {wavelength_m} m at {speed_m_s} m/s: {strongest} Hz instead of {expected_hz} Hz"
         );
     }
-}
-
-fn strongest_bin(x: &[f32]) -> usize {
-    let mut spectrum: Vec<_> = x.iter().map(|x| Complex::new(f64::from(*x), 0.0)).collect();
-    FftPlanner::new().plan_fft_forward(spectrum.len()).process(&mut spectrum);
-    (1..spectrum.len() / 2).max_by(|a, b| spectrum[*a].norm().total_cmp(&spectrum[*b].norm())).unwrap()
 }

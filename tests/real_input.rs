@@ -7,14 +7,13 @@ mod common;
 mod modal_tables;
 #[path = "../examples/real_input/profile.rs"]
 mod profile;
-#[path = "common/spectrum.rs"]
-mod spectrum;
 #[path = "../examples/real_input/trajectories.rs"]
 mod trajectories;
 
 use asperity::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{Config, Extent, Surface, Wrap};
+use asperity_measure::spectrum;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
 use common::{peak, render, rms, si_config, stroke};

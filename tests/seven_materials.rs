@@ -5,8 +5,6 @@
 mod common;
 #[path = "common/materials.rs"]
 mod materials;
-#[path = "common/spectrum.rs"]
-mod spectrum;
 
 use asperity::texture::solid_materials::SolidMaterial;
 use asperity_dsp::rng::Rng;

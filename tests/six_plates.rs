@@ -2,11 +2,10 @@
 //! ordinary strokes, matte above shiny, and no two have the same spectrum.
 
 mod common;
-#[path = "common/spectrum.rs"]
-mod spectrum;
 
 use asperity::offline::{Options, Render};
 use asperity::{Extent, Surface, Wrap};
+use asperity_measure::spectrum;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::raster::Raster;
 use common::{SIDE_M, plate, render, rms, si_config, stroke};

@@ -1,13 +1,13 @@
 //! What a fit finds in noise of any colour: `colours DRAWS SEED SECONDS [RATE_HZ] [BITS] [COLOUR…] [-s] [-v]`
 //!
-//! Every colour of `tests/common/noise.rs`, in which nothing rings; with `-s`, four modes struck a quarter of a second
+//! Every colour of `asperity_measure::coloured_noise`, in which nothing rings; with `-s`, four modes struck a quarter of a second
 //! after the start, 20 dB louder; with `-v` the modes that were invented.
-#[path = "../tests/common/mod.rs"]
-mod common;
 
 use asperity_dsp::mode::Mode;
 use asperity_fit::{Fit, FitOptions, FittedMode, Recording, Warning, fit};
-use common::noise::{COLOURS, noise};
+use asperity_measure::coloured_noise::{COLOURS, noise};
+use asperity_measure::impact::render_fast;
+use asperity_measure::process::cpu_seconds;
 
 /// What is struck.
 const STRUCK: [(f64, f64, f64); 4] =
@@ -32,7 +32,7 @@ fn strike(samples: &mut [f64], rate_hz: f64) {
         phase_rad,
     });
     let start = (0.25 * rate_hz) as usize;
-    let ringing = common::render_fast(&modes, rate_hz, samples.len() - start);
+    let ringing = render_fast(&modes, rate_hz, samples.len() - start);
     samples[start..].iter_mut().zip(ringing).for_each(|(x, y)| *x += y);
 }
 
@@ -54,7 +54,7 @@ fn main() {
         if !wanted.is_empty() && !wanted.iter().any(|w| name.contains(w.as_str())) {
             continue;
         }
-        let clock = common::cpu_seconds();
+        let clock = cpu_seconds();
         let count = (seconds * rate_hz) as usize;
         let (mut clean, mut invented, mut met) = (0, 0, 0);
         for draw in 0..draws {
@@ -71,7 +71,7 @@ fn main() {
                 print_draw(&fit, &of_noise, draw);
             }
         }
-        let seconds = (common::cpu_seconds() - clock) / draws as f64;
+        let seconds = (cpu_seconds() - clock) / draws as f64;
         let struck = if has("-s") { format!(", {met} struck ones found") } else { String::new() };
         println!(
             "{name:22} without an invented mode: {clean} of {draws}; {invented} invented{struck}   ({seconds:.2} s of CPU each)"

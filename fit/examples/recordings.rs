@@ -1,8 +1,10 @@
 //! Fits WAV files and prints a table: `recordings MAX_MODES FILE…`; the baseline is STFT peaks.
-#[path = "../tests/common/mod.rs"]
-mod common;
 
 use asperity_fit::{ChannelChoice, FitOptions, fit, load};
+use asperity_measure::impact::render_fast;
+use asperity_measure::process::cpu_seconds;
+use asperity_measure::score::snr_db;
+use asperity_measure::stft_peaks::stft_peaks;
 
 fn main() {
     let mut args = std::env::args().skip(1);
@@ -16,12 +18,12 @@ fn main() {
                 continue;
             }
         };
-        let clock = common::cpu_seconds();
+        let clock = cpu_seconds();
         let options = FitOptions { max_modes, threads: 1, ..FitOptions::default() };
         match fit(&recording, &options, &mut |_| {}) {
             Err(error) => println!("error: {error}"),
             Ok(fit) => {
-                let seconds = common::cpu_seconds() - clock;
+                let seconds = cpu_seconds() - clock;
                 let top: Vec<String> = fit
                     .modes
                     .iter()
@@ -34,8 +36,8 @@ fn main() {
                     / (recording.samples.len() - recording.samples.len() * 3 / 4) as f64;
                 let sound: Vec<f64> = recording.samples[from..to].iter().map(|x| x - mean).collect();
                 let rate = recording.sample_rate_hz;
-                let peaks = common::stft_peaks(&sound, rate, max_modes);
-                let baseline = common::snr_db(&sound, &common::render_fast(&peaks, rate, sound.len()));
+                let peaks = stft_peaks(&sound, rate, max_modes);
+                let baseline = snr_db(&sound, &render_fast(&peaks, rate, sound.len()));
                 println!(
                     "baseline {baseline:6.2} dB  {:36} {:4} {:6.2} {:7.2} {:7.2} {:7.1} {:6.2}  {}",
                     fit.source,

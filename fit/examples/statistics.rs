@@ -2,14 +2,13 @@
 //!
 //! 50 draws of two modes 1 Hz apart (T60 2 s, 20 dB), 40 draws of every colour of noise, 30 s and 10
 //! minutes of audio, and the most memory the process ever held.
-#[path = "../tests/common/mod.rs"]
-mod common;
 
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
 use asperity_fit::{ChannelChoice, FitOptions, FittedMode, Recording, fit, load};
-use common::noise::{COLOURS, Colour, noise};
-use common::*;
+use asperity_measure::coloured_noise::{COLOURS, Colour, noise};
+use asperity_measure::impact::{render_fast, with_noise};
+use asperity_measure::process::{cpu_seconds, peak_mib};
 
 const RATE_HZ: f64 = 44_100.0;
 

@@ -1,6 +1,4 @@
 //! Prints the synthetic table of the fit: misses, spurious modes, errors over the bound, time.
-#[path = "../tests/common/mod.rs"]
-mod common;
 
 use asperity_dsp::mode::Mode;
 use asperity_fit::analysis::analyse;
@@ -8,7 +6,10 @@ use asperity_fit::fitted::partial_of;
 use asperity_fit::limits::Limits;
 use asperity_fit::partial::Partial;
 use asperity_fit::refinement::{Bounds, refine};
-use common::*;
+use asperity_measure::cramer_rao::cramer_rao;
+use asperity_measure::impact::{Impact, impact};
+use asperity_measure::process::cpu_seconds;
+use asperity_measure::score::{robust_rms, score};
 use std::f64::consts::PI;
 
 fn to_mode(p: &Partial, rate: f64) -> Mode {
@@ -69,7 +70,7 @@ fn main() {
                 total += score.identifiable;
                 if verbose {
                     let likeliest = likeliest(&impact, &limits);
-                    let best = common::score(&impact, &bounds, &likeliest);
+                    let best = asperity_measure::score::score(&impact, &bounds, &likeliest);
                     println!(
                         "from the truth: f/CRB {:.2}, {:.2} dB below limit; found: f/CRB {:.2}",
                         robust_rms(&best.f_ratio),

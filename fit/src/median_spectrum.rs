@@ -1,8 +1,8 @@
 //! The spectrum of what is steady in a signal: in every bin the median over time, which a click or a mode that dies away
 //! touches little, and what a percentile of such medians is of the noise they come from.
 
+use asperity_fft::FftPlanner;
 use nalgebra::Complex;
-use rustfft::FftPlanner;
 use std::f64::consts::PI;
 
 /// The percentile over frequency.

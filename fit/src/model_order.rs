@@ -9,8 +9,8 @@
 //! a random matrix has. It errs towards too many; significance is tested afterwards on the joint fit,
 //! where it can be done properly ([`crate::pruning`]).
 
+use asperity_fft::{Fft, FftPlanner};
 use nalgebra::Complex;
-use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
 type C = Complex<f64>;

@@ -3,8 +3,8 @@
 //! Summarised so that a body can carry a short residual excitation: the level of the attack in octave
 //! bands, one value every 5 ms over the first tenth of a second.
 
+use asperity_fft::FftPlanner;
 use nalgebra::Complex;
-use rustfft::FftPlanner;
 
 /// Step of the envelope, s, and how many there are.
 pub const STEP_S: f64 = 0.005;

@@ -27,8 +27,8 @@
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
+use asperity_fft::FftPlanner;
 use nalgebra::Complex;
-use rustfft::FftPlanner;
 use std::f64::consts::PI;
 
 /// Chance that noise is not recognised.

@@ -10,8 +10,8 @@
 //!
 //! All bands together cost one fold and one FFT of 2D points an output sample (weighted overlap-add).
 
+use asperity_fft::FftPlanner;
 use nalgebra::Complex;
-use rustfft::FftPlanner;
 use std::f64::consts::PI;
 
 type C = Complex<f64>;

@@ -4,8 +4,8 @@
 use crate::fitted::Warning;
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
+use asperity_fft::FftPlanner;
 use nalgebra::Complex;
-use rustfft::FftPlanner;
 use std::f64::consts::PI;
 
 /// Least nepers a mode must lose over the record to count as decaying.

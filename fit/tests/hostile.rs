@@ -1,12 +1,10 @@
 //! Inputs that break naive fits: each gives a result with warnings or one typed error, quickly; never a
 //! panic, a growing mode, or giants that cancel.
 
-mod common;
-
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
 use asperity_fit::{ChannelChoice, Fit, FitError, FitOptions, Recording, RecordingError, Warning, fit, load};
-use common::render;
+use asperity_measure::impact::render;
 
 const RATE_HZ: f64 = 44_100.0;
 

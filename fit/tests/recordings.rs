@@ -1,12 +1,12 @@
 //! Real recordings of the corpus: better than spectral peaks, the same frequencies at every velocity,
 //! one exponential for one mode, and Hertz' contact time in an impact's pulse.
 
-mod common;
-
 use asperity_dsp::hertz::{Elastic, HertzContact};
 use asperity_dsp::mode::Mode;
 use asperity_fit::{ChannelChoice, Fit, FitOptions, FittedMode, Recording, fit, load};
-use common::{render_fast, snr_db, stft_peaks};
+use asperity_measure::impact::render_fast;
+use asperity_measure::score::snr_db;
+use asperity_measure::stft_peaks::stft_peaks;
 use std::path::PathBuf;
 
 /// The corpus, or `None` (said aloud) when it is not there; in CI it must be.

@@ -1,13 +1,13 @@
 //! Made impacts: what is found, how near to the Cramér–Rao bound, and what noise alone gives.
 //! The whole table is `cargo run --release --example table`; these are its cells that fit into a minute.
 
-mod common;
-
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
 use asperity_fit::{FitOptions, FittedMode, Recording, fit};
-use common::noise::{COLOURS, Colour, noise};
-use common::*;
+use asperity_measure::coloured_noise::{COLOURS, Colour, noise};
+use asperity_measure::cramer_rao::{cramer_rao, identifiable};
+use asperity_measure::impact::{impact, render, with_noise};
+use asperity_measure::score::{robust_rms, score};
 
 fn fitted(samples: &[f64], rate_hz: f64) -> asperity_fit::Fit {
     let recording = Recording::from_samples("made", samples.to_vec(), rate_hz).unwrap();
@@ -214,6 +214,23 @@ fn standard_deviations_are_the_bound() {
     }
     assert!(compared >= 6, "{compared}");
 }
+
+/// What `independent/cramer_rao.py` prints.
+const NUMPY_BOUNDS: [[f64; 4]; 3] = [
+    [
+        0.001_140_086_167_825_711_7,
+        0.007_170_316_718_234_169_6,
+        0.003_296_938_007_641_666,
+        0.003_290_967_153_447_774,
+    ],
+    [
+        0.004_506_691_716_099_619,
+        0.028_257_643_236_233_757,
+        0.007_404_124_989_189_170_5,
+        0.007_413_526_169_765_97,
+    ],
+    [0.165_671_722_749_269_92, 1.030_009_674_489_012_2, 0.012_030_206_303_169_083, 0.012_287_204_201_892_14],
+];
 
 /// Figures of `independent/cramer_rao.py` (numpy, the joint bound by a pseudo-inverse).
 #[test]

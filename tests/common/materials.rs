@@ -6,13 +6,13 @@
 #![allow(dead_code)]
 
 use crate::common::{render, si_config};
-use crate::spectrum;
 use asperity::Surface;
 use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use asperity::offline::Options;
 use asperity::texture::solid_materials::SolidMaterial;
 use asperity::texture::solid_noise::SolidNoise;
 use asperity_dsp::rng::Rng;
+use asperity_measure::spectrum;
 
 const SIDE_M: f64 = 0.1;
 

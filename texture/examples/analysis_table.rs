@@ -9,11 +9,12 @@ mod patterns;
 #[path = "../tests/support/wallpaper.rs"]
 mod wallpaper;
 
+use asperity_measure::exact_brownian::ExactBrownian;
 use asperity_texture::fractal_dimension as fd;
 use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::raster::Raster;
 use asperity_texture::symmetry::{self, WallpaperGroup};
-use exact_brownian::{ExactBrownian, quantise};
+use exact_brownian::{pair, quantise};
 use std::time::Instant;
 
 fn main() {
@@ -80,7 +81,7 @@ fn controls() {
     };
     for d in [2.1, 2.3, 2.5, 2.7, 2.9] {
         let generator = ExactBrownian::new(256, 3.0 - d);
-        show(&format!("Brownian {d}"), (0..12).flat_map(|seed| generator.pair(seed)).collect());
+        show(&format!("Brownian {d}"), (0..12).flat_map(|seed| pair(&generator, seed)).collect());
     }
     for radius in [4.0, 9.0, 16.0] {
         show(&format!("blobs {radius}"), (0..24).map(|seed| patterns::blobs(256, radius, seed)).collect());
@@ -172,7 +173,7 @@ fn dimension() {
             let (mut mean, mut error, mut local) = ([0.0; 5], [0.0; 5], 0.0);
             let mut broken = 0;
             for seed in 0..PAIRS {
-                for surface in generator.pair(77 * tenth as u64 + 10_000 * seed) {
+                for surface in pair(&generator, 77 * tenth as u64 + 10_000 * seed) {
                     let map = quantise(&surface, levels);
                     let n = 2.0 * PAIRS as f64;
                     let start = Instant::now();

@@ -10,7 +10,7 @@
 //! the convention of its green channel, and which differences of texels it was made with. Corrugations and waves as long along u as
 //! along v are the same map whatever made them, up to the waves' heights: there [`Derivative::ExactOrCentral`] is taken and said
 //! to be uncertain. Over a wave of ω radians a texel it errs by (ω − sin ω)/(ω + sin ω) in both cases, 0.32 % at 32 texels,
-//! and no method can do better in the worse one.
+//! and no method can do better in the worse one. Told which, waves of 11 to 26 texels come out within 0.5 %.
 //!
 //! 8-bit maps round each component of a normal to 1/127.5: a slope's variance from that is
 //! ```text

@@ -4,9 +4,10 @@
 #[path = "support/exact_brownian.rs"]
 mod exact_brownian;
 
+use asperity_measure::exact_brownian::ExactBrownian;
 use asperity_texture::fractal_dimension::{fractal_dimension, local_map, probability_dimension, transects};
 use asperity_texture::raster::Raster;
-use exact_brownian::{ExactBrownian, quantise};
+use exact_brownian::{pair, quantise};
 
 const SIZE: usize = 256;
 
@@ -14,7 +15,7 @@ const SIZE: usize = 256;
 fn surfaces(dimension: f64, count: u64) -> Vec<Raster> {
     let generator = ExactBrownian::new(SIZE, 3.0 - dimension);
     let seeds = 0..count.div_ceil(2);
-    seeds.flat_map(|seed| generator.pair(1000 * (10.0 * dimension) as u64 + seed)).collect()
+    seeds.flat_map(|seed| pair(&generator, 1000 * (10.0 * dimension) as u64 + seed)).collect()
 }
 
 #[test]
@@ -24,7 +25,7 @@ fn the_generator_has_the_variogram_it_promises() {
         for (dx, dy) in [(1, 0), (0, 3), (12, 9), (40, 0)] {
             let (mut sum, mut n) = (0.0, 0.0);
             for seed in 0..150 {
-                for surface in generator.pair(seed) {
+                for surface in pair(&generator, seed) {
                     for (x, y) in [(0, 0), (10, 50), (20, 20)] {
                         let d = surface.at(x + dx, y + dy) - surface.at(x, y);
                         sum += d * d;

@@ -9,6 +9,7 @@ mod patterns;
 mod wallpaper;
 
 use asperity_dsp::rng::Rng;
+use asperity_measure::exact_brownian::ExactBrownian;
 use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::raster::Raster;
 use asperity_texture::symmetry::{
@@ -56,8 +57,8 @@ fn a_warped_cell_is_neither_doubled_nor_lost_among_fine_ones() {
 fn pictures_without_a_pattern_have_no_lattice() {
     let mut controls: Vec<(&str, Raster)> = Vec::new();
     for tenth in [1, 5, 9] {
-        let generator = exact_brownian::ExactBrownian::new(256, 1.0 - 0.1 * f64::from(tenth));
-        controls.extend(generator.pair(5).into_iter().map(|surface| ("Brownian", surface)));
+        let generator = ExactBrownian::new(256, 1.0 - 0.1 * f64::from(tenth));
+        controls.extend(exact_brownian::pair(&generator, 5).into_iter().map(|surface| ("Brownian", surface)));
     }
     for seed in 0..3 {
         controls.push(("blobs", patterns::blobs(256, 4.0 + 5.0 * seed as f64, seed)));

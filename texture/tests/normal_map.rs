@@ -48,6 +48,24 @@ fn a_single_wave_made_by_differences_comes_back_when_they_are_told() {
 }
 
 #[test]
+fn waves_of_any_length_come_back_when_their_differences_are_told() {
+    for waves in 10..24 {
+        let wave = |i: usize| (f64::from(waves) * i as f64 * std::f64::consts::TAU / 256.0).sin();
+        // Rms slope 0.35.
+        let height_px = 0.7 * 256.0 / std::f64::consts::TAU / (f64::from(waves) * 2.0_f64.sqrt());
+        let bumps = Raster::from_fn(256, 256, |x, y| height_px * wave(x) * wave(y));
+        for derivative in DERIVATIVES {
+            let [r, g, b] = normal_map(&slopes(&bumps, derivative), Green::OpenGl);
+            let options = NormalMapOptions { derivative: Some(derivative), ..Default::default() };
+            let made = heights_from_normals(&r, &g, &b, &options).unwrap();
+            let error = relative_error(&made.height_px, &bumps);
+            println!("{waves} waves, told {derivative:?}: {error:.5}");
+            assert!(error < 0.006, "{waves} {derivative:?}: {error}");
+        }
+    }
+}
+
+#[test]
 fn a_map_cut_from_a_larger_one_gives_its_heights_back_too() {
     let surface = fractal(256, 4.5, 1.0, 34);
     let field = slopes(&surface.map(|z| 60.0 * z), Derivative::Exact);

@@ -5,7 +5,7 @@
 //! strongest counts, so that no partial is lost at the top of a logarithmic axis.
 
 use super::{ColourBar, Picture, colour::Scale};
-use rustfft::{FftPlanner, num_complex::Complex};
+use asperity_fft::{FftPlanner, num_complex::Complex};
 
 /// How a spectrogram is made.
 #[derive(Debug, Clone, PartialEq)]

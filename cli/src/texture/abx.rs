@@ -20,10 +20,10 @@ use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
 use asperity::offline::{self, Options};
 use asperity::{ActuatorSettings, Config, Extent, Roughness, Surface, Wrap};
 use asperity_dsp::rng::Rng;
+use asperity_fft::FftPlanner;
+use asperity_fft::num_complex::Complex64;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::raster::Raster;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex64;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
@@ -137,7 +137,7 @@ fn random_strokes(size_m: [f64; 2], count: usize, seed: u64) -> ContactLog {
 
 /// Third-octave levels.
 struct Levels {
-    plan: std::sync::Arc<dyn rustfft::Fft<f64>>,
+    plan: std::sync::Arc<dyn asperity_fft::Fft<f64>>,
     window: Vec<f64>,
     work: Vec<Complex64>,
 }

@@ -1,7 +1,6 @@
-//! Third-octave levels, as vibration and sound are compared.
-#![allow(dead_code)]
+//! Spectra of signals: power, third-octave levels as vibration and sound are compared, the strongest line.
 
-use rustfft::{FftPlanner, num_complex::Complex};
+use asperity_fft::{FftPlanner, num_complex::Complex};
 
 /// Levels of the third octaves from 25 Hz to 10 kHz, dB re 1 (rms²); Welch's method with Hann windows.
 pub fn third_octaves_db(x: &[f32], rate_hz: f64) -> Vec<f64> {
@@ -42,4 +41,11 @@ pub fn power_spectrum(x: &[f32], length: usize) -> Vec<f64> {
         }
     }
     power
+}
+
+/// The bin of the strongest line of the whole signal, unwindowed, above 0 Hz and below Nyquist.
+pub fn strongest_bin(x: &[f32]) -> usize {
+    let mut spectrum: Vec<_> = x.iter().map(|x| Complex::new(f64::from(*x), 0.0)).collect();
+    FftPlanner::new().plan_fft_forward(spectrum.len()).process(&mut spectrum);
+    (1..spectrum.len() / 2).max_by(|a, b| spectrum[*a].norm().total_cmp(&spectrum[*b].norm())).unwrap_or(0)
 }

@@ -4,13 +4,13 @@
 //! is cut out: its ends do not meet, as those of a recording do not.
 
 use asperity_dsp::rng::Rng;
-use nalgebra::Complex;
-use rustfft::FftPlanner;
+use asperity_fft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::PI;
 
 /// A power spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Colour {
+    /// Flat.
     White,
     /// A one-pole low-pass of this coefficient.
     Pole(f64),
@@ -22,6 +22,7 @@ pub enum Colour {
     Hump(f64),
     /// Butterworth filters of this order; a corner is drawn from 60 Hz to 6 kHz.
     LowPass(i32),
+    /// See [`Colour::LowPass`].
     HighPass(i32),
 }
 
