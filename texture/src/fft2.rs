@@ -12,8 +12,8 @@ mod real;
 pub(crate) use real::{RealFft2, Workspace};
 
 use crate::raster::Raster;
-use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
+use asperity_fft::num_complex::Complex64;
+use asperity_fft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

@@ -33,7 +33,7 @@ pub use turning::{curl, possible_derivatives, possible_derivatives_inside};
 
 use crate::fft2::angular_frequency;
 use crate::raster::Raster;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 
 /// How slopes were taken from heights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -26,7 +26,7 @@ use crate::borders::{Borders, SplitBorders};
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// |c_2| that every octave of an image lit from a side has; ½ for a perfect case.

@@ -34,7 +34,7 @@ use crate::raster::Raster;
 use crate::spectral_envelope::Envelope;
 use crate::spectral_resample::{resample, resample_spectrum};
 use asperity_dsp::DesignError;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 
 /// Bands of the document's experiment (256 × 256 texels on 40 × 40 mm).
 pub const BANDS: usize = 4;

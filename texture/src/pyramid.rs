@@ -37,9 +37,9 @@ pub use coefficients::Coefficients;
 use crate::fft2::{Fft2, Workspace, signed_bin};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
+use asperity_fft::FftPlanner;
+use asperity_fft::num_complex::Complex64;
 use level::Level;
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// How many samples of a band are kept.

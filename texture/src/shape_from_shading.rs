@@ -34,7 +34,7 @@ use crate::gradient_field::{Derivative, Projection, Slopes};
 use crate::light::{Light, estimate_light};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 
 /// Steps of the integrable solver. Source: ours; twice as many change the correlation by < 0.01.
 pub const STEPS: usize = 100;

@@ -20,7 +20,7 @@
 //! of regular originals, whose few waves have to be made to fill every tent; three directions leave 0.60.
 
 use crate::fft2::angular_frequency;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
 /// Rings an octave.

@@ -3,7 +3,7 @@
 
 use crate::fft2::{Fft2, signed_bin};
 use crate::raster::Raster;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 
 /// The image on `width` × `height` texels, taken to repeat.
 #[must_use]

@@ -6,12 +6,12 @@
 mod normals;
 mod surfaces;
 
+use asperity_fft::num_complex::Complex64;
 use asperity_texture::fft2::{Fft2, angular_frequency};
 use asperity_texture::gradient_field::{Derivative, Slopes, slopes};
 use asperity_texture::normal_map::{Green, NormalMapHeights, NormalMapOptions, heights_from_normals};
 use asperity_texture::raster::Raster;
 use normals::{normal_map, relative_error};
-use rustfft::num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Bumps of one wavelength, out of phase with the texels so that nothing rounds both ways.

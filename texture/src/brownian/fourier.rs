@@ -1,8 +1,8 @@
 //! Fourier transforms of rows and of squares, in place, forwards and not scaled.
 
-use rustfft::FftPlanner;
+use asperity_fft::FftPlanner;
 
-pub(super) type Complex = rustfft::num_complex::Complex<f64>;
+pub(super) type Complex = asperity_fft::num_complex::Complex<f64>;
 
 /// Transforms every line of `n` values.
 pub(super) fn forward_lines(values: &mut [Complex], n: usize) {

@@ -7,8 +7,8 @@
 //! Columns are not kept in an array of their own: they are made, transformed and used a few at a time,
 //! while they are in the cache, and a caller's filter is applied as they pass.
 
-use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
+use asperity_fft::num_complex::Complex64;
+use asperity_fft::{Fft, FftPlanner};
 use std::sync::Arc;
 
 /// Bytes of the rows or columns that are transformed at once: two thirds of a first-level cache of 48 KiB.
@@ -43,7 +43,7 @@ impl std::fmt::Debug for RealFft2 {
 
 impl RealFft2 {
     /// Plans transforms of `width` × `height` images, both at least 1.
-    pub fn new(planner: &mut FftPlanner<f64>, width: usize, height: usize) -> Self {
+    pub fn new(planner: &mut FftPlanner, width: usize, height: usize) -> Self {
         let rows = [planner.plan_fft_forward(width), planner.plan_fft_inverse(width)];
         let columns = [planner.plan_fft_forward(height), planner.plan_fft_inverse(height)];
         Self { width, height, rows, columns }

@@ -7,7 +7,7 @@ use super::mirrored::{BorderShare, integrate_mirrored};
 use super::{Derivative, Slopes};
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 
 /// Most conjugate gradient steps for a field that does not tile.
 const MOST_STEPS: usize = 60;

@@ -3,7 +3,7 @@
 use super::{Derivative, Slopes, unpack};
 use crate::fft2::Fft2;
 use crate::raster::Raster;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 
 /// The slopes of a surface that tiles.
 #[must_use]

@@ -23,7 +23,7 @@
 use super::{Derivative, Slopes, unpack};
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// Sectors of directions whose power is measured apart. Ours: 4 to 24 differ by less than a tenth of the error.

@@ -9,7 +9,7 @@
 use super::{DERIVATIVES, Derivative, Slopes, differences, unpack};
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
-use rustfft::num_complex::Complex64;
+use asperity_fft::num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Power over that of the noise from which a frequency counts as signal.

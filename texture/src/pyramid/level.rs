@@ -2,8 +2,8 @@
 
 use super::Sampling;
 use crate::fft2::{RealFft2, angular_frequency};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex64;
+use asperity_fft::FftPlanner;
+use asperity_fft::num_complex::Complex64;
 
 /// A rectangle of low frequencies and the grid on which they are sampled. Of the frequencies along u only those
 /// from zero up count: the others follow, as images are real.
@@ -21,7 +21,7 @@ pub(super) struct Level {
 impl Level {
     /// The frequencies that survive `halvings` of the band's upper edge, and their grid.
     pub fn new(
-        planner: &mut FftPlanner<f64>,
+        planner: &mut FftPlanner,
         [width, height]: [usize; 2],
         halvings: usize,
         sampling: Sampling,

@@ -164,8 +164,8 @@ impl Axis {
 
     #[inline(always)]
     fn places_one_by_one(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
-        for n in 0..ROOM {
-            let place = self.place(position_m[n]);
+        for (n, position_m) in position_m.iter().enumerate() {
+            let place = self.place(*position_m);
             (out.texel[n], out.fraction[n], out.slope[n]) = (place.texel, place.fraction, place.slope);
         }
     }

@@ -98,8 +98,8 @@ mod tests {
                     let position_m: Vec<_> = (0..len)
                         .map(|n| [start[0] + step * n as f64, start[1] - 0.7 * step * n as f64])
                         .collect();
-                    let mut out = Samples::EMPTY;
-                    kernel(&spline, &position_m, &mut Places::EMPTY, &mut out);
+                    let (mut places, mut out) = (Places::EMPTY, Samples::EMPTY);
+                    kernel(&spline, &position_m, &mut places, &mut out);
                     for (n, position_m) in position_m.iter().enumerate() {
                         let alone = spline.sample(*position_m);
                         let block = (out.value[n], [out.slope_u[n], out.slope_v[n]]);

@@ -11,7 +11,7 @@
 //! | SFM | [`feature_matrix`] |
 
 use crate::raster::Raster;
-use rustfft::{Fft, FftPlanner, num_complex::Complex};
+use asperity_fft::{Fft, FftPlanner, num_complex::Complex};
 
 /// Mean squared distortion of every shift up to half the picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,7 +99,7 @@ fn autocorrelation(picture: &Raster, reach_x: usize, reach_y: usize) -> Vec<f64>
     let (width, height) = (picture.width, picture.height);
     let (long, tall) = (smooth_size(width + reach_x), smooth_size(height + reach_y));
     let half = long / 2 + 1;
-    let mut planner = FftPlanner::<f64>::new();
+    let mut planner = FftPlanner::new();
     let (across, down) = (planner.plan_fft_forward(long), planner.plan_fft_forward(tall));
     let (back_across, back_down) = (planner.plan_fft_inverse(long), planner.plan_fft_inverse(tall));
 

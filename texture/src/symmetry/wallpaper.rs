@@ -17,7 +17,7 @@ use super::cell::AveragedCell;
 use super::lattice::{Lattice, dot, length};
 use super::operation::{Matrix, Operation, closure, holohedry};
 use crate::raster::Raster;
-use rustfft::{FftPlanner, num_complex::Complex};
+use asperity_fft::{FftPlanner, num_complex::Complex};
 
 /// A symmetry of a perfectly known cell correlates at least this much. Clean motifs of four blobs reach up to 0.989 under a
 /// false one, true ones at least 0.997 (`analysis_table groups`).
