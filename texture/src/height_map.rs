@@ -18,7 +18,7 @@
 use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
 use crate::raster::Raster;
 use crate::resample::halve;
-use crate::spline::{Places, Sample, Samples, Spline};
+use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
@@ -216,20 +216,7 @@ impl Pyramid {
         Self { levels, constant }
     }
 
-    /// The map where the contact is, blurred to its footprint.
-    #[inline]
-    fn sample(&self, position_m: [f64; 2], velocity_m_s: [f64; 2], footprint_m: f64) -> Sample {
-        let Some(finest) = self.levels.first() else {
-            return Sample { value: self.constant, gradient: [0.0; 2] };
-        };
-        let [u, v] = finest.texels_per_metre();
-        if is_sharp(footprint_m, [u, v]) {
-            return finest.sample(position_m);
-        }
-        self.sample_blurred(position_m, 2.0 * footprint_m * along(velocity_m_s, [u, v]))
-    }
-
-    /// The map along a path, and its slopes if `SLOPES`; no footprint is longer than `widest_m`.
+    /// The map along a path, blurred to the footprints, and its slopes if `SLOPES`; no footprint is longer than `widest_m`.
     fn sample_block<const SLOPES: bool>(
         &self,
         path: &PathBlock<'_>,
@@ -237,38 +224,60 @@ impl Pyramid {
         places: &mut Places,
         out: &mut Samples,
     ) {
-        if let Some(finest) = self.levels.first()
-            && is_sharp(widest_m, finest.texels_per_metre())
-        {
+        let Some(finest) = self.levels.first() else { return out.fill(self.constant) };
+        if is_sharp(widest_m, finest.texels_per_metre()) {
             return finest.sample_block::<SLOPES>(path.position_m, places, out);
         }
-        for n in 0..path.len() {
-            let sample = self.sample(path.position_m[n], path.velocity_m_s[n], path.footprint_m[n]);
-            out.value[n] = sample.value;
-            if SLOPES {
-                [out.slope_u[n], out.slope_v[n]] = sample.gradient;
-            }
+        let mut blur = [(0, 0.0); MAX_BLOCK];
+        for (n, blur) in blur[..path.len()].iter_mut().enumerate() {
+            *blur = self.blur(finest, path.velocity_m_s[n], path.footprint_m[n]);
+        }
+        let mut start = 0;
+        while start < path.len() {
+            let level = blur[start].0;
+            let same = blur[start..path.len()].iter().take_while(|blur| blur.0 == level).count();
+            let run = start..start + same;
+            self.blend_block::<SLOPES>(level, &path.position_m[run.clone()], &blur[run], start, out);
+            start += same;
         }
     }
 
-    /// `samples` = 2 · footprint in texels of the finest level.
-    fn sample_blurred(&self, position_m: [f64; 2], samples: f64) -> Sample {
-        let last = self.levels.len() - 1;
-        let samples = samples.clamp(1.0, (1u64 << last) as f64);
-        let level = (samples as u64).ilog2() as usize;
-        let finer = self.levels[level].sample(position_m);
-        let blend = samples / (1u64 << level) as f64 - 1.0;
-        if level == last || blend == 0.0 {
-            return finer;
+    /// The level that a footprint asks for, and how much of the next one is blended in.
+    #[inline]
+    fn blur(&self, finest: &Spline, velocity_m_s: [f64; 2], footprint_m: f64) -> (usize, f64) {
+        let texels_per_metre = finest.texels_per_metre();
+        if is_sharp(footprint_m, texels_per_metre) {
+            return (0, 0.0);
         }
-        let coarser = self.levels[level + 1].sample(position_m);
-        let mix = |a: f64, b: f64| a + blend * (b - a);
-        Sample {
-            value: mix(finer.value, coarser.value),
-            gradient: [
-                mix(finer.gradient[0], coarser.gradient[0]),
-                mix(finer.gradient[1], coarser.gradient[1]),
-            ],
+        let last = self.levels.len() - 1;
+        let samples = 2.0 * footprint_m * along(velocity_m_s, texels_per_metre);
+        // In this order what is no number is sharp.
+        let samples = samples.max(1.0).min((1u64 << last) as f64);
+        let level = (samples as u64).ilog2() as usize;
+        (level, if level == last { 0.0 } else { samples / (1u64 << level) as f64 - 1.0 })
+    }
+
+    /// A run of samples between one level and the next, from place `start` of `out` on.
+    fn blend_block<const SLOPES: bool>(
+        &self,
+        level: usize,
+        position_m: &[[f64; 2]],
+        blur: &[(usize, f64)],
+        start: usize,
+        out: &mut Samples,
+    ) {
+        let (mut finer, mut coarser) = (Samples::EMPTY, Samples::EMPTY);
+        self.levels[level].sample_block::<SLOPES>(position_m, &mut Places::new(), &mut finer);
+        if let Some(next) = self.levels.get(level + 1) {
+            next.sample_block::<SLOPES>(position_m, &mut Places::new(), &mut coarser);
+        }
+        for (n, (_, blend)) in blur.iter().enumerate() {
+            let mix = |a: f64, b: f64| a + blend * (b - a);
+            out.value[start + n] = mix(finer.value[n], coarser.value[n]);
+            if SLOPES {
+                out.slope_u[start + n] = mix(finer.slope_u[n], coarser.slope_u[n]);
+                out.slope_v[start + n] = mix(finer.slope_v[n], coarser.slope_v[n]);
+            }
         }
     }
 }
@@ -293,13 +302,13 @@ fn is_sharp(footprint_m: f64, texels_per_metre: [f64; 2]) -> bool {
 }
 
 /// Texels per metre along the direction of movement.
-fn along(velocity_m_s: [f64; 2], texels_per_metre: [f64; 2]) -> f64 {
-    let [x, y] = velocity_m_s;
-    let speed = x.hypot(y);
-    if speed > 0.0 {
-        (x * texels_per_metre[0]).hypot(y * texels_per_metre[1]) / speed
+#[inline]
+fn along([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
+    let speed_squared = x * x + y * y;
+    if speed_squared > 0.0 {
+        (((x * u) * (x * u) + (y * v) * (y * v)) / speed_squared).sqrt()
     } else {
-        texels_per_metre[0].max(texels_per_metre[1])
+        u.max(v)
     }
 }
 
@@ -310,7 +319,7 @@ impl HeightField for HeightMap {
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let widest_m = widest_m(path.footprint_m);
-        let (mut places, mut samples) = (Places::EMPTY, Samples::EMPTY);
+        let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
         if path.slopes {
             self.heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
             let slopes = samples.slope_u.iter().zip(&samples.slope_v);

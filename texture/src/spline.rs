@@ -19,7 +19,7 @@ use cell::Cell;
 pub use cell::Samples;
 use place::Axis;
 pub use place::Places;
-use vector::{Portable, Rows, Vector};
+use vector::{Rows, Vector};
 
 /// The pole of the prefilter, √3 − 2.
 const POLE: f64 = -0.267_949_192_431_122_7;
@@ -43,15 +43,6 @@ pub struct Spline {
     axes: [Axis; 2],
 }
 
-/// Value and slope at a point.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sample {
-    /// Value of the map.
-    pub value: f64,
-    /// Its slope along u and v, per metre.
-    pub gradient: [f64; 2],
-}
-
 impl Spline {
     /// The spline through a raster (not empty) that spans `extent_m`.
     pub fn new(raster: &Raster, extent_m: [f64; 2], wrap: Wrap) -> Self {
@@ -70,16 +61,9 @@ impl Spline {
         self.axes.map(|axis| axis.texels_per_metre())
     }
 
-    /// Value and slope at a position; (0, 0) is the top left corner of the map.
-    #[inline]
-    pub fn sample(&self, position_m: [f64; 2]) -> Sample {
-        let (x, y) = (self.axes[0].place(position_m[0]), self.axes[1].place(position_m[1]));
-        self.cell(Portable, x.texel, y.texel).at(&x, &y)
-    }
-
-    /// The value, and the slope if `SLOPES`, at each of up to [`MAX_BLOCK`](crate::height_field::MAX_BLOCK) positions: the
-    /// same bits as [`Self::sample`]. `places` are found on the way, unless a map of the same grid has done so for the
-    /// same positions.
+    /// The value, and the slope if `SLOPES`, at each of up to [`MAX_BLOCK`](crate::height_field::MAX_BLOCK) positions; (0, 0)
+    /// is the top left corner of the map. The bits are those of each position alone. `places` are found on the way,
+    /// unless a map of the same grid has done so for the same positions.
     pub fn sample_block<const SLOPES: bool>(
         &self,
         position_m: &[[f64; 2]],

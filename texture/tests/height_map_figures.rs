@@ -217,6 +217,43 @@ fn any_split_into_blocks_gives_the_same_bits() {
 
 /// Random texels are all wavelengths at once: what is shorter than two footprints must go.
 #[test]
+fn a_stroke_that_gathers_speed_is_blurred_the_same_wherever_it_is_cut() {
+    let mut rng = Rng::new(21);
+    let texels = Raster::from_fn(50, 31, |_, _| rng.uniform());
+    let mut map = HeightMap::new(&texels, EXTENT, Wrap::Repeat).unwrap().with_roughness_map(&texels).unwrap();
+    // From standing to a footprint of the whole map, through every level, several in one block.
+    let footprints: Vec<f64> = (0..200).map(|n| 0.2 * (f64::from(n) / 200.0).powi(6)).collect();
+    let positions: Vec<[f64; 2]> = (0..200).map(|n| [3e-4 * f64::from(n), 2e-4 * f64::from(n)]).collect();
+    let velocities: Vec<[f64; 2]> =
+        footprints.iter().map(|f| [0.8 * f * RATE_HZ, 0.6 * f * RATE_HZ]).collect();
+    let mut seen = |block: usize| {
+        let mut heights = Vec::new();
+        let mut out = SurfaceBlock::default();
+        for start in (0..200).step_by(block) {
+            let cut = start..(start + block).min(200);
+            let path = PathBlock {
+                position_m: &positions[cut.clone()],
+                velocity_m_s: &velocities[cut.clone()],
+                footprint_m: &footprints[cut.clone()],
+                first_sample: start as u64,
+                contact: 0,
+                slopes: true,
+            };
+            map.sample(&path, &mut out);
+            heights.extend((0..cut.len()).map(|n| (out.height_m[n], out.gradient[n], out.roughness[n])));
+        }
+        heights
+    };
+    let whole = seen(MAX_BLOCK);
+    for block in [1, 3, 17] {
+        assert!(seen(block) == whole, "blocks of {block}");
+    }
+    let mean = texels.values.iter().sum::<f64>() / texels.values.len() as f64;
+    let (last, _, roughness) = whole[199];
+    assert!((last / EXTENT.relief_m - mean).abs() < 0.02 && (roughness - mean).abs() < 0.02, "{last}");
+}
+
+#[test]
 fn a_fast_finger_does_not_alias() {
     // 8 texels a period: at 4 footprints a period all there, at 1.5 all gone.
     let fine = Raster::from_fn(512, 4, |x, _| 0.5 + 0.5 * (TAU * x as f64 / 8.0).cos());

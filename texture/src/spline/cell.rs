@@ -1,7 +1,6 @@
 //! The spline between four texels.
 
-use super::Sample;
-use super::place::{AxisPlaces, Place, ROOM};
+use super::place::{AxisPlaces, ROOM};
 use super::vector::{Rows, Vector};
 
 /// Values and slopes of a block, each on its own so that lanes fill vectors.
@@ -17,13 +16,18 @@ pub struct Samples {
 impl Samples {
     /// Nothing yet.
     pub const EMPTY: Self = Self { value: [0.0; ROOM], slope_u: [0.0; ROOM], slope_v: [0.0; ROOM] };
+
+    /// The same value everywhere, level.
+    pub fn fill(&mut self, value: f64) {
+        *self = Self { value: [value; ROOM], ..Self::EMPTY };
+    }
 }
 
 /// The spline between four texels as a polynomial, Σ aᵢⱼ xⁱ yʲ with x, y the fractions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell {
     /// aᵢⱼ by i, then j.
-    powers: [[f64; 4]; 4],
+    pub(super) powers: [[f64; 4]; 4],
 }
 
 /// Four rows of B-spline coefficients c₀ … c₃ → the powers 0 … 3 of the fraction from c₁ to c₂, in every column.
@@ -52,8 +56,8 @@ impl Cell {
         Self { powers }
     }
 
-    /// [`Self::at`] for the places `start..end`, N side by side: values, and slopes if `SLOPES`. What is written beyond
-    /// `end`, up to whole vectors, means nothing.
+    /// Values, and slopes if `SLOPES`, at the places `start..end`, N side by side. What is written beyond `end`, up to whole
+    /// vectors, means nothing.
     #[inline(always)]
     pub(super) fn block<const N: usize, V: Vector<N>, const SLOPES: bool>(
         &self,
@@ -87,26 +91,6 @@ impl Cell {
                 v.store(v.mul(along_u, v.load(x.slope(n))), room(&mut out.slope_u, n));
                 v.store(v.mul(along_v, v.load(y.slope(n))), room(&mut out.slope_v, n));
             }
-        }
-    }
-
-    #[inline]
-    pub(super) fn at(&self, x: &Place, y: &Place) -> Sample {
-        // The four powers of y side by side.
-        let p = &self.powers;
-        let t = x.fraction;
-        let (mut level, mut rise) = ([0.0; 4], [0.0; 4]);
-        for j in 0..4 {
-            level[j] = ((p[3][j] * t + p[2][j]) * t + p[1][j]) * t + p[0][j];
-            rise[j] = (3.0 * p[3][j] * t + 2.0 * p[2][j]) * t + p[1][j];
-        }
-        let t = y.fraction;
-        Sample {
-            value: ((level[3] * t + level[2]) * t + level[1]) * t + level[0],
-            gradient: [
-                (((rise[3] * t + rise[2]) * t + rise[1]) * t + rise[0]) * x.slope,
-                ((3.0 * level[3] * t + 2.0 * level[2]) * t + level[1]) * y.slope,
-            ],
         }
     }
 }

@@ -47,7 +47,9 @@ pub struct Places {
 
 impl Places {
     /// None yet.
-    pub const EMPTY: Self = Self { axes: None, len: 0, columns: AxisPlaces::EMPTY, rows: AxisPlaces::EMPTY };
+    pub const fn new() -> Self {
+        Self { axes: None, len: 0, columns: AxisPlaces::EMPTY, rows: AxisPlaces::EMPTY }
+    }
 
     /// Finds the places of positions, up to [`MAX_BLOCK`] of them, unless they are those of this grid already.
     #[inline(always)]
