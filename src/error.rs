@@ -1,6 +1,7 @@
 //! One error type for each thing that can fail on the game side. Nothing on the audio half fails.
 
-use crate::event::{BadValue, ContactEvent};
+use crate::bad_value::BadValue;
+use crate::event::ContactEvent;
 use asperity_dsp::DesignError;
 
 /// Why an engine cannot be built.

@@ -13,6 +13,7 @@
 //! faded to, without a landing, and is counted in [`Stats::debounced`](crate::Stats::debounced). A begin
 //! of a contact that never ended is a landing.
 
+use crate::bad_value::{BadValue, within};
 use crate::material::Material;
 
 /// A contact's name, chosen by the caller and unique among the contacts that are touching.
@@ -118,18 +119,6 @@ impl ContactEvent {
     }
 }
 
-/// A number in an event that no contact can have.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{field}: {value} is refused; must be {expected}")]
-pub struct BadValue {
-    /// Field of the event, with its unit.
-    pub field: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// What would be accepted.
-    pub expected: &'static str,
-}
-
 /// Widest texture coordinate, in tiles from the origin: a `f64` position is still exact to 1e-9 m.
 pub const MAX_UV: f64 = 1e6;
 /// Fastest tangential, closing or striking speed, m/s.
@@ -167,16 +156,6 @@ impl Impact {
         self.striker.checked()?;
         Ok(self)
     }
-}
-
-pub(crate) fn within(
-    field: &'static str,
-    value: f64,
-    expected: &'static str,
-    low: f64,
-    high: f64,
-) -> Result<f64, BadValue> {
-    if value >= low && value <= high { Ok(value) } else { Err(BadValue { field, value, expected }) }
 }
 
 #[cfg(test)]

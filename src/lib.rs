@@ -16,6 +16,7 @@
 struct Readme;
 
 mod actuator_preset;
+mod bad_value;
 mod body;
 pub mod channel_map;
 mod clock;
@@ -44,12 +45,13 @@ mod tap;
 mod voice;
 
 pub use actuator_preset::{ActuatorPreset, PresetError};
+pub use bad_value::BadValue;
 pub use clock::ClockMode;
 pub use config::{ActuatorSettings, AudioSettings, Config, DeviceProfile, Quantity};
 pub use error::{AddError, ConfigError, Refusal, ReportError};
 pub use event::{
-    Actuator, BadValue, BodyId, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S,
-    MAX_UV, SurfaceId,
+    Actuator, BodyId, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
+    SurfaceId,
 };
 pub use material::Material;
 pub use modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};

@@ -5,7 +5,7 @@
 //! room-temperature handbook values; real pieces differ by tens of per cent, which moves a contact
 //! time (∝ E^−0.4) by a few per cent.
 
-use crate::event::{BadValue, within};
+use crate::bad_value::{BadValue, within};
 
 /// Elastic constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -213,7 +213,7 @@ impl Scene {
         if channel >= self.config.actuators.len() {
             return Err(AddError::Unknown("actuator"));
         }
-        let gain = crate::event::within("gain", gain, "0–10", 0.0, 10.0)?;
+        let gain = crate::bad_value::within("gain", gain, "0–10", 0.0, 10.0)?;
         self.send(Message::SetHapticGain { channel, gain })
     }
 
@@ -266,7 +266,7 @@ impl Scene {
     }
 
     fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
-        let time_s = crate::event::within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
+        let time_s = crate::bad_value::within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
         if time_s < self.last_time_s {
             return Err(Refusal::TimeBackwards { time_s, before_s: self.last_time_s });
         }

@@ -1,6 +1,7 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
-use crate::event::{BadValue, BodyId, within};
+use crate::bad_value::{BadValue, within};
+use crate::event::BodyId;
 use crate::material::Material;
 use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::hertz::HertzContact;

@@ -1,6 +1,6 @@
 //! Scenes of surfaces that are not maps: solid noise, Brownian relief, a lattice, sand.
 
-use super::scenes::DemoScene;
+use super::demo_scene::DemoScene;
 use super::strokes::{Finger, log};
 use crate::pixels;
 use asperity::contact_log::LogLine;

@@ -1,6 +1,6 @@
 //! The page that says what each file of the demo is.
 
-use super::scenes::DemoScene;
+use super::demo_scene::DemoScene;
 use crate::fit;
 use crate::plot::quantity;
 use crate::render::Report;

@@ -3,6 +3,7 @@
 //! Writes the shipped scenes into a folder, fits the shipped recording, renders every scene through the
 //! very path of `asperity render --plot`, and writes an index that says what each file is.
 
+mod demo_scene;
 mod gallery;
 mod index;
 mod plates;
@@ -15,7 +16,7 @@ use crate::output::{self, Outputs, ensure_folder};
 use crate::progress::Progress;
 use crate::render;
 use clap::Args;
-use scenes::DemoScene;
+use demo_scene::DemoScene;
 use std::path::{Path, PathBuf};
 
 /// Modes kept of the shipped recording: enough for a tile, found in a few seconds.

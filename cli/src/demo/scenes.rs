@@ -1,30 +1,11 @@
 //! The scenes of the demo: what is in each folder before anything is rendered.
 
+use super::demo_scene::DemoScene;
 use super::plates::{PLATES, Plate, RELIEF_M, SIDE_M};
 use super::strokes::{Finger, log};
 use crate::pixels;
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, Striker};
+use asperity::contact_log::{LogEvent, LogLine, Striker};
 use asperity::{ModalModel, Mode};
-
-/// A file of the demo: name and content.
-pub type Asset = (String, Vec<u8>);
-
-/// One scene: its page in the index and its files.
-#[derive(Debug, Clone)]
-pub struct DemoScene {
-    /// File stem.
-    pub name: &'static str,
-    /// Headline.
-    pub title: &'static str,
-    /// What to listen to and look at.
-    pub notice: &'static str,
-    /// `NAME.toml`.
-    pub toml: String,
-    /// `NAME.jsonl`.
-    pub log: ContactLog,
-    /// Maps and modes that belong to this scene alone.
-    pub assets: Vec<Asset>,
-}
 
 /// Seconds before the first event, so that a player that fades in cuts nothing off.
 const LEAD_S: f64 = 0.15;

@@ -5,12 +5,14 @@
 //! engine calls.
 
 mod fields;
+mod pixels;
 mod sand;
 mod source;
 mod surface;
 
+pub use pixels::Pixels;
 pub use sand::{Sand, Tool};
-pub use source::{Brownian, BrownianForce, Direction, Lattice, Pixels, SolidNoise, Source};
+pub use source::{Brownian, BrownianForce, Direction, Lattice, SolidNoise, Source};
 pub use surface::{Excitation, Roughness, SurfaceEntry, Wrap};
 
 use crate::error::CliError;

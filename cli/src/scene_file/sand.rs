@@ -1,7 +1,7 @@
 //! `sand = { … }`: a bed of sand and what is dragged through it.
 
 use super::fields::{Allowed, Fields};
-use super::source::{Pixels, read_channel};
+use super::pixels::{Pixels, read_channel};
 use crate::error::CliError;
 use std::path::Path;
 

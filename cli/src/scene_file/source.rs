@@ -3,9 +3,10 @@
 //! The same keys make a surface's own source and each part of `sum`, `mask` and `crossfade`.
 
 use super::fields::{Allowed, Fields, shown};
+use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
 use crate::error::CliError;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use toml::Value;
 
 const RELIEF_M: Allowed = Allowed::between(0.0, 10.0, "m");
@@ -55,15 +56,6 @@ pub enum Source {
         /// When the change begins, s.
         at_s: f64,
     },
-}
-
-/// A channel of an image file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pixels {
-    /// Image file.
-    pub path: PathBuf,
-    /// `r`, `g`, `b`, `a` or `luma`; none = what the image suggests.
-    pub channel: Option<char>,
 }
 
 /// Solid noise under the finger: a preset, and what differs from it.
@@ -228,11 +220,6 @@ fn read_crossfade(mut table: Fields, folder: &Path) -> Result<Source, CliError> 
     let at_s = table.needed_number("at_s", Allowed::between(0.0, 1e6, "s"))?;
     table.finish()?;
     Ok(Source::Crossfade { from, to, at_s })
-}
-
-/// `r`, `g`, `b`, `a` or `luma`.
-pub fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Option<char>, CliError> {
-    fields.word(key, &[("r", 'r'), ("g", 'g'), ("b", 'b'), ("a", 'a'), ("luma", 'l')])
 }
 
 /// The name of a preset, or a table of one and what differs from it.

@@ -1,7 +1,8 @@
 //! `[[surface]]`: what is touched.
 
 use super::fields::{Allowed, Fields, as_number, shown};
-use super::source::{self, Pixels, Source, read_channel};
+use super::pixels::{Pixels, read_channel};
+use super::source::{self, Source};
 use crate::error::CliError;
 use std::path::Path;
 use toml::Value;

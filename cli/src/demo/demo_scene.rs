@@ -1,0 +1,23 @@
+//! What a scene of the demo consists of.
+
+use asperity::contact_log::ContactLog;
+
+/// A file of the demo: name and content.
+pub type Asset = (String, Vec<u8>);
+
+/// One scene: its page in the index and its files.
+#[derive(Debug, Clone)]
+pub struct DemoScene {
+    /// File stem.
+    pub name: &'static str,
+    /// Headline.
+    pub title: &'static str,
+    /// What to listen to and look at.
+    pub notice: &'static str,
+    /// `NAME.toml`.
+    pub toml: String,
+    /// `NAME.jsonl`.
+    pub log: ContactLog,
+    /// Maps and modes that belong to this scene alone.
+    pub assets: Vec<Asset>,
+}
