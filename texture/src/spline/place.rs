@@ -7,6 +7,8 @@ use crate::wrap::Wrap;
 
 /// Most positions that a processor looks at side by side.
 const MOST_LANES: usize = 8;
+/// Places of a short block.
+const FEW: usize = 2 * MOST_LANES;
 /// Places of a block and of the lanes beyond its end.
 pub(super) const ROOM: usize = MAX_BLOCK + MOST_LANES;
 
@@ -63,8 +65,14 @@ impl Places {
         for (n, [u, v]) in position_m.iter().take(MAX_BLOCK).enumerate() {
             (along[0][n], along[1][n]) = (*u, *v);
         }
-        axes[0].places(&along[0], &mut self.columns);
-        axes[1].places(&along[1], &mut self.rows);
+        // So many as fill vectors; two sizes, because loops of known length do without a remainder.
+        if self.len <= FEW {
+            axes[0].places::<FEW>(&along[0], &mut self.columns);
+            axes[1].places::<FEW>(&along[1], &mut self.rows);
+        } else {
+            axes[0].places::<ROOM>(&along[0], &mut self.columns);
+            axes[1].places::<ROOM>(&along[1], &mut self.rows);
+        }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -156,17 +164,17 @@ impl Axis {
 
     /// Where the positions of a block are; for the usual maps, which repeat, in a loop without branches.
     #[inline(always)]
-    fn places(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
+    fn places<const N: usize>(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
         if self.wrap == Wrap::Repeat {
-            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out);
+            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one::<N>(position_m, out);
         } else {
-            self.places_one_by_one(position_m, out);
+            self.places_one_by_one::<N>(position_m, out);
         }
     }
 
     #[inline(always)]
-    fn places_one_by_one(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
-        for (n, position_m) in position_m.iter().enumerate() {
+    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
+        for (n, position_m) in position_m.iter().take(N).enumerate() {
             let place = self.place(*position_m);
             (out.texel[n], out.fraction[n], out.slope[n]) = (place.texel, place.fraction, place.slope);
         }
