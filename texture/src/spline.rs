@@ -120,8 +120,8 @@ impl Spline {
     fn cell<R: Rows>(&self, rows: R, column: f64, row: f64) -> Cell {
         let start = self.first(column, row);
         let four = |j: usize| {
-            let row = &self.coefficients[start + j * self.stride..];
-            row.first_chunk().expect("the coefficients beyond the edges")
+            let row = self.coefficients.get(start + j * self.stride..);
+            row.and_then(<[f32]>::first_chunk).unwrap_or(&[0.0; 4])
         };
         Cell::new(rows, [four(0), four(1), four(2), four(3)])
     }

@@ -80,7 +80,7 @@ impl Cell {
             for j in 0..4 {
                 level[j] = cubic(v, heights[j], t);
             }
-            v.store(cubic(v, level, u), room(&mut out.value, n));
+            put(v, cubic(v, level, u), &mut out.value, n);
             if SLOPES {
                 let mut rise = [v.splat(0.0); 4];
                 for j in 0..4 {
@@ -88,8 +88,8 @@ impl Cell {
                 }
                 let along_u = cubic(v, rise, u);
                 let along_v = quadratic(v, [level[1], v.mul(two, level[2]), v.mul(three, level[3])], u);
-                v.store(v.mul(along_u, v.load(x.slope(n))), room(&mut out.slope_u, n));
-                v.store(v.mul(along_v, v.load(y.slope(n))), room(&mut out.slope_v, n));
+                put(v, v.mul(along_u, v.load(x.slope(n))), &mut out.slope_u, n);
+                put(v, v.mul(along_v, v.load(y.slope(n))), &mut out.slope_v, n);
             }
         }
     }
@@ -107,8 +107,10 @@ fn quadratic<const N: usize, V: Vector<N>>(v: V, a: [V::Lanes; 3], t: V::Lanes) 
     v.add(v.mul(v.add(v.mul(a[2], t), a[1]), t), a[0])
 }
 
-/// N places from `n` on; a block has room for whole vectors.
+/// Writes N places from `n` on; a block has room for whole vectors.
 #[inline(always)]
-fn room<const N: usize>(values: &mut [f64; ROOM], n: usize) -> &mut [f64; N] {
-    values[n..].first_chunk_mut().expect("the room beyond a block")
+fn put<const N: usize, V: Vector<N>>(v: V, lanes: V::Lanes, values: &mut [f64; ROOM], n: usize) {
+    if let Some(to) = values.get_mut(n..).and_then(<[f64]>::first_chunk_mut) {
+        v.store(lanes, to);
+    }
 }

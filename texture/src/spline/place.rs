@@ -138,7 +138,7 @@ impl AxisPlaces {
 /// N places from `n` on; a block has room for whole vectors.
 #[inline(always)]
 fn room<const N: usize>(values: &[f64; ROOM], n: usize) -> &[f64; N] {
-    values[n..].first_chunk().expect("the room beyond a block")
+    values.get(n..).and_then(<[f64]>::first_chunk).unwrap_or(const { &[0.0; N] })
 }
 
 /// Largest whole number not above x, for |x| < 2⁵¹: adding a large number rounds. `f64::floor` is a
