@@ -2,6 +2,7 @@
 //!
 //! Every call returns at once. Nothing here waits for the audio thread.
 
+use crate::bad_value::within;
 use crate::body::BodySlot;
 use crate::clock::{Clock, Stamp};
 use crate::config::Config;
@@ -213,7 +214,7 @@ impl Scene {
         if channel >= self.config.actuators.len() {
             return Err(AddError::Unknown("actuator"));
         }
-        let gain = crate::bad_value::within("gain", gain, "0–10", 0.0, 10.0)?;
+        let gain = within("gain", gain, "0–10", 0.0, 10.0)?;
         self.send(Message::SetHapticGain { channel, gain })
     }
 
@@ -266,7 +267,7 @@ impl Scene {
     }
 
     fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
-        let time_s = crate::bad_value::within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
+        let time_s = within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
         if time_s < self.last_time_s {
             return Err(Refusal::TimeBackwards { time_s, before_s: self.last_time_s });
         }

@@ -8,8 +8,6 @@
 //!
 //! | file | from → to |
 //! |---|---|
-//! | [`trajectory`] | sparse contact events → position, velocity and force a sample |
-//! | [`butterworth`] | positions → smooth positions |
 //! | [`trajectory`] | sparse contact events → path, velocity and force at every sample |
 //! | [`butterworth`] | the path's smoothing filter, and every high-pass |
 //! | [`fractal_noise`], [`gradient_noise_2d`] | path → 1/f^α micro-relief |
@@ -19,6 +17,7 @@
 //! | [`mode`], [`modal_bank`] | impulses → sound |
 //! | [`actuator`] | pad motion → haptic samples |
 //! | [`rng`] | seeded numbers for all of them |
+//! | [`pair`] | two filters in one register |
 #![no_std]
 
 #[cfg(any(feature = "std", test))]

@@ -169,7 +169,7 @@ impl HeightField for Mask {
             footprint_m: &[0.0],
             first_sample: touch.sample,
             contact: touch.contact,
-            slopes: true,
+            slopes: false,
         };
         self.mask.sample(&path, &mut self.weight);
         let w = self.weight.height_m[0].clamp(0.0, 1.0);

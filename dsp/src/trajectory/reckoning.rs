@@ -141,7 +141,7 @@ impl Reckoning {
             self.glide.keep = libm::exp(-design.sample_period_s / (DECAY_PERIODS * self.period_s));
         }
         let after = self.glide.after_samples;
-        let believed = (after - age + 1).clamp(0, out.len() as i64) as usize;
+        let believed = after.saturating_sub(age).saturating_add(1).clamp(0, out.len() as i64) as usize;
         let (believed, late) = out.split_at_mut(believed);
         // An event stamped ahead of its sample is followed back no further than ahead.
         let earliest = -after as f64;

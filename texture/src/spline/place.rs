@@ -99,7 +99,8 @@ impl Places {
                 break;
             }
         }
-        end.min(self.len)
+        // At least the place itself, whatever it is: a loop over cells must end.
+        end.max(start + 1).min(self.len)
     }
 
     /// The texel at the end of the block, and how far it is from the one at its beginning: as far again, the next block
