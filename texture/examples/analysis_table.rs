@@ -4,6 +4,8 @@
 
 #[path = "../tests/support/exact_brownian.rs"]
 mod exact_brownian;
+#[path = "../tests/support/framed.rs"]
+mod framed;
 #[path = "../tests/support/patterns.rs"]
 mod patterns;
 #[path = "../tests/support/wallpaper.rs"]
@@ -25,6 +27,9 @@ fn main() {
     }
     if asked("lattice") {
         lattice();
+    }
+    if asked("framed") {
+        framed_squares();
     }
     if asked("controls") {
         controls();
@@ -61,6 +66,69 @@ fn lattice() {
         }
         println!("    {all:.3}   {least:6.1}     {time:.1}");
     }
+}
+
+/// What a search made of a picture whose lattice is known.
+#[derive(Default)]
+struct Tally {
+    all: usize,
+    right: usize,
+    /// Lattices with a cell smaller than the true one, told with confidence.
+    fractions: usize,
+    none: usize,
+    wrong: Vec<String>,
+}
+
+impl Tally {
+    fn add(&mut self, name: &str, picture: &Raster, truth: [[f64; 2]; 2]) {
+        self.all += 1;
+        let area = (truth[0][0] * truth[1][1] - truth[0][1] * truth[1][0]).abs();
+        match symmetry::find_lattice(picture) {
+            Some(l) if patterns::is_lattice([l.t1_px, l.t2_px], truth) => self.right += 1,
+            Some(l) => {
+                self.fractions += usize::from(l.cell_area_px2() < 0.8 * area);
+                self.wrong.push(format!("{name}: {:.2?} {:.2?} {:.2}", l.t1_px, l.t2_px, l.confidence));
+            }
+            None => {
+                self.none += 1;
+                self.wrong.push(format!("{name}: none"));
+            }
+        }
+    }
+
+    fn print(&self, name: &str) {
+        println!(
+            "  {name:16} right {} of {} ({:.3}), fractions {}, none {}",
+            self.right,
+            self.all,
+            self.right as f64 / self.all as f64,
+            self.fractions,
+            self.none
+        );
+        for line in &self.wrong {
+            println!("      {line}");
+        }
+    }
+}
+
+fn framed_squares() {
+    println!("\nSquares in frames and the reliefs of the thesis");
+    let mut grid = Tally::default();
+    for (seed, case) in framed::Framed::grid().into_iter().enumerate() {
+        grid.add(&format!("{case:?}"), &case.picture(seed as u64), case.truth());
+    }
+    grid.print("grid");
+    let mut drawn = Tally::default();
+    for seed in 0..200 {
+        let case = framed::Framed::drawn(seed, 5.0);
+        drawn.add(&format!("{case:?}"), &case.picture(seed), case.truth());
+    }
+    drawn.print("drawn by lot");
+    let mut thesis = Tally::default();
+    for (name, picture, truth) in framed::thesis_pictures() {
+        thesis.add(&name, &picture, truth);
+    }
+    thesis.print("thesis");
 }
 
 /// The standard errors behind a confidence.

@@ -14,6 +14,35 @@ pub(super) const COARSER: [(f64, f64, f64); 7] = [
     (3.0, 1.0, 2.0),
 ];
 
+/// Largest index of a coarser lattice that is told from a finer one at which only some of the pattern's lines fit: frames whose gap
+/// is a quarter or a fifth of their period fit themselves there in part.
+const DEEPEST_INDEX: usize = 9;
+
+/// The basis of the coarser lattice of [`coarser_lattices`] within the lattice of a and b.
+pub(super) fn coarser(a: [f64; 2], b: [f64; 2], (k, i, j): (f64, f64, f64)) -> [[f64; 2]; 2] {
+    if i == 1.0 {
+        [combine(a, b, k, 0.0), combine(a, b, (-j).rem_euclid(k), 1.0)]
+    } else {
+        [combine(a, b, 1.0, (-i).rem_euclid(k)), combine(a, b, 0.0, k)]
+    }
+}
+
+/// All coarser lattices of index 2 to [`DEEPEST_INDEX`] whose nodes are those with i·m + j·n divisible by k, each once.
+pub(super) fn coarser_lattices() -> Vec<(f64, f64, f64)> {
+    let mut all = Vec::new();
+    for k in 2..=DEEPEST_INDEX {
+        for (i, j) in (0..k).map(|j| (1, j)).chain((0..k).map(|i| (i, 1))) {
+            // (i, j) and its multiples by what is prime to k are one lattice.
+            let known =
+                |&(l, p, q): &(usize, usize, usize)| l == k && (p * j + (k - q) * i).is_multiple_of(k);
+            if !all.iter().any(known) {
+                all.push((k, i, j));
+            }
+        }
+    }
+    all.into_iter().map(|(k, i, j)| (k as f64, i as f64, j as f64)).collect()
+}
+
 /// Nodes outside a coarser lattice that fit worse by less than this, relative, are as good as those on it: reading the matrix
 /// between texels costs as much.
 const UNEVEN_LIMIT: f64 = 0.02;
@@ -49,49 +78,68 @@ pub(super) fn for_each_node(
     }
 }
 
-/// By how many standard errors the nodes outside a coarser lattice fit worse than those on it, beside what the distance does;
-/// 0 when the difference is too small to matter.
-pub(super) fn unevenness(fit: &Fit, basis: [[f64; 2]; 2], (k, i, j): (f64, f64, f64)) -> f64 {
-    // Weighted least squares of depth = p + q·distance² + r·outside.
-    let (mut squares, mut products, mut energy, mut weights, mut count) =
-        ([[0.0; 3]; 3], [0.0; 3], 0.0, 0.0, 0.0);
-    for_each_node(fit, basis, [0.0; 2], |m, n, depth, weight| {
-        let outside = if (i * m + j * n).rem_euclid(k) == 0.0 { 0.0 } else { 1.0 };
-        // The weight is 1/(1 + distance²).
-        let row = [1.0, 1.0 / weight - 1.0, outside];
-        for r in 0..3 {
-            for c in 0..3 {
-                squares[r][c] += weight * row[r] * row[c];
-            }
-            products[r] += weight * row[r] * depth;
-        }
-        energy += weight * depth * depth;
-        weights += weight;
-        count += 1.0;
-    });
-    let determinant = |m: [[f64; 3]; 3]| {
-        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
-            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
-    };
-    let all = determinant(squares);
-    if count < 8.0 || all <= 1e-9 * squares[0][0] * squares[1][1] * squares[2][2] {
-        return 0.0;
+/// A node in reach.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    m: f64,
+    n: f64,
+    depth: f64,
+    weight: f64,
+}
+
+/// All nodes of a lattice in reach, one of each ± pair.
+pub(super) struct Nodes(Vec<Node>);
+
+impl Nodes {
+    pub fn new(fit: &Fit, basis: [[f64; 2]; 2]) -> Self {
+        let mut all = Vec::new();
+        for_each_node(fit, basis, [0.0; 2], |m, n, depth, weight| all.push(Node { m, n, depth, weight }));
+        Self(all)
     }
-    let solution = [0, 1, 2].map(|column| {
-        let mut replaced = squares;
-        for r in 0..3 {
-            replaced[r][column] = products[r];
+
+    /// By how many standard errors the nodes outside a coarser lattice fit worse than those on it, beside what the distance
+    /// does; 0 when the difference is too small to matter.
+    pub fn unevenness(&self, (k, i, j): (f64, f64, f64)) -> f64 {
+        // Weighted least squares of depth = p + q·distance² + r·outside.
+        let (mut squares, mut products, mut energy, mut weights) = ([[0.0; 3]; 3], [0.0; 3], 0.0, 0.0);
+        for node in &self.0 {
+            let outside = if (i * node.m + j * node.n).rem_euclid(k) == 0.0 { 0.0 } else { 1.0 };
+            // The weight is 1/(1 + distance²).
+            let row = [1.0, 1.0 / node.weight - 1.0, outside];
+            for r in 0..3 {
+                for c in 0..3 {
+                    squares[r][c] += node.weight * row[r] * row[c];
+                }
+                products[r] += node.weight * row[r] * node.depth;
+            }
+            energy += node.weight * node.depth * node.depth;
+            weights += node.weight;
         }
-        determinant(replaced) / all
-    });
-    let explained: f64 = (0..3).map(|r| solution[r] * products[r]).sum();
-    // Per node: the residual's variance times the third diagonal element of the inverse.
-    let variance = (energy - explained).max(0.0) / weights * count / (count - 3.0);
-    let error =
-        (variance * weights / count * (squares[0][0] * squares[1][1] - squares[0][1] * squares[1][0]) / all)
-            .sqrt();
-    let missing = -solution[2];
-    if missing < UNEVEN_LIMIT * solution[0] { 0.0 } else { missing / error.max(f64::MIN_POSITIVE) }
+        let count = self.0.len() as f64;
+        let all = determinant(squares);
+        if count < 8.0 || all <= 1e-9 * squares[0][0] * squares[1][1] * squares[2][2] {
+            return 0.0;
+        }
+        let solution = [0, 1, 2].map(|column| {
+            let mut replaced = squares;
+            for r in 0..3 {
+                replaced[r][column] = products[r];
+            }
+            determinant(replaced) / all
+        });
+        let explained: f64 = (0..3).map(|r| solution[r] * products[r]).sum();
+        // Per node: the residual's variance times the third diagonal element of the inverse.
+        let variance = (energy - explained).max(0.0) / weights * count / (count - 3.0);
+        let minor = squares[0][0] * squares[1][1] - squares[0][1] * squares[1][0];
+        let error = (variance * weights / count * minor / all).sqrt();
+        let missing = -solution[2];
+        if missing < UNEVEN_LIMIT * solution[0] { 0.0 } else { missing / error.max(f64::MIN_POSITIVE) }
+    }
+}
+
+fn determinant(m: [[f64; 3]; 3]) -> f64 {
+    m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+        + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
 }
 
 /// A weighted mean.
