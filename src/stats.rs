@@ -51,6 +51,12 @@ counters! {
     debounced,
     /// Contacts faded because nothing was heard of them for the time-out.
     lapsed,
+    /// Contacts that were suddenly elsewhere, or so far ahead after a silence that following would have been
+    /// heard as a zip: faded where they were, risen where they are.
+    jumps,
+    /// Reports of no force: the first in a row holds the force before it, more fade the contact until it
+    /// presses again.
+    unpressed,
     /// Events refused on the game side: bad numbers, unknown names, time running backwards.
     refused,
     /// Contacts reset on the audio half after their numbers went bad.

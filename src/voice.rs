@@ -8,6 +8,7 @@ mod fades;
 mod high_passes;
 mod watching;
 
+pub(crate) use events::EMPTY_FORCE_N;
 pub(crate) use excitation::pulse_end;
 
 use crate::event::ContactId;
@@ -78,6 +79,10 @@ pub(crate) struct Voice {
     pub(crate) refreshed: u64,
     /// Whether it fades because the game said so, and not because it lapsed or was stolen.
     pub(crate) ended: bool,
+    /// Whether it fades because its contact has jumped and goes on in another voice.
+    left_behind: bool,
+    /// Reports without force in a row.
+    empty_reports: u32,
     slot: usize,
     asleep: bool,
     fade_in_left: u32,
@@ -149,6 +154,8 @@ impl Voice {
             begun: 0,
             refreshed: 0,
             ended: false,
+            left_behind: false,
+            empty_reports: 0,
             slot,
             asleep: false,
             fade_in_left: 0,

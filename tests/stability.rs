@@ -58,6 +58,17 @@ impl Run {
         self.scene.report(self.now_s(), ContactEvent::end(ContactId(1))).unwrap();
     }
 
+    /// Slides on from `u` with a report every 10 ms.
+    fn slide(&mut self, u: f64, speed_m_s: f64, seconds: f64) -> Peaks {
+        let mut peaks = Peaks { haptic: 0.0, audio: 0.0 };
+        for step in 0..(100.0 * seconds) as usize {
+            self.moved(pressed(u + speed_m_s * step as f64 / 100.0 / SIDE_M, speed_m_s, 0.8));
+            let now = self.render(0.01);
+            peaks = Peaks { haptic: peaks.haptic.max(now.haptic), audio: peaks.audio.max(now.audio) };
+        }
+        peaks
+    }
+
     /// Renders; every sample must be a number.
     fn render(&mut self, seconds: f64) -> Peaks {
         let end = self.renderer.position() + (seconds * self.renderer.sample_rate_hz()) as u64;
@@ -168,15 +179,14 @@ fn an_undamped_pad_that_bounces_for_ten_seconds_never_rises_higher_than_its_ener
 fn a_finger_that_sticks_costs_no_sound_and_slides_on_as_if_nothing_had_been() {
     let mut run = Run::new(Config::default(), plate(0.8));
     run.begin(pressed(0.1, 0.1, 0.8));
-    run.render(0.2);
-    let moving = run.render(0.05);
+    run.slide(0.1, 0.1, 0.2);
+    let moving = run.slide(0.1 + 0.02 / SIDE_M, 0.1, 0.05);
     run.moved(pressed(0.3, 0.0, 0.8));
     run.render(1.0);
     let resting = run.render(0.2);
     assert!(resting.audio < 1e-3 * moving.audio, "{resting:?} against {moving:?}");
-    run.moved(pressed(0.3, 0.1, 0.8));
-    run.render(0.1);
-    let again = run.render(0.05);
+    run.slide(0.3, 0.1, 0.1);
+    let again = run.slide(0.3 + 0.01 / SIDE_M, 0.1, 0.05);
     assert!(again.audio > 0.1 * moving.audio && again.audio < 10.0 * moving.audio, "{again:?}, {moving:?}");
 }
 

@@ -106,6 +106,15 @@ impl State {
         Self { band, low: value - band * (g + SQRT_2) }
     }
 
+    /// The state of a filter whose input is at `value`, has risen by `slope_per_s` and bent by `bend_per_s2` for
+    /// ever: the high-pass then gives the bend over ω² and nothing else. For cutoffs far below the rate.
+    #[must_use]
+    pub fn settled_on_trend(filter: &Butterworth, value: f64, slope_per_s: f64, bend_per_s2: f64) -> Self {
+        let w = filter.angular_cutoff_per_s;
+        let band = (slope_per_s - SQRT_2 * bend_per_s2 / w) / w;
+        Self { band, low: value - SQRT_2 * band - bend_per_s2 / (w * w) }
+    }
+
     /// Filters one sample.
     #[inline]
     pub fn tick(&mut self, filter: &Butterworth, input: f64) -> Output {
@@ -254,6 +263,20 @@ mod tests {
             let out = state.tick(&filter, line);
             assert!((line - out.low - slope * filter.group_delay_s()).abs() < 1e-8, "sample {n}");
             assert!((out.band * filter.angular_cutoff_per_s() / slope - 1.0).abs() < 1e-5, "sample {n}");
+        }
+    }
+
+    #[test]
+    fn a_state_settled_on_a_trend_passes_its_bend_and_nothing_else() {
+        let rate = 44_100.0;
+        let filter = Butterworth::new(10.0, rate).unwrap();
+        let (value, slope, bend) = (2e-3, -0.03, 0.7);
+        let mut state = State::settled_on_trend(&filter, value, slope, bend);
+        let passed = bend / filter.angular_cutoff_per_s().powi(2);
+        for n in 0..2000 {
+            let t = f64::from(n) / rate;
+            let out = state.tick(&filter, value + slope * t + 0.5 * bend * t * t);
+            assert!((out.high / passed - 1.0).abs() < 5e-3, "sample {n}: {} of {passed}", out.high);
         }
     }
 

@@ -4,7 +4,8 @@ use super::Renderer;
 use crate::clock::Stamp;
 use crate::event::{ContactEvent, ContactId, ContactSample};
 use crate::stats::Counters;
-use crate::voice::{Phase, Voice};
+use crate::voice::{EMPTY_FORCE_N, Phase, Voice};
+use asperity_dsp::trajectory::Trajectory;
 
 /// A contact that goes on without a voice: it lapsed, or its voice was stolen. A later move revives it.
 #[derive(Clone, Copy)]
@@ -22,7 +23,7 @@ impl Renderer {
                 let (surface, actuator) = (surface.0 as usize, usize::from(actuator.0));
                 if !self.resume(contact, surface, actuator, &sample, stamp) {
                     self.end(contact);
-                    self.begin(contact, surface, actuator, &sample, stamp);
+                    self.land(contact, surface, actuator, &sample, stamp);
                 }
             }
             ContactEvent::Moved { contact, sample } => self.moved(contact, &sample, stamp),
@@ -51,7 +52,7 @@ impl Renderer {
             return false;
         };
         // A contact that has landed again meanwhile sounds once, not twice.
-        if sounding(&mut self.voices, contact).is_some() || self.sounding_count() >= self.contact_limit() {
+        if sounding(&self.voices, contact).is_some() || self.sounding_count() >= self.contact_limit() {
             return false;
         }
         let Some(voice) = self.voices.iter_mut().find(|voice| {
@@ -60,17 +61,20 @@ impl Renderer {
                 && voice.ended
                 && matches!(voice.phase, Phase::Fading { .. })
                 && voice.is_near(sample, slot)
+                && !voice.would_jump(sample, slot, stamp)
         }) else {
             return false;
         };
         voice.resume(&self.shared);
-        voice.moved(sample, slot, stamp, self.position);
+        // It does not jump: see above.
+        let _: Option<Trajectory> = voice.moved(sample, slot, stamp, self.position);
         self.silent.retain(|silent| silent.contact != contact);
         Counters::add(&self.counters.debounced, 1);
         true
     }
 
-    fn begin(
+    /// A contact lands. One that neither presses nor falls is not there yet: its first force begins it.
+    fn land(
         &mut self,
         contact: ContactId,
         surface: usize,
@@ -78,14 +82,33 @@ impl Renderer {
         sample: &ContactSample,
         stamp: Stamp,
     ) {
+        if sample.normal_force_n > EMPTY_FORCE_N || sample.closing_m_s > 0.0 {
+            self.begin(contact, surface, actuator, sample, stamp);
+        } else if self.seats[surface].is_open() {
+            Counters::add(&self.counters.unpressed, 1);
+            self.remember(SilentContact { contact, surface, actuator, stolen: false });
+        } else {
+            Counters::add(&self.counters.orphaned, 1);
+        }
+    }
+
+    /// Takes a voice for a contact that begins, if its surface is there, and tells which.
+    fn begin(
+        &mut self,
+        contact: ContactId,
+        surface: usize,
+        actuator: usize,
+        sample: &ContactSample,
+        stamp: Stamp,
+    ) -> Option<usize> {
         if !self.seats[surface].is_open() {
             Counters::add(&self.counters.orphaned, 1);
-            return;
+            return None;
         }
         let due = self.due(stamp);
-        let voice = self.take_voice();
-        self.voices_used.insert(voice);
-        let voice = &mut self.voices[voice];
+        let index = self.take_voice();
+        self.voices_used.insert(index);
+        let voice = &mut self.voices[index];
         (voice.surface, voice.actuator) = (surface, actuator);
         voice.begin(
             contact,
@@ -96,12 +119,23 @@ impl Renderer {
             due,
             &mut self.scratch,
         );
+        Some(index)
     }
 
     fn moved(&mut self, contact: ContactId, sample: &ContactSample, stamp: Stamp) {
-        if let Some(voice) = sounding(&mut self.voices, contact) {
-            if let Some(slot) = self.seats[voice.surface].current() {
-                voice.moved(sample, slot, stamp, self.position);
+        let mut sample = *sample;
+        if let Some(index) = sounding(&self.voices, contact) {
+            let voice = &mut self.voices[index];
+            let Some(normal_force_n) = voice.pressed_n(sample.normal_force_n) else {
+                Counters::add(&self.counters.unpressed, 1);
+                return self.silence(index, false);
+            };
+            Counters::add(&self.counters.unpressed, u64::from(normal_force_n != sample.normal_force_n));
+            sample.normal_force_n = normal_force_n;
+            if let Some(slot) = self.seats[voice.surface].current()
+                && let Some(path) = voice.moved(&sample, slot, stamp, self.position)
+            {
+                self.jump(index, &sample, &path, stamp);
             }
             return;
         }
@@ -109,14 +143,40 @@ impl Renderer {
             Counters::add(&self.counters.orphaned, 1);
             return;
         };
+        if sample.normal_force_n <= EMPTY_FORCE_N {
+            Counters::add(&self.counters.unpressed, 1);
+            return;
+        }
         let silent = self.silent[index];
         if silent.stolen && self.sounding_count() >= self.contact_limit() {
             Counters::add(&self.counters.orphaned, 1);
             return;
         }
         self.silent.swap_remove(index);
-        let landed = ContactSample { closing_m_s: 0.0, ..*sample };
+        let landed = ContactSample { closing_m_s: 0.0, ..sample };
         self.begin(contact, silent.surface, silent.actuator, &landed, stamp);
+    }
+
+    /// A contact that is suddenly elsewhere fades where it was and rises where it is, each over the relief of
+    /// its own place: a profile that steps from one to the other would strike the pad.
+    fn jump(&mut self, index: usize, sample: &ContactSample, path: &Trajectory, stamp: Stamp) {
+        Counters::add(&self.counters.jumps, 1);
+        let voice = &mut self.voices[index];
+        let (contact, surface, actuator) = (voice.contact, voice.surface, voice.actuator);
+        voice.leave(&self.shared);
+        let Some(slot) = self.seats[surface].current() else { return };
+        // A late report holds where the contact was; it begins where it is by now.
+        let late_s = (self.due(stamp).samples() - stamp.samples()) / self.shared.sample_rate_hz;
+        let velocity_m_s = path.believed_velocity_m_s();
+        let uv = [
+            sample.uv[0] + velocity_m_s[0] * late_s / slot.surface.width_m,
+            sample.uv[1] + velocity_m_s[1] * late_s / slot.surface.height_m,
+        ];
+        let landed = ContactSample { uv, velocity_m_s: Some(velocity_m_s), closing_m_s: 0.0, ..*sample };
+        let voice = self.begin(contact, surface, actuator, &landed, stamp);
+        if let Some(voice) = voice {
+            self.voices[voice].succeed(path);
+        }
     }
 
     /// Whether there was such a contact.
@@ -125,7 +185,8 @@ impl Renderer {
         if let Some(index) = known_silent {
             self.silent.swap_remove(index);
         }
-        let sounding = sounding(&mut self.voices, contact).map(|voice| {
+        let sounding = sounding(&self.voices, contact).map(|index| {
+            let voice = &mut self.voices[index];
             voice.fade(&self.shared);
             voice.ended = true;
         });
@@ -163,15 +224,21 @@ impl Renderer {
     pub(super) fn silence(&mut self, voice: usize, stolen: bool) {
         let voice = &mut self.voices[voice];
         voice.fade(&self.shared);
-        if self.silent.len() == self.silent.capacity() {
-            self.silent.swap_remove(0);
-        }
-        self.silent.push(SilentContact {
+        let silent = SilentContact {
             contact: voice.contact,
             surface: voice.surface,
             actuator: voice.actuator,
             stolen,
-        });
+        };
+        self.remember(silent);
+    }
+
+    /// Remembers a contact without a voice; the oldest is forgotten when there are too many.
+    fn remember(&mut self, silent: SilentContact) {
+        if self.silent.len() == self.silent.capacity() {
+            self.silent.remove(0);
+        }
+        self.silent.push(silent);
     }
 
     pub(super) fn fade_contacts_on(&mut self, slot: usize) {
@@ -182,6 +249,6 @@ impl Renderer {
     }
 }
 
-fn sounding(voices: &mut [Voice], contact: ContactId) -> Option<&mut Voice> {
-    voices.iter_mut().find(|voice| voice.contact == contact && voice.phase == Phase::Sounding)
+fn sounding(voices: &[Voice], contact: ContactId) -> Option<usize> {
+    voices.iter().position(|voice| voice.contact == contact && voice.phase == Phase::Sounding)
 }

@@ -1,6 +1,6 @@
 //! How a contact takes what the game reports: it lands, appears, goes on.
 
-use super::{Phase, Scratch, Shared, Voice};
+use super::{PadSample, Phase, Scratch, Shared, Voice};
 use crate::clock::Stamp;
 use crate::event::{ContactId, ContactSample};
 use crate::seat::Seat;
@@ -15,6 +15,12 @@ use asperity_texture::height_field::{MAX_BLOCK, Reaction};
 /// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
 /// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
 const SAME_TOUCH_M: f64 = 0.01;
+
+/// A force that is no touch, N: the weight of a tenth of a milligram.
+pub(crate) const EMPTY_FORCE_N: f64 = 1e-6;
+
+/// How far back a contact that appears is taken to have slid, s: what a 10 Hz high-pass remembers.
+const TREND_S: f64 = 0.025;
 
 impl Voice {
     /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed.
@@ -37,6 +43,8 @@ impl Voice {
         (self.begun, self.refreshed) = (position, position);
         self.asleep = false;
         self.ended = false;
+        self.left_behind = false;
+        self.empty_reports = 0;
         self.rising = None;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
@@ -78,30 +86,88 @@ impl Voice {
         position: u64,
         scratch: &mut Scratch,
     ) {
-        let PathPoint { position_m: end_m, velocity_m_s, normal_force_n } = self.last_point;
-        for (i, point) in scratch.points.iter_mut().enumerate() {
-            let before_s = (MAX_BLOCK - i) as f64 / shared.sample_rate_hz;
-            let position_m = [0, 1].map(|axis| end_m[axis] - velocity_m_s[axis] * before_s);
-            *point = PathPoint { position_m, velocity_m_s, normal_force_n };
-        }
+        let [slope_m_s, bend_m_s2] = self.trend(seat, shared, position, scratch);
+        self.lay_behind(1, shared, scratch);
         self.profile(seat, shared, position, MAX_BLOCK, false, scratch);
         let (heights_m, forces_n) = (&scratch.surface.height_m, &scratch.force_n);
         self.pad = shared.micro_contact.at_rest(heights_m[0], forces_n[0]);
         shared.micro_contact.run(&mut self.pad, heights_m, forces_n, &mut scratch.pad);
-        let last = &scratch.pad[MAX_BLOCK - 1];
-        self.feel = ContactOutputState::begin(output, last.pad_m, last.pad_velocity_m_s);
+        let PadSample { pad_m, pad_velocity_m_s, .. } = scratch.pad[MAX_BLOCK - 1];
+        self.feel = ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
     }
 
-    /// Goes on somewhere else; wakes a resting contact.
+    /// The straight line that ends where the contact is, a point every `stride` samples.
+    fn lay_behind(&self, stride: usize, shared: &Shared, scratch: &mut Scratch) {
+        let PathPoint { position_m: end_m, velocity_m_s, normal_force_n } = self.last_point;
+        for (i, point) in scratch.points.iter_mut().enumerate() {
+            let before_s = ((MAX_BLOCK - i) * stride) as f64 / shared.sample_rate_hz;
+            let position_m = [0, 1].map(|axis| end_m[axis] - velocity_m_s[axis] * before_s);
+            *point = PathPoint { position_m, velocity_m_s, normal_force_n };
+        }
+    }
+
+    /// How the profile has risen, m/s, and bent, m/s², during the last [`TREND_S`]: the parabola nearest to it.
+    fn trend(&self, seat: &mut Seat, shared: &Shared, position: u64, scratch: &mut Scratch) -> [f64; 2] {
+        let stride = ((TREND_S * shared.sample_rate_hz) as usize / MAX_BLOCK).max(1);
+        self.lay_behind(stride, shared, scratch);
+        self.profile(seat, shared, position, MAX_BLOCK, false, scratch);
+        let step_s = stride as f64 / shared.sample_rate_hz;
+        let [slope, bend] = parabola(&scratch.surface.height_m);
+        // The slope is that of the middle; the contact is half a trend later.
+        let bend_m_s2 = bend / (step_s * step_s);
+        [slope / step_s + bend_m_s2 * 0.5 * step_s * MAX_BLOCK as f64, bend_m_s2]
+    }
+
+    /// Goes on somewhere else; wakes a resting contact. A jump that no stroke makes changes nothing here: it
+    /// returns the path that begins where the contact now is, for another voice.
     ///
     /// `stamp` is when the event holds, which may lie before `position` when it arrives late:
     /// the path reckons on from the stamp, so jitter of arrival does not become jitter of motion.
-    pub(crate) fn moved(&mut self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp, position: u64) {
+    pub(crate) fn moved(
+        &mut self,
+        sample: &ContactSample,
+        slot: &SurfaceSlot,
+        stamp: Stamp,
+        position: u64,
+    ) -> Option<Trajectory> {
         self.refreshed = position;
         self.asleep = false;
-        let event = path_event(sample, slot, stamp);
-        // A teleport is followed at once by the path itself; an event older than the last is dropped.
-        let _: Moved = self.trajectory.moved(&slot.trajectory, &event);
+        let mut path = self.trajectory;
+        match path.moved(&slot.trajectory, &path_event(sample, slot, stamp)) {
+            Moved::Teleported => return Some(path),
+            // An event older than the last is dropped.
+            Moved::Followed | Moved::Ignored => self.trajectory = path,
+        }
+        None
+    }
+
+    /// Whether a report would be a jump.
+    pub(crate) fn would_jump(&self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> bool {
+        let mut path = self.trajectory;
+        path.moved(&slot.trajectory, &path_event(sample, slot, stamp)) == Moved::Teleported
+    }
+
+    /// Fades because its contact goes on in another voice.
+    pub(crate) fn leave(&mut self, shared: &Shared) {
+        self.fade(shared);
+        self.left_behind = true;
+    }
+
+    /// Goes on as a path before it, as far as that has learned to know the game.
+    pub(crate) fn succeed(&mut self, path: &Trajectory) {
+        self.trajectory.succeed(path);
+    }
+
+    /// The force to render for a report, or none if the contact has left the surface. Solvers report a step
+    /// without force now and then, and some every other step, from a finger that never left: one such report
+    /// holds the force before it, because a finger thrown off for a sixtieth of a second is felt as a blow.
+    pub(crate) fn pressed_n(&mut self, reported_n: f64) -> Option<f64> {
+        if reported_n > EMPTY_FORCE_N {
+            self.empty_reports = 0;
+            return Some(reported_n);
+        }
+        self.empty_reports = self.empty_reports.saturating_add(1);
+        (self.empty_reports == 1).then(|| self.trajectory.reported_force_n())
     }
 
     /// Whether a landing is so close that it can be the same touch.
@@ -115,6 +181,22 @@ impl Voice {
         });
         apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
     }
+}
+
+/// Slope a step in the middle, and bend, of the parabola that fits best.
+fn parabola(values: &[f64; MAX_BLOCK]) -> [f64; 2] {
+    let n = MAX_BLOCK as f64;
+    let mean_square = (n * n - 1.0) / 12.0;
+    let (mut slope, mut bend, mut squares, mut fourths) = (0.0, 0.0, 0.0, 0.0);
+    for (i, value) in values.iter().enumerate() {
+        let x = i as f64 - 0.5 * (n - 1.0);
+        let q = x * x - mean_square;
+        slope += x * value;
+        bend += q * value;
+        squares += x * x;
+        fourths += q * q;
+    }
+    [slope / squares, 2.0 * bend / fourths]
 }
 
 fn path_event(sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> PathEvent {

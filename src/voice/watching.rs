@@ -21,7 +21,9 @@ impl Voice {
         scratch: &mut Scratch,
         tap: &mut T,
     ) {
-        let Some(slot) = seat.current().filter(|_| tap.is_watching()) else { return };
+        // A contact that has jumped is shown where it is, and not where it fades.
+        let watched = tap.is_watching() && !self.left_behind;
+        let Some(slot) = seat.current().filter(|_| watched) else { return };
         let size_m = [slot.surface.width_m, slot.surface.height_m];
         let latency = shared.micro_contact.latency_samples();
         for i in 0..n {

@@ -70,6 +70,23 @@ impl ContactOutputState {
         Self { highpass: State::settled_at(settled), velocity_m_s: pad_velocity_m_s, last: 0.0, held: 1.0 }
     }
 
+    /// A contact that has been sliding already: its pad has risen at `slope_m_s` and bent by `bend_m_s2` for as
+    /// long as the high-pass remembers, so the high-passed output begins with what a stroke there has.
+    #[must_use]
+    pub fn begin_sliding(
+        design: &ContactOutput,
+        pad_m: f64,
+        pad_velocity_m_s: f64,
+        slope_m_s: f64,
+        bend_m_s2: f64,
+    ) -> Self {
+        let mut state = Self::begin(design, pad_m, pad_velocity_m_s);
+        if let (Quantity::Displacement, Some(filter)) = (design.quantity, &design.highpass) {
+            state.highpass = State::settled_on_trend(filter, pad_m, slope_m_s, bend_m_s2);
+        }
+        state
+    }
+
     /// One sample of the pad's motion → the output quantity, SI. Acceleration is the change of velocity over the
     /// step that ends here.
     #[inline]

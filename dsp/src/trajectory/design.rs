@@ -78,6 +78,12 @@ impl TrajectoryDesign {
         self.filter.group_delay_s() + extra
     }
 
+    /// How long a step of the input takes at the output's fastest, seconds: 1 over the impulse response's
+    /// largest value, √2 ω e^(−π/4) sin(π/4).
+    pub(super) fn step_time_s(&self) -> f64 {
+        1.0 / (0.455_938 * self.filter.angular_cutoff_per_s())
+    }
+
     /// The position equal to `position` on the surface that is nearest to `near`.
     pub(super) fn unwrap(&self, axis: usize, position: f64, near: f64) -> f64 {
         let period = self.wrap_period_m[axis];

@@ -24,7 +24,10 @@
 //! mode), and never goes below zero: the filter's 4 % undershoot would pull at the surface.
 //!
 //! A landing or a jump that no finger can make (a *teleport*) sets the filter to the state it would
-//! have had on the straight line through the event, so neither starts with a transient.
+//! have had on the straight line through the event, so neither starts with a transient. So does a report
+//! after a silence in which the path has slowed down, if it lies so far ahead that the filter would have to
+//! hurry: a step of s metres is followed at up to 86 s
+//! m/s, which after 100 ms without reports is six times the finger's own speed and heard as a zip.
 //!
 //! All arithmetic is relative to the latest event's position, so a path that has run a million
 //! periods keeps its velocity; every sample depends on the samples before it alone, so any split
@@ -33,6 +36,7 @@
 mod design;
 mod history;
 mod reckoning;
+mod standstill;
 #[cfg(test)]
 mod tests;
 
@@ -41,12 +45,19 @@ use crate::pair::Pair;
 pub use design::{HERMITE_DELAY_S, PathMode, TrajectoryDesign};
 use history::History;
 use reckoning::Reckoning;
+use standstill::Standstill;
 
 /// A jump is a teleport beyond this many times the distance the reported speed allows.
 pub const TELEPORT_FACTOR: f64 = 3.0;
 
 /// … plus this margin, m: position noise and a finger that sets off between two events. Assumed.
 pub const TELEPORT_MARGIN_M: f64 = 0.005;
+
+/// Share of a contact's speed by which the path may outrun it to catch up after a silence.
+const HURRY: f64 = 0.4;
+
+/// Distance that is a tracker's noise and no movement, m. Assumed: twice the 50 µm of the project's bars.
+const NOISE_M: f64 = 1e-4;
 
 /// Speed a finger is believed to reach when the game reports none, m/s. Assumed.
 pub const UNREPORTED_SPEED_M_S: f64 = 0.5;
@@ -95,7 +106,8 @@ pub struct PathPoint {
 pub enum Moved {
     /// The path goes on to the new position.
     Followed,
-    /// The jump was too far for a finger: the path now starts there. Treat it as a new landing.
+    /// The jump was too far for a finger, or for the filter to follow after a silence: the path now starts
+    /// there. Treat it as a new contact.
     Teleported,
     /// Older than the event before it, or not finite: nothing changed.
     Ignored,
@@ -112,6 +124,7 @@ pub struct Trajectory {
     force: State,
     reckoning: Reckoning,
     history: History,
+    standstill: Standstill,
     still: bool,
 }
 
@@ -157,6 +170,7 @@ impl Trajectory {
             force: State::settled_at(sane.normal_force_n),
             reckoning: Reckoning::begin(sane.sample, sane.fraction, velocity, sane.normal_force_n),
             history: History::begin(sane.sample, velocity, sane.normal_force_n),
+            standstill: Standstill::begin(sane.velocity_m_s.map(or_rest)),
             still: false,
         };
         path.settle_on_line(design, velocity);
@@ -184,16 +198,24 @@ impl Trajectory {
             step[axis] = design.unwrap(axis, event.position_m[axis], near) - self.origin_m[axis];
             surprise[axis] = step[axis] - expected[axis];
         }
-        let velocity = match event.velocity_m_s {
+        let covered = [step[0] - latest[0], step[1] - latest[1]];
+        let (reported, unknown) = self.standstill.weigh(event.velocity_m_s.map(or_rest), covered);
+        let velocity = match reported {
             Some(velocity) => velocity,
-            None if gap_s > 0.0 => [(step[0] - latest[0]) / gap_s, (step[1] - latest[1]) / gap_s],
+            None if gap_s > 0.0 => [covered[0] / gap_s, covered[1] / gap_s],
             None => self.reckoning.velocity(),
         };
         let velocity = or_rest(velocity);
-        if libm::hypot(surprise[0], surprise[1]) > self.reach_m(event, gap_s) {
-            let period_s = self.reckoning.period_s();
-            *self = Self::begin(design, event);
-            self.reckoning.set_period_s(period_s);
+        let surprise_m = libm::hypot(surprise[0], surprise[1]);
+        let unforeseen = unknown || self.has_slowed_down(design, gap_s);
+        let catch_up_m = self.catch_up_m(design, velocity);
+        // The paper's path, which holds, hurries at every event.
+        let must_hurry = unforeseen && design.mode != PathMode::Hold && surprise_m > catch_up_m;
+        if must_hurry || surprise_m > self.reach_m(reported, gap_s) {
+            let (reckoning, standstill) = (self.reckoning, self.standstill);
+            *self = Self::begin(design, &PathEvent { velocity_m_s: Some(velocity), ..*event });
+            self.reckoning.keep_rate(&reckoning, gap_s);
+            self.standstill = standstill;
             return Moved::Teleported;
         }
         let back = carried_back(design, velocity, event.fraction);
@@ -225,11 +247,29 @@ impl Trajectory {
     }
 
     /// How far from its expected position an event may be and still belong to the same stroke.
-    fn reach_m(&self, event: &PathEvent, gap_s: f64) -> f64 {
+    fn reach_m(&self, reported: Option<[f64; 2]>, gap_s: f64) -> f64 {
         let before = self.reckoning.velocity();
-        let now = event.velocity_m_s.unwrap_or([UNREPORTED_SPEED_M_S, 0.0]);
+        let now = reported.unwrap_or([UNREPORTED_SPEED_M_S, 0.0]);
         let speed = libm::hypot(before[0], before[1]).max(libm::hypot(now[0], now[1]));
         TELEPORT_FACTOR * speed * gap_s.min(LONGEST_GAP_S) + TELEPORT_MARGIN_M
+    }
+
+    /// How far from its expected position an event may be so that the filter, which follows a step of s metres
+    /// in about [`TrajectoryDesign::step_time_s`], does not hurry.
+    fn catch_up_m(&self, design: &TrajectoryDesign, velocity_m_s: [f64; 2]) -> f64 {
+        let before = self.reckoning.velocity();
+        let speed = libm::hypot(before[0], before[1]).max(libm::hypot(velocity_m_s[0], velocity_m_s[1]));
+        HURRY * speed * design.step_time_s() + NOISE_M
+    }
+
+    /// Whether the path has lost belief in a movement for want of reports.
+    fn has_slowed_down(&self, design: &TrajectoryDesign, gap_s: f64) -> bool {
+        let read_late_s = match design.mode {
+            PathMode::Extrapolate | PathMode::Hold => 0.0,
+            PathMode::Hermite => design.hermite_delay_samples as f64 * design.sample_period_s,
+        };
+        let believed_s = self.reckoning.glide_limit_samples(design) as f64 * design.sample_period_s;
+        self.reckoning.is_lost(gap_s, believed_s + read_late_s)
     }
 
     /// Makes the next `out.len()` samples.
@@ -255,6 +295,25 @@ impl Trajectory {
             velocity_m_s: [0.0; 2],
             normal_force_n: self.reckoning.force_n().max(0.0),
         });
+    }
+
+    /// Goes on as `before`, a path of the same contact until a jump, as far as that has learned to know its game:
+    /// the rate of its reports, and whether its zero velocities are to be believed.
+    pub fn succeed(&mut self, before: &Self) {
+        self.reckoning.keep_rate(&before.reckoning, 0.0);
+        self.standstill = before.standstill;
+    }
+
+    /// The velocity of the latest event as it is believed, m/s.
+    #[must_use]
+    pub fn believed_velocity_m_s(&self) -> [f64; 2] {
+        self.reckoning.velocity()
+    }
+
+    /// The force of the latest event, N.
+    #[must_use]
+    pub fn reported_force_n(&self) -> f64 {
+        self.reckoning.force_n()
     }
 
     /// Whether the output no longer changes until the next event: at rest, at its place, force

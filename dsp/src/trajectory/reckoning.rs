@@ -24,6 +24,8 @@ pub(super) struct Reckoning {
     period_s: f64,
     events: u32,
     glide: Glide,
+    /// Whether it has come to rest for want of reports, and not because the game said so.
+    lost: bool,
 }
 
 /// The path once the reported velocity is no longer believed.
@@ -47,7 +49,16 @@ impl Reckoning {
             keep: 0.0,
             started: false,
         };
-        Self { sample, fraction, velocity_m_s, force_n, period_s: FIRST_PERIOD_S, events: 1, glide }
+        Self {
+            sample,
+            fraction,
+            velocity_m_s,
+            force_n,
+            period_s: FIRST_PERIOD_S,
+            events: 1,
+            glide,
+            lost: false,
+        }
     }
 
     pub fn sample(&self) -> u64 {
@@ -70,14 +81,22 @@ impl Reckoning {
         self.force_n = force_n;
     }
 
-    pub fn period_s(&self) -> f64 {
-        self.period_s
+    /// Takes over the event rate of the path before a jump, `gap_s` after its latest event.
+    pub fn keep_rate(&mut self, before: &Self, gap_s: f64) {
+        (self.period_s, self.events) = (before.period_s, before.events);
+        self.note_interval(gap_s);
     }
 
-    /// Carries the event rate over a teleport.
-    pub fn set_period_s(&mut self, period_s: f64) {
-        self.period_s = period_s;
-        self.events = self.events.max(2);
+    fn note_interval(&mut self, gap_s: f64) {
+        if gap_s > 0.0 {
+            // A dropped event doubles an interval; clamping keeps it from doubling the estimate.
+            let (low, high) =
+                if self.events == 1 { PERIOD_RANGE_S } else { (0.5 * self.period_s, 1.5 * self.period_s) };
+            let interval_s = gap_s.clamp(low, high).clamp(PERIOD_RANGE_S.0, PERIOD_RANGE_S.1);
+            let weight = if self.events == 1 { 1.0 } else { PERIOD_WEIGHT };
+            self.period_s += weight * (interval_s - self.period_s);
+            self.events = self.events.saturating_add(1);
+        }
     }
 
     /// Whether nothing moves the input until the next event.
@@ -85,8 +104,14 @@ impl Reckoning {
         self.velocity_m_s == [0.0; 2] || (self.glide.started && self.glide.velocity_m_s == [0.0; 2])
     }
 
+    /// Whether `gap_s` after the latest event its movement is no longer believed.
+    pub fn is_lost(&self, gap_s: f64, believed_s: f64) -> bool {
+        self.lost || self.velocity_m_s != [0.0; 2] && gap_s > believed_s
+    }
+
     /// Forgets the velocity.
     pub fn stop(&mut self) {
+        self.lost |= self.velocity_m_s != [0.0; 2];
         self.velocity_m_s = [0.0; 2];
         self.glide.started = false;
         self.glide.after_samples = -1;
@@ -116,15 +141,7 @@ impl Reckoning {
         velocity_m_s: [f64; 2],
         force_n: f64,
     ) {
-        if gap_s > 0.0 {
-            // A dropped event doubles an interval; clamping keeps it from doubling the estimate.
-            let (low, high) =
-                if self.events == 1 { PERIOD_RANGE_S } else { (0.5 * self.period_s, 1.5 * self.period_s) };
-            let interval_s = gap_s.clamp(low, high).clamp(PERIOD_RANGE_S.0, PERIOD_RANGE_S.1);
-            let weight = if self.events == 1 { 1.0 } else { PERIOD_WEIGHT };
-            self.period_s += weight * (interval_s - self.period_s);
-            self.events = self.events.saturating_add(1);
-        }
+        self.note_interval(gap_s);
         let (period_s, events) = (self.period_s, self.events);
         *self = Self { period_s, events, ..Self::begin(sample, fraction, velocity_m_s, force_n) };
         self.glide.keep = libm::exp(-design.sample_period_s / (DECAY_PERIODS * period_s));
