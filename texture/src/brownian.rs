@@ -8,11 +8,11 @@
 //! |---|---|
 //! | [`Method::Exact`], plane | fractional Brownian motion itself: circulant embedding after Davies & Harte (1987) for paths, after M. L. Stein (2002) for surfaces: a compactly supported covariance that differs from the wanted one by a parabola, and a random tilt that adds the parabola back |
 //! | [`Method::Exact`], periodic | the same law with \|r\| replaced by the chord of a circle (for surfaces: of a torus), sin(π r/N)·N/π: it repeats without a seam, and its power H is exact where r is small against N. A power 2H ≤ 2 of a Euclidean chord has a non-negative spectrum, so that nothing is approximated |
-//! | [`Method::Midpoint`] | random midpoint displacement, the document's construction, with its variances corrected; see [`midpoint`] |
+//! | [`Method::Midpoint`] | random midpoint displacement, the document's construction, with its means and variances corrected; see [`midpoint`] |
 //!
 //! Source: chapter 6 of the texture-analysis thesis (definitions 6.7 and 6.8, theorems 6.1 and 6.2,
-//! §6.3.2). What we changed: the default is exact, because midpoint displacement is not stationary and
-//! misses the dimension by up to 0.1; measured dimensions are in the tests.
+//! §6.3.2). What we changed: the default is exact, because midpoint displacement follows the law only between a point
+//! and its neighbours; its dimension is right all the same. Measured dimensions are in the tests.
 //!
 //! Generators run when a surface is made and use the heap. What they make is a [`Raster`] of heights
 //! to be read as a height map: wrap it with *repeat* when periodic, with *mirror* when not (an open

@@ -46,8 +46,28 @@ fn measured_dimension_of_exact_surfaces_is_3_minus_h_within_0_03() {
         println!("{hurst:4.1}  {open:.3}    {periodic:.3}      {midpoint:.3}");
         assert!((open - (3.0 - hurst)).abs() <= 0.03, "open, H = {hurst}: {open}");
         assert!((periodic - (3.0 - hurst)).abs() <= 0.03, "periodic, H = {hurst}: {periodic}");
-        // The document's mode is reported, and known to be off by this much.
-        assert!((midpoint - (3.0 - hurst)).abs() <= 0.2, "midpoint, H = {hurst}: {midpoint}");
+        assert!((midpoint - (3.0 - hurst)).abs() <= 0.1, "midpoint, H = {hurst}: {midpoint}");
+    }
+}
+
+/// Means of the two or four nearest points alone left creases: 2.34 for 2.1, 2.41 for 2.2.
+#[test]
+fn measured_dimension_of_midpoint_surfaces_is_3_minus_h_within_0_03() {
+    for tenth in 1..=9 {
+        let hurst = 0.1 * f64::from(tenth);
+        let measured: Vec<f64> = (0..4)
+            .map(|seed| {
+                let (method, periodic, size) = (Method::Midpoint, false, 257);
+                let design =
+                    BrownianDesign { method, periodic, size, ..BrownianDesign::new(hurst, 1e-4, seed) };
+                3.0 - hurst_of(&design.surface().unwrap())
+            })
+            .collect();
+        println!("midpoint surface, H = {hurst:.1}: {measured:.3?}");
+        // One surface's measure scatters as an exact one's does: 0.03 from H = 0.7.
+        assert!(measured.iter().all(|d| (d - (3.0 - hurst)).abs() <= 0.1), "H = {hurst}: {measured:?}");
+        let mean = measured.iter().sum::<f64>() / 4.0;
+        assert!((mean - (3.0 - hurst)).abs() <= 0.03, "H = {hurst}: {mean}");
     }
 }
 
@@ -64,7 +84,7 @@ fn measured_dimension_of_exact_paths_is_2_minus_h_within_0_03() {
             BrownianDesign { size: 65_537, periodic: false, method, ..BrownianDesign::new(hurst, 1e-4, 9) };
         let measured = 2.0 - madogram(&design.path().unwrap());
         println!("midpoint path, H = {hurst}: {measured:.3}");
-        assert!((measured - (2.0 - hurst)).abs() <= 0.2, "midpoint, H = {hurst}: {measured}");
+        assert!((measured - (2.0 - hurst)).abs() <= 0.03, "midpoint, H = {hurst}: {measured}");
     }
 }
 

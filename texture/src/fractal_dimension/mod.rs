@@ -6,7 +6,7 @@
 //!
 //! | estimator | what it counts | file |
 //! |---|---|---|
-//! | box D_B, information D_I, correlation D_C | grid cubes of side δ ∈ {2, 4, 8, 16, 32} that hold a surface point | `grid_cubes` |
+//! | box D_B, information D_I, correlation D_C | grid cubes of side δ ∈ {1, 2, … 64} that a texel's column or its walls touch | `grid_cubes` |
 //! | probability D_P (Voss) | surface points in the cube of side L ∈ {3, 5, 7, 9, 13, 17} round each point | `probability` |
 //! | recommended | height differences along every row and column, and their median | `transect` |
 //!
@@ -17,7 +17,7 @@
 //! The document is silent about the vertical scale of the cubes, and it decides everything; each file
 //! says what we chose and what it changed. Measured on exact Brownian surfaces (256 × 256, D 2.1–2.9,
 //! `examples/analysis_table.rs` prints the table): the recommended estimator errs by 0.005 on the mean,
-//! the probability dimension by 0.04, the grid cubes by 0.4 because they saturate near D = 2.15 (in the
+//! the probability dimension by 0.04, the grid cubes by 0.15 because they saturate as they do in the
 //! document's own table near 2.44).
 
 mod conditions;

@@ -15,13 +15,25 @@ def sfm(dx, dy):
 for shift in [(0, 0), (1, 0), (-17, 5), (48, 32), (-48, 11), (3, -32)]:
     print("sfm", shift, repr(sfm(*shift)))
 
-levels = np.round((picture - picture.min()) * 255 / (picture.max() - picture.min())).astype(int)
+# Columns: every unit of height between the lowest and the highest of a texel and its four neighbours is a voxel of its own.
+levels = np.round((picture - picture.min()) * (min(W, H) // 4 - 1) / (picture.max() - picture.min())).astype(int)
+voxels = []
+for j in range(H):
+    for i in range(W):
+        beside = [levels[b, a] for a, b in ((i, j), (i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1))
+                  if 0 <= a < W and 0 <= b < H]
+        voxels += [(i, j, z) for z in range(min(beside), max(beside) + 1)]
+voxels = np.array(voxels)
 rows = []
-for side in (2, 4, 8, 16, 32):
-    keys, counts = np.unique(
-        np.stack([x.ravel() // side, y.ravel() // side, levels.ravel() // side]), axis=1, return_counts=True)
+for side in (1, 2, 4, 8, 16, 32):
+    whole = voxels[(voxels[:, 0] < W // side * side) & (voxels[:, 1] < H // side * side)]
+    # A column counts once in each cube it touches.
+    touched = np.unique(np.column_stack([whole[:, :2], whole[:, :2] // side, whole[:, 2] // side]), axis=0)
+    _, counts = np.unique(touched[:, 2:], axis=0, return_counts=True)
     p = counts / counts.sum()
-    rows.append((-np.log(side), np.log(len(counts)), -(p * np.log(p)).sum(), -np.log((p ** 2).sum())))
+    part = (W // side * side) * (H // side * side) / (W * H)
+    rows.append((-np.log(side), np.log(len(counts) / part), -(p * np.log(p)).sum() - np.log(part),
+                 -np.log((p ** 2).sum() * part)))
 rows = np.array(rows)
 for k, name in enumerate(("box", "information", "correlation"), 1):
     print(name, repr(np.polyfit(rows[:, 0], rows[:, k], 1)[0]))
