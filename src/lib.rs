@@ -40,6 +40,7 @@ pub mod residual;
 mod scene;
 mod seat;
 mod stats;
+mod stroking;
 mod surface;
 mod tap;
 mod voice;
