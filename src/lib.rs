@@ -39,6 +39,7 @@ mod renderer;
 pub mod residual;
 mod scene;
 mod seat;
+mod silence;
 mod stats;
 mod surface;
 mod tap;
@@ -58,6 +59,7 @@ pub use modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use renderer::Renderer;
 pub use residual::Residual;
 pub use scene::Scene;
+pub use silence::SilentBecause;
 pub use stats::Stats;
 pub use surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,

@@ -328,8 +328,7 @@ impl Renderer {
 
     fn render_haptics(&mut self, at: usize, n: usize, haptic: &mut [&mut [f32]]) {
         for (index, channel) in self.channels.iter_mut().enumerate() {
-            let block = &mut self.mix.haptic[..n];
-            channel.state.run(&channel.design, &channel.control, &channel.sum[..n], block);
+            channel.run(&mut self.mix.haptic[..n]);
             if let Some(out) = haptic.get_mut(index) {
                 out[at..at + n].copy_from_slice(&self.mix.haptic[..n]);
             }
