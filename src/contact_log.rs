@@ -392,7 +392,7 @@ mod tests {
         assert_eq!(told(line), "log:1: velocity: unknown key of \"move\"; write velocity_m_s");
         let message = told(&format!("{LOG}{}", line.replace("velocity", "colour")));
         assert!(
-            message.starts_with("log:5: colour: unknown key of \"move\"; accepted here: at_m, "),
+            message.starts_with("log:5: colour: unknown key of \"move\"; accepted here: actuator, "),
             "{message}"
         );
         assert!(message.contains("velocity_m_s") && !message.contains("probe"), "{message}");
