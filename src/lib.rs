@@ -43,6 +43,7 @@ mod silence;
 mod stats;
 mod surface;
 mod tap;
+mod uv_triangle;
 mod voice;
 
 pub use actuator_preset::{ActuatorPreset, PresetError};
@@ -66,6 +67,7 @@ pub use surface::{
     Surface, SurfaceError,
 };
 pub use tap::{ContactBlock, NoTap, Tap};
+pub use uv_triangle::UvTriangle;
 
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
 pub use asperity_dsp::modal_bank::Culling;

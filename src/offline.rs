@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 /// How a log is rendered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Frames a block, 1–4096; the result does not depend on it.
+    /// Frames a block; the result does not depend on it. What lies outside 1–4096 counts as the nearer of the two.
     pub block_frames: usize,
     /// How long bodies may ring after the last event, s.
     pub tail_s: f64,
