@@ -55,7 +55,8 @@ impl UvTriangle {
         let [p, q] = self.edges_m;
         let (pp, pq, qq) = (p.dot(p), p.dot(q), q.dot(q));
         let (along_p, along_q) = (from_corner.dot(p), from_corner.dot(q));
-        let [w1, w2] = [qq * along_p - pq * along_q, pp * along_q - pq * along_p].map(|w| w / (pp * qq - pq * pq));
+        let [w1, w2] =
+            [qq * along_p - pq * along_q, pp * along_q - pq * along_p].map(|w| w / (pp * qq - pq * pq));
         (self.uv + w1 * self.uv_edges[0] + w2 * self.uv_edges[1]).to_array()
     }
 
@@ -126,8 +127,10 @@ mod tests {
     fn vectors_of_a_games_own_library_are_taken_as_they_are() {
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let glams = corners.map(|uv| Vec3::from_array(place(uv).map(|x| x as f32)));
-        let triangle = UvTriangle::new(glams, corners.map(|uv| Vec2::from_array(uv.map(|x| x as f32)))).unwrap();
-        let sample = triangle.sample(Vec3::from_array(place([0.25, 0.5]).map(|x| x as f32)), [0.0, 0.0, 0.1], 0.6);
+        let triangle =
+            UvTriangle::new(glams, corners.map(|uv| Vec2::from_array(uv.map(|x| x as f32)))).unwrap();
+        let sample =
+            triangle.sample(Vec3::from_array(place([0.25, 0.5]).map(|x| x as f32)), [0.0, 0.0, 0.1], 0.6);
         assert!((sample.uv[0] - 0.25).abs() < 1e-6 && (sample.uv[1] - 0.5).abs() < 1e-6);
         assert_eq!(sample.checked().map(|sample| sample.normal_force_n), Ok(0.6));
     }
