@@ -72,6 +72,7 @@ fn stages() {
         position_m: &position_m,
         velocity_m_s: &velocity_m_s,
         footprint_m: &footprint_m,
+        normal_force_n: &[],
         first_sample: 0,
         contact: 0,
         slopes: false,

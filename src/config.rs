@@ -31,6 +31,8 @@ pub struct ActuatorSettings {
     pub equalise: Option<DeviceProfile>,
     /// Device whose excursion and heat are kept within limits.
     pub limit: Option<DeviceProfile>,
+    /// Whether a peak limiter keeps the channel within ±1, whatever the device.
+    pub limit_peaks: bool,
 }
 
 impl Default for ActuatorSettings {
@@ -42,6 +44,7 @@ impl Default for ActuatorSettings {
             soft_start_s: 0.0,
             equalise: None,
             limit: None,
+            limit_peaks: false,
         }
     }
 }

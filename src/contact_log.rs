@@ -4,8 +4,11 @@
 //! running [`Scene`](crate::Scene). Replaying a log offline gives the same samples as the live engine
 //! that recorded it.
 
+mod keys;
+
 use crate::event::{Actuator, BodyId, ContactEvent, ContactId, ContactSample, Impact, SurfaceId};
 use crate::material::Material;
+use keys::Unread;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -165,6 +168,18 @@ pub enum LogError {
         /// What is wrong.
         message: String,
     },
+    /// A line has a key that its event does not know.
+    #[error("{place}: {key}: unknown key of \"{event}\"; {right}")]
+    UnknownKey {
+        /// File and line.
+        place: String,
+        /// The key.
+        key: String,
+        /// The event that does not know it.
+        event: &'static str,
+        /// The key that was meant, or every key that would be right.
+        right: String,
+    },
     /// Time runs backwards.
     #[error("{place}: t = {t} s comes after {before} s; events must be in time order, from 0 s on")]
     TimeBackwards {
@@ -201,7 +216,8 @@ impl ContactLog {
     /// Reads a `.jsonl` file.
     ///
     /// # Errors
-    /// When it cannot be read, a line is not an event, or time runs backwards.
+    /// When it cannot be read, a line is not an event or has a key that its event does not know, or time
+    /// runs backwards.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, LogError> {
         let path = path.as_ref();
         let text = std::fs::read_to_string(path)
@@ -214,10 +230,20 @@ impl ContactLog {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(text: &str, name: &str) -> Result<Self, LogError> {
-        let mut lines = Vec::new();
+        Self::parse_telling(text, name).map(|(log, _)| log)
+    }
+
+    /// [`parse`](Self::parse), and what of the format this version reads past: `NAME:LINE: KEY`, each key
+    /// where it is met first.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn parse_telling(text: &str, name: &str) -> Result<(Self, Vec<String>), LogError> {
+        let (mut lines, mut unread) = (Vec::new(), Unread::default());
         let mut before = 0.0;
         for (index, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
             let place = || format!("{name}:{}", index + 1);
+            keys::check(text, place, &mut unread)?;
             let line: LogLine = serde_json::from_str(text)
                 .map_err(|error| LogError::Malformed { place: place(), message: error.to_string() })?;
             if line.t.is_nan() || line.t < before {
@@ -230,7 +256,7 @@ impl ContactLog {
             before = line.t;
             lines.push(line);
         }
-        Ok(Self { lines })
+        Ok((Self { lines }, unread.places))
     }
 
     /// Writes the log, one line an event.
@@ -356,6 +382,42 @@ mod tests {
         let message = ContactLog::parse(&backwards, "log").unwrap_err().to_string();
         assert!(message.starts_with("log:3: t = 0.001 s comes after 0.0167 s"), "{message}");
         assert!(ContactLog::parse(r#"{"t":-1.0,"event":"end","contact":1}"#, "log").is_err());
+    }
+
+    #[test]
+    fn a_key_that_no_event_knows_is_refused_with_its_line_and_the_key_that_was_meant() {
+        let told = |text: &str| ContactLog::parse(text, "log").unwrap_err().to_string();
+        let line =
+            r#"{"t":0.0,"event":"move","contact":1,"uv":[0.1,0.5],"velocity":[0.1,0.0],"normal_force_n":1}"#;
+        assert_eq!(told(line), "log:1: velocity: unknown key of \"move\"; write velocity_m_s");
+        let message = told(&format!("{LOG}{}", line.replace("velocity", "colour")));
+        assert!(
+            message.starts_with("log:5: colour: unknown key of \"move\"; accepted here: actuator, "),
+            "{message}"
+        );
+        assert!(message.contains("velocity_m_s") && !message.contains("probe"), "{message}");
+        // A forgotten unit is told before the key that is missing for it.
+        assert!(
+            told(&line.replace("velocity", "gain").replace("force_n", "force"))
+                .ends_with("write normal_force_n")
+        );
+        assert!(
+            told(r#"{"t":0.0,"event":"end","contact":1,"uv":[0,0]}"#).contains("accepted here: contact, ")
+        );
+    }
+
+    #[test]
+    fn every_key_of_the_format_is_accepted_and_those_read_past_are_told() {
+        let begin = r#"{"t":0,"event":"begin","version":1,"contact":1,"surface":"tiles","actuator":0,"uv":[0,0],"velocity_m_s":[0,0],
+            "normal_force_n":1,"closing_m_s":0.1,"probe":"stylus","holder":"pen","at_m":[0,0,0],"depth_m":0.001,"gain":1,
+            "importance":1,"direction":[0,0,1]}"#;
+        let strike = r#"{"t":0.1,"event":"impact","body":"tile","other":"tile","speed_m_s":1,"mass_kg":0.01,"radius_m":0.01,
+            "striker":"steel","restitution":0.5,"position":0,"at_m":[0,0,0],"direction":[0,0,1],"holder":"pen","actuator":0,"gain":2}"#;
+        let text = format!("{}\n{}\n", begin.replace('\n', ""), strike.replace('\n', ""));
+        let (log, unread) = ContactLog::parse_telling(&text, "log").unwrap();
+        assert_eq!(log.lines.len(), 2);
+        assert!(unread.contains(&"log:1: probe".to_owned()), "{unread:?}");
+        assert!(ContactLog::parse_telling(LOG, "log").unwrap().1.is_empty());
     }
 
     #[test]

@@ -40,10 +40,12 @@ mod renderer;
 pub mod residual;
 mod scene;
 mod seat;
+mod silence;
 mod stats;
 mod stroking;
 mod surface;
 mod tap;
+mod uv_triangle;
 mod voice;
 
 pub use actuator_preset::{ActuatorPreset, PresetError};
@@ -60,12 +62,14 @@ pub use modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use renderer::Renderer;
 pub use residual::Residual;
 pub use scene::Scene;
+pub use silence::SilentBecause;
 pub use stats::Stats;
 pub use surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,
     Surface, SurfaceError,
 };
 pub use tap::{ContactBlock, NoTap, Tap};
+pub use uv_triangle::UvTriangle;
 
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
 pub use asperity_dsp::modal_bank::Culling;

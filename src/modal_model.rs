@@ -8,6 +8,7 @@ use crate::residual::Residual;
 use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
 use serde::{Deserialize, Serialize};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The `format` field of a modes file.
@@ -113,8 +114,13 @@ impl ModalModel {
     /// can have.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModalModelError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ModalModelError::Unreadable { path: path.into(), source })?;
+        let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
+            ErrorKind::InvalidData => {
+                let remedy = "is no text; `asperity fit` makes a modes file of a recording";
+                ModalModelError::Malformed { path: path.into(), message: remedy.into() }
+            }
+            _ => ModalModelError::Unreadable { path: path.into(), source },
+        })?;
         Self::parse(&text).map_err(|error| match error {
             ModalModelError::Malformed { message, .. } => {
                 ModalModelError::Malformed { path: path.into(), message }

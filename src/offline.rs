@@ -6,6 +6,7 @@ use crate::error::ReportError;
 use crate::event::SurfaceId;
 use crate::renderer::Renderer;
 use crate::scene::Scene;
+use crate::silence::SilentBecause;
 use crate::stats::Stats;
 use crate::tap::{NoTap, Tap};
 use asperity_texture::sand::{SandFigures, SandPicture};
@@ -15,7 +16,7 @@ use std::time::{Duration, Instant};
 /// How a log is rendered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Frames a block, 1–4096; the result does not depend on it.
+    /// Frames a block; the result does not depend on it. What lies outside 1–4096 counts as the nearer of the two.
     pub block_frames: usize,
     /// How long bodies may ring after the last event, s.
     pub tail_s: f64,
@@ -38,6 +39,10 @@ pub struct Render {
     pub haptic: Vec<Vec<f32>>,
     /// What happened.
     pub stats: Stats,
+    /// The first event that was refused, and its game time, s.
+    pub first_refused: Option<(f64, ReportError)>,
+    /// What speaks against anything being heard or felt ([`Scene::why_silent`]).
+    pub why_silent: Vec<SilentBecause>,
     /// Surfaces of sand as they lie after the last contact, settled.
     pub sand: Vec<SandAfter>,
     /// Time spent in the renderer alone.
@@ -56,7 +61,7 @@ pub struct SandAfter {
 }
 
 /// Renders a log. Events with bad numbers are left out and counted in
-/// [`Stats::refused`](crate::Stats::refused).
+/// [`Stats::refused`](crate::Stats::refused); the first is told in [`Render::first_refused`].
 ///
 /// # Errors
 /// When the log names a surface, body or striker that is not in `names`.
@@ -94,7 +99,9 @@ pub fn render_tapped<T: Tap>(
     for (time_s, event) in events {
         take.make_room(Stamp::at(time_s * inner_rate).sample() / every, tap);
         // Refusals are counted by the scene; the rest of the log still renders.
-        let _: Result<(), ReportError> = take.scene.report(time_s, event);
+        if let Err(refused) = take.scene.report(time_s, event) {
+            take.first_refused.get_or_insert((time_s, refused));
+        }
     }
     take.render_to(take.end, tap);
     Ok(take.finish())
@@ -110,6 +117,7 @@ struct Take {
     audio: Vec<f32>,
     haptic: Vec<Vec<f32>>,
     processing: Duration,
+    first_refused: Option<(f64, ReportError)>,
 }
 
 impl Take {
@@ -123,6 +131,7 @@ impl Take {
             audio: vec![0.0; total],
             haptic,
             processing: Duration::ZERO,
+            first_refused: None,
             renderer,
         }
     }
@@ -167,6 +176,8 @@ impl Take {
             audio: self.audio,
             haptic: self.haptic,
             stats: self.scene.stats(),
+            first_refused: self.first_refused,
+            why_silent: self.scene.why_silent(),
             sand: sand.map(|(surface, figures, picture)| SandAfter { surface, figures, picture }).collect(),
             processing: self.processing,
         }

@@ -14,6 +14,7 @@ use crate::material::Material;
 use crate::modal_model::ModalModel;
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::recording::Recording;
+use crate::silence::{Reported, SilentBecause};
 use crate::stats::{Counters, Stats};
 use crate::stroking::{Stroking, elastic};
 use crate::surface::{Surface, SurfaceSlot};
@@ -37,6 +38,10 @@ pub struct Scene {
     from_audio: Receiver<Dead>,
     counters: Arc<Counters>,
     recording: Option<Recording>,
+    /// For [`Scene::why_silent`].
+    reported: Reported,
+    /// Whether the contacts on each surface ring something.
+    rings: Vec<bool>,
 }
 
 /// What the game half remembers of a body.
@@ -59,6 +64,8 @@ impl Scene {
     ) -> Self {
         Self {
             surfaces: vec![false; config.max_surfaces],
+            rings: vec![false; config.max_surfaces],
+            reported: Reported::default(),
             bodies: vec![None; config.max_bodies],
             held: Vec::new(),
             config,
@@ -174,9 +181,11 @@ impl Scene {
         let trajectory =
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
         let noise_longest_m = surface.source.band().shortest_m;
+        let rings = body.lowest_mode_hz.is_finite();
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, noise_longest_m });
         self.send(Message::SetSurface { slot, surface })?;
         self.surfaces[slot] = true;
+        self.rings[slot] = rings;
         Ok(())
     }
 
@@ -231,6 +240,7 @@ impl Scene {
                 _ => &self.counters.refused,
             };
             Counters::add(cell, 1);
+            self.reported.refuse(reason);
             ReportError { event, reason }
         })
     }
@@ -243,10 +253,24 @@ impl Scene {
         self.flush_held();
         let stamp = stamped.stamp;
         self.send_stamped(stamp, event)?;
+        self.reported.accept(&event, stamp, self.rings(&event));
         if let Some(recording) = &mut self.recording {
             recording.note(stamp.samples() / self.config.inner_rate_hz(), &event);
         }
         Ok(())
+    }
+
+    /// Whether what an event touches has modes.
+    fn rings(&self, event: &ContactEvent) -> bool {
+        let has_modes =
+            |body: BodyId| self.bodies[body.0 as usize].is_some_and(|body| body.lowest_mode_hz.is_finite());
+        match event {
+            ContactEvent::Begin { surface, .. } => self.rings[surface.0 as usize],
+            ContactEvent::Impact(impact) => {
+                [Some(impact.body), impact.other].into_iter().flatten().any(has_modes)
+            }
+            ContactEvent::Moved { .. } | ContactEvent::End { .. } => false,
+        }
     }
 
     fn send_stamped(&mut self, stamp: Stamp, event: ContactEvent) -> Result<(), Refusal> {
@@ -374,6 +398,13 @@ impl Scene {
     /// Whether another move might be held back because the audio half lags behind.
     pub(crate) fn is_filling(&self) -> bool {
         self.to_audio.free() <= self.to_audio.capacity() / 4 + 1
+    }
+
+    /// What speaks against anything being heard or felt, the likeliest reason first; empty when nothing
+    /// does. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
+    #[must_use]
+    pub fn why_silent(&self) -> Vec<SilentBecause> {
+        self.reported.why_silent(&self.stats(), &self.config)
     }
 
     /// What the engine did so far.

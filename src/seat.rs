@@ -163,6 +163,13 @@ impl Seat {
         }
     }
 
+    /// Tells the surface that a contact begins.
+    pub(crate) fn land(&mut self, touch: &Touch) {
+        if let Some(slot) = &mut self.current {
+            slot.surface.source.land(touch);
+        }
+    }
+
     /// Tells the surface how it is touched.
     pub(crate) fn react(&mut self, touch: &Touch) -> Reaction {
         self.current.as_mut().map_or_else(Reaction::default, |slot| slot.surface.source.react(touch))

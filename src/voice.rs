@@ -234,15 +234,16 @@ impl Voice {
         };
         scratch.out.haptic[n..wanted].fill(0.0);
         scratch.out.impulse_n_s[n..wanted].fill(0.0);
+        // First the touch, then the heights: a surface that gives way answers within the same grid
+        // cell wherever it is cut into stretches. Who sleeps still touches, and wakes when the ground stirs.
+        if at_grid {
+            self.press(seat, position);
+            self.asleep &= !self.reaction.stirs;
+        }
         if self.asleep {
             self.rest(n, scratch);
         } else {
             self.follow_path(seat, n, scratch);
-            // First the touch, then the heights: a surface that gives way answers within the same grid
-            // cell wherever it is cut into stretches.
-            if at_grid {
-                self.press(seat, position);
-            }
             self.profile(seat, shared, position, n, tap.is_watching(), scratch);
             self.touch(shared, n, scratch);
             self.filter(seat, shared, output, n, scratch);
@@ -297,6 +298,7 @@ impl Voice {
             position_m: &scratch.position_m[..n],
             velocity_m_s: &scratch.velocity_m_s[..n],
             footprint_m: &scratch.footprint_m[..n],
+            normal_force_n: &scratch.force_n[..n],
             first_sample: position,
             contact: self.slot,
             slopes: watched,
@@ -313,14 +315,18 @@ impl Voice {
 
     /// Tells the source how it is touched, and hears what it does back.
     fn press(&mut self, seat: &mut Seat, position: u64) {
-        let touch = Touch {
+        self.reaction = seat.react(&self.touch_at(position));
+    }
+
+    /// How the contact pressed at its last sample.
+    fn touch_at(&self, position: u64) -> Touch {
+        Touch {
             contact: self.slot,
             sample: position,
             position_m: self.last_point.position_m,
             velocity_m_s: self.last_point.velocity_m_s,
             normal_force_n: self.last_point.normal_force_n,
-        };
-        self.reaction = seat.react(&touch);
+        }
     }
 
     fn touch(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
@@ -372,6 +378,7 @@ impl Voice {
             && self.trajectory.is_still()
             && shared.micro_contact.is_settled(&self.pad, row.height_m, row.normal_force_n)
             && self.reaction.grain_rate_per_s == 0.0
+            && !self.reaction.stirs
             && scratch.out.impulse_n_s[n - 1].abs() < STILL_N_S
             && self.bus_busy_until <= position + n as u64;
         if self.asleep {

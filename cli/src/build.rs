@@ -141,6 +141,7 @@ fn actuator(entry: &ActuatorEntry, folder: &Path) -> Result<ActuatorSettings, Cl
         highpass_hz: entry.highpass_hz,
         equalise: device("equalise", entry.equalise.as_deref(), folder)?,
         limit: device("limit", entry.limit.as_deref(), folder)?,
+        limit_peaks: entry.limit_peaks,
         ..ActuatorSettings::default()
     })
 }

@@ -208,11 +208,13 @@ fn sand_again(design: &SandDesign, rows: &[Row]) -> Vec<f64> {
             normal_force_n: before.normal_force_n,
         });
         let position_m: Vec<_> = block.iter().map(|row| row.position_m).collect();
+        let normal_force_n: Vec<_> = block.iter().map(|row| row.normal_force_n).collect();
         let step = velocity_m_s[0].hypot(velocity_m_s[1]) / RATE_HZ;
         let path = PathBlock {
             position_m: &position_m,
             velocity_m_s: &vec![velocity_m_s; block.len()],
             footprint_m: &vec![step; block.len()],
+            normal_force_n: &normal_force_n,
             first_sample: block[0].sample,
             contact: 0,
             slopes: true,

@@ -10,15 +10,16 @@ use asperity_dsp::actuator::{
 };
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// Where the audio limiter holds the peaks: full scale.
-const AUDIO_CEILING: f64 = 1.0;
+/// Where limiters hold the peaks: full scale.
+const CEILING: f64 = 1.0;
 
 /// An actuator: what its contacts add up to, and the stage that drives it.
 pub(super) struct HapticChannel {
     pub(super) output: ContactOutput,
-    pub(super) design: actuator::Channel,
+    design: actuator::Channel,
     pub(super) control: ChannelControl,
-    pub(super) state: ChannelState,
+    state: ChannelState,
+    limiter: Option<(PeakLimiter, PeakLimiterState)>,
     /// Sum of the contacts, m or m/s².
     pub(super) sum: [f64; MAX_BLOCK],
 }
@@ -43,16 +44,23 @@ impl HapticChannel {
             design: actuator::Channel::new(&options, sample_rate_hz)?,
             control: ChannelControl::default(),
             state: ChannelState::default(),
+            limiter: limiter(settings.limit_peaks, sample_rate_hz)?,
             sum: [0.0; MAX_BLOCK],
         })
+    }
+
+    /// The samples of a stretch as long as `out`.
+    pub(super) fn run(&mut self, out: &mut [f32]) {
+        self.state.run(&self.design, &self.control, &self.sum[..out.len()], out);
+        if let Some((design, state)) = &mut self.limiter {
+            state.run(design, out);
+        }
     }
 }
 
 impl AudioBus {
     pub(super) fn new(settings: &AudioSettings, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let limiter = settings.limit.then(|| PeakLimiter::new(AUDIO_CEILING, sample_rate_hz)).transpose()?;
-        let limiter = limiter.map(|design| (design, PeakLimiterState::default()));
-        Ok(Self { gain: settings.gain as f32, limiter })
+        Ok(Self { gain: settings.gain as f32, limiter: limiter(settings.limit, sample_rate_hz)? })
     }
 
     pub(super) fn finish(&mut self, mix: &mut [f32]) {
@@ -71,7 +79,7 @@ impl Renderer {
         let inner = self.shared.inner;
         for (index, channel) in self.channels.iter_mut().enumerate() {
             let block = &mut self.mix.haptic[..n];
-            channel.state.run(&channel.design, &channel.control, &channel.sum[..n], block);
+            channel.run(block);
             if let Some(out) = haptic.get_mut(index) {
                 match channel.output.quantity() {
                     Quantity::Acceleration if inner.every > 1 => inner.average(at, block, out),
@@ -96,6 +104,15 @@ impl Renderer {
             self.shared.inner.pick(at, mix, out);
         }
     }
+}
+
+/// A limiter to full scale, where one is wanted.
+fn limiter(
+    wanted: bool,
+    sample_rate_hz: f64,
+) -> Result<Option<(PeakLimiter, PeakLimiterState)>, DesignError> {
+    let design = wanted.then(|| PeakLimiter::new(CEILING, sample_rate_hz)).transpose()?;
+    Ok(design.map(|design| (design, PeakLimiterState::default())))
 }
 
 /// One stretch of each kind of output.

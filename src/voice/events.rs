@@ -53,6 +53,7 @@ impl Voice {
         let mut path = self.trajectory;
         path.advance(&slot.trajectory, &mut scratch.points[..1]);
         self.last_point = scratch.points[0];
+        seat.land(&self.touch_at(position));
         let force_n = event.normal_force_n;
         let lands = sample.closing_m_s > 0.0;
         if lands {

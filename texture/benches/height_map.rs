@@ -40,6 +40,7 @@ fn height_map(c: &mut Criterion) {
                         position_m,
                         velocity_m_s: &velocity_m_s,
                         footprint_m: &footprint_m,
+                        normal_force_n: &[],
                         first_sample: 0,
                         contact: 0,
                         slopes: true,

@@ -62,6 +62,7 @@ fn blocks(c: &mut Criterion) {
                             position_m: &position_m,
                             velocity_m_s: &[[0.0882, 0.0]; MAX_BLOCK],
                             footprint_m: &[2e-6; MAX_BLOCK],
+                            normal_force_n: &[],
                             first_sample,
                             contact: 0,
                             slopes: true,

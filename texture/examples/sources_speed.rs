@@ -23,6 +23,7 @@ fn block_ns(source: &mut dyn HeightField) -> f64 {
             position_m: &position,
             velocity_m_s: &[[0.0882, 0.0]; MAX_BLOCK],
             footprint_m: &[2e-6; MAX_BLOCK],
+            normal_force_n: &[],
             first_sample: 64 * block,
             contact: 0,
             slopes: true,

@@ -59,6 +59,10 @@ impl HeightField for Sum {
         }
     }
 
+    fn land(&mut self, touch: &Touch) {
+        self.sources.iter_mut().for_each(|s| s.land(touch));
+    }
+
     fn react(&mut self, touch: &Touch) -> Reaction {
         self.sources.iter_mut().fold(Reaction::default(), |sum, s| add(sum, s.react(touch), 1.0))
     }
@@ -105,6 +109,10 @@ impl HeightField for Scale {
             out.height_m[i] *= factor;
             out.gradient[i] = out.gradient[i].map(|g| g * factor);
         }
+    }
+
+    fn land(&mut self, touch: &Touch) {
+        self.source.land(touch);
     }
 
     fn react(&mut self, touch: &Touch) -> Reaction {
@@ -162,11 +170,17 @@ impl HeightField for Mask {
         }
     }
 
+    fn land(&mut self, touch: &Touch) {
+        self.inside.land(touch);
+        self.outside.land(touch);
+    }
+
     fn react(&mut self, touch: &Touch) -> Reaction {
         let path = PathBlock {
             position_m: &[touch.position_m],
             velocity_m_s: &[touch.velocity_m_s],
             footprint_m: &[0.0],
+            normal_force_n: &[],
             first_sample: touch.sample,
             contact: touch.contact,
             slopes: false,
@@ -220,6 +234,10 @@ impl HeightField for Crossfade {
             let w = self.position.at(path.first_sample + i as u64);
             mix(out, &self.other, i, w);
         }
+    }
+
+    fn land(&mut self, touch: &Touch) {
+        self.sources.iter_mut().for_each(|s| s.land(touch));
     }
 
     fn react(&mut self, touch: &Touch) -> Reaction {
@@ -314,6 +332,11 @@ impl HeightField for BandSplit {
         }
     }
 
+    fn land(&mut self, touch: &Touch) {
+        self.coarse.land(touch);
+        self.fine.land(touch);
+    }
+
     fn react(&mut self, touch: &Touch) -> Reaction {
         let [low, high] = self.weights_at(touch.sample);
         add(add(Reaction::default(), self.coarse.react(touch), low), self.fine.react(touch), high)
@@ -363,5 +386,6 @@ fn add(sum: Reaction, part: Reaction, weight: f64) -> Reaction {
         force_n: core::array::from_fn(|a| sum.force_n[a] + weight * part.force_n[a]),
         grain_rate_per_s: rate,
         grain_impulse_n_s: if rate > 0.0 { momentum / rate } else { 0.0 },
+        stirs: sum.stirs || part.stirs,
     }
 }

@@ -11,7 +11,8 @@ use crate::sand::SandSource;
 /// Longest block a source is ever asked for, samples.
 pub const MAX_BLOCK: usize = 64;
 
-/// Where a contact is during up to [`MAX_BLOCK`] consecutive samples. All slices are equally long.
+/// Where a contact is during up to [`MAX_BLOCK`] consecutive samples. All slices are equally long, but for
+/// [`normal_force_n`](Self::normal_force_n), which may be empty.
 #[derive(Debug, Clone, Copy)]
 pub struct PathBlock<'a> {
     /// Position on the surface along its u and v axes, metres; (0, 0) is the top left corner of a
@@ -21,6 +22,8 @@ pub struct PathBlock<'a> {
     pub velocity_m_s: &'a [[f64; 2]],
     /// Distance travelled between two samples, metres: wavelengths below twice this alias.
     pub footprint_m: &'a [f64],
+    /// Force pressing the contact onto the surface, N; empty where nothing presses.
+    pub normal_force_n: &'a [f64],
     /// Absolute index of the first sample.
     pub first_sample: u64,
     /// Which contact this is (its slot in the engine), so that a source can keep state per contact.
@@ -41,6 +44,12 @@ impl PathBlock<'_> {
     pub fn is_empty(&self) -> bool {
         self.position_m.is_empty()
     }
+
+    /// Force at a sample, N.
+    #[must_use]
+    pub fn pressed_n(&self, index: usize) -> f64 {
+        self.normal_force_n.get(index).copied().unwrap_or(0.0)
+    }
 }
 
 /// What a surface is at each sample of a [`PathBlock`]; only the first `path.len()` entries count.
@@ -54,7 +63,8 @@ pub struct SurfaceBlock {
     pub roughness: [f64; MAX_BLOCK],
     /// Coulomb friction coefficient.
     pub friction: [f64; MAX_BLOCK],
-    /// Extra compliance of the surface in series with the contact spring, m/N; 0 = rigid.
+    /// How far the surface gives way over the force that presses it (the path's), m/N; 0 = rigid. It is
+    /// the secant, not the slope: sand gives way by a law that is no straight line.
     pub compliance_m_n: [f64; MAX_BLOCK],
 }
 
@@ -131,6 +141,8 @@ pub struct Reaction {
     pub grain_rate_per_s: f64,
     /// Mean momentum of one such impact, N·s.
     pub grain_impulse_n_s: f64,
+    /// What lies under the contact is changing, whether it moves or not: a contact that rests must look.
+    pub stirs: bool,
 }
 
 /// A surface that can be sampled in real time.
@@ -141,7 +153,12 @@ pub trait HeightField: Send {
     /// Fills the first `path.len()` entries of `out`.
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);
 
-    /// Tells the source how it is touched; a source that gives way answers with a force.
+    /// Tells the source that a contact begins where it is touched, before anything is read for it: what
+    /// was kept of an earlier contact of this number is forgotten.
+    fn land(&mut self, _touch: &Touch) {}
+
+    /// Tells the source how it is touched, whether the contact moves or rests; a source that gives way
+    /// answers with a force.
     fn react(&mut self, _touch: &Touch) -> Reaction {
         Reaction::default()
     }

@@ -204,6 +204,7 @@ fn rms_force(source: &mut dyn HeightField, rate: f64) -> f64 {
             position_m: &[position],
             velocity_m_s: &[stroke.velocity_m_s],
             footprint_m: &[stroke.footprint_m()],
+            normal_force_n: &[],
             first_sample: 1 + n as u64,
             contact: 0,
             slopes: true,

@@ -72,6 +72,7 @@ fn heap_operations(source: &mut Source, change: SurfaceChange) -> u64 {
                 position_m: &position,
                 velocity_m_s: &[[0.0441, 0.0]; MAX_BLOCK],
                 footprint_m: &[1e-6; MAX_BLOCK],
+                normal_force_n: &[],
                 first_sample: sample,
                 contact: 0,
                 slopes: true,

@@ -330,6 +330,9 @@ fn impossible_beds_are_refused_by_name() {
     let good = design(100, 0.1);
     assert_eq!(field(SandDesign { width_m: f64::NAN, ..good.clone() }), "width_m");
     assert_eq!(field(SandDesign { cells: 0, ..good.clone() }), "columns");
+    // Cells of 12.5 mm for a tool of 10 mm: it would leave no groove.
+    assert_eq!(field(SandDesign { cells: 8, ..good.clone() }), "cells");
+    assert!(SandSimulation::new(&SandDesign { cells: 10, ..good.clone() }).is_ok());
     assert_eq!(field(SandDesign { depth_m: 0.0, ..good.clone() }), "depth_m");
     assert_eq!(field(SandDesign { talus_deg: 90.0, ..good.clone() }), "talus_deg");
     assert_eq!(field(SandDesign { tool: Tool::Sphere { radius_m: 0.0 }, ..good.clone() }), "tool_radius_m");

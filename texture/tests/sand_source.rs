@@ -49,6 +49,7 @@ fn play(
             position_m: &path,
             velocity_m_s: &vec![velocity; length],
             footprint_m: &vec![0.0806 / RATE; length],
+            normal_force_n: &[],
             first_sample: sample,
             contact: 0,
             slopes: true,

@@ -129,6 +129,7 @@ impl Ground<'_> {
                         position_m: &position_m,
                         velocity_m_s: &[[0.0; 2]; MAX_BLOCK][..position_m.len()],
                         footprint_m: &[0.0; MAX_BLOCK][..position_m.len()],
+                        normal_force_n: &[],
                         first_sample: 0,
                         contact: 0,
                         slopes: true,
@@ -222,6 +223,15 @@ impl Ground<'_> {
             tool: tool(&entry.tool)?,
             contacts: CONTACTS,
         };
+        let (tool_m, cell_m) = (2.0 * design.tool.reach_m(), design.width_m / entry.cells as f64);
+        if cell_m > tool_m {
+            let what = format!("{} is refused", entry.cells);
+            let least = (design.width_m / tool_m).ceil();
+            let right = format!(
+                "must be at least {least}: a cell of {cell_m:.3} m is wider than the tool of {tool_m:.3} m, which would leave no groove"
+            );
+            return Err(CliError::new("sand: cells", what, right));
+        }
         let source = match self.workers {
             None => SandSource::synchronous(&design, self.seed, self.sample_rate_hz),
             Some(workers) => {

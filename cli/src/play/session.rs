@@ -6,7 +6,7 @@ use crate::build::{self, Built, Overrides};
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
-use crate::render::load_log;
+use crate::render::{load_log, told};
 use crate::scene_file::SceneFile;
 use asperity::channel_map::ChannelMap;
 use asperity::contact_log::{ContactLog, LogError};
@@ -49,6 +49,8 @@ struct Summary {
     late: u64,
     dropped: u64,
     interrupted: bool,
+    /// What was refused, lost or left out, and what speaks against sound.
+    warnings: Vec<String>,
 }
 
 /// Prints every output device.
@@ -77,7 +79,10 @@ pub fn list() -> Result<(), CliError> {
 pub fn run(options: &Options) -> Result<(), CliError> {
     let (scene_path, channels) = scene_and_channels(options)?;
     let file = SceneFile::load(Path::new(&scene_path))?;
-    let log = load_log(&file)?;
+    let (log, unread) = load_log(&file)?;
+    for place in &unread {
+        eprintln!("warning: {}", told::read_past(place));
+    }
     let device_options = DeviceOptions {
         host: options.host.clone(),
         device: options.device.clone(),
@@ -135,13 +140,15 @@ fn play(
     let end = ((log.end_s() + file.tail_s) * rate_hz).ceil() as u64 + latency_samples as u64;
     let outcome = follow(&mut scene, &mut feed, end, &interrupted);
     let heard_on = player.silent_because().is_none().then(|| player.device().to_owned());
-    let stats = scene.stats();
+    let (stats, why_silent) = (scene.stats(), scene.why_silent());
     let report = player.stop();
     for thread in sand {
         let _ = thread.stop();
     }
     outcome?;
-    Ok(summary(heard_on, rate_hz, latency_samples, &stats, &report, interrupted.load(Relaxed)))
+    let warnings = why_silent.iter().map(ToString::to_string).collect();
+    let summary = summary(heard_on, rate_hz, latency_samples, &stats, &report, interrupted.load(Relaxed));
+    Ok(Summary { warnings, ..summary })
 }
 
 fn log_name(file: &SceneFile) -> String {
@@ -228,6 +235,7 @@ fn summary(
         late: stats.late,
         dropped: stats.dropped,
         interrupted,
+        warnings: Vec::new(),
     }
 }
 
@@ -254,5 +262,8 @@ fn print(summary: &Summary) -> Result<(), CliError> {
         summary.late,
         summary.dropped,
     ));
+    for warning in &summary.warnings {
+        output::say(&format!("warning: {warning}"));
+    }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 pub mod picture;
 mod recorder;
+pub mod told;
 mod view;
 
 use crate::build::{self, Built, Overrides};
@@ -120,6 +121,8 @@ pub struct Report {
     pub sand: BTreeMap<String, SandReport>,
     /// Every file written.
     pub files: Vec<PathBuf>,
+    /// What was refused, lost or clipped, and why a file is silence: one line each, with what mends it.
+    pub warnings: Vec<String>,
 }
 
 /// A surface of sand after the last contact, settled.
@@ -157,13 +160,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         report.audio_peak,
         files.join(", "),
     ));
-    if report.audio_peak > 1.0 {
-        output::say("the audio exceeds full scale: lower [audio] gain, or set limit = true");
-    }
-    for (channel, peak) in report.haptic_peak.iter().enumerate().filter(|(_, peak)| **peak > 1.0) {
-        output::say(&format!(
-            "haptic channel {channel} peaks at {peak:.2} of full scale: raise its full_scale, or set limit = true"
-        ));
+    for warning in &report.warnings {
+        output::say(&format!("warning: {warning}"));
     }
     Ok(())
 }
@@ -180,7 +178,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     check_destination(&with_suffix(stem, "audio.wav"))?;
     let mut file = SceneFile::load(&options.scene)?;
     file.seed = options.seed.or(file.seed);
-    let log = load_log(&file)?;
+    let (log, unread) = load_log(&file)?;
     let overrides = Overrides {
         sample_rate_hz: options.rate,
         seed: options.seed,
@@ -204,6 +202,8 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
     let mut report = report(&render, watching);
+    report.warnings = unread.iter().map(|place| told::read_past(place)).collect();
+    report.warnings.extend(told::warnings(&log, &render, &report));
     for sand in &render.sand {
         let Some((name, _)) = names.iter().find(|(_, id)| *id == sand.surface) else { continue };
         let raster = &sand.picture.raster;
@@ -229,11 +229,11 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     Ok(report)
 }
 
-/// The contact log that a scene file names.
+/// The contact log that a scene file names, and the keys in it that are read past.
 ///
 /// # Errors
 /// When none is named, it is no log, or it speaks of a channel that the scene does not have.
-pub fn load_log(file: &SceneFile) -> Result<ContactLog, CliError> {
+pub fn load_log(file: &SceneFile) -> Result<(ContactLog, Vec<String>), CliError> {
     let path = file.contacts.as_ref().ok_or_else(|| {
         CliError::new(
             format!("{}: contacts", file.path.display()),
@@ -241,9 +241,11 @@ pub fn load_log(file: &SceneFile) -> Result<ContactLog, CliError> {
             "write contacts = \"NAME.jsonl\", the events to render",
         )
     })?;
-    let log = ContactLog::load(path).map_err(CliError::told)?;
+    let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
+    let (log, unread) =
+        ContactLog::parse_telling(&text, &path.display().to_string()).map_err(CliError::told)?;
     check_actuators(&log, path, file.actuators.len())?;
-    Ok(log)
+    Ok((log, unread))
 }
 
 /// A contact on a channel that is not there would be felt nowhere.
@@ -364,6 +366,7 @@ fn report(render: &Render, watching: Duration) -> Report {
         sample_rate_hz: render.sample_rate_hz,
         sand: BTreeMap::new(),
         files: Vec::new(),
+        warnings: Vec::new(),
     }
 }
 

@@ -76,6 +76,7 @@ fn spline(map: &mut HeightMap, course: &Course) -> Vec<f64> {
             position_m: part,
             velocity_m_s: &velocity_m_s[..part.len()],
             footprint_m: &footprint_m[..part.len()],
+            normal_force_n: &[],
             first_sample: (index * BLOCK) as u64,
             contact: 0,
             slopes: true,

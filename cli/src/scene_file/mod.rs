@@ -113,6 +113,8 @@ pub struct ActuatorEntry {
     pub equalise: Option<String>,
     /// Name of the device profile whose excursion and heat are kept within limits; none = no limit.
     pub limit: Option<String>,
+    /// Keeps the channel within ±1, whatever the device.
+    pub limit_peaks: bool,
 }
 
 impl Default for ActuatorEntry {
@@ -123,6 +125,7 @@ impl Default for ActuatorEntry {
             highpass_hz: 10.0,
             equalise: None,
             limit: None,
+            limit_peaks: false,
         }
     }
 }
@@ -284,16 +287,11 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, CliError> {
     let default = ActuatorEntry::default();
     let output = fields.word("output", &words)?.unwrap_or(default.output);
     let equalise = fields.text("equalise")?.filter(|name| name != "none");
-    let limit = match fields.take("limit") {
-        None | Some(Value::Boolean(false)) => None,
-        Some(Value::Boolean(true)) => match &equalise {
-            Some(device) => Some(device.clone()),
-            None => {
-                let right = "write the device as equalise = \"…\" or as limit = \"…\"";
-                return Err(fields.refuse("limit", "true names no device", right));
-            }
-        },
-        Some(Value::String(device)) => Some(device),
+    let (limit, limit_peaks) = match fields.take("limit") {
+        None | Some(Value::Boolean(false)) => (None, false),
+        // The limits of the device that is equalised; without one, those of the file: full scale.
+        Some(Value::Boolean(true)) => (equalise.clone(), equalise.is_none()),
+        Some(Value::String(device)) => (Some(device), false),
         Some(other) => {
             let what = format!("{} is refused", fields::shown(&other));
             return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
@@ -315,6 +313,7 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, CliError> {
         )?,
         equalise,
         limit,
+        limit_peaks,
     };
     fields.finish()?;
     Ok(actuator)

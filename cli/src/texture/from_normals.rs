@@ -48,6 +48,15 @@ pub enum GreenName {
     DirectX,
 }
 
+impl GreenName {
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::OpenGl => "OpenGL's",
+            Self::DirectX => "DirectX's",
+        }
+    }
+}
+
 /// Ways of taking slopes from heights.
 #[derive(Debug, Clone, Copy, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -63,6 +72,15 @@ pub enum DerivativeName {
 }
 
 impl DerivativeName {
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Central => "central",
+            Self::Sobel => "Sobel's",
+            Self::ExactOrCentral => "exact or central",
+        }
+    }
+
     fn derivative(self) -> Derivative {
         match self {
             Self::Exact => Derivative::Exact,
@@ -147,12 +165,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     let sure = |certain: bool| if certain { "" } else { " (the map does not tell)" };
     output::say(&format!(
-        "{} × {} texels; white is {relief_per_px:.2} texels above black; {:?} green{}; {:?} slopes{}\nwrote {}",
+        "{} × {} texels; white is {relief_per_px:.2} texels above black; {} green{}; {} slopes{}\nwrote {}",
         report.width,
         report.height,
-        report.green,
+        report.green.in_words(),
         sure(report.green_is_certain),
-        report.derivative,
+        report.derivative.in_words(),
         sure(report.derivative_is_certain),
         options.output.display()
     ));

@@ -77,7 +77,7 @@ impl Toucher {
         let velocity = world.bodies[self.body].velocity_at_point(solved.point);
         let landed = self.point.is_none();
         let point = self.follow(&solved, velocity * world.integration_parameters.dt);
-        let place = ground.mesh.locate(shape, point)?;
+        let triangle = ground.mesh.triangle_at(shape, point)?;
         match self.touch {
             Touch::Strikes { radius_m, material } => {
                 let rested = time_s - self.last_impact_s >= REFRACTORY_S;
@@ -96,12 +96,9 @@ impl Toucher {
                 })
             }
             Touch::Slides { actuator } => {
-                let along = place.axes.map(|axis| f64::from(velocity.dot(axis)));
                 let sample = ContactSample {
-                    uv: place.uv,
-                    velocity_m_s: Some(along),
-                    normal_force_n: f64::from(solved.force_n),
                     closing_m_s: if landed { f64::from(self.closing_m_s) } else { 0.0 },
+                    ..triangle.sample(point, velocity, f64::from(solved.force_n))
                 };
                 Some(if landed {
                     ContactEvent::begin(self.id, ground.surface, actuator, sample)

@@ -1,5 +1,6 @@
-//! A triangle mesh with texture coordinates: from a point on it to uv, and to the axes along u and v.
+//! A triangle mesh with texture coordinates: from a point near it to the triangle it lies on.
 
+use asperity::UvTriangle;
 use rapier3d::parry::query::PointQueryWithLocation;
 use rapier3d::parry::shape::TriMesh;
 use rapier3d::prelude::*;
@@ -10,13 +11,6 @@ pub struct UvMesh {
     pub vertices: Vec<Vector>,
     pub indices: Vec<[u32; 3]>,
     pub uv: Vec<[f64; 2]>,
-}
-
-/// A point of the mesh.
-pub struct OnMesh {
-    pub uv: [f64; 2],
-    /// Unit vectors along which u and v grow, in the mesh's own space.
-    pub axes: [Vector; 2],
 }
 
 impl UvMesh {
@@ -41,34 +35,14 @@ impl UvMesh {
         mesh
     }
 
-    /// Where a point near the mesh lies on it. The triangle comes from the projection: clustered contacts
-    /// of several triangles carry no single sub-shape index.
-    pub fn locate(&self, shape: &TriMesh, local: Vector) -> Option<OnMesh> {
-        let (_, (triangle, place)) = shape.project_local_point_and_get_location(local, false);
-        let weights = place.barycentric_coordinates()?;
+    /// The triangle that a point near the mesh lies on. It comes from the projection: clustered contacts of
+    /// several triangles carry no single sub-shape index.
+    pub fn triangle_at(&self, shape: &TriMesh, local: Vector) -> Option<UvTriangle> {
+        let (_, (triangle, _)) = shape.project_local_point_and_get_location(local, false);
         let corners = *self.indices.get(triangle as usize)?;
-        let mut uv = [0.0; 2];
-        for (corner, weight) in corners.iter().zip(weights) {
-            for (sum, x) in uv.iter_mut().zip(self.uv[*corner as usize]) {
-                *sum += f64::from(weight) * x;
-            }
-        }
-        Some(OnMesh { uv, axes: self.axes(corners)? })
-    }
-
-    /// ∂P/∂u and ∂P/∂v of a triangle, normalised.
-    fn axes(&self, corners: [u32; 3]) -> Option<[Vector; 2]> {
-        let [p, q, r] = corners.map(|corner| self.vertices[corner as usize]);
-        let [a, b, c] = corners.map(|corner| self.uv[corner as usize]);
-        let (edges, du) = ([q - p, r - p], [b[0] - a[0], c[0] - a[0]]);
-        let dv = [b[1] - a[1], c[1] - a[1]];
-        let area = du[0] * dv[1] - du[1] * dv[0];
-        if area == 0.0 {
-            return None;
-        }
-        let along = |first: f64, second: f64| {
-            (edges[0] * (first / area) as f32 + edges[1] * (second / area) as f32).normalize_or_zero()
-        };
-        Some([along(dv[1], -dv[0]), along(-du[1], du[0])])
+        UvTriangle::new(
+            corners.map(|corner| self.vertices[corner as usize]),
+            corners.map(|corner| self.uv[corner as usize]),
+        )
     }
 }

@@ -117,6 +117,7 @@ impl HeightField for BrownianSurface {
             position_m: &[touch.position_m],
             velocity_m_s: &[touch.velocity_m_s],
             footprint_m: &[0.0],
+            normal_force_n: &[],
             first_sample: touch.sample,
             contact: touch.contact,
             slopes: true,

@@ -150,12 +150,6 @@ impl SandLaw {
         top + (left / (hardness * self.wet_stiffness_n() * (k * top).exp())).ln_1p() / k
     }
 
-    /// Compliance at the surface, m/N.
-    #[must_use]
-    pub fn compliance_m_n(&self) -> f64 {
-        1.0 / (self.wet_stiffness_n() * self.exponent_per_m)
-    }
-
     /// Drag on a tool that the sand carries with `force_n`, N.
     #[must_use]
     pub fn drag_n(&self, velocity_m_s: [f64; 2], force_n: f64) -> [f64; 2] {

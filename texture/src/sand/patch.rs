@@ -37,6 +37,15 @@ impl Patch {
         }
     }
 
+    /// Whether it shows the very heights that another shows.
+    #[must_use]
+    pub fn shows(&self, other: &Self) -> bool {
+        self.origin_m == other.origin_m
+            && self.spacing_m == other.spacing_m
+            && self.base_m == other.base_m
+            && self.heights_m == other.heights_m
+    }
+
     /// Height above the untouched surface and slope at a position; level beyond the edge.
     #[must_use]
     pub fn at(&self, position_m: [f64; 2]) -> (f64, [f64; 2]) {

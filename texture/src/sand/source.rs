@@ -15,9 +15,11 @@
 //! grid: renders are reproducible and do not depend on how time is split into blocks. It is for
 //! rendering offline; a frame may take a millisecond.
 //!
-//! Height = the sand of the patch + grains (solid noise finer than a cell). The depth to which a tool
-//! sinks is the compliance 1/(k_s k_c) in series with the contact; drag and grain impacts are the
-//! answer to a touch.
+//! Height = the sand of the patch + grains (solid noise finer than a cell). A contact sinks as deep as its
+//! print, d(F) of the [law](super::law), but not below the bottom of the bed; drag and grain impacts are
+//! the answer to a touch. A contact reads the sand it lands on until its first patch has faded in; a patch
+//! that shows nothing new does not fade, and once none fades the sand does not stir under a resting
+//! contact, which may sleep.
 
 use super::grid::SandPicture;
 use super::law::SandLaw;
@@ -31,7 +33,7 @@ use crate::solid_materials::{FRICTION, SolidMaterial};
 use crate::solid_noise::SolidNoise;
 use asperity_dsp::DesignError;
 
-/// Patches in circulation for every contact: one that fades out, one that fades in, one that waits,
+/// Patches in circulation for every contact, besides the one it landed on: one that fades out, one that fades in, one that waits,
 /// one under way.
 const PATCHES_A_CONTACT: usize = 4;
 
@@ -47,18 +49,31 @@ enum Link {
 }
 
 /// What one contact reads.
-#[derive(Default)]
 struct Slot {
+    /// The sand that it landed on.
+    ground: Box<Patch>,
     old: Option<Box<Patch>>,
     new: Option<Box<Patch>>,
     waiting: Option<Box<Patch>>,
     fade_start: u64,
-    /// Sample of the next touch, if the contact stays down.
-    next_touch: u64,
+    /// Sample of the next touch, if the contact stays down; `None` before the first.
+    next_touch: Option<u64>,
     /// The simulation has not been told yet that the contact has landed.
     landed: bool,
-    /// First sample of the last block and the one after its last.
-    seen: [u64; 2],
+}
+
+impl Slot {
+    fn new() -> Self {
+        Self {
+            ground: Box::new(Patch::flat()),
+            old: None,
+            new: None,
+            waiting: None,
+            fade_start: 0,
+            next_touch: None,
+            landed: false,
+        }
+    }
 }
 
 /// A surface of sand.
@@ -73,6 +88,8 @@ pub struct SandSource {
     frame_samples: u64,
     next_frame: u64,
     longest_m: f64,
+    /// Depth of the untouched bed, metres.
+    depth_m: f64,
 }
 
 impl SandSource {
@@ -133,7 +150,8 @@ impl SandSource {
             (sample_rate_hz / FRAMES_PER_S / block).round().max(2.0) as u64 * MAX_BLOCK as u64;
         Ok(Self {
             link,
-            slots: (0..design.contacts).map(|_| Slot::default()).collect(),
+            slots: (0..design.contacts).map(|_| Slot::new()).collect(),
+            depth_m: design.depth_m,
             overview: Box::new(Patch::flat()),
             spare,
             law: Fade::new(design.law, sample_rate_hz)?,
@@ -167,31 +185,29 @@ impl SandSource {
         Some((simulation.figures(), simulation.picture()))
     }
 
+    /// Lets sand slide for the frames in which nothing touched it.
+    fn catch_up(&mut self, sample: u64) {
+        let Link::Here(simulation) = &mut self.link else { return };
+        while sample >= self.next_frame + self.frame_samples && !simulation.is_at_rest() {
+            simulation.frame();
+            self.next_frame += self.frame_samples;
+        }
+    }
+
     /// Tells the simulation about a touch and takes what it has to say.
     fn exchange(&mut self, touch: &Touch) {
-        let mut pose = Pose {
-            contact: touch.contact,
-            position_m: touch.position_m,
-            velocity_m_s: touch.velocity_m_s,
-            normal_force_n: touch.normal_force_n,
-            landed: false,
-        };
-        if let Some(slot) = self.slots.get_mut(touch.contact) {
-            slot.landed |= slot.next_touch != touch.sample;
-            slot.next_touch = touch.sample + MAX_BLOCK as u64;
-            pose.landed = slot.landed;
+        // Whoever was lifted, or comes here with a surface that was replaced, lands without being announced.
+        if self.slots.get(touch.contact).is_some_and(|slot| slot.next_touch != Some(touch.sample)) {
+            self.land(touch);
         }
+        self.catch_up(touch.sample);
+        let Some(slot) = self.slots.get_mut(touch.contact) else { return };
+        slot.next_touch = Some(touch.sample + MAX_BLOCK as u64);
+        let pose = Pose { landed: slot.landed, ..pose(touch) };
         match &mut self.link {
             Link::Here(simulation) => {
-                // While nothing touched the sand, it went on sliding.
-                while touch.sample >= self.next_frame + self.frame_samples && !simulation.is_at_rest() {
-                    simulation.frame();
-                    self.next_frame += self.frame_samples;
-                }
                 simulation.tell(pose);
-                if let Some(slot) = self.slots.get_mut(touch.contact) {
-                    slot.landed = false;
-                }
+                slot.landed = false;
                 if touch.sample < self.next_frame {
                     return;
                 }
@@ -209,9 +225,7 @@ impl SandSource {
             }
             Link::Elsewhere { poses, patches, back, .. } => {
                 // A full ring: the simulation is late and will hear the next pose.
-                if poses.push(pose).is_ok()
-                    && let Some(slot) = self.slots.get_mut(touch.contact)
-                {
+                if poses.push(pose).is_ok() {
                     slot.landed = false;
                 }
                 while let Ok(patch) = patches.pop() {
@@ -231,22 +245,41 @@ impl SandSource {
         }
     }
 
-    /// Begins to fade to the waiting patch once the last fade is over.
-    fn turn_over(&mut self, contact: usize, sample: u64) {
-        let Some(slot) = self.slots.get_mut(contact) else { return };
-        if slot.waiting.is_some()
-            && sample >= slot.fade_start.saturating_add(fade_samples(self.frame_samples))
+    /// Begins to fade to the waiting patch once the last fade is over. Whether a fade is under way, and how
+    /// much sand the contact displaces, m³ a metre of its way.
+    fn turn_over(&mut self, contact: usize, sample: u64) -> (bool, f64) {
+        let fade_samples = fade_samples(self.frame_samples);
+        let Some(slot) = self.slots.get_mut(contact) else { return (false, 0.0) };
+        let fades = |slot: &Slot| slot.new.is_some() && sample < slot.fade_start.saturating_add(fade_samples);
+        if !fades(slot)
+            && let Some(waiting) = slot.waiting.take()
         {
-            let old = slot.old.take();
-            slot.old = slot.new.take();
-            slot.new = slot.waiting.take();
-            // A contact's first patch takes over at once: until now it read the overview, which by now
-            // shows the print of the very finger that stands in it.
-            let is_first = slot.old.is_none();
-            slot.fade_start =
-                if is_first { sample.saturating_sub(fade_samples(self.frame_samples)) } else { sample };
-            self.spare.extend(old);
+            match &mut slot.new {
+                Some(new) if new.shows(&waiting) => {
+                    new.displaced_m2 = waiting.displaced_m2;
+                    self.spare.push(waiting);
+                }
+                _ => {
+                    let old = slot.old.take();
+                    slot.old = slot.new.take();
+                    slot.new = Some(waiting);
+                    slot.fade_start = sample;
+                    self.spare.extend(old);
+                }
+            }
         }
+        (fades(slot), slot.new.as_ref().map_or(0.0, |new| new.displaced_m2))
+    }
+}
+
+/// Where a touch is; a contact that has just landed says so itself.
+fn pose(touch: &Touch) -> Pose {
+    Pose {
+        contact: touch.contact,
+        position_m: touch.position_m,
+        velocity_m_s: touch.velocity_m_s,
+        normal_force_n: touch.normal_force_n,
+        landed: false,
     }
 }
 
@@ -282,14 +315,9 @@ impl HeightField for SandSource {
         out.clear(n);
         out.friction[..n].fill(FRICTION);
         let fade_length = fade_samples(self.frame_samples) as f64;
-        let Some(slot) = self.slots.get_mut(path.contact) else { return };
-        if path.first_sample != slot.seen[0] && path.first_sample != slot.seen[1] {
-            // A new contact: its patches belong to another place.
-            self.spare.extend(slot.old.take().into_iter().chain(slot.new.take()).chain(slot.waiting.take()));
-            slot.fade_start = 0;
-        }
-        slot.seen = [path.first_sample, path.first_sample + n as u64];
-        let old = slot.old.as_ref().unwrap_or(&self.overview);
+        let Some(slot) = self.slots.get(path.contact) else { return };
+        let ground = if slot.next_touch.is_some() { &slot.ground } else { &self.overview };
+        let old = slot.old.as_ref().unwrap_or(ground);
         for i in 0..n {
             let at = path.position_m[i];
             let sample = path.first_sample + i as u64;
@@ -312,19 +340,36 @@ impl HeightField for SandSource {
             }
             out.height_m[i] = height + self.grain_relief.height_m[i];
             out.gradient[i] = [0, 1].map(|a| slope[a] + self.grain_relief.gradient[i][a]);
-            for (weight, law) in self.law.weights(sample).iter().zip(self.law.values()) {
-                if *weight != 0.0 {
-                    out.compliance_m_n[i] += weight * law.compliance_m_n();
+            let pressed_n = path.pressed_n(i);
+            if pressed_n > 0.0 {
+                let mut sinks_m = 0.0;
+                for (weight, law) in self.law.weights(sample).iter().zip(self.law.values()) {
+                    if *weight != 0.0 {
+                        sinks_m += weight * law.depth_m(pressed_n);
+                    }
                 }
+                // The bottom of the bed carries what the sand does not.
+                out.compliance_m_n[i] = sinks_m.min((self.depth_m + height).max(0.0)) / pressed_n;
             }
+        }
+    }
+
+    fn land(&mut self, touch: &Touch) {
+        self.catch_up(touch.sample);
+        let Some(slot) = self.slots.get_mut(touch.contact) else { return };
+        // Its patches belong to another place.
+        self.spare.extend(slot.old.take().into_iter().chain(slot.new.take()).chain(slot.waiting.take()));
+        slot.landed = true;
+        slot.next_touch = Some(touch.sample.next_multiple_of(MAX_BLOCK as u64));
+        match &self.link {
+            Link::Here(simulation) => simulation.write_landing(&pose(touch), &mut slot.ground),
+            Link::Elsewhere { .. } => slot.ground.clone_from(&self.overview),
         }
     }
 
     fn react(&mut self, touch: &Touch) -> Reaction {
         self.exchange(touch);
-        self.turn_over(touch.contact, touch.sample);
-        let displaced_m2 =
-            self.slots.get(touch.contact).and_then(|s| s.new.as_ref()).map_or(0.0, |p| p.displaced_m2);
+        let (stirs, displaced_m2) = self.turn_over(touch.contact, touch.sample);
         let mut drag = [0.0; 2];
         for (weight, law) in self.law.weights(touch.sample).iter().zip(self.law.values()) {
             let part = law.drag_n(touch.velocity_m_s, touch.normal_force_n);
@@ -333,7 +378,7 @@ impl HeightField for SandSource {
         let law = self.law.target();
         let speed = touch.velocity_m_s[0].hypot(touch.velocity_m_s[1]);
         let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
-        Reaction { force_n: [drag[0], drag[1], 0.0], grain_rate_per_s, grain_impulse_n_s }
+        Reaction { force_n: [drag[0], drag[1], 0.0], grain_rate_per_s, grain_impulse_n_s, stirs }
     }
 
     fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {

@@ -73,6 +73,21 @@ impl Tool {
         }
     }
 
+    /// Radius of the print that the tool leaves at a depth, metres: of the circle of the same area.
+    #[must_use]
+    pub fn print_radius_m(&self, depth_m: f64) -> f64 {
+        match self {
+            Self::Sphere { radius_m } => {
+                let below = depth_m.clamp(0.0, *radius_m);
+                (below * (2.0 * radius_m - below)).sqrt()
+            }
+            Self::LowerMap { map, texel_m } => {
+                let texels = map.values.iter().filter(|&&lower_m| lower_m < depth_m).count();
+                texel_m * (texels as f64 / core::f64::consts::PI).sqrt()
+            }
+        }
+    }
+
     /// Height of the underside above the lowest point, metres; infinite where there is no tool.
     fn lower_m(&self, offset_m: [f64; 2]) -> f64 {
         match self {
@@ -180,6 +195,7 @@ impl Press {
     ) -> Cut {
         let cell = grid.cell_m();
         let reach = tool.reach_m();
+        let contact = position_m.map(|p| if p >= 0.0 { (p / cell) as usize } else { usize::MAX });
         let mut units = 0_i64;
         let mut middle = [0.0; 2];
         let mut bounds = Area { columns: [usize::MAX, 0], rows: [usize::MAX, 0] };
@@ -187,10 +203,16 @@ impl Press {
             let dy = (y as f64 + 0.5) * cell - position_m[1];
             for x in area.columns[0]..=area.columns[1] {
                 let dx = (x as f64 + 0.5) * cell - position_m[0];
-                if dx * dx + dy * dy > reach * reach {
+                let holds_contact = [x, y] == contact;
+                if dx * dx + dy * dy > reach * reach && !holds_contact {
                     continue;
                 }
-                let lower = (tip_m + tool.lower_m([dx, dy])) * UNITS_PER_M;
+                let mut lower_m = tool.lower_m([dx, dy]);
+                if holds_contact {
+                    // So that the print is as deep as the tool stands, wherever within a cell that is.
+                    lower_m = lower_m.min(tool.lower_m([0.0; 2]));
+                }
+                let lower = (tip_m + lower_m) * UNITS_PER_M;
                 let at = grid.index(x, y);
                 let before = grid.heights[at];
                 // Touching counts as cut, so that the tool keeps standing in its own print.

@@ -48,6 +48,7 @@ pub fn height_rate(source: &mut SolidNoise, path: &[([f64; 2], [f64; 2])]) -> Ve
             position_m: &position,
             velocity_m_s: &velocity,
             footprint_m: &footprint,
+            normal_force_n: &[],
             first_sample: 64 * k as u64,
             contact: 0,
             slopes: true,

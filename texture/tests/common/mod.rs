@@ -48,6 +48,7 @@ impl Stroke {
                 position_m: &position,
                 velocity_m_s: &vec![self.velocity_m_s; length],
                 footprint_m: &vec![self.footprint_m(); length],
+                normal_force_n: &[],
                 first_sample,
                 contact: 0,
                 slopes: true,
