@@ -148,7 +148,8 @@ fn summary(rows: &[Row]) {
     line("snr dB", column(|r| r.snr_db));
     line("told - snr dB", column(|r| r.told_db - r.snr_db));
     line("ring", column(|r| r.ring));
-    let decays: Vec<f64> = rows.iter().filter(|r| !r.decays.is_empty()).map(|r| quantile(&r.decays, 0.5)).collect();
+    let decays: Vec<f64> =
+        rows.iter().filter(|r| !r.decays.is_empty()).map(|r| quantile(&r.decays, 0.5)).collect();
     line("decay %", decays.iter().map(|d| 100.0 * d).collect());
     let all: Vec<f64> = rows.iter().flat_map(|r| &r.decays).map(|d| 100.0 * d).collect();
     line("decay % of all", all);
@@ -156,7 +157,10 @@ fn summary(rows: &[Row]) {
         rows.iter().map(part).fold((0, 0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
     };
     let (late, split) = (sum(|r| r.late), sum(|r| r.split));
-    println!("late partials absent: {} of {}; strong resonances split: {} of {}", late.0, late.1, split.0, split.1);
+    println!(
+        "late partials absent: {} of {}; strong resonances split: {} of {}",
+        late.0, late.1, split.0, split.1
+    );
     println!("mode limit named: {} of {}", rows.iter().filter(|r| r.limit).count(), rows.len());
 }
 
@@ -176,9 +180,8 @@ fn peak(samples: &[f64]) -> f64 {
 fn aligned(sound: &[f64], struck: &[f64], rate: f64) -> Vec<f64> {
     let shift = (SHIFT_S * rate).round() as usize;
     let count = ((ALIGNED_S * rate) as usize).min(sound.len());
-    let error = |lag: usize| {
-        sound[..count].iter().zip(&struck[lag..]).map(|(x, y)| (x - y) * (x - y)).sum::<f64>()
-    };
+    let error =
+        |lag: usize| sound[..count].iter().zip(&struck[lag..]).map(|(x, y)| (x - y) * (x - y)).sum::<f64>();
     let lag = (0..=2 * shift).min_by(|&a, &b| error(a).total_cmp(&error(b))).unwrap_or(shift);
     struck[lag..lag + sound.len()].to_vec()
 }

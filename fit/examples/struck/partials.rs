@@ -19,7 +19,7 @@ const STEP_S: f64 = 0.01;
 /// How far down a decay is followed, and how far over the end of the sound it must stay, dB.
 const FOLLOWED_DB: f64 = 35.0;
 const OVER_END_DB: f64 = 10.0;
-/// Strong modes, and what splits one: another within so many half widths, at most so far below it.
+/// Strong modes, and what splits one: another within so many half widths of both, at most so far below it.
 const HALF_WIDTHS: f64 = 3.0;
 const SPLIT_DB: f64 = 20.0;
 
@@ -31,7 +31,8 @@ pub fn late_partials(sound: &[f64], played: &[f64], rate: f64) -> (usize, usize)
     };
     let middle = 0.5 * (LATE_S.0 + LATE_S.1);
     let Some(late) = part(sound, LATE_S) else { return (0, 0) };
-    let (Some(first), Some(second)) = (part(sound, (LATE_S.0, middle)), part(sound, (middle, LATE_S.1))) else {
+    let (Some(first), Some(second)) = (part(sound, (LATE_S.0, middle)), part(sound, (middle, LATE_S.1)))
+    else {
         return (0, 0);
     };
     let found = peaks(&spectrum_db(&late), rate);
@@ -81,7 +82,7 @@ pub fn split_resonances(modes: &[Mode], seconds: f64) -> (usize, usize) {
     let splits = |m: &Mode, other: &Mode| {
         let gap = (m.frequency_hz - other.frequency_hz).abs();
         m != other
-            && gap < HALF_WIDTHS * m.decay_per_s / (2.0 * PI)
+            && gap < HALF_WIDTHS * m.decay_per_s.min(other.decay_per_s) / (2.0 * PI)
             && energy(other) > energy(m) * 10.0_f64.powf(-0.1 * SPLIT_DB)
     };
     let all: Vec<&Mode> = modes.iter().filter(strong).collect();
