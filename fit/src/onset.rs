@@ -237,7 +237,7 @@ mod tests {
                         * ((6000.0 * t).sin() + ((6000.0 + std::f64::consts::TAU * beat_hz) * t).sin())
                 })
                 .collect();
-            let strike = find(&samples, 44_100.0);
+            let strike = best(&samples);
             assert!(strike.others.is_empty() && strike.onset < 20, "{beat_hz}: {strike:?}");
         }
     }
