@@ -1,4 +1,6 @@
-//! The whole analysis of one segment: levels from long to short, joint refinement, proof, once more.
+//! The analysis of a segment that is a sum of modes in noise: levels from long to short, joint refinement, proof, once
+//! more. It ends at the statistical bound; a segment that is no such sum is told apart ([`crate::sum_of_modes`] before,
+//! [`Analysis::explained`] after) and left to [`crate::tail_to_attack`].
 //!
 //! Nothing of this is done where nothing rings ([`crate::ringing`]).
 //!
@@ -14,11 +16,11 @@
 use crate::amplitudes::{contributions, fit_amplitudes};
 use crate::candidates::{SPAN_NEPERS, Search};
 use crate::limits::Limits;
-use crate::merging::{merge_cancelling, merge_resonances};
+use crate::merging::merge_cancelling;
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
 use crate::projection::synthesise;
-use crate::pruning::{WORTH_ITS_PARAMETERS, prune, prune_missed_by_nobody, threshold};
+use crate::pruning::{prune, prune_missed_by_nobody, threshold};
 use crate::refinement::refine;
 use crate::ringing::{anything_rings, is_steep_noise, standing_out};
 use crate::sub_band::Level;
@@ -31,14 +33,10 @@ const PASSES: usize = 3;
 const LEVEL_STEPS: usize = 3;
 /// A residual with this many times the noise's power is no noise.
 const MISFIT: f64 = 2.0;
-/// [`crate::refinement::Bounds::energy_cost`] once a recording has shown that it is no sum of modes.
-const ENERGY_COST: f64 = 1e-3;
 /// Most rounds of merging and refitting.
 const MERGING_ROUNDS: usize = 15;
 /// Most rounds of one level.
 const LEVEL_ROUNDS: usize = 3;
-/// A round that leaves more than this part of the squared residual, with all modes in use, is the last.
-const WORTHWHILE: f64 = 0.9;
 /// Until they are proven there may be this many times as many partials as are allowed in the end: a hundred modes at
 /// 60 dB need 1.6 times the usual 150.
 const UNPROVEN: f64 = 2.0;
@@ -62,6 +60,15 @@ pub struct Analysis {
     pub residual: Vec<f64>,
     /// Whether more was there than `max_partials` allowed.
     pub capped: bool,
+    /// Whether the partials leave no more than noise.
+    pub explained: bool,
+}
+
+impl Analysis {
+    /// Of a segment in which nothing rings.
+    pub(crate) fn nothing(segment: &[f64], noise: NoiseFloor) -> Self {
+        Self { partials: Vec::new(), noise, residual: segment.to_vec(), capped: false, explained: true }
+    }
 }
 
 /// Analyses `segment`; `progress` hears the part done, 0 to 1.
@@ -72,70 +79,29 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         noise: NoiseFloor::estimate(segment, limits.rate_hz, limits.least_noise),
         partials: Vec::new(),
         capped: false,
-        mismatch: false,
         missed: Vec::new(),
     };
     let band = (limits.bounds.omega_low, limits.bounds.omega_high);
     if !anything_rings(segment, band, limits.least_noise) {
         progress(1.0);
-        return Analysis {
-            partials: Vec::new(),
-            noise: work.noise,
-            residual: segment.to_vec(),
-            capped: false,
-        };
+        return Analysis::nothing(segment, work.noise);
     }
-    let levels = Level::ladder(segment.len());
-    let mut cost = f64::INFINITY;
-    for pass in 0..PASSES {
-        let known = work.partials.len();
-        let mut added = 0;
-        for (i, &level) in levels.iter().enumerate() {
-            progress(0.9 * (pass * levels.len() + i) as f64 / (PASSES * levels.len()) as f64);
-            added += work.level(level, pass > 0);
+    work.passes(progress);
+    let mut explained = !work.capped && !work.leaves_more_than_noise();
+    if explained {
+        work.follow_tilt();
+        work.settle(LAST_STEPS);
+        for _ in 0..MERGING_ROUNDS {
+            if merge_cancelling(segment, &mut work.partials, &work.limits.bounds) == 0 {
+                break;
+            }
+            work.settle(FINAL_STEPS);
         }
-        if pass > 0 && added == 0 {
-            break;
-        }
-        work.settle(FINAL_STEPS);
-        work.measure_noise();
-        work.missed.clear();
-        while work.prune_proven() > 0 {
-            work.settle(LEVEL_STEPS);
-        }
-        work.cap_all();
-        let left = square_sum(&subtract(segment, &work.partials));
-        if pass > 0 && (work.partials.len() <= known || work.mismatch && left > 0.95 * cost) {
-            break;
-        }
-        if !work.mismatch && work.leaves_more_than_noise() {
-            work.distrust();
-        }
-        cost = left;
-    }
-    work.follow_tilt();
-    if work.capped || work.leaves_more_than_noise() {
-        work.distrust();
-        work.settle(FINAL_STEPS);
-        work.make_plain();
-    } else if work.mismatch {
-        // It was only that modes were still missing.
-        work.limits.bounds.energy_cost = 0.0;
-    }
-    work.settle(if work.mismatch { FINAL_STEPS } else { LAST_STEPS });
-    for _ in 0..MERGING_ROUNDS {
-        if merge_cancelling(segment, &mut work.partials, &work.limits.bounds) == 0 {
-            break;
-        }
-        work.settle(FINAL_STEPS);
+        explained = !work.leaves_more_than_noise();
     }
     let residual = subtract(segment, &work.partials);
     progress(1.0);
-    Analysis { partials: work.partials, noise: work.noise, residual, capped: work.capped }
-}
-
-fn square_sum(samples: &[f64]) -> f64 {
-    samples.iter().map(|x| x * x).sum()
+    Analysis { partials: work.partials, noise: work.noise, residual, capped: work.capped, explained }
 }
 
 /// `signal` minus `partials`.
@@ -152,17 +118,40 @@ struct Work<'a> {
     noise: NoiseFloor,
     partials: Vec<Partial>,
     capped: bool,
-    /// The recording has shown that it is no sum of modes in noise.
-    mismatch: bool,
     /// Poles that were tried without, and missed.
     missed: Vec<Partial>,
 }
 
 impl Work<'_> {
-    /// From now on energy has a cost, and little is looked for at a time.
-    fn distrust(&mut self) {
-        self.mismatch = true;
-        self.limits.bounds.energy_cost = ENERGY_COST;
+    /// All levels, joint refinement and proof, until nothing is added or more is there than may be.
+    fn passes(&mut self, progress: &mut dyn FnMut(f64)) {
+        let levels = Level::ladder(self.segment.len());
+        for pass in 0..PASSES {
+            let known = self.partials.len();
+            let mut added = 0;
+            for (i, &level) in levels.iter().enumerate() {
+                progress(0.9 * (pass * levels.len() + i) as f64 / (PASSES * levels.len()) as f64);
+                added += self.level(level, pass > 0);
+                if self.capped {
+                    return;
+                }
+            }
+            if pass > 0 && added == 0 {
+                break;
+            }
+            self.settle(FINAL_STEPS);
+            self.measure_noise();
+            self.missed.clear();
+            while self.prune_proven() > 0 {
+                self.settle(LEVEL_STEPS);
+            }
+            if pass > 0 && self.partials.len() <= known {
+                break;
+            }
+        }
+        let mut partials = std::mem::take(&mut self.partials);
+        self.cap(&mut partials, self.segment.len());
+        self.partials = partials;
     }
 
     /// Whether the residual, within the band looked at, is more than what the quiet end of the segment has
@@ -181,30 +170,6 @@ impl Work<'_> {
             }
         }
         left > MISFIT * noise
-    }
-
-    /// Takes back what modes were spent on because the recording is no sum of modes.
-    fn make_plain(&mut self) {
-        let count = self.segment.len();
-        for _ in 0..MERGING_ROUNDS {
-            if merge_resonances(self.segment, &mut self.partials, &self.limits.bounds) == 0 {
-                break;
-            }
-            self.settle(LEVEL_STEPS);
-        }
-        // What dies as fast as anything may is the attack.
-        let fastest = 0.95 * self.limits.bounds.delta_high;
-        self.partials.retain(|p| p.delta < fastest);
-        self.settle(LEVEL_STEPS);
-        // What is left of the attack, the room and the codec is noise now, loudest at the start.
-        for _ in 0..MERGING_ROUNDS {
-            let residual = subtract(self.segment, &self.partials);
-            self.noise = NoiseFloor::by_time(&residual, self.limits.rate_hz, self.limits.least_noise);
-            if prune(&mut self.partials, &self.noise, count, WORTH_ITS_PARAMETERS) == 0 {
-                break;
-            }
-            self.settle(LEVEL_STEPS);
-        }
     }
 
     /// Removes what only steep noise proves.
@@ -251,38 +216,18 @@ impl Work<'_> {
 
     /// Looks for new partials at one level and refits, again while strong ones hid weak ones; says how
     /// many it proposed. `whole`: refit over the whole segment, not only after the level's span.
-    ///
-    /// Once there are more modes than allowed, the noise is measured anew in every round: what a real
-    /// body does besides ringing counts as noise as soon as the strong modes are known.
     fn level(&mut self, level: Level, whole: bool) -> usize {
         let mut proposed = 0;
         for _ in 0..LEVEL_ROUNDS {
             let residual = subtract(self.segment, &self.partials);
-            let before = square_sum(&residual);
-            if self.mismatch {
-                self.measure_noise();
-            }
-            let search = Search { limits: &self.limits, noise: &self.noise, mismatch: self.mismatch };
+            let search = Search::thorough(&self.limits, &self.noise);
             let (found, hidden) = search.candidates(level, &residual);
             if found.is_empty() {
                 break;
             }
             proposed += found.len();
-            let known = self.partials.clone();
             self.join(&found, level.span(), if whole { 0 } else { level.span() });
-            let mut after = square_sum(&subtract(self.segment, &self.partials));
-            if self.mismatch && after > before && !whole {
-                // What fits late does not fit early: fit all of it.
-                self.partials.clone_from(&known);
-                let early: Vec<Partial> = found.iter().map(|p| p.moved(-(level.span() as f64))).collect();
-                self.join(&early, level.span(), 0);
-                after = square_sum(&subtract(self.segment, &self.partials));
-            }
-            if self.mismatch && after > before {
-                self.partials = known;
-                break;
-            }
-            if !hidden || (self.mismatch && after > WORTHWHILE * before) {
+            if !hidden || self.capped {
                 break;
             }
         }
@@ -339,25 +284,12 @@ impl Work<'_> {
         (if most < FEW { UNPROVEN_FEW } else { UNPROVEN } * most as f64) as usize
     }
 
-    /// No more proven partials than are allowed; a recording that has more is taken for no sum of modes. Candidates are
-    /// many, and no sign of it.
+    /// No more proven partials than are allowed. Candidates are many, and no sign of it.
     fn cap(&mut self, partials: &mut Vec<Partial>, count: usize) {
         let most = self.limits.max_partials;
         if partials.len() > most {
             self.capped = true;
-            self.distrust();
             self.drop_faint(partials, count, most);
-        }
-    }
-
-    /// [`Self::cap`] for all of them, refined again if any went.
-    fn cap_all(&mut self) {
-        let mut partials = std::mem::take(&mut self.partials);
-        let before = partials.len();
-        self.cap(&mut partials, self.segment.len());
-        self.partials = partials;
-        if self.partials.len() < before {
-            self.settle(LEVEL_STEPS);
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Bands and the poles in them are independent of each other and shared among the threads allowed.
 
-use crate::esprit::{energies, poles};
+use crate::esprit::{band_order, energies, poles};
 use crate::limits::Limits;
 use crate::model_order::{Gate, KEPT_HALF_WIDTH};
 use crate::noise_floor::NoiseFloor;
@@ -14,24 +14,38 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Nepers by which a mode may have decayed within a level's span and still be that level's business.
 pub(crate) const SPAN_NEPERS: f64 = 3.0;
-/// Singular values this far below a band's largest are no modes of their own once a recording has shown
-/// that it is no sum of modes.
+/// Singular values this far below a band's largest are no modes of their own where a recording is no sum of modes: a
+/// real decay is an exponential to some 40 dB, and what lies far below the band's strongest mends it.
 const MISMATCH: f64 = 3e-3;
-/// Most candidates of one round from then on: the cost of a joint fit grows with their cube.
-const MOST_AT_ONCE: usize = 60;
+/// Most candidates of one round there: the cost of a joint fit grows with their cube.
+const MOST_AT_ONCE: usize = 100;
+/// Poles taken of a band there, the strongest: of long bands, and of those decimated by less than `SHORT`.
+const A_BAND: usize = 4;
+const A_SHORT_BAND: usize = 8;
+const SHORT: usize = 32;
 
 /// A partial without amplitude, and its energy in its band.
 type Ranked = (Partial, f64);
 
 /// What a search looks with.
 pub(crate) struct Search<'a> {
-    pub(crate) limits: &'a Limits,
-    pub(crate) noise: &'a NoiseFloor,
-    /// The recording has shown that it is no sum of modes in noise.
-    pub(crate) mismatch: bool,
+    limits: &'a Limits,
+    noise: &'a NoiseFloor,
+    /// The recording is no sum of modes: the strongest poles of each band only.
+    strongest_only: bool,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// For everything that noise does not explain.
+    pub(crate) fn thorough(limits: &'a Limits, noise: &'a NoiseFloor) -> Self {
+        Self { limits, noise, strongest_only: false }
+    }
+
+    /// For the strongest poles of every band, where there is no end of them.
+    pub(crate) fn strongest(limits: &'a Limits, noise: &'a NoiseFloor) -> Self {
+        Self { limits, noise, strongest_only: true }
+    }
+
     /// Poles of all bands of a level, as partials without amplitudes, and whether bands were left out
     /// because what they hold may have leaked from stronger ones.
     pub(crate) fn candidates(&self, level: Level, residual: &[f64]) -> (Vec<Partial>, bool) {
@@ -57,8 +71,8 @@ impl Search<'_> {
                 hidden |= gate.opens(peaks, noise_std, &[0.0; 4]);
             }
         }
-        // Every open band holds a mode: more bands than modes allowed need not be looked into.
-        let most = if self.mismatch { MOST_AT_ONCE } else { usize::MAX }.min(self.limits.max_partials);
+        // Every open band holds a mode: more bands than modes are wanted need not be looked into.
+        let most = if self.strongest_only { MOST_AT_ONCE } else { self.limits.max_partials };
         if open.len() > most {
             hidden = true;
             open.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -73,6 +87,23 @@ impl Search<'_> {
         hidden |= found.len() > most;
         found.truncate(most);
         (found.into_iter().map(|(partial, _)| partial).collect(), hidden)
+    }
+
+    /// Mean number of singular values over the noise's edge in the `count` strongest bands of a level.
+    pub(crate) fn mean_order(&self, level: Level, signal: &[f64], count: usize) -> f64 {
+        let bands = split(signal, level);
+        let energy = |k: &usize| bands.bands[*k].iter().map(Complex::norm_sqr).sum::<f64>();
+        let mut inside: Vec<(f64, usize)> = (0..bands.bands.len())
+            .filter(|&k| self.within_limits(level, k))
+            .map(|k| (energy(&k), k))
+            .collect();
+        inside.sort_by(|a, b| b.0.total_cmp(&a.0));
+        inside.truncate(count);
+        let orders = self.on_threads(inside.len(), &|i| {
+            let k = inside[i].1;
+            band_order(&bands.bands[k], self.noise_std(level, &bands, k))
+        });
+        orders.iter().sum::<usize>() as f64 / orders.len().max(1) as f64
     }
 
     /// `work(0 .. count)` in order, shared among the threads allowed.
@@ -127,11 +158,10 @@ impl Search<'_> {
         let band = &bands.bands[k];
         let noise_std = self.noise_std(level, bands, k);
         let longest_delta = SPAN_NEPERS / (level.span() as f64).max(1.0);
-        // A real decay is an exponential to some 40 dB; what lies far below the band's strongest mends it.
-        let least_share = if self.mismatch { MISMATCH } else { 0.0 };
+        let least_share = if self.strongest_only { MISMATCH } else { 0.0 };
         let poles = poles(band, noise_std, least_share);
         let energies = energies(band, &poles);
-        poles
+        let mut found: Vec<Ranked> = poles
             .into_iter()
             .zip(energies)
             .filter_map(|(z, energy)| {
@@ -145,7 +175,12 @@ impl Search<'_> {
                 let c = Complex::new(0.0, 0.0);
                 kept.then(|| (Partial { omega, delta: delta.max(bounds.delta_low), c }, energy))
             })
-            .collect()
+            .collect();
+        if self.strongest_only {
+            found.sort_by(|a, b| b.1.total_cmp(&a.1));
+            found.truncate(if level.decimation < SHORT { A_SHORT_BAND } else { A_BAND });
+        }
+        found
     }
 }
 

@@ -11,6 +11,9 @@
 //! The coefficients are Kumaresan and Tufts' (1983) backward ones by covariance least squares; a ridge of
 //! the noise keeps them from modelling it.
 //!
+//! A recurrence of this order cannot follow more modes than half of it, nor what is no sum of modes: what is found here is
+//! a proposal, and [`mod@crate::strike`] asks the fit whether it is true.
+//!
 //! Measured: half-sine forces of 0.3–3 ms on bodies of 6–24 modes end within 0.2 ms of where they do.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -33,8 +36,6 @@ const LARGEST_SHARE: f64 = 0.15;
 const SHORT_S: f64 = 0.004;
 /// No striker touches longer; what is not ringing yet by then is the room or the instrument's resonator.
 const LONGEST_S: f64 = 0.005;
-/// Free decay that leaves less than this part of the power explains a sample: a push leaves more, even its faint end.
-const EXPLAINED: f64 = 1e-5;
 /// Ridge relative to the mean square, for files without noise.
 const RIDGE: f64 = 1e-10;
 
@@ -71,40 +72,6 @@ pub fn contact_samples(strike: &[f64], rate_hz: f64, noise_variance: f64) -> usi
     let short = found <= (SHORT_S * rate_hz) as usize;
     let contact = found.min((LONGEST_S * rate_hz) as usize);
     if short || energy(&strike[..contact]) <= LARGEST_SHARE * energy(strike) { contact } else { 0 }
-}
-
-/// How much of a contact is left once the modes are known: what `ringing`, free decay extrapolated back to the onset,
-/// explains right up to the end of the contact was free as well. More modes than the recurrence has room for, or
-/// some that are over before it is learnt, look like a push until then.
-#[must_use]
-pub fn unexplained(
-    strike: &[f64],
-    ringing: &[f64],
-    contact: usize,
-    rate_hz: f64,
-    noise_variance: f64,
-) -> usize {
-    let window = ((SMOOTHING_S * rate_hz) as usize).max(2);
-    let explains = |n: usize| {
-        let (heard, rung) = (&strike[n..n + window], &ringing[n..n + window]);
-        let error = heard.iter().zip(rung).map(|(x, y)| (x - y) * (x - y)).sum::<f64>() / window as f64;
-        let power = mean_square(&strike[n..(n + 8 * window).min(strike.len())]);
-        error < (EXPLAINED * power).max(EXCESS * noise_variance)
-    };
-    let first = (contact + window).min(strike.len()).min(ringing.len()).saturating_sub(window);
-    match (0..first).rev().find(|&n| !explains(n)) {
-        Some(n) => (n + window).min(contact),
-        None => 0,
-    }
-}
-
-/// Lets the ringing `samples`, extrapolated back to the onset, rise during a contact of `contact` samples as
-/// the momentum of a half-sine push does: (1 − cos πn/N)/2.
-pub fn rise(samples: &mut [f64], contact: usize) {
-    let step = std::f64::consts::PI / contact.max(1) as f64;
-    for (n, x) in samples.iter_mut().take(contact).enumerate() {
-        *x *= 0.5 - 0.5 * (step * (n as f64 + 0.5)).cos();
-    }
 }
 
 /// e of the first samples, learnt from `from` on; `None` when there is too little.

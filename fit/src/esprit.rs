@@ -13,30 +13,57 @@ use nalgebra::{Cholesky, Complex, DMatrix, DVector, Schur, SymmetricEigen};
 
 type C = Complex<f64>;
 
-/// Share of the window that is the height of the Hankel matrix.
+/// Share of the window that is the height of the Hankel matrix, and its largest height: a higher one costs the cube of it
+/// and tells no more modes of one band apart that a joint fit would keep.
 const HEIGHT: f64 = 0.4;
+const HIGHEST: usize = 40;
+
+/// The left singular vectors of a band's Hankel matrix.
+struct Subspace {
+    vectors: DMatrix<C>,
+    /// Columns of `vectors`, and squared singular values, strongest first.
+    ranked: Vec<usize>,
+    squares: Vec<f64>,
+    columns: usize,
+}
+
+impl Subspace {
+    fn of(band: &[C]) -> Option<Self> {
+        let rows = ((HEIGHT * band.len() as f64) as usize).min(HIGHEST);
+        if rows < 3 {
+            return None;
+        }
+        let columns = band.len() - rows + 1;
+        let eigen = SymmetricEigen::try_new(hankel_gram(band, rows, columns), 1e-14, 60 * rows)?;
+        let mut ranked: Vec<usize> = (0..rows).collect();
+        ranked.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        let squares = ranked.iter().map(|&i| eigen.eigenvalues[i]).collect();
+        Some(Self { vectors: eigen.eigenvectors, ranked, squares, columns })
+    }
+
+    fn order(&self, noise_std: f64) -> usize {
+        order(&self.squares, self.ranked.len(), self.columns, noise_std)
+    }
+}
+
+/// How many singular values of `band` stand above the noise's edge.
+#[must_use]
+pub fn band_order(band: &[C], noise_std: f64) -> usize {
+    Subspace::of(band).map_or(0, |subspace| subspace.order(noise_std))
+}
 
 /// The poles of `band` per decimated sample, those within the noise or below `least_share` of the strongest
 /// left out.
 #[must_use]
 pub fn poles(band: &[C], noise_std: f64, least_share: f64) -> Vec<C> {
-    let rows = (HEIGHT * band.len() as f64) as usize;
-    if rows < 3 {
-        return Vec::new();
-    }
-    let columns = band.len() - rows + 1;
-    let Some(eigen) = SymmetricEigen::try_new(hankel_gram(band, rows, columns), 1e-14, 60 * rows) else {
-        return Vec::new();
-    };
-    let mut ranked: Vec<usize> = (0..rows).collect();
-    ranked.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    let squares: Vec<f64> = ranked.iter().map(|&i| eigen.eigenvalues[i]).collect();
+    let Some(subspace) = Subspace::of(band) else { return Vec::new() };
+    let (rows, squares) = (subspace.ranked.len(), &subspace.squares);
     let strong = squares.iter().take_while(|&&s| s > least_share * least_share * squares[0]).count();
-    let order = order(&squares, rows, columns, noise_std).min(strong).min(rows - 2);
+    let order = subspace.order(noise_std).min(strong).min(rows - 2);
     if order == 0 {
         return Vec::new();
     }
-    let basis = DMatrix::from_fn(rows, order, |i, j| eigen.eigenvectors[(i, ranked[j])]);
+    let basis = DMatrix::from_fn(rows, order, |i, j| subspace.vectors[(i, subspace.ranked[j])]);
     shift_eigenvalues(&basis)
 }
 

@@ -1,15 +1,19 @@
 //! What a fit returns: modes with their standard deviations, and what can be said about the rest.
+//!
+//! Everything that is said of the modes is said of the *struck body*: of what the engine plays when the modes file is
+//! struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t + φ) from the onset on and nothing else.
 
-use crate::contact::rise;
+use crate::analysis::Analysis;
 use crate::partial::Partial;
-use crate::pruning::Uncertainty;
-use crate::residual::{Burst, Residual};
+use crate::pruning::{Uncertainty, uncertainties};
+use crate::recording::Recording;
+use crate::residual::{Burst, Residual, ratio_db};
+use crate::strike::{FitOptions, Found, LARGEST_AMPLITUDE};
+use crate::struck::{lead, struck};
+use crate::suspicion::{self, energy_spectrum};
+pub use crate::warning::Warning;
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
-use std::fmt;
-
-/// Slowest decay a mode may have, 1/s: T60 = 60 s.
-pub const LEAST_DECAY_PER_S: f64 = 0.115;
 
 /// One mode of the struck body as the recording shows it:
 /// `amplitude · e^(−decay_per_s t) · sin(2π frequency_hz t + phase_rad)`, t from the onset.
@@ -59,7 +63,7 @@ impl FittedMode {
         let growth = at_onset.c.norm() / partial.c.norm().max(1e-300);
         Self {
             frequency_hz: partial.omega * rate_hz / (2.0 * PI),
-            decay_per_s: (partial.delta * rate_hz).max(LEAST_DECAY_PER_S),
+            decay_per_s: partial.delta * rate_hz,
             amplitude: at_onset.c.norm(),
             // Re(c z^n) is a cosine.
             phase_rad: wrapped(at_onset.c.arg() + 0.5 * PI),
@@ -74,115 +78,6 @@ impl FittedMode {
 
 fn wrapped(angle: f64) -> f64 {
     (angle + PI).rem_euclid(2.0 * PI) - PI
-}
-
-/// Something about the recording, or about its modes, that the user should know.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Warning {
-    /// Samples stuck at full scale.
-    Clipped {
-        /// How many.
-        samples: usize,
-    },
-    /// The file breaks off.
-    Truncated,
-    /// Another strike; the analysis ends before it.
-    SecondStrike {
-        /// Its onset, s of the file.
-        at_s: f64,
-    },
-    /// Too little sound for accurate modes.
-    TooShort {
-        /// Length analysed, s.
-        length_s: f64,
-    },
-    /// Only a part of a long file was read.
-    PartOfFile {
-        /// From, s of the file.
-        from_s: f64,
-        /// To, s of the file.
-        to_s: f64,
-    },
-    /// No mode stands above the noise.
-    NoModes,
-    /// There is more than the allowed number of modes.
-    ModesCapped {
-        /// The limit.
-        limit: usize,
-    },
-    /// A mode that does not decay within the recording; its decay is the least one allowed.
-    Undamped {
-        /// Its frequency.
-        frequency_hz: f64,
-    },
-    /// A mains hum, left out of the modes.
-    Hum {
-        /// Its frequency.
-        frequency_hz: f64,
-    },
-    /// A strong mode whose decay no exponential describes.
-    NotExponential {
-        /// Its frequency.
-        frequency_hz: f64,
-        /// What is left of it, relative to it, dB.
-        left_db: f64,
-    },
-    /// Modes explain little of the recording.
-    PoorFit {
-        /// Resynthesis against recording, dB.
-        snr_db: f64,
-    },
-    /// The recording has a strong constant part, removed.
-    Offset {
-        /// Mean, full scale 1.
-        mean: f64,
-    },
-    /// Two modes all but cancel each other.
-    Cancelling {
-        /// Frequency of the stronger.
-        frequency_hz: f64,
-    },
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Clipped { samples } => {
-                write!(f, "clipping: {samples} samples are stuck at full scale; record it less loudly")
-            }
-            Self::Truncated => write!(f, "truncated: the file ends before its header says"),
-            Self::SecondStrike { at_s } => {
-                write!(f, "second strike: another strike at {at_s:.3} s; only the first is analysed")
-            }
-            Self::TooShort { length_s } => write!(
-                f,
-                "too short: {:.1} ms of sound; the standard deviations say what it is worth",
-                1e3 * length_s
-            ),
-            Self::PartOfFile { from_s, to_s } => {
-                write!(f, "long file: only {from_s:.1} s to {to_s:.1} s is analysed")
-            }
-            Self::NoModes => write!(f, "no modes: nothing stands above the noise"),
-            Self::ModesCapped { limit } => {
-                write!(f, "mode limit: more than {limit} modes are there; the strongest are kept")
-            }
-            Self::Undamped { frequency_hz } => {
-                write!(f, "undamped: {frequency_hz:.1} Hz does not decay within the recording")
-            }
-            Self::Hum { frequency_hz } => write!(f, "hum: {frequency_hz:.1} Hz is left out as mains hum"),
-            Self::NotExponential { frequency_hz, left_db } => write!(
-                f,
-                "not exponential: the decay at {frequency_hz:.1} Hz is no exponential ({left_db:.0} dB of it remain)"
-            ),
-            Self::PoorFit { snr_db } => {
-                write!(f, "poor fit: modes explain the recording to {snr_db:.1} dB only")
-            }
-            Self::Offset { mean } => write!(f, "constant offset: a mean of {mean:.3} was removed"),
-            Self::Cancelling { frequency_hz } => {
-                write!(f, "cancelling: modes near {frequency_hz:.1} Hz all but cancel; take them together")
-            }
-        }
-    }
 }
 
 /// A fitted recording.
@@ -208,21 +103,98 @@ pub struct Fit {
     pub resynthesis_snr_db: f64,
     /// The same from the onset on, the contact included.
     pub snr_from_onset_db: f64,
+    /// The same within the band of the modes, half an octave around: without a rumble or a hiss that is no business
+    /// of the modes.
+    pub snr_in_band_db: f64,
+    /// Peak of the struck body over the recording's, dB.
+    pub struck_peak_db: f64,
     /// What the modes leave.
     pub residual: Residual,
     /// What the user should know.
     pub warnings: Vec<Warning>,
 }
 
+/// A warning of the mode limit is true where at least this part of the places is taken.
+const TAKEN: f64 = 0.95;
+/// Below this resynthesis, dB, a user should know.
+const POOR_DB: f64 = 6.0;
+/// The band of the modes reaches this far beyond the lowest and the highest, as a factor.
+const HALF_OCTAVE: f64 = std::f64::consts::SQRT_2;
+
 impl Fit {
-    /// The modes alone, from the onset, `count` samples; they rise while the striker pushes.
+    /// What `analysis`, whose partials stand `offset` samples after the onset, comes to. `samples`: the recording
+    /// without its mean.
+    pub(crate) fn assemble(
+        recording: &Recording,
+        samples: &[f64],
+        found: Found,
+        offset: usize,
+        analysis: Analysis,
+        options: &FitOptions,
+        mut warnings: Vec<Warning>,
+    ) -> Self {
+        let rate = recording.sample_rate_hz;
+        let Found { onset, end } = found;
+        let sound = &samples[onset..end];
+        let count = end - onset - offset;
+        let mut partials = analysis.partials;
+        partials.retain(|p| p.moved(-(offset as f64)).c.norm() <= LARGEST_AMPLITUDE * peak(sound));
+        let (low, high) = options.band_hz;
+        partials.retain(|p| (low..=high).contains(&(p.omega * rate / (2.0 * PI))));
+        warnings.extend(suspicion::take_what_does_not_ring(&mut partials, count, rate));
+        warnings.extend(suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
+        let mut early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
+        // The strike itself, from which times are told now.
+        let lead = lead(&early, samples, onset);
+        let (contact, onset, offset) = (offset, onset - lead, offset + lead);
+        early.iter_mut().for_each(|p| *p = p.moved(-(lead as f64)));
+        let sound = &samples[onset..end];
+        let struck = struck(&early, samples.len() - onset);
+        let mut left = samples.to_vec();
+        left[onset..].iter_mut().zip(&struck).for_each(|(left, struck)| *left -= struck);
+        let snr = |from: usize| -ratio_db(&left[from..end], &samples[from..end]);
+        let resynthesis_snr_db = snr(onset + offset);
+        let snr_from_onset_db = snr(onset);
+        let struck_peak_db = 20.0 * (peak(&struck[..end - onset]).max(1e-15) / peak(sound)).log10();
+        let snr_in_band_db = in_band_snr_db(sound, &left[onset..end], &partials);
+        let mut modes: Vec<FittedMode> = uncertainties(&partials, &analysis.noise, count)
+            .iter()
+            .zip(&partials)
+            .map(|(uncertainty, partial)| FittedMode::new(partial, uncertainty, offset, count, rate))
+            .collect();
+        modes.sort_by(|a, b| b.energy.total_cmp(&a.energy));
+        if modes.is_empty() {
+            warnings.push(Warning::NoModes);
+        } else if snr_in_band_db < POOR_DB {
+            warnings.push(Warning::PoorFit { snr_db: snr_in_band_db });
+        }
+        if analysis.capped && modes.len() as f64 >= TAKEN * options.max_modes as f64 {
+            warnings.push(Warning::ModesCapped { limit: options.max_modes });
+        }
+        Self {
+            modes,
+            source: recording.name.clone(),
+            sample_rate_hz: rate,
+            onset_s: recording.starts_at_s + onset as f64 / rate,
+            onset_sample: onset,
+            start_offset_s: contact as f64 / rate,
+            end_s: recording.starts_at_s + end as f64 / rate,
+            noise_floor_db: 10.0 * analysis.noise.mean_variance().max(1e-30).log10(),
+            resynthesis_snr_db,
+            snr_from_onset_db,
+            snr_in_band_db,
+            struck_peak_db,
+            residual: Residual::new(left, samples, onset, end, rate),
+            warnings,
+        }
+    }
+
+    /// The struck body from the onset on, `count` samples.
     #[must_use]
     pub fn resynthesise(&self, count: usize) -> Vec<f64> {
         let partials: Vec<Partial> =
             self.modes.iter().map(|mode| partial_of(&mode.mode(), self.sample_rate_hz)).collect();
-        let mut samples = crate::projection::synthesise(&partials, count);
-        rise(&mut samples, (self.start_offset_s * self.sample_rate_hz).round() as usize);
-        samples
+        struck(&partials, count)
     }
 
     /// The first `length_s` of the residual after the onset, faded out: what a body plays at an impact.
@@ -238,6 +210,25 @@ impl Fit {
         samples.extend(self.resynthesise(self.residual.samples.len() - self.onset_sample));
         samples
     }
+}
+
+fn peak(samples: &[f64]) -> f64 {
+    samples.iter().fold(0.0, |peak, x| peak.max(x.abs()))
+}
+
+/// Recording over residual within the band of `partials`, dB; 0 where there are none.
+fn in_band_snr_db(sound: &[f64], left: &[f64], partials: &[Partial]) -> f64 {
+    let (low, high) = partials
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(low, high), p| (low.min(p.omega), high.max(p.omega)));
+    let spectrum = energy_spectrum(sound);
+    let bin = |omega: f64| ((omega / PI).min(1.0) * spectrum.len() as f64) as usize;
+    let (from, to) = (bin(low / HALF_OCTAVE), bin(high * HALF_OCTAVE));
+    if from >= to {
+        return 0.0;
+    }
+    let energy = |spectrum: &[f64]| spectrum[from..to].iter().sum::<f64>().max(1e-300);
+    (10.0 * (energy(&spectrum) / energy(&energy_spectrum(left))).log10()).clamp(-300.0, 300.0)
 }
 
 /// A mode at a sample rate.

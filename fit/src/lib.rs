@@ -7,11 +7,15 @@
 //!
 //! | file | from → to |
 //! |---|---|
+//! | `sound_file`, `wav_file`, `packed_file` | WAV; FLAC, Ogg → frames |
 //! | [`recording`] | file → one channel |
-//! | [`onset`] | channel → one strike |
+//! | [`onset`] | channel → strikes, and the best of them |
 //! | [`strike`] | strike → modes: the whole way ([`fit`]) |
+//! | [`sum_of_modes`] | segment → may it be a sum of modes in noise |
+//! | [`contact`] | segment → where the striker may have let go |
 //! | [`ringing`] | segment → is there anything but noise; partials → which stand out of steep noise |
-//! | [`analysis`] | segment → partials: levels, refinement, proof |
+//! | [`analysis`] | sum of modes → partials: levels, refinement, proof |
+//! | [`tail_to_attack`], [`ranking`] | any other recording → partials: stages from the tail to the attack, those that are heard |
 //! | `candidates` | residual → what may be modes |
 //! | [`sub_band`] | segment → decimated bands |
 //! | [`noise_floor`] | segment → noise variance per frequency |
@@ -21,7 +25,8 @@
 //! | [`amplitudes`] | poles → amplitudes |
 //! | [`refinement`] | partials → maximum-likelihood partials |
 //! | [`pruning`] | partials → proven partials with standard deviations |
-//! | [`suspicion`] | partials → warnings: hum, no decay, not exponential |
+//! | [`suspicion`], [`warning`] | partials → warnings: hum, no decay, not exponential |
+//! | [`mod@struck`] | partials → what the engine plays |
 //! | [`fitted`] | what comes out |
 //! | [`residual`] | what modes do not explain |
 //! | [`scaling`] | modes → modes of another size or material |
@@ -64,19 +69,27 @@ pub mod model_order;
 pub mod noise_floor;
 pub mod normal_equations;
 pub mod onset;
+mod packed_file;
 pub mod partial;
 pub mod projection;
 pub mod pruning;
+pub mod ranking;
 pub mod recording;
 pub mod refinement;
 pub mod residual;
 pub mod ringing;
 pub mod scaling;
+mod sound_file;
 pub mod strike;
+pub mod struck;
 pub mod sub_band;
+pub mod sum_of_modes;
 pub mod suspicion;
 pub mod table;
+pub mod tail_to_attack;
 pub mod tilt;
+pub mod warning;
+mod wav_file;
 
 pub use fitted::{Fit, FittedMode, Warning};
 pub use recording::{ChannelChoice, Recording, RecordingError, load};

@@ -74,7 +74,14 @@ impl NoiseFloor {
         floor
     }
 
-    /// The noise that a partial stands in: of every epoch as much as it sounds there.
+    /// The noise that a partial stands in: what least squares with the epochs' own weights would know of it. In an
+    /// epoch that holds the part w of its energy over a variance v it learns w / v of it,
+    ///
+    /// ```text
+    /// variance = Σ w / Σ (w / v)
+    /// ```
+    /// so that a loud attack takes little from a mode that is heard long after it (the arithmetic mean makes the
+    /// attack the noise of every mode).
     #[must_use]
     pub fn variance_of(&self, partial: &Partial) -> f64 {
         let ends = self.epochs.iter().skip(1).map(|(from, _)| *from).chain([f64::INFINITY]);
@@ -82,11 +89,11 @@ impl NoiseFloor {
         for ((from, floor), to) in self.epochs.iter().zip(ends) {
             let left = |n: f64| (-2.0 * partial.delta.max(1e-12) * n).exp();
             let weight = left(*from) - left(to);
-            sum += weight * floor.variance_at(partial.omega);
+            sum += weight / floor.variance_at(partial.omega).max(f64::MIN_POSITIVE);
             total += weight;
         }
         let steady = self.variance_at(partial.omega);
-        if total > 0.0 { self.tilted(sum / total, partial.omega) } else { steady }
+        if sum > 0.0 { self.tilted(total / sum, partial.omega) } else { steady }
     }
 
     /// The same floor, and louder where `residual` is over a part of an octave.

@@ -1,21 +1,39 @@
-//! Where the strike is: its first sample, and where the next strike or the noise ends it.
+//! Where the strikes are: their first samples, and where the next strike or the noise ends each.
 //!
 //! The envelope is the rms over 1 ms. A *strike* is a place where it rises to twice what it reached in
-//! the 80 ms before, and to 5 % of the recording's peak; beats of close modes rise as far, but never
-//! above what they reached one beat ago. The strike analysed is the first with at least a quarter of
-//! the strongest one's level. Its first sample follows by Maeda's (1985) picker: the split of a few
-//! milliseconds into two parts of constant variance that is the likeliest.
+//! the 80 ms before, to 5 % of the recording's peak and well over the background; beats of close modes rise as far, but
+//! never above what they reached one beat ago, and noise at the very start of a file rises over nothing at all. Its
+//! first sample follows by Maeda's (1985) picker: the split of a few milliseconds into two parts of constant variance
+//! that is the likeliest.
+//!
+//! *The best* strike is heard alone for longest and is strong: until the next strike, or until it reaches the background,
+//! t seconds are left to it (more than 2 count as 2), and
+//!
+//! ```text
+//! worth = t · √(level / strongest level)         of those with at least a quarter of the strongest one's level
+//! ```
+//! so that a strike of half the level must ring 1.4 times as long. Of two that are worth the same to a tenth, the first.
 
 /// Length of the envelope's window, s.
 const ENVELOPE_S: f64 = 0.001;
 /// How far back a strike must be louder than anything, s.
 const LOOK_BACK_S: f64 = 0.08;
+/// Level of a strike over the background, which is what this part of the envelope stays below.
+const OVER_BACKGROUND: f64 = 4.0;
+const BACKGROUND: f64 = 0.1;
 /// Rise that makes a strike, as an amplitude ratio.
 const RISE: f64 = 2.0;
 /// Least level of a strike, of the recording's peak envelope.
 const LEAST_LEVEL: f64 = 0.05;
 /// Two rises closer than this are one strike, s.
 const SAME_STRIKE_S: f64 = 0.03;
+/// Least level of the best strike, of the strongest one's.
+const STRONG: f64 = 0.25;
+/// What of its time a strike is worth at most, s; how far over the background it is still heard.
+const LONG_ENOUGH_S: f64 = 2.0;
+const HEARD: f64 = 2.0;
+/// A later strike must be worth this much more.
+const BETTER: f64 = 1.1;
 /// The picker looks this far before and after the place where the envelope rises, s.
 const PICK_BEFORE_S: f64 = 0.005;
 const PICK_AFTER_S: f64 = 0.0005;
@@ -23,6 +41,8 @@ const PICK_AFTER_S: f64 = 0.0005;
 /// The part of a recording that one strike sounds in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strike {
+    /// Which of the recording's strikes, from 1.
+    pub number: usize,
     /// Its first sample.
     pub onset: usize,
     /// One past its last sample.
@@ -31,17 +51,89 @@ pub struct Strike {
     pub others: Vec<usize>,
 }
 
-/// Finds the strike in `samples` (mean removed).
+/// The strikes of a recording; without any, its first sample counts as one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Strikes {
+    /// First samples, ascending.
+    pub onsets: Vec<usize>,
+    /// One past the last sample of each.
+    ends: Vec<usize>,
+    /// What each is worth.
+    worth: Vec<f64>,
+}
+
+impl Strikes {
+    /// Index of the best one.
+    #[must_use]
+    pub fn best(&self) -> usize {
+        let better = |best: usize, next: usize| {
+            if self.worth[next] > BETTER * self.worth[best] { next } else { best }
+        };
+        (0..self.onsets.len()).reduce(better).unwrap_or(0)
+    }
+
+    /// One of them.
+    #[must_use]
+    pub fn strike(&self, index: usize) -> Strike {
+        let others = self.onsets.iter().copied().enumerate().filter(|(i, _)| *i != index);
+        Strike {
+            number: index + 1,
+            onset: self.onsets[index],
+            end: self.ends[index],
+            others: others.map(|(_, onset)| onset).collect(),
+        }
+    }
+}
+
+/// Finds the strikes in `samples` (mean removed).
 #[must_use]
-pub fn find(samples: &[f64], rate_hz: f64) -> Strike {
+pub fn find(samples: &[f64], rate_hz: f64) -> Strikes {
     let hop = ((ENVELOPE_S * rate_hz) as usize).max(1);
     let envelope: Vec<f64> =
         samples.chunks(hop).map(|c| (c.iter().map(|x| x * x).sum::<f64>() / c.len() as f64).sqrt()).collect();
+    let background = background(&envelope);
+    let rises = rises(&envelope, background, rate_hz / hop as f64);
+    if rises.is_empty() {
+        return Strikes { onsets: vec![0], ends: vec![samples.len()], worth: vec![1.0] };
+    }
+    let onsets: Vec<usize> = rises.iter().map(|(place, _)| pick(samples, place * hop, rate_hz)).collect();
+    let guard = (0.002 * rate_hz) as usize;
+    let ends: Vec<usize> = (0..onsets.len())
+        .map(|i| {
+            onsets.get(i + 1).map_or(samples.len(), |next| next.saturating_sub(guard).max(onsets[i] + 1))
+        })
+        .collect();
+    let strongest = rises.iter().map(|rise| rise.1).fold(0.0, f64::max);
+    let heard_s = |from: usize, to: usize| {
+        let part = &envelope[from.min(envelope.len())..(to / hop).clamp(from, envelope.len())];
+        let last = part.iter().rposition(|&x| x > HEARD * background).unwrap_or(0);
+        (last * hop) as f64 / rate_hz
+    };
+    let worth = rises
+        .iter()
+        .zip(&ends)
+        .map(|(&(place, level), &end)| {
+            let share = level / strongest;
+            let strong = if share >= STRONG { share.sqrt() } else { 0.0 };
+            strong * heard_s(place, end).min(LONG_ENOUGH_S)
+        })
+        .collect();
+    Strikes { onsets, ends, worth }
+}
+
+/// What the envelope is where nothing is struck.
+fn background(envelope: &[f64]) -> f64 {
+    let mut sorted = envelope.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[(BACKGROUND * (sorted.len() - 1) as f64) as usize]
+}
+
+/// Where the envelope rises as it does at a strike, and how high within the next 30 ms.
+fn rises(envelope: &[f64], background: f64, hops_per_s: f64) -> Vec<(usize, f64)> {
+    let back = (LOOK_BACK_S * hops_per_s) as usize;
+    let same = (SAME_STRIKE_S * hops_per_s) as usize;
     let peak = envelope.iter().copied().fold(0.0, f64::max);
-    let per_hop = hop as f64 / rate_hz;
-    let back = (LOOK_BACK_S / per_hop) as usize;
-    let same = (SAME_STRIKE_S / per_hop) as usize;
-    let mut strikes: Vec<(usize, f64)> = Vec::new();
+    let mut rises: Vec<(usize, f64)> = Vec::new();
     for i in 0..envelope.len() {
         let before = &envelope[i.saturating_sub(back)..i];
         let reached = before.iter().copied().fold(0.0, f64::max);
@@ -49,24 +141,15 @@ pub fn find(samples: &[f64], rate_hz: f64) -> Strike {
             continue;
         }
         let level = envelope[i..(i + same).min(envelope.len())].iter().copied().fold(0.0, f64::max);
-        match strikes.last_mut() {
+        if level < OVER_BACKGROUND * background {
+            continue;
+        }
+        match rises.last_mut() {
             Some((place, louder)) if i - *place <= same => *louder = louder.max(level),
-            _ => strikes.push((i, level)),
+            _ => rises.push((i, level)),
         }
     }
-    let strongest = strikes.iter().map(|s| s.1).fold(0.0, f64::max);
-    let Some(chosen) = strikes.iter().position(|s| s.1 >= 0.25 * strongest) else {
-        return Strike { onset: 0, end: samples.len(), others: Vec::new() };
-    };
-    let pick_at = |place: usize| pick(samples, place * hop, rate_hz);
-    let onset = pick_at(strikes[chosen].0);
-    let guard = (0.002 * rate_hz) as usize;
-    let end = strikes
-        .get(chosen + 1)
-        .map_or(samples.len(), |next| pick_at(next.0).saturating_sub(guard).max(onset + 1));
-    let others =
-        strikes.iter().enumerate().filter(|(i, _)| *i != chosen).map(|(_, s)| pick_at(s.0)).collect();
-    Strike { onset, end, others }
+    rises
 }
 
 /// The likeliest first sample of the strike whose envelope rises at sample `near`.
@@ -117,10 +200,15 @@ mod tests {
         samples
     }
 
+    fn best(samples: &[f64]) -> Strike {
+        let strikes = find(samples, 44_100.0);
+        strikes.strike(strikes.best())
+    }
+
     #[test]
     fn onset_is_found_to_a_fraction_of_a_millisecond() {
         for noise in [0.0, 1e-4, 1e-2] {
-            let strike = find(&strikes(&[(8_000, 0.5)], noise), 44_100.0);
+            let strike = best(&strikes(&[(8_000, 0.5)], noise));
             let error_s = (strike.onset as f64 - 8_000.0) / 44_100.0;
             assert!(error_s.abs() < 3e-4, "{noise}: {error_s}");
             assert!(strike.others.is_empty() && strike.end == 66_150);
@@ -129,12 +217,12 @@ mod tests {
 
     #[test]
     fn a_strike_at_the_first_sample_starts_there() {
-        assert_eq!(find(&strikes(&[(0, 0.5)], 1e-3), 44_100.0).onset, 0);
+        assert_eq!(best(&strikes(&[(0, 0.5)], 1e-3)).onset, 0);
     }
 
     #[test]
     fn a_second_strike_ends_the_first() {
-        let strike = find(&strikes(&[(4_000, 0.5), (30_000, 0.4)], 1e-3), 44_100.0);
+        let strike = find(&strikes(&[(4_000, 0.5), (30_000, 0.4)], 1e-3), 44_100.0).strike(0);
         assert_eq!(strike.others.len(), 1);
         assert!(strike.end < 30_000 && strike.end > 29_500);
     }
@@ -149,7 +237,7 @@ mod tests {
                         * ((6000.0 * t).sin() + ((6000.0 + std::f64::consts::TAU * beat_hz) * t).sin())
                 })
                 .collect();
-            let strike = find(&samples, 44_100.0);
+            let strike = best(&samples);
             assert!(strike.others.is_empty() && strike.onset < 20, "{beat_hz}: {strike:?}");
         }
     }

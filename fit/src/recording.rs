@@ -1,8 +1,9 @@
 //! One channel of a recording, in `f64`, with what its file says about its own faults.
 //!
-//! WAV of 8–32 bit integers or 32-bit float, any number of channels, 1 kHz – 1 MHz. Long files are read
+//! WAV, FLAC or Ogg ([`crate::sound_file`]), up to 64 channels, 1 kHz – 1 MHz. Long files are read
 //! in two passes, so that only the minute around the first strike is ever in memory.
 
+use crate::sound_file::{Refusal, SoundFile};
 use std::path::{Path, PathBuf};
 
 /// Most seconds kept of a file.
@@ -30,19 +31,19 @@ pub enum ChannelChoice {
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file cannot be opened or read.
-    #[error("{path}: {source}; a WAV file that can be read is needed", path = path.display())]
+    #[error("{path}: {source}; a sound file that can be read is needed", path = path.display())]
     Io {
         /// The file.
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
     },
-    /// The bytes are no WAV file.
-    #[error("{path}: not a WAV file ({what}); 8–32 bit PCM or 32-bit float WAV would be read", path = path.display())]
-    NotWav {
+    /// The bytes are no sound, or packed in a way that is not read.
+    #[error("{path}: cannot be decoded ({what}); WAV, FLAC or Ogg Vorbis would be read", path = path.display())]
+    NotSound {
         /// The file.
         path: PathBuf,
-        /// What the reader stumbled over.
+        /// What it is, or what the reader stumbled over.
         what: String,
     },
     /// A channel that is not there.
@@ -171,16 +172,17 @@ impl Recording {
     }
 }
 
-/// Reads one channel of a WAV file.
+/// Reads one channel of a sound file.
 ///
 /// # Errors
-/// When the file cannot be read, is not WAV, or holds nothing that can be analysed.
+/// When the file cannot be read, cannot be decoded, or holds nothing that can be analysed.
 pub fn load(path: impl AsRef<Path>, choice: ChannelChoice) -> Result<Recording, RecordingError> {
     let path = path.as_ref();
     let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into());
-    let mut file = Frames::open(path)?;
-    let channels = file.channels;
-    let rate = file.rate_hz;
+    let open = || SoundFile::open(path).map_err(|refusal| refusal.of(path));
+    let mut file = open()?;
+    let format = file.format();
+    let (channels, rate) = (format.channels, format.rate_hz);
     if let ChannelChoice::Index(wanted) = choice
         && wanted >= channels
     {
@@ -190,139 +192,76 @@ pub fn load(path: impl AsRef<Path>, choice: ChannelChoice) -> Result<Recording, 
         return Err(RecordingError::Rate { name, rate_hz: rate });
     }
     let longest = (LONGEST_KEPT_S * rate) as usize;
-    let first = if file.frames_stated > longest {
-        let loud = first_loud_frame(&mut file, rate)?;
-        file = Frames::open(path)?;
-        loud.saturating_sub((KEPT_BEFORE_S * rate) as usize)
-    } else {
-        0
-    };
-    let mut kept: Vec<Vec<f32>> = vec![Vec::new(); channels];
     let mut frame = vec![0.0; channels];
+    let (mut first, mut frames) = (0, format.frames as usize);
+    if format.frames > longest as u64 {
+        let loud = first_loud_frame(&mut file, &mut frame, rate).map_err(|refusal| refusal.of(path))?;
+        first = loud.at.saturating_sub((KEPT_BEFORE_S * rate) as usize);
+        frames = loud.frames;
+        file = open()?;
+    }
+    let mut kept: Vec<Vec<f64>> = vec![Vec::new(); channels];
     let mut index = 0;
-    while file.next(&mut frame)? {
+    while file.next(&mut frame).map_err(|refusal| refusal.of(path))? {
         if index >= first {
-            kept.iter_mut().zip(&frame).for_each(|(channel, &x)| channel.push(x as f32));
+            kept.iter_mut().zip(&frame).for_each(|(channel, &x)| channel.push(x));
             if kept[0].len() >= longest {
                 break;
             }
         }
         index += 1;
     }
-    let file_s = if kept[0].len() >= longest { file.frames_stated } else { index } as f64 / rate;
+    let file_s = if kept[0].len() >= longest { frames } else { index } as f64 / rate;
     let recording = Recording {
         samples: chosen(&kept, choice),
         sample_rate_hz: rate,
         starts_at_s: first as f64 / rate,
-        quantum: file.quantum,
-        truncated: file.truncated,
+        quantum: format.quantum,
+        truncated: file.truncated(),
         file_s,
         name,
     };
     recording.checked()
 }
 
-fn chosen(channels: &[Vec<f32>], choice: ChannelChoice) -> Vec<f64> {
-    let one = |k: usize| channels[k].iter().map(|&x| f64::from(x)).collect::<Vec<f64>>();
+fn chosen(channels: &[Vec<f64>], choice: ChannelChoice) -> Vec<f64> {
     match choice {
-        ChannelChoice::Index(k) => one(k),
+        ChannelChoice::Index(k) => channels[k].clone(),
         ChannelChoice::Mix => (0..channels[0].len())
-            .map(|i| channels.iter().map(|c| f64::from(c[i])).sum::<f64>() / channels.len() as f64)
+            .map(|i| channels.iter().map(|c| c[i]).sum::<f64>() / channels.len() as f64)
             .collect(),
         ChannelChoice::Loudest => {
-            let energy = |channel: &[f32]| {
-                let mean = channel.iter().map(|&x| f64::from(x)).sum::<f64>() / channel.len().max(1) as f64;
-                channel.iter().map(|&x| (f64::from(x) - mean).powi(2)).sum::<f64>()
+            let energy = |channel: &[f64]| {
+                let mean = channel.iter().sum::<f64>() / channel.len().max(1) as f64;
+                channel.iter().map(|x| (x - mean).powi(2)).sum::<f64>()
             };
             let loudest = (0..channels.len())
                 .map(|k| (k, energy(&channels[k])))
                 .fold((0, -1.0), |most, next| if next.1 > most.1 { next } else { most });
-            one(loudest.0)
+            channels[loudest.0].clone()
         }
     }
 }
 
-/// Frame of the first place whose peak reaches a tenth of the file's.
-fn first_loud_frame(file: &mut Frames, rate: f64) -> Result<usize, RecordingError> {
+/// The first place whose peak reaches a tenth of the file's, and how many frames the file has.
+struct Loud {
+    at: usize,
+    frames: usize,
+}
+
+fn first_loud_frame(file: &mut SoundFile, frame: &mut [f64], rate: f64) -> Result<Loud, Refusal> {
     let block = (0.01 * rate).ceil() as usize;
-    let mut frame = vec![0.0; file.channels];
-    let (mut peaks, mut index) = (Vec::<f64>::new(), 0);
-    while file.next(&mut frame)? {
-        if index % block == 0 {
+    let (mut peaks, mut frames) = (Vec::<f64>::new(), 0);
+    while file.next(frame)? {
+        if frames % block == 0 {
             peaks.push(0.0);
         }
         let peak = frame.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
         if let Some(last) = peaks.last_mut() {
             *last = last.max(peak);
         }
-        index += 1;
+        frames += 1;
     }
     let most = peaks.iter().copied().fold(0.0, f64::max);
-    Ok(peaks.iter().position(|&p| p >= LOUD * most).unwrap_or(0) * block)
-}
-
-/// A WAV file frame by frame, full scale ±1; the only place that names the WAV reader.
-struct Frames {
-    path: PathBuf,
-    reader: hound::WavReader<std::io::BufReader<std::fs::File>>,
-    float: bool,
-    scale: f64,
-    channels: usize,
-    rate_hz: f64,
-    quantum: f64,
-    frames_stated: usize,
-    truncated: bool,
-}
-
-impl Frames {
-    fn open(path: &Path) -> Result<Self, RecordingError> {
-        let not_wav = |what: String| RecordingError::NotWav { path: path.to_owned(), what };
-        let file = std::fs::File::open(path)
-            .map_err(|source| RecordingError::Io { path: path.to_owned(), source })?;
-        let reader = hound::WavReader::new(std::io::BufReader::new(file))
-            .map_err(|error| not_wav(error.to_string()))?;
-        let spec = reader.spec();
-        if spec.channels == 0 {
-            return Err(not_wav("no channels".into()));
-        }
-        let float = spec.sample_format == hound::SampleFormat::Float;
-        let scale = if float { 1.0 } else { 0.5_f64.powi(i32::from(spec.bits_per_sample) - 1) };
-        Ok(Self {
-            path: path.to_owned(),
-            float,
-            scale,
-            channels: usize::from(spec.channels),
-            rate_hz: f64::from(spec.sample_rate),
-            quantum: if float { 0.0 } else { scale },
-            frames_stated: reader.duration() as usize,
-            truncated: false,
-            reader,
-        })
-    }
-
-    /// The next frame; `false` at the end. A file that breaks off is truncated, not refused.
-    fn next(&mut self, frame: &mut [f64]) -> Result<bool, RecordingError> {
-        for (i, x) in frame.iter_mut().enumerate() {
-            let sample = if self.float {
-                self.reader.samples::<f32>().next().map(|s| s.map(f64::from))
-            } else {
-                self.reader.samples::<i32>().next().map(|s| s.map(f64::from))
-            };
-            match sample {
-                None => {
-                    self.truncated |= i > 0;
-                    return Ok(false);
-                }
-                Some(Ok(value)) => *x = value * self.scale,
-                Some(Err(hound::Error::IoError(_))) => {
-                    self.truncated = true;
-                    return Ok(false);
-                }
-                Some(Err(error)) => {
-                    return Err(RecordingError::NotWav { path: self.path.clone(), what: error.to_string() });
-                }
-            }
-        }
-        Ok(true)
-    }
+    Ok(Loud { at: peaks.iter().position(|&p| p >= LOUD * most).unwrap_or(0) * block, frames })
 }

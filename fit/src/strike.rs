@@ -1,21 +1,26 @@
 //! From a recording to modes: the whole way, with the traps of real recordings.
 //!
-//! mean removed → strike found ([`crate::onset`]) → end of the contact found ([`crate::contact`]; 1 ms of
-//! half-sine force: 27 dB with it in the analysed part, 75 dB without) → analysed from there on
-//! ([`crate::analysis`]) → hum and non-exponential decays named → residual.
+//! mean removed → the best strike chosen ([`crate::onset`]) → analysed from its onset on, as a sum of modes
+//! ([`crate::analysis`]) or, where it is none, from its tail ([`crate::tail_to_attack`]) → what does not ring taken out
+//! and doubts named ([`crate::suspicion`]) → held against the recording as the engine will play it ([`mod@crate::fitted`]).
+//!
+//! *No contact without proof.* While the striker pushes, a body does not ring freely, and modes that are fitted from
+//! the end of the contact on ([`crate::contact`]) are right where those fitted from the onset on are not (1 ms of
+//! half-sine force: 75 dB of resynthesis against 27). But the engine strikes a body at the onset, where such modes are
+//! a guess continued backwards, so the contact is believed only if the fit proves it: from the onset on modes leave
+//! more than noise, from the end of the contact on they do not. A push can pass for modes, too, that are over when it
+//! is; then it is believed if the fit without it needs a quarter fewer modes.
 
 use crate::analysis::{Analysis, analyse};
-use crate::contact::{contact_samples, rise, unexplained};
-use crate::fitted::{Fit, FittedMode, LEAST_DECAY_PER_S, Warning};
+use crate::contact::contact_samples;
+use crate::fitted::{Fit, Warning};
 use crate::limits::Limits;
 use crate::noise_floor::NoiseFloor;
-use crate::onset;
-use crate::partial::Partial;
-use crate::projection::synthesise;
-use crate::pruning::uncertainties;
+use crate::onset::{self, Strike};
 use crate::recording::{FEWEST_SAMPLES, Recording};
 use crate::refinement::Bounds;
-use crate::residual::{Residual, ratio_db};
+use crate::sum_of_modes::may_be_sum_of_modes;
+use crate::tail_to_attack::analyse_from_the_tail;
 use std::f64::consts::PI;
 
 /// Sound shorter than this is warned of, s.
@@ -24,13 +29,19 @@ const SHORT_S: f64 = 0.05;
 const LONGEST_S: f64 = 40.0;
 const UNTRIMMED_S: f64 = 5.0;
 /// Largest amplitude of a mode, in peaks of the recording.
-const LARGEST_AMPLITUDE: f64 = 8.0;
+pub(crate) const LARGEST_AMPLITUDE: f64 = 8.0;
 
+/// Slowest decay that may be asked for as the fastest, 1/s: T60 = 60 s.
+const LEAST_DECAY_PER_S: f64 = 0.115;
 /// Lowest frequency analysed unless a lower one is asked for, Hz.
 const LOWEST_HZ: f64 = 20.0;
 /// A mode that falls by more nepers than this during the contact is not known at the onset: it is part of
 /// the attack.
-const BACK_NEPERS: f64 = 3.0;
+const BACK_NEPERS: f64 = 1.5;
+/// A mode that falls by this many nepers within the contact is over when that is; of as many modes as this part of them
+/// it may be that they are the push; and this part of them must be saved by a fit without it.
+const OVER_NEPERS: f64 = 1.0;
+const QUARTER: f64 = 0.25;
 
 /// What a fit may find and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +56,8 @@ pub struct FitOptions {
     pub fastest_decay_per_s: f64,
     /// From the onset to where modes are fitted, s; `None` finds out.
     pub start_offset_s: Option<f64>,
+    /// Which strike of the recording, from 1; `None` takes the best.
+    pub strike: Option<usize>,
     /// Threads for the bands; 0 takes what the machine has, up to 8.
     pub threads: usize,
 }
@@ -57,6 +70,7 @@ impl Default for FitOptions {
             least_level_db: -90.0,
             fastest_decay_per_s: 1500.0,
             start_offset_s: None,
+            strike: None,
             threads: 0,
         }
     }
@@ -75,6 +89,16 @@ pub enum FitError {
         /// What would be right.
         right: &'static str,
     },
+    /// A strike that is not there.
+    #[error("{name}: strike {wanted} is not there; the recording has strikes {}", listed(strikes_s))]
+    NoSuchStrike {
+        /// The recording.
+        name: String,
+        /// The number asked for.
+        wanted: usize,
+        /// Where those are that were found, s of the file.
+        strikes_s: Vec<f64>,
+    },
     /// Nothing is left to analyse.
     #[error("{name}: only {samples} samples follow the onset; {FEWEST_SAMPLES} or more are needed")]
     NothingAfterOnset {
@@ -83,6 +107,12 @@ pub enum FitError {
         /// How many follow.
         samples: usize,
     },
+}
+
+/// `1 (0.102 s), 2 (0.75 s)`.
+fn listed(strikes_s: &[f64]) -> String {
+    let strike = |(i, at_s): (usize, &f64)| format!("{} ({at_s:.3} s)", i + 1);
+    strikes_s.iter().enumerate().map(strike).collect::<Vec<_>>().join(", ")
 }
 
 impl FitOptions {
@@ -113,10 +143,10 @@ impl FitOptions {
     }
 }
 
-/// Fits the first strike of `recording`; `progress` hears the part done, 0 to 1.
+/// Fits one strike of `recording`; `progress` hears the part done, 0 to 1.
 ///
 /// # Errors
-/// Options out of range, or next to nothing after the onset.
+/// Options out of range, a strike that is not there, or next to nothing after the onset.
 pub fn fit(
     recording: &Recording,
     options: &FitOptions,
@@ -126,7 +156,7 @@ pub fn fit(
     options.check(rate)?;
     let mut warnings = Vec::new();
     let samples = without_mean(&recording.samples, &mut warnings);
-    let strike = onset::find(&samples, rate);
+    let strike = chosen(&samples, recording, options)?;
     let end = trimmed_end(&samples, strike.onset, strike.end, rate);
     if end - strike.onset < FEWEST_SAMPLES {
         return Err(FitError::NothingAfterOnset {
@@ -135,47 +165,89 @@ pub fn fit(
         });
     }
     let found = Found { onset: strike.onset, end };
-    warn_of_recording(recording, &strike.others, &found, &mut warnings);
-    let mut offset = start_offset(&samples, &found, recording, options);
-    let strike = &samples[found.onset..end];
-    let mut analysis = analyse_from(strike, offset, recording, options, progress);
-    if offset > 0 && options.start_offset_s.is_none() && clipped_offset(recording, &found).is_none() {
-        let early: Vec<Partial> = analysis.partials.iter().map(|p| p.moved(-(offset as f64))).collect();
-        let left = unexplained(
-            strike,
-            &synthesise(&early, 2 * offset),
-            offset,
-            rate,
-            analysis.noise.mean_variance(),
-        );
-        if left < offset {
-            offset = left;
-            analysis = analyse_from(strike, offset, recording, options, progress);
-        }
-    }
-    Ok(assemble(recording, &samples, &found, offset, analysis, options, warnings))
+    warn_of_recording(recording, &strike, &found, &mut warnings);
+    let sound = &samples[found.onset..end];
+    let (offset, analysis) = match fixed_offset(recording, &found, options) {
+        Some(offset) => (offset, analysed(sound, offset, recording, options, progress)),
+        None => analysed_from_the_onset(sound, recording, options, progress),
+    };
+    Ok(Fit::assemble(recording, &samples, found, offset, analysis, options, warnings))
 }
 
-/// The modes of what follows the first `offset` samples of `strike`.
-fn analyse_from(
-    strike: &[f64],
+/// The strike asked for, or the best.
+fn chosen(samples: &[f64], recording: &Recording, options: &FitOptions) -> Result<Strike, FitError> {
+    let rate = recording.sample_rate_hz;
+    let strikes = onset::find(samples, rate);
+    let index = match options.strike {
+        None => strikes.best(),
+        Some(wanted) if (1..=strikes.onsets.len()).contains(&wanted) => wanted - 1,
+        Some(wanted) => {
+            let at_s = |&onset: &usize| recording.starts_at_s + onset as f64 / rate;
+            let strikes_s = strikes.onsets.iter().map(at_s).collect();
+            return Err(FitError::NoSuchStrike { name: recording.name.clone(), wanted, strikes_s });
+        }
+    };
+    Ok(strikes.strike(index))
+}
+
+/// From the onset, or from the end of a contact that is proven; and its samples.
+fn analysed_from_the_onset(
+    sound: &[f64],
+    recording: &Recording,
+    options: &FitOptions,
+    progress: &mut dyn FnMut(f64),
+) -> (usize, Analysis) {
+    let limits = limits(sound, 0, recording, options);
+    let from_the_tail = |progress: &mut dyn FnMut(f64)| (0, analyse_from_the_tail(sound, &limits, progress));
+    if !may_be_sum_of_modes(sound, &limits) {
+        return from_the_tail(progress);
+    }
+    let whole = analyse(sound, &limits, progress);
+    if whole.capped {
+        return from_the_tail(progress);
+    }
+    let contact = contact(sound, recording);
+    let over = whole.partials.iter().filter(|p| p.delta * contact as f64 > OVER_NEPERS).count();
+    let part = |count: usize| QUARTER * count as f64;
+    let modes = whole.partials.len();
+    if whole.explained && (over as f64) < part(modes).max(1.0) {
+        return (0, whole);
+    }
+    if contact > 0 {
+        let ringing = &sound[contact..];
+        let pushed = analyse(ringing, &self::limits(ringing, contact, recording, options), progress);
+        let saves = pushed.partials.len() as f64 + part(modes) <= modes as f64;
+        if pushed.explained && (saves || !whole.explained) {
+            return (contact, pushed);
+        }
+    }
+    if whole.explained { (0, whole) } else { from_the_tail(progress) }
+}
+
+/// The modes of what follows the first `offset` samples of `sound`, whatever it is.
+fn analysed(
+    sound: &[f64],
     offset: usize,
     recording: &Recording,
     options: &FitOptions,
     progress: &mut dyn FnMut(f64),
 ) -> Analysis {
-    let segment = &strike[offset..];
-    let mut limits = limits(segment, recording, options);
-    if offset > 0 {
-        limits.bounds.delta_high = limits.bounds.delta_high.min(BACK_NEPERS / offset as f64);
+    let segment = &sound[offset..];
+    let limits = limits(segment, offset, recording, options);
+    if may_be_sum_of_modes(segment, &limits) {
+        let whole = analyse(segment, &limits, progress);
+        if whole.explained {
+            return whole;
+        }
     }
-    analyse(segment, &limits, progress)
+    analyse_from_the_tail(segment, &limits, progress)
 }
 
 /// The analysed part, in samples of the recording.
-struct Found {
-    onset: usize,
-    end: usize,
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Found {
+    pub(crate) onset: usize,
+    pub(crate) end: usize,
 }
 
 /// The samples less the mean of their last quarter (where a strike is no more).
@@ -208,7 +280,7 @@ fn trimmed_end(samples: &[f64], onset: usize, end: usize, rate: f64) -> usize {
     end.min(onset + kept)
 }
 
-fn warn_of_recording(recording: &Recording, others: &[usize], found: &Found, warnings: &mut Vec<Warning>) {
+fn warn_of_recording(recording: &Recording, strike: &Strike, found: &Found, warnings: &mut Vec<Warning>) {
     let rate = recording.sample_rate_hz;
     let runs = recording.clipped_runs();
     if !runs.is_empty() {
@@ -217,8 +289,13 @@ fn warn_of_recording(recording: &Recording, others: &[usize], found: &Found, war
     if recording.truncated {
         warnings.push(Warning::Truncated);
     }
-    for &other in others {
-        warnings.push(Warning::SecondStrike { at_s: recording.starts_at_s + other as f64 / rate });
+    if !strike.others.is_empty() {
+        let at_s = |&onset: &usize| recording.starts_at_s + onset as f64 / rate;
+        warnings.push(Warning::SecondStrike {
+            taken: strike.number,
+            taken_s: at_s(&strike.onset),
+            others_s: strike.others.iter().map(at_s).collect(),
+        });
     }
     let length_s = (found.end - found.onset) as f64 / rate;
     if length_s < SHORT_S {
@@ -231,19 +308,18 @@ fn warn_of_recording(recording: &Recording, others: &[usize], found: &Found, war
     }
 }
 
-/// From the onset to where it rings freely: after the clipping, or after the striker has let go.
-fn start_offset(samples: &[f64], found: &Found, recording: &Recording, options: &FitOptions) -> usize {
-    let rate = recording.sample_rate_hz;
-    let strike = &samples[found.onset..found.end];
-    let offset = match (options.start_offset_s, clipped_offset(recording, found)) {
-        (Some(offset), _) => (offset * rate).round() as usize,
-        (None, Some(after)) => after,
-        (None, None) => {
-            let noise = NoiseFloor::estimate(strike, rate, recording.quantum.powi(2) / 12.0);
-            contact_samples(strike, rate, noise.mean_variance())
-        }
-    };
-    if offset + FEWEST_SAMPLES <= strike.len() { offset } else { 0 }
+/// Where the user says that it rings freely, or where the clipping ends; `None` finds out.
+fn fixed_offset(recording: &Recording, found: &Found, options: &FitOptions) -> Option<usize> {
+    let told = options.start_offset_s.map(|offset| (offset * recording.sample_rate_hz).round() as usize);
+    let offset = told.or_else(|| clipped_offset(recording, found))?;
+    Some(if offset + FEWEST_SAMPLES <= found.end - found.onset { offset } else { 0 })
+}
+
+/// Samples until the striker lets go, as far as anything says so.
+fn contact(sound: &[f64], recording: &Recording) -> usize {
+    let noise = NoiseFloor::estimate(sound, recording.sample_rate_hz, recording.quantum.powi(2) / 12.0);
+    let contact = contact_samples(sound, recording.sample_rate_hz, noise.mean_variance());
+    if contact + FEWEST_SAMPLES <= sound.len() { contact } else { 0 }
 }
 
 /// From the onset to the end of the clipping, when it is over soon.
@@ -255,7 +331,8 @@ fn clipped_offset(recording: &Recording, found: &Found) -> Option<usize> {
     (offset + FEWEST_SAMPLES < found.end - found.onset).then_some(offset)
 }
 
-fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limits {
+/// What bounds the analysis of `segment`, which begins `offset` samples after the onset.
+fn limits(segment: &[f64], offset: usize, recording: &Recording, options: &FitOptions) -> Limits {
     let rate = recording.sample_rate_hz;
     let peak = segment.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
     // Modes outside the band are found as well, or what they leave would be taken for noise in it.
@@ -264,9 +341,9 @@ fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limit
         bounds: Bounds {
             omega_low: 2.0 * PI * low.max(1.0) / rate,
             omega_high: 2.0 * PI * 0.49,
-            // An undamped tone is fitted as it is; only what is written down must die some day.
+            // An undamped tone is fitted as it is; what is written down must die some day (`suspicion`).
             delta_low: 1e-3 * LEAST_DECAY_PER_S / rate,
-            delta_high: options.fastest_decay_per_s / rate,
+            delta_high: (options.fastest_decay_per_s / rate).min(BACK_NEPERS / offset.max(1) as f64),
             amplitude_high: LARGEST_AMPLITUDE * peak,
             energy_cost: 0.0,
         },
@@ -279,64 +356,5 @@ fn limits(segment: &[f64], recording: &Recording, options: &FitOptions) -> Limit
         rate_hz: rate,
         // Rounding of the file, and of what rendered it: 120 dB under the peak.
         least_noise: (recording.quantum.powi(2) / 12.0).max(1e-12 * peak * peak),
-    }
-}
-
-fn assemble(
-    recording: &Recording,
-    samples: &[f64],
-    found: &Found,
-    offset: usize,
-    analysis: Analysis,
-    options: &FitOptions,
-    mut warnings: Vec<Warning>,
-) -> Fit {
-    let rate = recording.sample_rate_hz;
-    let (onset, end) = (found.onset, found.end);
-    let mut partials = analysis.partials;
-    let count = end - onset - offset;
-    let peak = samples[onset..end].iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
-    let sane = |p: &Partial| p.moved(-(offset as f64)).c.norm() <= LARGEST_AMPLITUDE * peak;
-    partials.retain(sane);
-    let (low, high) = options.band_hz;
-    partials.retain(|p| (low..=high).contains(&(p.omega * rate / (2.0 * PI))));
-    warnings.extend(crate::suspicion::take_hum(&mut partials, count, rate));
-    warnings.extend(crate::suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
-    let mut modes: Vec<FittedMode> = uncertainties(&partials, &analysis.noise, count)
-        .iter()
-        .zip(&partials)
-        .map(|(uncertainty, partial)| FittedMode::new(partial, uncertainty, offset, count, rate))
-        .collect();
-    modes.sort_by(|a, b| b.energy.total_cmp(&a.energy));
-    if modes.is_empty() {
-        warnings.push(Warning::NoModes);
-    }
-    if analysis.capped {
-        warnings.push(Warning::ModesCapped { limit: options.max_modes });
-    }
-    let early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
-    let mut ringing = synthesise(&early, samples.len() - onset);
-    rise(&mut ringing, offset);
-    let mut left = samples.to_vec();
-    left[onset..].iter_mut().zip(&ringing).for_each(|(left, ringing)| *left -= ringing);
-    let snr = |from: usize| -ratio_db(&left[from..end], &samples[from..end]);
-    let resynthesis_snr_db = snr(onset + offset);
-    let snr_from_onset_db = snr(onset);
-    if !modes.is_empty() && resynthesis_snr_db < 6.0 {
-        warnings.push(Warning::PoorFit { snr_db: resynthesis_snr_db });
-    }
-    Fit {
-        modes,
-        source: recording.name.clone(),
-        sample_rate_hz: rate,
-        onset_s: recording.starts_at_s + onset as f64 / rate,
-        onset_sample: onset,
-        start_offset_s: offset as f64 / rate,
-        end_s: recording.starts_at_s + end as f64 / rate,
-        noise_floor_db: 10.0 * analysis.noise.mean_variance().max(1e-30).log10(),
-        resynthesis_snr_db,
-        snr_from_onset_db,
-        residual: Residual::new(left, samples, onset, end, rate),
-        warnings,
     }
 }

@@ -8,57 +8,95 @@ use asperity_fft::FftPlanner;
 use nalgebra::Complex;
 use std::f64::consts::PI;
 
-/// Least nepers a mode must lose over the record to count as decaying.
-const LEAST_FALL: f64 = 0.35;
+/// Least nepers a mode must lose over the sound to count as decaying. A mode that loses just these has a T60 of
+/// 6.9 / 0.345 = 20 times the length of the sound: nothing is known to ring longer.
+const LEAST_FALL: f64 = 3.0 * std::f64::consts::LN_10 / 20.0;
 /// Highest hum frequency, and how near to a multiple of the mains it must be, Hz.
 const HIGHEST_HUM_HZ: f64 = 610.0;
 const HUM_WIDTH_HZ: f64 = 0.4;
-/// A hum is this far below the strongest mode, in energy.
-const HUM_LEVEL: f64 = 0.03;
+/// What a frequency is known to over the length of the sound, in periods: shorter sounds cannot tell hum from partials.
+const RESOLUTION: f64 = 0.5;
+/// A tone that does not decay is no mode if it is this far below the strongest one, in energy.
+const FAINT: f64 = 0.03;
 /// Share of a mode's energy that may remain around its frequency.
 const EXPONENTIAL_SHARE: f64 = 0.01;
 /// How many of the strongest modes are checked.
 const CHECKED: usize = 8;
 
-/// Removes undamped weak partials at multiples of the mains frequency.
-pub fn take_hum(partials: &mut Vec<Partial>, count: usize, rate_hz: f64) -> Vec<Warning> {
+/// Removes tones of the mains and other faint ones that do not decay within `count` samples, and lets the rest ring for
+/// at most twenty times these.
+pub fn take_what_does_not_ring(partials: &mut Vec<Partial>, count: usize, rate_hz: f64) -> Vec<Warning> {
     let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
-    let mut warnings = Vec::new();
-    partials.retain(|partial| {
-        let hz = partial.omega * rate_hz / (2.0 * PI);
-        let mains = [50.0, 60.0].into_iter().any(|m| {
-            let multiple = (hz / m).round();
-            multiple >= 1.0 && (hz - multiple * m).abs() < HUM_WIDTH_HZ
-        });
-        let hum = mains
-            && hz < HIGHEST_HUM_HZ
-            && partial.delta * (count as f64) < LEAST_FALL
-            && partial.energy(count) < HUM_LEVEL * strongest;
-        if hum {
-            warnings.push(Warning::Hum { frequency_hz: hz });
+    let hz = |p: &Partial| p.omega * rate_hz / (2.0 * PI);
+    let slowest = LEAST_FALL / count as f64;
+    let told_apart = RESOLUTION * rate_hz / (count as f64) < HUM_WIDTH_HZ;
+    let of_mains = |p: &Partial| {
+        let near = |mains: f64| {
+            let multiple = (hz(p) / mains).round();
+            multiple >= 1.0 && (hz(p) - multiple * mains).abs() < HUM_WIDTH_HZ
+        };
+        told_apart && hz(p) < HIGHEST_HUM_HZ && (near(50.0) || near(60.0))
+    };
+    let mut tones = [Group::default(), Group::default(), Group::default()];
+    partials.retain_mut(|partial| {
+        if partial.delta >= slowest {
+            return true;
         }
-        !hum
+        let (energy, faint) = (partial.energy(count), partial.energy(count) < FAINT * strongest);
+        let kind = if !faint { 0 } else { 1 + usize::from(of_mains(partial)) };
+        tones[kind].add(hz(partial), energy);
+        partial.delta = slowest;
+        !faint
     });
-    warnings
+    let [undamped, steady, hum] = tones;
+    [
+        undamped.told(|count, frequency_hz| Warning::Undamped { count, frequency_hz }),
+        steady.told(|count, frequency_hz| Warning::Steady { count, frequency_hz }),
+        hum.told(|count, frequency_hz| Warning::Hum { count, frequency_hz }),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
-/// Undamped, cancelling and non-exponential modes among the strongest.
+/// How many of a kind, and the one that weighs most.
+#[derive(Default)]
+struct Group {
+    count: usize,
+    most: f64,
+    frequency_hz: f64,
+}
+
+impl Group {
+    fn add(&mut self, frequency_hz: f64, weight: f64) {
+        if self.count == 0 || weight > self.most {
+            (self.most, self.frequency_hz) = (weight, frequency_hz);
+        }
+        self.count += 1;
+    }
+
+    fn told(&self, warning: impl Fn(usize, f64) -> Warning) -> Option<Warning> {
+        (self.count > 0).then(|| warning(self.count, self.frequency_hz))
+    }
+}
+
+/// Cancelling and non-exponential modes among the strongest.
 #[must_use]
 pub fn doubts(partials: &[Partial], residual: &[f64], noise: &NoiseFloor, rate_hz: f64) -> Vec<Warning> {
     let count = residual.len();
     let hz = |p: &Partial| p.omega * rate_hz / (2.0 * PI);
     let mut ranked: Vec<&Partial> = partials.iter().collect();
     ranked.sort_by(|a, b| b.energy(count).total_cmp(&a.energy(count)));
-    let mut warnings: Vec<Warning> = ranked
-        .iter()
-        .filter(|p| p.delta * (count as f64) < LEAST_FALL)
-        .map(|p| Warning::Undamped { frequency_hz: hz(p) })
-        .collect();
+    let (mut cancelling, mut crooked) = (Group::default(), Group::default());
     let spectrum = energy_spectrum(residual);
     for (rank, partial) in ranked.iter().take(CHECKED).enumerate() {
         if let Some(other) = ranked[rank + 1..].iter().find(|other| cancels(partial, other)) {
-            let frequency_hz = hz(if partial.c.norm() > other.c.norm() { partial } else { other });
-            warnings.push(Warning::Cancelling { frequency_hz });
+            let (louder, size) = if partial.c.norm() > other.c.norm() {
+                (partial, partial.c.norm())
+            } else {
+                (other, other.c.norm())
+            };
+            cancelling.add(hz(louder), size);
         }
         let half_width = 4.0 * partial.delta + 8.0 * PI / count as f64;
         let bins_per_radian = spectrum.len() as f64 / PI;
@@ -72,11 +110,14 @@ pub fn doubts(partials: &[Partial], residual: &[f64], noise: &NoiseFloor, rate_h
         }
         let share = (left - 4.0 * expected_noise) / partial.energy(count).max(1e-300);
         if share > EXPONENTIAL_SHARE {
-            warnings
-                .push(Warning::NotExponential { frequency_hz: hz(partial), left_db: 10.0 * share.log10() });
+            crooked.add(hz(partial), share);
         }
     }
-    warnings
+    let left_db = 10.0 * crooked.most.log10();
+    let cancelling = cancelling.told(|count, frequency_hz| Warning::Cancelling { count, frequency_hz });
+    let crooked =
+        crooked.told(|count, frequency_hz| Warning::NotExponential { count, frequency_hz, left_db });
+    cancelling.into_iter().chain(crooked).collect()
 }
 
 /// Whether two partials at nearly the same pole are far louder apart than together.

@@ -104,21 +104,64 @@ fn an_offset_is_removed() {
 }
 
 #[test]
-fn of_two_strikes_the_first_is_fitted() {
+fn of_two_strikes_the_one_that_rings_longer_alone_is_fitted_unless_another_is_asked_for() {
     let mut samples = vec![0.0; 4410];
     samples.extend(render(&body(), RATE_HZ, 61_740));
-    for (n, x) in render(&body(), RATE_HZ, 30_000).into_iter().enumerate() {
+    for (n, x) in render(&body(), RATE_HZ, 36_150).into_iter().enumerate() {
         samples[30_000 + n] += x;
     }
-    let fit = fitted(noisy(samples, 1e-4, 10));
-    let second = fit.warnings.iter().find_map(|w| match w {
-        Warning::SecondStrike { at_s } => Some(*at_s),
-        _ => None,
-    });
-    assert!((second.unwrap() - 30_000.0 / RATE_HZ).abs() < 1e-3, "{:?}", fit.warnings);
-    assert!((fit.onset_s - 0.1).abs() < 5e-4 && fit.end_s < 30_000.0 / RATE_HZ);
-    for mode in body() {
-        assert!(fit.modes.iter().any(|m| (m.frequency_hz - mode.frequency_hz).abs() < 0.5), "{mode:?}");
+    let samples = noisy(samples, 1e-4, 10);
+    let strike = |strike| {
+        let options = FitOptions { threads: 1, max_modes: 60, strike, ..FitOptions::default() };
+        fit(&recording(samples.clone()), &options, &mut |_| {})
+    };
+    // Its strikes, the one that was taken first.
+    let told = |fit: &Fit| {
+        fit.warnings.iter().find_map(|w| match w {
+            Warning::SecondStrike { taken, taken_s, others_s } => Some((*taken, *taken_s, others_s.clone())),
+            _ => None,
+        })
+    };
+    let (best, first) = (strike(None).unwrap(), strike(Some(1)).unwrap());
+    let (taken, at_s, others_s) = told(&best).unwrap();
+    assert!(taken == 2 && (at_s - 30_000.0 / RATE_HZ).abs() < 1e-3 && (others_s[0] - 0.1).abs() < 1e-3);
+    let (taken, at_s, _) = told(&first).unwrap();
+    assert!(taken == 1 && (at_s - 0.1).abs() < 5e-4 && first.end_s < 30_000.0 / RATE_HZ);
+    for fit in [&best, &first] {
+        for mode in body() {
+            assert!(fit.modes.iter().any(|m| (m.frequency_hz - mode.frequency_hz).abs() < 0.5), "{mode:?}");
+        }
+    }
+    let error = strike(Some(3)).unwrap_err().to_string();
+    assert!(error.contains("strike 3 is not there") && error.contains("2 (0.680 s)"), "{error}");
+}
+
+#[test]
+fn a_soft_strike_noise_or_hum_before_the_real_one_is_not_taken_for_it() {
+    let onset = 22_050;
+    let strike = |level: f64, at: usize, samples: &mut [f64]| {
+        let ringing = render(&body(), RATE_HZ, samples.len() - at);
+        samples[at..].iter_mut().zip(ringing).for_each(|(x, y)| *x += level * y);
+    };
+    let hum = |n: usize| 0.05 * (2.0 * std::f64::consts::PI * 50.0 * n as f64 / RATE_HZ).sin();
+    let cases: [(&str, &dyn Fn(&mut Vec<f64>)); 5] = [
+        ("soft first", &|x| strike(0.3, 6000, x)),
+        ("noise from the first sample", &|x| *x = noisy(std::mem::take(x), 0.03, 3)),
+        ("hum", &|x| x.iter_mut().enumerate().for_each(|(n, x)| *x += hum(n))),
+        ("a weaker one after", &|x| strike(0.5, 80_000, x)),
+        ("a bounce before and two after", &|x| {
+            [(0.2, 15_000), (0.3, 90_000), (0.2, 95_000)]
+                .into_iter()
+                .for_each(|(level, at)| strike(level, at, x))
+        }),
+    ];
+    for (name, disturb) in cases {
+        let mut samples = vec![0.0; 100_000];
+        strike(1.0, onset, &mut samples);
+        disturb(&mut samples);
+        let strikes = asperity_fit::onset::find(&noisy(samples, 1e-4, 4), RATE_HZ);
+        let best = strikes.strike(strikes.best());
+        assert!(best.onset.abs_diff(onset) < 40, "{name}: {} of {:?}", best.onset, strikes.onsets);
     }
 }
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`import`] | tables of other programs, in the recording's place |
 //! | [`modes_file`] | `NAME.modes.json` with standard deviations and the residual's summary |
-//! | [`picture`] | the three spectrograms |
+//! | [`picture`] | waves and spectrograms of recording, struck body and what is left |
 //! | [`report`] | what `--json` and the terminal say |
 
 mod import;
@@ -34,8 +34,7 @@ const STEPS: u64 = 200;
 /// Turn one recorded impact into modes
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Recording of one strike: WAV, 8–32 bit or float, 1 kHz – 1 MHz; or a modal table (.csv, .json), or a
-    /// modes file
+    /// Recording of a strike: WAV, FLAC or Ogg Vorbis, 1 kHz – 1 MHz; or a modal table (.csv, .json), or a modes file
     #[arg(value_name = "RECORDING.wav")]
     pub recording: PathBuf,
     /// Modes file to write
@@ -59,6 +58,9 @@ pub struct Options {
     /// Channel: loudest, mix, or its number from 0
     #[arg(long, value_name = "CHANNEL", default_value = "loudest")]
     pub channel: String,
+    /// Which strike of the recording, from 1, instead of the best
+    #[arg(long, value_name = "N")]
+    pub strike: Option<usize>,
     /// Fit from this long after the onset instead of finding out, ms
     #[arg(long, value_name = "MS")]
     pub start_ms: Option<f64>,
@@ -75,10 +77,10 @@ pub struct Options {
     /// Write what the modes do not explain
     #[arg(long, value_name = "OUT.wav")]
     pub residual: Option<PathBuf>,
-    /// Write the modes alone, in the recording's place
+    /// Write what the engine plays when it strikes the modes, in the recording's place
     #[arg(long, value_name = "OUT.wav")]
     pub resynthesis: Option<PathBuf>,
-    /// Draw spectrograms of recording, resynthesis and residual
+    /// Draw recording, struck body and what is left, waves and spectrograms on one scale
     #[arg(long, value_name = "OUT.svg")]
     pub plot: Option<PathBuf>,
     /// Write the modes as a table
@@ -117,6 +119,7 @@ impl Options {
             to_hz: None,
             min_level: -90.0,
             channel: "loudest".to_owned(),
+            strike: None,
             start_ms: None,
             scale_size: None,
             material: None,
@@ -140,6 +143,7 @@ impl Options {
             band_hz: (self.from_hz, self.to_hz.unwrap_or(f64::INFINITY)),
             least_level_db: self.min_level,
             start_offset_s: self.start_ms.map(|ms| 1e-3 * ms),
+            strike: self.strike,
             ..FitOptions::default()
         }
     }
@@ -209,6 +213,7 @@ fn import_table(options: &Options) -> Result<TableReport, CliError> {
         ("--plot", options.plot.is_some()),
         ("--merge", !options.merge.is_empty()),
         ("--burst-ms", options.burst_ms.is_some()),
+        ("--strike", options.strike.is_some()),
     ];
     if let Some((option, _)) = of_recording.into_iter().find(|(_, given)| *given) {
         return Err(CliError::new(option, "a table has no sound", "leave it out, or name a recording"));

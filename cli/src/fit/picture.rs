@@ -1,44 +1,49 @@
-//! The picture of a fit: recording, resynthesis and residual on one scale, modes drawn over.
+//! The picture of a fit: recording, what the engine plays, and what is left, each as a wave and as a spectrogram, all on
+//! the recording's scale; above them the first milliseconds, where a strike is right or wrong.
 
 use crate::plot::{Axis, Figure, Layer, Panel, Series, SpectrogramOptions, palette, spectrogram};
 use asperity_fit::{Fit, Recording};
 
 /// Most modes whose ring is drawn as a line.
 const DRAWN: usize = 80;
+/// The attack as it is drawn: from so long before the onset to so long after it, s.
+const BEFORE_S: f64 = 0.002;
+const ATTACK_S: f64 = 0.03;
 
 /// The picture as SVG.
 pub fn svg(recording: &Recording, fit: &Fit) -> String {
     let rate = fit.sample_rate_hz;
     let start_s = recording.starts_at_s;
     let mut figure = Figure::new(format!("{}: {} modes", fit.source, fit.modes.len())).subtitle(format!(
-        "resynthesis {:.1} dB above the residual, onset {:.4} s, fitted from {:.1} ms after it",
-        fit.resynthesis_snr_db,
-        fit.onset_s,
-        1e3 * fit.start_offset_s
+        "struck body {:.1} dB above what is left, its peak {:+.1} dB of the recording's, onset {:.4} s",
+        fit.snr_from_onset_db, fit.struck_peak_db, fit.onset_s
     ));
     for warning in &fit.warnings {
         figure = figure.subtitle(format!("warning: {warning}"));
     }
-    let wave =
-        Panel::new("recording", Axis::new("time", "s").without_numbers(), Axis::new("sample value", ""))
-            .with(Layer::line(
-                "",
-                palette::AUDIO,
-                Series::signal(recording.samples.iter().copied(), rate, start_s),
-            ));
-    figure.row(70.0, [wave]);
-    let resynthesis = fit.resynthesis();
+    let struck = fit.resynthesis();
+    let parts: [(&str, &[f64], bool); 3] = [
+        ("recording, its modes drawn as long as they ring (60 dB)", &recording.samples, true),
+        ("the struck body: what the engine plays", &struck, false),
+        ("what is left", &fit.residual.samples, false),
+    ];
+    let from = fit.onset_sample.saturating_sub((BEFORE_S * rate) as usize);
+    let until = (fit.onset_sample + (ATTACK_S * rate) as usize).min(struck.len());
+    let loudest =
+        [&recording.samples, &struck].into_iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let wave = |samples: &[f64], from: usize, until: usize| {
+        let axis = Axis::new("sample value", "").range(-loudest, loudest);
+        let wave = Series::signal(samples[from..until].iter().copied(), rate, start_s + from as f64 / rate);
+        Panel::new("", Axis::new("time", "s"), axis).with(Layer::line("", palette::AUDIO, wave))
+    };
+    figure.row(80.0, parts.map(|(_, samples, _)| wave(samples, from, until)));
+    figure.row(60.0, parts.map(|(_, samples, _)| wave(samples, 0, struck.len())));
     let mut options = SpectrogramOptions {
         start_s,
         unit: "dB re 1".to_owned(),
         top_db: None,
         ..SpectrogramOptions::default()
     };
-    let parts: [(&str, &[f64], bool); 3] = [
-        ("recording, its modes drawn as long as they ring (60 dB)", &recording.samples, true),
-        ("resynthesis: the modes alone", &resynthesis, false),
-        ("residual: what the modes leave", &fit.residual.samples, false),
-    ];
     for (title, samples, with_modes) in parts {
         let picture = spectrogram(samples, rate, &options);
         // All three on the recording's scale.

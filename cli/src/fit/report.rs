@@ -7,6 +7,7 @@ use asperity_dsp::mode::Mode;
 use asperity_fit::Fit;
 use asperity_fit::scaling::DampingLaw;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A table's modes with a longer T60 are probably mistakes.
 const LONGEST_T60_S: f64 = 60.0;
@@ -20,16 +21,22 @@ pub struct Report {
     pub onset_s: f64,
     /// From the onset to where the modes were fitted, s.
     pub start_offset_s: f64,
-    /// Recording over residual, dB.
+    /// Recording over residual from where the modes were fitted, dB.
     pub resynthesis_snr_db: f64,
-    /// The same with the contact included, dB.
+    /// The same from the onset on, dB.
     pub snr_from_onset_db: f64,
+    /// The same within half an octave of the modes, dB: without rumble and hiss.
+    pub snr_in_band_db: f64,
+    /// Peak of what the engine plays at the file's own impulse over the recording's, dB.
+    pub struck_peak_db: f64,
     /// Noise power, dB re full scale.
     pub noise_floor_db: f64,
     /// How long the fit took.
     pub seconds: f64,
     /// What the user should know.
     pub warnings: Vec<String>,
+    /// How many samples, strikes or modes each kind of warning is about.
+    pub warning_counts: BTreeMap<&'static str, usize>,
     /// α of d = α + β ω², 1/s.
     pub damping_alpha_per_s: Option<f64>,
     /// β, s.
@@ -49,9 +56,12 @@ impl Report {
             start_offset_s: fit.start_offset_s,
             resynthesis_snr_db: fit.resynthesis_snr_db,
             snr_from_onset_db: fit.snr_from_onset_db,
+            snr_in_band_db: fit.snr_in_band_db,
+            struck_peak_db: fit.struck_peak_db,
             noise_floor_db: fit.noise_floor_db,
             seconds,
             warnings: fit.warnings.iter().map(ToString::to_string).collect(),
+            warning_counts: fit.warnings.iter().map(|w| (w.kind(), w.count())).collect(),
             damping_alpha_per_s: law.map(|law| law.alpha_per_s),
             damping_beta_s: law.map(|law| law.beta_s),
             attack_residual_db: fit.residual.attack_db,
@@ -67,10 +77,11 @@ impl Report {
     /// Tells a person.
     pub fn say(&self, options: &Options) -> Result<(), CliError> {
         output::say(&format!(
-            "{}: {} modes, {:.1} dB above what they leave, onset at {:.4} s, noise {:.0} dB; {:.1} s",
+            "{}: {} modes, {:.1} dB above what they leave, struck {:+.1} dB of the recording's peak, onset at {:.4} s, noise {:.0} dB; {:.1} s",
             options.output.display(),
             self.modes,
-            self.resynthesis_snr_db,
+            self.snr_from_onset_db,
+            self.struck_peak_db,
             self.onset_s,
             self.noise_floor_db,
             self.seconds
