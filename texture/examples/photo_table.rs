@@ -17,15 +17,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         arguments.remove(at);
         PathBuf::from(arguments.remove(at))
     });
-    println!("picture method sign confidence r relief_mm micro_um R dimension noise_255 repeats seconds warnings");
+    println!(
+        "picture method sign confidence r relief_mm micro_um R dimension noise_255 repeats seconds warnings"
+    );
     for argument in &arguments {
-        let (photo, displacement) = argument.split_once(',').map_or((argument.as_str(), None), |(p, d)| (p, Some(d)));
+        let (photo, displacement) =
+            argument.split_once(',').map_or((argument.as_str(), None), |(p, d)| (p, Some(d)));
         let (picture, _) = reduced(load_channel(photo, Channel::Luma)?.raster);
         let start = std::time::Instant::now();
         let surface = surface_from_photo(&picture, &PhotoOptions::default(), |_| {})?;
         let seconds = start.elapsed().as_secs_f64();
         let r = displacement.map(|map| load_channel(map, Channel::Luma)).transpose()?;
-        let r = r.filter(|truth| truth.raster.width == picture.width && truth.raster.height == picture.height);
+        let r =
+            r.filter(|truth| truth.raster.width == picture.width && truth.raster.height == picture.height);
         row(photo, &surface, r.map(|truth| correlation(&surface.displacement, &truth.raster)), seconds);
         if let Some(folder) = &maps {
             let name = Path::new(photo).file_stem().unwrap_or_default().to_string_lossy().into_owned();

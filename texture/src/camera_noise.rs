@@ -51,10 +51,14 @@ pub fn without_camera_noise(picture: &Raster) -> Quiet {
     drop(split.periodic);
     let rings = Rings::of(&spectrum, w, h);
     let noise = floor(&spectrum, w, h).clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE);
-    let gains: Vec<f64> = rings.power.iter().map(|&(power, count)| {
-        let least = noise * (1.0 + DOUBT / count.max(1.0).sqrt());
-        if power > least { (1.0 - least / power).sqrt() } else { 0.0 }
-    }).collect();
+    let gains: Vec<f64> = rings
+        .power
+        .iter()
+        .map(|&(power, count)| {
+            let least = noise * (1.0 + DOUBT / count.max(1.0).sqrt());
+            if power > least { (1.0 - least / power).sqrt() } else { 0.0 }
+        })
+        .collect();
     for (place, value) in spectrum.iter_mut().enumerate().skip(1) {
         *value *= gains[rings.of_place(place)];
     }

@@ -37,7 +37,8 @@ pub fn dark_is_deep(image: &Raster) -> Raster {
     let contrast = if mean > 0.0 { 1.0 / mean } else { 0.0 };
     for (place, value) in spectrum.iter_mut().enumerate() {
         let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
-        *value *= if r > 0.0 { contrast * (UNIT_SLOPE_PX / TAU / r).sqrt() * high_pass(r, w, h) } else { 0.0 };
+        *value *=
+            if r > 0.0 { contrast * (UNIT_SLOPE_PX / TAU / r).sqrt() * high_pass(r, w, h) } else { 0.0 };
     }
     fft.image(&mut spectrum)
 }

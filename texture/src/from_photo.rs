@@ -94,12 +94,24 @@ impl std::fmt::Display for Doubt {
         match self {
             Self::Condition(condition) => condition.fmt(f),
             Self::Fallback(reason) => reason.fmt(f),
-            Self::GuessedSign => f.write_str("whether bright is high is a guess; look at overview.png, `--bright-is-deep` turns it over"),
-            Self::Small => write!(f, "the picture is below {SMALL_PX} texels: its roughness rests on few waves"),
-            Self::NoRoughness => write!(f, "too small or too even to tell a roughness: R = {UNKNOWN_ROUGHNESS} is assumed"),
-            Self::Noisy => f.write_str("the finest waves are as strong as a noisy camera's: what is felt above 200 Hz may be noise"),
-            Self::Flat => f.write_str("nothing in the picture rises above a camera's noise: the surface is flat"),
-            Self::MicroReliefCut => write!(f, "the micro-relief was cut to {:.0} µm", LARGEST_MICRO_RELIEF_M * 1e6),
+            Self::GuessedSign => f.write_str(
+                "whether bright is high is a guess; look at overview.png, `--bright-is-deep` turns it over",
+            ),
+            Self::Small => {
+                write!(f, "the picture is below {SMALL_PX} texels: its roughness rests on few waves")
+            }
+            Self::NoRoughness => {
+                write!(f, "too small or too even to tell a roughness: R = {UNKNOWN_ROUGHNESS} is assumed")
+            }
+            Self::Noisy => f.write_str(
+                "the finest waves are as strong as a noisy camera's: what is felt above 200 Hz may be noise",
+            ),
+            Self::Flat => {
+                f.write_str("nothing in the picture rises above a camera's noise: the surface is flat")
+            }
+            Self::MicroReliefCut => {
+                write!(f, "the micro-relief was cut to {:.0} µm", LARGEST_MICRO_RELIEF_M * 1e6)
+            }
         }
     }
 }
@@ -173,7 +185,8 @@ pub fn surface_from_photo(
     let shaped = if averaged { &parts.symmetric } else { &quiet.picture };
     let mut found = heights::heights_of(shaped, options, |done| progress(0.4 + 0.4 * done))?;
     let scale = options.scale(&found.shape.height_px);
-    let textured_px = if averaged { residual_heights(&parts.residual, picture) } else { found.shape.height_px.clone() };
+    let textured_px =
+        if averaged { residual_heights(&parts.residual, picture) } else { found.shape.height_px.clone() };
     let law = ReliefSpectrum::of(&textured_px);
     let roughness = match &law {
         Some(law) => law.roughness_map(&textured_px),
@@ -185,7 +198,8 @@ pub fn surface_from_photo(
     let cell = repetition.as_ref().filter(|_| averaged).map(|found_pattern| {
         height_cell(&found.shape.height_px, &found_pattern.lattice, scale.metres_per_px, options.texel_m)
     });
-    let mut doubts = doubts_of(picture, averaged.then_some(&parts.residual), &law, quiet.noise, scale.relief_m);
+    let mut doubts =
+        doubts_of(picture, averaged.then_some(&parts.residual), &law, quiet.noise, scale.relief_m);
     doubts.extend(found.fallback.map(Doubt::Fallback));
     doubts.extend((!found.sign.is_decided() && scale.relief_m > 0.0).then_some(Doubt::GuessedSign));
     doubts.extend((micro_m > LARGEST_MICRO_RELIEF_M).then_some(Doubt::MicroReliefCut));
@@ -231,22 +245,36 @@ pub fn calibration(sample: &Raster, relief_m: f64, options: &PhotoOptions) -> Re
 #[must_use]
 pub fn reduced(picture: Raster) -> (Raster, usize) {
     let n = (1..).find(|n| (picture.width / n) * (picture.height / n) <= MOST_TEXELS).unwrap_or(1);
-    if n == 1 {
-        return (picture, 1);
-    }
+    if n == 1 { (picture, 1) } else { (means(&picture, n), n) }
+}
+
+/// Means of n × n texels; what does not fill one at the right and lower border is left out.
+fn means(picture: &Raster, n: usize) -> Raster {
     let (w, h) = (picture.width / n, picture.height / n);
-    let mut sums = Raster::constant(w, h, 0.0);
+    let mut means = Raster::constant(w, h, 0.0);
+    let share = 1.0 / (n * n) as f64;
     for y in 0..h * n {
-        for (x, value) in picture.row(y)[..w * n].iter().enumerate() {
-            sums.values[y / n * w + x / n] += value / (n * n) as f64;
+        let row = &mut means.values[y / n * w..][..w];
+        for (mean, texels) in row.iter_mut().zip(picture.row(y).chunks_exact(n)) {
+            *mean += share * texels.iter().sum::<f64>();
         }
     }
-    (sums, n)
+    means
+}
+
+/// The lattice of a picture; of a large one, that of its halves, where patterns below 16 texels are not seen.
+fn lattice_of(picture: &Raster) -> Option<Lattice> {
+    if picture.width * picture.height <= MOST_TEXELS / 2 {
+        return symmetry::find_lattice(picture);
+    }
+    let found = symmetry::find_lattice(&means(picture, 2))?;
+    let twice = |t: [f64; 2]| t.map(|length| 2.0 * length);
+    Some(Lattice { t1_px: twice(found.t1_px), t2_px: twice(found.t2_px), ..found })
 }
 
 /// Primitive, symmetric part and residual, and what repeats.
 fn take_apart(picture: &Raster) -> (Option<Repetition>, symmetry::Separation) {
-    let Some(lattice) = symmetry::find_lattice(picture) else {
+    let Some(lattice) = lattice_of(picture) else {
         let whole = symmetry::Separation {
             primitive: picture.clone(),
             symmetric: picture.clone(),

@@ -78,7 +78,8 @@ impl ReliefSpectrum {
     pub fn micro_relief_px(&self, texel_m: f64) -> f64 {
         let (low, high) = (1.0 / (FINE_OCTAVE_PX * SQRT_2), SQRT_2 / FINE_OCTAVE_PX);
         let steep = 1.0 - self.exponent;
-        let integral = if steep.abs() < 1e-6 { (high / low).ln() } else { (high.powf(steep) - low.powf(steep)) / steep };
+        let integral =
+            if steep.abs() < 1e-6 { (high / low).ln() } else { (high.powf(steep) - low.powf(steep)) / steep };
         let rms = (self.level.exp() * integral).sqrt();
         let overlay = 2.5 - 1.5 * self.roughness();
         rms * (MICRO_WAVELENGTH_M / (FINE_OCTAVE_PX * texel_m)).powf(0.5 * (overlay - 1.0))
@@ -150,7 +151,8 @@ fn bands(heights_px: &Raster) -> Vec<[f64; 3]> {
     (0..h).filter_map(|ky| band(ky, h)).for_each(|band| sums[band][1][1] += 1.0);
     // Two-sided power of a bin, times 2 n for one side per cycle per texel.
     let scale = 2.0 / (w as f64 * h as f64).powi(2);
-    let power = |[power, bins]: [f64; 2], n: usize| if bins > 0.0 { power / bins * scale * n as f64 } else { 0.0 };
+    let power =
+        |[power, bins]: [f64; 2], n: usize| if bins > 0.0 { power / bins * scale * n as f64 } else { 0.0 };
     let points = sums.iter().enumerate().map(|(band, &[rows, columns])| {
         let f = 1.0 / (FITTED_PX[0] * ((band as f64 + 0.5) / PER_OCTAVE).exp2());
         let mean = 0.5 * (power(rows, w) + power(columns, h));

@@ -92,7 +92,9 @@ pub fn shape_from_shading(
 ) -> Result<Shape, DesignError> {
     check(image)?;
     match light.or_else(|| estimate_light(image)) {
-        Some(light) if light.slant_rad() >= LEAST_SLANT_RAD => shape_by(Method::Integrable(STEPS), image, light, progress),
+        Some(light) if light.slant_rad() >= LEAST_SLANT_RAD => {
+            shape_by(Method::Integrable(STEPS), image, light, progress)
+        }
         _ => shape_by(Method::DarkIsDeep, image, Light::OVERHEAD, progress),
     }
 }

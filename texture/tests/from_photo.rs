@@ -124,7 +124,10 @@ fn a_blank_wall_has_next_to_no_relief_whatever_its_noise() {
     for (grey, levels) in [(0.78, 0.0), (0.78, 0.8), (0.5, 2.0), (0.7, 4.0)] {
         let wall = with_noise(&Raster::constant(240, 200, grey), levels, 5);
         let surface = made(&wall, PhotoOptions::default());
-        println!("{levels} levels: relief {:.2e} m, micro {:.2e} m", surface.relief_m, surface.micro_relief_m);
+        println!(
+            "{levels} levels: relief {:.2e} m, micro {:.2e} m",
+            surface.relief_m, surface.micro_relief_m
+        );
         assert!(surface.relief_m < 3e-6 && surface.micro_relief_m < 1e-7);
     }
     let even = made(&Raster::constant(64, 64, 0.5), PhotoOptions::default());
@@ -260,7 +263,9 @@ fn pictures_of_many_megapixels_are_reduced() {
     let (w, h) = (4001, 3000);
     let (large, n) = reduced(Raster::from_fn(w, h, |x, _| (x % 2) as f64));
     assert_eq!((large.width, large.height, n), (2000, 1500, 2));
-    assert!(large.width * large.height <= MOST_TEXELS && large.values.iter().all(|v| (v - 0.5).abs() < 1e-12));
+    assert!(
+        large.width * large.height <= MOST_TEXELS && large.values.iter().all(|v| (v - 0.5).abs() < 1e-12)
+    );
 }
 
 #[test]

@@ -8,7 +8,9 @@ use super::{bar, grey, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity::ActuatorSettings;
-use asperity_texture::from_photo::{PhotoOptions, PhotoSurface, TEXEL_M, calibration, reduced, surface_from_photo};
+use asperity_texture::from_photo::{
+    PhotoOptions, PhotoSurface, TEXEL_M, calibration, reduced, surface_from_photo,
+};
 use asperity_texture::image_io;
 use asperity_texture::light::Light;
 use asperity_texture::raster::Raster;
@@ -220,6 +222,14 @@ mod tests {
         let [once, twice, four] =
             ["1", "2", "4"].map(|x| render_scene(&out.join(format!("scene_x{x}.toml")), &out.join("stroke")));
         assert!(once < twice && twice < four && four <= 1.0, "{once} {twice} {four}");
+        for field in ["method", "relief_m", "micro_relief_m", "roughness", "sign_confidence", "warnings"] {
+            assert!(!report[field].is_null(), "{field}");
+        }
+        assert_eq!(report["light_is_estimated"], false, "no light was found");
+        // The cell alone, repeated without end, is as high as the map.
+        let mapped = render_scene(&out.join("scene_x1.toml"), &out.join("stroke"));
+        let repeated = render_scene(&out.join("scene_lattice.toml"), &out.join("stroke"));
+        assert!((repeated / mapped - 1.0).abs() < 0.3, "{repeated} against {mapped}");
     }
 
     /// Peak of what is felt, as a part of full scale.

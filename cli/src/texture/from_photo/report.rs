@@ -74,7 +74,13 @@ pub(super) struct Size {
 }
 
 impl Report {
-    pub fn new(options: &Options, surface: &PhotoSurface, size: Size, seconds: f64, files: Vec<String>) -> Self {
+    pub fn new(
+        options: &Options,
+        surface: &PhotoSurface,
+        size: Size,
+        seconds: f64,
+        files: Vec<String>,
+    ) -> Self {
         let (width, height) = (surface.displacement.width, surface.displacement.height);
         let repetition = surface.repetition.as_ref();
         Self {
@@ -143,7 +149,8 @@ impl Report {
             self.roughness,
         );
         if self.reduced_by > 1 {
-            let _ = write!(text, "\nreduced by {} to {} × {} texels", self.reduced_by, self.width, self.height);
+            let _ =
+                write!(text, "\nreduced by {} to {} × {} texels", self.reduced_by, self.width, self.height);
         }
         for warning in &self.warnings {
             let _ = write!(text, "\nwarning: {warning}");

@@ -10,12 +10,7 @@ const MODES: [(f64, f64, f64); 4] =
     [(420.0, 9.0, 0.3), (1157.5, 16.0, 0.22), (2269.7, 27.0, 0.15), (3751.9, 41.0, 0.1)];
 
 /// A scene of the whole picture, `factor` times as high as found, that renders at once.
-pub(super) fn of_picture(
-    surface: &PhotoSurface,
-    size_m: [f64; 2],
-    factor: f64,
-    full_scale_m: f64,
-) -> String {
+pub(super) fn of_picture(surface: &PhotoSurface, size_m: [f64; 2], factor: f64, full_scale_m: f64) -> String {
     let wrap = if surface.tileable { "repeat" } else { "mirror" };
     let relief_m = surface.relief_m * factor;
     let source = format!(
@@ -25,7 +20,12 @@ pub(super) fn of_picture(
 }
 
 /// A scene of the pattern's cell, repeated without end, that renders at once.
-pub(super) fn of_cell(surface: &PhotoSurface, cell: &HeightCell, size_m: [f64; 2], full_scale_m: f64) -> String {
+pub(super) fn of_cell(
+    surface: &PhotoSurface,
+    cell: &HeightCell,
+    size_m: [f64; 2],
+    full_scale_m: f64,
+) -> String {
     let source = format!(
         "lattice = {{ cell = \"cell.png\", t1_m = {:?}, t2_m = {:?} }}\nrelief_m = {:?}\nroughness = {:?}\n",
         cell.t1_m,
