@@ -1,68 +1,58 @@
 //! From a photograph to a surface that can be touched.
 //!
 //! ```text
-//! photo → lattice, primitive → symmetric part ─→ heights ──────────→ displacement
-//!                           └─ residual ──────→ local dimension D → R = (D − 2.25)/0.75 → roughness
+//! photo → camera's noise off → lattice, primitive → symmetric part ─→ heights → displacement
+//!                                                └─ residual ──────→ heights → 1/f^α → roughness R, micro-relief
 //! ```
 //! Source: document 004, the chain of chapters 6 (roughness), 7 (symmetry) and 8 (heights). Nothing in it
 //! is tuned by hand:
 //!
 //! | step | here |
 //! |---|---|
+//! | noise | [`crate::camera_noise`] |
 //! | lattice, or none | [`crate::symmetry`]; averaged in its wallpaper group's fundamental domain |
-//! | heights | [`crate::shape_from_shading`]: the light given, or found, or dark is deep |
-//! | D map | [`crate::fractal_dimension`], windows of [`DIMENSION_WINDOW_PX`] |
+//! | heights | [`crate::shape_from_shading`]: the light given, or found, or [dark is deep](mod@crate::dark_is_deep) |
+//! | which way up | [`Sign`] |
+//! | R and micro-relief | [`crate::relief_spectrum`] of the heights |
 //!
-//! Without a lattice nothing is averaged: the whole picture is the primitive, heights and D are taken from it. They are
+//! **Contrast is slope**, so half the contrast gives half the relief and half the micro-relief, and a blank wall next to none. How steep one unit of contrast
+//! is depends on light and camera: [`PhotoOptions::calibration`] is the factor, [`calibration`] takes it from a sample of known relief.
+//!
+//! Without a lattice nothing is averaged: the whole picture is the primitive, heights and R are taken from it. They are
 //! also taken from the whole picture when the pattern wanders off its lattice, as scales on a bent skin do: then the mean of
 //! all cells is a blur ([`Repetition::wanders`]).
 //! Brightness has no size: a texel is [`TEXEL_M`] wide unless told. The document's users preferred heights
 //! twice as large as computed; [`PhotoOptions::exaggeration`] is 1, 2 or 4 there.
 
-use crate::borders::{Borders, SplitBorders};
-use crate::fft2::{Fft2, angular_frequency};
-use crate::fractal_dimension::{self, DimensionError, local_map};
-use crate::light::Light;
+mod heights;
+mod options;
+mod sign;
+
+pub use heights::{Fallback, linear_light};
+pub use options::{PhotoOptions, TEXEL_M};
+pub use sign::{DECIDED, Sign};
+
+use crate::borders::Borders;
+use crate::camera_noise::{MOST_NOISE, without_camera_noise};
+use crate::dark_is_deep::dark_is_deep;
+use crate::fractal_dimension::{Condition, conditions, transects};
 use crate::raster::Raster;
-use crate::shape_from_shading::{Method, Shape, shape_by, shape_from_shading};
+use crate::relief_spectrum::ReliefSpectrum;
+use crate::shape_from_shading::Shape;
 use crate::symmetry::{self, Lattice, WallpaperGroup};
 use asperity_dsp::DesignError;
-use std::f64::consts::TAU;
 
-/// Size of a texel when nobody says: 40 mm over 256 texels (document 002, document 004 §8.3: 40 mm).
-pub const TEXEL_M: f64 = 0.04 / 256.0;
-/// Window of the local dimension, texels. Source: the note of `fractal_dimension`: error 0.02.
-pub const DIMENSION_WINDOW_PX: usize = 64;
-/// Texels between two windows.
-const DIMENSION_STRIDE_PX: usize = 8;
-/// Wavelength at which the engine's micro-noise is calibrated, m.
-const MICRO_WAVELENGTH_M: f64 = 1e-3;
 /// [`symmetry::steadiness`] below which the mean cell is not used. Source: ours; at least 0.95 for strict patterns of the tests
 /// and photographs, 0.08 for the skin among the photographs.
 const STEADY: f64 = 0.7;
 /// Largest micro-noise that is written, m: sandpaper.
-const LARGEST_MICRO_RELIEF_M: f64 = 1e-4;
-
-/// What is known about a photograph.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PhotoOptions {
-    /// Where the light was; `None`: find out.
-    pub light: Option<Light>,
-    /// How heights are found; `None`: by what the light allows.
-    pub method: Option<Method>,
-    /// Size of a texel, m.
-    pub texel_m: f64,
-    /// Height from the lowest to the highest point, m; `None`: what shading and texel size give.
-    pub relief_m: Option<f64>,
-    /// Factor on the heights.
-    pub exaggeration: f64,
-}
-
-impl Default for PhotoOptions {
-    fn default() -> Self {
-        Self { light: None, method: None, texel_m: TEXEL_M, relief_m: None, exaggeration: 1.0 }
-    }
-}
+pub const LARGEST_MICRO_RELIEF_M: f64 = 1e-4;
+/// Shorter side below which R is not trusted, texels: two octaves above the blur.
+pub const SMALL_PX: usize = 64;
+/// R where a picture is too small or too even to tell it. Assumed: α of 1.75.
+const UNKNOWN_ROUGHNESS: f64 = 0.5;
+/// Largest picture that is worked on, texels: larger ones are reduced ([`reduced`]).
+pub const MOST_TEXELS: usize = 1 << 22;
 
 /// What repeats in the picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +68,67 @@ pub struct Repetition {
     pub wanders: bool,
 }
 
+/// What to doubt in a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Doubt {
+    /// An input condition of the document that does not hold.
+    Condition(Condition),
+    /// Another way to heights was taken than the light seemed to allow.
+    Fallback(Fallback),
+    /// Which way up the heights are is a guess.
+    GuessedSign,
+    /// The picture is smaller than [`SMALL_PX`]: its R rests on few waves.
+    Small,
+    /// Too small or too even for any R: it is assumed.
+    NoRoughness,
+    /// Noise as strong as the strongest that is taken off; some may be left.
+    Noisy,
+    /// Nothing rises above the camera's noise: the surface is flat.
+    Flat,
+    /// The micro-relief was cut to [`LARGEST_MICRO_RELIEF_M`].
+    MicroReliefCut,
+}
+
+impl std::fmt::Display for Doubt {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Condition(condition) => condition.fmt(f),
+            Self::Fallback(reason) => reason.fmt(f),
+            Self::GuessedSign => f.write_str(
+                "whether bright is high is a guess; look at overview.png, `--bright-is-deep` turns it over",
+            ),
+            Self::Small => {
+                write!(f, "the picture is below {SMALL_PX} texels: its roughness rests on few waves")
+            }
+            Self::NoRoughness => {
+                write!(f, "too small or too even to tell a roughness: R = {UNKNOWN_ROUGHNESS} is assumed")
+            }
+            Self::Noisy => f.write_str(
+                "the finest waves are as strong as a noisy camera's: what is felt above 200 Hz may be noise",
+            ),
+            Self::Flat => {
+                f.write_str("nothing in the picture rises above a camera's noise: the surface is flat")
+            }
+            Self::MicroReliefCut => {
+                write!(f, "the micro-relief was cut to {:.0} µm", LARGEST_MICRO_RELIEF_M * 1e6)
+            }
+        }
+    }
+}
+
+/// One cell of a pattern as heights, for a lattice that never ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightCell {
+    /// Heights 0–1 over `relief_m`, columns along `t1_m`, rows along `t2_m`.
+    pub heights: Raster,
+    /// Height of 1 over 0, m.
+    pub relief_m: f64,
+    /// First translation, m.
+    pub t1_m: [f64; 2],
+    /// Second translation, m.
+    pub t2_m: [f64; 2],
+}
+
 /// The surface of a photograph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhotoSurface {
@@ -89,10 +140,12 @@ pub struct PhotoSurface {
     pub roughness: Raster,
     /// Rms of the micro-noise in the octave around 1 mm, m, for the engine's overlay.
     pub micro_relief_m: f64,
-    /// Dimension of the residual, or of the picture where nothing repeats; `None` when that is flat.
+    /// Dimension of the residual's relief, or of the whole where nothing repeats; `None` when that is flat.
     pub dimension: Option<f64>,
     /// What repeats; `None` when nothing does.
     pub repetition: Option<Repetition>,
+    /// The pattern's cell as heights; `None` when nothing repeats or the pattern wanders.
+    pub cell: Option<HeightCell>,
     /// The averaged cell in lattice coordinates, or the picture.
     pub primitive: Raster,
     /// The cell repeated, or the picture.
@@ -101,6 +154,14 @@ pub struct PhotoSurface {
     pub residual: Raster,
     /// How the heights were found.
     pub shape: Shape,
+    /// Which way up they are.
+    pub sign: Sign,
+    /// Whether the light was found in the picture (and not told).
+    pub light_was_found: bool,
+    /// Rms of what was taken for the camera's noise, of white.
+    pub noise: f64,
+    /// What to doubt.
+    pub doubts: Vec<Doubt>,
     /// Whether the picture tiles.
     pub tileable: bool,
 }
@@ -115,53 +176,105 @@ pub fn surface_from_photo(
     options: &PhotoOptions,
     mut progress: impl FnMut(f64),
 ) -> Result<PhotoSurface, DesignError> {
-    check(picture, options)?;
+    options::check(picture, options)?;
+    let quiet = without_camera_noise(picture);
+    progress(0.1);
     let (repetition, parts) = take_apart(picture);
-    progress(0.3);
+    progress(0.4);
     let averaged = repetition.as_ref().is_some_and(|found| !found.wanders);
-    let (shaped, textured) = if averaged { (&parts.symmetric, &parts.residual) } else { (picture, picture) };
-    let shape = heights_of(shaped, options, |done| progress(0.3 + 0.6 * done))?;
-    let (roughness, dimension) = roughness_of(textured);
-    let (low, high) = shape.height_px.range();
-    let natural_m = (high - low) * options.texel_m * options.exaggeration;
-    let relief_m = options.relief_m.map_or(natural_m, |relief| relief * options.exaggeration);
-    let displacement = shape.height_px.map(|z| if high > low { (z - low) / (high - low) } else { 0.5 });
-    let metres_per_grey = relief_m * deviation(&displacement) / deviation(shaped).max(1e-9);
-    let micro = octave_at_1_mm(textured, options.texel_m, dimension) * metres_per_grey;
+    let shaped = if averaged { &parts.symmetric } else { &quiet.picture };
+    let mut found = heights::heights_of(shaped, options, |done| progress(0.4 + 0.4 * done))?;
+    let scale = options.scale(&found.shape.height_px);
+    let textured_px =
+        if averaged { residual_heights(&parts.residual, picture) } else { found.shape.height_px.clone() };
+    let law = ReliefSpectrum::of(&textured_px);
+    let roughness = match &law {
+        Some(law) => law.roughness_map(&textured_px),
+        None => Raster::constant(picture.width, picture.height, UNKNOWN_ROUGHNESS),
+    };
+    drop(textured_px);
+    progress(0.9);
+    let micro_m = law.map_or(0.0, |law| law.micro_relief_px(options.texel_m)) * scale.metres_per_px;
+    let cell = repetition.as_ref().filter(|_| averaged).map(|found_pattern| {
+        height_cell(&found.shape.height_px, &found_pattern.lattice, scale.metres_per_px, options.texel_m)
+    });
+    let mut doubts =
+        doubts_of(picture, averaged.then_some(&parts.residual), &law, quiet.noise, scale.relief_m);
+    doubts.extend(found.fallback.map(Doubt::Fallback));
+    doubts.extend((!found.sign.is_decided() && scale.relief_m > 0.0).then_some(Doubt::GuessedSign));
+    doubts.extend((micro_m > LARGEST_MICRO_RELIEF_M).then_some(Doubt::MicroReliefCut));
+    let displacement = zero_to_one(&found.shape.height_px);
+    found.shape.height_px = found.shape.height_px.map(|z| z * scale.metres_per_px / options.texel_m);
     progress(1.0);
     Ok(PhotoSurface {
         displacement,
-        relief_m,
+        relief_m: scale.relief_m,
         roughness,
-        micro_relief_m: micro.min(LARGEST_MICRO_RELIEF_M),
-        dimension,
+        micro_relief_m: micro_m.min(LARGEST_MICRO_RELIEF_M),
+        dimension: law.map(|law| law.dimension()),
         repetition,
+        cell,
         primitive: parts.primitive,
         symmetric: parts.symmetric,
         residual: parts.residual,
-        shape,
+        shape: found.shape,
+        sign: found.sign,
+        light_was_found: found.light_was_found,
+        noise: quiet.noise,
+        doubts,
         tileable: Borders::Detect.decide(picture) == Borders::Periodic,
     })
 }
 
-fn check(picture: &Raster, options: &PhotoOptions) -> Result<(), DesignError> {
-    let smaller = picture.width.min(picture.height) as f64;
-    DesignError::check("photo side", smaller, "at least 16 texels", |n| n >= 16.0)?;
-    if let Some(&value) = picture.values.iter().find(|v| !v.is_finite()) {
-        return Err(DesignError { field: "photo", value, expected: "finite at every texel" });
+/// The factor on heights that makes a sample's photograph give its known relief: the same camera, light and texel size then give
+/// other surfaces theirs. `options` are those of the photograph of the sample.
+///
+/// # Errors
+/// As [`surface_from_photo`], and when the sample shows no relief.
+pub fn calibration(sample: &Raster, relief_m: f64, options: &PhotoOptions) -> Result<f64, DesignError> {
+    let range = "above 0 m and at most 1 m";
+    DesignError::check("known relief", relief_m, range, |r| r > 0.0 && r <= 1.0)?;
+    let plain = PhotoOptions { relief_m: None, calibration: 1.0, exaggeration: 1.0, ..*options };
+    let found_m = surface_from_photo(sample, &plain, |_| {})?.relief_m;
+    let shown = "a sample whose relief rises above the camera's noise";
+    DesignError::check("known relief", found_m, shown, |found| found > 0.0)?;
+    Ok(relief_m / found_m)
+}
+
+/// A picture of at most [`MOST_TEXELS`] and how many of its texels are one of the result along a side: means of n × n.
+#[must_use]
+pub fn reduced(picture: Raster) -> (Raster, usize) {
+    let n = (1..).find(|n| (picture.width / n) * (picture.height / n) <= MOST_TEXELS).unwrap_or(1);
+    if n == 1 { (picture, 1) } else { (means(&picture, n), n) }
+}
+
+/// Means of n × n texels; what does not fill one at the right and lower border is left out.
+fn means(picture: &Raster, n: usize) -> Raster {
+    let (w, h) = (picture.width / n, picture.height / n);
+    let mut means = Raster::constant(w, h, 0.0);
+    let share = 1.0 / (n * n) as f64;
+    for y in 0..h * n {
+        let row = &mut means.values[y / n * w..][..w];
+        for (mean, texels) in row.iter_mut().zip(picture.row(y).chunks_exact(n)) {
+            *mean += share * texels.iter().sum::<f64>();
+        }
     }
-    DesignError::check("texel_m", options.texel_m, "above 0 m and at most 1 m", |t| t > 0.0 && t <= 1.0)?;
-    let range = "above 0 and at most 100";
-    DesignError::check("exaggeration", options.exaggeration, range, |e| e > 0.0 && e <= 100.0)?;
-    if let Some(relief_m) = options.relief_m {
-        DesignError::check("relief_m", relief_m, "above 0 m and at most 1 m", |r| r > 0.0 && r <= 1.0)?;
+    means
+}
+
+/// The lattice of a picture; of a large one, that of its halves, where patterns below 16 texels are not seen.
+fn lattice_of(picture: &Raster) -> Option<Lattice> {
+    if picture.width * picture.height <= MOST_TEXELS / 2 {
+        return symmetry::find_lattice(picture);
     }
-    Ok(())
+    let found = symmetry::find_lattice(&means(picture, 2))?;
+    let twice = |t: [f64; 2]| t.map(|length| 2.0 * length);
+    Some(Lattice { t1_px: twice(found.t1_px), t2_px: twice(found.t2_px), ..found })
 }
 
 /// Primitive, symmetric part and residual, and what repeats.
 fn take_apart(picture: &Raster) -> (Option<Repetition>, symmetry::Separation) {
-    let Some(lattice) = symmetry::find_lattice(picture) else {
+    let Some(lattice) = lattice_of(picture) else {
         let whole = symmetry::Separation {
             primitive: picture.clone(),
             symmetric: picture.clone(),
@@ -177,97 +290,53 @@ fn take_apart(picture: &Raster) -> (Option<Repetition>, symmetry::Separation) {
     (Some(Repetition { lattice, group: found.group, share, wanders }), parts)
 }
 
-fn heights_of(
+/// Heights of what does not repeat, by its contrast against the whole picture.
+fn residual_heights(residual: &Raster, picture: &Raster) -> Raster {
+    let mean = picture.mean();
+    let quiet = without_camera_noise(&residual.map(|v| v + mean)).picture;
+    dark_is_deep(&heights::contrast(&quiet))
+}
+
+/// The mean cell of the heights.
+fn height_cell(heights_px: &Raster, lattice: &Lattice, metres_per_px: f64, texel_m: f64) -> HeightCell {
+    let cell = symmetry::averaged_cell(heights_px, lattice).cell;
+    let (low, high) = cell.range();
+    let metres = |t: [f64; 2]| t.map(|length| length * texel_m);
+    HeightCell {
+        heights: zero_to_one(&cell),
+        relief_m: (high - low) * metres_per_px,
+        t1_m: metres(lattice.t1_px),
+        t2_m: metres(lattice.t2_px),
+    }
+}
+
+fn doubts_of(
     picture: &Raster,
-    options: &PhotoOptions,
-    progress: impl FnMut(f64),
-) -> Result<Shape, DesignError> {
-    // Dark is deep works on what the eye sees, shading on the light that fell.
-    match options.method {
-        Some(Method::DarkIsDeep) => shape_by(Method::DarkIsDeep, picture, Light::OVERHEAD, progress),
-        Some(method) => {
-            let linear = picture.map(linear_light);
-            let found = options.light.or_else(|| crate::light::estimate_light(&linear));
-            shape_by(method, &linear, found.unwrap_or(Light::ABOVE_LEFT), progress)
-        }
-        None => {
-            let linear = picture.map(linear_light);
-            let shape = shape_from_shading(&linear, options.light, progress)?;
-            if shape.method == Method::DarkIsDeep {
-                return shape_by(Method::DarkIsDeep, picture, Light::OVERHEAD, |_| {});
-            }
-            Ok(shape)
-        }
+    residual: Option<&Raster>,
+    law: &Option<ReliefSpectrum>,
+    noise: f64,
+    relief_m: f64,
+) -> Vec<Doubt> {
+    if relief_m <= 0.0 {
+        return vec![Doubt::Flat];
     }
+    let textured = residual.unwrap_or(picture);
+    let mut doubts: Vec<Doubt> = transects(textured)
+        .map(|along| conditions(textured, &along).into_iter().map(Doubt::Condition).collect())
+        .unwrap_or_default();
+    doubts.extend((picture.width.min(picture.height) < SMALL_PX).then_some(Doubt::Small));
+    doubts.extend(law.is_none().then_some(Doubt::NoRoughness));
+    doubts.extend((noise >= MOST_NOISE).then_some(Doubt::Noisy));
+    doubts
 }
 
-/// Linear light of an sRGB value (IEC 61966-2-1).
-#[must_use]
-pub fn linear_light(stored: f64) -> f64 {
-    if stored <= 0.040_45 { stored / 12.92 } else { ((stored + 0.055) / 1.055).powf(2.4) }
-}
-
-/// The roughness map, as large as the picture, and the dimension of the whole.
-fn roughness_of(textured: &Raster) -> (Raster, Option<f64>) {
-    let smaller = textured.width.min(textured.height);
-    let window = DIMENSION_WINDOW_PX.min(smaller / 2).max(8);
-    let measured = local_map(textured, window, DIMENSION_STRIDE_PX)
-        .and_then(|local| Ok((local, fractal_dimension::transects(textured)?.dimension)));
-    match measured {
-        Ok((local, dimension)) => {
-            let coarse = local.roughness();
-            let stride = local.stride as f64;
-            let full = Raster::from_fn(textured.width, textured.height, |x, y| {
-                let at = |texel: usize| (texel as f64 + 0.5) / stride - 0.5;
-                between(&coarse, at(x), at(y))
-            });
-            (full, Some(dimension))
-        }
-        // A flat residual is smooth; the other refusals are checked for above.
-        Err(DimensionError::Flat | DimensionError::TooSmall { .. } | DimensionError::NotFinite { .. }) => {
-            (Raster::constant(textured.width, textured.height, 0.0), None)
-        }
-    }
-}
-
-/// Bilinear interpolation, constant beyond the border.
-fn between(raster: &Raster, x: f64, y: f64) -> f64 {
-    let split = |at: f64, n: usize| {
-        let at = at.clamp(0.0, (n - 1) as f64);
-        let low = at as usize;
-        (low, (low + 1).min(n - 1), at - low as f64)
-    };
-    let (x0, x1, ax) = split(x, raster.width);
-    let (y0, y1, ay) = split(y, raster.height);
-    let row = |y: usize| (1.0 - ax) * raster.at(x0, y) + ax * raster.at(x1, y);
-    (1.0 - ay) * row(y0) + ay * row(y1)
+fn zero_to_one(heights: &Raster) -> Raster {
+    let (low, high) = heights.range();
+    heights.map(|z| if high > low { (z - low) / (high - low) } else { 0.5 })
 }
 
 fn deviation(raster: &Raster) -> f64 {
     let mean = raster.mean();
     let sum: f64 = raster.values.iter().map(|v| (v - mean).powi(2)).sum();
     (sum / raster.values.len().max(1) as f64).sqrt()
-}
-
-/// Rms of the picture in the octave around 1 mm, in its own unit. Where texels are too coarse for that
-/// octave or the picture too small, the nearest octave it has, carried over by λ^H.
-fn octave_at_1_mm(picture: &Raster, texel_m: f64, dimension: Option<f64>) -> f64 {
-    let (w, h) = (picture.width, picture.height);
-    let shortest_m = 4.0 * texel_m;
-    let longest_m = (w.min(h) as f64 / 4.0 * texel_m).max(shortest_m);
-    let wavelength_m = MICRO_WAVELENGTH_M.clamp(shortest_m, longest_m);
-    let periodic = SplitBorders::of(picture, Borders::Detect).periodic;
-    let spectrum = Fft2::new(w, h).spectrum(&periodic.values);
-    let (low, high) = (wavelength_m / std::f64::consts::SQRT_2, wavelength_m * std::f64::consts::SQRT_2);
-    let mut power = 0.0;
-    for (place, value) in spectrum.iter().enumerate().skip(1) {
-        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
-        let length_m = TAU / r * texel_m;
-        if (low..high).contains(&length_m) {
-            power += value.norm_sqr();
-        }
-    }
-    let rms = power.sqrt() / (w * h) as f64;
-    let hurst = dimension.map_or(0.5, fractal_dimension::hurst);
-    rms * (MICRO_WAVELENGTH_M / wavelength_m).powf(hurst)
 }

@@ -1,13 +1,14 @@
-//! Maps as artists have them: one channel of a PNG, JPEG, PGM or EXR file, and 16-bit PNG back.
+//! Maps as artists have them: one channel of a PNG, JPEG, PGM, GIF or EXR file, and 16-bit PNG back.
 //!
 //! The only file that names the `image` crate. What the file *is* decides, never what it is called:
 //! palettes are expanded (the index of a pixel is not its grey), interlacing is undone, the file may
-//! have any shape, 16 bits stay 16 bits. A header is believed only within [`MAX_SIDE`] and
+//! have any shape, 16 bits stay 16 bits, a picture that EXIF calls turned is turned back, of a moving GIF the first frame counts. A header is believed only within [`MAX_SIDE`] and
 //! [`MAX_TEXELS`], before any pixel is decoded.
 
 use crate::deband::deband;
 use crate::raster::Raster;
 use crate::wrap::Wrap;
+use image::metadata::Orientation;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits};
 use std::fs::{self, File};
 use std::io::{BufReader, BufWriter, Write};
@@ -73,7 +74,7 @@ pub enum Problem {
     #[error("{0}; a readable file (or a writable folder for output) is needed")]
     Io(std::io::Error),
     /// Its first bytes are of no picture format we read.
-    #[error("not a picture this program reads; PNG, JPEG, PGM{} are read", if cfg!(feature = "exr") { " and EXR" } else { " (and EXR with the feature `exr`)" })]
+    #[error("not a picture this program reads; PNG, JPEG, PGM, GIF{} are read", if cfg!(feature = "exr") { " and EXR" } else { " (and EXR with the feature `exr`)" })]
     UnknownFormat,
     /// The picture is cut off or contradicts itself.
     #[error("damaged or cut off ({0}); a complete file is needed")]
@@ -152,7 +153,7 @@ fn load(path: &Path, channel: Channel) -> Result<ChannelImage, Problem> {
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_TEXELS * 16 + MAX_FILE_BYTES);
     reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(translate)?;
+    let mut decoder = reader.into_decoder().map_err(translate)?;
     let (width, height) = decoder.dimensions();
     if width > MAX_SIDE || height > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_TEXELS {
         return Err(Problem::TooLarge { width, height });
@@ -163,7 +164,10 @@ fn load(path: &Path, channel: Channel) -> Result<ChannelImage, Problem> {
     if channel == Channel::A && !decoder.color_type().has_alpha() {
         return Err(Problem::NoAlpha);
     }
-    let image = DynamicImage::from_decoder(decoder).map_err(translate)?;
+    // Telephones store a picture as the sensor lies and say in EXIF which way up it is. Damaged EXIF says nothing.
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+    let mut image = DynamicImage::from_decoder(decoder).map_err(translate)?;
+    image.apply_orientation(orientation);
     extract(&image, channel)
 }
 
@@ -189,15 +193,15 @@ fn one_line(error: &impl std::fmt::Display) -> String {
 /// One channel of a decoded picture, as 0–1.
 fn extract(image: &DynamicImage, channel: Channel) -> Result<ChannelImage, Problem> {
     let (width, height) = (image.width() as usize, image.height() as usize);
-    let channels = usize::from(image.color().channel_count());
+    let shape = [width * height, usize::from(image.color().channel_count())];
     let pick = |pixel: &[f64]| channel_of(pixel, channel);
     let (values, step) = match image.color() {
         ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => {
-            integers(image.as_bytes().iter().map(|&b| u16::from(b)), channels, 255, channel)
+            integers(image.as_bytes().iter().map(|&b| u16::from(b)), shape, 255, channel)
         }
         ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => {
             let pairs = image.as_bytes().chunks_exact(2).map(|b| u16::from_ne_bytes([b[0], b[1]]));
-            integers(pairs, channels, 65_535, channel)
+            integers(pairs, shape, 65_535, channel)
         }
         _ => {
             let rgba = image.to_rgba32f();
@@ -216,14 +220,14 @@ fn extract(image: &DynamicImage, channel: Channel) -> Result<ChannelImage, Probl
 /// every level is a multiple.
 fn integers(
     samples: impl Iterator<Item = u16>,
-    channels: usize,
+    [texels, channels]: [usize; 2],
     white: u16,
     channel: Channel,
 ) -> (Vec<f64>, f64) {
     let mut pixel = [0.0; 4];
     let mut filled = 0;
     let mut common = 0;
-    let mut values = Vec::new();
+    let mut values = Vec::with_capacity(texels);
     for sample in samples {
         pixel[filled] = f64::from(sample);
         filled += 1;
@@ -295,4 +299,49 @@ fn beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(format!(".{}.part", std::process::id()));
     path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ExtendedColorType, GrayImage, ImageEncoder};
+
+    /// Darker to the right, a bright first row.
+    fn shaded() -> GrayImage {
+        GrayImage::from_fn(32, 16, |x, y| image::Luma([if y == 0 { 250 } else { 200 - 6 * x as u8 }]))
+    }
+
+    #[test]
+    fn a_telephone_picture_is_turned_as_its_exif_says() {
+        let folder = tempfile::tempdir().unwrap();
+        let plain = folder.path().join("plain.jpg");
+        let turned = folder.path().join("turned.jpg");
+        for (path, orientation) in [(&plain, 1_u8), (&turned, 6)] {
+            // TIFF, little endian, one entry: tag 0x0112, type 3 (short), count 1.
+            let mut exif = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0".to_vec();
+            exif.extend([orientation, 0, 0, 0, 0, 0, 0, 0]);
+            let mut file = BufWriter::new(File::create(path).unwrap());
+            let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut file, 95);
+            encoder.set_exif_metadata(exif).unwrap();
+            encoder.encode(shaded().as_raw(), 32, 16, ExtendedColorType::L8).unwrap();
+        }
+        let (plain, turned) = (
+            load_channel(plain, Channel::Luma).unwrap().raster,
+            load_channel(turned, Channel::Luma).unwrap().raster,
+        );
+        assert_eq!((turned.width, turned.height), (plain.height, plain.width));
+        // Tag 6: a quarter turn clockwise; the first row becomes the last column.
+        for (x, y) in [(0, 0), (5, 3), (31, 15)] {
+            assert_eq!(turned.at(15 - y, x), plain.at(x, y));
+        }
+    }
+
+    #[test]
+    fn a_gif_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("picture.gif");
+        shaded().save(&path).unwrap_or_else(|_| DynamicImage::from(shaded()).to_rgb8().save(&path).unwrap());
+        let picture = load_channel(&path, Channel::Luma).unwrap().raster;
+        assert!((picture.at(4, 4) - 176.0 / 255.0).abs() < 0.03, "{}", picture.at(4, 4));
+    }
 }

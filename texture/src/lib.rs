@@ -30,6 +30,10 @@ pub mod wrap;
 #[cfg(feature = "offline")]
 pub mod borders;
 #[cfg(feature = "offline")]
+pub mod camera_noise;
+#[cfg(feature = "offline")]
+pub mod dark_is_deep;
+#[cfg(feature = "offline")]
 pub mod fft2;
 #[cfg(feature = "offline")]
 pub mod fractal_dimension;
@@ -47,6 +51,8 @@ pub mod metamer;
 pub mod normal_map;
 #[cfg(feature = "offline")]
 pub mod pyramid;
+#[cfg(feature = "offline")]
+pub mod relief_spectrum;
 #[cfg(feature = "offline")]
 pub mod shape_from_shading;
 #[cfg(feature = "offline")]

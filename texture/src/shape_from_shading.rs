@@ -24,11 +24,17 @@
 //! below 0.35, against 0.4–0.99 for the integrable solver. Kept because the document used it. Under
 //! frontal light f' is 0 at the start; |f'| is kept above 0.01 (ours).
 //!
-//! *Dark is deep* (default for diffuse light, where R says nothing): height is brightness, without what is
-//! broader than a quarter of the image and what is finer than [`DARK_BLUR_PX`]. Source: M. S. Langer and
-//! H. H. Bülthoff, Perception 29, 2000, on what observers and skylight do.
+//! *Dark is deep* (default for diffuse or frontal light): a wave of brightness is a wave of height, as steep as it has
+//! contrast, [`dark_is_deep`](mod@crate::dark_is_deep).
+//!
+//! Light from the viewer's direction (less than [`LEAST_SLANT_RAD`]) tells how steep a place is, 1/√(1 + |∇z|²), but not
+//! which way. The literature integrates that as an eikonal equation from every summit and pit (E. Rouy and A. Tourin, SIAM J.
+//! Numer. Anal. 29, 1992; R. Kimmel and A. M. Bruckstein, IJCV 16, 1995) and needs their heights and kinds told, an albedo that is even
+//! and no noise: a slope of 0.1 darkens by half a percent, the camera's noise is as much. Photographs have none of it, so no
+//! solver for it is here; dark is deep is used, and said.
 
 use crate::borders::{Borders, SplitBorders};
+use crate::dark_is_deep::dark_is_deep;
 use crate::fft2::{Fft2, angular_frequency};
 use crate::gradient_field::{Derivative, Projection, Slopes};
 use crate::light::{Light, estimate_light};
@@ -44,10 +50,8 @@ const DAMPING: f64 = 0.03;
 const STEEPEST: f64 = 4.0;
 /// How much the start trusts frequencies across the light, which shading does not show.
 const ACROSS: f64 = 0.1;
-/// Gaussian blur of dark-is-deep, standard deviation in texels. Source: ours: JPEG and sensor noise.
-pub const DARK_BLUR_PX: f64 = 1.0;
-/// Root mean square slope that dark-is-deep is scaled to. Assumed: brightness has no unit of height.
-pub const DARK_SLOPE: f64 = 0.25;
+/// Slant below which shading says nothing of direction, radians: 10°.
+pub const LEAST_SLANT_RAD: f64 = 0.1745;
 /// |f'| that Tsai–Shah keeps. Source: ours.
 const LEAST_DERIVATIVE: f64 = 0.01;
 
@@ -77,7 +81,7 @@ pub struct Shape {
 }
 
 /// Heights by the recommended method: with the given light, or the one found in the image, or dark is
-/// deep when there is none in it. `progress` is told the fraction done.
+/// deep when there is none in it or it comes from the viewer's direction. `progress` is told the fraction done.
 ///
 /// # Errors
 /// As [`shape_by`].
@@ -88,8 +92,10 @@ pub fn shape_from_shading(
 ) -> Result<Shape, DesignError> {
     check(image)?;
     match light.or_else(|| estimate_light(image)) {
-        Some(light) => shape_by(Method::Integrable(STEPS), image, light, progress),
-        None => shape_by(Method::DarkIsDeep, image, Light::OVERHEAD, progress),
+        Some(light) if light.slant_rad() >= LEAST_SLANT_RAD => {
+            shape_by(Method::Integrable(STEPS), image, light, progress)
+        }
+        _ => shape_by(Method::DarkIsDeep, image, Light::OVERHEAD, progress),
     }
 }
 
@@ -97,7 +103,8 @@ pub fn shape_from_shading(
 /// [`Method::DarkIsDeep`].
 ///
 /// # Errors
-/// When the image is smaller than 8 × 8 or holds numbers that are not finite.
+/// When the image is smaller than 8 × 8 or holds numbers that are not finite, or the integrable solver is to use light from the
+/// viewer's direction.
 pub fn shape_by(
     method: Method,
     image: &Raster,
@@ -105,6 +112,10 @@ pub fn shape_by(
     progress: impl FnMut(f64),
 ) -> Result<Shape, DesignError> {
     check(image)?;
+    if matches!(method, Method::Integrable(_)) {
+        let range = "at least 0.1745 rad (10°): light from the viewer's direction tells no slope's direction";
+        DesignError::check("light slant", light.slant_rad(), range, |slant| slant >= LEAST_SLANT_RAD)?;
+    }
     let (height_px, unexplained) = match method {
         Method::DarkIsDeep => (dark_is_deep(image), None),
         Method::TsaiShah(steps) => (tsai_shah(&expose(image, light), light, steps), None),
@@ -229,23 +240,4 @@ fn tsai_shah(image: &Raster, light: Light, steps: usize) -> Raster {
         }
     }
     surface
-}
-
-/// Brightness as height, between the blur and a quarter of the image, scaled to [`DARK_SLOPE`].
-fn dark_is_deep(image: &Raster) -> Raster {
-    let image = SplitBorders::of(image, Borders::Detect).periodic;
-    let (w, h) = (image.width, image.height);
-    let mut fft = Fft2::new(w, h);
-    let mut spectrum = fft.spectrum(&image.values);
-    let broad = w.min(h) as f64 / 4.0 / std::f64::consts::TAU;
-    let gauss = |r: f64, sigma: f64| (-0.5 * (r * sigma).powi(2)).exp();
-    let mut slope_power = 0.0;
-    for (place, value) in spectrum.iter_mut().enumerate() {
-        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
-        *value *= gauss(r, DARK_BLUR_PX) * (1.0 - gauss(r, broad));
-        slope_power += r * r * value.norm_sqr();
-    }
-    let slope = slope_power.sqrt() / (w * h) as f64;
-    let gain = if slope > 0.0 { DARK_SLOPE / slope } else { 0.0 };
-    fft.image(&mut spectrum).map(|z| gain * z)
 }

@@ -4,7 +4,9 @@
 
 mod surfaces;
 
-use asperity_texture::from_photo::{PhotoOptions, TEXEL_M, surface_from_photo};
+use asperity_texture::from_photo::{
+    Doubt, Fallback, MOST_TEXELS, PhotoOptions, TEXEL_M, calibration, reduced, surface_from_photo,
+};
 use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::light::Light;
 use asperity_texture::raster::Raster;
@@ -90,6 +92,180 @@ fn sizes_and_factors_do_what_they_say() {
     assert_eq!((told.relief_m, &told.displacement), (1e-3, &plain.displacement));
     let lit = made(&picture, PhotoOptions { light: Some(Light::ABOVE_LEFT), ..Default::default() });
     assert!(matches!(lit.shape.method, Method::Integrable(_)));
+}
+
+/// A picture of 8 bits at a part of its contrast.
+fn at_contrast(picture: &Raster, contrast: f64) -> Raster {
+    let mean = picture.mean();
+    picture.map(|v| ((mean + contrast * (v - mean)) * 255.0).round() / 255.0)
+}
+
+/// Gaussian noise of this many levels of 255.
+fn with_noise(picture: &Raster, levels: f64, seed: u64) -> Raster {
+    let mut rng = asperity_dsp::rng::Rng::new(seed);
+    picture.map(|v| ((v * 255.0 + levels * rng.normal()).round() / 255.0).clamp(0.0, 1.0))
+}
+
+#[test]
+fn relief_and_micro_relief_follow_the_contrast_of_the_picture() {
+    let picture = fractal(256, 3.0, 1.0, 77).map(|v| 0.2 + 0.6 * v);
+    let full = made(&at_contrast(&picture, 1.0), PhotoOptions::default());
+    for contrast in [0.5, 0.2, 0.1] {
+        let faint = made(&at_contrast(&picture, contrast), PhotoOptions::default());
+        let relief = faint.relief_m / full.relief_m / contrast;
+        let micro = faint.micro_relief_m / full.micro_relief_m / contrast;
+        println!("contrast {contrast}: relief {relief:.3}, micro-relief {micro:.3} of what it should be");
+        assert!((relief - 1.0).abs() < 0.2 && (micro - 1.0).abs() < 0.3);
+    }
+}
+
+#[test]
+fn a_blank_wall_has_next_to_no_relief_whatever_its_noise() {
+    for (grey, levels) in [(0.78, 0.0), (0.78, 0.8), (0.5, 2.0), (0.7, 4.0)] {
+        let wall = with_noise(&Raster::constant(240, 200, grey), levels, 5);
+        let surface = made(&wall, PhotoOptions::default());
+        println!(
+            "{levels} levels: relief {:.2e} m, micro {:.2e} m",
+            surface.relief_m, surface.micro_relief_m
+        );
+        assert!(surface.relief_m < 3e-6 && surface.micro_relief_m < 1e-7);
+    }
+    let even = made(&Raster::constant(64, 64, 0.5), PhotoOptions::default());
+    assert_eq!((even.relief_m, even.micro_relief_m), (0.0, 0.0));
+    assert_eq!(even.doubts, [Doubt::Flat]);
+}
+
+#[test]
+fn frontal_light_gives_heights_and_a_reason() {
+    let options = PhotoOptions { light: Some(Light::OVERHEAD), ..Default::default() };
+    let surface = made(&ground(128), options);
+    assert!(surface.relief_m > 1e-5 && surface.shape.method == Method::DarkIsDeep);
+    let reason = |d: &Doubt| matches!(d, Doubt::Fallback(Fallback::FrontalLight(_)));
+    assert!(surface.doubts.iter().any(reason), "{:?}", surface.doubts);
+}
+
+#[test]
+fn no_light_is_reported_where_none_was_found() {
+    assert!(!made(&ground(96), PhotoOptions::default()).light_was_found);
+    let told = PhotoOptions { light: Some(Light::ABOVE_LEFT), ..Default::default() };
+    assert!(!made(&ground(96), told).light_was_found);
+}
+
+#[test]
+fn a_guessed_sign_is_called_a_guess_and_shadows_decide() {
+    let guess = made(&fractal(128, 3.0, 1.0, 78), PhotoOptions::default());
+    assert!(!guess.sign.is_decided() && guess.doubts.contains(&Doubt::GuessedSign));
+    // Narrow grooves full of shadow in an even plate.
+    let mut rng = asperity_dsp::rng::Rng::new(79);
+    let mut plate = Raster::from_fn(160, 160, |_, _| 0.6 + 0.01 * rng.normal());
+    for _ in 0..60 {
+        let (x, y, length) = (rng.uniform() * 150.0, rng.uniform() * 150.0, 10.0 + 30.0 * rng.uniform());
+        for step in 0..length as usize {
+            let (i, j) = ((x as usize + step) % 160, (y as usize + step / 2) % 160);
+            plate.values[j * 160 + i] = 0.15;
+            plate.values[j * 160 + (i + 1) % 160] = 0.3;
+        }
+    }
+    let decided = made(&plate, PhotoOptions::default());
+    assert!(decided.sign.is_decided() && !decided.sign.bright_is_deep, "{:?}", decided.sign);
+    let turned = made(&plate, PhotoOptions { bright_is_deep: true, ..Default::default() });
+    assert_eq!(turned.sign.confidence, 1.0);
+    assert!((correlation(&turned.displacement, &decided.displacement) + 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_sample_of_known_relief_calibrates_other_pictures_of_the_same_camera() {
+    let (sample, other) = (fractal(128, 3.0, 1.0, 80), fractal(128, 3.0, 1.0, 81));
+    let options = PhotoOptions::default();
+    let factor = calibration(&sample, 25e-6, &options).unwrap();
+    let calibrated = PhotoOptions { calibration: factor, ..options };
+    assert!((made(&sample, calibrated).relief_m / 25e-6 - 1.0).abs() < 1e-9);
+    let [plain, scaled] = [options, calibrated].map(|options| made(&other, options));
+    assert!((scaled.relief_m / plain.relief_m / factor - 1.0).abs() < 1e-9);
+    assert!((scaled.micro_relief_m / plain.micro_relief_m / factor - 1.0).abs() < 1e-9);
+    let blank = Raster::constant(128, 128, 0.5);
+    assert_eq!(calibration(&blank, 25e-6, &options).unwrap_err().field, "known relief");
+}
+
+#[test]
+fn a_small_picture_of_noise_is_rough_and_said_to_be_small() {
+    let noise = with_noise(&Raster::constant(48, 48, 0.5), 40.0, 6);
+    let surface = made(&noise, PhotoOptions::default());
+    assert!(surface.roughness.mean() > 0.7, "R {}", surface.roughness.mean());
+    assert!(surface.doubts.contains(&Doubt::Small));
+    let tiny = made(&with_noise(&Raster::constant(16, 16, 0.5), 40.0, 7), PhotoOptions::default());
+    assert!(tiny.doubts.contains(&Doubt::NoRoughness));
+}
+
+#[test]
+fn the_documents_conditions_are_told_of_a_photograph_as_well() {
+    let mut rng = asperity_dsp::rng::Rng::new(82);
+    let lines: Vec<f64> = (0..128).map(|_| 0.5 + 0.1 * rng.normal()).collect();
+    let wood = Raster::from_fn(128, 128, |_, y| lines[y] + 0.02 * rng.normal());
+    let doubts = made(&wood, PhotoOptions::default()).doubts;
+    assert!(doubts.iter().any(|d| d.to_string().contains("preferred direction")), "{doubts:?}");
+}
+
+#[test]
+fn side_light_over_slow_shade_gives_neither_a_dome_nor_streaks() {
+    // Pebbles under a side light in a picture that darkens towards its corners.
+    let n = 192;
+    let pebbles = fractal(n, 4.0, 1.0, 83);
+    let field = asperity_texture::gradient_field::slopes(
+        &pebbles,
+        asperity_texture::gradient_field::Derivative::Exact,
+    );
+    let gain = 0.2 / field.power().sqrt();
+    let light = Light::at(0.7, -2.3).unwrap();
+    let [sx, sy, sz] = light.direction();
+    let picture = Raster::from_fn(n, n, |x, y| {
+        let (p, q) = (gain * field.along_u.at(x, y), gain * field.along_v.at(x, y));
+        let far = ((x as f64 / 96.0 - 1.0).powi(2) + (y as f64 / 96.0 - 1.0).powi(2)) * 0.2;
+        let lit = 0.5 * (1.0 - far) * (sz - sx * p - sy * q) / (1.0 + p * p + q * q).sqrt();
+        lit.clamp(0.0, 1.0).powf(1.0 / 2.2)
+    });
+    let picture = with_noise(&picture, 1.0, 8);
+    let surface = made(&picture, PhotoOptions { light: Some(light), ..Default::default() });
+    let blocks = |raster: &Raster| {
+        // Means of 48 × 48: what is slower than the pebbles.
+        Raster::from_fn(4, 4, |x, y| {
+            let cells = (0..48 * 48).map(|i| raster.at(48 * x + i % 48, 48 * y + i / 48));
+            cells.sum::<f64>() / (48.0 * 48.0)
+        })
+    };
+    let spread = |raster: &Raster| {
+        let mean = raster.mean();
+        raster.values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / raster.values.len() as f64
+    };
+    let slow = spread(&blocks(&surface.shape.height_px)) / spread(&surface.shape.height_px);
+    println!("slow part {slow:.3} of the power");
+    assert!(slow < 0.15);
+}
+
+#[test]
+fn a_pattern_comes_with_a_cell_of_heights_as_high_as_the_map() {
+    let rough = ground(192);
+    let tiles = Raster::from_fn(192, 192, |x, y| {
+        let (u, v) = ((x % 24) as f64 - 11.5, (y % 24) as f64 - 11.5);
+        0.3 + 0.4 * (-(u * u + v * v) / 60.0).exp() + 0.02 * (rough.at(x, y) - 0.5)
+    });
+    let surface = made(&tiles, PhotoOptions::default());
+    let cell = surface.cell.expect("tiles repeat");
+    assert!((cell.relief_m / surface.relief_m - 1.0).abs() < 0.15, "{} {}", cell.relief_m, surface.relief_m);
+    let length = cell.t1_m[0].hypot(cell.t1_m[1]);
+    assert!((length / (24.0 * TEXEL_M) - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn pictures_of_many_megapixels_are_reduced() {
+    let (small, n) = reduced(Raster::constant(300, 200, 0.25));
+    assert_eq!((small.width, n), (300, 1));
+    let (w, h) = (4001, 3000);
+    let (large, n) = reduced(Raster::from_fn(w, h, |x, _| (x % 2) as f64));
+    assert_eq!((large.width, large.height, n), (2000, 1500, 2));
+    assert!(
+        large.width * large.height <= MOST_TEXELS && large.values.iter().all(|v| (v - 0.5).abs() < 1e-12)
+    );
 }
 
 #[test]

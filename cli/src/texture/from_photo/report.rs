@@ -1,0 +1,177 @@
+//! What `from-photo` reports: `report.json`, `--json` and the words for people.
+
+use super::Options;
+use asperity_texture::from_photo::{DECIDED, PhotoSurface};
+use asperity_texture::shape_from_shading::Method;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+#[derive(Debug, Serialize)]
+struct LatticeReport {
+    t1_px: [f64; 2],
+    t2_px: [f64; 2],
+    confidence: f64,
+    /// Fraction of the picture's variance that repeats.
+    share: f64,
+    /// Whether the pattern wanders off the lattice: heights are then the whole picture's.
+    wanders: bool,
+}
+
+/// The pattern's cell as heights.
+#[derive(Debug, Serialize)]
+struct CellReport {
+    t1_m: [f64; 2],
+    t2_m: [f64; 2],
+    relief_m: f64,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    photo: PathBuf,
+    /// Texels of the maps; those of the photograph over `reduced_by`.
+    width: usize,
+    height: usize,
+    reduced_by: usize,
+    texel_m: f64,
+    width_m: f64,
+    height_m: f64,
+    relief_m: f64,
+    micro_relief_m: f64,
+    /// Factor on the heights that contrast gives; may be passed again as `--calibration`.
+    calibration: f64,
+    method: &'static str,
+    /// Which way up: `bright-is-high`, `bright-is-deep`, `light` (shading under a told light), or `undecided` (heights are as if bright were high).
+    sign: &'static str,
+    /// 0 nothing known, 1 told; decided from 0.5.
+    sign_confidence: f64,
+    /// Unit vector to the light that was used.
+    light: Option<[f64; 3]>,
+    /// Whether that light was found in the picture.
+    light_is_estimated: bool,
+    unexplained: Option<f64>,
+    /// Rms of what was taken for the camera's noise, of white.
+    noise: f64,
+    lattice: Option<LatticeReport>,
+    wallpaper_group: Option<&'static str>,
+    cell: Option<CellReport>,
+    fractal_dimension: Option<f64>,
+    /// Mean of the roughness map.
+    roughness: f64,
+    roughness_mean: f64,
+    tileable: bool,
+    warnings: Vec<String>,
+    seconds: f64,
+    files: Vec<String>,
+}
+
+/// How large things are.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Size {
+    pub texel_m: f64,
+    pub reduced_by: usize,
+    pub calibration: f64,
+}
+
+impl Report {
+    pub fn new(
+        options: &Options,
+        surface: &PhotoSurface,
+        size: Size,
+        seconds: f64,
+        files: Vec<String>,
+    ) -> Self {
+        let (width, height) = (surface.displacement.width, surface.displacement.height);
+        let repetition = surface.repetition.as_ref();
+        Self {
+            photo: options.photo.clone(),
+            width,
+            height,
+            reduced_by: size.reduced_by,
+            texel_m: size.texel_m,
+            width_m: width as f64 * size.texel_m,
+            height_m: height as f64 * size.texel_m,
+            relief_m: surface.relief_m,
+            micro_relief_m: surface.micro_relief_m,
+            calibration: size.calibration,
+            method: match surface.shape.method {
+                Method::Integrable(_) => "integrable",
+                Method::TsaiShah(_) => "tsai-shah",
+                Method::DarkIsDeep => "dark-is-deep",
+            },
+            sign: sign(surface),
+            sign_confidence: surface.sign.confidence,
+            light: surface.shape.light.map(|light| light.direction()),
+            light_is_estimated: surface.light_was_found,
+            unexplained: surface.shape.unexplained,
+            noise: surface.noise,
+            lattice: repetition.map(|found| LatticeReport {
+                t1_px: found.lattice.t1_px,
+                t2_px: found.lattice.t2_px,
+                confidence: found.lattice.confidence,
+                share: found.share,
+                wanders: found.wanders,
+            }),
+            wallpaper_group: repetition.map(|found| found.group.name()),
+            cell: surface.cell.as_ref().map(|cell| CellReport {
+                t1_m: cell.t1_m,
+                t2_m: cell.t2_m,
+                relief_m: cell.relief_m,
+            }),
+            fractal_dimension: surface.dimension,
+            roughness: surface.roughness.mean(),
+            roughness_mean: surface.roughness.mean(),
+            tileable: surface.tileable,
+            warnings: surface.doubts.iter().map(ToString::to_string).collect(),
+            seconds,
+            files,
+        }
+    }
+
+    /// The same for people.
+    pub fn in_words(&self, options: &Options) -> String {
+        let lattice = self.lattice.as_ref().map_or("nothing repeats".to_owned(), |lattice| {
+            let group = self.wallpaper_group.unwrap_or("p1");
+            let wanders = if lattice.wanders { ", but wanders: nothing is averaged" } else { "" };
+            format!("repeats along {:.1?} and {:.1?} texels ({group}){wanders}", lattice.t1_px, lattice.t2_px)
+        });
+        let mut text = format!("{lattice}; heights by {}", self.method);
+        if let (Some([x, y, z]), true) = (self.light, self.light_is_estimated) {
+            let _ = write!(text, " under a light found at ({x:.2}, {y:.2}, {z:.2})");
+        }
+        let _ = write!(
+            text,
+            ", {} (confidence {:.2}), relief {}, micro-relief {}, roughness {:.2}",
+            self.sign,
+            self.sign_confidence,
+            crate::plot::quantity(self.relief_m, "m"),
+            crate::plot::quantity(self.micro_relief_m, "m"),
+            self.roughness,
+        );
+        if self.reduced_by > 1 {
+            let _ =
+                write!(text, "\nreduced by {} to {} × {} texels", self.reduced_by, self.width, self.height);
+        }
+        for warning in &self.warnings {
+            let _ = write!(text, "\nwarning: {warning}");
+        }
+        let _ = write!(
+            text,
+            "\nwrote {} files to {}\nnext: asperity render {} -o {}",
+            self.files.len(),
+            options.output.display(),
+            options.output.join("scene.toml").display(),
+            options.output.join("stroke").display(),
+        );
+        text
+    }
+}
+
+fn sign(surface: &PhotoSurface) -> &'static str {
+    match surface.sign {
+        sign if sign.confidence < DECIDED => "undecided",
+        sign if sign.bright_is_deep => "bright-is-deep",
+        _ if surface.shape.method == Method::DarkIsDeep => "bright-is-high",
+        _ => "light",
+    }
+}
