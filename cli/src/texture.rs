@@ -9,6 +9,7 @@ pub mod compare;
 pub mod from_normals;
 pub mod from_photo;
 pub mod metamer;
+pub mod object;
 pub mod solid;
 
 use crate::error::CliError;

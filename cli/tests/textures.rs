@@ -6,6 +6,7 @@ mod support;
 mod surfaces;
 
 use asperity_texture::image_io::{Channel, load_channel, save_gray16};
+use asperity_texture::metamer::{Feel, MetamerOptions};
 use asperity_texture::raster::Raster;
 use serde_json::Value;
 use std::path::Path;
@@ -84,6 +85,96 @@ fn a_metamer_is_as_large_as_the_original_and_as_rough_as_the_reference_in_every_
     assert!(single["iterations"].is_null());
 }
 
+/// Bars of two heights, the full range, and a surface to give their feel.
+fn with_a_full_range_reference() -> Scene {
+    with_maps(&[("look.png", fractal(128, 3.4, 1.0, 7)), ("feel.png", grid(128))])
+}
+
+#[test]
+fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_reference_s_range() {
+    let scene = with_a_full_range_reference();
+    let reference = grey(&scene, "feel.png");
+    for more in [&[][..], &["--method", "single-pass"], &["--method", "spectrum"], &["--borrow", "0"]] {
+        let mut arguments = vec!["metamer", "look.png", "feel.png", "-o", "both.png", "--bands", "3"];
+        arguments.extend(more);
+        let made = report(&scene, &arguments);
+        let file = grey(&scene, "both.png");
+        let (offset, scale) = (number(&made, "offset"), number(&made, "scale"));
+        let heights = file.map(|grey| offset + scale * grey);
+        let settings = MetamerOptions { bands: 3, ..MetamerOptions::default() };
+        let mut feel = Feel::new(&reference, 128, 128, &settings).unwrap();
+        let found = feel.distance(&heights, true);
+        for (told, found) in [("mean_after", found.mean), ("heights_after", found.heights)] {
+            let told = number(&made, told);
+            assert!((told - found).abs() <= 0.05 * found, "{more:?}: told {told}, in the file {found}");
+        }
+        let limit = file.values.iter().filter(|grey| **grey <= 0.0 || **grey >= 1.0).count();
+        let stretched = (offset, scale) != (0.0, 1.0);
+        // Where heights leave the reference's range the file is stretched and says so: only its extremes are at the limits.
+        assert_eq!(stretched, limit <= 2, "{more:?}: {limit} of the texels at the limits");
+        let warned = made["warnings"].to_string();
+        assert_eq!(stretched, warned.contains("relief_m"), "{warned}");
+        assert!((number(&made, "relief_m") - 0.002 * scale).abs() < 1e-12);
+    }
+    let (low, high) = grey(&scene, "both.png").range();
+    assert_eq!((low, high), (0.0, 1.0));
+}
+
+/// Volume (mm³) and extents (mm) of a binary STL, and whether every edge is met once in either direction.
+fn solid(bytes: &[u8]) -> (f64, [f64; 3], bool) {
+    let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+    let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
+    assert_eq!(bytes.len(), 84 + 50 * count);
+    let mut edges = std::collections::HashMap::new();
+    let (mut volume, mut low, mut high) = (0.0, [f64::MAX; 3], [f64::MIN; 3]);
+    for triangle in 0..count {
+        let corner = |i: usize| [0, 1, 2].map(|axis| float(84 + 50 * triangle + 12 + 12 * i + 4 * axis));
+        let corners = [corner(0), corner(1), corner(2)];
+        let [a, b, c] = corners.map(|corner| corner.map(f64::from));
+        volume += (a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0]))
+            / 6.0;
+        for i in 0..3 {
+            let [from, to] = [i, (i + 1) % 3].map(|i| corners[i].map(f32::to_bits));
+            *edges.entry((from, to)).or_insert(0) += 1;
+            *edges.entry((to, from)).or_insert(0) -= 1;
+            for axis in 0..3 {
+                low[axis] = f64::min(low[axis], f64::from(corners[i][axis]));
+                high[axis] = f64::max(high[axis], f64::from(corners[i][axis]));
+            }
+        }
+    }
+    (volume, std::array::from_fn(|axis| high[axis] - low[axis]), edges.values().all(|count| *count == 0))
+}
+
+#[test]
+fn a_metamer_is_an_object_of_the_size_told_and_coarse_texels_are_warned_of() {
+    let scene = with_a_full_range_reference();
+    let print = ["metamer", "look.png", "feel.png", "-o", "both.png", "--bands", "3", "--stl", "both.stl"];
+    for (width_mm, coarse) in [("20", false), ("64", true)] {
+        let mut arguments = print.to_vec();
+        arguments.extend(["--width-mm", width_mm, "--base-mm", "3", "--relief-mm", "1.5"]);
+        let made = report(&scene, &arguments);
+        let (volume, size, closed) = solid(&std::fs::read(scene.path("both.stl")).unwrap());
+        let told = [number(&made, "width_mm"), number(&made, "height_mm"), 3.0 + number(&made, "relief_mm")];
+        assert!(closed && told[0].to_string() == width_mm && (told[2] - 4.5).abs() < 1e-9);
+        assert!(size.iter().zip(told).all(|(size, told)| (size - told).abs() < 1e-4), "{size:?} {told:?}");
+        let mean_mm = 1.5 * grey(&scene, "both.png").mean();
+        assert!((volume / (told[0] * told[1] * (3.0 + mean_mm)) - 1.0).abs() < 2e-3, "{volume}");
+        assert_eq!(made["warnings"].to_string().contains("0.25 mm"), coarse);
+    }
+    for (bad, field) in [("--base-mm", "base_m"), ("--width-mm", "texel_m")] {
+        let mut arguments = vec!["texture"];
+        arguments.extend(print);
+        arguments[7] = "other.png";
+        arguments.extend([bad, "1e9"]);
+        let told = asperity(scene.folder.path(), &arguments);
+        assert_refused(&told, &[field]);
+        assert!(!scene.path("other.stl").exists());
+    }
+}
+
 #[test]
 fn a_map_matched_to_itself_is_the_same_file_whatever_the_options() {
     let scene = with_maps(&[("map.png", ridges(64))]);
@@ -120,6 +211,10 @@ fn five_textures_are_told_apart_and_their_metamers_are_not() {
     println!("originals {originals:.2}, single pass {single:.2}, metamers {metamers:.2}");
     assert!(originals > 0.95 && single > 0.8, "{told}");
     assert!(metamers <= 0.65, "{told}");
+    // The pairs that matter: the reference, first, against each metamer.
+    let row = told["metamers"]["rows"][0].as_array().unwrap();
+    let expected = row[1..].iter().map(|cell| cell.as_f64().unwrap()).sum::<f64>() / 4.0;
+    assert!((number(&told["metamers"], "reference") - expected).abs() < 1e-12 && expected <= 0.7, "{told}");
     for table in ["originals", "single_pass", "metamers"] {
         let same = number(&told[table], "same");
         assert!((same - 0.5).abs() <= 0.09, "{table}: a surface against itself {same}");

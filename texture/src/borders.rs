@@ -14,11 +14,15 @@ use crate::raster::Raster;
 /// Ratio of the mean step across a seam to the mean step inside up to which an image tiles. Source:
 /// ours; tileable maps of the corpus stay below 1.3, photographs are above 2.
 pub const SEAM_LIMIT: f64 = 1.6;
+/// Part of the step across a seam within which two neighbours inside must equal the two at the seam for it to be one of the
+/// pattern's own edges. Source: ours; strips of photographs differ by the step itself.
+const SAME_STRIP: f64 = 0.25;
 
 /// Whether an image tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Borders {
-    /// Look at the seams: [`seam_ratio`] against [`SEAM_LIMIT`].
+    /// Look at the seams: [`seam_ratio`] against [`SEAM_LIMIT`], unless the same step is met inside, too: the edge of a
+    /// tile may lie on the border.
     #[default]
     Detect,
     /// It tiles.
@@ -32,7 +36,7 @@ impl Borders {
     #[must_use]
     pub fn decide(self, image: &Raster) -> Self {
         match self {
-            Self::Detect if seam_ratio(image) <= SEAM_LIMIT => Self::Periodic,
+            Self::Detect if seam_ratio(image) <= SEAM_LIMIT || has_ordinary_seams(image) => Self::Periodic,
             Self::Detect => Self::Smooth,
             decided => decided,
         }
@@ -60,6 +64,25 @@ pub fn seam_ratio(image: &Raster) -> f64 {
     ratio(across_x, inside_x).max(ratio(across_y, inside_y))
 }
 
+/// Whether the steps across both seams are no larger than others or are met inside.
+fn has_ordinary_seams(image: &Raster) -> bool {
+    let (w, h) = (image.width, image.height);
+    let turned = || Raster::from_fn(h, w, |x, y| image.at(y, x));
+    w >= 4 && h >= 4 && seam_is_met_inside(image) && seam_is_met_inside(&turned())
+}
+
+/// Whether two neighbouring rows inside are those that meet at the seam, the last one and the first one.
+fn seam_is_met_inside(image: &Raster) -> bool {
+    let last = image.height - 1;
+    let distance = |a: usize, b: usize| -> f64 {
+        image.row(a).iter().zip(image.row(b)).map(|(a, b)| (a - b).abs()).sum()
+    };
+    let across = distance(last, 0);
+    let inside = distance(0, 1) + distance(last - 1, last);
+    2.0 * across <= SEAM_LIMIT * inside
+        || (0..last).any(|row| distance(row, last) + distance(row + 1, 0) <= SAME_STRIP * across)
+}
+
 /// An image split at its borders.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplitBorders {
@@ -82,16 +105,12 @@ impl SplitBorders {
         Self { periodic, smooth: Some(smooth) }
     }
 
-    /// Gives a surface that was made from this image's periodic component this image's smooth
-    /// component back, at most as strong as the one of `reference`.
-    pub(crate) fn add_borders(&self, made: &mut Raster, reference: &Self) {
-        let (Some(ours), Some(theirs)) = (&self.smooth, &reference.smooth) else { return };
+    /// This image's smooth component, as strong as the one of `reference`; none where either tiles.
+    pub(crate) fn seam_like(&self, reference: &Self) -> Option<Raster> {
+        let (Some(ours), Some(theirs)) = (&self.smooth, &reference.smooth) else { return None };
         let rms = |r: &Raster| (r.values.iter().map(|v| v * v).sum::<f64>() / r.values.len() as f64).sqrt();
         let (ours_rms, theirs_rms) = (rms(ours), rms(theirs));
-        let gain = if ours_rms > theirs_rms { theirs_rms / ours_rms } else { 1.0 };
-        for (value, smooth) in made.values.iter_mut().zip(&ours.values) {
-            *value += gain * smooth;
-        }
+        (ours_rms > 0.0).then(|| ours.map(|v| v * (theirs_rms / ours_rms)))
     }
 }
 
@@ -140,6 +159,20 @@ mod tests {
         });
         assert!(seam_ratio(&wave) < SEAM_LIMIT);
         assert_eq!(SplitBorders::of(&wave, Borders::Detect).periodic, wave);
+    }
+
+    #[test]
+    fn an_edge_of_the_pattern_on_the_border_is_no_seam() {
+        let bars =
+            |width| Raster::from_fn(width, 96, |x, y| if x % 32 < 6 || y % 32 < 6 { 1.0 } else { 0.0 });
+        let squares = Raster::from_fn(64, 64, |x, y| ((x / 16 + y / 16) % 2) as f64);
+        let stairs = Raster::from_fn(64, 64, |x, y| ((x + 2 * y) % 64 / 16) as f64);
+        for tile in [bars(96), squares, stairs] {
+            assert!(seam_ratio(&tile) > SEAM_LIMIT);
+            assert_eq!(Borders::Detect.decide(&tile), Borders::Periodic);
+        }
+        let hill = Raster::from_fn(64, 64, |x, y| (x as f64 * 0.1).exp() + ((x * 7 + y * 13) % 5) as f64);
+        assert_eq!(Borders::Detect.decide(&hill), Borders::Smooth);
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub mod deband;
 pub mod image_io;
 mod resample;
 mod spline;
+pub mod stl;
 pub mod wrap;
 
 // Offline.

@@ -121,6 +121,13 @@ impl Envelope {
         }
     }
 
+    /// The envelope `power` for waves up to `longest_px` texels long, and nothing to impose for longer ones.
+    #[must_use]
+    pub(crate) fn only_below(power: &[f64], longest_px: f64) -> Vec<f64> {
+        let first = ring(TAU / longest_px) as usize * DIRECTIONS;
+        power.iter().enumerate().map(|(at, power)| if at < first { -1.0 } else { *power }).collect()
+    }
+
     /// Sums over both halves of the spectrum of numbers that belong to the waves of one half.
     fn sums(&self, numbers: impl Iterator<Item = f64>) -> Tents {
         let mut sums = vec![[0.0; DIRECTIONS]; ring(PI * std::f64::consts::SQRT_2) as usize + 2];

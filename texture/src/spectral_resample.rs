@@ -26,6 +26,17 @@ pub fn resample(image: &Raster, width: usize, height: usize) -> Raster {
     Fft2::new(width, height).image(&mut to)
 }
 
+/// The image on `width` × `height` texels, taken to end at its borders: it is resampled together with its mirror images,
+/// which meet it without a step.
+#[must_use]
+pub fn resample_mirrored(image: &Raster, width: usize, height: usize) -> Raster {
+    let (w, h) = (image.width, image.height);
+    let folded = |i: usize, n: usize| if i < n { i } else { 2 * n - 1 - i };
+    let four = Raster::from_fn(2 * w, 2 * h, |x, y| image.at(folded(x, w), folded(y, h)));
+    let made = resample(&four, 2 * width, 2 * height);
+    Raster::from_fn(width, height, |x, y| made.at(x, y))
+}
+
 /// The amplitude spectrum the image would have on `width` × `height` texels of the same size: power
 /// per frequency interval is kept. Exact when the sizes are equal. Stored as [`Fft2`] spectra are;
 /// the entry at frequency 0 is 0.

@@ -48,6 +48,9 @@ pub struct Table {
     rows: Vec<Vec<f64>>,
     /// Mean over the pairs of different surfaces.
     mean: f64,
+    /// Mean over the pairs of the first surface, which metamers are made like, and another one: what counts for them, and what
+    /// the mean over all pairs hides.
+    reference: f64,
     /// Mean of the diagonal: chance, if the judge is honest.
     same: f64,
 }
@@ -133,7 +136,8 @@ fn table(options: &Options, maps: &[Raster], set: u64, progress: &mut Progress) 
     let all: f64 = rows.iter().flatten().sum();
     let same: f64 = (0..size).map(|i| rows[i][i]).sum();
     let mean = (all - same) / (size * (size - 1)) as f64;
-    Ok(Table { rows, mean, same: same / size as f64 })
+    let reference = rows[0][1..].iter().sum::<f64>() / (size - 1) as f64;
+    Ok(Table { rows, mean, reference, same: same / size as f64 })
 }
 
 fn in_words(report: &Report) -> String {
@@ -148,7 +152,10 @@ fn in_words(report: &Report) -> String {
     ];
     for (name, table) in tables {
         let Some(table) = table else { continue };
-        text.push_str(&format!("\n{name}: mean {:.2}, same against same {:.2}\n", table.mean, table.same));
+        let Table { mean, reference, same, .. } = table;
+        text.push_str(&format!(
+            "\n{name}: the first against the others {reference:.2}, all pairs {mean:.2}, same against same {same:.2}\n"
+        ));
         for row in &table.rows {
             let cells: Vec<String> = row.iter().map(|cell| format!("{cell:.2}")).collect();
             text.push_str(&format!("  {}\n", cells.join("  ")));

@@ -1,14 +1,17 @@
 //! `asperity texture metamer ORIGINAL REFERENCE -o OUT.png`: the original's pattern with the
 //! reference's feel.
 
+use super::object::{ObjectOptions, SizeMm};
 use super::{bar, grey, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity_dsp::DesignError;
 use asperity_texture::borders::Borders;
+use asperity_texture::from_photo::TEXEL_M;
 use asperity_texture::image_io;
-use asperity_texture::metamer::{self as core, MetamerOptions, Method};
-use asperity_texture::pyramid::Kind;
+use asperity_texture::metamer::{self as core, Distance, Feel, Metamer, MetamerOptions, Method};
+use asperity_texture::pyramid::{Kind, Subband};
+use asperity_texture::raster::Raster;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -32,9 +35,15 @@ pub struct Options {
     /// Orientations of each band
     #[arg(long, default_value_t = core::ORIENTATIONS)]
     pub orientations: usize,
-    /// Passes over bands, residuals and heights
+    /// Passes over bands, residuals and heights on a grid of 256 × 256 texels; coarser grids get more, finer ones fewer
     #[arg(long, default_value_t = core::PASSES, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000))]
     pub iterations: usize,
+    /// End as soon as the mean distance of the sub-bands is this small, in deviations of the reference
+    #[arg(long, value_name = "SIGMA", value_parser = positive)]
+    pub until: Option<f64>,
+    /// Largest share of the reference's own arrangement to take where the original's does not come near enough
+    #[arg(long, value_name = "0-1", default_value_t = 1.0, value_parser = share)]
+    pub borrow: f64,
     /// How the original is changed
     #[arg(long, value_enum, default_value_t = MethodName::Iterated)]
     pub method: MethodName,
@@ -47,6 +56,12 @@ pub struct Options {
     /// Size of the reference's texels, mm
     #[arg(long, value_name = "MM", value_parser = positive, requires = "mm_per_px")]
     pub reference_mm_per_px: Option<f64>,
+    /// Height of the reference's white over its black, mm
+    #[arg(long, value_name = "MM", default_value = "2", value_parser = positive)]
+    pub relief_mm: f64,
+    /// The object's file and size
+    #[command(flatten)]
+    pub object: ObjectOptions,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -91,15 +106,28 @@ struct Report {
     height: usize,
     method: MethodName,
     iterations: Option<usize>,
-    /// Histogram distance of each sub-band: mean distance of equal quantiles over the reference's σ.
+    /// Passes done on the map's own grid.
+    passes: usize,
+    /// Histogram distance of each sub-band: mean distance of equal quantiles over the reference's σ. Those after are of the
+    /// file, read back.
     bands: Vec<Band>,
     mean_before: f64,
     mean_after: f64,
     heights_before: f64,
     heights_after: f64,
+    /// Share of the reference's own arrangement that was taken.
+    borrowed: f64,
     tileable: bool,
-    /// Fraction of texels outside 0–1, which the file cannot hold.
+    /// Height = `offset` + `scale` · grey, grey 0–1, in units of the reference's white over black.
+    offset: f64,
+    scale: f64,
+    /// Fraction of texels that the file cannot hold: none since `offset` and `scale` are told.
     clipped: f64,
+    #[serde(flatten)]
+    size: SizeMm,
+    /// Of a scene file that uses the map: height of its white over its black, m.
+    relief_m: f64,
+    warnings: Vec<String>,
     seconds: f64,
     files: Vec<PathBuf>,
 }
@@ -110,8 +138,37 @@ struct Report {
 /// When a map cannot be read, is too small for the bands, or the output cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     output::check_destination(&options.output)?;
+    if let Some(path) = &options.object.stl {
+        output::check_destination(path)?;
+    }
     let (original, reference) = (grey(&options.original)?, grey(&options.reference)?);
-    let settings = MetamerOptions {
+    let start = Instant::now();
+    let refuse = |error| refused(at(&error, &options.original, &options.reference), &error);
+    let mut feel =
+        Feel::new(&reference, original.width, original.height, &settings(options)).map_err(refuse)?;
+    let made = feel.metamer(&original, bar("metamer")).map_err(refuse)?;
+    let file = Levels::holding(&made.image);
+    let heights = file.read_back(&made.image);
+    let after = feel.distance(&heights, made.tileable);
+    let seconds = start.elapsed().as_secs_f64();
+    let mut outputs = Outputs::new();
+    let grey = file.grey(&made.image);
+    outputs.write_at(&options.output, |path| image_io::save_gray16(path, &grey).map_err(CliError::told))?;
+    let texel_m = texel_m(options, original.width);
+    let heights_m = heights.map(|height| 1e-3 * options.relief_mm * height);
+    options.object.write(&mut outputs, &heights_m, texel_m)?;
+    let mut report = report(options, &made, after, file, SizeMm::of(&heights_m, texel_m));
+    report.seconds = seconds;
+    report.files = outputs.commit()?;
+    if options.json {
+        return output::say_json(&report);
+    }
+    output::say(&in_words(options, &report));
+    Ok(())
+}
+
+fn settings(options: &Options) -> MetamerOptions {
+    MetamerOptions {
         bands: options.bands,
         orientations: options.orientations,
         method: match options.method {
@@ -128,41 +185,132 @@ pub fn run(options: &Options) -> Result<(), CliError> {
             (Some(ours), Some(theirs)) => ours / theirs,
             _ => 1.0,
         },
-    };
-    let start = Instant::now();
-    let made = core::metamer(&original, &reference, &settings, bar("metamer"))
-        .map_err(|error| refused(at(&error, &options.original, &options.reference), &error))?;
-    let seconds = start.elapsed().as_secs_f64();
-    let outside = made.image.values.iter().filter(|v| !(0.0..=1.0).contains(*v)).count();
-    let mut outputs = Outputs::new();
-    outputs
-        .write_at(&options.output, |path| image_io::save_gray16(path, &made.image).map_err(CliError::told))?;
-    let report = Report {
+        until: options.until,
+        borrow: options.borrow,
+    }
+}
+
+/// Size of a texel of the original: told, by its width or as in the document, 40 mm over 256 texels.
+fn texel_m(options: &Options, width: usize) -> f64 {
+    let by_width = options.object.width_mm.map(|width_mm| 1e-3 * width_mm / width as f64);
+    by_width.or(options.mm_per_px.map(|mm| 1e-3 * mm)).unwrap_or(TEXEL_M)
+}
+
+/// The grey levels of a file and the heights they stand for.
+#[derive(Debug, Clone, Copy)]
+struct Levels {
+    offset: f64,
+    scale: f64,
+}
+
+impl Levels {
+    /// Black is 0 and white 1, as in the reference's file, unless a height lies outside.
+    fn holding(image: &Raster) -> Self {
+        let (low, high) = image.range();
+        if low >= 0.0 && high <= 1.0 {
+            return Self { offset: 0.0, scale: 1.0 };
+        }
+        Self { offset: low, scale: if high > low { high - low } else { 1.0 } }
+    }
+
+    fn grey(self, image: &Raster) -> Raster {
+        image.map(|height| (height - self.offset) / self.scale)
+    }
+
+    /// The heights that a reader of the file gets.
+    fn read_back(self, image: &Raster) -> Raster {
+        let stored = |grey: f64| (grey * 65_535.0).round() / 65_535.0;
+        self.grey(image).map(|grey| self.offset + self.scale * stored(grey))
+    }
+}
+
+fn report(options: &Options, made: &Metamer, after: Distance, file: Levels, size: SizeMm) -> Report {
+    let bands = made.subbands.iter().zip(made.before.subbands.iter().zip(&after.subbands));
+    let mut report = Report {
         width: made.image.width,
         height: made.image.height,
         method: options.method,
         iterations: (options.method == MethodName::Iterated).then_some(options.iterations),
-        bands: made.bands.iter().map(band).collect(),
-        mean_before: made.mean_before(),
-        mean_after: made.mean_after(),
-        heights_before: made.heights_before,
-        heights_after: made.heights_after,
+        passes: made.passes,
+        bands: bands.map(|(subband, (before, after))| band(subband, *before, *after)).collect(),
+        mean_before: made.before.mean,
+        mean_after: after.mean,
+        heights_before: made.before.heights,
+        heights_after: after.heights,
+        borrowed: made.borrowed,
         tileable: made.tileable,
-        clipped: outside as f64 / made.image.values.len() as f64,
-        seconds,
-        files: outputs.commit()?,
+        offset: file.offset,
+        scale: file.scale,
+        clipped: 0.0,
+        size,
+        relief_m: 1e-3 * options.relief_mm * file.scale,
+        warnings: Vec::new(),
+        seconds: 0.0,
+        files: Vec::new(),
     };
-    if options.json {
-        return output::say_json(&report);
+    report.warnings = warnings(options, &report);
+    report
+}
+
+fn warnings(options: &Options, report: &Report) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let is_iterated = options.method == MethodName::Iterated;
+    let goal = options.until.unwrap_or(core::REACH);
+    let farthest = report.mean_after.max(if options.until.is_some() { 0.0 } else { report.heights_after });
+    if is_iterated && farthest > goal {
+        warnings.push(format!(
+            "the file is {farthest:.3} σ from the reference where {goal} was the aim; more --iterations or another original may \
+             come nearer"
+        ));
     }
-    output::say(&format!(
-        "histogram distance of the sub-bands: {:.3} → {:.4} σ in {:.2} s\nwrote {}",
-        report.mean_before,
-        report.mean_after,
-        report.seconds,
-        options.output.display()
+    if report.borrowed > 0.0 {
+        warnings.push(format!(
+            "{:.0} % of the reference's own arrangement was taken, because the original's alone does not come near enough; \
+             --borrow 0 keeps the original's",
+            100.0 * report.borrowed
+        ));
+    }
+    if (report.offset, report.scale) != (0.0, 1.0) {
+        warnings.push(format!(
+            "heights run from {:.3} to {:.3} of the reference's white: black in the file is the first, white the second, and its \
+             relief_m is {:.6e}",
+            report.offset,
+            report.offset + report.scale,
+            report.relief_m
+        ));
+    }
+    if options.object.stl.is_some() {
+        warnings.extend(report.size.warning());
+    }
+    warnings
+}
+
+fn in_words(options: &Options, report: &Report) -> String {
+    let mut text = format!(
+        "histogram distance of the sub-bands: {:.3} → {:.4} σ, of the heights: {:.3} → {:.4} σ, in {:.2} s\n",
+        report.mean_before, report.mean_after, report.heights_before, report.heights_after, report.seconds
+    );
+    for warning in &report.warnings {
+        text.push_str(&format!("warning: {warning}\n"));
+    }
+    let SizeMm { width_mm, height_mm, relief_mm, .. } = report.size;
+    text.push_str(&format!(
+        "{width_mm:.2} × {height_mm:.2} mm, relief {relief_mm:.3} mm; in a scene file: displacement = {:?}, width_m = {}, \
+         height_m = {}, relief_m = {:?}\n",
+        options.output.display().to_string(),
+        1e-3 * width_mm,
+        1e-3 * height_mm,
+        report.relief_m
     ));
-    Ok(())
+    let files: Vec<String> = report.files.iter().map(|path| path.display().to_string()).collect();
+    text + "wrote " + &files.join(" and ")
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
+        _ => Err("must be a number from 0 to 1".to_owned()),
+    }
 }
 
 /// The map that an error is about.
@@ -170,18 +318,12 @@ pub(super) fn at<'a>(error: &DesignError, original: &'a Path, reference: &'a Pat
     if error.field.starts_with("reference") { reference } else { original }
 }
 
-fn band(distance: &core::BandDistance) -> Band {
-    let (kind, band, orientation) = match distance.kind {
+fn band(subband: &Subband, before: f64, after: f64) -> Band {
+    let (kind, band, orientation) = match subband.kind {
         Kind::HighResidual => ("high-residual", None, None),
         Kind::Oriented { band, orientation } => ("oriented", Some(band), Some(orientation)),
         Kind::LowResidual => ("low-residual", None, None),
     };
-    Band {
-        kind,
-        band,
-        orientation,
-        wavelength_px: distance.wavelength_px.is_finite().then_some(distance.wavelength_px),
-        before: distance.before,
-        after: distance.after,
-    }
+    let wavelength_px = subband.wavelength_px.is_finite().then_some(subband.wavelength_px);
+    Band { kind, band, orientation, wavelength_px, before, after }
 }

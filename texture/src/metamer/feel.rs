@@ -1,0 +1,280 @@
+//! What a finger feels of a reference, and surfaces that are given it.
+
+use super::bands::{Parts, Scratch, relative};
+use super::level::{Level, MOMENTUM, Task, add, on_grid};
+use super::{BORROWED, Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, REACH, check_finite};
+use crate::borders::{Borders, SplitBorders};
+use crate::fft2::Fft2;
+use crate::pyramid::Kind;
+use crate::raster::Raster;
+use crate::spectral_resample::resample_spectrum;
+use asperity_dsp::DesignError;
+use asperity_fft::num_complex::Complex64;
+
+/// Most that an original without relief is raised before it is mixed with the reference.
+const MOST_GAIN: f64 = 1e6;
+
+/// A reference on the texels of originals of one size: its sub-bands, heights and envelope.
+#[derive(Debug, Clone)]
+pub struct Feel {
+    options: MetamerOptions,
+    /// The part that tiles, and the steps at the borders.
+    reference: SplitBorders,
+    range: (f64, f64),
+    level: Level,
+    scratch: Scratch,
+}
+
+impl Feel {
+    /// Analyses `reference` for originals of `width` × `height`.
+    ///
+    /// # Errors
+    /// As [`super::metamer`].
+    pub fn new(
+        reference: &Raster,
+        width: usize,
+        height: usize,
+        options: &MetamerOptions,
+    ) -> Result<Self, DesignError> {
+        check_finite("reference", reference)?;
+        let MetamerOptions { bands, orientations, scale, .. } = *options;
+        DesignError::check("scale", scale, "within 1/64 to 64", |s| (1.0 / 64.0..=64.0).contains(&s))?;
+        let borders = options.borders.decide(reference);
+        let range = reference.range();
+        // Borders are split on the original's texels: a step that is resampled rings.
+        let whole = scaled(reference, scale, borders).map(|v| v.clamp(range.0, range.1));
+        let reference = SplitBorders::of(&whole, borders);
+        let mut scratch = Scratch::default();
+        let level = Level::new(&reference, [width, height], [bands, orientations], &mut scratch)?;
+        Ok(Self { options: *options, reference, range, level, scratch })
+    }
+
+    /// Lowest and highest height of the reference.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        self.range
+    }
+
+    /// How far `image`, of the originals' size, is from the reference; `tiles`: its borders meet.
+    #[must_use]
+    pub fn distance(&mut self, image: &Raster, tiles: bool) -> Distance {
+        let borders = if tiles { Borders::Periodic } else { Borders::Smooth };
+        let split = SplitBorders::of(image, borders);
+        let subbands = distances(&mut self.level, &split.periodic, &mut self.scratch);
+        let heights = self.scratch.matcher.histogram(&image.values);
+        Distance {
+            mean: mean(&self.level, &subbands),
+            subbands,
+            heights: relative(&heights, &self.level.heights, floor(&self.level)),
+        }
+    }
+
+    /// Makes `original` feel like the reference. `progress` is told the fraction done.
+    ///
+    /// # Errors
+    /// When the original holds numbers that are not finite.
+    ///
+    /// # Panics
+    /// When it has another size than was planned.
+    pub fn metamer(
+        &mut self,
+        original: &Raster,
+        mut progress: impl FnMut(f64),
+    ) -> Result<Metamer, DesignError> {
+        check_finite("original", original)?;
+        assert_eq!([original.width, original.height], self.level.size, "an original of the size planned");
+        let borders = self.options.borders.decide(original);
+        let ours = SplitBorders::of(original, borders);
+        // A surface that tiles keeps no step at its borders, nor does one whose reference has none.
+        let seam = ours.seam_like(&self.reference);
+        let before = self.distance(original, borders == Borders::Periodic);
+        let (mut passes, mut borrowed) = (1, 0.0);
+        let mut image = match self.options.method {
+            Method::SinglePass => self.single_pass(&ours.periodic),
+            Method::Spectrum => with_amplitudes(&ours.periodic, &self.reference.periodic),
+            Method::Iterated(asked) => {
+                let task = Task { passes: asked, parts: self.parts(seam.as_ref()), momentum: 0.0 };
+                let made = self.iterate(&ours.periodic, seam.as_ref(), task, &mut progress);
+                (passes, borrowed) = (made.passes, made.borrowed);
+                made.image
+            }
+        };
+        add(&mut image, seam.as_ref(), 1.0);
+        let tileable = seam.is_none();
+        let after = self.distance(&image, tileable);
+        let subbands = self.level.full.pyramid.subbands().to_vec();
+        Ok(Metamer { image, subbands, before, after, tileable, passes, borrowed })
+    }
+
+    /// The slowest waves are left to the heights where the reference has others than a surface like the original can have: a
+    /// tilt where it tiles, or waves of another size.
+    fn parts(&self, seam: Option<&Raster>) -> Parts {
+        let Raster { width, height, .. } = self.reference.periodic;
+        let has_tilt = self.reference.smooth.is_some() && seam.is_none();
+        if has_tilt || [width, height] != self.level.size { Parts::AllButTheSlowest } else { Parts::All }
+    }
+
+    /// The document's: the oriented bands once.
+    fn single_pass(&mut self, original: &Raster) -> Raster {
+        let mut made = original.clone();
+        let bands = &mut self.level.full;
+        bands.match_all(&original.values, Parts::Oriented, &mut self.scratch);
+        bands.pyramid.image(&self.scratch.sum, &mut made.values);
+        made
+    }
+
+    /// Passes from the original, then with momentum, then from surfaces that have more and more of the reference's own
+    /// arrangement, until the result is near enough. Of large maps this is tried on a coarser grid.
+    fn iterate(
+        &mut self,
+        original: &Raster,
+        seam: Option<&Raster>,
+        task: Task,
+        progress: &mut impl FnMut(f64),
+    ) -> Made {
+        let is_moderate = self.level.of_moderate_size().1 == 0;
+        let mut best: Option<(Made, Task)> = None;
+        let tries = self.tries(task);
+        for (tried, &(share, task)) in tries.iter().enumerate() {
+            let start = self.start(original, seam, share);
+            let made = if is_moderate {
+                self.try_out(start, seam, task, share)
+            } else {
+                self.try_coarsely(&start, seam, task, share)
+            };
+            let is_near = made.mean <= self.goal();
+            if best.as_ref().is_none_or(|(best, _)| made.mean < best.mean) {
+                best = Some((made, task));
+            }
+            progress((tried + 1) as f64 / (tries.len() + 1) as f64);
+            if is_near {
+                break;
+            }
+        }
+        let (made, task) = best.expect("the original alone is always tried");
+        if is_moderate {
+            return made;
+        }
+        let start = self.start(original, seam, made.borrowed);
+        self.try_out(start, seam, task, made.borrowed)
+    }
+
+    /// Shares to borrow and how to go on from there.
+    fn tries(&self, gently: Task) -> Vec<(f64, Task)> {
+        let briskly = Task { momentum: MOMENTUM, ..gently };
+        let shares = BORROWED.into_iter().filter(|share| *share <= self.options.borrow);
+        std::iter::once((0.0, gently)).chain(shares.map(|share| (share, briskly))).collect()
+    }
+
+    fn settle(&mut self, start: Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
+        let mut image = start;
+        let until = self.options.until;
+        let mut enough = |level: &mut Level, image: &Raster, scratch: &mut Scratch| {
+            until.is_some_and(|until| {
+                let distances = distances(level, image, scratch);
+                mean(level, &distances) <= until
+            })
+        };
+        let passes = self.level.settle(&mut image, seam, task, &mut self.scratch, &mut enough);
+        Made { image, mean: f64::NAN, passes, borrowed }
+    }
+
+    /// As [`Self::settle`], unless a start that has borrowed is near enough as it is: of a pattern of few heights passes would
+    /// only take it away.
+    fn try_out(&mut self, start: Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
+        let mean = self.mean_of(&start);
+        if borrowed > 0.0 && mean <= self.goal() {
+            return Made { image: start, mean, passes: 0, borrowed };
+        }
+        let made = self.settle(start, seam, task, borrowed);
+        Made { mean: self.mean_of(&made.image), ..made }
+    }
+
+    /// The same on a coarser grid.
+    fn try_coarsely(&mut self, start: &Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
+        let (level, _) = self.level.of_moderate_size();
+        let mut image = on_grid(start, Borders::Periodic, level.size);
+        let seam = seam.map(|seam| on_grid(seam, Borders::Smooth, level.size));
+        let passes = level.settle(&mut image, seam.as_ref(), task, &mut self.scratch, &mut |_, _, _| false);
+        let distances = distances(level, &image, &mut self.scratch);
+        Made { mean: mean(level, &distances), image, passes, borrowed }
+    }
+
+    fn goal(&self) -> f64 {
+        self.options.until.unwrap_or(REACH)
+    }
+
+    fn mean_of(&mut self, image: &Raster) -> f64 {
+        let distances = distances(&mut self.level, image, &mut self.scratch);
+        mean(&self.level, &distances)
+    }
+
+    /// The original, or a mixture of it (brought to the reference's mean and deviation) and the reference itself, which has
+    /// the reference's heights.
+    fn start(&mut self, original: &Raster, seam: Option<&Raster>, share: f64) -> Raster {
+        if share == 0.0 {
+            return original.clone();
+        }
+        let reference = &self.reference.periodic;
+        let (ours, theirs) = (original.mean(), reference.mean());
+        let gain = deviation(reference) / deviation(original).max(f64::MIN_POSITIVE);
+        let mut start = Raster::from_fn(original.width, original.height, |x, y| {
+            let matched = theirs + gain.min(MOST_GAIN) * (original.at(x, y) - ours);
+            let borrowed = reference.at(x % reference.width, y % reference.height);
+            matched + share * (borrowed - matched)
+        });
+        self.level.match_heights(&mut start, seam, &mut self.scratch);
+        start
+    }
+}
+
+/// What passes have made of a start.
+struct Made {
+    image: Raster,
+    mean: f64,
+    passes: usize,
+    borrowed: f64,
+}
+
+/// A sub-band that the reference does not have cannot be measured in its own deviations.
+fn floor(level: &Level) -> f64 {
+    EMPTY_BAND * level.heights.deviation().max(f64::MIN_POSITIVE)
+}
+
+fn distances(level: &mut Level, image: &Raster, scratch: &mut Scratch) -> Vec<f64> {
+    let floor = floor(level);
+    level.full.distances(image, floor, scratch)
+}
+
+fn deviation(image: &Raster) -> f64 {
+    let mean = image.mean();
+    (image.values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / image.values.len() as f64).sqrt()
+}
+
+/// Mean over the oriented bands.
+fn mean(level: &Level, distances: &[f64]) -> f64 {
+    let subbands = level.full.pyramid.subbands().iter().zip(distances);
+    let oriented = subbands.filter(|(band, _)| matches!(band.kind, Kind::Oriented { .. }));
+    let (sum, count) = oriented.fold((0.0, 0.0), |(sum, count), (_, distance)| (sum + distance, count + 1.0));
+    sum / count
+}
+
+/// The reference on the original's texels.
+fn scaled(reference: &Raster, scale: f64, borders: Borders) -> Raster {
+    let side = |n: usize| ((n as f64 / scale).round() as usize).max(1);
+    on_grid(reference, borders, [side(reference.width), side(reference.height)])
+}
+
+/// The original's phases with the reference's amplitudes.
+fn with_amplitudes(original: &Raster, reference: &Raster) -> Raster {
+    let mut fft = Fft2::new(original.width, original.height);
+    let amplitudes = resample_spectrum(reference, original.width, original.height);
+    let mut spectrum = fft.spectrum(&original.values);
+    for (value, &amplitude) in spectrum.iter_mut().zip(&amplitudes) {
+        let norm = value.norm();
+        *value = if norm > 0.0 { *value * (amplitude / norm) } else { Complex64::default() };
+    }
+    // The mean is a height, not an amplitude: it keeps its sign.
+    spectrum[0] = Complex64::new(reference.mean() * original.values.len() as f64, 0.0);
+    fft.image(&mut spectrum)
+}
