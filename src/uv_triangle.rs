@@ -16,6 +16,9 @@ use crate::event::ContactSample;
 use glam::{DVec2, DVec3};
 use mint::{Vector2, Vector3};
 
+/// Squared sine of an angle between edges below which a triangle is a line: what rounding leaves of one.
+const FLAT: f64 = 1e-24;
+
 /// A triangle in metres, in the space in which the physics engine tells its contacts, with a texture
 /// coordinate at each corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +46,8 @@ impl UvTriangle {
         let along_u = (edges_m[0] * uv_edges[1].y - edges_m[1] * uv_edges[0].y) / area_uv;
         let along_v = (edges_m[1] * uv_edges[0].x - edges_m[0] * uv_edges[1].x) / area_uv;
         let axes = [along_u.try_normalize()?, along_v.try_normalize()?];
-        let has_area = edges_m[0].cross(edges_m[1]).length_squared() > 0.0;
+        let [p, q] = edges_m;
+        let has_area = p.cross(q).length_squared() > FLAT * p.length_squared() * q.length_squared();
         (has_area && uv_a.is_finite()).then_some(Self { corner_m: a, edges_m, uv: uv_a, uv_edges, axes })
     }
 
