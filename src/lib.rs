@@ -34,6 +34,7 @@ mod modal_model;
 pub mod null_sink;
 mod occupied;
 pub mod offline;
+mod overlay;
 mod queue;
 mod recording;
 mod renderer;
@@ -49,6 +50,7 @@ mod uv_triangle;
 mod voice;
 
 pub use actuator_preset::{ActuatorPreset, PresetError};
+pub use asperity_dsp::limits;
 pub use bad_value::BadValue;
 pub use clock::ClockMode;
 pub use config::{ActuatorSettings, AudioSettings, Config, DeviceProfile, Quantity};
