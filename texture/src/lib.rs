@@ -17,6 +17,7 @@ pub mod raster;
 pub mod sand;
 pub mod solid_materials;
 pub mod solid_noise;
+pub mod triplanar;
 
 // Maps in and out.
 pub mod deband;
