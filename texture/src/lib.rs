@@ -19,6 +19,7 @@ pub mod sand;
 pub mod solid_materials;
 pub mod solid_noise;
 pub mod tiled;
+pub mod triplanar;
 
 // Maps in and out.
 pub mod deband;

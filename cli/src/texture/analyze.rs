@@ -6,10 +6,13 @@ use crate::progress::Progress;
 use asperity_texture::fractal_dimension::{
     COLOUR_LIMIT, Condition, FractalDimension, colour_fraction, fractal_dimension,
 };
-use asperity_texture::image_io::{Channel, load_channel};
+use asperity_texture::image_io::{Channel, load_channel, save_gray16};
 use asperity_texture::raster::Raster;
-use asperity_texture::symmetry::{Lattice, averaged_cell, find_lattice, separate, wallpaper_group};
-use clap::Args;
+use asperity_texture::symmetry::{
+    Distortion, DocumentSearch, Frieze, Lattice, averaged_cell, document_lattice, find_frieze, find_lattice,
+    separate, wallpaper_group,
+};
+use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -20,9 +23,66 @@ pub struct AnalyzeArgs {
     /// Picture or height map
     #[arg(value_name = "IMAGE")]
     pub image: PathBuf,
+    /// How the lattice is sought
+    #[arg(long, value_enum, default_value_t = LatticeMethod::Sweep)]
+    pub lattice_method: LatticeMethod,
+    /// Distortion that the document's method averages
+    #[arg(long, value_enum, default_value_t = DistortionKind::Squared)]
+    pub distortion: DistortionKind,
+    /// Share of the median distortion up to which the document's method believes a minimum, 0–1
+    #[arg(long, default_value_t = 0.5)]
+    pub threshold: f64,
+    /// Write what repeats, one cell or strip, as a 16-bit PNG (black to white: its lowest to its highest grey)
+    #[arg(long, value_name = "FILE")]
+    pub primitive: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+/// How the lattice is sought.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum LatticeMethod {
+    /// Without a threshold
+    Sweep,
+    /// By the thesis' own steps, with its threshold
+    Document,
+}
+
+/// The two distortions of the thesis' Def. 7.7.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DistortionKind {
+    /// Mean square of differences
+    Squared,
+    /// Mean size of differences
+    Absolute,
+}
+
+impl AnalyzeArgs {
+    /// The lattice by the method asked for.
+    fn lattice(&self, picture: &Raster) -> Option<Lattice> {
+        let distortion = match self.distortion {
+            DistortionKind::Squared => Distortion::Squared,
+            DistortionKind::Absolute => Distortion::Absolute,
+        };
+        match self.lattice_method {
+            LatticeMethod::Sweep => find_lattice(picture),
+            LatticeMethod::Document => {
+                document_lattice(picture, &DocumentSearch { distortion, threshold: self.threshold })
+            }
+        }
+    }
+
+    fn check(&self) -> Result<(), CliError> {
+        if self.threshold > 0.0 && self.threshold < 1.0 {
+            return Ok(());
+        }
+        Err(CliError::usage(
+            "--threshold",
+            format!("is {}", self.threshold),
+            "give a share above 0 and below 1",
+        ))
+    }
 }
 
 /// What `--json` prints.
@@ -37,6 +97,8 @@ pub struct Analysis {
     lattice: Option<Lattice>,
     wallpaper_group: Option<&'static str>,
     pattern: Option<Pattern>,
+    /// What repeats along one direction, where nothing repeats along two.
+    frieze: Option<Frieze>,
     warnings: Vec<String>,
 }
 
@@ -56,7 +118,8 @@ struct Pattern {
 /// # Errors
 /// When the picture cannot be read, is smaller than 64 × 64 or has no relief.
 pub fn run(arguments: &AnalyzeArgs) -> Result<(), CliError> {
-    let analysis = analyze(&arguments.image)?;
+    arguments.check()?;
+    let analysis = analyze(arguments)?;
     if arguments.json {
         output::say_json(&analysis)
     } else {
@@ -69,7 +132,8 @@ pub fn run(arguments: &AnalyzeArgs) -> Result<(), CliError> {
 const STEPS: u64 = 4;
 
 /// The analysis of a file.
-fn analyze(path: &Path) -> Result<Analysis, CliError> {
+fn analyze(arguments: &AnalyzeArgs) -> Result<Analysis, CliError> {
+    let path = arguments.image.as_path();
     let mut progress = Progress::new("analyze", STEPS);
     let picture = load_channel(path, Channel::Luma).map_err(CliError::told)?.raster;
     progress.advance(1);
@@ -80,11 +144,15 @@ fn analyze(path: &Path) -> Result<Analysis, CliError> {
         report.conditions.push(Condition::Coloured(colour));
     }
     progress.advance(1);
-    let lattice = find_lattice(&picture);
+    let lattice = arguments.lattice(&picture);
+    let frieze = if lattice.is_none() { find_frieze(&picture) } else { None };
     progress.advance(1);
     let found = lattice.map(|lattice| describe(&picture, &lattice));
     if let Some(lattice) = lattice {
         report.conditions.push(Condition::Symmetric(lattice.confidence));
+    }
+    if let Some(file) = &arguments.primitive {
+        write_primitive(file, &picture, lattice.as_ref(), frieze.as_ref())?;
     }
     Ok(Analysis {
         width_px: picture.width,
@@ -96,8 +164,32 @@ fn analyze(path: &Path) -> Result<Analysis, CliError> {
         lattice,
         wallpaper_group: found.map(|(group, _)| group),
         pattern: found.map(|(_, pattern)| pattern),
+        frieze,
         warnings: report.conditions.iter().map(ToString::to_string).collect(),
     })
+}
+
+/// Writes the averaged cell, or the averaged strip.
+fn write_primitive(
+    file: &Path,
+    picture: &Raster,
+    lattice: Option<&Lattice>,
+    frieze: Option<&Frieze>,
+) -> Result<(), CliError> {
+    let primitive = match (lattice, frieze) {
+        (Some(lattice), _) => separate(picture, lattice).primitive,
+        (None, Some(frieze)) => frieze.primitive.clone(),
+        (None, None) => {
+            return Err(CliError::file(
+                file,
+                "not written: nothing repeats in the picture",
+                "leave --primitive out, or give a picture with a pattern",
+            ));
+        }
+    };
+    let (low, high) = primitive.range();
+    let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
+    save_gray16(file, &primitive.map(|v| (v - low) * scale)).map_err(CliError::told)
 }
 
 /// Group and figures of a pattern.
@@ -144,7 +236,7 @@ fn text(analysis: &Analysis) -> String {
                 lattice.confidence, pattern.cells
             );
         }
-        _ => lines += "no pattern repeats along two directions",
+        _ => lines += &without_lattice(analysis.frieze.as_ref()),
     }
     for warning in &analysis.warnings {
         let _ = write!(lines, "\nwarning: {warning}");
@@ -152,10 +244,87 @@ fn text(analysis: &Analysis) -> String {
     lines
 }
 
+/// What repeats along one direction, or that a pattern of few repeats would not be seen.
+fn without_lattice(frieze: Option<&Frieze>) -> String {
+    let Some(frieze) = frieze else {
+        return "no pattern repeats along two directions, or fewer than five times a side; none along one, or \
+                fewer than six times"
+            .into();
+    };
+    let ([x, y], kind) = (frieze.t_px, if frieze.stripes { "stripes" } else { "a frieze" });
+    format!(
+        "{kind}: repeats along ({x:.2}, {y:.2}) px alone, confidence {:.2}; group {}, {} repeats; no pattern repeats along \
+         two directions",
+        frieze.confidence,
+        frieze.group.name(),
+        frieze.repeats
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use asperity_texture::image_io::save_gray16;
+    use clap::Parser;
+
+    /// The arguments as a shell gives them.
+    #[derive(Debug, Parser)]
+    struct Shell {
+        #[command(flatten)]
+        arguments: AnalyzeArgs,
+    }
+
+    fn analyze(path: &Path) -> Result<Analysis, CliError> {
+        asked(path, &[])
+    }
+
+    fn asked(path: &Path, options: &[&str]) -> Result<Analysis, CliError> {
+        let words = ["analyze", path.to_str().unwrap()];
+        super::analyze(&Shell::parse_from(words.iter().chain(options)).arguments)
+    }
+
+    #[test]
+    fn a_corrugated_sheet_has_its_translation_in_words_and_a_primitive_on_disk() {
+        let sheet = Raster::from_fn(128, 112, |x, y| {
+            0.5 + 0.4 * (std::f64::consts::TAU * (x as f64 + 0.2 * y as f64) / 14.0).cos()
+        });
+        let (folder, path) = saved(&sheet);
+        let file = folder.path().join("strip.png");
+        let analysis = asked(&path, &["--primitive", file.to_str().unwrap()]).unwrap();
+        let json = serde_json::to_value(&analysis).unwrap();
+        assert!(json["lattice"].is_null() && json["frieze"]["stripes"].as_bool().unwrap(), "{json}");
+        assert_eq!(json["frieze"]["group"], "p2mm");
+        assert!(text(&analysis).contains("stripes: repeats along (13."), "{}", text(&analysis));
+        let strip = load_channel(&file, Channel::Luma).unwrap().raster;
+        assert!(strip.width >= 14 && strip.range().1 > 0.99);
+        // Where nothing repeats, no file is left and the reason is told.
+        let mut state = 7_u32;
+        let noise = Raster::from_fn(96, 96, |_, _| {
+            state = asperity_dsp::rng::hash_u32(state);
+            f64::from(state >> 8) / f64::from(1 << 24)
+        });
+        let (_other, path) = saved(&noise);
+        let missing = folder.path().join("none.png");
+        let error = asked(&path, &["--primitive", missing.to_str().unwrap()]).unwrap_err().to_string();
+        assert!(error.contains("nothing repeats") && !missing.exists(), "{error}");
+        assert!(text(&analyze(&path).unwrap()).contains("fewer than five times a side"));
+    }
+
+    #[test]
+    fn the_documents_own_method_finds_a_clean_lattice_with_either_distortion() {
+        let tiles = Raster::from_fn(160, 128, |x, y| {
+            let (u, v) = ((x % 16) as f64 - 5.0, (y % 20) as f64 - 8.0);
+            0.1 + 0.8 * (-(u * u + v * v) / 14.0).exp()
+        });
+        let (_folder, path) = saved(&tiles);
+        for distortion in ["squared", "absolute"] {
+            let options = ["--lattice-method", "document", "--distortion", distortion, "--threshold", "0.3"];
+            let lattice = asked(&path, &options).unwrap().lattice.unwrap();
+            let off = (lattice.t1_px[0] - 16.0).hypot(lattice.t1_px[1]);
+            assert!(off < 0.6 && (lattice.t2_px[1] - 20.0).abs() < 0.6, "{distortion}: {lattice:?}");
+        }
+        let bad = Shell::parse_from(["analyze", "x.png", "--threshold", "1.5"]).arguments;
+        assert!(run(&bad).unwrap_err().to_string().contains("--threshold"));
+    }
 
     fn saved(picture: &Raster) -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();

@@ -139,7 +139,7 @@ fn cells(lattice: &Lattice, width: usize, height: usize) -> impl Iterator<Item =
 }
 
 /// Value between texels by cubic interpolation; nothing where the four texels are not all there.
-fn read(picture: &Raster, point: [f64; 2]) -> Option<f64> {
+pub(super) fn read(picture: &Raster, point: [f64; 2]) -> Option<f64> {
     let (left, top) = (point[0].floor(), point[1].floor());
     if left < 1.0 || top < 1.0 || left + 2.0 >= picture.width as f64 || top + 2.0 >= picture.height as f64 {
         return None;

@@ -10,11 +10,16 @@
 //! | its minima | `minima` |
 //! | lattice, or none | `search`, `nodes` |
 //! | averaged primitive, symmetric part, residual | `cell` |
+//! | lattice by the document's own steps, with its threshold | `document` |
+//! | one translation where there are not two; one of 7 groups | `frieze`, `frieze_group` |
 //! | point group, one of 17 groups, mean within the fundamental domain | `wallpaper`, `operation` |
 
 mod cell;
 mod detrend;
+mod document;
 mod feature_matrix;
+mod frieze;
+mod frieze_group;
 mod lattice;
 mod minima;
 mod nodes;
@@ -23,7 +28,10 @@ mod search;
 mod wallpaper;
 
 pub use cell::{AveragedCell, Separation, averaged_cell, separate, steadiness, with_cell};
-pub use feature_matrix::{FeatureMatrix, feature_matrix};
+pub use document::{DocumentSearch, document_lattice};
+pub use feature_matrix::{Distortion, FeatureMatrix, absolute_feature_matrix, feature_matrix};
+pub use frieze::{Frieze, find_frieze};
+pub use frieze_group::FriezeGroup;
 pub use lattice::Lattice;
 pub use search::{MERIT_LIMIT, SMALLEST_SIDE, best_lattice, find_lattice};
 pub use wallpaper::{CellSymmetry, WallpaperGroup, wallpaper_group};

@@ -51,7 +51,7 @@ const MOST_TRIED: usize = 8;
 const SHORTEST: f64 = 4.0;
 
 /// Pictures are averaged down until the shorter side is at most twice this, texels.
-const SEARCH_SIDE: usize = 384;
+pub(super) const SEARCH_SIDE: usize = 384;
 
 /// Cells in a picture up to which its lattice is sharpened. With more the border does not matter.
 const FEW_CELLS: f64 = 3000.0;
