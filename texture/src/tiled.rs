@@ -202,6 +202,7 @@ mod tests {
                     position_m,
                     velocity_m_s: &[[0.1, 0.0]; MAX_BLOCK][..n],
                     footprint_m: &[2e-6; MAX_BLOCK][..n],
+                    normal_force_n: &[],
                     first_sample: 0,
                     contact: 0,
                     slopes: true,

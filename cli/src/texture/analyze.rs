@@ -77,7 +77,7 @@ impl AnalyzeArgs {
         if self.threshold > 0.0 && self.threshold < 1.0 {
             return Ok(());
         }
-        Err(CliError::usage(
+        Err(CliError::new(
             "--threshold",
             format!("is {}", self.threshold),
             "give a share above 0 and below 1",
