@@ -5,9 +5,13 @@
 //! distance to it, because jitter of arrival must not become jitter of motion (using arrival times
 //! raises the velocity ripple from 3.4 % to 12 %). Within a device block the audio position stands
 //! still while game time goes on, so the mapping follows the *smallest* lead: a stamp that comes up to
-//! [`SLIGHTLY_LATE_S`] after its sample moves the mapping at once, one that comes later keeps its stamp
-//! (the path reckons on from it) and moves the mapping a little, and early stamps let it creep back. A
-//! stamp outside the window is tied anew and counted.
+//! 2 ms after its sample moves the mapping at once, one that comes later keeps its stamp (the path reckons on from
+//! it) and moves the mapping a little, and early stamps let it creep back. What else games do with their time is in
+//! the table of the module `live`.
+
+mod live;
+
+use live::{Followed, Live};
 
 /// A point on the audio's time line, in whole 1/256 of a sample: fine enough that a path ripples by less
 /// than 10⁻⁵, and exact in a log, so that a recording replays to the bit.
@@ -49,12 +53,15 @@ impl Stamp {
 /// How a stamp becomes a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ClockMode {
-    /// Sample = t · rate: offline renders and replays.
+    /// Sample = t · rate: offline renders and replays. A game whose time runs ahead of the audio waits for the
+    /// audio to get there, and one that pauses is late from then on: see [`Scene::reset`](crate::Scene::reset).
     #[default]
     Exact,
-    /// Follow the device: for a game whose audio runs on a sound card.
+    /// Follow the device: for a game whose audio runs on a sound card. Pauses, restarts, slow motion, stamps off
+    /// by any amount and ticks in bursts are followed and counted; see [`Config::live`](crate::Config::live).
     Live {
-        /// Longest time a stamp may lie ahead of the audio, s; more is a jump of the game clock.
+        /// Longest time that all stamps may lie ahead of the audio, s; more is latency nobody needs, and taken
+        /// away.
         max_lead_s: f64,
     },
 }
@@ -68,65 +75,75 @@ impl ClockMode {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stamped {
     pub(crate) stamp: Stamp,
+    /// The game's clock was tied to the audio's anew.
     pub(crate) jumped: bool,
+    /// The game was found to run at another pace.
+    pub(crate) repaced: bool,
 }
 
 /// The mapping's memory.
 #[derive(Debug, Clone)]
 pub(crate) struct Clock {
-    mode: ClockMode,
     sample_rate_hz: f64,
-    offset_samples: Option<f64>,
+    mapping: Mapping,
     last: Stamp,
 }
 
-/// Lateness that is the clocks' and not the network's or the frame's, s.
-const SLIGHTLY_LATE_S: f64 = 0.002;
-/// Share of a larger lateness that moves the mapping.
-const FOLLOW: f64 = 0.05;
-/// How far the mapping creeps back with each early stamp, samples: a drift of 200 ppm at 60 events/s.
-const CREEP_SAMPLES: f64 = 0.2;
+#[derive(Debug, Clone)]
+enum Mapping {
+    /// Sample of game time 0; none = the next stamp holds at the next sample.
+    Exact(Option<f64>),
+    Live(Live),
+}
 
 impl Clock {
     pub(crate) fn new(mode: ClockMode, sample_rate_hz: f64) -> Self {
-        Self { mode, sample_rate_hz, offset_samples: None, last: Stamp::default() }
+        let mapping = match mode {
+            ClockMode::Exact => Mapping::Exact(Some(0.0)),
+            ClockMode::Live { max_lead_s } => Mapping::Live(Live::new(max_lead_s, sample_rate_hz)),
+        };
+        Self { sample_rate_hz, mapping, last: Stamp::default() }
+    }
+
+    /// Whether game time may run backwards.
+    pub(crate) fn is_live(&self) -> bool {
+        matches!(self.mapping, Mapping::Live(_))
+    }
+
+    /// Game seconds a second of audio: 1 unless a live game runs in slow motion or fast.
+    pub(crate) fn pace(&self) -> f64 {
+        match &self.mapping {
+            Mapping::Exact(_) => 1.0,
+            Mapping::Live(live) => live.pace(),
+        }
+    }
+
+    /// From now on: the next stamp holds at the next sample, `position`.
+    pub(crate) fn reset(&mut self, position: u64) {
+        match &mut self.mapping {
+            Mapping::Exact(zero) => *zero = None,
+            Mapping::Live(live) => live.untie(),
+        }
+        self.last = Stamp::whole(position);
     }
 
     /// Where a game time lies, never before an earlier one; `position` is the next sample that the
     /// audio half will render.
     pub(crate) fn stamp(&mut self, time_s: f64, position: u64) -> Stamped {
         let target = time_s * self.sample_rate_hz;
-        let (mapped, jumped) = match self.mode {
-            ClockMode::Exact => (target, false),
-            ClockMode::Live { max_lead_s } => self.follow(target, position as f64, max_lead_s),
+        let Followed { sample, jumped, repaced } = match &mut self.mapping {
+            Mapping::Exact(zero) => {
+                let zero = *zero.get_or_insert(position as f64 - target);
+                Followed { sample: target + zero, jumped: false, repaced: false }
+            }
+            Mapping::Live(live) => live.follow(time_s, position as f64),
         };
-        self.last = Stamp::at(mapped).max(self.last);
-        Stamped { stamp: self.last, jumped }
-    }
-
-    fn follow(&mut self, target: f64, position: f64, max_lead_s: f64) -> (f64, bool) {
-        let window = max_lead_s * self.sample_rate_hz;
-        let Some(offset) = self.offset_samples else {
-            self.offset_samples = Some(position - target);
-            return (position, false);
-        };
-        let lead = target + offset - position;
-        if lead.abs() > window {
-            self.offset_samples = Some(position - target);
+        if jumped {
             // Stamps already sent may lie ahead of the audio; events must stay in order.
-            self.last = self.last.min(Stamp::at(position));
-            return (position, true);
+            self.last = self.last.min(Stamp::at(sample));
         }
-        let moved = if lead >= 0.0 {
-            lead.min(CREEP_SAMPLES)
-        } else if -lead <= SLIGHTLY_LATE_S * self.sample_rate_hz {
-            self.offset_samples = Some(position - target);
-            return (position, false);
-        } else {
-            FOLLOW * lead
-        };
-        self.offset_samples = Some(offset - moved);
-        (target + offset, false)
+        self.last = Stamp::at(sample).max(self.last);
+        Stamped { stamp: self.last, jumped, repaced }
     }
 }
 
@@ -157,7 +174,10 @@ mod tests {
     #[test]
     fn live_the_first_event_holds_at_the_next_sample() {
         let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
-        assert_eq!(clock.stamp(1234.5, 960), Stamped { stamp: Stamp::at(960.0), jumped: false });
+        assert_eq!(
+            clock.stamp(1234.5, 960),
+            Stamped { stamp: Stamp::at(960.0), jumped: false, repaced: false }
+        );
     }
 
     #[test]
@@ -184,11 +204,62 @@ mod tests {
         assert!(worst < 48.0, "{worst} samples");
     }
 
+    /// Stamps of 60 game ticks a game second at a pace, reported at 60 frames a second in blocks of 256 samples.
+    fn leads_at_pace(pace: f64, frames: u64) -> (Clock, Vec<f64>, usize) {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        let mut jumps = 0;
+        let leads = (0..frames)
+            .map(|frame| {
+                let position = frame * 800 / 256 * 256;
+                let stamped = clock.stamp(7.0 + pace * frame as f64 / 60.0, position);
+                jumps += usize::from(stamped.jumped);
+                stamped.stamp.samples() - position as f64
+            })
+            .collect();
+        (clock, leads, jumps)
+    }
+
+    #[test]
+    fn live_slow_motion_and_fast_motion_are_followed_within_two_seconds() {
+        for pace in [0.25, 0.5, 1.0, 2.0, 3.0] {
+            let (clock, leads, jumps) = leads_at_pace(pace, 600);
+            assert!((clock.pace() / pace - 1.0).abs() < 0.06, "{pace}: {}", clock.pace());
+            let late = leads[150..].iter().fold(0.0f64, |worst, lead| worst.max(lead.abs()));
+            assert!(late < 0.06 * 48_000.0, "{pace}: {late} samples off");
+            assert!(jumps <= 12, "{pace}: {jumps} jumps");
+        }
+    }
+
+    #[test]
+    fn live_eight_ticks_at_once_keep_their_distance_and_tie_nothing_anew() {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        let mut last = 0.0;
+        for tick in 0..800u64 {
+            let position = (tick / 8 * 8 * 800) / 256 * 256;
+            let stamped = clock.stamp(tick as f64 / 60.0, position);
+            let now = stamped.stamp.samples();
+            assert!(!stamped.jumped && !stamped.repaced, "tick {tick}");
+            assert!(tick == 0 || (now - last - 800.0).abs() < 260.0, "tick {tick}: {}", now - last);
+            last = now;
+        }
+    }
+
+    #[test]
+    fn after_a_reset_the_next_stamp_holds_at_the_next_sample_and_the_rest_exactly() {
+        let mut clock = Clock::new(ClockMode::Exact, 48_000.0);
+        clock.stamp(100.0, 0);
+        clock.reset(9_600);
+        assert_eq!(clock.stamp(0.0, 9_600).stamp, Stamp::whole(9_600));
+        assert_eq!(clock.stamp(0.5, 9_728).stamp, Stamp::whole(33_600));
+    }
+
     #[test]
     fn live_a_game_that_stalls_or_skips_is_tied_anew_and_stays_in_order() {
         let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
         clock.stamp(0.0, 0);
-        assert_eq!(clock.stamp(0.01, 96_000), Stamped { stamp: Stamp::at(96_000.0), jumped: true });
-        assert_eq!(clock.stamp(500.0, 96_064), Stamped { stamp: Stamp::at(96_064.0), jumped: true });
+        let tied = |sample| Stamped { stamp: Stamp::at(sample), jumped: true, repaced: false };
+        assert_eq!(clock.stamp(0.01, 96_000), tied(96_000.0));
+        assert_eq!(clock.stamp(500.0, 96_064), tied(96_064.0));
+        assert_eq!(clock.stamp(0.0, 96_128), tied(96_128.0));
     }
 }

@@ -63,7 +63,8 @@ impl Default for AudioSettings {
     }
 }
 
-/// How an engine is built. `Config::default()` is one finger, one actuator, 44.1 kHz.
+/// How an engine is built. `Config::default()` is one finger, one actuator, 44.1 kHz, rendered offline;
+/// [`Config::live`] is the same for a game that runs now.
 #[derive(Debug, Clone)]
 pub struct Config {
     /// Rate of every output, Hz; 8–384 kHz.
@@ -92,7 +93,8 @@ pub struct Config {
     pub queue_capacity: usize,
     /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick.
     pub contact_timeout_s: f64,
-    /// How game time becomes samples.
+    /// How game time becomes samples: exactly, as an offline render wants it, unless told otherwise. A game that
+    /// runs now begins with [`Config::live`].
     pub clock: ClockMode,
     /// Modes that are left out when a body is added, because nobody can hear them; `None` keeps all. The
     /// default costs −100 dB of error or less; [`Culling::default`] goes further, as far as the ear does.
@@ -126,6 +128,13 @@ impl Default for Config {
 }
 
 impl Config {
+    /// What a game wants that runs now: the device's rate, and a clock that follows the game through pauses, restarts,
+    /// slow motion and bursts of ticks ([`ClockMode::LIVE`]). The default's exact clock is for offline renders.
+    #[must_use]
+    pub fn live(sample_rate_hz: f64) -> Self {
+        Self { sample_rate_hz, clock: ClockMode::LIVE, ..Self::default() }
+    }
+
     /// Builds the two halves: [`Scene`] for the game thread, [`Renderer`] for the audio thread.
     ///
     /// # Errors

@@ -112,6 +112,15 @@ impl ContactEvent {
         Self::Moved { contact, sample }
     }
 
+    /// The same in a second of audio during which `pace` seconds of the game go by: in slow motion a contact
+    /// moves slowly. Forces and blows stay what they are.
+    pub(crate) fn at_pace(mut self, pace: f64) -> Self {
+        if let Self::Begin { sample, .. } | Self::Moved { sample, .. } = &mut self {
+            sample.velocity_m_s = sample.velocity_m_s.map(|v| v.map(|v| v * pace));
+        }
+        self
+    }
+
     /// A contact lifts off.
     #[must_use]
     pub fn end(contact: ContactId) -> Self {
@@ -119,12 +128,7 @@ impl ContactEvent {
     }
 }
 
-/// Widest texture coordinate, in tiles from the origin: a `f64` position is still exact to 1e-9 m.
-pub const MAX_UV: f64 = 1e6;
-/// Fastest tangential, closing or striking speed, m/s.
-pub const MAX_SPEED_M_S: f64 = 100.0;
-/// Largest normal force, N.
-pub const MAX_FORCE_N: f64 = 1e4;
+pub use asperity_dsp::limits::{MAX_NORMAL_FORCE_N as MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV};
 
 impl ContactSample {
     /// The same sample with a negative force set to 0.

@@ -33,6 +33,7 @@ mod modal_model;
 pub mod null_sink;
 mod occupied;
 pub mod offline;
+mod overlay;
 mod queue;
 mod recording;
 mod renderer;
@@ -47,6 +48,7 @@ mod uv_triangle;
 mod voice;
 
 pub use actuator_preset::{ActuatorPreset, PresetError};
+pub use asperity_dsp::limits;
 pub use bad_value::BadValue;
 pub use clock::ClockMode;
 pub use config::{ActuatorSettings, AudioSettings, Config, DeviceProfile, Quantity};

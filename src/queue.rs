@@ -15,6 +15,8 @@ pub(crate) enum Message {
     Event { stamp: Stamp, event: ContactEvent },
     /// A rigid striker hits a body, and perhaps rings itself.
     Strike { stamp: Stamp, body: usize, position: usize, other: Option<usize>, pulse: HertzPulse },
+    /// What was sent before belongs to a game time that has ended.
+    Reset,
     /// A surface for a new or used slot.
     SetSurface { slot: usize, surface: Box<SurfaceSlot> },
     /// Parameters of a surface change while it is touched.

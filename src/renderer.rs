@@ -35,6 +35,8 @@ use std::sync::atomic::Ordering::Relaxed;
 /// The audio half of an engine.
 pub struct Renderer {
     position: u64,
+    /// Resets of the game's time so far.
+    resets: u64,
     shared: Shared,
     timeout_samples: u64,
     max_contacts: usize,
@@ -82,6 +84,7 @@ impl Renderer {
         let voices = config.max_contacts + config.max_contacts.div_ceil(2).max(8);
         Ok(Self {
             position: 0,
+            resets: 0,
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
             voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
@@ -215,10 +218,12 @@ impl Renderer {
 
     fn apply_due(&mut self) {
         while let Some(message) = self.from_game.peek() {
+            let ended = self.counters.resets_asked.load(Relaxed) != self.resets;
             let due = match message {
                 Message::Event { stamp, .. } | Message::Strike { stamp, .. } => {
-                    stamp.sample() <= self.position
+                    ended || stamp.sample() <= self.position
                 }
+                Message::Reset => true,
                 // Each of these may send something home; it waits until there is room.
                 Message::SetBody { slot, .. } => self.to_game.free() > 0 && self.bodies[*slot].can_change(),
                 _ => self.to_game.free() > 0,
@@ -234,6 +239,13 @@ impl Renderer {
 
     fn apply(&mut self, message: Message) {
         match message {
+            Message::Reset => self.resets += 1,
+            // It waited for a time that has ended.
+            Message::Event { stamp, .. } | Message::Strike { stamp, .. }
+                if stamp.sample() > self.position =>
+            {
+                Counters::add(&self.counters.superseded, 1);
+            }
             Message::Event { stamp, event } => {
                 self.note_arrival(stamp);
                 self.apply_event(&event, stamp);

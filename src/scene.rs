@@ -11,6 +11,7 @@ use crate::error::{AddError, Refusal, ReportError};
 use crate::event::{Actuator, BodyId, ContactEvent, ContactId, Impact, SurfaceId};
 use crate::material::Material;
 use crate::modal_model::ModalModel;
+use crate::overlay::Overlay;
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::recording::Recording;
 use crate::silence::{Reported, SilentBecause};
@@ -168,7 +169,7 @@ impl Scene {
     }
 
     fn set_surface(&mut self, slot: usize, surface: Surface) -> Result<(), AddError> {
-        let surface = surface.checked()?;
+        let surface = surface.checked()?.tiled();
         let silent = KnownBody { material: DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let (low, high) = FORCE_HIGH_PASS_HZ;
@@ -184,9 +185,10 @@ impl Scene {
             EXCITER_RADIUS_M,
             config.probe.pad_mass_kg,
         )?;
-        let noise_longest_m = surface.source.band().shortest_m;
         let rings = body.lowest_mode_hz.is_finite();
-        let surface = Box::new(SurfaceSlot { surface, trajectory, hertz, force_high_pass, noise_longest_m });
+        let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
+        let surface = SurfaceSlot { surface, trajectory, hertz, force_high_pass, overlay, period_m };
+        let surface = Box::new(surface);
         self.send(Message::SetSurface { slot, surface })?;
         self.surfaces[slot] = true;
         self.rings[slot] = rings;
@@ -231,7 +233,7 @@ impl Scene {
     ///
     /// # Errors
     /// The event is handed back with the reason: a bad number, an unknown name, time running
-    /// backwards, or a full queue. Moves are the last to be refused: when the queue runs full only the
+    /// backwards (with an exact clock), or a full queue. Moves are the last to be refused: when the queue runs full only the
     /// newest move of each contact is kept, and sent with the next report.
     #[expect(
         clippy::result_large_err,
@@ -252,10 +254,14 @@ impl Scene {
     fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
         let event = self.checked(event)?;
         self.checked_time(time_s)?;
-        let stamped = self.clock.stamp(time_s, self.counters.position.load(Relaxed));
+        let position = self.counters.position.load(Relaxed);
+        let stamped = self.clock.stamp(time_s, position);
         Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
+        Counters::add(&self.counters.clock_paces, u64::from(stamped.repaced));
+        self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
         self.flush_held();
         let stamp = stamped.stamp;
+        let event = event.at_pace(self.clock.pace());
         self.send_stamped(stamp, event)?;
         self.reported.accept(&event, stamp, self.rings(&event));
         if let Some(recording) = &mut self.recording {
@@ -291,6 +297,10 @@ impl Scene {
     }
 
     fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
+        if self.clock.is_live() {
+            within("time_s", time_s, "finite, within ±1e9 s", -1e9, 1e9)?;
+            return Ok(());
+        }
         let time_s = within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
         if time_s < self.last_time_s {
             return Err(Refusal::TimeBackwards { time_s, before_s: self.last_time_s });
@@ -407,6 +417,24 @@ impl Scene {
     #[must_use]
     pub fn why_silent(&self) -> Vec<SilentBecause> {
         self.reported.why_silent(&self.stats(), &self.config)
+    }
+
+    /// Game time begins anew: the next report holds at the sample that is rendered next, whatever its time, and
+    /// later ones keep their exact distance to it. For a level that restarts, a game that was loaded or that was
+    /// paused under [`ClockMode::Exact`](crate::ClockMode::Exact); a live clock finds out by itself, within a report.
+    /// Events that still wait for their time are dropped and counted as superseded. Contacts that touch go on until their next
+    /// report, their end or the time-out.
+    ///
+    /// # Errors
+    /// When the queue is full.
+    pub fn reset(&mut self) -> Result<(), AddError> {
+        self.send(Message::Reset)?;
+        self.counters.resets_asked.fetch_add(1, Relaxed);
+        Counters::add(&self.counters.superseded, self.held.len() as u64);
+        self.held.clear();
+        self.clock.reset(self.counters.position.load(Relaxed));
+        self.last_time_s = f64::NEG_INFINITY;
+        Ok(())
     }
 
     /// What the engine did so far.

@@ -8,7 +8,7 @@ use crate::surface::{DEFAULT_ROUGHNESS, Roughness, SurfaceSlot};
 
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
 use asperity_texture::change::SurfaceChange;
-use asperity_texture::height_field::{HeightField, PathBlock, Reaction, SurfaceBlock, Touch};
+use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
 
 /// How long one surface takes to become another, s.
@@ -210,11 +210,16 @@ impl SurfaceSlot {
             out.friction[..n].fill(friction);
         }
         if surface.micro_relief_m > 0.0 {
-            noise.field.add(
+            let mut local_power_m2 = [0.0; MAX_BLOCK];
+            if self.overlay.minds_relief() {
+                surface.source.add_local_power(path.position_m, &mut local_power_m2[..n]);
+            }
+            self.overlay.add(
+                noise.field,
                 &NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m },
                 &out.roughness[..n],
                 surface.micro_relief_m,
-                self.noise_longest_m,
+                &local_power_m2[..n],
                 &mut out.height_m[..n],
             );
         }

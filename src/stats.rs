@@ -17,6 +17,8 @@ macro_rules! counters {
         pub(crate) struct Counters {
             $(pub(crate) $name: AtomicU64,)+
             load_bits: AtomicU32,
+            /// Resets that the game half has asked for.
+            pub(crate) resets_asked: AtomicU64,
         }
 
         impl Counters {
@@ -63,8 +65,13 @@ counters! {
     quarantined,
     /// Events that arrived after the sample they were stamped for.
     late,
-    /// Times the game clock was tied to the audio clock anew.
+    /// Times the game clock was tied to the audio clock anew: pauses, restarts, stamps that were off.
     clock_jumps,
+    /// Times the game was found to run at another pace: slow motion, fast motion, back to its own.
+    clock_paces,
+    /// How far ahead of the audio the latest event was stamped, samples. Live, more than some blocks' worth says
+    /// why it is silent: game and audio are not tied ([`Config::live`](crate::Config::live)).
+    ahead,
     /// Pieces of work left out because blocks ran late: a group of modes or an octave of a contact's noise
     /// for 64 samples, or a contact.
     shed,

@@ -3,12 +3,15 @@
 use crate::bad_value::{BadValue, within};
 use crate::event::BodyId;
 use crate::material::Material;
+use crate::overlay::Overlay;
 use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::hertz::HertzContact;
+use asperity_dsp::limits;
 use asperity_dsp::trajectory::TrajectoryDesign;
-use asperity_texture::height_field::HeightField;
+use asperity_texture::height_field::{Beyond, HeightField};
 use asperity_texture::height_map::{Extent, HeightMap, MapError};
 use asperity_texture::image_io::{self, Channel, ImageError};
+use asperity_texture::tiled::Tiled;
 use asperity_texture::wrap::Wrap;
 use std::path::Path;
 
@@ -100,8 +103,9 @@ impl Surface {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn from_source(source: Box<dyn HeightField>, width_m: f64, height_m: f64) -> Result<Self, BadValue> {
-        within("width_m", width_m, "1e-6–1e3 m", 1e-6, 1e3)?;
-        within("height_m", height_m, "1e-6–1e3 m", 1e-6, 1e3)?;
+        let (least_m, most_m) = limits::SIDE_M;
+        within("width_m", width_m, "1e-6–1e3 m", least_m, most_m)?;
+        within("height_m", height_m, "1e-6–1e3 m", least_m, most_m)?;
         Ok(Self {
             source,
             width_m,
@@ -175,7 +179,9 @@ impl Surface {
     }
 
     /// Whether texture coordinates wrap at 0 and 1 (a repeating surface, the default): then a jump by
-    /// a whole tile is no movement. A surface that does not wrap takes uv as they are.
+    /// a whole tile is no movement, and the same coordinates are the same place, lap after lap; a source that never
+    /// repeats is cut into tiles without a seam. A source with an edge (a clamped map, sand) never wraps, a mirrored
+    /// one at every second tile. A surface that does not wrap takes uv as they are.
     #[must_use]
     pub fn wraps(mut self, wraps: bool) -> Self {
         self.wraps = wraps;
@@ -183,7 +189,10 @@ impl Surface {
     }
 
     pub(crate) fn checked(self) -> Result<Self, BadValue> {
-        within("micro_relief_m", self.micro_relief_m, "0–0.01 m", 0.0, 0.01)?;
+        let most_m = limits::MAX_MICRO_RELIEF_M;
+        within("micro_relief_m", self.micro_relief_m, "0–0.01 m", 0.0, most_m)?;
+        let reach_m = self.source.reach_m();
+        within("relief_m", reach_m, "a surface within ±10 m of zero", 0.0, limits::MAX_RELIEF_M)?;
         within("friction", self.friction.unwrap_or(0.0), "0–10", 0.0, 10.0)?;
         if let Roughness::Constant(r) = self.roughness {
             within("roughness", r, "0–1", 0.0, 1.0)?;
@@ -193,7 +202,21 @@ impl Surface {
 
     /// What the path stage may unwrap by, m.
     pub(crate) fn wrap_period_m(&self) -> [f64; 2] {
-        if self.wraps { [self.width_m, self.height_m] } else { [f64::INFINITY; 2] }
+        let tile_m = [self.width_m, self.height_m];
+        match self.source.beyond(tile_m) {
+            Beyond::Same | Beyond::Fresh if self.wraps => tile_m,
+            Beyond::Mirrored if self.wraps => tile_m.map(|side_m| 2.0 * side_m),
+            _ => [f64::INFINITY; 2],
+        }
+    }
+
+    /// The same surface with a source that repeats, if its coordinates wrap.
+    pub(crate) fn tiled(mut self) -> Self {
+        let tile_m = [self.width_m, self.height_m];
+        if self.wraps && self.source.beyond(tile_m) == Beyond::Fresh {
+            self.source = Box::new(Tiled::new(self.source, tile_m));
+        }
+        self
     }
 }
 
@@ -204,6 +227,8 @@ pub(crate) struct SurfaceSlot {
     pub(crate) hertz: HertzContact,
     /// Keeps the part of the contact force that the body answers.
     pub(crate) force_high_pass: Butterworth,
-    /// Micro-noise is added only below this wavelength.
-    pub(crate) noise_longest_m: f64,
+    /// How the micro-noise lies on it.
+    pub(crate) overlay: Overlay,
+    /// After how many metres it is the same again, ∞ for never.
+    pub(crate) period_m: [f64; 2],
 }

@@ -128,8 +128,7 @@ fn stroke_with(clock: impl Fn(f64) -> Option<f64>) -> (asperity::Stats, Vec<f32>
         }
         next += 1;
         if let Some(time_s) = clock(now_s) {
-            // Time that runs backwards is refused; that is part of the test.
-            let _ = scene.report(time_s, ContactEvent::moved(ContactId(1), sample_at(now_s)));
+            scene.report(time_s, ContactEvent::moved(ContactId(1), sample_at(now_s))).unwrap();
         }
     });
     (scene.stats(), haptic, audio)
@@ -162,11 +161,10 @@ fn game_time_that_jumps_ahead_is_tied_anew_and_counted() {
 }
 
 #[test]
-fn game_time_that_runs_backwards_is_refused_and_counted_until_it_is_ahead_again() {
+fn game_time_that_runs_backwards_is_tied_anew_and_counted() {
     let (stats, haptic, audio) =
         stroke_with(|now_s| Some(if (1.0..1.5).contains(&now_s) { now_s - 0.6 } else { now_s }));
-    assert!(stats.refused > 20, "{stats:?}");
-    assert_eq!(stats.contacts, 1);
+    assert_eq!((stats.clock_jumps, stats.refused, stats.contacts), (2, 0, 1), "{stats:?}");
     assert_no_glitch(&haptic, "time runs backwards, felt");
     assert_no_glitch(&audio, "time runs backwards, heard");
 }

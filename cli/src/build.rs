@@ -205,7 +205,7 @@ fn surface(
     let (extent, wrap) = (ground.extent, ground.wrap);
     let source = ground.source(&entry.source)?;
     let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
-    let surface = surface.wraps(ground.repeats(&entry.source));
+    let surface = surface.wraps(ground.wrap != Wrap::Clamp);
     let mut surface = match &entry.roughness {
         RoughnessEntry::Number(None) => surface,
         RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),

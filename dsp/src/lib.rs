@@ -16,6 +16,7 @@
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
 //! | [`actuator`] | pad motion → haptic samples |
+//! | [`limits`] | what all of them accept |
 //! | [`rng`] | seeded numbers for all of them |
 //! | [`pair`] | two filters in one register |
 #![no_std]
@@ -30,6 +31,7 @@ pub mod fractal_noise;
 pub mod gradient_noise_2d;
 pub mod gradient_noise_3d;
 pub mod hertz;
+pub mod limits;
 pub mod micro_contact;
 pub mod modal_bank;
 pub mod mode;

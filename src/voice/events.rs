@@ -174,7 +174,7 @@ impl Voice {
     /// Whether a landing is so close that it can be the same touch.
     pub(crate) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
         let event = path_event(sample, slot, Stamp::default());
-        let period_m = slot.surface.wrap_period_m();
+        let period_m = slot.period_m;
         let apart_m = (0..2).map(|axis| {
             let apart_m = event.position_m[axis] - self.last_point.position_m[axis];
             let turns = if period_m[axis].is_finite() { (apart_m / period_m[axis]).round() } else { 0.0 };

@@ -15,7 +15,9 @@
 
 use crate::change::SurfaceChange;
 use crate::fade::Fade;
-use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand};
+use crate::height_field::{
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+};
 use crate::sand::SandSource;
 use asperity_dsp::DesignError;
 
@@ -39,6 +41,18 @@ impl Sum {
 impl HeightField for Sum {
     fn band(&self) -> WavelengthBand {
         self.sources.iter().fold(WavelengthBand::EMPTY, |band, s| band.union(s.band()))
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.sources.iter().map(|s| s.reach_m()).sum()
+    }
+
+    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        self.sources.iter().for_each(|s| s.add_local_power(position_m, power_m2));
+    }
+
+    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+        self.sources.iter().fold(Beyond::Same, |beyond, s| beyond.max(s.beyond(tile_m)))
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -102,6 +116,21 @@ impl HeightField for Scale {
         self.source.band()
     }
 
+    fn reach_m(&self) -> f64 {
+        self.factor.target().abs() * self.source.reach_m()
+    }
+
+    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        let mut own = [0.0; MAX_BLOCK];
+        self.source.add_local_power(position_m, &mut own[..position_m.len().min(MAX_BLOCK)]);
+        let factor = self.factor.target();
+        power_m2.iter_mut().zip(&own).for_each(|(power, own)| *power += factor * factor * own);
+    }
+
+    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+        self.source.beyond(tile_m)
+    }
+
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         self.source.sample(path, out);
         for i in 0..path.len().min(MAX_BLOCK) {
@@ -153,6 +182,20 @@ impl Mask {
 impl HeightField for Mask {
     fn band(&self) -> WavelengthBand {
         self.inside.band().union(self.outside.band())
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.inside.reach_m().max(self.outside.reach_m())
+    }
+
+    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        self.inside.add_local_power(position_m, power_m2);
+        self.outside.add_local_power(position_m, power_m2);
+    }
+
+    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+        let parts = [&self.mask, &self.inside, &self.outside].map(|s| s.beyond(tile_m));
+        parts.into_iter().fold(Beyond::Same, Beyond::max)
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -223,6 +266,18 @@ impl Crossfade {
 impl HeightField for Crossfade {
     fn band(&self) -> WavelengthBand {
         self.sources[0].band().union(self.sources[1].band())
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.sources[0].reach_m().max(self.sources[1].reach_m())
+    }
+
+    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        self.sources.iter().for_each(|s| s.add_local_power(position_m, power_m2));
+    }
+
+    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+        self.sources[0].beyond(tile_m).max(self.sources[1].beyond(tile_m))
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -312,6 +367,14 @@ impl HeightField for BandSplit {
         }
     }
 
+    fn reach_m(&self) -> f64 {
+        self.coarse.reach_m() + 2.0 * self.fine.reach_m()
+    }
+
+    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+        self.coarse.beyond(tile_m).max(self.fine.beyond(tile_m))
+    }
+
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let n = path.len().min(MAX_BLOCK);
         let mut blunt = [0.5 * self.wavelength_m; MAX_BLOCK];
@@ -378,7 +441,7 @@ fn mix(out: &mut SurfaceBlock, other: &SurfaceBlock, i: usize, w: f64) {
 }
 
 /// Adds a weighted reaction; grains keep their total momentum a second.
-fn add(sum: Reaction, part: Reaction, weight: f64) -> Reaction {
+pub(crate) fn add(sum: Reaction, part: Reaction, weight: f64) -> Reaction {
     let weighted_rate = weight.abs() * part.grain_rate_per_s;
     let rate = sum.grain_rate_per_s + weighted_rate;
     let momentum = sum.grain_rate_per_s * sum.grain_impulse_n_s + weighted_rate * part.grain_impulse_n_s;

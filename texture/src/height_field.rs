@@ -92,8 +92,8 @@ impl Default for SurfaceBlock {
     }
 }
 
-/// The wavelengths a source represents, metres. The engine adds the paper's micro-noise only below
-/// `shortest_m`, so that no scale is rough twice.
+/// The wavelengths a source represents, metres. Where it has relief the engine adds the paper's micro-noise only
+/// below `shortest_m`, so that no scale is rough twice ([`HeightField::add_local_power`] tells where).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WavelengthBand {
     /// Shortest wavelength in the source; `f64::INFINITY` for a source without any relief.
@@ -145,10 +145,40 @@ pub struct Reaction {
     pub stirs: bool,
 }
 
+/// What lies beyond one tile of a source: what texture coordinates that wrap mean on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Beyond {
+    /// The same again, or relief that does not belong to places: a jump by a tile is no movement.
+    Same,
+    /// The same mirrored: a jump by two tiles is no movement.
+    Mirrored,
+    /// More of its kind, unlike the tile: the engine makes a tile of it ([`crate::tiled`]).
+    Fresh,
+    /// Its edge: a jump across is a jump.
+    Edge,
+}
+
 /// A surface that can be sampled in real time.
 pub trait HeightField: Send {
     /// The wavelengths this source represents.
     fn band(&self) -> WavelengthBand;
+
+    /// How far from zero its heights can be, metres; 0 if the source cannot tell.
+    fn reach_m(&self) -> f64 {
+        0.0
+    }
+
+    /// Adds the mean square of the relief that the source really has about each place, at wavelengths up to some
+    /// millimetres, m². The engine's micro-noise fills in what is missing. A source that does not know has relief
+    /// everywhere in its [`band`](Self::band).
+    fn add_local_power(&self, _position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        power_m2.fill(f64::INFINITY);
+    }
+
+    /// What lies beyond a tile of `tile_m` along u and v.
+    fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
+        Beyond::Same
+    }
 
     /// Fills the first `path.len()` entries of `out`.
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);

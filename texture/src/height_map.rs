@@ -15,7 +15,8 @@
 //! the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid as well, so
 //! that a seamless map has no seam.
 
-use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
+use crate::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
+use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
 use crate::resample::halve;
 use crate::spline::{Places, Samples, Spline};
@@ -79,6 +80,10 @@ pub struct HeightMap {
     extent: Extent,
     wrap: Wrap,
     band: WavelengthBand,
+    /// Largest height, either way.
+    reach_m: f64,
+    /// Where it has relief; none = nowhere.
+    local: Option<LocalRelief>,
     friction: f64,
 }
 
@@ -104,7 +109,12 @@ impl HeightMap {
     pub fn new(heights: &Raster, extent: Extent, wrap: Wrap) -> Result<Self, MapError> {
         extent.check()?;
         check(heights)?;
-        let heights = Pyramid::new(&heights.map(|v| v * extent.relief_m), extent, wrap);
+        let heights = heights.map(|v| v * extent.relief_m);
+        let (low_m, high_m) = heights.range();
+        let reach_m = high_m.abs().max(low_m.abs());
+        let local =
+            (low_m != high_m).then(|| LocalRelief::new(&heights, [extent.width_m, extent.height_m], wrap));
+        let heights = Pyramid::new(&heights, extent, wrap);
         let band = match heights.levels.first() {
             None => WavelengthBand::EMPTY,
             Some(finest) => {
@@ -113,7 +123,7 @@ impl HeightMap {
             }
         };
         let roughness = Roughness::Constant(0.5);
-        Ok(Self { heights, roughness, extent, wrap, band, friction: FRICTION })
+        Ok(Self { heights, roughness, extent, wrap, band, reach_m, local, friction: FRICTION })
     }
 
     /// A plane: every relief comes from the micro-noise.
@@ -315,6 +325,31 @@ fn along([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
 impl HeightField for HeightMap {
     fn band(&self) -> WavelengthBand {
         self.band
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.reach_m
+    }
+
+    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        let Some(local) = &self.local else { return };
+        for (position_m, power_m2) in position_m.iter().zip(power_m2) {
+            *power_m2 += local.at(*position_m);
+        }
+    }
+
+    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+        let everywhere_alike = self.heights.levels.is_empty()
+            && !matches!(&self.roughness, Roughness::Map(map) if !map.levels.is_empty());
+        let tiles = [tile_m[0] / self.extent.width_m, tile_m[1] / self.extent.height_m];
+        let fits = tiles.iter().all(|tiles| *tiles > 0.5 && (tiles - tiles.round()).abs() < 1e-9);
+        match self.wrap {
+            _ if everywhere_alike => Beyond::Same,
+            Wrap::Clamp => Beyond::Edge,
+            Wrap::Repeat if fits => Beyond::Same,
+            Wrap::Mirror if fits => Beyond::Mirrored,
+            Wrap::Repeat | Wrap::Mirror => Beyond::Fresh,
+        }
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {

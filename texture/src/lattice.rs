@@ -16,7 +16,7 @@
 //! contact's footprint does not resolve the texels, copies of the cell smoothed by 1–4–6–4–1 at
 //! dyadic scales take over (not thinned out, so that any cell size will do), down to its mean.
 
-use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
+use crate::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 
@@ -249,6 +249,21 @@ pub(crate) fn prefilter(line: &mut [f64]) {
 impl HeightField for Lattice {
     fn band(&self) -> WavelengthBand {
         WavelengthBand { shortest_m: 2.0 * self.texel_m, longest_m: self.longest_m }
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.levels[0].iter().fold(0.0, |reach, c| reach.max(c.abs()))
+    }
+
+    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+        // A tile repeats if each of its sides is a whole number of cells along both translations.
+        let whole = |side: [f64; 2]| {
+            self.inverse.iter().all(|row| {
+                let cells = row[0] * side[0] + row[1] * side[1];
+                (cells - cells.round()).abs() < 1e-9 * (1.0 + cells.abs())
+            })
+        };
+        if whole([tile_m[0], 0.0]) && whole([0.0, tile_m[1]]) { Beyond::Same } else { Beyond::Fresh }
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {

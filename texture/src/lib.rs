@@ -13,10 +13,12 @@ pub mod fade;
 pub mod height_field;
 pub mod height_map;
 pub mod lattice;
+mod local_relief;
 pub mod raster;
 pub mod sand;
 pub mod solid_materials;
 pub mod solid_noise;
+pub mod tiled;
 
 // Maps in and out.
 pub mod deband;

@@ -30,7 +30,9 @@ pub use parameters::{ForceDirection, MAX_OCTAVES, NoiseModule, SolidNoiseParamet
 
 use crate::change::SurfaceChange;
 use crate::fade::Fade;
-use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand};
+use crate::height_field::{
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+};
 use asperity_dsp::DesignError;
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
 
@@ -250,6 +252,14 @@ fn resolved(footprint_cells: f64) -> f64 {
 impl HeightField for SolidNoise {
     fn band(&self) -> WavelengthBand {
         self.parameters.target().band()
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.parameters.target().reach_m()
+    }
+
+    fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
+        Beyond::Fresh
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {

@@ -40,22 +40,6 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Whether a jump of uv by a whole tile is no movement.
-    pub fn repeats(self, source: &Source) -> bool {
-        let square = self.extent.width_m == self.extent.height_m;
-        match source {
-            Source::Flat | Source::Map { .. } => self.wrap == Wrap::Repeat,
-            Source::Brownian(brownian) => square && !brownian.graph,
-            Source::Solid(_) | Source::Lattice(_) | Source::Sand(_) => false,
-            Source::Sum(parts) => parts.iter().all(|part| self.repeats(part)),
-            Source::Scale(source, _) => self.repeats(source),
-            Source::Mask { inside, outside, .. } => {
-                self.wrap == Wrap::Repeat && self.repeats(inside) && self.repeats(outside)
-            }
-            Source::Crossfade { from, to, .. } => self.repeats(from) && self.repeats(to),
-        }
-    }
-
     /// The source itself.
     pub fn source(self, source: &Source) -> Result<Boxed, CliError> {
         Ok(match source {

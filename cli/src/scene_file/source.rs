@@ -6,10 +6,11 @@ use super::fields::{Allowed, Fields, shown};
 use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
 use crate::error::CliError;
+use asperity::limits;
 use std::path::Path;
 use toml::Value;
 
-const RELIEF_M: Allowed = Allowed::between(0.0, 10.0, "m");
+const RELIEF_M: Allowed = Allowed::between(0.0, limits::MAX_RELIEF_M, "m");
 const AMPLITUDE_M: Allowed = Allowed::between(-0.1, 0.1, "m");
 
 /// Where heights come from.

@@ -4,10 +4,11 @@ use super::fields::{Allowed, Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
 use crate::error::CliError;
+use asperity::limits;
 use std::path::Path;
 use toml::Value;
 
-const EXTENT_M: Allowed = Allowed::above(0.0, 1_000.0, "m");
+const EXTENT_M: Allowed = Allowed::between(limits::SIDE_M.0, limits::SIDE_M.1, "m");
 const ROUGHNESS: Allowed = Allowed::between(0.0, 1.0, "");
 
 /// One surface.
@@ -92,7 +93,8 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, CliError>
         roughness: read_roughness(&mut fields, folder)?,
         width_m: fields.needed_number("width_m", EXTENT_M)?,
         height_m: fields.needed_number("height_m", EXTENT_M)?,
-        micro_relief_m: fields.number("micro_relief_m", Allowed::between(0.0, 1e-2, "m, 0 = none"))?,
+        micro_relief_m: fields
+            .number("micro_relief_m", Allowed::between(0.0, limits::MAX_MICRO_RELIEF_M, "m, 0 = none"))?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?,
         friction: fields.number("friction", Allowed::between(0.0, 10.0, ""))?,

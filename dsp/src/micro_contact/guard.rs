@@ -2,21 +2,18 @@
 //!
 //! | seen | done | counted |
 //! |---|---|---|
-//! | height not finite or beyond ±1 m | the last good height is held | yes |
-//! | force not finite or beyond ±1 kN | the last good force is held | yes |
+//! | height or force not finite | the last good one is held | yes |
+//! | height or force beyond the [`limits`](crate::limits) | it stays at the limit | yes |
 //! | force below zero | zero: a surface does not pull | no |
 //! | gap above the leash | upward velocities become zero | no |
 //! | gap or penetration absurd | the contact rests on the surface again | yes |
 //! | magnitudes below 1e-100 | zero, so that no denormal ever slows a kernel | no |
 
 use super::{ContactState, MicroContact};
+pub(super) use crate::limits::{MAX_HEIGHT_M, MAX_NORMAL_FORCE_N as MAX_FORCE_N};
 
 /// Rows between two looks at vanishing magnitudes, on the contact's own clock.
 pub(super) const GRID: usize = 64;
-/// Heights beyond this are not a surface, m.
-pub(super) const MAX_HEIGHT_M: f64 = 1.0;
-/// Forces beyond this are not a finger, N.
-pub(super) const MAX_FORCE_N: f64 = 1000.0;
 /// Gap beyond which the contact has lost its surface, m.
 pub(super) const MAX_GAP_M: f64 = 0.1;
 /// Magnitudes below this are zero.
@@ -55,10 +52,10 @@ impl CleanBlock {
                 state.resets = state.resets.saturating_add(1);
             }
             if !is_height(height) {
-                *h = last_height;
+                *h = held(height, last_height, MAX_HEIGHT_M);
             }
             if !is_force(force) {
-                *f = last_force;
+                *f = held(force, last_force, MAX_FORCE_N).max(0.0);
             }
             (last_height, last_force) = (*h, *f);
         }
@@ -80,6 +77,11 @@ pub(super) fn is_height(height_m: f64) -> bool {
 #[inline(always)]
 pub(super) fn is_force(force_n: f64) -> bool {
     force_n.abs() <= MAX_FORCE_N
+}
+
+/// The limit that a number lies beyond, and the last good one for what is no number.
+pub(super) fn held(value: f64, last: f64, limit: f64) -> f64 {
+    if value.is_finite() { value.clamp(-limit, limit) } else { last }
 }
 
 /// A height or force that a contact can start from.

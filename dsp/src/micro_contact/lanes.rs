@@ -246,10 +246,10 @@ fn repaired(
     for (i, state) in states.iter_mut().enumerate() {
         let (good_height, good_force) = (guard::is_height(height_m[i]), guard::is_force(force_n[i]));
         if !good_height {
-            heights[i] = last_height_m[i];
+            heights[i] = guard::held(height_m[i], last_height_m[i], guard::MAX_HEIGHT_M);
         }
         if !good_force {
-            forces[i] = last_force_n[i];
+            forces[i] = guard::held(force_n[i], last_force_n[i], guard::MAX_FORCE_N).max(0.0);
         }
         if !(good_height && good_force) {
             state.resets = state.resets.saturating_add(1);

@@ -206,6 +206,13 @@ impl Trajectory {
             None => self.reckoning.velocity(),
         };
         let velocity = or_rest(velocity);
+        let same_m = libm::hypot(covered[0], covered[1]);
+        if gap_s == 0.0 && same_m < STILL_DISTANCE_M && velocity == self.reckoning.velocity() {
+            // Nothing new but the force: a game that stands reports the same instant again and again.
+            self.still &= event.normal_force_n == self.reckoning.force_n();
+            self.reckoning.set_force_n(event.normal_force_n);
+            return Moved::Followed;
+        }
         let surprise_m = libm::hypot(surprise[0], surprise[1]);
         let unforeseen = unknown || self.has_slowed_down(design, gap_s);
         let catch_up_m = self.catch_up_m(design, velocity);

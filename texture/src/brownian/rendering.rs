@@ -18,7 +18,9 @@
 //! at 45°; ours is the gradient of 6.7, per millimetre (the unit is ours: the thesis has none).
 
 use crate::change::SurfaceChange;
-use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand};
+use crate::height_field::{
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+};
 use asperity_dsp::DesignError;
 
 /// Grey levels over the range of the document's maps.
@@ -106,6 +108,14 @@ impl BrownianSurface {
 impl HeightField for BrownianSurface {
     fn band(&self) -> WavelengthBand {
         self.relief.band()
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.relief.reach_m()
+    }
+
+    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+        self.relief.beyond(tile_m)
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -215,6 +225,10 @@ impl HeightField for BrownianPath {
     fn band(&self) -> WavelengthBand {
         let longest_m = self.spacing_m * self.coefficients.len() as f64;
         WavelengthBand { shortest_m: 2.0 * self.spacing_m, longest_m }
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.coefficients.iter().fold(0.0, |reach, c| reach.max(c.abs()))
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {

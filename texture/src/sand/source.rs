@@ -28,7 +28,9 @@ use super::simulation::{FRAMES_PER_S, Pose, SandDesign, SandFigures, SandSimulat
 use super::worker::SandWorker;
 use crate::change::SurfaceChange;
 use crate::fade::Fade;
-use crate::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand};
+use crate::height_field::{
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+};
 use crate::solid_materials::{FRICTION, SolidMaterial};
 use crate::solid_noise::SolidNoise;
 use asperity_dsp::DesignError;
@@ -307,6 +309,11 @@ fn patches(count: usize) -> Vec<Box<Patch>> {
 impl HeightField for SandSource {
     fn band(&self) -> WavelengthBand {
         WavelengthBand { shortest_m: self.grains.band().shortest_m, longest_m: self.longest_m }
+    }
+
+    /// The box has walls.
+    fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
+        Beyond::Edge
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {

@@ -101,6 +101,14 @@ impl SolidNoiseParameters {
         (frequency, amplitude)
     }
 
+    /// How far from zero its heights can be, metres.
+    pub(super) fn reach_m(&self) -> f64 {
+        let octaves = |module: &NoiseModule| -> f64 {
+            (0..module.octaves).map(|index| self.octave(module, index).1.abs()).sum()
+        };
+        self.amplitude_m.abs() * self.modules.iter().map(octaves).sum::<f64>()
+    }
+
     /// From two cells of the coarsest octave down to one cell of the finest.
     pub(super) fn band(&self) -> WavelengthBand {
         let mut band = WavelengthBand::EMPTY;

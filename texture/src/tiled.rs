@@ -1,0 +1,248 @@
+//! A tile cut from a source that never repeats: texture coordinates that wrap come back to the same place.
+//!
+//! ```text
+//! h(x) = (1 − w) n(x) + w n(x − W)      x: place within the tile, 0 to W
+//! w    = 6t⁵ − 15t⁴ + 10t³              t = (x − (W − b)) / b, 0 to 1 in the last b of the tile
+//! ```
+//! along u and along v. At the end of the tile the relief is that of its beginning, with slope and curvature, so
+//! there is no seam to be felt. b is the longest wavelength of the source, at most a quarter of the tile. The
+//! weights add up to 1 in height, so whatever does repeat (a map in a sum) stays what it is; uncorrelated relief is
+//! 3 dB lower in the middle of the blend.
+
+use crate::change::SurfaceChange;
+use crate::combine::{Source, add};
+use crate::height_field::{
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+};
+use crate::sand::SandSource;
+
+/// A place in a tile, and how much of it is already the next tile's beginning.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Place {
+    /// Within the tile along one axis, m.
+    pub at_m: f64,
+    /// Share of the relief one tile back, 0 to 1.
+    pub weight: f64,
+    /// Its slope, 1/m.
+    pub slope_per_m: f64,
+}
+
+/// One axis of a tile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TileAxis {
+    /// Its length, m; ∞ for none.
+    pub length_m: f64,
+    /// Length of the blend at its end, m.
+    pub blend_m: f64,
+}
+
+impl TileAxis {
+    /// A tile of a relief whose longest wavelength is given, m.
+    #[must_use]
+    pub fn new(length_m: f64, longest_m: f64) -> Self {
+        Self { length_m, blend_m: longest_m.min(0.25 * length_m) }
+    }
+
+    /// Where a place on the unwrapped surface is in its tile.
+    #[inline]
+    #[must_use]
+    pub fn place(&self, position_m: f64) -> Place {
+        if !self.length_m.is_finite() {
+            return Place { at_m: position_m, ..Place::default() };
+        }
+        let at_m = position_m - self.length_m * (position_m / self.length_m).floor();
+        let t = ((at_m - (self.length_m - self.blend_m)) / self.blend_m).clamp(0.0, 1.0);
+        let weight = t * t * t * (10.0 + t * (6.0 * t - 15.0));
+        let slope_per_m = 30.0 * t * t * (1.0 - t) * (1.0 - t) / self.blend_m;
+        Place { at_m, weight, slope_per_m }
+    }
+}
+
+/// A source that never repeats, made to repeat.
+pub struct Tiled {
+    source: Source,
+    axes: [TileAxis; 2],
+    part: SurfaceBlock,
+}
+
+impl Tiled {
+    /// A tile of `tile_m` along u and v; ∞ leaves an axis as it is.
+    #[must_use]
+    pub fn new(source: Source, tile_m: [f64; 2]) -> Self {
+        let longest_m = source.band().longest_m.max(1e-6);
+        let axes = tile_m.map(|length_m| TileAxis::new(length_m, longest_m));
+        Self { source, axes, part: SurfaceBlock::default() }
+    }
+
+    fn places(&self, position_m: [f64; 2]) -> [Place; 2] {
+        [self.axes[0].place(position_m[0]), self.axes[1].place(position_m[1])]
+    }
+
+    /// Where a copy of the tile is read.
+    fn back(&self, places: &[Place; 2], copy: [usize; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| places[axis].at_m - if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 })
+    }
+}
+
+/// The four copies of a tile that can meet in its corner: how many tiles back along u and v.
+const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+
+/// Share of one copy, and its slope.
+fn share(places: &[Place; 2], copy: [usize; 2]) -> (f64, [f64; 2]) {
+    let [u, v] = [0, 1].map(|axis| {
+        let Place { weight, slope_per_m, .. } = places[axis];
+        if copy[axis] == 1 { (weight, slope_per_m) } else { (1.0 - weight, -slope_per_m) }
+    });
+    (u.0 * v.0, [u.1 * v.0, u.0 * v.1])
+}
+
+impl HeightField for Tiled {
+    fn band(&self) -> WavelengthBand {
+        self.source.band()
+    }
+
+    fn reach_m(&self) -> f64 {
+        self.source.reach_m()
+    }
+
+    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        for (position_m, power_m2) in position_m.iter().zip(power_m2) {
+            let places = self.places(*position_m);
+            for copy in COPIES {
+                let (weight, _) = share(&places, copy);
+                let mut own_m2 = [0.0];
+                if weight > 0.0 {
+                    self.source.add_local_power(&[self.back(&places, copy)], &mut own_m2);
+                    *power_m2 += weight * own_m2[0];
+                }
+            }
+        }
+    }
+
+    fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
+        Beyond::Same
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        let n = path.len().min(MAX_BLOCK);
+        let mut places = [[Place::default(); 2]; MAX_BLOCK];
+        let mut position_m = [[0.0; 2]; MAX_BLOCK];
+        for i in 0..n {
+            places[i] = self.places(path.position_m[i]);
+            position_m[i] = places[i].map(|place| place.at_m);
+        }
+        self.source.sample(&PathBlock { position_m: &position_m[..n], ..*path }, out);
+        let blended = |axis: usize| places[..n].iter().any(|place| place[axis].weight > 0.0);
+        let meets = [blended(0), blended(1)];
+        if meets == [false; 2] {
+            return;
+        }
+        let here = out.clone();
+        out.clear(n);
+        for copy in COPIES {
+            if (copy[0] == 1 && !meets[0]) || (copy[1] == 1 && !meets[1]) {
+                continue;
+            }
+            let part = if copy == [0, 0] {
+                &here
+            } else {
+                for i in 0..n {
+                    position_m[i] = self.back(&places[i], copy);
+                }
+                self.source.sample(&PathBlock { position_m: &position_m[..n], ..*path }, &mut self.part);
+                &self.part
+            };
+            for i in 0..n {
+                let (weight, slope) = share(&places[i], copy);
+                out.height_m[i] += weight * part.height_m[i];
+                for axis in 0..2 {
+                    out.gradient[i][axis] += weight * part.gradient[i][axis] + slope[axis] * part.height_m[i];
+                }
+                out.roughness[i] += weight * part.roughness[i];
+                out.friction[i] += weight * part.friction[i];
+                out.compliance_m_n[i] += weight * part.compliance_m_n[i];
+            }
+        }
+    }
+
+    fn react(&mut self, touch: &Touch) -> Reaction {
+        let places = self.places(touch.position_m);
+        COPIES.into_iter().fold(Reaction::default(), |sum, copy| {
+            let (weight, _) = share(&places, copy);
+            if weight == 0.0 {
+                return sum;
+            }
+            let position_m = self.back(&places, copy);
+            add(sum, self.source.react(&Touch { position_m, ..*touch }), weight)
+        })
+    }
+
+    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        self.source.change(change, sample)
+    }
+
+    fn sand(&mut self) -> Option<&mut SandSource> {
+        self.source.sand()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid_materials::SolidMaterial;
+    use crate::solid_noise::SolidNoise;
+
+    fn at(source: &mut dyn HeightField, position_m: &[[f64; 2]]) -> (Vec<f64>, Vec<[f64; 2]>) {
+        let mut out = SurfaceBlock::default();
+        let (mut heights, mut slopes) = (Vec::new(), Vec::new());
+        for position_m in position_m.chunks(MAX_BLOCK) {
+            let n = position_m.len();
+            source.sample(
+                &PathBlock {
+                    position_m,
+                    velocity_m_s: &[[0.1, 0.0]; MAX_BLOCK][..n],
+                    footprint_m: &[2e-6; MAX_BLOCK][..n],
+                    first_sample: 0,
+                    contact: 0,
+                    slopes: true,
+                },
+                &mut out,
+            );
+            heights.extend_from_slice(&out.height_m[..n]);
+            slopes.extend_from_slice(&out.gradient[..n]);
+        }
+        (heights, slopes)
+    }
+
+    #[test]
+    fn a_material_that_never_repeats_is_the_same_after_a_tile_and_has_no_seam() {
+        let tile_m = [0.1, 0.07];
+        for material in SolidMaterial::SEVEN {
+            let noise = || SolidNoise::new(material.parameters(), 3, 44_100.0).unwrap();
+            let mut tiled = Tiled::new(Box::new(noise()), tile_m);
+            // Obliquely over both seams in steps of 2 µm.
+            let line = |offset: [f64; 2]| -> Vec<[f64; 2]> {
+                (0..20_000)
+                    .map(|i| {
+                        let way = 2e-6 * f64::from(i);
+                        [0.09 + 0.8 * way + offset[0], 0.055 + 0.6 * way + offset[1]]
+                    })
+                    .collect()
+            };
+            let (heights, slopes) = at(&mut tiled, &line([0.0; 2]));
+            let (again, _) = at(&mut tiled, &line([3.0 * tile_m[0], -2.0 * tile_m[1]]));
+            let rms = (heights.iter().map(|h| h * h).sum::<f64>() / heights.len() as f64).sqrt();
+            for (a, b) in heights.iter().zip(&again) {
+                assert!((a - b).abs() < 1e-12, "{}: {a} and {b}", material.name());
+            }
+            let (plain, _) = at(&mut noise(), &line([0.0; 2]));
+            let step = |h: &[f64]| h.windows(2).map(|h| (h[1] - h[0]).abs()).fold(0.0, f64::max);
+            assert!(step(&heights) < 3.0 * step(&plain) + 1e-9, "{}: a seam", material.name());
+            for (i, slope) in slopes.iter().enumerate().skip(1).take(19_998) {
+                let measured = (heights[i + 1] - heights[i - 1]) / 4e-6;
+                let told = 0.8 * slope[0] + 0.6 * slope[1];
+                assert!((measured - told).abs() < 1e-2 * (1.0 + rms / 1e-6), "{}", material.name());
+            }
+        }
+    }
+}
