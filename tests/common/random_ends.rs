@@ -1,0 +1,171 @@
+//! Random scenes at the ends of what is accepted: probe, rate, surface, force, speed, reports.
+//!
+//! A scene passes if everything it gives is finite and no contact force is higher than physics explains. With the
+//! pressed force F, the masses m and the ground's own acceleration a (second difference of the heights that the
+//! contact was given, at the contact's own rate), that is 10 F where m a < F, and 3 (F + m a) elsewhere.
+#![allow(dead_code)]
+
+use asperity::limits;
+use asperity::{
+    Actuator, ActuatorSettings, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Excitation,
+    Extent, Integrator, PathMode, Probe, Surface, Tap, Wrap,
+};
+use asperity_dsp::rng::Rng;
+use asperity_texture::height_map::HeightMap;
+use asperity_texture::raster::Raster;
+
+/// What became of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// Rendered: the hardest force over what is allowed.
+    Rendered(f64),
+    /// Refused, with the message.
+    Refused(String),
+    /// Not finite.
+    NotFinite,
+}
+
+/// An end of a range most of the time, something between at others.
+fn end(rng: &mut Rng, low: f64, high: f64) -> f64 {
+    match rng.next_u32() % 5 {
+        0 | 1 => low,
+        2 | 3 => high,
+        _ => low * (high / low).powf(rng.uniform()),
+    }
+}
+
+fn one_of<T: Copy>(rng: &mut Rng, of: &[T]) -> T {
+    of[rng.next_u32() as usize % of.len()]
+}
+
+struct Hardest {
+    masses_kg: f64,
+    rate_hz: f64,
+    heights_m: [f64; 2],
+    rows: u32,
+    /// Pressed force and ground acceleration, held for a while, because a blow comes after its cause.
+    pressed_n: f64,
+    acceleration_m_s2: f64,
+    worst: f64,
+    finite: bool,
+}
+
+impl Tap for Hardest {
+    fn contact(&mut self, block: &ContactBlock<'_>) {
+        for row in block.contact_samples {
+            let [before, last] = self.heights_m;
+            let bend = (row.height_m - 2.0 * last + before) * self.rate_hz * self.rate_hz;
+            self.heights_m = [last, row.height_m];
+            self.rows += 1;
+            if self.rows > 2 {
+                self.acceleration_m_s2 = self.acceleration_m_s2.max(bend.abs());
+            }
+            self.pressed_n = self.pressed_n.max(row.normal_force_n);
+            let inertia_n = self.masses_kg * self.acceleration_m_s2;
+            let allowed_n = if inertia_n < self.pressed_n {
+                10.0 * self.pressed_n
+            } else {
+                3.0 * (self.pressed_n + inertia_n)
+            };
+            self.worst = self.worst.max(row.contact_force_n / allowed_n.max(1e-9));
+            self.finite &=
+                row.contact_force_n.is_finite() && row.pad_m.is_finite() && row.finger_m.is_finite();
+        }
+    }
+}
+
+fn surface(rng: &mut Rng) -> Result<Surface, String> {
+    let (width_m, height_m) = (end(rng, 1e-3, limits::SIDE_M.1), end(rng, 1e-3, limits::SIDE_M.1));
+    let relief_m = end(rng, 1e-9, 1.5 * limits::MAX_RELIEF_M);
+    let n = one_of(rng, &[1usize, 2, 16, 64]);
+    let kind = rng.next_u32() % 3;
+    let values = (0..n * n)
+        .map(|i| match kind {
+            0 => (i % n) as f64 / n as f64,
+            1 => 0.5 + 0.5 * (6.28 * (i % n) as f64 / n as f64).sin(),
+            _ => rng.uniform(),
+        })
+        .collect();
+    let wrap = one_of(rng, &[Wrap::Repeat, Wrap::Clamp, Wrap::Mirror]);
+    let extent = Extent { width_m, height_m, relief_m };
+    let map =
+        HeightMap::new(&Raster { width: n, height: n, values }, extent, wrap).map_err(|e| e.to_string())?;
+    let rough = one_of(rng, &[0.0, 0.5, 1.0]);
+    let map = map.with_roughness(rough).map_err(|e| e.to_string())?;
+    let surface = Surface::new(map, width_m, height_m).map_err(|e| e.to_string())?;
+    let micro_relief_m = one_of(rng, &[0.0, 2e-6, limits::MAX_MICRO_RELIEF_M]);
+    Ok(surface.micro_relief_m(micro_relief_m).excitation(one_of(rng, &[Excitation::Both, Excitation::Force])))
+}
+
+/// Renders scene `seed`, a tenth of a second of it.
+pub fn outcome(seed: u64) -> Outcome {
+    let mut rng = Rng::new(seed);
+    let rng = &mut rng;
+    let probe = Probe {
+        pad_mass_kg: end(rng, 1e-6, 1.0),
+        pad_stiffness_n_m: end(rng, 1e-3, 1e7),
+        pad_damping_n_s_m: end(rng, 1e-3, 1e4),
+        finger_mass_kg: end(rng, 1e-5, 100.0),
+        contact_stiffness_n_m: end(rng, 1.0, 1e9),
+        leash_m: end(rng, 1e-6, 0.05),
+    };
+    let probe = if rng.next_u32() % 2 == 0 { Probe::default() } else { probe };
+    let integrator =
+        one_of(rng, &[Integrator::ExactEvent, Integrator::SemiImplicitEuler, Integrator::EnergyConserving]);
+    let rate_hz = one_of(rng, &[8e3, 22_050.0, 44_100.0, 192e3]);
+    let config = Config {
+        sample_rate_hz: rate_hz,
+        probe,
+        integrator,
+        path: one_of(rng, &[PathMode::Extrapolate, PathMode::Hold, PathMode::Hermite]),
+        actuators: vec![ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() }],
+        max_contacts: 2,
+        max_surfaces: 1,
+        max_bodies: 1,
+        ..Config::default()
+    };
+    let (mut scene, mut renderer) = match config.build() {
+        Ok(halves) => halves,
+        Err(error) => return Outcome::Refused(error.to_string()),
+    };
+    let surface = match surface(rng).and_then(|s| scene.add_surface(s).map_err(|e| e.to_string())) {
+        Ok(id) => id,
+        Err(message) => return Outcome::Refused(message),
+    };
+    let speed_m_s = end(rng, 1e-6, limits::MAX_SPEED_M_S);
+    let force_n = end(rng, 1e-3, limits::MAX_NORMAL_FORCE_N);
+    let mut hardest = Hardest {
+        masses_kg: probe.pad_mass_kg + probe.finger_mass_kg,
+        rate_hz,
+        heights_m: [0.0; 2],
+        rows: 0,
+        pressed_n: 0.0,
+        acceleration_m_s2: 0.0,
+        worst: 0.0,
+        finite: true,
+    };
+    let (mut haptic, mut audio) = (vec![0.0; 256], vec![0.0; 256]);
+    let mut finite = true;
+    for step in 0..7 {
+        let t = f64::from(step) / 60.0;
+        let sample = ContactSample {
+            uv: [0.3 + speed_m_s * t, 0.3],
+            velocity_m_s: Some([speed_m_s, 0.0]),
+            normal_force_n: force_n,
+            closing_m_s: 0.0,
+        };
+        let event = if step == 0 {
+            ContactEvent::begin(ContactId(1), surface, Actuator(0), sample)
+        } else {
+            ContactEvent::moved(ContactId(1), sample)
+        };
+        if let Err(error) = scene.report(t, event) {
+            return Outcome::Refused(error.to_string());
+        }
+        while (renderer.position() as f64) < (t + 1.0 / 60.0) * rate_hz {
+            renderer.render_tapped(&mut [&mut haptic], &mut [&mut audio], &mut hardest);
+            finite &= haptic.iter().chain(&audio).all(|x| x.is_finite());
+        }
+    }
+    if finite && hardest.finite { Outcome::Rendered(hardest.worst) } else { Outcome::NotFinite }
+}
