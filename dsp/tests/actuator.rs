@@ -380,6 +380,47 @@ fn the_audio_limiter_never_passes_its_ceiling_and_lets_quiet_sound_through_untou
     assert!((later[88_199] - 0.1).abs() < 1e-3);
 }
 
+/// What of a sine is left over once its own frequency is taken out, dB of it, from `skip` s on.
+fn distortion_db(frequency_hz: f64, over_db: f64, rate_hz: f64, skip_s: f64) -> f64 {
+    let limiter = PeakLimiter::new(1.0, rate_hz).unwrap();
+    let mut state = PeakLimiterState::default();
+    let amplitude = 10f64.powf(over_db / 20.0);
+    let phase = |n: usize| 2.0 * PI * frequency_hz * n as f64 / rate_hz;
+    // Whole periods to measure, to within a sample's share.
+    let skip = (skip_s * rate_hz) as usize;
+    let count = ((0.5 * frequency_hz).round() / frequency_hz * rate_hz).round() as usize;
+    let mut block: Vec<f32> = (0..skip + count).map(|n| (amplitude * phase(n).sin()) as f32).collect();
+    state.run(&limiter, &mut block);
+    assert!(block.iter().all(|y| y.abs() <= 1.0), "{frequency_hz} Hz passes full scale");
+    let heard: Vec<f64> = block[skip..].iter().map(|y| f64::from(*y)).collect();
+    // Least squares on sine and cosine: exact whatever the number of periods.
+    let (mut ss, mut sc, mut cc, mut ys, mut yc) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (n, y) in heard.iter().enumerate() {
+        let (s, c) = phase(n + skip).sin_cos();
+        (ss, sc, cc, ys, yc) = (ss + s * s, sc + s * c, cc + c * c, ys + y * s, yc + y * c);
+    }
+    let det = ss * cc - sc * sc;
+    let (a, b) = ((ys * cc - yc * sc) / det, (yc * ss - ys * sc) / det);
+    let tone = |n: usize| a * phase(n).sin() + b * phase(n).cos();
+    let left: f64 = heard.iter().enumerate().map(|(n, y)| (y - tone(n + skip)).powi(2)).sum();
+    let whole: f64 = heard.iter().enumerate().map(|(n, _)| tone(n + skip).powi(2)).sum();
+    10.0 * (left / whole).log10()
+}
+
+#[test]
+fn a_sine_far_over_full_scale_is_turned_down_and_not_bent() {
+    for rate_hz in [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0] {
+        // With less than 8 samples a period the samples' own peaks beat, and the gain follows them.
+        let tones = [31.0, 50.0, 100.0, 440.0, 500.0, 997.0, 3_000.0, 7_351.0];
+        for frequency_hz in tones.into_iter().filter(|f| 8.0 * f <= rate_hz) {
+            for over_db in [0.5, 3.5, 9.5, 20.0, 40.0] {
+                let steady = distortion_db(frequency_hz, over_db, rate_hz, 0.1);
+                assert!(steady < -80.0, "{frequency_hz} Hz, +{over_db} dB, {rate_hz} Hz: {steady:.1} dB");
+            }
+        }
+    }
+}
+
 #[test]
 fn impossible_designs_are_refused_by_name() {
     let lra = DeviceProfile::LRA_170;
