@@ -10,8 +10,12 @@
 //! −108, −59 and −47 dB; level 4 takes all but 16 modes and 7 dB; levels 5–8 take 5–14 dB of sound and the grain of the
 //! touch. After recovery the sound is that of an engine that was never late.
 //!
-//! The level rises with every report above [`LATE`] and falls by one in [`RECOVERY_S`] below [`EASY`].
-//! It is a function of the reports and of the samples rendered alone: where no load is reported, as
+//! *Its own lateness only.* A block may be late because the host did something else, and leaving work out then costs sound and
+//! wins nothing. So what counts is the engine's own share, the median of the last [`MEDIAN_OF`] reports: the level rises with every
+//! report above [`LATE`] while that share is above [`EASY`], and falls by one in [`RECOVERY_S`] in which it is not. At a share of 1 % up to
+//! 15 late blocks in a row change nothing; work that does not fit is answered after 16 blocks.
+//!
+//! The level is a function of the reports and of the samples rendered alone: where no load is reported, as
 //! offline, nothing is ever left out and every bit repeats.
 
 /// Share of the period from which a block counts as late.
@@ -21,7 +25,13 @@ pub(crate) const EASY: f32 = 0.5;
 /// How long the load must be easy for one level back, s.
 pub(crate) const RECOVERY_S: f64 = 0.5;
 
-const FIRST_OCTAVE: u32 = 4;
+/// Reports whose median is the engine's own share.
+pub(crate) const MEDIAN_OF: usize = 31;
+
+/// Levels of modes left out, from none.
+pub(crate) const MODE_LEVELS: usize = 5;
+
+const FIRST_OCTAVE: u32 = MODE_LEVELS as u32 - 1;
 const FIRST_CONTACT: u32 = 8;
 const HIGHEST: u32 = 16;
 
@@ -34,12 +44,14 @@ pub(crate) struct Governor {
     recovery_samples: u64,
     /// Contacts that sounded when contacts first had to go.
     contacts: usize,
+    /// Whether each of the last reports was above [`EASY`]; one bit a report, the newest lowest.
+    busy: u32,
 }
 
 impl Governor {
     pub(crate) fn new(enabled: bool, sample_rate_hz: f64) -> Self {
         let recovery_samples = (RECOVERY_S * sample_rate_hz) as u64;
-        Self { enabled, level: 0, easy_since: 0, recovery_samples, contacts: 0 }
+        Self { enabled, level: 0, easy_since: 0, recovery_samples, contacts: 0, busy: 0 }
     }
 
     /// Hears which share of its period the last block took.
@@ -47,6 +59,15 @@ impl Governor {
         if !self.enabled {
             return;
         }
+        self.busy = (self.busy << 1 | u32::from(load > EASY)) & ((1 << MEDIAN_OF) - 1);
+        if !self.is_busy() {
+            if position.saturating_sub(self.easy_since) >= self.recovery_samples {
+                self.level = self.level.saturating_sub(1);
+                self.easy_since = position;
+            }
+            return;
+        }
+        self.easy_since = position;
         if load > LATE {
             // Twice as late, twice as fast.
             let rise = if load > 2.0 * LATE { 2 } else { 1 };
@@ -54,19 +75,22 @@ impl Governor {
                 self.contacts = sounding;
             }
             self.level = (self.level + rise).min(HIGHEST);
-            self.easy_since = position;
-        } else if load > EASY {
-            self.easy_since = position;
-        } else if position.saturating_sub(self.easy_since) >= self.recovery_samples {
-            self.level = self.level.saturating_sub(1);
-            self.easy_since = position;
         }
+    }
+
+    /// Whether the median of the last reports is above [`EASY`]: more than half of them are.
+    fn is_busy(&self) -> bool {
+        2 * self.busy.count_ones() as usize > MEDIAN_OF
     }
 
     /// How many of a body's groups still hear what strikes it; at least one.
     pub(crate) fn groups_driven(&self, groups: usize) -> usize {
-        let gone = self.level.min(FIRST_OCTAVE) as usize;
-        groups - (groups * gone / 5).min(groups.saturating_sub(1))
+        groups_at(self.mode_level(), groups)
+    }
+
+    /// The level as far as modes are left out, below [`MODE_LEVELS`].
+    pub(crate) fn mode_level(&self) -> usize {
+        self.level.min(FIRST_OCTAVE) as usize
     }
 
     /// How many of the octaves of micro-noise that would sound are left out.
@@ -81,13 +105,23 @@ impl Governor {
     }
 }
 
+/// How many of a body's groups hear what strikes it at a level of modes left out.
+pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
+    groups - (groups * mode_level / MODE_LEVELS).min(groups.saturating_sub(1))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const RATE: f64 = 44_100.0;
 
+    /// An engine that has been busy, but not late, and then hears `reports`.
     fn after(reports: impl IntoIterator<Item = f32>) -> Governor {
+        heard([0.7; MEDIAN_OF].into_iter().chain(reports))
+    }
+
+    fn heard(reports: impl IntoIterator<Item = f32>) -> Governor {
         let mut governor = Governor::new(true, RATE);
         for (block, load) in reports.into_iter().enumerate() {
             governor.hear(load, 64 * block as u64, 10);
@@ -114,6 +148,8 @@ mod tests {
     #[test]
     fn work_comes_back_one_level_in_half_a_second_of_easy_blocks() {
         let blocks_a_level = (RECOVERY_S * RATE / 64.0) as usize + 1;
+        // As long as the median takes to notice.
+        let blocks_a_level = blocks_a_level + MEDIAN_OF / 2;
         let late = [0.9; 3];
         let easy = |blocks: usize| late.iter().copied().chain(vec![0.2; blocks]);
         assert_eq!(after(easy(blocks_a_level / 2)).level, 3);
@@ -121,6 +157,27 @@ mod tests {
         assert_eq!(after(easy(4 * blocks_a_level)).level, 0);
         // Neither late nor easy: nothing changes.
         assert_eq!(after(late.iter().copied().chain(vec![0.7; 4 * blocks_a_level])).level, 3);
+    }
+
+    #[test]
+    fn late_blocks_of_the_host_cost_nothing_where_the_engine_takes_one_percent() {
+        for late in [1, 3, 8, 15] {
+            let easy = |blocks| std::iter::repeat_n(0.01, blocks);
+            let reports = easy(100).chain(std::iter::repeat_n(4.0, late)).chain(easy(100));
+            for blocks in 100..200 + late {
+                assert_eq!(heard(reports.clone().take(blocks)).level, 0, "{late} late, block {blocks}");
+            }
+        }
+        // Now and then, for a minute.
+        let now_and_then = (0..41_000).map(|block| if block % 3 == 0 { 4.0 } else { 0.01 });
+        assert_eq!(heard(now_and_then).level, 0);
+    }
+
+    #[test]
+    fn work_that_does_not_fit_is_answered_within_32_blocks() {
+        assert_eq!(heard([1.2; MEDIAN_OF / 2]).level, 0);
+        assert_eq!(heard([1.2; MEDIAN_OF / 2 + 1]).level, 1);
+        assert_eq!(heard([1.2; MEDIAN_OF / 2 + 16]).level, HIGHEST);
     }
 
     #[test]

@@ -197,6 +197,8 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
     let mut late = TenFingers::new(Config::default());
     let mut whole = TenFingers::new(Config::default());
     assert_eq!(late.blocks(200, None), whole.blocks(200, None));
+    // The engine's own work is two thirds of its time.
+    assert_eq!(late.blocks(31, Some(0.7)), whole.blocks(31, None));
     let mut shed = 0;
     let mut errors = Vec::new();
     for level in 1..=8 {
@@ -230,6 +232,19 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
     let error = error_db(&found, &wanted);
     println!("after recovery: error {error:.1} dB");
     assert!(error < -60.0, "{error} dB");
+}
+
+#[test]
+fn a_hiccup_of_the_host_costs_neither_sound_nor_contacts() {
+    for late_blocks in [1, 3, 8] {
+        let mut disturbed = TenFingers::new(Config::default());
+        let mut whole = TenFingers::new(Config::default());
+        assert_eq!(disturbed.blocks(100, Some(0.01)), whole.blocks(100, None));
+        assert_eq!(disturbed.blocks(late_blocks, Some(4.0)), whole.blocks(late_blocks, None));
+        assert_eq!(disturbed.blocks(300, Some(0.01)), whole.blocks(300, None));
+        let stats = disturbed.scene.stats();
+        assert_eq!((stats.shed, stats.stolen, stats.contacts), (0, 0, 10), "{late_blocks} late blocks");
+    }
 }
 
 #[test]
