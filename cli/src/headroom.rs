@@ -1,11 +1,12 @@
 //! `asperity headroom`: how many fingers and modes fit on this machine.
 //!
 //! One thread. A scene is rendered in blocks of 64 frames with events at 60 Hz, as a game drives it, and
-//! every block is timed; the kernels are timed alone, the quickest tenth of many short repetitions.
+//! every block is timed; the kernels are timed alone in many short repetitions. Every figure is the median of its blocks or
+//! repetitions, with the range of the middle eight tenths beside it.
 
 use crate::bench_scene::{Bench, Load, modes};
 use crate::error::CliError;
-use crate::measure::{cpu_name, ns_per_item, quantile};
+use crate::measure::{Timing, cpu_name, ns_spread, quantile};
 use crate::output;
 use crate::progress::Progress;
 use asperity::{Config, Integrator, Probe};
@@ -36,6 +37,8 @@ struct Report {
     block_frames: usize,
     cpu: String,
     instruction_set: String,
+    /// How every figure is taken.
+    estimate: &'static str,
     scenes: Vec<SceneRow>,
     modal_bank: Vec<BankRow>,
     contact: Vec<ContactRow>,
@@ -47,7 +50,10 @@ struct SceneRow {
     name: String,
     contacts: usize,
     modes: usize,
+    /// Length of a block over the median time it takes; the slow and the quick end of the middle eight tenths.
     real_time_factor: f64,
+    real_time_factor_p10: f64,
+    real_time_factor_p90: f64,
     block_p50_us: f64,
     block_p99_9_us: f64,
     ns_per_sample: f64,
@@ -57,12 +63,16 @@ struct SceneRow {
 struct BankRow {
     modes: usize,
     mode_samples_per_s: f64,
+    mode_samples_per_s_p10: f64,
+    mode_samples_per_s_p90: f64,
 }
 
 #[derive(Debug, Serialize)]
 struct ContactRow {
     integrator: &'static str,
     ns_per_sample: f64,
+    ns_per_sample_p10: f64,
+    ns_per_sample_p90: f64,
 }
 
 /// How the cost of a whole scene grows.
@@ -88,6 +98,9 @@ const SCENES: [(&str, Load); 11] = [
     ("one finger, 256 modes", Load { contacts: 1, bodies: 1, modes_per_body: 256, lift: false }),
     ("one finger, 4096 modes", Load { contacts: 1, bodies: 1, modes_per_body: 4096, lift: false }),
 ];
+
+const ESTIMATE: &str =
+    "median of all blocks or repetitions; p10 and p90: the middle eight tenths lie between";
 
 /// Runs the verb.
 ///
@@ -118,6 +131,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         block_frames: BLOCK_FRAMES,
         cpu: cpu_name(),
         instruction_set: format!("{:?}", Kernel::detect().isa()),
+        estimate: ESTIMATE,
         scenes,
         modal_bank,
         contact,
@@ -146,17 +160,21 @@ fn scene(name: &str, load: Load) -> Result<SceneRow, CliError> {
         bench.block(&mut haptic, &mut audio);
     }
     let mut times_s: Vec<f64> = (0..blocks).map(|_| bench.block(&mut haptic, &mut audio)).collect();
-    let total_s: f64 = times_s.iter().sum();
     times_s.sort_by(f64::total_cmp);
-    let signal_s = (blocks * BLOCK_FRAMES) as f64 / SAMPLE_RATE_HZ;
+    let p99_9_s = quantile(&times_s, 0.999);
+    let block = Timing::of(times_s);
+    let block_s = BLOCK_FRAMES as f64 / SAMPLE_RATE_HZ;
+    let factor = |time_s: f64| block_s / time_s.max(1e-12);
     Ok(SceneRow {
         name: name.to_owned(),
         contacts: if load.lift { 0 } else { load.contacts },
         modes: load.bodies * load.modes_per_body,
-        real_time_factor: signal_s / total_s.max(1e-9),
-        block_p50_us: quantile(&times_s, 0.5) * 1e6,
-        block_p99_9_us: quantile(&times_s, 0.999) * 1e6,
-        ns_per_sample: total_s * 1e9 / (blocks * BLOCK_FRAMES) as f64,
+        real_time_factor: factor(block.median),
+        real_time_factor_p10: factor(block.p90),
+        real_time_factor_p90: factor(block.p10),
+        block_p50_us: block.median * 1e6,
+        block_p99_9_us: p99_9_s * 1e6,
+        ns_per_sample: block.median * 1e9 / BLOCK_FRAMES as f64,
     })
 }
 
@@ -169,19 +187,19 @@ fn growth() -> Result<Vec<GrowthRow>, CliError> {
     let mut rows = Vec::new();
     for count in [1, 2, 4, 8, 16, 32, 64] {
         let load = Load { contacts: count, bodies: count, modes_per_body: GROWTH_MODES, lift: false };
-        rows.push(GrowthRow { axis: "contacts", count, ns_per_sample_each: quiet_ns(load)? / count as f64 });
+        rows.push(GrowthRow { axis: "contacts", count, ns_per_sample_each: block_ns(load)? / count as f64 });
     }
     let load = |modes_per_body| Load { contacts: 1, bodies: 1, modes_per_body, lift: false };
-    let without = quiet_ns(load(0))?;
+    let without = block_ns(load(0))?;
     for count in [16, 64, 256, 1024, 4096] {
-        let ns = quiet_ns(load(count))? - without;
+        let ns = block_ns(load(count))? - without;
         rows.push(GrowthRow { axis: "modes", count, ns_per_sample_each: ns / count as f64 });
     }
     Ok(rows)
 }
 
-/// Time of a sample of a scene in the quickest tenth of its blocks, so that other work on the machine counts for nothing.
-fn quiet_ns(load: Load) -> Result<f64, CliError> {
+/// Time of a sample of a scene in the median of its blocks.
+fn block_ns(load: Load) -> Result<f64, CliError> {
     let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
     let mut bench =
         Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
@@ -191,9 +209,7 @@ fn quiet_ns(load: Load) -> Result<f64, CliError> {
         block();
     }
     let blocks = (GROWTH_S * SAMPLE_RATE_HZ) as usize / BLOCK_FRAMES;
-    let mut times_s: Vec<f64> = (0..blocks).map(|_| block()).collect();
-    times_s.sort_by(f64::total_cmp);
-    Ok(quantile(&times_s, 0.1) * 1e9 / BLOCK_FRAMES as f64)
+    Ok(Timing::of((0..blocks).map(|_| block()).collect()).median * 1e9 / BLOCK_FRAMES as f64)
 }
 
 /// The bank alone, force in every sample.
@@ -211,13 +227,18 @@ fn bank(count: usize) -> Result<BankRow, CliError> {
     let mut out = [0.0f32; BLOCK_FRAMES];
     let kernel = Kernel::detect();
     let mut at = 0;
-    let ns = ns_per_item(BLOCK_FRAMES * count, || {
+    let ns = ns_spread(BLOCK_FRAMES * count, || {
         out.fill(0.0);
         kernel.render(at, &groups, &mut states, &force, &mut out);
         at += BLOCK_FRAMES as u64;
         std::hint::black_box(&out);
     });
-    Ok(BankRow { modes: count, mode_samples_per_s: 1e9 / ns })
+    Ok(BankRow {
+        modes: count,
+        mode_samples_per_s: 1e9 / ns.median,
+        mode_samples_per_s_p10: 1e9 / ns.p90,
+        mode_samples_per_s_p90: 1e9 / ns.p10,
+    })
 }
 
 /// The contact model alone on a smooth profile.
@@ -230,20 +251,26 @@ fn contact_alone(integrator: Integrator) -> Result<ContactRow, CliError> {
     let force_n = vec![0.5; height_m.len()];
     let mut rows = vec![ContactSample::default(); height_m.len()];
     let mut state = model.at_rest(0.0, 0.5);
-    let ns_per_sample = ns_per_item(height_m.len(), || {
+    let ns = ns_spread(height_m.len(), || {
         for begin in (0..height_m.len()).step_by(BLOCK_FRAMES) {
             let part = begin..(begin + BLOCK_FRAMES).min(height_m.len());
             model.run(&mut state, &height_m[part.clone()], &force_n[part.clone()], &mut rows[part]);
         }
         std::hint::black_box(&rows);
     });
-    Ok(ContactRow { integrator: integrator.name(), ns_per_sample })
+    Ok(ContactRow {
+        integrator: integrator.name(),
+        ns_per_sample: ns.median,
+        ns_per_sample_p10: ns.p10,
+        ns_per_sample_p90: ns.p90,
+    })
 }
 
 fn table(report: &Report) -> String {
     use std::fmt::Write;
     let mut text = format!(
-        "{} ({}), one thread, {} Hz, blocks of {} frames ({:.0} µs)\n\n",
+        "{} ({}), one thread, {} Hz, blocks of {} frames ({:.0} µs)\n\
+         every figure is the median of its blocks; the range is that of the middle eight tenths\n\n",
         report.cpu,
         report.instruction_set,
         report.sample_rate_hz,
@@ -252,24 +279,33 @@ fn table(report: &Report) -> String {
     );
     let _ = writeln!(
         text,
-        "{:<28}{:>9}{:>7}{:>12}{:>11}{:>12}",
-        "scene", "contacts", "modes", "× real time", "p50 µs", "p99.9 µs"
+        "{:<28}{:>9}{:>7}{:>12}{:>14}{:>11}{:>12}",
+        "scene", "contacts", "modes", "× real time", "range", "p50 µs", "p99.9 µs"
     );
     for row in &report.scenes {
         let _ = writeln!(
             text,
-            "{:<28}{:>9}{:>7}{:>12.0}{:>11.1}{:>12.1}",
-            row.name, row.contacts, row.modes, row.real_time_factor, row.block_p50_us, row.block_p99_9_us
+            "{:<28}{:>9}{:>7}{:>12.0}{:>14}{:>11.1}{:>12.1}",
+            row.name,
+            row.contacts,
+            row.modes,
+            row.real_time_factor,
+            format!("{:.0}–{:.0}", row.real_time_factor_p10, row.real_time_factor_p90),
+            row.block_p50_us,
+            row.block_p99_9_us
         );
     }
     let _ = writeln!(text, "\n{:<28}{:>28}", "modal bank", "mode-samples a second");
     for row in &report.modal_bank {
-        let _ =
-            writeln!(text, "{:<28}{:>24.2} G", format!("{} modes", row.modes), row.mode_samples_per_s / 1e9);
+        let range =
+            format!("{:.2}–{:.2}", row.mode_samples_per_s_p10 / 1e9, row.mode_samples_per_s_p90 / 1e9);
+        let modes = format!("{} modes", row.modes);
+        let _ = writeln!(text, "{modes:<28}{:>24.2} G{range:>16}", row.mode_samples_per_s / 1e9);
     }
     let _ = writeln!(text, "\n{:<28}{:>28}", "contact model", "ns a sample");
     for row in &report.contact {
-        let _ = writeln!(text, "{:<28}{:>26.2}", row.integrator, row.ns_per_sample);
+        let range = format!("{:.2}–{:.2}", row.ns_per_sample_p10, row.ns_per_sample_p90);
+        let _ = writeln!(text, "{:<28}{:>26.2}{range:>16}", row.integrator, row.ns_per_sample);
     }
     for (axis, title) in
         [("contacts", "contacts, a body of 16 modes each"), ("modes", "modes under one finger")]

@@ -1,16 +1,44 @@
-//! Timing on machines that do other things too: many repetitions, each shorter than a time slice, and the quickest tenth
-//! of them.
+//! Timing on machines that do other things too: many repetitions, each shorter than a time slice; their median, and the range of
+//! the middle eight tenths. A mean counts what else the machine did, a minimum what it never does twice.
 
 use std::time::{Duration, Instant};
 
 /// Length of one repetition: long against the clock, short against a time slice.
 const REPETITION: Duration = Duration::from_micros(500);
-/// Repetitions (fewer where one call of the work is long), and the share of them that other work did not disturb.
+/// Repetitions; fewer where one call of the work is long.
 const REPETITIONS: std::ops::RangeInclusive<usize> = 5..=120;
-const UNDISTURBED: f64 = 0.1;
+
+/// How long something takes, in the same unit throughout.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Timing {
+    /// Half of all took longer.
+    pub median: f64,
+    /// A tenth took less.
+    pub p10: f64,
+    /// A tenth took longer.
+    pub p90: f64,
+}
+
+impl Timing {
+    /// Of many timings.
+    pub fn of(mut times: Vec<f64>) -> Self {
+        times.sort_by(f64::total_cmp);
+        Self { median: quantile(&times, 0.5), p10: quantile(&times, 0.1), p90: quantile(&times, 0.9) }
+    }
+
+    /// In another unit.
+    pub fn times(self, factor: f64) -> Self {
+        Self { median: self.median * factor, p10: self.p10 * factor, p90: self.p90 * factor }
+    }
+}
+
+/// Median nanoseconds of one item when `work` does `items` of them.
+pub fn ns_per_item(items: usize, work: impl FnMut()) -> f64 {
+    ns_spread(items, work).median
+}
 
 /// Nanoseconds of one item when `work` does `items` of them.
-pub fn ns_per_item(items: usize, mut work: impl FnMut()) -> f64 {
+pub fn ns_spread(items: usize, mut work: impl FnMut()) -> Timing {
     work();
     let once = Instant::now();
     work();
@@ -18,7 +46,7 @@ pub fn ns_per_item(items: usize, mut work: impl FnMut()) -> f64 {
     let calls = (REPETITION.as_secs_f64() / once_s).ceil().clamp(1.0, 1e6);
     let most = *REPETITIONS.end();
     let repetitions = (REPETITION.as_secs_f64() * most as f64 / (calls * once_s)) as usize;
-    let mut times: Vec<f64> = (0..repetitions.clamp(*REPETITIONS.start(), most))
+    let times: Vec<f64> = (0..repetitions.clamp(*REPETITIONS.start(), most))
         .map(|_| {
             let began = Instant::now();
             for _ in 0..calls as usize {
@@ -27,8 +55,7 @@ pub fn ns_per_item(items: usize, mut work: impl FnMut()) -> f64 {
             began.elapsed().as_secs_f64()
         })
         .collect();
-    times.sort_by(f64::total_cmp);
-    quantile(&times, UNDISTURBED) * 1e9 / (calls * items as f64)
+    Timing::of(times).times(1e9 / (calls * items as f64))
 }
 
 /// The value below which a share of the sorted values lies.
@@ -73,5 +100,15 @@ mod tests {
         assert_eq!(quantile(&[], 0.5), 0.0);
         assert_eq!(quantile(&[1.0, 2.0, 3.0], 0.5), 2.0);
         assert_eq!(quantile(&[1.0, 2.0, 3.0], 0.999), 3.0);
+    }
+
+    #[test]
+    fn one_disturbed_block_moves_a_mean_and_no_median() {
+        let mut times = vec![6.0; 99];
+        times.push(6000.0);
+        assert_eq!(Timing::of(times), Timing { median: 6.0, p10: 6.0, p90: 6.0 });
+        let spread = Timing::of((0..=100).map(f64::from).collect());
+        assert_eq!((spread.p10, spread.median, spread.p90), (10.0, 50.0, 90.0));
+        assert_eq!(spread.times(2.0).p90, 180.0);
     }
 }

@@ -3,25 +3,24 @@
 use super::{Row, SAMPLE_RATE_HZ, refused};
 use crate::bench_scene::{Bench, Load};
 use crate::error::CliError;
-use crate::measure::{quantile, relative_error};
+use crate::measure::{Timing, relative_error};
 use asperity::Config;
 
 const SECONDS: f64 = 2.0;
 const REFERENCE: &str = "the same scene in blocks of 64 frames, audio";
 const LOAD: Load = Load { contacts: 1, bodies: 1, modes_per_body: 100, lift: false };
-/// Each block size is timed so often; the round with the quickest quarter of its blocks counts.
+/// Each block size is timed so often; all blocks of all rounds count.
 const ROUNDS: usize = 5;
 
-fn render(block: usize) -> Result<(Vec<f32>, f64), CliError> {
+/// The sound, and what each block took, s.
+fn render(block: usize) -> Result<(Vec<f32>, Vec<f64>), CliError> {
     let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
     let mut bench =
         Bench::new(LOAD, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
     let mut audio = vec![0.0; (SECONDS * SAMPLE_RATE_HZ) as usize / 4096 * 4096];
     let mut haptic = vec![0.0; block];
-    let mut times_s: Vec<f64> =
-        audio.chunks_mut(block).map(|part| bench.block(&mut haptic[..part.len()], part)).collect();
-    times_s.sort_by(f64::total_cmp);
-    Ok((audio, quantile(&times_s, 0.25) * 1e9 / block as f64))
+    let times_s = audio.chunks_mut(block).map(|part| bench.block(&mut haptic[..part.len()], part)).collect();
+    Ok((audio, times_s))
 }
 
 /// Measures the axis.
@@ -30,15 +29,15 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
     [1, 16, 64, 256, 1024, 4096]
         .into_iter()
         .map(|block| {
-            let mut best = render(block)?;
+            let (audio, mut times_s) = render(block)?;
             for _ in 1..ROUNDS {
-                best.1 = best.1.min(render(block)?.1);
+                times_s.extend(render(block)?.1);
             }
             Ok(Row {
                 axis: "block size",
                 choice: format!("{block} frames"),
-                ns_per_sample: best.1,
-                error: relative_error(best.0.into_iter().map(f64::from), &reference),
+                ns_per_sample: Timing::of(times_s).median * 1e9 / block as f64,
+                error: relative_error(audio.into_iter().map(f64::from), &reference),
                 reference: REFERENCE,
             })
         })

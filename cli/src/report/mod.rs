@@ -60,7 +60,7 @@ struct Report {
 type Axis = fn() -> Result<Vec<Row>, CliError>;
 
 /// Every axis, in the order of the report.
-const AXES: [Axis; 9] = [
+const AXES: [Axis; 10] = [
     integrator::rows,
     path::rows,
     map_filter::rows,
@@ -68,6 +68,7 @@ const AXES: [Axis; 9] = [
     modes::culling_rows,
     modes::sleep_rows,
     modes::shedding_rows,
+    modes::struck_shedding_rows,
     modes::format_rows,
     blocks::rows,
 ];
