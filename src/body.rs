@@ -1,7 +1,7 @@
 //! A body that rings: its modal bank and the impulse bus that excites it.
 
 use crate::clock::Stamp;
-use crate::governor::Governor;
+use crate::governor::{Governor, MODE_LEVELS, groups_at};
 use crate::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::queue::{Dead, Sender};
 use crate::residual::Bursts;
@@ -9,14 +9,20 @@ use crate::voice::pulse_end;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::{self, HertzPulse};
 use asperity_dsp::modal_bank::{
-    self, Awake, Bank, GroupOptions, GroupState, Input, Kernel, LaneGains, ModeGroup,
+    self, Awake, Bank, FirstSamples, GroupOptions, GroupState, Input, Kernel, LaneGains, MissingSamples,
+    ModeGroup,
 };
 use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
 
-/// Samples of impulse that a body's bus can hold ahead: the longest impact that is rendered whole is
-/// 85 ms at 96 kHz.
-const BUS_SAMPLES: usize = 8192;
+/// Longest contact of an impact, s: 5 kg of foam that fall 5 cm. What would last longer lasts so long, at every rate, and is
+/// counted ([`Stats::shortened`](crate::Stats::shortened)).
+pub const LONGEST_CONTACT_S: f64 = 0.17;
+
+/// Samples that a body's buses hold ahead: a power of two, the longest impact and its kernel.
+fn bus_samples(sample_rate_hz: f64) -> usize {
+    ((LONGEST_CONTACT_S * sample_rate_hz) as usize + 16).next_power_of_two()
+}
 
 /// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
 const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
@@ -28,12 +34,17 @@ pub(crate) struct BodySlot {
     awake: Awake,
     places: Vec<Place>,
     bursts: Bursts,
+    /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
+    early: Vec<f32>,
+    early_busy_until: u64,
 }
 
 /// One strike position: what reaches the body there.
 struct Place {
     /// What each lane takes; empty for the only position of a body.
     gains: Vec<LaneGains>,
+    /// For each level of modes left out.
+    first_samples: [FirstSamples; MODE_LEVELS],
     bus: Vec<f64>,
     bus_busy_until: u64,
     /// What contacts send during the present stretch.
@@ -54,10 +65,10 @@ pub(crate) struct Terms<'a> {
 }
 
 impl Place {
-    fn new(gains: Vec<LaneGains>) -> Self {
-        let bus = vec![0.0; BUS_SAMPLES];
+    fn new(gains: Vec<LaneGains>, first_samples: [FirstSamples; MODE_LEVELS], sample_rate_hz: f64) -> Self {
+        let bus = vec![0.0; bus_samples(sample_rate_hz)];
         let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
-        Self { gains, bus, bus_busy_until: 0, contacts_n_s, touched: false, input }
+        Self { gains, first_samples, bus, bus_busy_until: 0, contacts_n_s, touched: false, input }
     }
 
     /// Gathers the impulses of the next `n` samples, and tells whether there may be any.
@@ -101,12 +112,16 @@ impl BodySlot {
             let chunks = modes.chunks(modal_bank::LANES);
             chunks.map(|chunk| LaneGains(std::array::from_fn(|i| lane(chunk, i)))).collect()
         };
-        let places = match model.position_count() {
-            1 => vec![Place::new(Vec::new())],
-            count => (0..count).map(|position| Place::new(gains_at(position))).collect(),
-        };
+        let count = model.position_count();
+        let first_samples = first_samples(&modes, count, groups.len(), sample_rate_hz)?;
+        let places = first_samples.into_iter().enumerate().map(|(position, first_samples)| {
+            let gains = if count == 1 { Vec::new() } else { gains_at(position) };
+            Place::new(gains, first_samples, sample_rate_hz)
+        });
+        let places = places.collect();
         let bursts = Bursts::new(model.residual.as_ref(), model.impulse_n_s, sample_rate_hz);
-        Ok(Self { groups, states, awake: Awake::default(), places, bursts })
+        let early = vec![0.0; bus_samples(sample_rate_hz)];
+        Ok(Self { groups, states, awake: Awake::default(), places, bursts, early, early_busy_until: 0 })
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
@@ -115,12 +130,23 @@ impl BodySlot {
         &mut self.places[position.min(last)]
     }
 
-    /// Adds an impact whose contact begins at `stamp`.
-    pub(crate) fn strike(&mut self, position: usize, pulse: &HertzPulse, stamp: Stamp, sample_rate_hz: f64) {
-        let place = self.place(position);
-        pulse.deposit(&mut place.bus, stamp.sample(), stamp.fraction(), sample_rate_hz);
+    /// Adds an impact whose contact begins at `stamp`, while modes are left out as far as `mode_level`.
+    pub(crate) fn strike(
+        &mut self,
+        position: usize,
+        pulse: &HertzPulse,
+        stamp: Stamp,
+        mode_level: usize,
+        sample_rate_hz: f64,
+    ) {
         let end = pulse_end(pulse, stamp.sample(), sample_rate_hz);
+        let last = self.places.len() - 1;
+        let place = &mut self.places[position.min(last)];
+        pulse.deposit(&mut place.bus, stamp.sample(), stamp.fraction(), sample_rate_hz);
         place.bus_busy_until = place.bus_busy_until.max(end);
+        let missing = &place.first_samples[mode_level];
+        missing.deposit(pulse, &mut self.early, stamp.sample(), stamp.fraction(), sample_rate_hz);
+        self.early_busy_until = self.early_busy_until.max(end);
         // A burst is noise-like: the whole sample is near enough.
         self.bursts.strike(stamp.sample(), pulse.impulse_n_s);
     }
@@ -138,6 +164,7 @@ impl BodySlot {
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.awake.groups() == 0
             && self.bursts.is_silent(position)
+            && self.early_busy_until <= position
             && self.places.iter().all(|place| !place.touched && place.bus_busy_until <= position)
     }
 
@@ -166,8 +193,47 @@ impl BodySlot {
         };
         self.awake.render_bank(bank, terms.position, &inputs[..count], out);
         self.bursts.render(terms.position, out);
+        self.begin_strikes(terms.position, out);
         self.groups.len() - driven
     }
+}
+
+impl BodySlot {
+    /// Adds what the bank leaves out of the first samples of strikes.
+    fn begin_strikes(&mut self, position: u64, out: &mut [f32]) {
+        if self.early_busy_until <= position {
+            return;
+        }
+        let mask = self.early.len() - 1;
+        for (i, y) in out.iter_mut().enumerate() {
+            *y += std::mem::take(&mut self.early[(position as usize).wrapping_add(i) & mask]);
+        }
+    }
+}
+
+/// What a bank of these modes leaves out of the first samples of a strike, for each place and each level of modes left out.
+fn first_samples(
+    modes: &[(Mode, [f32; MAX_POSITIONS])],
+    places: usize,
+    groups: usize,
+    sample_rate_hz: f64,
+) -> Result<Vec<[FirstSamples; MODE_LEVELS]>, DesignError> {
+    let mut sums = vec![MissingSamples::NOTHING; places];
+    let mut all = vec![[FirstSamples::NOTHING; MODE_LEVELS]; places];
+    for group in 0..groups {
+        for (mode, shares) in modes.chunks(modal_bank::LANES).nth(group).into_iter().flatten() {
+            let missing = MissingSamples::of(mode, sample_rate_hz)?;
+            for (sum, share) in sums.iter_mut().zip(shares) {
+                sum.add(&missing, f64::from(*share));
+            }
+        }
+        for level in (0..MODE_LEVELS).filter(|level| groups_at(*level, groups) == group + 1) {
+            for (place, sum) in all.iter_mut().zip(&sums) {
+                place[level] = sum.first_samples();
+            }
+        }
+    }
+    Ok(all)
 }
 
 /// A body's place on the audio half. A replaced or removed body rings on without input and fades.
@@ -212,9 +278,16 @@ impl BodySeat {
     }
 
     /// Adds an impact whose contact begins at `stamp`.
-    pub(crate) fn strike(&mut self, position: usize, pulse: &HertzPulse, stamp: Stamp, sample_rate_hz: f64) {
+    pub(crate) fn strike(
+        &mut self,
+        position: usize,
+        pulse: &HertzPulse,
+        stamp: Stamp,
+        mode_level: usize,
+        sample_rate_hz: f64,
+    ) {
         if let Some(body) = &mut self.current {
-            body.strike(position, pulse, stamp, sample_rate_hz);
+            body.strike(position, pulse, stamp, mode_level, sample_rate_hz);
         }
     }
 

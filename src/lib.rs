@@ -41,6 +41,7 @@ mod scene;
 mod seat;
 mod silence;
 mod stats;
+mod stroking;
 mod surface;
 mod tap;
 mod uv_triangle;

@@ -5,6 +5,7 @@
 use crate::body::BodySlot;
 use crate::clock::Stamp;
 use crate::event::ContactEvent;
+use crate::stroking::Stroking;
 use crate::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_texture::change::SurfaceChange;
@@ -21,8 +22,8 @@ pub(crate) enum Message {
     ChangeSurface { slot: usize, change: SurfaceChange },
     /// A slot falls empty; contacts on it fade.
     RemoveSurface { slot: usize },
-    /// A body for a new or used slot.
-    SetBody { slot: usize, body: Box<BodySlot> },
+    /// A body for a new or used slot, and how strokes on its surfaces excite it from now on.
+    SetBody { slot: usize, body: Box<BodySlot>, stroking: Stroking },
     /// A slot falls empty; the body rings out unheard from now on.
     RemoveBody { slot: usize },
     /// Per-user haptic gain of one channel, 0 = mute; reached within a few milliseconds.

@@ -10,7 +10,7 @@ mod outputs;
 use crate::body::{BodySeat, Terms};
 use crate::clock::Stamp;
 use crate::config::Config;
-use crate::event::SurfaceId;
+use crate::event::{BodyId, SurfaceId};
 use crate::governor::Governor;
 use crate::occupied::Occupied;
 use crate::queue::{Dead, Message, Receiver, Sender};
@@ -258,9 +258,12 @@ impl Renderer {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);
             }
-            Message::SetBody { slot, body } => {
+            Message::SetBody { slot, body, stroking } => {
                 self.bodies[slot].set(body);
                 self.bodies_used.insert(slot);
+                for seat in self.seats_used.iter() {
+                    self.seats[seat].body_changed(BodyId(slot as u32), &stroking);
+                }
             }
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
@@ -292,7 +295,8 @@ impl Renderer {
     fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
         let sounds = self.due(stamp).later(self.latency_samples() as u64);
-        self.bodies[body].strike(position, pulse, sounds, self.shared.sample_rate_hz);
+        let level = self.governor.mode_level();
+        self.bodies[body].strike(position, pulse, sounds, level, self.shared.sample_rate_hz);
     }
 
     fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {

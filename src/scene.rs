@@ -3,7 +3,7 @@
 //! Every call returns at once. Nothing here waits for the audio thread.
 
 use crate::bad_value::within;
-use crate::body::BodySlot;
+use crate::body::{BodySlot, LONGEST_CONTACT_S};
 use crate::clock::{Clock, Stamp};
 use crate::config::Config;
 use crate::contact_log::{ContactLog, Names};
@@ -15,9 +15,10 @@ use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::recording::Recording;
 use crate::silence::{Reported, SilentBecause};
 use crate::stats::{Counters, Stats};
-use crate::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M, Surface, SurfaceSlot};
-use asperity_dsp::butterworth::Butterworth;
-use asperity_dsp::hertz::{Elastic, HertzContact, HertzPulse};
+use crate::stroking::{Stroking, elastic};
+use crate::surface::{Surface, SurfaceSlot};
+use asperity_dsp::DesignError;
+use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::change::SurfaceChange;
 use std::sync::Arc;
@@ -51,13 +52,6 @@ struct KnownBody {
 
 /// What a body, or a surface without one, is made of unless told otherwise.
 const DEFAULT_MATERIAL: Material = Material::PLA;
-
-/// A sliding contact excites a body only above this share of its lowest mode. Below it the modes
-/// follow the force like springs: a rumble that neither the recording nor a real radiating body has,
-/// and that would bury the ringing under the grating's own fundamental.
-const FORCE_HIGH_PASS_SHARE: f64 = 0.5;
-/// Bounds of that cutoff, Hz; the upper one keeps a body of high modes audible when it is scraped slowly.
-const FORCE_HIGH_PASS_HZ: (f64, f64) = (20.0, 500.0);
 
 impl Scene {
     pub(crate) fn new(
@@ -108,7 +102,8 @@ impl Scene {
         Ok(BodyId(slot as u32))
     }
 
-    /// Gives a body other modes while it sounds; the old ones ring out under the new.
+    /// Gives a body other modes and another material while it sounds; the old modes ring out under the new ones, and strokes
+    /// on its surfaces take the new material at once.
     ///
     /// # Errors
     /// As [`add_body_of`](Self::add_body_of), or when the body is not in this scene.
@@ -128,11 +123,19 @@ impl Scene {
         let rate = self.config.sample_rate_hz;
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
         let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate)?);
-        self.send(Message::SetBody { slot, body })?;
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
-        self.bodies[slot] = Some(KnownBody { material, lowest_mode_hz });
+        let known = KnownBody { material, lowest_mode_hz };
+        let stroking = self.stroking(known)?;
+        self.send(Message::SetBody { slot, body, stroking })?;
+        self.bodies[slot] = Some(known);
         Ok(())
+    }
+
+    /// How strokes excite a body.
+    fn stroking(&self, body: KnownBody) -> Result<Stroking, DesignError> {
+        let Config { probe, sample_rate_hz, .. } = &self.config;
+        Stroking::new(body.material, body.lowest_mode_hz, probe.pad_mass_kg, *sample_rate_hz)
     }
 
     /// Takes a body away; it rings out.
@@ -171,22 +174,14 @@ impl Scene {
         let surface = surface.checked()?;
         let silent = KnownBody { material: DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
-        let (low, high) = FORCE_HIGH_PASS_HZ;
-        let cutoff_hz = (FORCE_HIGH_PASS_SHARE * body.lowest_mode_hz).clamp(low, high);
-        let force_high_pass = Butterworth::new(cutoff_hz, self.config.sample_rate_hz)?;
+        let stroking = self.stroking(body)?;
         let config = &self.config;
         let period_m = surface.wrap_period_m();
         let trajectory =
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.sample_rate_hz, period_m)?;
-        let hertz = HertzContact::new(
-            &elastic(EXCITER_MATERIAL),
-            &elastic(body.material),
-            EXCITER_RADIUS_M,
-            config.probe.pad_mass_kg,
-        )?;
         let noise_longest_m = surface.source.band().shortest_m;
         let rings = body.lowest_mode_hz.is_finite();
-        let surface = Box::new(SurfaceSlot { surface, trajectory, hertz, force_high_pass, noise_longest_m });
+        let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, noise_longest_m });
         self.send(Message::SetSurface { slot, surface })?;
         self.surfaces[slot] = true;
         self.rings[slot] = rings;
@@ -356,11 +351,13 @@ impl Scene {
                 .map_err(|_| Refusal::UnknownBody)?;
         let pulse = HertzPulse {
             impulse_n_s: impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution),
-            contact_time_s: contact.contact_time_s(impact.speed_m_s),
+            contact_time_s: contact.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S),
         };
+        let shortened = pulse.contact_time_s == LONGEST_CONTACT_S;
         if pulse.impulse_n_s == 0.0 {
             return Ok(());
         }
+        Counters::add(&self.counters.shortened, u64::from(shortened));
         let other = impact.other.map(|other| other.0 as usize);
         self.send_event(Message::Strike {
             stamp,
@@ -428,8 +425,4 @@ impl Scene {
 fn free_place(mut taken: impl ExactSizeIterator<Item = bool>, kind: &'static str) -> Result<usize, AddError> {
     let capacity = taken.len();
     taken.position(|taken| !taken).ok_or(AddError::Full { kind, capacity })
-}
-
-fn elastic(material: Material) -> Elastic {
-    Elastic { young_pa: material.young_pa, poisson: material.poisson }
 }

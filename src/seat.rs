@@ -3,7 +3,9 @@
 //! A replaced surface is crossfaded, height by height, over [`CHANGE_S`] of absolute samples; the old
 //! one then goes home to be freed. A surface that is removed stays until the contacts on it have faded.
 
+use crate::event::BodyId;
 use crate::queue::{Dead, Sender};
+use crate::stroking::Stroking;
 use crate::surface::{DEFAULT_ROUGHNESS, Roughness, SurfaceSlot};
 
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
@@ -136,6 +138,15 @@ impl Seat {
             blend(&mut out.roughness[i], old.roughness[i]);
             blend(&mut out.friction[i], old.friction[i]);
             blend(&mut out.compliance_m_n[i], old.compliance_m_n[i]);
+        }
+    }
+
+    /// Strokes excite `body` in another way from now on.
+    pub(crate) fn body_changed(&mut self, body: BodyId, stroking: &Stroking) {
+        for slot in [&mut self.current, &mut self.waiting].into_iter().flatten() {
+            if slot.surface.body == Some(body) {
+                slot.stroking = *stroking;
+            }
         }
     }
 

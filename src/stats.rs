@@ -37,6 +37,8 @@ counters! {
     events,
     /// Impacts among them.
     impacts,
+    /// Impacts so soft or heavy that their contact would outlast 0.17 s; it lasts 0.17 s.
+    shortened,
     /// Onsets of contact found by the micro-contact model.
     micro_collisions,
     /// Events handed back because the queue was full.

@@ -3,8 +3,7 @@
 use crate::bad_value::{BadValue, within};
 use crate::event::BodyId;
 use crate::material::Material;
-use asperity_dsp::butterworth::Butterworth;
-use asperity_dsp::hertz::HertzContact;
+use crate::stroking::Stroking;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::HeightField;
 use asperity_texture::height_map::{Extent, HeightMap, MapError};
@@ -201,9 +200,8 @@ impl Surface {
 pub(crate) struct SurfaceSlot {
     pub(crate) surface: Surface,
     pub(crate) trajectory: TrajectoryDesign,
-    pub(crate) hertz: HertzContact,
-    /// Keeps the part of the contact force that the body answers.
-    pub(crate) force_high_pass: Butterworth,
+    /// How strokes excite the body below.
+    pub(crate) stroking: Stroking,
     /// Micro-noise is added only below this wavelength.
     pub(crate) noise_longest_m: f64,
 }

@@ -6,9 +6,11 @@ mod events;
 mod excitation;
 mod fades;
 mod high_passes;
+mod landing;
 mod watching;
 
 pub(crate) use events::EMPTY_FORCE_N;
+use excitation::LONGEST_COLLISION_S;
 pub(crate) use excitation::pulse_end;
 
 use crate::event::ContactId;
@@ -24,12 +26,17 @@ use asperity_dsp::trajectory::{PathEvent, PathPoint, Trajectory, TrajectoryDesig
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use fades::Rising;
 
-/// Samples of impulse a contact can hold ahead.
-const BUS_SAMPLES: usize = 2048;
+/// Samples of impulse a contact holds ahead: a power of two, the longest collision and its kernel.
+fn bus_samples(sample_rate_hz: f64) -> usize {
+    ((LONGEST_COLLISION_S * sample_rate_hz) as usize + 16).next_power_of_two()
+}
 /// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
 const STILL_M: f64 = 1e-12;
 /// Pad acceleration that counts as still, m/s²: −120 dB of what a fingertip just feels.
 const STILL_M_S2: f64 = 1e-6;
+/// The overlay fades as if it were sampled at this rate, Hz, so that it is the same relief at every rate: its finest octave is
+/// whole where its cells pass at 11 kHz and gone where they pass at 22 kHz. Above 18 kHz next to nothing is left.
+const OVERLAY_RATE_HZ: f64 = 44_100.0;
 /// Impulse per sample below which a contact counts as silent, N·s: −120 dB of an ordinary stroke's.
 const STILL_N_S: f64 = 1e-12;
 
@@ -86,6 +93,8 @@ pub(crate) struct Voice {
     slot: usize,
     asleep: bool,
     fade_in_left: u32,
+    /// How fast it comes down while it is still in the air, m/s; 0 once it has touched.
+    landing_m_s: f64,
     /// Coming back out of a fade.
     rising: Option<Rising>,
     /// Gain of the last sample.
@@ -159,6 +168,7 @@ impl Voice {
             slot,
             asleep: false,
             fade_in_left: 0,
+            landing_m_s: 0.0,
             rising: None,
             gain: 0.0,
             trajectory: Trajectory::begin(&shared.idle_path, &IDLE),
@@ -173,7 +183,7 @@ impl Voice {
             reaction: Reaction::default(),
             grains: Rng::new(slot as u64),
             force_history_n_s: [0.0; FORCE_HISTORY],
-            bus: vec![0.0; BUS_SAMPLES],
+            bus: vec![0.0; bus_samples(shared.sample_rate_hz)],
             bus_busy_until: 0,
         }
     }
@@ -259,7 +269,8 @@ impl Voice {
         scratch: &mut Scratch,
     ) {
         let step_s = 1.0 / shared.sample_rate_hz;
-        let widened = f64::from(1u32 << shared.noise_octaves_gone);
+        let samples_of_overlay = (shared.sample_rate_hz / OVERLAY_RATE_HZ).max(1.0);
+        let widened = samples_of_overlay * f64::from(1u32 << shared.noise_octaves_gone);
         for (i, point) in scratch.points[..n].iter().enumerate() {
             let [u, v] = point.velocity_m_s;
             scratch.position_m[i] = point.position_m;
@@ -316,6 +327,9 @@ impl Voice {
             &scratch.force_n[..n],
             &mut scratch.pad[..n],
         );
+        if self.landing_m_s > 0.0 {
+            self.feel_no_air(&mut scratch.pad[..n]);
+        }
         let resets = self.pad.resets();
         scratch.out.resets = u64::from(resets.wrapping_sub(self.resets_told));
         self.resets_told = resets;

@@ -91,3 +91,29 @@ fn a_flat_plate_with_micro_relief_takes_over_without_a_step() {
     stroke.slide(0.3);
     assert_no_step(&stroke, 0.3, "plate");
 }
+
+/// The sound of a stroke over ribs, its collisions alone, on a body that is of `before` and then replaced by one of `after`.
+fn scraped(before: Material, after: Material) -> Vec<f32> {
+    let (mut scene, renderer) = asperity::Config::default().build().unwrap();
+    let body = scene.add_body_of(common::bar(), before).unwrap();
+    let ribs = grating(2e-3, 2e-4).on(body).excitation(asperity::Excitation::Collisions);
+    let width_m = 70.0 * 2e-3;
+    let surface = scene.add_surface(ribs).unwrap();
+    if after != before {
+        scene.replace_body(body, common::bar(), after).unwrap();
+    }
+    let names = asperity::contact_log::Names {
+        surfaces: std::collections::HashMap::from([("s".to_owned(), surface)]),
+        ..Default::default()
+    };
+    let log = common::stroke(width_m, 0.2, 0.2, 0.4);
+    asperity::offline::render(scene, renderer, &log, &names, &Default::default()).unwrap().audio
+}
+
+#[test]
+fn strokes_on_a_replaced_body_take_its_new_material() {
+    let steel = scraped(Material::STEEL, Material::STEEL);
+    let rubber = scraped(Material::RUBBER, Material::RUBBER);
+    assert!(common::rms(&steel) > 1.2 * common::rms(&rubber), "rubber is duller than steel");
+    assert_eq!(scraped(Material::STEEL, Material::RUBBER), rubber);
+}

@@ -46,6 +46,7 @@ impl Voice {
         self.left_behind = false;
         self.empty_reports = 0;
         self.rising = None;
+        self.landing_m_s = sample.closing_m_s;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         // The path may begin behind the event, by the filter's delay.
@@ -58,7 +59,9 @@ impl Voice {
         if lands {
             self.profile(seat, shared, position, 1, false, scratch);
             let height_m = scratch.surface.height_m[0];
-            self.pad = shared.micro_contact.landing(height_m, force_n, sample.closing_m_s);
+            // It touches at the stamp; without delay it would one sample before the voice's first.
+            let later = 1.0 + stamp.fraction();
+            self.pad = shared.micro_contact.landing_later(height_m, force_n, sample.closing_m_s, later);
             self.feel = ContactOutputState::begin(output, height_m, -sample.closing_m_s);
         } else {
             self.lead_in(seat, output, shared, position, scratch);

@@ -8,6 +8,9 @@ use crate::surface::{Excitation, SurfaceSlot};
 use asperity_dsp::hertz::{self, FORCE_HISTORY, HertzPulse};
 use asperity_dsp::micro_contact::Onset;
 
+/// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms, against jelly 20.
+pub(super) const LONGEST_COLLISION_S: f64 = 0.04;
+
 impl Voice {
     /// What the contact sends to the body: a Hertz pulse for each micro-collision and each grain, and
     /// the alternating contact force. Pulses and force meet sample by sample, not in the bus, so that
@@ -60,7 +63,7 @@ impl Voice {
     pub(super) fn collide(&mut self, slot: &SurfaceSlot, shared: &Shared, onset: &Onset, sample: u64) {
         let pulse = HertzPulse {
             impulse_n_s: shared.collision_mass_kg * onset.closing_m_s,
-            contact_time_s: slot.hertz.contact_time_s(onset.closing_m_s),
+            contact_time_s: slot.stroking.hertz.contact_time_s(onset.closing_m_s).min(LONGEST_COLLISION_S),
         };
         let rate = shared.sample_rate_hz;
         if let Some(pulse) = self.merge.admit(pulse, sample, onset.offset, rate) {
@@ -76,7 +79,7 @@ impl Voice {
             // The part of the draw below `expected` is uniform too: it says when within the sample.
             let pulse = HertzPulse {
                 impulse_n_s: self.reaction.grain_impulse_n_s * (0.5 + draw / expected),
-                contact_time_s: slot.hertz.contact_time_s(0.1),
+                contact_time_s: slot.stroking.hertz.contact_time_s(0.1).min(LONGEST_COLLISION_S),
             };
             self.deposit(&pulse, sample, draw / expected, sample_rate_hz);
         }

@@ -24,7 +24,7 @@ impl Voice {
         scratch: &mut Scratch,
     ) {
         let Some(slot) = seat.current() else { return };
-        let high_pass = slot.force_high_pass;
+        let high_pass = slot.stroking.force_high_pass;
         // A force that is not to sound counts as 0 N.
         let sounds = slot.surface.excitation != Excitation::Collisions;
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };

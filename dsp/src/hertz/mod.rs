@@ -32,6 +32,7 @@ pub use merge::OnsetMerge;
 pub use ring::{
     FORCE_HISTORY, KERNEL_SAMPLES, SHORTEST_SAMPLES, SMALLEST_IMPULSE_N_S, deposit_force, spread_force, take,
 };
+pub(crate) use shape::CENTRED as CENTRED_SHAPE;
 pub use shape::pulse_shape;
 
 use crate::DesignError;

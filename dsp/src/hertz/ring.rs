@@ -22,13 +22,11 @@ impl HertzPulse {
     /// ring's length − 6 samples is shortened to it (the impulse is kept). A pulse that holds no finite number
     /// is ignored.
     pub fn deposit(&self, ring: &mut [f64], onset_sample: u64, onset_offset: f64, sample_rate_hz: f64) {
-        let (impulse, length) = (self.impulse_n_s, self.contact_time_s * sample_rate_hz);
-        debug_assert!(ring.len().is_power_of_two() && ring.len() >= 16);
-        if !(impulse.is_finite() && length.is_finite() && onset_offset.is_finite()) || ring.len() < 16 {
+        let Some(length) = self.samples_in(ring.len(), sample_rate_hz).filter(|_| onset_offset.is_finite())
+        else {
             return;
-        }
-        let longest = (ring.len() - KERNEL_SAMPLES - 1) as f64;
-        let length = length.clamp(SHORTEST_SAMPLES, longest);
+        };
+        let impulse = self.impulse_n_s;
         let offset = onset_offset.clamp(0.0, 1.0);
         let mut write = Writer { ring, at: onset_sample.wrapping_add(1) };
         // Distance from the onset to the first sample that receives something.
@@ -38,6 +36,17 @@ impl HertzPulse {
         } else {
             long(&mut write, impulse, length, first)
         }
+    }
+}
+
+impl HertzPulse {
+    /// Contact time in samples as a ring of this length holds it; `None` for a pulse that holds no finite number, or a ring
+    /// shorter than 16.
+    pub(crate) fn samples_in(&self, ring: usize, sample_rate_hz: f64) -> Option<f64> {
+        debug_assert!(ring.is_power_of_two() && ring >= 16);
+        let length = self.contact_time_s * sample_rate_hz;
+        let holds = self.impulse_n_s.is_finite() && length.is_finite() && ring >= 16;
+        holds.then(|| length.clamp(SHORTEST_SAMPLES, (ring - KERNEL_SAMPLES - 1) as f64))
     }
 }
 

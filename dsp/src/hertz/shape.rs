@@ -60,7 +60,7 @@ const FOURFOLD: [f64; 10] = {
 };
 
 /// Even powers of x = 2u − 1 in p, w = 1 − x².
-const CENTRED: [f64; 6] = {
+pub(crate) const CENTRED: [f64; 6] = {
     let mut out = [0.0; 6];
     let mut j = 1;
     while j <= 5 {

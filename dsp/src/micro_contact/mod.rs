@@ -159,6 +159,18 @@ impl MicroContact {
     /// the first input: its onset is reported in the first rows. Without a closing speed above zero the finger is [`Self::at_rest`].
     #[must_use]
     pub fn landing(&self, height_m: f64, normal_force_n: f64, closing_m_s: f64) -> ContactState {
+        self.landing_later(height_m, normal_force_n, closing_m_s, 0.0)
+    }
+
+    /// [`Self::landing`] `later_samples` (0–16) later: 1 is at the first input.
+    #[must_use]
+    pub fn landing_later(
+        &self,
+        height_m: f64,
+        normal_force_n: f64,
+        closing_m_s: f64,
+        later_samples: f64,
+    ) -> ContactState {
         let mut state = self.at_rest(height_m, normal_force_n);
         if closing_m_s > 0.0 {
             let speed = closing_m_s.min(MAX_CLOSING_M_S);
@@ -169,7 +181,11 @@ impl MicroContact {
                 Scheme::SemiImplicit(scheme) => -drift / scheme.substeps as f64,
                 Scheme::EnergyConserving(_) => 0.0,
             };
-            state.y = [gap_m, 0.0, -speed, -speed];
+            let later_samples = later_samples.clamp(0.0, 16.0);
+            // What presses speeds the finger up on its way down; the pad behind its damper does not follow so soon.
+            let gained = normal_force_n.clamp(0.0, guard::MAX_FORCE_N) * self.step_s * later_samples
+                / self.probe.finger_mass_kg;
+            state.y = [gap_m + later_samples * drift, 0.0, -speed, gained - speed];
             state.gap_m = 0.0;
         } else if closing_m_s.is_nan() {
             state.resets += 1;

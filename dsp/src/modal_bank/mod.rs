@@ -56,6 +56,7 @@
 mod culling;
 mod design;
 mod direct;
+mod first_samples;
 mod job;
 mod kernel;
 mod reference;
@@ -70,6 +71,7 @@ pub use culling::{Culling, audible};
 pub use design::{
     GRID_SAMPLES, GroupOptions, GroupState, LaneGains, ModeGroup, design_group, groups_for, sort_by_decay,
 };
+pub use first_samples::{FirstSamples, MissingSamples};
 pub use job::{Input, MAX_INPUTS};
 pub use kernel::{Isa, Kernel};
 pub use reference::{ReferenceMode, ReferenceState};
