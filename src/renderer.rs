@@ -16,13 +16,14 @@ use crate::occupied::Occupied;
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::seat::{Change, Seat};
 use crate::stats::Counters;
+use crate::stroking::restitution;
 use crate::tap::{NoTap, Tap};
 use crate::voice::{Phase, Scratch, Shared, Voice};
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_dsp::micro_contact::{MicroContact, Probe};
+use asperity_dsp::micro_contact::MicroContact;
 use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
@@ -387,13 +388,6 @@ impl Renderer {
 fn raised_cosine(steps: usize) -> Box<[f64]> {
     let at = |step: usize| 0.5 - 0.5 * (std::f64::consts::PI * step as f64 / steps as f64).cos();
     (0..=steps).map(at).collect()
-}
-
-/// Rebound over closing speed of the pad as a damped oscillator on the contact spring: e^(−πζ/√(1−ζ²)).
-fn restitution(probe: &Probe) -> f64 {
-    let critical = 2.0 * (probe.contact_stiffness_n_m * probe.pad_mass_kg).sqrt();
-    let damping = (probe.pad_damping_n_s_m / critical).min(0.999);
-    (-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt()).exp()
 }
 
 /// Length of the shortest channel; `usize::MAX` when there is none.

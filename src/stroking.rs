@@ -5,6 +5,7 @@ use crate::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M};
 use asperity_dsp::DesignError;
 use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::hertz::{Elastic, HertzContact};
+use asperity_dsp::micro_contact::Probe;
 
 /// A sliding contact excites a body only above this share of its lowest mode. Below it the modes
 /// follow the force like springs: a rumble that neither the recording nor a real radiating body has,
@@ -38,6 +39,13 @@ impl Stroking {
             force_high_pass: Butterworth::new(cutoff_hz, sample_rate_hz)?,
         })
     }
+}
+
+/// Rebound over closing speed of the pad as a damped oscillator on the contact spring: e^(−πζ/√(1−ζ²)).
+pub(crate) fn restitution(probe: &Probe) -> f64 {
+    let critical = 2.0 * (probe.contact_stiffness_n_m * probe.pad_mass_kg).sqrt();
+    let damping = (probe.pad_damping_n_s_m / critical).min(0.999);
+    (-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt()).exp()
 }
 
 /// The elastic constants of a material.
