@@ -90,9 +90,14 @@ impl Place {
 }
 
 impl BodySlot {
-    /// Designs the bank at the engine's rate; modes at or above Nyquist stay silent.
-    pub(crate) fn new(model: &ModalModel, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let mut modes: Vec<_> = model.unit_modes().filter(|(mode, _)| mode.amplitude != 0.0).collect();
+    /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz` stay silent.
+    pub(crate) fn new(
+        model: &ModalModel,
+        output_rate_hz: f64,
+        sample_rate_hz: f64,
+    ) -> Result<Self, DesignError> {
+        let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
+        let mut modes: Vec<_> = model.unit_modes().filter(|(mode, _)| heard(mode)).collect();
         // What rings longest comes first, so that the groups still awake are always a prefix.
         let rings = |mode: &Mode| modal_bank::ringing_s(mode, TYPICAL_IMPULSE_N_S);
         modes.sort_by(|(a, _), (b, _)| {
@@ -119,7 +124,8 @@ impl BodySlot {
             Place::new(gains, first_samples, sample_rate_hz)
         });
         let places = places.collect();
-        let bursts = Bursts::new(model.residual.as_ref(), model.impulse_n_s, sample_rate_hz);
+        let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
+        let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
         let early = vec![0.0; bus_samples(sample_rate_hz)];
         Ok(Self { groups, states, awake: Awake::default(), places, bursts, early, early_busy_until: 0 })
     }

@@ -2,6 +2,7 @@
 
 use crate::clock::{Clock, ClockMode};
 use crate::error::ConfigError;
+use crate::inner_rate::InnerRate;
 use crate::queue;
 use crate::renderer::Renderer;
 use crate::scene::Scene;
@@ -132,14 +133,22 @@ impl Config {
     /// When a setting is outside its range; the message names the field.
     pub fn build(self) -> Result<(Scene, Renderer), ConfigError> {
         self.check()?;
-        let micro_contact = MicroContact::new(&self.probe, self.integrator, self.sample_rate_hz)?;
+        let micro_contact = MicroContact::new(&self.probe, self.integrator, self.inner_rate_hz())?;
         let counters = Arc::new(Counters::default());
         let (to_audio, from_game) = queue::channel(self.queue_capacity);
         // Every resource that can be alive, and as many that are being replaced.
         let (to_game, from_audio) = queue::channel(2 * (self.max_surfaces + self.max_bodies));
         let renderer = Renderer::new(&self, micro_contact, from_game, to_game, counters.clone())?;
-        let clock = Clock::new(self.clock, self.sample_rate_hz);
+        let clock = Clock::new(self.clock, self.inner_rate_hz());
         Ok((Scene::new(self, clock, to_audio, from_audio, counters), renderer))
+    }
+
+    /// Rate at which the engine runs inside, Hz: the smallest multiple of [`Self::sample_rate_hz`] from 44.1 kHz on, so that what
+    /// a stroke sounds and feels like does not depend on the rate of the outputs. Sources that keep time (sand, scales and
+    /// crossfades that change) are made for this rate.
+    #[must_use]
+    pub fn inner_rate_hz(&self) -> f64 {
+        self.sample_rate_hz * InnerRate::samples(self.sample_rate_hz) as f64
     }
 
     fn check(&self) -> Result<(), DesignError> {

@@ -28,6 +28,7 @@ pub mod drift;
 mod error;
 mod event;
 mod governor;
+mod inner_rate;
 mod material;
 mod modal_model;
 pub mod null_sink;

@@ -87,7 +87,8 @@ pub fn render_tapped<T: Tap>(
     options: &Options,
     tap: &mut T,
 ) -> Result<Render, LogError> {
-    let rate = renderer.sample_rate_hz();
+    let (rate, inner_rate) = (renderer.sample_rate_hz(), renderer.inner_rate_hz());
+    let every = (inner_rate / rate).round() as u64;
     let frames = ((log.end_s() + options.tail_s.max(0.0)) * rate).ceil() as usize;
     let events = log
         .lines
@@ -96,7 +97,7 @@ pub fn render_tapped<T: Tap>(
         .collect::<Result<Vec<_>, LogError>>()?;
     let mut take = Take::new(scene, renderer, frames, options.block_frames.clamp(1, 4096));
     for (time_s, event) in events {
-        take.make_room(Stamp::at(time_s * rate).sample(), tap);
+        take.make_room(Stamp::at(time_s * inner_rate).sample() / every, tap);
         // Refusals are counted by the scene; the rest of the log still renders.
         if let Err(refused) = take.scene.report(time_s, event) {
             take.first_refused.get_or_insert((time_s, refused));

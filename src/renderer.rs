@@ -7,11 +7,12 @@
 mod contacts;
 mod outputs;
 
-use crate::body::{BodySeat, Terms};
+use crate::body::BodySeat;
 use crate::clock::Stamp;
 use crate::config::Config;
 use crate::event::{BodyId, SurfaceId};
 use crate::governor::Governor;
+use crate::inner_rate::InnerRate;
 use crate::occupied::Occupied;
 use crate::queue::{Dead, Message, Receiver, Sender};
 use crate::seat::{Change, Seat};
@@ -68,9 +69,11 @@ impl Renderer {
         to_game: Sender<Dead>,
         counters: Arc<Counters>,
     ) -> Result<Self, DesignError> {
-        let rate = config.sample_rate_hz;
+        let rate = config.inner_rate_hz();
+        let inner = InnerRate::new(config.sample_rate_hz, micro_contact.latency_samples());
         let shared = Shared {
             sample_rate_hz: rate,
+            inner,
             collision_mass_kg: config.probe.pad_mass_kg * (1.0 + restitution(&config.probe)),
             idle_path: TrajectoryDesign::new(config.path, config.path_cutoff_hz, rate, [f64::INFINITY; 2])?,
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
@@ -119,6 +122,11 @@ impl Renderer {
     /// Rate of every output, Hz.
     #[must_use]
     pub fn sample_rate_hz(&self) -> f64 {
+        self.shared.sample_rate_hz / self.shared.inner.every as f64
+    }
+
+    /// Rate inside, Hz.
+    pub(crate) fn inner_rate_hz(&self) -> f64 {
         self.shared.sample_rate_hz
     }
 
@@ -126,13 +134,13 @@ impl Renderer {
     /// path filter: the look-ahead of the contact model.
     #[must_use]
     pub fn latency_samples(&self) -> usize {
-        self.shared.micro_contact.latency_samples()
+        self.shared.inner.lag(self.shared.micro_contact.latency_samples())
     }
 
     /// Index of the next sample to be rendered.
     #[must_use]
     pub fn position(&self) -> u64 {
-        self.position
+        self.position / self.shared.inner.every as u64
     }
 
     /// Tells the engine which share of its time budget the last block took (1 = all of it); the device
@@ -175,6 +183,7 @@ impl Renderer {
         for channel in audio.iter_mut() {
             channel.fill(0.0);
         }
+        let frames = frames * self.shared.inner.every;
         let mut done = 0;
         while done < frames {
             self.apply_due();
@@ -295,7 +304,7 @@ impl Renderer {
 
     fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
-        let sounds = self.due(stamp).later(self.latency_samples() as u64);
+        let sounds = self.due(stamp).later(self.shared.micro_contact.latency_samples() as u64);
         let level = self.governor.mode_level();
         self.bodies[body].strike(position, pulse, sounds, level, self.shared.sample_rate_hz);
     }
@@ -329,30 +338,6 @@ impl Renderer {
         }
         Counters::add(&self.counters.micro_collisions, collisions);
         Counters::add(&self.counters.quarantined, resets);
-    }
-
-    fn render_haptics(&mut self, at: usize, n: usize, haptic: &mut [&mut [f32]]) {
-        for (index, channel) in self.channels.iter_mut().enumerate() {
-            channel.run(&mut self.mix.haptic[..n]);
-            if let Some(out) = haptic.get_mut(index) {
-                out[at..at + n].copy_from_slice(&self.mix.haptic[..n]);
-            }
-        }
-    }
-
-    fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
-        let mix = &mut self.mix.audio[..n];
-        mix.fill(0.0);
-        let terms = Terms { kernel: self.kernel, position: self.position, governor: &self.governor };
-        let mut shed = 0;
-        for body in self.bodies_used.iter() {
-            shed += self.bodies[body].render(terms, mix);
-        }
-        self.groups_shed = shed;
-        self.audio.finish(mix);
-        for out in audio {
-            out[at..at + n].copy_from_slice(mix);
-        }
     }
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.

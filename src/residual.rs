@@ -49,6 +49,14 @@ impl Residual {
         }
     }
 
+    /// What of the burst lies below `highest_hz`, if it has more.
+    pub(crate) fn below(&self, highest_hz: f64) -> Self {
+        if self.sample_rate_hz <= 2.0 * highest_hz {
+            return self.clone();
+        }
+        Self { sample_rate_hz: 2.0 * highest_hz, samples: self.at_rate(2.0 * highest_hz).into_vec() }
+    }
+
     /// The burst at another rate, by a Kaiser-windowed sinc.
     #[must_use]
     pub(crate) fn at_rate(&self, rate_hz: f64) -> Box<[f32]> {

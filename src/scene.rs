@@ -9,6 +9,7 @@ use crate::config::Config;
 use crate::contact_log::{ContactLog, Names};
 use crate::error::{AddError, Refusal, ReportError};
 use crate::event::{Actuator, BodyId, ContactEvent, ContactId, Impact, SurfaceId};
+use crate::inner_rate::InnerRate;
 use crate::material::Material;
 use crate::modal_model::ModalModel;
 use crate::queue::{Dead, Message, Receiver, Sender};
@@ -120,9 +121,9 @@ impl Scene {
 
     fn set_body(&mut self, slot: usize, model: &ModalModel, material: Material) -> Result<(), AddError> {
         let material = material.checked()?;
-        let rate = self.config.sample_rate_hz;
+        let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
-        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate)?);
+        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate, inner)?);
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let known = KnownBody { material, lowest_mode_hz };
@@ -134,8 +135,8 @@ impl Scene {
 
     /// How strokes excite a body.
     fn stroking(&self, body: KnownBody) -> Result<Stroking, DesignError> {
-        let Config { probe, sample_rate_hz, .. } = &self.config;
-        Stroking::new(body.material, body.lowest_mode_hz, probe.pad_mass_kg, *sample_rate_hz)
+        let (mass_kg, rate_hz) = (self.config.probe.pad_mass_kg, self.config.inner_rate_hz());
+        Stroking::new(body.material, body.lowest_mode_hz, mass_kg, rate_hz)
     }
 
     /// Takes a body away; it rings out.
@@ -178,7 +179,7 @@ impl Scene {
         let config = &self.config;
         let period_m = surface.wrap_period_m();
         let trajectory =
-            TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.sample_rate_hz, period_m)?;
+            TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
         let noise_longest_m = surface.source.band().shortest_m;
         let rings = body.lowest_mode_hz.is_finite();
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, noise_longest_m });
@@ -254,7 +255,7 @@ impl Scene {
         self.send_stamped(stamp, event)?;
         self.reported.accept(&event, stamp, self.rings(&event));
         if let Some(recording) = &mut self.recording {
-            recording.note(stamp.samples() / self.config.sample_rate_hz, &event);
+            recording.note(stamp.samples() / self.config.inner_rate_hz(), &event);
         }
         Ok(())
     }
@@ -409,7 +410,8 @@ impl Scene {
     /// What the engine did so far.
     #[must_use]
     pub fn stats(&self) -> Stats {
-        self.counters.snapshot()
+        let stats = self.counters.snapshot();
+        Stats { position: stats.position / InnerRate::samples(self.config.sample_rate_hz) as u64, ..stats }
     }
 
     fn known_surface(&self, id: SurfaceId) -> Result<(), AddError> {

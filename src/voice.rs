@@ -7,6 +7,7 @@ mod excitation;
 mod fades;
 mod high_passes;
 mod landing;
+mod scratch;
 mod watching;
 
 pub(crate) use events::EMPTY_FORCE_N;
@@ -14,6 +15,7 @@ use excitation::LONGEST_COLLISION_S;
 pub(crate) use excitation::pulse_end;
 
 use crate::event::ContactId;
+use crate::inner_rate::InnerRate;
 use crate::seat::{Noise, Seat};
 use crate::tap::Tap;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
@@ -48,7 +50,9 @@ const IDLE: PathEvent =
 pub(crate) struct Shared {
     pub(crate) idle_path: TrajectoryDesign,
     pub(crate) idle_output: ContactOutput,
+    /// Inside; which of these samples leave says `inner`.
     pub(crate) sample_rate_hz: f64,
+    pub(crate) inner: InnerRate,
     pub(crate) micro_contact: MicroContact,
     pub(crate) noise: FractalNoise,
     /// Momentum of a micro-collision per closing speed, kg: pad mass × (1 + restitution).
@@ -114,6 +118,8 @@ pub(crate) struct Voice {
     force_history_n_s: [f64; FORCE_HISTORY],
     bus: Vec<f64>,
     bus_busy_until: u64,
+    /// Sent to the body since the last row that was shown.
+    unshown_n_s: f64,
 }
 
 /// What one voice adds to a stretch of samples.
@@ -148,6 +154,8 @@ pub(crate) struct Scratch {
     surface: SurfaceBlock,
     rough: SurfaceBlock,
     pad: [PadSample; MAX_BLOCK],
+    shown: [PadSample; MAX_BLOCK],
+    shown_n_s: [f64; MAX_BLOCK],
     output_force_n: [[f64; 3]; MAX_BLOCK],
     pub(crate) out: VoiceBlock,
 }
@@ -185,6 +193,7 @@ impl Voice {
             force_history_n_s: [0.0; FORCE_HISTORY],
             bus: vec![0.0; bus_samples(shared.sample_rate_hz)],
             bus_busy_until: 0,
+            unshown_n_s: 0.0,
         }
     }
 
@@ -376,31 +385,5 @@ impl Voice {
             self.last_felt = if felt.abs() < still { 0.0 } else { felt };
             self.force_history_n_s = [0.0; FORCE_HISTORY];
         }
-    }
-}
-
-impl Scratch {
-    pub(crate) fn new() -> Box<Self> {
-        Box::new(Self {
-            points: [PathPoint::default(); MAX_BLOCK],
-            position_m: [[0.0; 2]; MAX_BLOCK],
-            velocity_m_s: [[0.0; 2]; MAX_BLOCK],
-            footprint_m: [0.0; MAX_BLOCK],
-            noise_footprint_m: [0.0; MAX_BLOCK],
-            force_n: [0.0; MAX_BLOCK],
-            uv: [[0.0; 2]; MAX_BLOCK],
-            force_impulse_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
-            surface: SurfaceBlock::default(),
-            rough: SurfaceBlock::default(),
-            pad: [PadSample::default(); MAX_BLOCK],
-            output_force_n: [[0.0; 3]; MAX_BLOCK],
-            out: VoiceBlock {
-                haptic: [0.0; MAX_BLOCK],
-                impulse_n_s: [0.0; MAX_BLOCK],
-                excites: false,
-                collisions: 0,
-                resets: 0,
-            },
-        })
     }
 }

@@ -1,9 +1,12 @@
 //! What leaves the engine: the haptic channels with their actuator stage, and the audio bus.
 
+use super::Renderer;
+use crate::body::Terms;
 use crate::config::{ActuatorSettings, AudioSettings};
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{
     self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
+    Quantity,
 };
 use asperity_texture::height_field::MAX_BLOCK;
 
@@ -77,6 +80,39 @@ fn limiter(
 ) -> Result<Option<(PeakLimiter, PeakLimiterState)>, DesignError> {
     let design = wanted.then(|| PeakLimiter::new(CEILING, sample_rate_hz)).transpose()?;
     Ok(design.map(|design| (design, PeakLimiterState::default())))
+}
+
+impl Renderer {
+    /// Writes what the actuators play of `n` inner samples, from `at` on in the outputs.
+    pub(super) fn render_haptics(&mut self, at: usize, n: usize, haptic: &mut [&mut [f32]]) {
+        let inner = self.shared.inner;
+        for (index, channel) in self.channels.iter_mut().enumerate() {
+            let block = &mut self.mix.haptic[..n];
+            channel.run(block);
+            if let Some(out) = haptic.get_mut(index) {
+                match channel.output.quantity() {
+                    Quantity::Acceleration if inner.every > 1 => inner.average(at, block, out),
+                    _ => inner.pick(at, block, out),
+                }
+            }
+        }
+    }
+
+    /// The same of what the bodies sound like.
+    pub(super) fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
+        let mix = &mut self.mix.audio[..n];
+        mix.fill(0.0);
+        let terms = Terms { kernel: self.kernel, position: self.position, governor: &self.governor };
+        let mut shed = 0;
+        for body in self.bodies_used.iter() {
+            shed += self.bodies[body].render(terms, mix);
+        }
+        self.groups_shed = shed;
+        self.audio.finish(mix);
+        for out in audio {
+            self.shared.inner.pick(at, mix, out);
+        }
+    }
 }
 
 /// One stretch of each kind of output.

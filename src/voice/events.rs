@@ -78,6 +78,7 @@ impl Voice {
             self.bus.fill(0.0);
         }
         self.bus_busy_until = 0;
+        self.unshown_n_s = 0.0;
     }
 
     /// A finger that is suddenly there has been sliding already: the pad is led along the straight line

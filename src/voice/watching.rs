@@ -10,8 +10,8 @@ use asperity_texture::height_field::Reaction;
 const STICK_M_S: f64 = 1e-3;
 
 impl Voice {
-    /// Shows the stretch to the tap. Rows describe the instant `latency` samples back, so the path's
-    /// points are delayed by as much.
+    /// Shows the stretch to the tap, a row for each sample that leaves. Rows describe the instant `latency` samples back, so the
+    /// path's points are delayed by as much.
     pub(super) fn show<T: Tap>(
         &mut self,
         seat: &Seat,
@@ -26,30 +26,37 @@ impl Voice {
         let Some(slot) = seat.current().filter(|_| watched) else { return };
         let size_m = [slot.surface.width_m, slot.surface.height_m];
         let latency = shared.micro_contact.latency_samples();
+        let (mut count, mut first_sample) = (0, 0);
         for i in 0..n {
+            let sample = position + i as u64;
+            self.unshown_n_s += scratch.out.impulse_n_s[i];
+            // The first rows of a contact would describe instants before it began.
+            if !shared.inner.leaves(sample) || sample < self.begun + latency as u64 {
+                continue;
+            }
+            if count == 0 {
+                first_sample = (sample - latency as u64) / shared.inner.every as u64;
+            }
             let point = if i >= latency { scratch.points[i - latency] } else { self.last_point };
-            scratch.position_m[i] = point.position_m;
-            scratch.velocity_m_s[i] = point.velocity_m_s;
-            scratch.uv[i] = [point.position_m[0] / size_m[0], point.position_m[1] / size_m[1]];
-            scratch.output_force_n[i] = output_force(
-                &point,
-                &scratch.pad[i],
-                scratch.surface.gradient[i],
-                scratch.surface.friction[i],
-                &self.reaction,
-            );
+            scratch.position_m[count] = point.position_m;
+            scratch.velocity_m_s[count] = point.velocity_m_s;
+            scratch.uv[count] = [point.position_m[0] / size_m[0], point.position_m[1] / size_m[1]];
+            scratch.shown[count] = scratch.pad[i];
+            scratch.shown_n_s[count] = std::mem::take(&mut self.unshown_n_s);
+            let (slope, friction) = (scratch.surface.gradient[i], scratch.surface.friction[i]);
+            scratch.output_force_n[count] =
+                output_force(&point, &scratch.pad[i], slope, friction, &self.reaction);
+            count += 1;
         }
-        // The first rows of a contact would describe instants before it began.
-        let skip = latency.saturating_sub((position - self.begun) as usize).min(n);
         tap.contact(&ContactBlock {
-            first_sample: position + skip as u64 - latency as u64,
+            first_sample,
             contact: self.contact,
-            position_m: &scratch.position_m[skip..n],
-            uv: &scratch.uv[skip..n],
-            velocity_m_s: &scratch.velocity_m_s[skip..n],
-            contact_samples: &scratch.pad[skip..n],
-            impulse_n_s: &scratch.out.impulse_n_s[skip..n],
-            force_n: &scratch.output_force_n[skip..n],
+            position_m: &scratch.position_m[..count],
+            uv: &scratch.uv[..count],
+            velocity_m_s: &scratch.velocity_m_s[..count],
+            contact_samples: &scratch.shown[..count],
+            impulse_n_s: &scratch.shown_n_s[..count],
+            force_n: &scratch.output_force_n[..count],
         });
     }
 }

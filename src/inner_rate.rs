@@ -1,0 +1,97 @@
+//! The rate inside: never below 44.1 kHz.
+//!
+//! A pad that leaves a rough surface and meets it again does so hundreds of times a second and within a tenth of a millisecond: what is
+//! computed at 22.05 kHz finds other collisions than at 44.1, and half of the micro-relief is beyond its reach. So at lower rates the
+//! whole engine runs at the smallest multiple from 44.1 kHz on, and one of so many inner samples leaves. Nothing has to be filtered out
+//! before: bodies have no modes above half of the rate outside, and a sampled displacement is what it was; of an acceleration the mean of
+//! the inner samples leaves, which is the change of velocity over the outer one. No latency is added: the look-ahead of the contact
+//! model is one inner sample, and another inner sample is at hand where there are several.
+
+/// Lowest rate inside, Hz.
+pub(crate) const LOWEST_INNER_HZ: f64 = 44_100.0;
+
+/// Which of the inner samples leave.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct InnerRate {
+    /// Inner samples for each that leaves.
+    pub(crate) every: usize,
+    /// Which of them leaves.
+    at: usize,
+}
+
+impl InnerRate {
+    /// How many inner samples there are for each at `sample_rate_hz`.
+    pub(crate) fn samples(sample_rate_hz: f64) -> usize {
+        ((LOWEST_INNER_HZ / sample_rate_hz - 1e-9).ceil() as usize).max(1)
+    }
+
+    /// For outputs at `sample_rate_hz` whose inner samples lag by `latency_samples`.
+    pub(crate) fn new(sample_rate_hz: f64, latency_samples: usize) -> Self {
+        let every = Self::samples(sample_rate_hz);
+        Self { every, at: latency_samples.min(every - 1) }
+    }
+
+    /// Of a lag in inner samples, the outer samples that are left of it.
+    pub(crate) fn lag(&self, inner_samples: usize) -> usize {
+        (inner_samples - self.at.min(inner_samples)).div_ceil(self.every)
+    }
+
+    /// Whether an inner sample leaves.
+    pub(crate) fn leaves(&self, sample: u64) -> bool {
+        sample % self.every as u64 == self.at as u64
+    }
+
+    /// Writes to `out` what leaves of the inner samples from `at` on.
+    pub(crate) fn pick(&self, at: usize, inner: &[f32], out: &mut [f32]) {
+        if self.every == 1 {
+            return out[at..at + inner.len()].copy_from_slice(inner);
+        }
+        let first = (self.at + self.every - at % self.every) % self.every;
+        for (k, x) in inner.iter().enumerate().skip(first).step_by(self.every) {
+            out[(at + k) / self.every] = *x;
+        }
+    }
+
+    /// Adds to `out` the means of the inner samples from `at` on.
+    pub(crate) fn average(&self, at: usize, inner: &[f32], out: &mut [f32]) {
+        let share = 1.0 / self.every as f32;
+        for (k, x) in inner.iter().enumerate() {
+            out[(at + k) / self.every] += share * x;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rate_inside_is_the_smallest_multiple_from_44_100_hz_on() {
+        let inner = |rate_hz: f64| rate_hz * InnerRate::samples(rate_hz) as f64;
+        assert_eq!(
+            [8e3, 11_025.0, 16e3, 22_050.0, 32e3, 44_100.0, 48e3, 192e3].map(inner),
+            [48e3, 44_100.0, 48e3, 44_100.0, 64e3, 44_100.0, 48e3, 192e3]
+        );
+    }
+
+    #[test]
+    fn what_leaves_does_not_depend_on_how_it_is_cut() {
+        let inner: Vec<f32> = (0..60).map(|k| k as f32).collect();
+        for (rate_hz, latency) in [(22_050.0, 1), (22_050.0, 0), (16e3, 1), (8e3, 1), (44_100.0, 1)] {
+            let rate = InnerRate::new(rate_hz, latency);
+            let all = |cuts: &[usize]| {
+                let (mut picked, mut means) = (vec![0.0; 60 / rate.every], vec![0.0; 60 / rate.every]);
+                for ends in cuts.windows(2) {
+                    rate.pick(ends[0], &inner[ends[0]..ends[1]], &mut picked);
+                    rate.average(ends[0], &inner[ends[0]..ends[1]], &mut means);
+                }
+                (picked, means)
+            };
+            assert_eq!(all(&[0, 60]), all(&[0, 1, 5, 6, 17, 18, 31, 59, 60]));
+            let (picked, _) = all(&[0, 60]);
+            let at = if rate.every == 1 { 0 } else { latency };
+            assert!(picked.iter().enumerate().all(|(i, x)| *x == (i * rate.every + at) as f32));
+            assert_eq!(rate.lag(latency), if rate.every == 1 { latency } else { 0 });
+        }
+    }
+}
