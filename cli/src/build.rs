@@ -55,7 +55,7 @@ pub struct Built {
 pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError> {
     let at = |error: CliError| error.within(file.path.display());
     let config = config(file, overrides).map_err(at)?;
-    let (seed, rate_hz) = (config.seed, config.sample_rate_hz);
+    let (seed, rate_hz) = (config.seed, config.inner_rate_hz());
     let (mut scene, renderer) = config.build().map_err(|error| at(CliError::told(error)))?;
     let mut names = Names::default();
     let workers = RefCell::default();

@@ -24,6 +24,7 @@ mod svg;
 pub use axis::{Axis, quantity};
 pub use colour::palette;
 pub use spectrogram::{SpectrogramOptions, spectrogram, third_octaves};
+pub use svg::{Svg, TextStyle};
 
 /// One picture.
 #[derive(Debug, Clone)]

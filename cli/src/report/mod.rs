@@ -9,6 +9,8 @@ mod map_filter;
 mod modes;
 mod noise;
 mod path;
+mod stability;
+mod stability_picture;
 mod write;
 
 use crate::error::CliError;
@@ -27,7 +29,7 @@ const BLOCK: usize = 64;
 /// Measure speed against error for every choice the engine offers
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Folder for speed_vs_error.json, .svg and .md
+    /// Folder for speed_vs_error.json, .svg and .md, and stability.svg
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: PathBuf,
     /// Print the JSON object too
@@ -55,6 +57,7 @@ struct Report {
     cpu: String,
     sample_rate_hz: f64,
     rows: Vec<Row>,
+    stability: Vec<stability::Cell>,
 }
 
 type Axis = fn() -> Result<Vec<Row>, CliError>;
@@ -79,26 +82,29 @@ const AXES: [Axis; 10] = [
 /// When the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     ensure_folder(&options.output)?;
-    let mut progress = Progress::new("measuring", AXES.len() as u64);
+    let mut progress = Progress::new("measuring", AXES.len() as u64 + 1);
     let mut rows = Vec::new();
     for axis in AXES {
         rows.extend(axis()?);
         progress.advance(1);
     }
+    let stability = stability::cells()?;
     drop(progress);
-    let report = Report { cpu: cpu_name(), sample_rate_hz: SAMPLE_RATE_HZ, rows };
+    let report = Report { cpu: cpu_name(), sample_rate_hz: SAMPLE_RATE_HZ, rows, stability };
     let json = serde_json::to_string_pretty(&report).map_err(CliError::told)?;
     let mut outputs = Outputs::new();
     let path = |name: &str| options.output.join(name);
     outputs.write(&path("speed_vs_error.json"), json.as_bytes())?;
     outputs.write(&path("speed_vs_error.svg"), write::svg(&report.cpu, &report.rows).as_bytes())?;
-    outputs.write(&path("speed_vs_error.md"), write::markdown(&report.cpu, &report.rows).as_bytes())?;
+    let text = write::markdown(&report.cpu, &report.rows) + &stability_picture::markdown(&report.stability);
+    outputs.write(&path("speed_vs_error.md"), text.as_bytes())?;
+    outputs.write(&path("stability.svg"), stability_picture::svg(&report.stability).as_bytes())?;
     let files = outputs.commit()?;
     if options.json {
         return output::say_json(&report);
     }
     let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
-    output::say(&format!("{}\nwrote {}", write::markdown(&report.cpu, &report.rows), names.join(", ")));
+    output::say(&format!("{text}\nwrote {}", names.join(", ")));
     Ok(())
 }
 

@@ -83,6 +83,16 @@ pub fn svg(cpu: &str, rows: &[Row]) -> String {
     figure.svg()
 }
 
+/// What a choice is besides its name on the command line.
+fn note(row: &Row) -> &'static str {
+    match (row.axis, row.choice.as_str()) {
+        ("integrator", "semi-implicit-euler-explicit") => " (the paper's equations as written)",
+        ("integrator", "semi-implicit-euler") => " (the paper's, its damper centred in time)",
+        ("integrator", "exact-event") => " (default)",
+        _ => "",
+    }
+}
+
 /// One table an axis.
 #[must_use]
 pub fn markdown(cpu: &str, rows: &[Row]) -> String {
@@ -100,8 +110,11 @@ pub fn markdown(cpu: &str, rows: &[Row]) -> String {
                 if row.error > 0.0 { format!("{:.1}", 20.0 * row.error.log10()) } else { "exact".to_owned() };
             let _ = writeln!(
                 text,
-                "| {} | {:.2} | {:.2e} | {decibels} |",
-                row.choice, row.ns_per_sample, row.error
+                "| {}{} | {:.2} | {:.2e} | {decibels} |",
+                row.choice,
+                note(row),
+                row.ns_per_sample,
+                row.error
             );
         }
     }
