@@ -196,7 +196,7 @@ impl Reported {
             because.push(SilentBecause::Refused { count: stats.refused, of, last });
         }
         let ahead_s =
-            self.newest.samples() / config.sample_rate_hz - stats.position as f64 / config.sample_rate_hz;
+            self.newest.samples() / config.inner_rate_hz() - stats.position as f64 / config.sample_rate_hz;
         if ahead_s > FAR_AHEAD_S {
             because.push(SilentBecause::AheadOfAudio { ahead_s });
         }
