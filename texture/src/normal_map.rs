@@ -16,28 +16,27 @@
 //! ```text
 //! σ² (1 + p² + q²) ((1 + p²)² + 2 p² q² + (1 + q²)²)/2        σ² = (1/127.5)²/12, p and q the slopes
 //! ```
-//! and [`integrate_rounded`] takes no more height from the slopes than that leaves. They have no number for 0 (127.5),
+//! and [`SlopeSpectrum::heights`] takes no more height from the slopes than that leaves. Normals that were resized, saved as JPEG or
+//! painted over are those of no surface by more than that: how much is measured at every frequency, as what lies across the derivative, and taken off too. What made
+//! such a map is never certain, and of the derivatives that may have, the one that raises short waves the least is taken. 8-bit maps have no number for 0 (127.5),
 //! so that a flat map tilts by 0.4 %: the mean slope of a map that tiles is
 //! dropped, and of one that does not, too, unless [`NormalMapOptions::keep_tilt`]. What is flat in a map comes out at the step next to 0:
 //! where that step stands out of the others, its texels are taken for what they are on average.
 
+mod decode;
 mod next_to_zero;
+mod seams;
 
-use crate::borders::{Borders, SplitBorders};
-use crate::gradient_field::{
-    Derivative, Slopes, curl, integrate_open_rounded, integrate_periodic, integrate_rounded,
-    possible_derivatives, possible_derivatives_inside,
-};
+use crate::borders::Borders;
+use crate::gradient_field::{Derivative, SlopeSpectrum, integrate_periodic};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
-use next_to_zero::NextToZero;
+use decode::{rounding_noise, rounding_steps, slopes_of_normals};
 
-/// Steepest slope that is believed (84°); beyond it 8 bits say nothing.
-const STEEPEST: f64 = 10.0;
 /// A green convention is only decided when its curl is at most this fraction of the other's.
 const DECIDED: f64 = 0.8;
-/// Numbers of steps from 0 to 1 that image files round to.
-const STEPS: [f64; 2] = [255.0, 65_535.0];
+/// Variance that half-precision floats, the coarsest ones in files, leave in slopes, over their power.
+const FLOATS: f64 = 1e-7;
 
 /// Which way green points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -75,7 +74,7 @@ pub struct NormalMapHeights {
     pub green_is_certain: bool,
     /// How its slopes were taken.
     pub derivative: Derivative,
-    /// Whether it was told or the map says so: false when several fit alike.
+    /// Whether it was told or the map says so: false when several fit alike, or none to within rounding.
     pub derivative_is_certain: bool,
     /// Whether it tiles.
     pub tileable: bool,
@@ -96,29 +95,29 @@ pub fn heights_from_normals(
     check([red, green, blue])?;
     let steps = rounding_steps([red, green, blue]);
     let mut field = slopes_of_normals(red, green, blue, steps);
-    let borders = borders_of(&field, options.borders);
-    let (way, green_is_certain) = which_green(&field, borders, options.green);
-    if way == Green::DirectX {
-        field.along_v.values.iter_mut().for_each(|q| *q = -*q);
-    }
-    let (derivative, derivative_is_certain) = which_derivative(&field, borders, options.derivative);
-    let tileable = borders == Borders::Periodic;
+    let tileable = match options.borders {
+        Borders::Detect => seams::tiles(&field),
+        told => told == Borders::Periodic,
+    };
     if tileable || !options.keep_tilt {
         for slope in [&mut field.along_u, &mut field.along_v] {
             let mean = slope.mean();
             slope.values.iter_mut().for_each(|v| *v -= mean);
         }
     }
-    let noise = steps.map(|steps| rounding_noise(&field, 2.0 / steps));
-    let height_px = match noise {
-        Some(noise) if tileable => integrate_rounded(&field, derivative, noise),
-        None if tileable => integrate_periodic(&field, derivative),
-        _ => integrate_open_rounded(&field, derivative, noise.unwrap_or(f64::INFINITY)),
+    let noise = steps.map_or(FLOATS * field.power(), |steps| rounding_noise(&field, 2.0 / steps));
+    let mut spectrum = SlopeSpectrum::of(field, tileable);
+    let (green, green_is_certain) = which_green(&mut spectrum, options.green);
+    let (derivative, derivative_is_certain) = which_derivative(&spectrum, noise, options.derivative);
+    let curl = spectrum.curl(derivative);
+    let height_px = match steps {
+        None if tileable => integrate_periodic(spectrum.field(), derivative),
+        None => spectrum.heights(derivative, f64::INFINITY),
+        Some(_) => spectrum.heights(derivative, noise),
     };
-    let curl = curl_of(&field, borders, derivative);
     Ok(NormalMapHeights {
         height_px,
-        green: way,
+        green,
         green_is_certain,
         derivative,
         derivative_is_certain,
@@ -143,81 +142,34 @@ fn check(channels: [&Raster; 3]) -> Result<(), DesignError> {
     Ok(())
 }
 
-/// Slopes with green taken as OpenGL's.
-fn slopes_of_normals(red: &Raster, green: &Raster, blue: &Raster, steps: Option<f64>) -> Slopes {
-    let (w, h) = (red.width, red.height);
-    let (mut along_u, mut along_v) = (Raster::constant(w, h, 0.0), Raster::constant(w, h, 0.0));
-    let [centre_x, centre_y] = [red, green].map(|c| steps.map(|steps| NextToZero::of(c, steps)));
-    for i in 0..w * h {
-        let [x, y, z] = [red, green, blue].map(|c| 2.0 * c.values[i] - 1.0);
-        let x = centre_x.as_ref().map_or(x, |c| c.value(x));
-        let y = centre_y.as_ref().map_or(y, |c| c.value(y));
-        let flat = x * x + y * y;
-        let length = (flat + z * z).sqrt();
-        // Gentle slopes: the other two channels tell n_z better than blue does. Steep ones: blue,
-        // unless the map has two channels only and blue does not make a unit vector.
-        let up = if flat < 0.5 || (length - 1.0).abs() > 0.1 { (1.0 - flat).max(0.0).sqrt() } else { z };
-        let up = up.max(flat.sqrt() / STEEPEST).max(1e-9);
-        along_u.values[i] = -x / up;
-        along_v.values[i] = y / up;
-    }
-    Slopes { along_u, along_v }
-}
-
-fn borders_of(field: &Slopes, wanted: Borders) -> Borders {
-    match (wanted.decide(&field.along_u), wanted.decide(&field.along_v)) {
-        (Borders::Periodic, Borders::Periodic) => Borders::Periodic,
-        _ => Borders::Smooth,
-    }
-}
-
-/// The number of steps from 0 to 1 to which all channels were rounded; `None`: they were not.
-fn rounding_steps(channels: [&Raster; 3]) -> Option<f64> {
-    let rounded = |value: f64, steps: f64| (value * steps - (value * steps).round()).abs() < 1e-6 * steps;
-    let all = |steps| channels.iter().all(|c| c.values.iter().all(|&v| rounded(v, steps)));
-    STEPS.into_iter().find(|&steps| all(steps))
-}
-
-/// Variance of a slope whose normal was rounded, mean over the map.
-fn rounding_noise(field: &Slopes, step: f64) -> f64 {
-    let gain = |(&p, &q): (&f64, &f64)| {
-        let (p2, q2) = (p * p, q * q);
-        0.5 * (1.0 + p2 + q2) * ((1.0 + p2).powi(2) + 2.0 * p2 * q2 + (1.0 + q2).powi(2))
-    };
-    let gains = field.along_u.values.iter().zip(&field.along_v.values).map(gain);
-    step * step / 12.0 * gains.sum::<f64>() / field.along_u.values.len() as f64
-}
-
-fn curl_of(field: &Slopes, borders: Borders, derivative: Derivative) -> f64 {
-    let periodic = |slope: &Raster| SplitBorders::of(slope, borders).periodic;
-    let field = Slopes { along_u: periodic(&field.along_u), along_v: periodic(&field.along_v) };
-    curl(&field, derivative)
-}
-
-fn which_green(field: &Slopes, borders: Borders, wanted: Green) -> (Green, bool) {
-    let mut turned = field.clone();
-    turned.along_v.values.iter_mut().for_each(|q| *q = -*q);
-    let up = curl_of(field, borders, Derivative::Exact);
-    let down = curl_of(&turned, borders, Derivative::Exact);
+/// Which way green points, by which the slopes turn less; they are turned to point up.
+fn which_green(spectrum: &mut SlopeSpectrum, wanted: Green) -> (Green, bool) {
+    let up = spectrum.curl(Derivative::Exact);
+    spectrum.turn_v();
+    let down = spectrum.curl(Derivative::Exact);
     let certain = up.min(down) < DECIDED * up.max(down);
-    match wanted {
+    let (green, certain) = match wanted {
         Green::Detect if certain && down < up => (Green::DirectX, true),
         Green::Detect => (Green::OpenGl, certain),
         told => (told, true),
+    };
+    if green != Green::DirectX {
+        spectrum.turn_v();
     }
+    (green, certain)
 }
 
-/// The derivative that was told, or the one that the slopes leave, or the middle of those they do not tell apart.
-fn which_derivative(field: &Slopes, borders: Borders, told: Option<Derivative>) -> (Derivative, bool) {
+/// The derivative that was told, or the one that the slopes leave, or of those they do not tell apart the one that raises short waves the least.
+fn which_derivative(spectrum: &SlopeSpectrum, noise: f64, told: Option<Derivative>) -> (Derivative, bool) {
     if let Some(derivative) = told {
         return (derivative, true);
     }
-    let tiles = borders == Borders::Periodic;
-    let possible = if tiles { possible_derivatives(field) } else { possible_derivatives_inside(field) };
-    let both = [Derivative::Exact, Derivative::Central].iter().all(|d| possible.contains(d));
+    let (possible, certain) = spectrum.possible_derivatives(noise);
+    let may_be = |derivative| possible.contains(&derivative);
     match possible[..] {
-        [only] => (only, true),
-        [likeliest, ..] if !both => (likeliest, false),
-        _ => (Derivative::ExactOrCentral, false),
+        [only] => (only, certain),
+        _ if may_be(Derivative::Exact) && may_be(Derivative::Central) => (Derivative::ExactOrCentral, false),
+        _ if may_be(Derivative::Exact) => (Derivative::Exact, false),
+        _ => (Derivative::Central, false),
     }
 }

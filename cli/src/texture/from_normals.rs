@@ -165,13 +165,14 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     let sure = |certain: bool| if certain { "" } else { " (the map does not tell)" };
     output::say(&format!(
-        "{} × {} texels; white is {relief_per_px:.2} texels above black; {} green{}; {} slopes{}\nwrote {}",
+        "{} × {} texels; white is {relief_per_px:.2} texels above black; {} green{}; {} slopes{}; {}\nwrote {}",
         report.width,
         report.height,
         report.green.in_words(),
         sure(report.green_is_certain),
         report.derivative.in_words(),
         sure(report.derivative_is_certain),
+        if report.tileable { "tiles" } else { "does not tile" },
         options.output.display()
     ));
     Ok(())

@@ -1,18 +1,144 @@
-//! Fields that do not tile: one-sided differences at the borders, and conjugate gradients with the formula for a mirrored
-//! image as preconditioner.
+//! Slopes of a surface that does not tile, by the waves of its mirror image.
 //!
-//! That is for true derivatives; differences of neighbours are put together by mirroring the field ([`super::mirrored`]).
+//! A surface that goes on mirrored tiles, and differences of it are those of the map with their signs turned. Steps from texel to texel
+//! ([`super::steps`]) are such differences, which no wave escapes: true slopes are made into steps first. Central differences and Sobel's are mirrored
+//! as they are, borders as in [`super::border_share`]. In each case one transform solves the least squares exactly.
 
-use super::mirrored::{BorderShare, integrate_mirrored};
+use super::border_share::BorderShare;
+use super::mirror_transform::{Mirror, MirrorTransform, Waves, frequencies};
+use super::noise::Noise;
+use super::steps;
+use super::wiener::{Bands, Seen, Wiener};
 use super::{Derivative, Slopes};
-use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
-use asperity_fft::num_complex::Complex64;
+use std::f64::consts::PI;
 
-/// Most conjugate gradient steps for a field that does not tile.
-const MOST_STEPS: usize = 60;
-/// Residual of the normal equations, over its first value, at which they are solved.
-const SOLVED: f64 = 1e-5;
+/// Most that steps are raised where the slopes' integrals miss a part of a wave.
+const RAISED: f64 = 1.6;
+
+/// Waves of slopes or steps along u and v.
+pub(super) struct Open {
+    p: Waves,
+    q: Waves,
+    /// Frequencies of the columns and the rows, radians per texel.
+    along_u: Vec<f64>,
+    along_v: Vec<f64>,
+    /// How the surface goes on.
+    mirror: Mirror,
+    /// Whether p and q are steps made of true slopes.
+    steps: bool,
+    width: usize,
+    height: usize,
+}
+
+impl Open {
+    /// Of slopes taken by `derivative`; all that are neither central nor Sobel's are true slopes.
+    pub fn of(field: &Slopes, derivative: Derivative) -> Self {
+        let (width, height) = (field.along_u.width, field.along_u.height);
+        let mut transform = MirrorTransform::default();
+        let mut waves = |p: &Raster, q: &Raster, odd: Mirror, even: Mirror| {
+            [transform.forward(p, [odd, even]), transform.forward(q, [even, odd])]
+        };
+        let steps = !matches!(derivative, Derivative::Central | Derivative::Sobel);
+        let (mirror, [p, q]) = if steps {
+            let (p, q) = (steps::along_u(&field.along_u), steps::along_v(&field.along_v));
+            (Mirror::EvenBetween, waves(&p, &q, Mirror::OddAt, Mirror::EvenBetween))
+        } else if BorderShare::of(field) == BorderShare::None {
+            let p = Raster::from_fn(width - 2, height, |x, y| field.along_u.at(x + 1, y));
+            let q = Raster::from_fn(width, height - 2, |x, y| field.along_v.at(x, y + 1));
+            (Mirror::EvenAt, waves(&p, &q, Mirror::OddAt, Mirror::EvenAt))
+        } else {
+            let [p, q] = halved_at_borders(field);
+            (Mirror::EvenBetween, waves(&p, &q, Mirror::OddBetween, Mirror::EvenBetween))
+        };
+        let (along_u, along_v) = (frequencies(p.along_u), frequencies(p.along_v));
+        Self { p, q, along_u, along_v, mirror, steps, width, height }
+    }
+
+    /// Turns the slopes along v over.
+    pub fn turn_v(&mut self) {
+        self.q.values.iter_mut().for_each(|q| *q = -*q);
+    }
+
+    /// D* (P, Q) at every place, and its power with what else is seen.
+    fn seen(&self, derivative: Derivative) -> (Vec<f64>, Vec<Seen>) {
+        let raised = |frequencies: &[f64]| -> Vec<f64> {
+            frequencies
+                .iter()
+                .map(|&omega| if self.steps { raised(omega, derivative) } else { 1.0 })
+                .collect()
+        };
+        let (raised_u, raised_v) = (raised(&self.along_u), raised(&self.along_v));
+        let (mut alongs, mut seen) = (Vec::new(), Vec::new());
+        for (kx, &wx) in self.along_u.iter().enumerate() {
+            for (ky, &wy) in self.along_v.iter().enumerate() {
+                let place = kx * self.along_v.len() + ky;
+                let [dx, dy] = if self.steps {
+                    [wx, wy].map(|w| 2.0 * (0.5 * w).sin())
+                } else {
+                    derivative.symbol([wx, wy])
+                };
+                // Cosines fall where sines are positive.
+                let (p, q) = (-raised_u[kx] * self.p.values[place], -raised_v[ky] * self.q.values[place]);
+                let (square, along, across) = (dx * dx + dy * dy, p * dx + q * dy, p * dy - q * dx);
+                let across = if square > 0.0 { across * across / square } else { 0.0 };
+                alongs.push(along);
+                seen.push(Seen { square, along: along * along, across });
+            }
+        }
+        (alongs, seen)
+    }
+
+    /// What is seen at every place.
+    pub fn all_seen(&self, derivative: Derivative) -> Vec<Seen> {
+        self.seen(derivative).1
+    }
+
+    /// The surface; `noise` is a slope's variance at the most.
+    pub fn heights(self, derivative: Derivative, noise: f64) -> Raster {
+        let (mut waves, seen) = self.seen(derivative);
+        let bands = Bands::new(&self.along_u, &self.along_v, PI / self.width.max(self.height) as f64);
+        // Cosines and sines have a quarter of the power of a spectrum's lines.
+        let noise = Noise::of(0.25 * noise * (self.width * self.height) as f64, &bands, &seen);
+        let wiener = Wiener::measured(&bands, noise, &seen);
+        for (place, (wave, seen)) in waves.iter_mut().zip(&seen).enumerate() {
+            *wave *= wiener.gain(place, seen);
+        }
+        waves[0] = 0.0;
+        let waves = Waves { values: waves, ..self.p };
+        let made = MirrorTransform::default().inverse(&waves, self.width, self.height, self.mirror);
+        let mean = made.mean();
+        made.map(|z| z - mean)
+    }
+}
+
+/// What makes steps of true slopes' integrals, and of slopes half way between true and central ones.
+fn raised(omega: f64, derivative: Derivative) -> f64 {
+    let missed = steps::seen_inside(omega).max(1.0 / RAISED).recip();
+    let taken = if derivative == Derivative::ExactOrCentral && omega > 0.0 {
+        omega / super::half_way(omega)
+    } else {
+        1.0
+    };
+    missed * taken
+}
+
+/// Slopes along u and v with half of the difference to the only neighbour at the borders.
+fn halved_at_borders(field: &Slopes) -> [Raster; 2] {
+    let [mut p, mut q] = [field.along_u.clone(), field.along_v.clone()];
+    if BorderShare::of(field) == BorderShare::Whole {
+        let (w, h) = (p.width, p.height);
+        for y in 0..h {
+            p.values[y * w] *= 0.5;
+            p.values[y * w + w - 1] *= 0.5;
+        }
+        for x in 0..w {
+            q.values[x] *= 0.5;
+            q.values[(h - 1) * w + x] *= 0.5;
+        }
+    }
+    [p, q]
+}
 
 /// The surface that need not tile and has these slopes as nearly as possible, mean 0. A constant slope
 /// is kept: a plane comes out as a plane.
@@ -21,198 +147,8 @@ pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
     integrate_open_rounded(field, derivative, f64::INFINITY)
 }
 
-/// The same where the slopes have a noise of variance `noise` at the most. Only differences of neighbours, which are blind to short waves, need
-/// to know.
+/// The same where the slopes have a noise: `noise` is the variance in each that rounding leaves at the most; what is more is measured.
 #[must_use]
 pub fn integrate_open_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
-    match derivative {
-        Derivative::Central | Derivative::Sobel => integrate_mirrored(field, derivative, noise),
-        Derivative::Exact | Derivative::ExactOrCentral => integrate_by_steps(field, derivative),
-    }
-}
-
-fn integrate_by_steps(field: &Slopes, derivative: Derivative) -> Raster {
-    let (w, h) = (field.along_u.width, field.along_u.height);
-    let share = match (derivative, BorderShare::of(field)) {
-        (Derivative::Exact, _) | (_, BorderShare::Whole) => 1.0,
-        (_, BorderShare::Half) => 0.5,
-        (_, BorderShare::None) => 0.0,
-    };
-    let mut mirrored = Mirrored::new(w, h, derivative);
-    let mut residual = transposed_difference(field, derivative, share);
-    let mut solution = vec![0.0; w * h];
-    let mut direction = mirrored.precondition(&residual);
-    let mut product = dot(&residual, &direction);
-    let target = SOLVED * SOLVED * product;
-    for _ in 0..MOST_STEPS {
-        if product <= target {
-            break;
-        }
-        let surface = Raster { width: w, height: h, values: direction.clone() };
-        let image = transposed_difference(&differences_with(&surface, derivative, share), derivative, share);
-        let step = product / dot(&direction, &image);
-        for ((z, d), (r, a)) in solution.iter_mut().zip(&direction).zip(residual.iter_mut().zip(&image)) {
-            *z += step * d;
-            *r -= step * a;
-        }
-        let preconditioned = mirrored.precondition(&residual);
-        let next = dot(&residual, &preconditioned);
-        for (d, p) in direction.iter_mut().zip(&preconditioned) {
-            *d = p + next / product * *d;
-        }
-        product = next;
-    }
-    let mean = solution.iter().sum::<f64>() / solution.len() as f64;
-    Raster { width: w, height: h, values: solution.iter().map(|z| z - mean).collect() }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// The weights of a difference at position `i` of `n`: (first neighbour, weights). Inside, eighth order
-/// for the true derivative; fewer neighbours where there are no more, and `share` of the difference to the only one.
-fn stencil(derivative: Derivative, share: f64, i: usize, n: usize) -> (usize, Vec<f64>) {
-    const ORDERS: [&[f64]; 4] = [
-        &[-0.5, 0.0, 0.5],
-        &[1.0 / 12.0, -2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 12.0],
-        &[-1.0 / 60.0, 3.0 / 20.0, -0.75, 0.0, 0.75, -3.0 / 20.0, 1.0 / 60.0],
-        &[1.0 / 280.0, -4.0 / 105.0, 0.2, -0.8, 0.0, 0.8, -0.2, 4.0 / 105.0, -1.0 / 280.0],
-    ];
-    if n < 3 {
-        return (0, if n == 2 { vec![-1.0, 1.0] } else { vec![0.0] });
-    }
-    if derivative == Derivative::ExactOrCentral {
-        return half_way(stencil(Derivative::Exact, share, i, n), &stencil(Derivative::Central, share, i, n));
-    }
-    let exact = derivative == Derivative::Exact;
-    let room = i.min(n - 1 - i);
-    if room > 0 {
-        let order = if exact { room.min(4) } else { 1 };
-        return (i - order, ORDERS[order - 1].to_vec());
-    }
-    match (exact, i) {
-        (true, 0) => (0, vec![-1.5, 2.0, -0.5]),
-        (true, _) => (n - 3, vec![0.5, -2.0, 1.5]),
-        (false, 0) => (0, vec![-share, share]),
-        (false, _) => (n - 2, vec![-share, share]),
-    }
-}
-
-/// The mean of two stencils, the first of which spans the second.
-fn half_way(wide: (usize, Vec<f64>), narrow: &(usize, Vec<f64>)) -> (usize, Vec<f64>) {
-    let (first, mut weights) = wide;
-    weights.iter_mut().for_each(|weight| *weight *= 0.5);
-    for (weight, other) in weights[narrow.0 - first..].iter_mut().zip(&narrow.1) {
-        *weight += 0.5 * other;
-    }
-    (first, weights)
-}
-
-/// Calls `each(texel, neighbour, weight along u or 0, weight along v or 0)`.
-fn visit(
-    (w, h): (usize, usize),
-    derivative: Derivative,
-    share: f64,
-    mut each: impl FnMut(usize, usize, [f64; 2]),
-) {
-    let columns: Vec<_> = (0..w).map(|x| stencil(derivative, share, x, w)).collect();
-    // Sobel's average across, folded back at the borders.
-    let across: &[(isize, f64)] =
-        if derivative == Derivative::Sobel { &[(-1, 0.25), (0, 0.5), (1, 0.25)] } else { &[(0, 1.0)] };
-    let fold = |i: usize, by: isize, n: usize| i.saturating_add_signed(by).min(n - 1);
-    for y in 0..h {
-        let row = stencil(derivative, share, y, h);
-        for (x, (first, weights)) in columns.iter().enumerate() {
-            for &(by, share) in across {
-                let (yy, xx) = (fold(y, by, h), fold(x, by, w));
-                for (k, &weight) in weights.iter().enumerate() {
-                    each(y * w + x, yy * w + first + k, [share * weight, 0.0]);
-                }
-                for (k, &weight) in row.1.iter().enumerate() {
-                    each(y * w + x, (row.0 + k) * w + xx, [0.0, share * weight]);
-                }
-            }
-        }
-    }
-}
-
-/// Slopes of a surface that does not tile.
-#[must_use]
-pub fn differences(surface: &Raster, derivative: Derivative) -> Slopes {
-    differences_with(surface, derivative, 1.0)
-}
-
-fn differences_with(surface: &Raster, derivative: Derivative, share: f64) -> Slopes {
-    let (w, h) = (surface.width, surface.height);
-    let mut out = Slopes { along_u: Raster::constant(w, h, 0.0), along_v: Raster::constant(w, h, 0.0) };
-    visit((w, h), derivative, share, |at, from, [u, v]| {
-        out.along_u.values[at] += u * surface.values[from];
-        out.along_v.values[at] += v * surface.values[from];
-    });
-    out
-}
-
-/// The transpose of [`differences_with`].
-fn transposed_difference(field: &Slopes, derivative: Derivative, share: f64) -> Vec<f64> {
-    let (w, h) = (field.along_u.width, field.along_u.height);
-    let mut out = vec![0.0; w * h];
-    visit((w, h), derivative, share, |at, from, [u, v]| {
-        out[from] += u * field.along_u.values[at] + v * field.along_v.values[at];
-    });
-    out
-}
-
-/// The inverse of |D|² for an image that goes on mirrored.
-struct Mirrored {
-    fft: Fft2,
-    width: usize,
-    height: usize,
-    gain: Vec<f64>,
-    image: Vec<Complex64>,
-    spectrum: Vec<Complex64>,
-}
-
-impl Mirrored {
-    fn new(width: usize, height: usize, derivative: Derivative) -> Self {
-        let (w, h) = (2 * width, 2 * height);
-        // The differences used go blind towards the highest frequencies: 4/3 of a sine is near enough.
-        let gain = |place| {
-            let [dx, dy] = match derivative {
-                Derivative::Exact => Derivative::Central.at_bin(place, w, h).map(|d| 4.0 / 3.0 * d),
-                other => other.at_bin(place, w, h),
-            };
-            let (wx, wy) = (angular_frequency(place / h, w), angular_frequency(place % h, h));
-            let square = match derivative {
-                Derivative::Exact if wx.abs().max(wy.abs()) < 1.8 => wx * wx + wy * wy,
-                _ => dx * dx + dy * dy,
-            };
-            let floor = if wx.hypot(wy) > std::f64::consts::FRAC_PI_2 { 0.2 } else { 0.0 };
-            if place == 0 { 0.0 } else { 1.0 / square.max(floor) }
-        };
-        let zeros = vec![Complex64::default(); w * h];
-        let gain = (0..w * h).map(gain).collect();
-        Self { fft: Fft2::new(w, h), width, height, gain, image: zeros.clone(), spectrum: zeros }
-    }
-
-    fn precondition(&mut self, values: &[f64]) -> Vec<f64> {
-        let (w, h) = (self.width, self.height);
-        for y in 0..2 * h {
-            let row = y.min(2 * h - 1 - y) * w;
-            for x in 0..2 * w {
-                let value = values[row + x.min(2 * w - 1 - x)];
-                self.image[y * 2 * w + x] = Complex64::new(value, 0.0);
-            }
-        }
-        self.fft.forward(&mut self.image, &mut self.spectrum);
-        for (value, gain) in self.spectrum.iter_mut().zip(&self.gain) {
-            *value *= *gain;
-        }
-        self.fft.inverse(&mut self.spectrum, &mut self.image);
-        let mut out = Vec::with_capacity(w * h);
-        for y in 0..h {
-            out.extend(self.image[y * 2 * w..y * 2 * w + w].iter().map(|v| v.re));
-        }
-        out
-    }
+    Open::of(field, derivative).heights(derivative, noise)
 }

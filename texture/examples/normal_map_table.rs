@@ -1,0 +1,82 @@
+//! Prints how well heights come out of normal maps, as they are and as people have them, against the displacement maps of the same sets.
+//! `cargo run --release -p asperity-texture --features offline --example normal_map_table -- FOLDER…`, folders of files named
+//! `…NormalGL.…` (or `…NormalDX.…`) and `…Displacement.…`.
+//!
+//! The scale of a displacement map is not known: power is told of heights that are scaled to it.
+
+#[path = "../tests/normals/mod.rs"]
+mod normals;
+
+use asperity_texture::image_io::{Channel, load_channel};
+use asperity_texture::normal_map::{NormalMapOptions, heights_from_normals};
+use asperity_texture::raster::Raster;
+use image::imageops::FilterType;
+use normals::{as_jpeg, cut, halved, halved_heights, thirds, without_slant};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+fn main() {
+    println!(
+        "set, variant                                  r    power in thirds of the spectrum       derivative        tiles      s"
+    );
+    for folder in std::env::args().skip(1) {
+        let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
+            .expect("a folder")
+            .map(|entry| entry.expect("a file").path())
+            .collect();
+        files.sort();
+        for file in &files {
+            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let Some(kind) = ["NormalGL", "NormalDX"].into_iter().find(|kind| name.contains(kind)) else {
+                continue;
+            };
+            let truth = files.iter().find(|f| {
+                let other = f.file_stem().unwrap_or_default().to_string_lossy();
+                name.starts_with(&other.replace("Displacement", kind)) && other.contains("Displacement")
+            });
+            if let Some(truth) = truth {
+                set(&name, file, truth);
+            }
+        }
+    }
+}
+
+fn set(name: &str, normals: &Path, displacement: &Path) {
+    let map = [Channel::R, Channel::G, Channel::B].map(|c| load_channel(normals, c).expect("a map").raster);
+    let truth = load_channel(displacement, Channel::Luma).expect("a map").raster;
+    row(name, "whole", &map, &truth);
+    let (small, half) = (halved_heights(&truth), |filter| halved(&map, filter));
+    row(name, "halved, bilinear", &half(FilterType::Triangle), &small);
+    row(name, "halved, Lanczos", &half(FilterType::Lanczos3), &small);
+    row(name, "halved, JPEG 75", &as_jpeg(&half(FilterType::Lanczos3), 75, true), &small);
+    for quality in [75, 90] {
+        row(name, &format!("JPEG {quality}"), &as_jpeg(&map, quality, true), &truth);
+    }
+    let size = [600.min(truth.width - 40), 480.min(truth.height - 20)];
+    let piece = map.each_ref().map(|channel| cut(channel, [37, 11], size));
+    row(name, "cut", &piece, &cut(&truth, [37, 11], size));
+    row(name, "cut, JPEG 85", &as_jpeg(&piece, 85, true), &cut(&truth, [37, 11], size));
+}
+
+fn row(name: &str, variant: &str, map: &[Raster; 3], truth: &Raster) {
+    let start = Instant::now();
+    let found =
+        heights_from_normals(&map[0], &map[1], &map[2], &NormalMapOptions::default()).expect("a normal map");
+    let seconds = start.elapsed().as_secs_f64();
+    let whole = !variant.starts_with("cut");
+    let [z, t] = [&found.height_px, truth].map(|h| if whole { h.clone() } else { without_slant(h) });
+    let (zm, tm) = (z.mean(), t.mean());
+    let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+        z.values.iter().zip(&t.values).map(|(z, t)| f(z - zm, t - tm)).sum()
+    };
+    let (both, made, true_power) = (sum(&|z, t| z * t), sum(&|z, _| z * z), sum(&|_, t| t * t));
+    let scaled = z.map(|z| (z - zm) * true_power / both);
+    let [low, middle, high] = thirds(&scaled, &t, whole);
+    println!(
+        "{name:38.38} {variant:16} {:.4} {low:8.3} {middle:8.3} {high:8.3}   {:?}{}   {}   {seconds:.2}",
+        both / (made * true_power).sqrt(),
+        found.derivative,
+        if found.derivative_is_certain { "" } else { "?" },
+        found.tileable
+    );
+}

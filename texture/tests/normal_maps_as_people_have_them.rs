@@ -1,0 +1,138 @@
+//! Normal maps that were resized, saved as JPEG or cut from larger ones, of surfaces with steep edges: the heights must be the surface's, and no
+//! wave may come out much stronger than it is. Longer tables, of files: `examples/normal_map_table`.
+
+#![cfg(feature = "offline")]
+
+mod normals;
+mod surfaces;
+
+use asperity_texture::gradient_field::{DERIVATIVES, Derivative, differences, slopes};
+use asperity_texture::image_io::{Channel, load_channel};
+use asperity_texture::normal_map::{Green, NormalMapHeights, NormalMapOptions, heights_from_normals};
+use asperity_texture::raster::Raster;
+use image::imageops::FilterType;
+use normals::{as_jpeg, cut, halved, halved_heights, normal_map, thirds, without_slant};
+use surfaces::{correlation, fractal};
+
+/// Raised discs with edges two texels wide, 32 texels apart, 3 texels high, on slightly uneven ground: a tread plate.
+fn studs(n: usize) -> Raster {
+    let ground = fractal(n, 4.0, 1.0, 41);
+    Raster::from_fn(n, n, |x, y| {
+        let row = y / 32;
+        let from = |i: usize, shift: usize| ((i + shift) % 32) as f64 - 15.5;
+        let distance = from(x, 16 * (row % 2)).hypot(from(y, 0));
+        3.0 * (0.5 * (10.0 - distance) + 0.5).clamp(0.0, 1.0) + 2.0 * ground.at(x, y)
+    })
+}
+
+/// Rough ground with an rms slope of 0.35.
+fn ground(n: usize) -> Raster {
+    let surface = fractal(n, 4.0, 1.0, 42);
+    let power = slopes(&surface, Derivative::Exact).power();
+    surface.map(|z| z * 0.35 / power.sqrt())
+}
+
+fn made(map: &[Raster; 3]) -> NormalMapHeights {
+    heights_from_normals(&map[0], &map[1], &map[2], &NormalMapOptions::default()).unwrap()
+}
+
+/// Asserts the bars and prints how near they are.
+fn check(what: &str, made: &NormalMapHeights, truth: &Raster, least_r: f64) {
+    let tiles = made.tileable;
+    let [z, t] = [&made.height_px, truth].map(|h| if tiles { h.clone() } else { without_slant(h) });
+    let (r, thirds) = (correlation(&z, &t), thirds(&z, &t, tiles));
+    println!("{what}: r {r:.4}, thirds {thirds:.3?}, {:?} {}", made.derivative, made.derivative_is_certain);
+    assert!(r >= least_r, "{what}: r {r}");
+    assert!(thirds.iter().all(|&third| third <= 1.5), "{what}: {thirds:?}");
+}
+
+#[test]
+fn steep_edges_in_resized_maps_are_not_taken_for_what_sobel_does_not_see() {
+    let surface = studs(512);
+    for green in [Green::OpenGl, Green::DirectX] {
+        for derivative in [Derivative::Exact, Derivative::Central] {
+            let map = normal_map(&slopes(&surface, derivative), green);
+            for filter in [FilterType::Triangle, FilterType::Lanczos3, FilterType::CatmullRom] {
+                let made = made(&halved(&map, filter));
+                check(&format!("{derivative:?} {filter:?}"), &made, &halved_heights(&surface), 0.97);
+                assert!(made.tileable && made.green == green);
+                // No difference of its own texels made the halved map.
+                assert!(made.derivative != Derivative::Sobel, "{derivative:?} {filter:?}");
+                assert!(!made.derivative_is_certain, "{derivative:?} {filter:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_map_that_tiles_still_tiles_as_jpeg_and_gets_no_stronger() {
+    for (name, surface) in [("studs", studs(256)), ("ground", ground(256))] {
+        for derivative in DERIVATIVES {
+            let map = normal_map(&slopes(&surface, derivative), Green::OpenGl);
+            for (quality, half_colours) in [(75, true), (75, false), (90, true)] {
+                let made = made(&as_jpeg(&map, quality, half_colours));
+                check(&format!("{name} {derivative:?} {quality} {half_colours}"), &made, &surface, 0.97);
+                assert!(made.tileable && made.green == Green::OpenGl, "{name} {derivative:?} {quality}");
+                assert!(!made.derivative_is_certain, "{name} {derivative:?} {quality}");
+            }
+        }
+    }
+}
+
+#[test]
+fn short_waves_of_a_cut_map_are_as_strong_as_they_are() {
+    for (name, surface) in [("studs", studs(512)), ("ground", ground(512))] {
+        for derivative in DERIVATIVES {
+            let map = normal_map(&slopes(&surface, derivative), Green::DirectX);
+            // Neither side is a product of small numbers.
+            let (from, size) = ([31, 60], [347, 211]);
+            let piece = map.clone().map(|channel| cut(&channel, from, size));
+            let truth = cut(&surface, from, size);
+            let whole = made(&piece);
+            check(&format!("{name} {derivative:?}"), &whole, &truth, 0.99);
+            assert!(!whole.tileable && whole.green == Green::DirectX);
+            let jpeg = made(&as_jpeg(&piece, 85, true));
+            check(&format!("{name} {derivative:?} JPEG"), &jpeg, &truth, 0.97);
+            assert!(!jpeg.tileable);
+        }
+    }
+}
+
+#[test]
+fn clean_maps_with_steep_edges_still_tell_their_derivative() {
+    let surface = studs(256);
+    for derivative in DERIVATIVES {
+        let made = made(&normal_map(&slopes(&surface, derivative), Green::OpenGl));
+        check(&format!("{derivative:?}"), &made, &surface, 0.999);
+        assert_eq!((made.derivative, made.derivative_is_certain), (derivative, true));
+        // One that does not tile, with borders of its own.
+        let piece = cut(&surface, [5, 9], [201, 180]);
+        let field = differences(&piece, derivative);
+        let open = self::made(&normal_map(&field, Green::OpenGl));
+        check(&format!("{derivative:?} cut"), &open, &piece, 0.99);
+    }
+}
+
+#[test]
+fn displacement_maps_of_others_come_back_from_normals_that_were_halved_and_saved_as_jpeg() {
+    let folder = std::env::var("ASPERITY_CORPUS").unwrap_or_else(|_| "../../shared/corpus".into());
+    let folder = std::path::Path::new(&folder).join("textures");
+    let file = folder.join("MetalWalkway006_1K-PNG_Displacement.png");
+    if !file.exists() {
+        assert!(std::env::var("CI").is_err(), "the test corpus is missing: {}", folder.display());
+        println!("skipped: no test corpus at {}", folder.display());
+        return;
+    }
+    let heights = load_channel(file, Channel::Luma).unwrap().raster;
+    let scale = 0.35 / differences(&heights, Derivative::Central).power().sqrt();
+    let surface = heights.map(|z| z * scale);
+    let map = normal_map(&slopes(&surface, Derivative::Central), Green::OpenGl);
+    let truth = halved_heights(&surface);
+    let small = halved(&map, FilterType::Lanczos3);
+    check("halved", &made(&small), &truth, 0.97);
+    let jpeg = made(&as_jpeg(&small, 90, true));
+    check("halved, JPEG", &jpeg, &truth, 0.95);
+    assert!(jpeg.tileable);
+    let piece = small.map(|channel| cut(&channel, [40, 30], [300, 241]));
+    check("halved, cut", &made(&piece), &cut(&truth, [40, 30], [300, 241]), 0.97);
+}
