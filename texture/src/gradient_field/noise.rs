@@ -109,8 +109,9 @@ mod tests {
         let mut rng = Rng::new(6);
         let frequencies: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k)).collect();
         let bands = Bands::new(&frequencies, &frequencies, 0.01);
-        let across =
-            |i: usize, rng: &mut Rng| if i % 9 == 0 { -18.0 * (1.0 - rng.uniform()).ln() } else { 0.0 };
+        let across = |i: usize, rng: &mut Rng| {
+            if i.is_multiple_of(9) { -18.0 * (1.0 - rng.uniform()).ln() } else { 0.0 }
+        };
         let seen: Vec<Seen> =
             (0..90_000).map(|i| Seen { square: 1.0, along: 0.0, across: across(i, &mut rng) }).collect();
         let Noise::Rounding { mean, gathered } = Noise::of(2.2, &bands, &seen) else { panic!("rounding") };

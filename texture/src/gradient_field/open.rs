@@ -13,8 +13,8 @@ use super::{Derivative, Slopes};
 use crate::raster::Raster;
 use std::f64::consts::PI;
 
-/// Most that steps are raised where the slopes' integrals miss a part of a wave.
-const RAISED: f64 = 1.6;
+/// Most that steps are raised where the slopes' integrals miss a part of a wave; what is raised rings at the borders.
+const RAISED: f64 = 1.4;
 
 /// Waves of slopes or steps along u and v.
 pub(super) struct Open {
