@@ -110,8 +110,9 @@ fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_referenc
         }
         let limit = file.values.iter().filter(|grey| **grey <= 0.0 || **grey >= 1.0).count();
         let stretched = (offset, scale) != (0.0, 1.0);
-        // Where heights leave the reference's range the file is stretched and says so: only its extremes are at the limits.
-        assert_eq!(stretched, limit <= 2, "{more:?}: {limit} of the texels at the limits");
+        // Where heights leave the reference's range the file is stretched and says so: next to nothing is at its limits.
+        assert_eq!(stretched, more.contains(&"--method"), "{more:?}");
+        assert!(!stretched || limit < 100, "{more:?}: {limit} of the texels at the limits");
         let warned = made["warnings"].to_string();
         assert_eq!(stretched, warned.contains("relief_m"), "{warned}");
         assert!((number(&made, "relief_m") - 0.002 * scale).abs() < 1e-12);
@@ -167,7 +168,7 @@ fn a_metamer_is_an_object_of_the_size_told_and_coarse_texels_are_warned_of() {
     for (bad, field) in [("--base-mm", "base_m"), ("--width-mm", "texel_m")] {
         let mut arguments = vec!["texture"];
         arguments.extend(print);
-        arguments[7] = "other.png";
+        arguments[9] = "other.stl";
         arguments.extend([bad, "1e9"]);
         let told = asperity(scene.folder.path(), &arguments);
         assert_refused(&told, &[field]);

@@ -159,3 +159,42 @@ fn write_triangle(out: &mut impl Write, corners: [Vertex; 3]) -> io::Result<()> 
     }
     out.write_all(&record)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(heights: &Raster, texel_m: f64, base_m: f64) -> &'static str {
+        Block::new(heights, texel_m, base_m).unwrap_err().field
+    }
+
+    #[test]
+    fn sizes_that_no_printer_makes_are_refused_by_name() {
+        let flat = Raster::constant(4, 3, 0.0);
+        assert_eq!(refused(&flat, 0.0, 1e-3), "texel_m");
+        assert_eq!(refused(&flat, 1e-4, f64::NAN), "base_m");
+        assert_eq!(refused(&Raster::default(), 1e-4, 1e-3), "relief");
+        assert_eq!(refused(&Raster::from_fn(2, 2, |x, _| 5.0 * x as f64), 1e-4, 1e-3), "relief");
+        let hole = Raster::from_fn(2, 2, |x, _| if x == 0 { f64::NAN } else { 0.0 });
+        assert_eq!(refused(&hole, 1e-4, 1e-3), "heights");
+        assert_eq!(refused(&Raster::constant(8192, 8192, 0.0), 1e-4, 1e-3), "triangles");
+    }
+
+    #[test]
+    fn a_flat_map_is_a_box_whose_upright_normals_point_outwards() {
+        let flat = Raster::constant(4, 3, 7.0);
+        let block = Block::new(&flat, 1e-3, 2e-3).unwrap();
+        let mut file = Vec::new();
+        block.write_stl(&mut file).unwrap();
+        assert_eq!(file.len() as u64, block.file_bytes());
+        let float = |at: usize| f32::from_le_bytes([file[at], file[at + 1], file[at + 2], file[at + 3]]);
+        for triangle in 0..block.triangles() as usize {
+            let at = 84 + 50 * triangle;
+            let normal = [0, 1, 2].map(|axis| float(at + 4 * axis));
+            let centre = [0, 1, 2]
+                .map(|axis| (0..3).map(|corner| float(at + 12 + 12 * corner + 4 * axis)).sum::<f32>() / 3.0);
+            let outwards = normal.iter().zip(centre).zip([2.0, 1.5, 1.0]).map(|((n, c), m)| n * (c - m));
+            assert!(outwards.sum::<f32>() > 0.9, "{normal:?} at {centre:?}");
+        }
+    }
+}

@@ -1,8 +1,10 @@
 //! `asperity texture from-normals NORMAL.png -o OUT.png`: a normal map becomes a height map.
 
+use super::object::{ObjectOptions, SizeMm};
 use super::{channel, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
+use asperity_texture::from_photo::TEXEL_M;
 use asperity_texture::gradient_field::Derivative;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::normal_map::{Green, NormalMapOptions, heights_from_normals};
@@ -31,6 +33,9 @@ pub struct Options {
     /// What the map's width is on the surface, m: adds relief_m to the report
     #[arg(long, value_name = "M", value_parser = positive)]
     pub width_m: Option<f64>,
+    /// The object's file and size
+    #[command(flatten)]
+    pub object: ObjectOptions,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -107,6 +112,9 @@ struct Report {
     /// Height of white over black in texels: times the size of a texel it is `relief_m`.
     relief_per_px: f64,
     relief_m: Option<f64>,
+    /// Where a width is told or an object written.
+    #[serde(flatten)]
+    size: Option<SizeMm>,
     green: GreenName,
     green_is_certain: bool,
     derivative: DerivativeName,
@@ -124,6 +132,7 @@ struct Report {
 /// When the map cannot be read or the output cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     output::check_destination(&options.output)?;
+    options.object.check_destination()?;
     let [red, green, blue] = [Channel::R, Channel::G, Channel::B];
     let (red, green, blue) = (
         channel(&options.normals, red)?,
@@ -147,11 +156,18 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let scaled = found.height_px.map(|z| if relief_per_px > 0.0 { (z - low) / relief_per_px } else { 0.5 });
     let mut outputs = Outputs::new();
     outputs.write_at(&options.output, |path| image_io::save_gray16(path, &scaled).map_err(CliError::told))?;
+    let width_m = options.object.width_mm.map(|mm| 1e-3 * mm).or(options.width_m);
+    let told_texel_m = width_m.map(|width_m| width_m / scaled.width as f64);
+    let texel_m = told_texel_m.or(options.object.stl.as_ref().map(|_| TEXEL_M));
+    let heights_m = found.height_px.map(|z| z * texel_m.unwrap_or(TEXEL_M));
+    options.object.write(&mut outputs, &heights_m, texel_m.unwrap_or(TEXEL_M))?;
+    let size = texel_m.map(|texel_m| SizeMm::of(&heights_m, texel_m));
     let report = Report {
         width: scaled.width,
         height: scaled.height,
         relief_per_px,
-        relief_m: options.width_m.map(|width_m| relief_per_px * width_m / scaled.width as f64),
+        relief_m: texel_m.map(|texel_m| relief_per_px * texel_m),
+        size,
         green: if found.green == Green::DirectX { GreenName::DirectX } else { GreenName::OpenGl },
         green_is_certain: found.green_is_certain,
         derivative: DerivativeName::of(found.derivative),
@@ -162,6 +178,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     };
     if options.json {
         return output::say_json(&report);
+    }
+    if let Some(SizeMm { width_mm, height_mm, relief_mm, .. }) = report.size {
+        output::say(&format!("{width_mm:.2} × {height_mm:.2} mm, relief {relief_mm:.3} mm"));
+    }
+    if let Some(warning) = options.object.stl.as_ref().and(report.size.and_then(|size| size.warning())) {
+        output::say(&format!("warning: {warning}"));
     }
     let sure = |certain: bool| if certain { "" } else { " (the map does not tell)" };
     output::say(&format!(

@@ -138,9 +138,7 @@ struct Report {
 /// When a map cannot be read, is too small for the bands, or the output cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     output::check_destination(&options.output)?;
-    if let Some(path) = &options.object.stl {
-        output::check_destination(path)?;
-    }
+    options.object.check_destination()?;
     let (original, reference) = (grey(&options.original)?, grey(&options.reference)?);
     let start = Instant::now();
     let refuse = |error| refused(at(&error, &options.original, &options.reference), &error);
@@ -204,10 +202,11 @@ struct Levels {
 }
 
 impl Levels {
-    /// Black is 0 and white 1, as in the reference's file, unless a height lies outside.
+    /// Black is 0 and white 1, as in the reference's file, unless a height lies outside by more than is rounded away.
     fn holding(image: &Raster) -> Self {
+        const HALF_A_STEP: f64 = 0.5 / 65_535.0;
         let (low, high) = image.range();
-        if low >= 0.0 && high <= 1.0 {
+        if low >= -HALF_A_STEP && high <= 1.0 + HALF_A_STEP {
             return Self { offset: 0.0, scale: 1.0 };
         }
         Self { offset: low, scale: if high > low { high - low } else { 1.0 } }
@@ -219,7 +218,7 @@ impl Levels {
 
     /// The heights that a reader of the file gets.
     fn read_back(self, image: &Raster) -> Raster {
-        let stored = |grey: f64| (grey * 65_535.0).round() / 65_535.0;
+        let stored = |grey: f64| (grey.clamp(0.0, 1.0) * 65_535.0).round() / 65_535.0;
         self.grey(image).map(|grey| self.offset + self.scale * stored(grey))
     }
 }

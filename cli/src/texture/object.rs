@@ -2,7 +2,7 @@
 
 use super::{positive, refused};
 use crate::error::CliError;
-use crate::output::Outputs;
+use crate::output::{self, Outputs};
 use asperity_texture::raster::Raster;
 use asperity_texture::stl::{Block, FINEST_TEXEL_M};
 use clap::Args;
@@ -66,6 +66,14 @@ impl SizeMm {
 }
 
 impl ObjectOptions {
+    /// Refuses a path that cannot become a file, before any work is done for it.
+    ///
+    /// # Errors
+    /// As [`output::check_destination`].
+    pub fn check_destination(&self) -> Result<(), CliError> {
+        self.stl.as_deref().map_or(Ok(()), output::check_destination)
+    }
+
     /// Writes the block, if it is asked for.
     ///
     /// # Errors
