@@ -37,14 +37,24 @@ fn without_quadratic(picture: &Raster) -> Raster {
     let along = |i: usize, size: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
     let terms: [fn(f64, f64) -> f64; 6] =
         [|_, _| 1.0, |x, _| x, |_, y| y, |x, _| x * x - 1.0 / 3.0, |x, y| x * y, |_, y| y * y - 1.0 / 3.0];
+    let across: Vec<f64> = (0..rest.width).map(|x| along(x, rest.width)).collect();
+    let (width, height) = (rest.width, rest.height);
     for term in terms.iter().chain(&terms) {
-        let shape = Raster::from_fn(rest.width, rest.height, |x, y| {
-            term(along(x, rest.width), along(y, rest.height))
-        });
-        let product: f64 = shape.values.iter().zip(&rest.values).map(|(s, v)| s * v).sum();
-        let gain = product / shape.values.iter().map(|s| s * s).sum::<f64>();
-        for (value, s) in rest.values.iter_mut().zip(&shape.values) {
-            *value -= gain * s;
+        let (mut product, mut square) = (0.0, 0.0);
+        for (y, row) in rest.values.chunks_exact(width).enumerate() {
+            let v = along(y, height);
+            for (value, &u) in row.iter().zip(&across) {
+                let s = term(u, v);
+                product += s * value;
+                square += s * s;
+            }
+        }
+        let gain = product / square;
+        for (y, row) in rest.values.chunks_exact_mut(width).enumerate() {
+            let v = along(y, height);
+            for (value, &u) in row.iter_mut().zip(&across) {
+                *value -= gain * term(u, v);
+            }
         }
     }
     rest
