@@ -183,7 +183,7 @@ pub fn surface_from_photo(
     progress(0.4);
     let averaged = repetition.as_ref().is_some_and(|found| !found.wanders);
     let shaped = if averaged { &parts.symmetric } else { &quiet.picture };
-    let mut found = heights::heights_of(shaped, options, |done| progress(0.4 + 0.4 * done))?;
+    let mut found = heights::heights_of(shaped, &quiet.picture, options, |done| progress(0.4 + 0.4 * done))?;
     let scale = options.scale(&found.shape.height_px);
     let textured_px =
         if averaged { residual_heights(&parts.residual, picture) } else { found.shape.height_px.clone() };

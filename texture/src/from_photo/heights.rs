@@ -61,14 +61,16 @@ pub(super) struct Found {
     pub fallback: Option<Fallback>,
 }
 
-/// Heights of a picture of stored values.
+/// Heights of a picture of stored values; which way up they are is asked of the `whole` photograph, because a mean cell has its
+/// pattern's skewness and no shadows.
 pub(super) fn heights_of(
     picture: &Raster,
+    whole: &Raster,
     options: &PhotoOptions,
     progress: impl FnMut(f64),
 ) -> Result<Found, DesignError> {
     let mut found = match (options.method, options.light) {
-        (Some(Method::DarkIsDeep), _) => by_brightness(picture, None)?,
+        (Some(Method::DarkIsDeep), _) => by_brightness(picture, whole, None)?,
         (Some(method), told) => {
             let linear = picture.map(linear_light);
             let estimated = if told.is_none() { estimate_light(&linear) } else { None };
@@ -76,13 +78,13 @@ pub(super) fn heights_of(
             by_shading(&linear, method, light, told.is_some(), estimated.is_some(), progress)?
         }
         (None, Some(told)) if told.slant_rad() < LEAST_SLANT_RAD => {
-            by_brightness(picture, Some(Fallback::FrontalLight(told.slant_rad())))?
+            by_brightness(picture, whole, Some(Fallback::FrontalLight(told.slant_rad())))?
         }
         (None, Some(told)) => {
             let linear = picture.map(linear_light);
             by_shading(&linear, Method::Integrable(STEPS), told, true, false, progress)?
         }
-        (None, None) => by_what_is_found(picture, progress)?,
+        (None, None) => by_what_is_found(picture, whole, progress)?,
     };
     if options.bright_is_deep {
         found.shape.height_px = found.shape.height_px.map(|z| -z);
@@ -92,9 +94,13 @@ pub(super) fn heights_of(
 }
 
 /// With the light in the picture, if there is one and it makes sense.
-fn by_what_is_found(picture: &Raster, progress: impl FnMut(f64)) -> Result<Found, DesignError> {
+fn by_what_is_found(
+    picture: &Raster,
+    whole: &Raster,
+    progress: impl FnMut(f64),
+) -> Result<Found, DesignError> {
     let linear = picture.map(linear_light);
-    let Some(light) = estimate_light(&linear) else { return by_brightness(picture, None) };
+    let Some(light) = estimate_light(&linear) else { return by_brightness(picture, whole, None) };
     let found = by_shading(&linear, Method::Integrable(STEPS), light, false, true, progress)?;
     let (low, high) = found.shape.height_px.range();
     let relief = (high - low) / picture.width.min(picture.height) as f64;
@@ -106,12 +112,12 @@ fn by_what_is_found(picture: &Raster, progress: impl FnMut(f64)) -> Result<Found
     } else {
         return Ok(found);
     };
-    by_brightness(picture, Some(fallback))
+    by_brightness(picture, whole, Some(fallback))
 }
 
-fn by_brightness(picture: &Raster, fallback: Option<Fallback>) -> Result<Found, DesignError> {
+fn by_brightness(picture: &Raster, whole: &Raster, fallback: Option<Fallback>) -> Result<Found, DesignError> {
     let shape = shape_by(Method::DarkIsDeep, &contrast(picture), Light::OVERHEAD, |_| {})?;
-    Ok(Found { shape, sign: Sign::of_brightness(picture), light_was_found: false, fallback })
+    Ok(Found { shape, sign: Sign::of_brightness(whole), light_was_found: false, fallback })
 }
 
 fn by_shading(
