@@ -4,6 +4,7 @@ mod overview;
 mod report;
 mod scene;
 
+use super::object::ObjectOptions;
 use super::{bar, grey, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
@@ -64,6 +65,9 @@ pub struct Options {
     /// Also write scene_x1.toml, scene_x2.toml and scene_x4.toml
     #[arg(long)]
     pub variants: bool,
+    /// The object's file and size
+    #[command(flatten)]
+    pub object: ObjectOptions,
     /// Print one JSON object, the same as report.json
     #[arg(long)]
     pub json: bool,
@@ -93,7 +97,9 @@ fn light(text: &str) -> Result<Light, String> {
 /// When a photograph cannot be read or is too small, or the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let picture = grey(&options.photo)?;
-    let texel_m = options.width_m.map_or(TEXEL_M, |width_m| width_m / picture.width as f64);
+    options.object.check_destination()?;
+    let width_m = options.object.width_mm.map(|mm| 1e-3 * mm).or(options.width_m);
+    let texel_m = width_m.map_or(TEXEL_M, |width_m| width_m / picture.width as f64);
     let mut settings = PhotoOptions {
         light: options.light,
         method: options.method.map(|name| match name {
@@ -175,6 +181,9 @@ fn write(
     }
     text_file(&mut outputs, "stroke.jsonl", &scene::stroke(size_m))?;
     text_file(&mut outputs, "surface.modes.json", &scene::modes()?)?;
+    let heights_m = surface.displacement.map(|grey| grey * surface.relief_m);
+    options.object.write(&mut outputs, &heights_m, size.texel_m)?;
+    files.extend(options.object.stl.as_ref().map(|path| path.display().to_string()));
     files.push("report.json".to_owned());
     let report = Report::new(options, surface, size, start.elapsed().as_secs_f64(), files);
     let text = serde_json::to_string_pretty(&report)
@@ -210,6 +219,7 @@ mod tests {
             known_relief_m: None,
             exaggerate: 1.0,
             variants: true,
+            object: ObjectOptions::default(),
             json: false,
         };
         run(&options).unwrap();

@@ -1,6 +1,7 @@
 //! What `from-photo` reports: `report.json`, `--json` and the words for people.
 
 use super::Options;
+use crate::texture::object::SizeMm;
 use asperity_texture::from_photo::{DECIDED, PhotoSurface};
 use asperity_texture::shape_from_shading::Method;
 use serde::Serialize;
@@ -38,6 +39,9 @@ pub(super) struct Report {
     height_m: f64,
     relief_m: f64,
     micro_relief_m: f64,
+    /// The same in millimetres.
+    #[serde(flatten)]
+    size: SizeMm,
     /// Factor on the heights that contrast gives; may be passed again as `--calibration`.
     calibration: f64,
     method: &'static str,
@@ -83,6 +87,11 @@ impl Report {
     ) -> Self {
         let (width, height) = (surface.displacement.width, surface.displacement.height);
         let repetition = surface.repetition.as_ref();
+        let texel_mm = 1e3 * size.texel_m;
+        let [width_mm, height_mm] = [width, height].map(|n| n as f64 * texel_mm);
+        let size_mm = SizeMm { width_mm, height_mm, texel_mm, relief_mm: 1e3 * surface.relief_m };
+        let mut warnings: Vec<String> = surface.doubts.iter().map(ToString::to_string).collect();
+        warnings.extend(options.object.stl.as_ref().and(size_mm.warning()));
         Self {
             photo: options.photo.clone(),
             width,
@@ -93,6 +102,7 @@ impl Report {
             height_m: height as f64 * size.texel_m,
             relief_m: surface.relief_m,
             micro_relief_m: surface.micro_relief_m,
+            size: size_mm,
             calibration: size.calibration,
             method: match surface.shape.method {
                 Method::Integrable(_) => "integrable",
@@ -122,7 +132,7 @@ impl Report {
             roughness: surface.roughness.mean(),
             roughness_mean: surface.roughness.mean(),
             tileable: surface.tileable,
-            warnings: surface.doubts.iter().map(ToString::to_string).collect(),
+            warnings,
             seconds,
             files,
         }
