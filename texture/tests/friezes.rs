@@ -14,6 +14,9 @@ use asperity_texture::symmetry::{Frieze, FriezeGroup, find_frieze, find_lattice}
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
+/// Where a group carries a point of a band, in periods.
+type Image = fn(f64, f64) -> (f64, f64);
+
 /// A band of ornaments, turned by `turn`, on a quiet ground: blobs and their images under the group.
 fn band(group: FriezeGroup, period: f64, turn: f64, noise: f64, seed: u64) -> Raster {
     let mut rng = Rng::new(seed);
@@ -23,7 +26,7 @@ fn band(group: FriezeGroup, period: f64, turn: f64, noise: f64, seed: u64) -> Ra
             [rng.uniform(), 0.12 + 0.3 * rng.uniform(), side, [1.0, 0.6, -0.8][i]]
         })
         .collect();
-    let images: &[fn(f64, f64) -> (f64, f64)] = match group {
+    let images: &[Image] = match group {
         FriezeGroup::P1 => &[|u, v| (u, v)],
         FriezeGroup::P11g => &[|u, v| (u, v), |u, v| (u + 0.5, -v)],
         FriezeGroup::P1m1 => &[|u, v| (u, v), |u, v| (-u, v)],

@@ -48,8 +48,8 @@ fn the_velocity_is_that_of_the_uv() {
         let (position, velocity, normal) = round(f64::from(i + 1) * step);
         let after = path.clone().at(position, velocity, normal);
         if i % 997 == 0 && plane == path.plane() {
-            for k in 0..2 {
-                let measured = (after.uv[k] - before.uv[k]) * SIZE_M[k] / step;
+            for (k, size_m) in SIZE_M.into_iter().enumerate() {
+                let measured = (after.uv[k] - before.uv[k]) * size_m / step;
                 assert!((measured - before.velocity_m_s[k]).abs() < 1e-2, "{i}: {measured} {before:?}");
             }
         }

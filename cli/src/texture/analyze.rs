@@ -30,7 +30,7 @@ pub struct AnalyzeArgs {
     #[arg(long, value_enum, default_value_t = DistortionKind::Squared)]
     pub distortion: DistortionKind,
     /// Share of the median distortion up to which the document's method believes a minimum, 0–1
-    #[arg(long, default_value_t = 0.5)]
+    #[arg(long, default_value_t = 0.5, value_parser = share)]
     pub threshold: f64,
     /// Write what repeats, one cell or strip, as a 16-bit PNG (black to white: its lowest to its highest grey)
     #[arg(long, value_name = "FILE")]
@@ -72,16 +72,13 @@ impl AnalyzeArgs {
             }
         }
     }
+}
 
-    fn check(&self) -> Result<(), CliError> {
-        if self.threshold > 0.0 && self.threshold < 1.0 {
-            return Ok(());
-        }
-        Err(CliError::new(
-            "--threshold",
-            format!("is {}", self.threshold),
-            "give a share above 0 and below 1",
-        ))
+/// A share above 0 and below 1, as words.
+fn share(word: &str) -> Result<f64, String> {
+    match word.parse::<f64>() {
+        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
+        _ => Err("give a share above 0 and below 1".into()),
     }
 }
 
@@ -118,7 +115,6 @@ struct Pattern {
 /// # Errors
 /// When the picture cannot be read, is smaller than 64 × 64 or has no relief.
 pub fn run(arguments: &AnalyzeArgs) -> Result<(), CliError> {
-    arguments.check()?;
     let analysis = analyze(arguments)?;
     if arguments.json {
         output::say_json(&analysis)
@@ -322,8 +318,8 @@ mod tests {
             let off = (lattice.t1_px[0] - 16.0).hypot(lattice.t1_px[1]);
             assert!(off < 0.6 && (lattice.t2_px[1] - 20.0).abs() < 0.6, "{distortion}: {lattice:?}");
         }
-        let bad = Shell::parse_from(["analyze", "x.png", "--threshold", "1.5"]).arguments;
-        assert!(run(&bad).unwrap_err().to_string().contains("--threshold"));
+        let bad = Shell::try_parse_from(["analyze", "x.png", "--threshold", "1.5"]).unwrap_err();
+        assert!(bad.to_string().contains("above 0 and below 1"), "{bad}");
     }
 
     fn saved(picture: &Raster) -> (tempfile::TempDir, PathBuf) {
