@@ -203,7 +203,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
     let mut report = report(&render, watching);
     report.warnings = unread.iter().map(|place| told::read_past(place)).collect();
-    report.warnings.extend(told::warnings(&log, &render, &report));
+    report.warnings.extend(told::warnings(&file, &log, &render, &report));
     for sand in &render.sand {
         let Some((name, _)) = names.iter().find(|(_, id)| *id == sand.surface) else { continue };
         let raster = &sand.picture.raster;

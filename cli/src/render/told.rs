@@ -1,20 +1,23 @@
 //! What a render tells besides its files: what was refused, lost or clipped, and why a file is silence.
 
 use super::Report;
+use crate::scene_file::SceneFile;
 use asperity::SilentBecause;
 use asperity::contact_log::{ContactLog, LogEvent};
 use asperity::offline::Render;
 use std::collections::BTreeMap;
 
-/// Peaks below this are silence: −120 dB of full scale.
-const SILENCE: f32 = 1e-6;
+/// Audio peaks below this are silence: −120 dB of full scale.
+const SILENT: f32 = 1e-6;
+/// Haptic peaks below this are silence, m or m/s²: a hundredth of what a fingertip just feels.
+const UNFELT: f64 = 1e-9;
 
 /// One line each, with the key or field that mends it.
-pub fn warnings(log: &ContactLog, render: &Render, report: &Report) -> Vec<String> {
+pub fn warnings(file: &SceneFile, log: &ContactLog, render: &Render, report: &Report) -> Vec<String> {
     let lost = render.why_silent.iter().filter(|reason| reason.count() > 0);
     let mut told: Vec<String> = lost.map(|reason| in_words(reason, log, render)).collect();
     told.extend(clipped(report));
-    told.extend(silence(log, render, report));
+    told.extend(silence(file, log, render, report));
     told
 }
 
@@ -40,22 +43,23 @@ fn clipped(report: &Report) -> Vec<String> {
     told
 }
 
-fn silence(log: &ContactLog, render: &Render, report: &Report) -> Vec<String> {
+fn silence(file: &SceneFile, log: &ContactLog, render: &Render, report: &Report) -> Vec<String> {
     let mut told = Vec::new();
     let because = |but: &[SilentBecause], otherwise: &str| {
         let reasons = render.why_silent.iter().filter(|reason| !but.contains(reason));
         let words: Vec<String> = reasons.map(|reason| in_words(reason, log, render)).collect();
         if words.is_empty() { otherwise.to_owned() } else { words.join("; ") }
     };
-    if report.audio_peak < SILENCE {
+    if report.audio_peak < SILENT {
         let otherwise = "nothing was loud enough; raise gain under [audio], or press or strike harder";
         told.push(format!(
             "the audio is silence (peak {:.1e}): {}",
             report.audio_peak,
-            because(&[SilentBecause::NeverMoved], otherwise)
+            because(&[], otherwise)
         ));
     }
-    if report.haptic_peak.iter().all(|peak| *peak < SILENCE) {
+    let mut channels = report.haptic_peak.iter().zip(&file.actuators);
+    if channels.all(|(peak, actuator)| f64::from(*peak) * actuator.full_scale < UNFELT) {
         let begins = log.lines.iter().any(|line| matches!(line.event, LogEvent::Begin { .. }));
         let sounds_only = [SilentBecause::AudioGainZero, SilentBecause::NothingRings];
         let why = if begins {

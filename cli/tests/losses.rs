@@ -1,0 +1,142 @@
+//! Nothing is lost in silence: what a render refuses, loses or clips it says, with what mends it.
+
+mod support;
+
+use std::fmt::Write as _;
+use support::{MODES, Scene, TOML, assert_refused, impact, stroke, told};
+
+/// What a render of this log prints without `--json`; it succeeds, and says the same in `warnings`.
+fn said(toml: &str, log: &str) -> String {
+    let scene = Scene::new();
+    scene.write("scene.toml", toml);
+    scene.write("stroke.jsonl", log);
+    let (status, out, err) = told(&scene.render(&[]));
+    assert_eq!((status, err.as_str()), (0, ""), "{out}");
+    let told: Vec<&str> = out.lines().filter_map(|line| line.strip_prefix("warning: ")).collect();
+    let report = scene.report(&[]);
+    let warnings: Vec<&str> =
+        report["warnings"].as_array().unwrap().iter().filter_map(|w| w.as_str()).collect();
+    assert_eq!(told, warnings);
+    told.join("\n")
+}
+
+fn assert_says(said: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(said.contains(part), "{said:?}\nlacks\n{part}");
+    }
+}
+
+#[test]
+fn an_ordinary_render_warns_of_nothing() {
+    assert_eq!(said(TOML, &(stroke(1, 0.5) + &impact(0.55))), "");
+}
+
+#[test]
+fn refused_events_are_counted_with_the_first_of_them_and_its_field() {
+    let fast = stroke(1, 0.5).replace("[0.08,0.0]", "[200.0,0.0]");
+    let said = said(TOML, &fast);
+    assert_says(
+        &said,
+        &["30 of 31 events were refused, the first at t = 0 s", "velocity_m_s: 200 is refused; must be"],
+    );
+    assert_says(&said, &["the audio is silence", "every haptic channel is silence"]);
+}
+
+#[test]
+fn moves_under_another_number_are_told_with_the_contact_and_the_time() {
+    let log = stroke(1, 0.5).replace("\"move\",\"contact\":1", "\"move\",\"contact\":7");
+    assert_says(
+        &said(TOML, &log),
+        &["speak of a contact that is not there, the first of contact 7 at t = 0.0", "\"begin\""],
+    );
+}
+
+#[test]
+fn a_contact_that_is_never_ended_is_told_to_have_faded() {
+    let log: String = stroke(3, 0.2)
+        .lines()
+        .filter(|line| !line.contains("\"end\""))
+        .fold(String::new(), |log, line| log + line + "\n");
+    let toml = TOML.replace("tail_s = 0.2", "tail_s = 0.6");
+    assert_says(
+        &said(&toml, &log),
+        &["1 contacts faded", "for 0.25 s, the first contact 3 after t = 0.", "\"end\""],
+    );
+}
+
+#[test]
+fn voices_that_were_stolen_are_told() {
+    let mut log = String::new();
+    for contact in 0..70 {
+        writeln!(
+            log,
+            r#"{{"t":0.0,"event":"begin","contact":{contact},"surface":"plate","uv":[0.1,0.5],"velocity_m_s":[0.1,0.0],"normal_force_n":0.5}}"#
+        )
+        .unwrap();
+    }
+    assert_says(&said(TOML, &log), &["6 contacts were silenced because more than 64 sounded at once"]);
+}
+
+#[test]
+fn a_file_of_silence_is_explained() {
+    let mute = format!("{TOML}\n[audio]\ngain = 0.0\n");
+    assert_says(
+        &said(&mute, &stroke(1, 0.3)),
+        &["the audio is silence", "gain under [audio] is 0; raise it"],
+    );
+    let no_body = TOML.replace("body = \"bar\"\n", "");
+    assert_says(
+        &said(&no_body, &stroke(1, 0.3)),
+        &["the audio is silence", "write body = \"NAME\" in [[surface]]"],
+    );
+    assert_says(
+        &said(TOML, &impact(0.1)),
+        &["every haptic channel is silence", "no contact begins in the log"],
+    );
+    assert_says(&said(TOML, ""), &["the log holds no event"]);
+    let rests = r#"{"t":0.0,"event":"begin","contact":1,"surface":"plate","uv":[0.1,0.5],"velocity_m_s":[0,0],"normal_force_n":0.5}
+{"t":0.2,"event":"end","contact":1}
+"#;
+    assert_says(&said(TOML, rests), &["every haptic channel is silence", "no contact moved"]);
+}
+
+#[test]
+fn a_haptic_channel_beyond_full_scale_is_told_and_the_remedy_works() {
+    let loud = TOML.replace("full_scale = 1.0", "full_scale = 1e-8");
+    let log = stroke(1, 0.3);
+    assert_says(&said(&loud, &log), &["haptic channel 0 peaks at", "raise full_scale", "limit = true there"]);
+    let scene = Scene::new();
+    scene.write("scene.toml", loud.replace("1e-8", "1e-8\nlimit = true"));
+    scene.write("stroke.jsonl", log);
+    let report = scene.report(&[]);
+    let peak = report["haptic_peak"][0].as_f64().unwrap();
+    assert!(peak <= 1.0 && peak > 0.9, "{peak}");
+    assert!(report["warnings"].as_array().unwrap().is_empty(), "{report}");
+}
+
+#[test]
+fn a_key_that_the_log_does_not_know_is_refused_and_one_that_is_read_past_is_told() {
+    let scene = Scene::new();
+    scene.write("stroke.jsonl", stroke(1, 0.2).replacen("velocity_m_s", "velocity", 1));
+    assert_refused(
+        &scene.render(&[]),
+        &["stroke.jsonl:1: velocity", "unknown key of \"begin\"", "write velocity_m_s"],
+    );
+    let holder = stroke(1, 0.2).replacen("\"contact\":1,", "\"contact\":1,\"holder\":\"pen\",", 1);
+    assert_says(&said(TOML, &holder), &["stroke.jsonl:1: holder: is a key of the format"]);
+}
+
+#[test]
+fn a_recording_in_the_place_of_modes_is_answered_with_the_way_to_them() {
+    let scene = Scene::new();
+    scene.write("bar.modes.json", [b"RIFF\xff\xfe\x80".as_slice(), MODES.as_bytes()].concat());
+    assert_refused(&scene.render(&[]), &["bar.modes.json", "asperity fit"]);
+}
+
+#[test]
+fn sand_whose_cells_are_wider_than_the_tool_is_refused_with_the_cells_it_needs() {
+    let scene = Scene::new();
+    let sand = "sand = { cells = 16, tool_radius_m = 0.002 }\nwidth_m = 0.1";
+    scene.write("scene.toml", TOML.replace("width_m = 0.1", sand).replace("roughness = 0.7\n", ""));
+    assert_refused(&scene.render(&[]), &["sand: cells", "16 is refused", "must be at least 25"]);
+}
