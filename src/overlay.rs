@@ -81,13 +81,12 @@ impl Overlay {
         let mut places = [[Place::default(); 2]; MAX_BLOCK];
         let mut position_m = [[0.0; 2]; MAX_BLOCK];
         let mut meets = [false; 2];
-        for i in 0..n {
-            for axis in 0..2 {
-                let place = self.axes[axis].place(path.position_m[i][axis]);
-                meets[axis] |= place.weight > 0.0;
-                position_m[i][axis] = place.at_m;
-                places[i][axis] = place;
-            }
+        for (path_m, (places, position_m)) in
+            path.position_m.iter().zip(places.iter_mut().zip(&mut position_m)).take(n)
+        {
+            *places = [self.axes[0].place(path_m[0]), self.axes[1].place(path_m[1])];
+            *position_m = places.map(|place| place.at_m);
+            meets = [meets[0] || places[0].weight > 0.0, meets[1] || places[1].weight > 0.0];
         }
         if meets == [false; 2] {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
@@ -95,10 +94,10 @@ impl Overlay {
         }
         for copy in COPIES.into_iter().filter(|copy| (0..2).all(|axis| copy[axis] == 0 || meets[axis])) {
             for (position_m, places) in position_m[..n].iter_mut().zip(&places) {
-                for axis in 0..2 {
+                *position_m = [0, 1].map(|axis: usize| {
                     let back_m = if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 };
-                    position_m[axis] = places[axis].at_m - back_m;
-                }
+                    places[axis].at_m - back_m
+                });
             }
             let mut part_m = [0.0; MAX_BLOCK];
             let path = NoisePath { position_m: &position_m[..n], ..*path };

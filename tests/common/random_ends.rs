@@ -82,7 +82,7 @@ fn surface(rng: &mut Rng) -> Result<Surface, String> {
     let values = (0..n * n)
         .map(|i| match kind {
             0 => (i % n) as f64 / n as f64,
-            1 => 0.5 + 0.5 * (6.28 * (i % n) as f64 / n as f64).sin(),
+            1 => 0.5 + 0.5 * (std::f64::consts::TAU * (i % n) as f64 / n as f64).sin(),
             _ => rng.uniform(),
         })
         .collect();
@@ -109,7 +109,7 @@ pub fn outcome(seed: u64) -> Outcome {
         contact_stiffness_n_m: end(rng, 1.0, 1e9),
         leash_m: end(rng, 1e-6, 0.05),
     };
-    let probe = if rng.next_u32() % 2 == 0 { Probe::default() } else { probe };
+    let probe = if rng.next_u32().is_multiple_of(2) { Probe::default() } else { probe };
     let integrator =
         one_of(rng, &[Integrator::ExactEvent, Integrator::SemiImplicitEuler, Integrator::EnergyConserving]);
     let rate_hz = one_of(rng, &[8e3, 22_050.0, 44_100.0, 192e3]);

@@ -152,12 +152,12 @@ impl HeightField for Tiled {
                 self.source.sample(&PathBlock { position_m: &position_m[..n], ..*path }, &mut self.part);
                 &self.part
             };
-            for i in 0..n {
-                let (weight, slope) = share(&places[i], copy);
+            for (i, places) in places[..n].iter().enumerate() {
+                let (weight, slope) = share(places, copy);
                 out.height_m[i] += weight * part.height_m[i];
-                for axis in 0..2 {
-                    out.gradient[i][axis] += weight * part.gradient[i][axis] + slope[axis] * part.height_m[i];
-                }
+                let [u, v] = part.gradient[i];
+                out.gradient[i][0] += weight * u + slope[0] * part.height_m[i];
+                out.gradient[i][1] += weight * v + slope[1] * part.height_m[i];
                 out.roughness[i] += weight * part.roughness[i];
                 out.friction[i] += weight * part.friction[i];
                 out.compliance_m_n[i] += weight * part.compliance_m_n[i];
