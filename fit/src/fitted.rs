@@ -141,6 +141,9 @@ impl Fit {
         partials.retain(|p| p.moved(-(offset as f64)).c.norm() <= LARGEST_AMPLITUDE * peak(sound));
         let (low, high) = options.band_hz;
         partials.retain(|p| (low..=high).contains(&(p.omega * rate / (2.0 * PI))));
+        let strongest = partials.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
+        let least = strongest * 10.0_f64.powf(0.1 * options.least_level_db);
+        partials.retain(|p| p.energy(count) >= least);
         warnings.extend(suspicion::take_what_does_not_ring(&mut partials, count, rate));
         warnings.extend(suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
         let mut early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();

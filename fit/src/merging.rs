@@ -40,9 +40,14 @@ const HALVINGS: usize = 18;
 /// Merges what is one resonance in `signal`; says how many partials went.
 ///
 /// The closed form proposes; what decides is the squared residual after the merged partial and its
-/// neighbours have been refitted, which may rise by [`MERGED_LOSS`] of the resonance's energy.
-pub fn merge_resonances(signal: &[f64], partials: &mut Vec<Partial>, bounds: &Bounds) -> usize {
-    merge(signal, partials, bounds, MERGED_LOSS, LARGEST_GROUP, |_| true)
+/// neighbours have been refitted, which may rise by the part `most_lost` of the resonance's energy ([`MERGED_LOSS`] at most).
+pub fn merge_resonances(
+    signal: &[f64],
+    partials: &mut Vec<Partial>,
+    bounds: &Bounds,
+    most_lost: f64,
+) -> usize {
+    merge(signal, partials, bounds, most_lost, LARGEST_GROUP, |_| true)
 }
 
 /// Merges pairs of giants that all but cancel and are one mode to 50 dB, in any recording: below a noise of
@@ -247,7 +252,7 @@ mod tests {
             partial(1300.0, 3.0, 0.1, 0.0),
         ];
         let signal = synthesise(&partials, 88_200);
-        assert_eq!(merge_resonances(&signal, &mut partials, &Bounds::wide()), 2);
+        assert_eq!(merge_resonances(&signal, &mut partials, &Bounds::wide(), MERGED_LOSS), 2);
         let hz = partials[0].omega * RATE_HZ / (2.0 * std::f64::consts::PI);
         assert!((hz - 1254.45).abs() < 0.3, "{hz}");
     }
@@ -270,7 +275,11 @@ mod tests {
         for (gap_hz, level) in [(1.0, 1.0), (2.0, 0.3), (4.0, 0.2)] {
             let mut pair = vec![partial(700.0, 3.45, 1.0, 0.3), partial(700.0 + gap_hz, 3.45, level, 1.0)];
             let signal = synthesise(&pair, 88_200);
-            assert_eq!(merge_resonances(&signal, &mut pair, &Bounds::wide()), 0, "{gap_hz} Hz, {level}");
+            assert_eq!(
+                merge_resonances(&signal, &mut pair, &Bounds::wide(), MERGED_LOSS),
+                0,
+                "{gap_hz} Hz, {level}"
+            );
             pair[1].c = -level * pair[0].c;
             let signal = synthesise(&pair, 88_200);
             assert_eq!(merge_cancelling(&signal, &mut pair, &Bounds::wide()), 0, "{gap_hz} Hz, {level}");
@@ -281,7 +290,7 @@ mod tests {
     fn halves_of_one_mode_are_put_together_exactly() {
         let mut halves = vec![partial(500.0, 5.0, 0.4, 0.7), partial(500.0, 5.0, 0.6, 0.7)];
         let signal = synthesise(&halves, 44_100);
-        assert_eq!(merge_resonances(&signal, &mut halves, &Bounds::wide()), 1);
+        assert_eq!(merge_resonances(&signal, &mut halves, &Bounds::wide(), MERGED_LOSS), 1);
         assert!((halves[0].c - C::from_polar(1.0, 0.7)).norm() < 1e-6, "{halves:?}");
     }
 }

@@ -42,9 +42,9 @@ mod tests {
     #[test]
     fn a_quiet_partial_that_rings_long_is_kept_before_a_loud_one_of_the_attack() {
         let partial = |omega, delta, c| Partial { omega, delta, c: Complex::new(c, 0.0) };
-        let quiet = partial(0.3, 1e-4, 0.02);
+        let quiet = partial(0.3, 3e-5, 0.02);
         let mut partials = vec![
-            partial(0.1, 3e-5, 1.0),
+            partial(0.1, 2e-4, 1.0),
             partial(0.5, 2e-2, 0.5),
             partial(0.7, 1e-2, 0.4),
             partial(0.9, 3e-2, 0.6),

@@ -11,14 +11,15 @@
 //! more than noise, from the end of the contact on they do not. A push can pass for modes, too, that are over when it
 //! is; then it is believed if the fit without it needs a quarter fewer modes.
 
-use crate::analysis::{Analysis, analyse};
+use crate::analysis::{Analysis, analyse, subtract};
 use crate::contact::contact_samples;
 use crate::fitted::{Fit, Warning};
 use crate::limits::Limits;
 use crate::noise_floor::NoiseFloor;
 use crate::onset::{self, Strike};
+use crate::ranking::keep_heard;
 use crate::recording::{FEWEST_SAMPLES, Recording};
-use crate::refinement::Bounds;
+use crate::refinement::{Bounds, refine};
 use crate::sum_of_modes::may_be_sum_of_modes;
 use crate::tail_to_attack::analyse_from_the_tail;
 use std::f64::consts::PI;
@@ -38,6 +39,11 @@ const LOWEST_HZ: f64 = 20.0;
 /// A mode that falls by more nepers than this during the contact is not known at the onset: it is part of
 /// the attack.
 const BACK_NEPERS: f64 = 1.5;
+/// Most modes of a sum, whatever is to be kept of them, and steps of the refit of those kept.
+const MODES_OF_A_SUM: usize = 150;
+const LIMITED_STEPS: usize = 12;
+/// Nothing so far below the strongest mode's energy is looked for, dB.
+const FAINTEST_DB: f64 = -90.0;
 /// A mode that falls by this many nepers within the contact is over when that is; of as many modes as this part of them
 /// it may be that they are the push; and this part of them must be saved by a fit without it.
 const OVER_NEPERS: f64 = 1.0;
@@ -202,8 +208,8 @@ fn analysed_from_the_onset(
     if !may_be_sum_of_modes(sound, &limits) {
         return from_the_tail(progress);
     }
-    let whole = analyse(sound, &limits, progress);
-    if whole.capped {
+    let whole = analysed_as_sum(sound, &limits, progress);
+    if whole.capped && !whole.explained {
         return from_the_tail(progress);
     }
     let contact = contact(sound, recording);
@@ -215,13 +221,19 @@ fn analysed_from_the_onset(
     }
     if contact > 0 {
         let ringing = &sound[contact..];
-        let pushed = analyse(ringing, &self::limits(ringing, contact, recording, options), progress);
+        let pushed = analysed_as_sum(ringing, &self::limits(ringing, contact, recording, options), progress);
         let saves = pushed.partials.len() as f64 + part(modes) <= modes as f64;
         if pushed.explained && (saves || !whole.explained) {
             return (contact, pushed);
         }
     }
-    if whole.explained { (0, whole) } else { from_the_tail(progress) }
+    if whole.explained {
+        return (0, whole);
+    }
+    // Neither is right; the one that leaves less is nearer.
+    let (_, staged) = from_the_tail(progress);
+    let left = |analysis: &Analysis| analysis.residual.iter().map(|x| x * x).sum::<f64>();
+    (0, if left(&whole) < left(&staged) { whole } else { staged })
 }
 
 /// The modes of what follows the first `offset` samples of `sound`, whatever it is.
@@ -235,12 +247,27 @@ fn analysed(
     let segment = &sound[offset..];
     let limits = limits(segment, offset, recording, options);
     if may_be_sum_of_modes(segment, &limits) {
-        let whole = analyse(segment, &limits, progress);
+        let whole = analysed_as_sum(segment, &limits, progress);
         if whole.explained {
             return whole;
         }
     }
     analyse_from_the_tail(segment, &limits, progress)
+}
+
+/// As a sum of modes; of more than may be kept those are kept that are heard best, and refitted.
+fn analysed_as_sum(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
+    let most = limits.max_partials;
+    // A limit is one of what is kept: a sum of modes is recognised by all of them.
+    let all = Limits { max_partials: most.max(MODES_OF_A_SUM), ..*limits };
+    let mut sum = analyse(segment, &all, progress);
+    if sum.explained && sum.partials.len() > most {
+        keep_heard(&mut sum.partials, segment.len(), most, limits.rate_hz);
+        refine(segment, &mut sum.partials, &limits.bounds, LIMITED_STEPS);
+        sum.residual = subtract(segment, &sum.partials);
+        sum.capped = true;
+    }
+    sum
 }
 
 /// The analysed part, in samples of the recording.
@@ -348,7 +375,7 @@ fn limits(segment: &[f64], offset: usize, recording: &Recording, options: &FitOp
             energy_cost: 0.0,
         },
         max_partials: options.max_modes,
-        least_energy: 10.0_f64.powf(0.1 * options.least_level_db),
+        least_energy: 10.0_f64.powf(0.1 * options.least_level_db.min(FAINTEST_DB)),
         threads: match options.threads {
             0 => std::thread::available_parallelism().map_or(1, |n| n.get().min(8)),
             n => n,

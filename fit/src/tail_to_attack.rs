@@ -54,6 +54,13 @@ const PLAIN_STEPS: usize = 3;
 const LAST_STEPS: usize = 8;
 /// Rounds of merging or pruning.
 const ROUNDS: usize = 6;
+/// Part of a resonance's energy that its one mode may miss in a stage: 24 dB, so that all together miss less than 18.
+const MERGED_LOSS: f64 = 0.004;
+/// A later stage adds nothing within so many half widths of a strong partial of the tail (within so much of the strongest
+/// one's energy there) unless it falls so many times as fast, as the attack does.
+const HALF_WIDTHS: f64 = 3.0;
+const STRONG: f64 = 0.01;
+const OF_THE_ATTACK: f64 = 4.0;
 /// Cost of a partial's own energy in a stage, and at the end.
 const STAGE_ENERGY_COST: f64 = 1e-3;
 const ENERGY_COST: f64 = 1e-4;
@@ -77,14 +84,23 @@ pub fn analyse_from_the_tail(segment: &[f64], limits: &Limits, progress: &mut dy
             continue;
         }
         let residual = subtract(segment, &known);
-        let mut stage = Stage::new(&residual[start..], start, places, limits);
+        let mut stage = Stage::new(&residual[start..], start, places, limits, &tail);
         stage.run();
         capped |= stage.capped && start == 0;
         if i == 0 { &mut tail } else { &mut attack }.extend(stage.at_onset());
     }
     attack.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     let bounds = Bounds { energy_cost: ENERGY_COST, ..limits.bounds };
-    refine(&subtract(segment, &tail), &mut attack, &bounds, LAST_STEPS);
+    let target = subtract(segment, &tail);
+    let strong = strong(&tail, segment.len());
+    for _ in 0..ROUNDS {
+        refine(&target, &mut attack, &bounds, LAST_STEPS);
+        let before = attack.len();
+        attack.retain(|p| !is_second(p, &strong));
+        if attack.len() == before {
+            break;
+        }
+    }
     let mut partials = [tail, attack].concat();
     partials.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     let residual = subtract(segment, &partials);
@@ -99,18 +115,21 @@ struct Stage<'a> {
     start: usize,
     limits: Limits,
     places: usize,
+    /// Strong partials of the tail, which are one mode each already.
+    strong: Vec<Partial>,
     found: Vec<Partial>,
     capped: bool,
 }
 
 impl<'a> Stage<'a> {
-    fn new(target: &'a [f64], start: usize, places: usize, limits: &Limits) -> Self {
+    fn new(target: &'a [f64], start: usize, places: usize, limits: &Limits, tail: &[Partial]) -> Self {
         let mut limits = *limits;
         limits.bounds.energy_cost = STAGE_ENERGY_COST;
         if start > 0 {
             limits.bounds.delta_high = limits.bounds.delta_high.min(FASTER * BACK_NEPERS / start as f64);
         }
-        Self { target, start, limits, places, found: Vec::new(), capped: false }
+        let strong = strong(tail, target.len());
+        Self { target, start, limits, places, strong, found: Vec::new(), capped: false }
     }
 
     fn run(&mut self) {
@@ -125,7 +144,7 @@ impl<'a> Stage<'a> {
         self.leave_to_later_stages();
         // What is one resonance is one mode, and none is fainter than what all leave where it sounds.
         for _ in 0..ROUNDS {
-            let merged = merge_resonances(self.target, &mut self.found, &self.limits.bounds);
+            let merged = merge_resonances(self.target, &mut self.found, &self.limits.bounds, MERGED_LOSS);
             let residual = subtract(self.target, &self.found);
             let noise = NoiseFloor::by_time(&residual, self.limits.rate_hz, self.limits.least_noise);
             if prune(&mut self.found, &noise, self.target.len(), OVER_THE_REST) + merged == 0 {
@@ -136,8 +155,10 @@ impl<'a> Stage<'a> {
         self.leave_to_later_stages();
     }
 
-    /// Gives up what would grow by too much until the onset.
+    /// Gives up what would grow by too much until the onset, and second modes of what the tail has.
     fn leave_to_later_stages(&mut self) {
+        let strong = &self.strong;
+        self.found.retain(|p| !is_second(p, strong));
         if self.start > 0 {
             let slow = BACK_NEPERS / self.start as f64;
             self.found.retain(|p| p.delta <= slow);
@@ -176,4 +197,18 @@ impl<'a> Stage<'a> {
         let early = self.found.iter().map(|p| p.moved(-(self.start as f64)));
         early.filter(|p| p.c.norm() <= self.limits.bounds.amplitude_high).collect()
     }
+}
+
+/// The partials of the tail that no later stage may double.
+fn strong(tail: &[Partial], count: usize) -> Vec<Partial> {
+    let most = tail.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
+    tail.iter().filter(|p| p.energy(count) > STRONG * most).copied().collect()
+}
+
+/// Whether a partial is a second mode of a resonance that the tail has.
+fn is_second(partial: &Partial, strong: &[Partial]) -> bool {
+    strong.iter().any(|of| {
+        let near = (partial.omega - of.omega).abs() < HALF_WIDTHS * of.delta;
+        near && partial.delta < OF_THE_ATTACK * of.delta
+    })
 }

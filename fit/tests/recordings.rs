@@ -62,10 +62,34 @@ fn the_decay_of_a_vibraphone_bar_is_one_exponential() {
     // T60 2.05 s by the slope of its level; 2.0–2.3 s by least squares, by where one starts.
     let t60_s = strongest.mode().t60_s();
     assert!((1.9..2.4).contains(&t60_s), "{t60_s}");
-    // What lies within its bandwidth would split it; the attack's own is ten times as wide.
+    // What lies within its bandwidth would split it; the attack's own falls many times as fast.
+    let half_width_hz = strongest.decay_per_s / (2.0 * std::f64::consts::PI);
     for other in &fit.modes[1..] {
-        let gap_hz = (other.frequency_hz - strongest.frequency_hz).abs();
-        assert!(gap_hz > 2.0 && other.energy < 0.02 * strongest.energy, "{other:?}");
+        let near = (other.frequency_hz - strongest.frequency_hz).abs() < 3.0 * half_width_hz;
+        assert!(!near || other.decay_per_s > 3.0 * strongest.decay_per_s, "{other:?}");
+    }
+}
+
+#[test]
+fn what_the_engine_plays_is_no_louder_than_the_recording_and_what_is_told_of_it_is_true() {
+    // A contact of 5 ms was believed in that was not there, and the modes continued backwards by as much: the engine
+    // played a bang 11.7 dB over the recording's peak, which the residual hid.
+    for name in ["vcsl_xylo_medium_C5_ff.wav", "vibraphone_1255.513.wav"] {
+        let Some((recording, fit)) = fitted(name, 150) else { return };
+        assert!(fit.struck_peak_db < 3.0 && fit.start_offset_s == 0.0, "{name}: {} dB", fit.struck_peak_db);
+        assert!(fit.snr_from_onset_db > 15.0, "{name}: {} dB", fit.snr_from_onset_db);
+        // Residual and modes are the recording from the onset on, with nothing in between.
+        let rate = recording.sample_rate_hz;
+        let modes: Vec<Mode> = fit.modes.iter().map(FittedMode::mode).collect();
+        let played = render_fast(&modes, rate, 4410);
+        for (n, played) in played.iter().enumerate().skip(3) {
+            let at = fit.onset_sample + n;
+            let told = recording.samples[at] - fit.residual.samples[at];
+            assert!((told - played).abs() < 0.01, "{name}: {n} {told} {played}");
+        }
+        let longest_s = fit.modes.iter().map(|m| m.mode().t60_s()).fold(0.0, f64::max);
+        assert!(longest_s <= 20.01 * (fit.end_s - fit.onset_s), "{name}: {longest_s} s");
+        assert!(!fit.warnings.iter().any(|w| w.kind() == "mode limit") || fit.modes.len() >= 142, "{name}");
     }
 }
 

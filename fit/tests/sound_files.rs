@@ -1,0 +1,202 @@
+//! Sound files as recorders, editors and libraries write them, made here byte by byte: the same sound comes out of all,
+//! and what cannot be read is named in one line.
+
+use asperity_fit::{ChannelChoice, Recording, RecordingError, load};
+use std::path::PathBuf;
+
+const FRAMES: usize = 3000;
+
+/// Integers of 16 bits, two channels, the second one louder.
+fn sound() -> Vec<[i16; 2]> {
+    let at = |n: usize| {
+        let t = n as f64 / 44_100.0;
+        let x = (-30.0 * t).exp() * (2.0 * std::f64::consts::PI * 700.0 * t).sin();
+        [(9000.0 * x) as i16, (30_000.0 * x) as i16]
+    };
+    (0..FRAMES).map(at).collect()
+}
+
+fn chunk(name: &[u8; 4], bytes: &[u8]) -> Vec<u8> {
+    let mut out = name.to_vec();
+    out.extend((bytes.len() as u32).to_le_bytes());
+    out.extend(bytes);
+    out.resize(out.len() + bytes.len() % 2, 0);
+    out
+}
+
+fn format(tag: u16, bits: u16, frame_bytes: u16) -> Vec<u8> {
+    let mut out = tag.to_le_bytes().to_vec();
+    out.extend(2_u16.to_le_bytes());
+    out.extend(44_100_u32.to_le_bytes());
+    out.extend((44_100 * u32::from(frame_bytes)).to_le_bytes());
+    out.extend(frame_bytes.to_le_bytes());
+    out.extend(bits.to_le_bytes());
+    out
+}
+
+/// The extensible format of `tag`: so many valid bits in so many.
+fn extensible(tag: u16, valid: u16, bits: u16) -> Vec<u8> {
+    let mut out = format(0xfffe, bits, bits / 4);
+    out.extend(22_u16.to_le_bytes());
+    out.extend(valid.to_le_bytes());
+    out.extend(3_u32.to_le_bytes());
+    out.extend(tag.to_le_bytes());
+    out.extend([0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71]);
+    out
+}
+
+fn riff(name: &[u8; 4], chunks: &[Vec<u8>]) -> Vec<u8> {
+    let body = chunks.concat();
+    let mut out = name.to_vec();
+    out.extend((body.len() as u32 + 4).to_le_bytes());
+    out.extend(b"WAVE");
+    out.extend(body);
+    out
+}
+
+/// Every sample by `write`.
+fn data(write: impl Fn(i16) -> Vec<u8>) -> Vec<u8> {
+    sound().into_iter().flatten().flat_map(write).collect()
+}
+
+fn pcm16() -> Vec<u8> {
+    data(|x| x.to_le_bytes().to_vec())
+}
+
+/// Writes the bytes as a file and reads them again.
+fn read(name: &str, bytes: &[u8]) -> Result<Recording, RecordingError> {
+    let folder = std::env::temp_dir().join(format!("asperity-sound-files-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path: PathBuf = folder.join(name.replace(' ', "_"));
+    std::fs::write(&path, bytes).unwrap();
+    let recording = load(&path, ChannelChoice::Loudest);
+    std::fs::remove_file(path).unwrap();
+    recording
+}
+
+fn assert_same(name: &str, bytes: &[u8]) {
+    let recording = read(name, bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert_eq!((recording.samples.len(), recording.sample_rate_hz), (FRAMES, 44_100.0), "{name}");
+    assert!(!recording.truncated, "{name}");
+    for (read, [_, x]) in recording.samples.iter().zip(sound()) {
+        assert_eq!(*read, f64::from(x) / 32_768.0, "{name}");
+    }
+}
+
+#[test]
+fn wav_of_every_width_and_with_any_chunks_is_the_same_sound_to_the_bit() {
+    let plain = chunk(b"fmt ", &format(1, 16, 4));
+    let samples = chunk(b"data", &pcm16());
+    let wide = |bytes: usize| data(move |x| [vec![0; bytes - 2], x.to_le_bytes().to_vec()].concat());
+    let float32 = data(|x| (f32::from(x) / 32_768.0).to_le_bytes().to_vec());
+    let float64 = data(|x| (f64::from(x) / 32_768.0).to_le_bytes().to_vec());
+    assert_same("plain", &riff(b"RIFF", &[plain.clone(), samples.clone()]));
+    assert_same("24", &riff(b"RIFF", &[chunk(b"fmt ", &format(1, 24, 6)), chunk(b"data", &wide(3))]));
+    assert_same("32", &riff(b"RIFF", &[chunk(b"fmt ", &format(1, 32, 8)), chunk(b"data", &wide(4))]));
+    let in_32 = chunk(b"fmt ", &extensible(1, 24, 32));
+    assert_same("24 in 32", &riff(b"RIFF", &[in_32, chunk(b"data", &wide(4))]));
+    assert_same("f32", &riff(b"RIFF", &[chunk(b"fmt ", &format(3, 32, 8)), chunk(b"data", &float32)]));
+    assert_same("f64", &riff(b"RIFF", &[chunk(b"fmt ", &format(3, 64, 16)), chunk(b"data", &float64)]));
+    let extended = chunk(b"fmt ", &extensible(3, 64, 64));
+    assert_same("f64 extensible", &riff(b"RIFF", &[extended, chunk(b"data", &float64)]));
+    // What field recorders and editors put before and after the sound.
+    let list = chunk(b"LIST", b"abc");
+    let bext = chunk(b"bext", &[7; 605]);
+    assert_same(
+        "odd chunks",
+        &riff(b"RIFF", &[list.clone(), plain.clone(), bext, samples.clone(), list.clone()]),
+    );
+    // Sizes that are said elsewhere or not at all.
+    let mut unsaid = chunk(b"data", &pcm16());
+    unsaid[4..8].fill(0xff);
+    let mut sizes = u64::MAX.to_le_bytes().to_vec();
+    sizes.extend((pcm16().len() as u64).to_le_bytes());
+    sizes.extend((FRAMES as u64).to_le_bytes());
+    sizes.extend(0_u32.to_le_bytes());
+    let long = [chunk(b"ds64", &sizes), plain.clone(), unsaid.clone(), list];
+    assert_same("RF64", &riff(b"RF64", &long));
+    assert_same("BW64", &riff(b"BW64", &long));
+    assert_same("streamed", &riff(b"RIFF", &[plain.clone(), unsaid.clone()]));
+    unsaid[4..8].fill(0);
+    assert_same("no size", &riff(b"RIFF", &[plain, unsaid]));
+}
+
+/// One FLAC stream of verbatim blocks.
+fn flac() -> Vec<u8> {
+    let crc = |bytes: &[u8], width: u32, polynomial: u32| {
+        let top = 1_u32 << (width - 1);
+        bytes.iter().fold(0_u32, |crc, byte| {
+            (0..8).fold(crc ^ u32::from(*byte) << (width - 8), |crc, _| {
+                if crc & top != 0 { (crc << 1) ^ polynomial } else { crc << 1 }
+            }) & ((top << 1) - 1)
+        })
+    };
+    let block = 1000_u16;
+    let mut out = b"fLaC\x80\0\0\x22".to_vec();
+    out.extend([block.to_be_bytes(), block.to_be_bytes()].concat());
+    out.extend([0; 6]);
+    // 20 bits of rate, 3 of channels − 1, 5 of bits − 1, 36 of frames.
+    out.extend((44_100_u64 << 44 | 1 << 41 | 15 << 36 | FRAMES as u64).to_be_bytes());
+    out.extend([0; 16]);
+    for (number, frames) in sound().chunks(usize::from(block)).enumerate() {
+        let mut frame = vec![0xff, 0xf8, 0x70, 0x10, number as u8];
+        frame.extend((block - 1).to_be_bytes());
+        frame.push(crc(&frame, 8, 0x07) as u8);
+        for channel in 0..2 {
+            frame.push(0x02);
+            frame.extend(frames.iter().flat_map(|x| x[channel].to_be_bytes()));
+        }
+        let check = crc(&frame, 16, 0x8005) as u16;
+        frame.extend(check.to_be_bytes());
+        out.extend(frame);
+    }
+    out
+}
+
+#[test]
+fn flac_is_the_same_sound_to_the_bit() {
+    assert_same("flac", &flac());
+    let whole = read("flac", &flac()).unwrap();
+    assert_eq!(whole.quantum, 0.5_f64.powi(15));
+    // It breaks off within the third block.
+    let cut = read("cut flac", &flac()[..9000]).unwrap();
+    assert!(cut.truncated && cut.samples.len() == 2000, "{} {}", cut.truncated, cut.samples.len());
+}
+
+#[test]
+fn what_cannot_be_read_is_named_in_one_line() {
+    let plain = chunk(b"fmt ", &format(1, 16, 4));
+    let of = |format: Vec<u8>| riff(b"RIFF", &[chunk(b"fmt ", &format), chunk(b"data", &pcm16())]);
+    let mut own = extensible(1, 16, 16);
+    own[30] = 9;
+    let cases: [(&str, Vec<u8>, &str); 14] = [
+        ("mp3", [b"ID3\x04".to_vec(), vec![0; 99]].concat(), "MP3"),
+        ("aiff", b"FORM\0\0\0\x10AIFFCOMM".to_vec(), "AIFF"),
+        ("m4a", b"\0\0\0\x20ftypM4A \0\0\0\0".to_vec(), "MP4"),
+        ("caf", b"caff\0\x01\0\0desc".to_vec(), "CAF"),
+        ("text", b"this is no sound at all".to_vec(), "no header"),
+        ("zeros", vec![0; 400], "zeros"),
+        ("avi", b"RIFF\x10\0\0\0AVI LIST".to_vec(), "no WAVE"),
+        ("head", riff(b"RIFF", std::slice::from_ref(&plain))[..30].to_vec(), "ends within its header"),
+        ("no data", riff(b"RIFF", std::slice::from_ref(&plain)), "without a data chunk"),
+        ("no format", riff(b"RIFF", &[chunk(b"data", &pcm16())]), "before its format"),
+        ("adpcm", of(format(0x11, 4, 4)), "IMA ADPCM"),
+        ("own", of(own), "maker's own"),
+        ("frames", of(format(1, 16, 3)), "frames of 3 bytes"),
+        ("opus", b"OggS\0\x02\0\0\0\0\0\0\0\0\x01\0\0\0\0\0\0\0\0\0\0\0\x01\x13OpusHead\x01\x02\0\0\x80\xbb\0\0\0\0\0".to_vec(), "Ogg"),
+    ];
+    for (name, bytes, what) in cases {
+        let error = read(name, &bytes).unwrap_err().to_string();
+        assert!(
+            error.contains(what) && error.contains(&name.replace(' ', "_")) && !error.contains('\n'),
+            "{name}: {error}"
+        );
+    }
+}
+
+#[test]
+fn a_wav_file_that_breaks_off_is_a_recording_that_says_so() {
+    let file = riff(b"RIFF", &[chunk(b"fmt ", &format(1, 16, 4)), chunk(b"data", &pcm16())]);
+    let cut = read("cut", &file[..44 + 4 * 2000 + 1]).unwrap();
+    assert!(cut.truncated && cut.samples.len() == 2000, "{} {}", cut.truncated, cut.samples.len());
+}
