@@ -111,11 +111,16 @@ impl Level {
 
     /// The first grid, from here to coarser ones, of no more texels than [`SIDE`]²; how many steps away it is.
     pub fn of_moderate_size(&mut self) -> (&mut Self, usize) {
-        if texels_a_side(self.size) > SIDE && self.coarser.is_some() {
-            let (level, steps) = self.coarser.as_mut().expect("checked above").of_moderate_size();
-            return (level, steps + 1);
+        let steps = self.steps_to_moderate_size();
+        let level = (0..steps).fold(self, |level, _| level.coarser.as_mut().expect("steps were counted"));
+        (level, steps)
+    }
+
+    fn steps_to_moderate_size(&self) -> usize {
+        match &self.coarser {
+            Some(coarser) if texels_a_side(self.size) > SIDE => 1 + coarser.steps_to_moderate_size(),
+            _ => 0,
         }
-        (self, 0)
     }
 
     /// Moves `image`, to which `seam` is added for its heights, towards the reference, and returns the passes done on this grid.
