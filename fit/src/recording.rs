@@ -1,6 +1,6 @@
 //! One channel of a recording, in `f64`, with what its file says about its own faults.
 //!
-//! WAV, FLAC or Ogg ([`crate::sound_file`]), up to 64 channels, 1 kHz – 1 MHz. Long files are read
+//! WAV, FLAC or Ogg (`sound_file`), up to 64 channels, 1 kHz – 1 MHz. Long files are read
 //! in two passes, so that only the minute around the first strike is ever in memory.
 
 use crate::sound_file::{Refusal, SoundFile};
