@@ -7,7 +7,7 @@
 //! | symbol | here |
 //! |---|---|
 //! | P, n | mean power of a ring of waves of one length, and how many they are: what a ring has beyond three standard errors of noise is kept |
-//! | N_corner | mean power where both frequencies are above [`CORNER`]: a lens leaves nothing there, white noise is as strong as elsewhere |
+//! | N_corner | mean power where both frequencies are above `CORNER`: a lens leaves nothing there, white noise is as strong as elsewhere |
 //! | N_plateau | power of 4–8 texels where 8–16 texels have no more: JPEG takes noise out of the corner, not out of the middle |
 //! | N_step | an eighth bit's rounding |
 //! | N_most | [`MOST_NOISE`]: what is stronger is not a camera's, but a rough surface under a low light, which is white as well |
