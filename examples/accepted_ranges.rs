@@ -8,21 +8,18 @@
 #[path = "../tests/common/random_ends.rs"]
 mod random_ends;
 
-use random_ends::{Outcome, outcome};
+use random_ends::{Force, Outcome, outcome};
 
 fn main() {
     let count = std::env::args().nth(1).and_then(|count| count.parse().ok()).unwrap_or(10_000);
-    let (mut refused, mut broken, mut above, mut worst) = (0u64, 0u64, 0u64, (0.0, 0));
+    let (mut refused, mut broken, mut forces) = (0u64, 0u64, vec![]);
     for seed in 1..=count {
         match outcome(seed) {
             Outcome::Rendered(force) => {
-                above += u64::from(force > 1.0);
-                if force > 1.0 {
-                    println!("scene {seed}: {force:.3} times what is allowed");
+                if force.above > 1.0 {
+                    println!("scene {seed}: {force:.3?}");
                 }
-                if force > worst.0 {
-                    worst = (force, seed);
-                }
+                forces.push((seed, force));
             }
             Outcome::Refused(_) => refused += 1,
             Outcome::NotFinite => {
@@ -31,6 +28,16 @@ fn main() {
             }
         }
     }
-    println!("{count} scenes: {refused} refused, {broken} not finite, {above} above what is allowed");
-    println!("hardest: {:.3} times what is allowed, scene {}", worst.0, worst.1);
+    println!("{count} scenes: {refused} refused, {broken} not finite, {} rendered", forces.len());
+    let fingertips: Vec<_> = forces.iter().copied().filter(|(_, force)| force.fingertip).collect();
+    tell("every probe", &forces, |force| force.above);
+    tell("the fingertip", &fingertips, |force| force.above);
+    tell("every probe, landings added", &forces, |force| force.above_landing);
+}
+
+fn tell(of: &str, forces: &[(u64, Force)], above: impl Fn(&Force) -> f64) {
+    let count = forces.iter().filter(|(_, force)| above(force) > 1.0).count();
+    let hardest = forces.iter().max_by(|(_, a), (_, b)| above(a).total_cmp(&above(b)));
+    let Some((seed, force)) = hardest else { return };
+    println!("{of}: {count} above what is allowed; hardest {:.3} times, scene {seed}", above(force));
 }

@@ -8,7 +8,7 @@ pub const MAX_NORMAL_FORCE_N: f64 = 1e4;
 /// Farthest that the relief of a surface may lie from zero, m.
 pub const MAX_RELIEF_M: f64 = 10.0;
 /// Farthest that a height may lie from zero, m: the relief, what its interpolation overshoots by, and the overlay.
-/// Beyond, the guard of the contact holds heights at it.
+/// Beyond, the guard of the contact holds the last good height.
 pub const MAX_HEIGHT_M: f64 = 2.0 * MAX_RELIEF_M;
 /// Fastest tangential, closing or striking speed, m/s.
 pub const MAX_SPEED_M_S: f64 = 100.0;

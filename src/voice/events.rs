@@ -19,6 +19,9 @@ const SAME_TOUCH_M: f64 = 0.01;
 /// A force that is no touch, N: the weight of a tenth of a milligram.
 pub(crate) const EMPTY_FORCE_N: f64 = 1e-6;
 
+/// A contact force so many times what presses is a blow: no contact begins in the middle of one.
+const LEAD_IN_BLOW: f64 = 10.0;
+
 /// How far back a contact that appears is taken to have slid, s: what a 10 Hz high-pass remembers.
 const TREND_S: f64 = 0.025;
 
@@ -95,9 +98,18 @@ impl Voice {
         self.lay_behind(1, shared, scratch);
         self.profile(seat, shared, position, MAX_BLOCK, false, scratch);
         let (heights_m, forces_n) = (&scratch.surface.height_m, &scratch.force_n);
-        self.pad = shared.micro_contact.at_rest(heights_m[0], forces_n[0]);
+        // Finger and pad rise as the ground does on the whole: set off from rest they would still swing when they are heard.
+        let rise_m_s =
+            (heights_m[MAX_BLOCK - 1] - heights_m[0]) * shared.sample_rate_hz / (MAX_BLOCK - 1) as f64;
+        self.pad = shared.micro_contact.riding(heights_m[0], forces_n[0], rise_m_s);
         shared.micro_contact.run(&mut self.pad, heights_m, forces_n, &mut scratch.pad);
-        let PadSample { pad_m, pad_velocity_m_s, .. } = scratch.pad[MAX_BLOCK - 1];
+        let PadSample { pad_m, pad_velocity_m_s, contact_force_n, .. } = scratch.pad[MAX_BLOCK - 1];
+        let [height_m, force_n] = [heights_m, forces_n].map(|of| of[MAX_BLOCK - 1]);
+        if self.pad.resets() > 0 || contact_force_n > LEAD_IN_BLOW * force_n {
+            // What never was there cannot have thrown it.
+            let rise_m_s = (height_m - heights_m[MAX_BLOCK - 2]) * shared.sample_rate_hz;
+            self.pad = shared.micro_contact.riding(height_m, force_n, rise_m_s);
+        }
         self.feel = ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
     }
 

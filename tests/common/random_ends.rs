@@ -3,6 +3,10 @@
 //! A scene passes if everything it gives is finite and no contact force is higher than physics explains. With the
 //! pressed force F, the masses m and the ground's own acceleration a (second difference of the heights that the
 //! contact was given, at the contact's own rate), that is 10 F where m a < F, and 3 (F + m a) elsewhere.
+//!
+//! That leaves out what comes down again: a mass that left the ground lands at some speed v on the spring k of the
+//! contact, F = v √(k m), however long ago the ground threw it. A pad of 1 kg that 1 mN presses on 1e9 N/m does so
+//! with rights, so that each scene has a second figure: the same with that landing added.
 #![allow(dead_code)]
 
 use asperity::limits;
@@ -17,12 +21,23 @@ use asperity_texture::raster::Raster;
 /// What became of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// Rendered: the hardest force over what is allowed.
-    Rendered(f64),
+    /// Rendered.
+    Rendered(Force),
     /// Refused, with the message.
     Refused(String),
     /// Not finite.
     NotFinite,
+}
+
+/// The hardest contact force of a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Force {
+    /// Over what pressed force and ground explain.
+    pub above: f64,
+    /// The same with the hardest landing added to them.
+    pub above_landing: f64,
+    /// Whether the fingertip preset touched.
+    pub fingertip: bool,
 }
 
 /// An end of a range most of the time, something between at others.
@@ -40,14 +55,34 @@ fn one_of<T: Copy>(rng: &mut Rng, of: &[T]) -> T {
 
 struct Hardest {
     masses_kg: f64,
+    /// The contact's own rate.
     rate_hz: f64,
     heights_m: [f64; 2],
     rows: u32,
-    /// Pressed force and ground acceleration, held for a while, because a blow comes after its cause.
     pressed_n: f64,
     acceleration_m_s2: f64,
-    worst: f64,
+    contact_n: f64,
+    closing_m_s: f64,
     finite: bool,
+}
+
+impl Hardest {
+    /// Ground is judged over the whole scene: a contact is led in over ground
+    /// that lies before its first row, and a blow comes after its cause.
+    fn force(&self, probe: &Probe) -> Force {
+        let inertia_n = self.masses_kg * self.acceleration_m_s2;
+        let allowed_n = if inertia_n < self.pressed_n {
+            10.0 * self.pressed_n
+        } else {
+            3.0 * (self.pressed_n + inertia_n)
+        };
+        let landing_n = self.closing_m_s * (probe.contact_stiffness_n_m * self.masses_kg).sqrt();
+        Force {
+            above: self.contact_n / allowed_n.max(1e-9),
+            above_landing: self.contact_n / (allowed_n + landing_n).max(1e-9),
+            fingertip: *probe == Probe::default(),
+        }
+    }
 }
 
 impl Tap for Hardest {
@@ -61,13 +96,8 @@ impl Tap for Hardest {
                 self.acceleration_m_s2 = self.acceleration_m_s2.max(bend.abs());
             }
             self.pressed_n = self.pressed_n.max(row.normal_force_n);
-            let inertia_n = self.masses_kg * self.acceleration_m_s2;
-            let allowed_n = if inertia_n < self.pressed_n {
-                10.0 * self.pressed_n
-            } else {
-                3.0 * (self.pressed_n + inertia_n)
-            };
-            self.worst = self.worst.max(row.contact_force_n / allowed_n.max(1e-9));
+            self.contact_n = self.contact_n.max(row.contact_force_n);
+            self.closing_m_s = self.closing_m_s.max(row.onset.map_or(0.0, |onset| onset.closing_m_s));
             self.finite &=
                 row.contact_force_n.is_finite() && row.pad_m.is_finite() && row.finger_m.is_finite();
         }
@@ -124,6 +154,7 @@ pub fn outcome(seed: u64) -> Outcome {
         max_bodies: 1,
         ..Config::default()
     };
+    let inner_rate_hz = config.inner_rate_hz();
     let (mut scene, mut renderer) = match config.build() {
         Ok(halves) => halves,
         Err(error) => return Outcome::Refused(error.to_string()),
@@ -136,12 +167,13 @@ pub fn outcome(seed: u64) -> Outcome {
     let force_n = end(rng, 1e-3, limits::MAX_NORMAL_FORCE_N);
     let mut hardest = Hardest {
         masses_kg: probe.pad_mass_kg + probe.finger_mass_kg,
-        rate_hz,
+        rate_hz: inner_rate_hz,
         heights_m: [0.0; 2],
         rows: 0,
         pressed_n: 0.0,
         acceleration_m_s2: 0.0,
-        worst: 0.0,
+        contact_n: 0.0,
+        closing_m_s: 0.0,
         finite: true,
     };
     let (mut haptic, mut audio) = (vec![0.0; 256], vec![0.0; 256]);
@@ -167,5 +199,5 @@ pub fn outcome(seed: u64) -> Outcome {
             finite &= haptic.iter().chain(&audio).all(|x| x.is_finite());
         }
     }
-    if finite && hardest.finite { Outcome::Rendered(hardest.worst) } else { Outcome::NotFinite }
+    if finite && hardest.finite { Outcome::Rendered(hardest.force(&probe)) } else { Outcome::NotFinite }
 }

@@ -21,7 +21,7 @@
 //! The profile is linear over the step, the force the mean of both ends: no latency.
 
 use super::flow::Regime;
-use super::guard::{CleanBlock, rescue};
+use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
 use super::quad::Quad;
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 
@@ -67,7 +67,7 @@ impl EnergyConserving {
             let onset = if before >= 0.0 && after < 0.0 { Some(self.onset(before, after)) } else { None };
             y = Q::load(&self.free.push).times_plus(Q::splat(contact_force_n), free);
             let gap_m = y.first();
-            if !(gap_m <= design.leash_m && gap_m >= -design.max_penetration_m) {
+            if !(gap_m <= design.leash_m && gap_m >= -MAX_PENETRATION_M) {
                 let mut lost = y.array();
                 if rescue(design, &mut lost, gap_m, force_n) {
                     state.resets = state.resets.saturating_add(1);

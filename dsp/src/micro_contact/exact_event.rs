@@ -13,7 +13,7 @@
 //! latency; the force is the mean of both ends.
 
 use super::flow::{MAX_LEVEL, Regime};
-use super::guard::{CleanBlock, rescue};
+use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
 use super::quad::{Plain, Quad};
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 
@@ -97,7 +97,7 @@ impl ExactEvent {
             let momentum =
                 self.mass_rate[0] * (after[2] - before[2]) + self.mass_rate[1] * (after[3] - before[3]);
             let contact_force_n = if touched { at_least_zero(force + momentum) } else { 0.0 };
-            if !(y.first() <= design.leash_m && y.first() >= -design.max_penetration_m) {
+            if !(y.first() <= design.leash_m && y.first() >= -MAX_PENETRATION_M) {
                 let mut lost = after;
                 if rescue(design, &mut lost, after[0], f2) {
                     state.resets = state.resets.saturating_add(1);

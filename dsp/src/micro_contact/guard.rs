@@ -2,11 +2,10 @@
 //!
 //! | seen | done | counted |
 //! |---|---|---|
-//! | height or force not finite | the last good one is held | yes |
-//! | height or force beyond the [`limits`](crate::limits) | it stays at the limit | yes |
+//! | height or force not finite or beyond the [`limits`](crate::limits) | the last good one is held | yes |
 //! | force below zero | zero: a surface does not pull | no |
 //! | gap above the leash | upward velocities become zero | no |
-//! | gap or penetration absurd | the contact rests on the surface again | yes |
+//! | gap beyond 0.1 m, penetration beyond 20 mm and twice what the force presses in | the contact rests on the surface again | yes |
 //! | magnitudes below 1e-100 | zero, so that no denormal ever slows a kernel | no |
 
 use super::{ContactState, MicroContact};
@@ -16,6 +15,11 @@ pub(super) use crate::limits::{MAX_HEIGHT_M, MAX_NORMAL_FORCE_N as MAX_FORCE_N};
 pub(super) const GRID: usize = 64;
 /// Gap beyond which the contact has lost its surface, m.
 pub(super) const MAX_GAP_M: f64 = 0.1;
+/// Penetration beyond which the surface has swallowed the contact, m, on top of [`PRESSED_OVERSHOOT`] times what the
+/// pressing force explains.
+pub(super) const MAX_PENETRATION_M: f64 = 0.02;
+/// A force that sets in at once presses a spring in to twice its static depth.
+const PRESSED_OVERSHOOT: f64 = 2.0;
 /// Magnitudes below this are zero.
 pub(super) const VANISHING: f64 = 1e-100;
 
@@ -52,10 +56,10 @@ impl CleanBlock {
                 state.resets = state.resets.saturating_add(1);
             }
             if !is_height(height) {
-                *h = held(height, last_height, MAX_HEIGHT_M);
+                *h = last_height;
             }
             if !is_force(force) {
-                *f = held(force, last_force, MAX_FORCE_N).max(0.0);
+                *f = last_force;
             }
             (last_height, last_force) = (*h, *f);
         }
@@ -79,11 +83,6 @@ pub(super) fn is_force(force_n: f64) -> bool {
     force_n.abs() <= MAX_FORCE_N
 }
 
-/// The limit that a number lies beyond, and the last good one for what is no number.
-pub(super) fn held(value: f64, last: f64, limit: f64) -> f64 {
-    if value.is_finite() { value.clamp(-limit, limit) } else { last }
-}
-
 /// A height or force that a contact can start from.
 pub(super) fn start_or_zero(value: f64, good: bool, resets: &mut u32) -> f64 {
     if good {
@@ -93,18 +92,21 @@ pub(super) fn start_or_zero(value: f64, good: bool, resets: &mut u32) -> f64 {
     0.0
 }
 
-/// Called when the gap is outside −max penetration … leash: pulls the leash, or puts a lost contact
-/// back at rest on the surface. Returns whether it was lost.
+/// Called when the gap is outside −[`MAX_PENETRATION_M`] … leash: pulls the leash, leaves alone what the pressing force
+/// explains, or puts a lost contact back at rest on the surface. Returns whether it was lost.
 #[cold]
 #[inline(never)]
 pub(super) fn rescue(design: &MicroContact, y: &mut [f64; 4], gap_m: f64, force_n: f64) -> bool {
-    if gap_m <= MAX_GAP_M && gap_m >= -design.max_penetration_m {
+    let pressed_m = PRESSED_OVERSHOOT * force_n / design.probe.contact_stiffness_n_m;
+    if !(gap_m <= MAX_GAP_M && gap_m >= -MAX_PENETRATION_M - pressed_m) {
+        *y = design.resting(force_n);
+        return true;
+    }
+    if gap_m > design.leash_m {
         y[2] = y[2].min(0.0);
         y[3] = y[3].min(0.0);
-        return false;
     }
-    *y = design.resting(force_n);
-    true
+    false
 }
 
 /// Zero in place of what has decayed beyond any meaning.

@@ -134,7 +134,7 @@ impl EulerLanes<'_> {
         force_n: &[Lanes],
         out: &mut [LaneRow],
     ) {
-        let (low, high) = (-self.design.max_penetration_m, self.design.leash_m);
+        let (low, high) = (-guard::MAX_PENETRATION_M, self.design.leash_m);
         let (mut a, mut b) = gather::<Q>(states);
         for ((row, height_m), force_n) in out.iter_mut().zip(height_m).zip(force_n) {
             let (mut height, mut force) = (*height_m, *force_n);
@@ -198,7 +198,7 @@ impl EulerLanes<'_> {
     fn rescue(&self, states: &mut [ContactState; LANES]) {
         for state in states {
             let carried = state.y[0];
-            if carried <= self.design.leash_m && carried >= -self.design.max_penetration_m {
+            if carried <= self.design.leash_m && carried >= -guard::MAX_PENETRATION_M {
                 continue;
             }
             if guard::rescue(self.design, &mut state.y, carried, state.forces_n[1]) {
@@ -246,10 +246,10 @@ fn repaired(
     for (i, state) in states.iter_mut().enumerate() {
         let (good_height, good_force) = (guard::is_height(height_m[i]), guard::is_force(force_n[i]));
         if !good_height {
-            heights[i] = guard::held(height_m[i], last_height_m[i], guard::MAX_HEIGHT_M);
+            heights[i] = last_height_m[i];
         }
         if !good_force {
-            forces[i] = guard::held(force_n[i], last_force_n[i], guard::MAX_FORCE_N).max(0.0);
+            forces[i] = last_force_n[i];
         }
         if !(good_height && good_force) {
             state.resets = state.resets.saturating_add(1);

@@ -78,7 +78,6 @@ pub struct MicroContact {
     choice: Choice,
     step_s: f64,
     leash_m: f64,
-    max_penetration_m: f64,
     scheme: Scheme,
 }
 
@@ -108,8 +107,7 @@ impl MicroContact {
             Integrator::ExactEvent => Scheme::ExactEvent(ExactEvent::new(probe, step_s)),
             Integrator::EnergyConserving => Scheme::EnergyConserving(EnergyConserving::new(probe, step_s)),
         };
-        let max_penetration_m = 0.02 + 2.0 * guard::MAX_FORCE_N / probe.contact_stiffness_n_m;
-        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, max_penetration_m, scheme })
+        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme })
     }
 
     /// The probe it was designed for.
@@ -152,6 +150,23 @@ impl MicroContact {
         let force_n = force_n.max(0.0);
         let mut state = ContactState::new(self.resting(force_n), height_m, force_n);
         state.resets = resets;
+        state
+    }
+
+    /// [`Self::at_rest`] on ground that rises at `velocity_m_s` and did so before: finger and pad rise with it. A velocity
+    /// that is no number, or crosses all heights there are within a sample, is zero.
+    #[must_use]
+    pub fn riding(&self, height_m: f64, normal_force_n: f64, velocity_m_s: f64) -> ContactState {
+        let mut state = self.at_rest(height_m, normal_force_n);
+        let believed = guard::is_height(velocity_m_s * self.step_s);
+        let speed = if believed { velocity_m_s } else { 0.0 };
+        let drift = speed * self.step_s;
+        if let Scheme::SemiImplicit(scheme) = &self.scheme {
+            state.y[0] += drift / scheme.substeps as f64;
+        }
+        (state.y[2], state.y[3]) = (speed, speed);
+        let height_m = state.heights_m[2];
+        state.heights_m = [height_m - 2.0 * drift, height_m - drift, height_m];
         state
     }
 

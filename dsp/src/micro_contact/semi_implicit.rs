@@ -11,7 +11,7 @@
 //! chain from one contact force to the next. A row's positions and force hold at the row's time; its
 //! velocity is the mean of the two half-step velocities around it.
 
-use super::guard::{CleanBlock, rescue};
+use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
 use super::quad::Quad;
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 
@@ -115,7 +115,7 @@ impl SemiImplicit {
                 }
             }
             let carried = y.first();
-            if !(carried <= design.leash_m && carried >= -design.max_penetration_m) {
+            if !(carried <= design.leash_m && carried >= -MAX_PENETRATION_M) {
                 let mut lost = y.array();
                 if rescue(design, &mut lost, carried, force_n) {
                     gap = lost[0];
