@@ -174,3 +174,24 @@ fn a_finger_that_landed_settles_and_says_so() {
         }
     }
 }
+
+#[test]
+fn a_finger_that_rides_on_rising_ground_goes_on_without_a_blow() {
+    for integrator in Integrator::ALL {
+        for velocity_m_s in [-0.3, 0.02, 0.3] {
+            let design = MicroContact::new(&Probe::default(), integrator, 44_100.0).unwrap();
+            let mut state = design.riding(1e-3, 0.5, velocity_m_s);
+            let heights: Vec<f64> =
+                (1..=2000).map(|n| 1e-3 + velocity_m_s * f64::from(n) / 44_100.0).collect();
+            let mut rows = vec![ContactSample::default(); heights.len()];
+            design.run(&mut state, &heights, &[0.5; 2000], &mut rows);
+            for row in &rows {
+                assert!((row.contact_force_n - 0.5).abs() < 1e-6, "{integrator:?} {velocity_m_s}: {row:?}");
+                assert!((row.pad_velocity_m_s - velocity_m_s).abs() < 1e-6, "{integrator:?}: {row:?}");
+            }
+            // What is no velocity is none.
+            assert_eq!(design.riding(1e-3, 0.5, f64::NAN), design.at_rest(1e-3, 0.5));
+            assert_eq!(design.riding(1e-3, 0.5, 1e300), design.at_rest(1e-3, 0.5));
+        }
+    }
+}
