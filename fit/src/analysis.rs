@@ -87,9 +87,12 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
         return Analysis::nothing(segment, work.noise);
     }
     work.passes(progress);
+    // Steep noise leaves more than a smooth floor until it is followed.
+    if !work.capped {
+        work.follow_tilt();
+    }
     let mut explained = !work.capped && !work.leaves_more_than_noise();
     if explained {
-        work.follow_tilt();
         work.settle(LAST_STEPS);
         for _ in 0..MERGING_ROUNDS {
             if merge_cancelling(segment, &mut work.partials, &work.limits.bounds) == 0 {
@@ -155,9 +158,12 @@ impl Work<'_> {
     }
 
     /// Whether the residual, within the band looked at, is more than what the quiet end of the segment has
-    /// of noise.
+    /// of noise. Steep noise that goes on as it began is noise, too, although no smooth floor explains it.
     fn leaves_more_than_noise(&self) -> bool {
         let residual = subtract(self.segment, &self.partials);
+        if is_steep_noise(&residual, self.limits.rate_hz, self.limits.least_noise) {
+            return false;
+        }
         let quiet = NoiseFloor::estimate(&residual, self.limits.rate_hz, self.limits.least_noise);
         let spectrum = energy_spectrum(&residual);
         let omega = |k: usize| PI * k as f64 / spectrum.len() as f64;

@@ -34,25 +34,8 @@
 //! | [`table`] | modes ↔ CSV, and other programs' tables |
 //! | [`partial`], [`geometric_sum`], [`projection`], [`normal_equations`] | the damped sinusoid, its sums, its passes over samples, its least squares |
 //!
-//! Real recordings (the test corpus), at most 60 modes against as many peaks of a short-time spectrum; resynthesis
-//! SNR from the onset on, dB, the contact included (`cargo run --release -p asperity-fit --example recordings`):
-//!
-//! | recording | peaks | modes kept | fit |
-//! |---|---|---|---|
-//! | `glockenspiel_2096.57` | 8.6 | 15 | 14.9 |
-//! | `js30_metal-ping-1` | 0.8 | 55 | 13.2 |
-//! | `kenney_impactBell_heavy_000` | 1.6 | 42 | 25.2 |
-//! | `kenney_impactGlass_light_000` | 15.5 | 24 | 29.1 |
-//! | `kenney_impactMetal_light_000` | 16.2 | 18 | 27.5 |
-//! | `sonicpi_perc_bell` | 0.1 | 49 | 21.7 |
-//! | `vcsl_Agogo_High_v1_rr1_Mid` | 2.6 | 43 | 8.8 |
-//! | `vcsl_Agogo_High_v2_rr1_Mid` | 0.8 | 44 | 8.1 |
-//! | `vcsl_Agogo_High_v3_rr1_Mid` | 3.5 | 53 | 9.5 |
-//! | `vcsl_Claves1_Hit_v3_rr1_Mid` | 1.6 | 35 | 7.2 |
-//! | `vcsl_wood_click_ff` | 0.5 | 42 | 15.2 |
-//! | `vcsl_xylo_medium_C5_ff` | 9.7 | 28 | 14.8 |
-//! | `vcsl_xylo_medium_C5_pp` | 10.3 | 36 | 11.4 |
-//! | `vibraphone_1255.513` | 13.8 | 16 | 15.9 |
+//! On real recordings: `cargo run --release -p asperity-fit --example recordings` (60 modes against as many peaks of a
+//! short-time spectrum) and `--example struck` (as the engine plays them).
 
 pub mod amplitudes;
 pub mod analysis;

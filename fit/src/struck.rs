@@ -14,7 +14,7 @@ use crate::partial::Partial;
 use crate::projection::synthesise;
 
 /// Samples in which the kernel is heard.
-const KERNEL: usize = 3;
+pub(crate) const KERNEL: usize = 3;
 
 /// `count` samples of the struck body from the strike on; amplitudes of `partials` stand at the strike.
 #[must_use]

@@ -9,7 +9,6 @@
 //! | 1–3 | 0.2, 0.05, 0.012 | 1.5 nepers | 45 % of those left |
 //! | 4 | 0 | – | the rest |
 //!
-//! A mode is continued back to the onset, where the engine strikes it, and grows by at most the nepers of the table.
 //! A mode is continued back to the onset, where the engine strikes it, and grows by at most the nepers of the table. What
 //! falls faster is fitted along with the others, up to three times as fast, so that it does not bend them; but its place is
 //! in a later stage, and it is given up before this one ends.
@@ -19,8 +18,8 @@
 //! becomes one mode ([`crate::merging`]). At the end all but the first stage's, which are the tail, are refitted
 //! together, their energy at a small cost, so that pairs do not grow against each other where nothing is an exponential.
 //!
-//! Measured on the corpus and in [`mod@crate::strike`]'s way, against one fit of everything: late partials absent 6 of 23 for 14,
-//! signal to error 12–45 dB for 4–13.
+//! Struck by the engine, against the former single fit of everything (14 recordings): late partials absent 8 of 56 for 19,
+//! signal to error from the onset 20.9 dB for 13.8 (median).
 
 use crate::amplitudes::fit_amplitudes;
 use crate::analysis::{Analysis, subtract};

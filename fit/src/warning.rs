@@ -61,13 +61,6 @@ pub enum Warning {
         /// Frequency of the strongest.
         frequency_hz: f64,
     },
-    /// What lies below the lowest partial that is proven, left out of the modes.
-    Rumble {
-        /// How many modes.
-        count: usize,
-        /// The lowest proven partial.
-        below_hz: f64,
-    },
     /// Strong modes whose decay no exponential describes.
     NotExponential {
         /// How many.
@@ -111,7 +104,6 @@ impl Warning {
             Self::Undamped { .. } => "undamped",
             Self::Steady { .. } => "steady tone",
             Self::Hum { .. } => "hum",
-            Self::Rumble { .. } => "rumble",
             Self::NotExponential { .. } => "not exponential",
             Self::PoorFit { .. } => "poor fit",
             Self::Offset { .. } => "constant offset",
@@ -128,7 +120,6 @@ impl Warning {
             Self::Undamped { count, .. }
             | Self::Steady { count, .. }
             | Self::Hum { count, .. }
-            | Self::Rumble { count, .. }
             | Self::NotExponential { count, .. }
             | Self::Cancelling { count, .. } => *count,
             _ => 1,
@@ -200,12 +191,6 @@ impl fmt::Display for Warning {
                 f,
                 "{} of the mains left out, the strongest at {frequency_hz:.1} Hz; look for the loop",
                 counted(*count, "tone")
-            ),
-            Self::Rumble { count, below_hz } => write!(
-                f,
-                "{} left out below {below_hz:.0} Hz, the lowest partial that is proven; --from-hz \
-                 moves the limit",
-                counted(*count, "mode")
             ),
             Self::NotExponential { count, frequency_hz, left_db } => write!(
                 f,

@@ -46,8 +46,8 @@ fn against_peaks(name: &str) -> Option<(f64, f64)> {
 /// The quick ones; `examples/recordings` prints all.
 #[test]
 fn sixty_modes_explain_more_than_sixty_spectral_peaks() {
-    // The glass is a fifth of a second of soft codec: its stages leave 1.5 dB less than the peaks, not 13 as one fit of
-    // everything did.
+    // The glass is a fifth of a second of soft codec: its stages explain 1.5 dB more than the peaks, not 13 as one fit
+    // of everything did.
     for (name, more_db) in [
         ("kenney_impactGlass_light_000.wav", 1.0),
         ("kenney_impactMetal_light_000.wav", 3.0),

@@ -23,7 +23,7 @@ pub struct Report {
     pub start_offset_s: f64,
     /// Recording over residual from where the modes were fitted, dB.
     pub resynthesis_snr_db: f64,
-    /// The same from the onset on, dB.
+    /// Recording over what the struck body leaves of it, from the onset on, dB.
     pub snr_from_onset_db: f64,
     /// The same within half an octave of the modes, dB: without rumble and hiss.
     pub snr_in_band_db: f64,
@@ -55,7 +55,7 @@ impl Report {
             onset_s: fit.onset_s,
             start_offset_s: fit.start_offset_s,
             resynthesis_snr_db: fit.resynthesis_snr_db,
-            snr_from_onset_db: fit.snr_from_onset_db,
+            snr_from_onset_db: fit.struck_snr_db,
             snr_in_band_db: fit.snr_in_band_db,
             struck_peak_db: fit.struck_peak_db,
             noise_floor_db: fit.noise_floor_db,
