@@ -349,9 +349,11 @@ fn options_that_make_no_sense_are_refused() {
         &["compare", "a.png", "a.png", "--relief-m", "-1"],
         &["from-normals", "a.png", "-o", "o.png", "--green", "sideways"],
         &["from-normals", "a.png", "-o", "o.png", "--width-m", "inf"],
+        &["from-normals", "a.png", "-o", "o.png", "--width-m", "0.04", "--width-mm", "50"],
         &["from-photo", "a.png", "-o", "o", "--light", "0,0,-1"],
         &["from-photo", "a.png", "-o", "o", "--light", "1,2"],
         &["from-photo", "a.png", "-o", "o", "--exaggerate", "0"],
+        &["from-photo", "a.png", "-o", "o", "--width-m", "0.04", "--width-mm", "50"],
     ] {
         let (status, out, err) = told(&run(usage));
         assert_eq!((status, out.as_str()), (2, ""), "{usage:?}: {err}");

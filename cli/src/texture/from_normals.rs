@@ -31,7 +31,7 @@ pub struct Options {
     #[arg(long)]
     pub keep_tilt: bool,
     /// What the map's width is on the surface, m: adds relief_m to the report
-    #[arg(long, value_name = "M", value_parser = positive)]
+    #[arg(long, value_name = "M", value_parser = positive, conflicts_with = "width_mm")]
     pub width_m: Option<f64>,
     /// The object's file and size
     #[command(flatten)]

@@ -45,7 +45,7 @@ pub struct Options {
     #[arg(long)]
     pub bright_is_deep: bool,
     /// What the photograph's width is on the surface, m [default: 40 mm a 256 texels]
-    #[arg(long, value_name = "M", value_parser = positive)]
+    #[arg(long, value_name = "M", value_parser = positive, conflicts_with = "width_mm")]
     pub width_m: Option<f64>,
     /// Height from the lowest to the highest point, m [default: what contrast gives]
     #[arg(long, value_name = "M", value_parser = positive)]

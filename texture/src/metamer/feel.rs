@@ -156,7 +156,7 @@ impl Feel {
             return made;
         }
         let start = self.start(original, seam, made.borrowed);
-        self.try_out(start, seam, task, made.borrowed)
+        self.settle_unless_near(start, seam, task, made.borrowed)
     }
 
     /// Shares to borrow and how to go on from there.
@@ -181,16 +181,29 @@ impl Feel {
 
     /// As [`Self::settle`], unless a start that has borrowed is near enough as it is: of a pattern of few heights passes would
     /// only take it away.
-    fn try_out(&mut self, start: Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
-        let mean = self.mean_of(&start);
-        if borrowed > 0.0 && mean <= self.goal() {
-            return Made { image: start, mean, passes: 0, borrowed };
+    fn settle_unless_near(
+        &mut self,
+        start: Raster,
+        seam: Option<&Raster>,
+        task: Task,
+        borrowed: f64,
+    ) -> Made {
+        if borrowed > 0.0 {
+            let mean = self.mean_of(&start);
+            if mean <= self.goal() {
+                return Made { image: start, mean, passes: 0, borrowed };
+            }
         }
-        let made = self.settle(start, seam, task, borrowed);
+        self.settle(start, seam, task, borrowed)
+    }
+
+    /// The same, and how near it came.
+    fn try_out(&mut self, start: Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
+        let made = self.settle_unless_near(start, seam, task, borrowed);
         Made { mean: self.mean_of(&made.image), ..made }
     }
 
-    /// The same on a coarser grid.
+    /// The passes on a coarser grid, and how near they came.
     fn try_coarsely(&mut self, start: &Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
         let (level, _) = self.level.of_moderate_size();
         let mut image = on_grid(start, Borders::Periodic, level.size);
