@@ -144,12 +144,9 @@ fn asperity_model(folder: &Path, name: &str) -> asperity::ModalModel {
 fn a_fitted_body_struck_by_the_engine_and_fitted_again_is_the_same_body() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    std::fs::copy(
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/tile_strike.wav"),
-        folder.join("tile.wav"),
-    )
-    .unwrap();
-    fit(folder, &["tile.wav", "-o", "tile.modes.json", "--max-modes", "32"]);
+    // A body whose modes stand apart: in the demo's tile, whose room is fitted along, they crowd and trade places.
+    recording(folder, "tile.wav");
+    fit(folder, &["tile.wav", "-o", "tile.modes.json"]);
     let scene =
         "contacts = \"hit.jsonl\"\ntail_s = 1.5\n[[body]]\nname = \"tile\"\nmodes = \"tile.modes.json\"\n";
     std::fs::write(folder.join("scene.toml"), scene).unwrap();
@@ -159,11 +156,12 @@ fn a_fitted_body_struck_by_the_engine_and_fitted_again_is_the_same_body() {
     assert_eq!((status, err.as_str()), (0, ""));
     fit(folder, &["take.audio.wav", "-o", "again.modes.json"]);
     let (first, again) = (modes(folder, "tile.modes.json"), modes(folder, "again.modes.json"));
-    assert!(first.len() >= 10, "{}", first.len());
+    assert_eq!(first.len(), BODY.len());
+    // As near as the first fit is to the body: the engine's pulse is longer than the impulse that a fit assumes.
     for [hz, decay, _] in first {
         let found = nearest(&again, hz);
-        assert!((found[0] / hz - 1.0).abs() < 1e-5, "{hz} Hz came back as {}", found[0]);
-        assert!((found[1] / decay - 1.0).abs() < 0.01, "{hz} Hz: {decay}/s came back as {}", found[1]);
+        assert!((found[0] / hz - 1.0).abs() < 1e-4, "{hz} Hz came back as {}", found[0]);
+        assert!((found[1] / decay - 1.0).abs() < 0.02, "{hz} Hz: {decay}/s came back as {}", found[1]);
     }
 }
 

@@ -136,6 +136,9 @@ fn of_two_strikes_the_one_that_rings_longer_alone_is_fitted_unless_another_is_as
     assert!(error.contains("strike 3 is not there") && error.contains("2 (0.680 s)"), "{error}");
 }
 
+/// Puts something before the strike.
+type Strikes<'a> = &'a dyn Fn(&mut Vec<f64>);
+
 #[test]
 fn a_soft_strike_noise_or_hum_before_the_real_one_is_not_taken_for_it() {
     let onset = 22_050;
@@ -144,7 +147,7 @@ fn a_soft_strike_noise_or_hum_before_the_real_one_is_not_taken_for_it() {
         samples[at..].iter_mut().zip(ringing).for_each(|(x, y)| *x += level * y);
     };
     let hum = |n: usize| 0.05 * (2.0 * std::f64::consts::PI * 50.0 * n as f64 / RATE_HZ).sin();
-    let cases: [(&str, &dyn Fn(&mut Vec<f64>)); 5] = [
+    let cases: [(&str, Strikes); 5] = [
         ("soft first", &|x| strike(0.3, 6000, x)),
         ("noise from the first sample", &|x| *x = noisy(std::mem::take(x), 0.03, 3)),
         ("hum", &|x| x.iter_mut().enumerate().for_each(|(n, x)| *x += hum(n))),
