@@ -22,6 +22,8 @@ use std::path::{Path, PathBuf};
 /// Modes kept of the shipped recording: enough for a tile, found in a few seconds.
 const FIT_MODES: usize = 32;
 
+/// The body fitted to that recording.
+const TILE_MODES: &str = "tile.modes.json";
 /// The recording that the demo fits: synthetic, a tile in a room with noise.
 const TILE_STRIKE: &[u8] = include_bytes!("../../assets/tile_strike.wav");
 
@@ -43,31 +45,26 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let scenes = scenes::scenes();
     write_inputs(folder, &scenes)?;
     let mut progress = Progress::new("rendering", 1 + scenes.len() as u64);
-    let fitted = fit::fit(&fit::Options {
-        plot: Some(folder.join("tile.fit.svg")),
-        resynthesis: Some(folder.join("tile.resynthesis.wav")),
-        max_modes: FIT_MODES,
-        ..fit::Options::plain(folder.join("tile_strike.wav"), folder.join("tile.modes.json"))
+    // The fit takes longest; scenes that do not need its body are rendered beside it.
+    let (with_tile, others): (Vec<usize>, Vec<usize>) =
+        (0..scenes.len()).partition(|&index| scenes[index].toml.contains(TILE_MODES));
+    let mut reports: Vec<Option<render::Report>> = scenes.iter().map(|_| None).collect();
+    let mut render_all = |indices: &[usize]| -> Result<(), CliError> {
+        for &index in indices {
+            reports[index] = Some(render_scene(folder, scenes[index].name)?);
+            progress.advance(1);
+        }
+        Ok(())
+    };
+    let fitted = std::thread::scope(|scope| {
+        let fitting = scope.spawn(|| fit_tile(folder));
+        let rendered = render_all(&others);
+        let fitted = fitting.join().unwrap_or_else(|payload| std::panic::resume_unwind(payload));
+        rendered.and(fitted)
     })?;
+    render_all(&with_tile)?;
+    let reports: Vec<render::Report> = reports.into_iter().flatten().collect();
     progress.advance(1);
-    let mut reports = Vec::new();
-    for scene in &scenes {
-        let report = render::render(&render::Options {
-            scene: folder.join(format!("{}.toml", scene.name)),
-            output: folder.join(scene.name),
-            rate: None,
-            block: 256,
-            seed: None,
-            integrator: None,
-            path: None,
-            trace: false,
-            force: false,
-            plot: true,
-            json: false,
-        })?;
-        reports.push(report);
-        progress.advance(1);
-    }
     drop(progress);
     let mut outputs = Outputs::new();
     outputs.write(&folder.join("index.html"), index::html(&scenes, &reports, &fitted).as_bytes())?;
@@ -75,6 +72,31 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     outputs.commit()?;
     output::say(&index::summary(folder, &scenes, &reports, &fitted));
     Ok(())
+}
+
+fn fit_tile(folder: &Path) -> Result<fit::Report, CliError> {
+    fit::fit(&fit::Options {
+        plot: Some(folder.join("tile.fit.svg")),
+        resynthesis: Some(folder.join("tile.resynthesis.wav")),
+        max_modes: FIT_MODES,
+        ..fit::Options::plain(folder.join("tile_strike.wav"), folder.join(TILE_MODES))
+    })
+}
+
+fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
+    render::render(&render::Options {
+        scene: folder.join(format!("{name}.toml")),
+        output: folder.join(name),
+        rate: None,
+        block: 256,
+        seed: None,
+        integrator: None,
+        path: None,
+        trace: false,
+        force: false,
+        plot: true,
+        json: false,
+    })
 }
 
 /// Scenes, logs, maps and modes.
