@@ -10,8 +10,8 @@
 use asperity::texture::height_map::HeightMap;
 use asperity::texture::raster::Raster;
 use asperity::{
-    Actuator, AudioSettings, BodyId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent,
-    Impact, Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
+    Actuator, AudioBus, BodyId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent, Impact,
+    Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
 };
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -23,12 +23,13 @@ const STEP: Duration = Duration::from_micros(16_667);
 
 fn main() -> Result<(), Box<dyn Error>> {
     // 1. Build the engine. LIVE ties game time to the audio clock; ask the device for its rate first.
-    let audio = AudioSettings { limit: true, ..AudioSettings::default() }; // a sound card clips at ±1
-    let config = Config { clock: ClockMode::LIVE, sample_rate_hz: rate_hz(), audio, ..Config::default() };
+    let audio = AudioBus { limit: true, ..AudioBus::default() }; // a sound card clips at ±1
+    let config =
+        Config { clock: ClockMode::LIVE, sample_rate_hz: rate_hz(), audio: vec![audio], ..Config::default() };
     let asperity::Engine { mut scene, renderer, .. } = config.build()?;
 
     // 2. Say what can be touched, and what rings when it is.
-    let tile = scene.add_body_of(tile()?, Material::CERAMIC)?;
+    let tile = scene.add_body(asperity::Body::new(tile()?).of(Material::CERAMIC))?;
     let plate = scene.add_surface(grooves()?.on(tile))?; // or Surface::from_maps("disp.png", "rough.png", …)
 
     // 3. Hand the audio half to the sound card.

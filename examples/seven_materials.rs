@@ -82,7 +82,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!(
             "{name:12} haptic {:6.2} µm rms, audio {:.1e} rms, picture stretched {stretch:5.1} times",
             1e6 * rms(&take.haptic[0]),
-            rms(&take.audio)
+            rms(&take.audio[0])
         );
         panels.push((name, forces.means_n()));
     }

@@ -14,7 +14,7 @@ mod surfaces;
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::texture::sand::{SandDesign, SandSource, Tool};
-use asperity::{ActuatorSettings, AudioSettings, Config, Surface};
+use asperity::{ActuatorSettings, AudioBus, Config, Surface};
 use std::collections::HashMap;
 use std::error::Error;
 use surfaces::{Forces, Hand};
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let config = Config {
         sample_rate_hz: RATE_HZ,
         actuators: vec![ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() }],
-        audio: AudioSettings { gain: 20.0, ..AudioSettings::default() },
+        audio: vec![AudioBus { gain: 20.0, ..AudioBus::default() }],
         ..Config::default()
     };
     let asperity::Engine { mut scene, renderer, .. } = config.build()?;

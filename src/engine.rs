@@ -40,7 +40,7 @@ impl Config {
     pub fn build(self) -> Result<Engine, ConfigError> {
         self.check()?;
         let micro_contact = MicroContact::new(&self.probe, self.integrator, self.inner_rate_hz())?;
-        let counters = Arc::new(Counters::default());
+        let counters = Arc::new(Counters::new(self.audio.len()));
         let (to_audio, from_game) = ring::channel(self.queue_capacity);
         // Every resource that can be alive, and as many that are being replaced.
         let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies));

@@ -35,14 +35,15 @@ pub use game::silence::SilentBecause;
 pub use link::stats::Stats;
 pub use model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
 pub use model::bad_value::BadValue;
-pub use model::bus::AudioSettings;
+pub use model::body::Body;
+pub use model::bus::{AudioBus, BusLevels, MAX_BUSES};
 pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
 pub use model::error::{AddError, ConfigError, Refusal, ReportError};
 pub use model::event::{
-    Actuator, BodyId, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
-    SurfaceId,
+    Actuator, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
 };
+pub use model::id::{BodyId, SurfaceId};
 pub use model::material::Material;
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};

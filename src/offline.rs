@@ -8,9 +8,10 @@ use crate::game::scene::Scene;
 use crate::game::silence::SilentBecause;
 use crate::link::stats::Stats;
 use crate::model::error::ReportError;
-use crate::model::event::SurfaceId;
+use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
 use asperity_texture::sand::{SandFigures, SandPicture};
+use std::borrow::Cow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -34,8 +35,8 @@ impl Default for Options {
 pub struct Render {
     /// Rate of every channel, Hz.
     pub sample_rate_hz: f64,
-    /// The mono audio bus.
-    pub audio: Vec<f32>,
+    /// One channel an audio bus, in order.
+    pub audio: Vec<Vec<f32>>,
     /// One channel an actuator, in order.
     pub haptic: Vec<Vec<f32>>,
     /// What happened.
@@ -115,7 +116,7 @@ struct Take {
     block_frames: usize,
     /// One past the last sample to render, the latency included.
     end: u64,
-    audio: Vec<f32>,
+    audio: Vec<Vec<f32>>,
     haptic: Vec<Vec<f32>>,
     processing: Duration,
     first_refused: Option<(f64, ReportError)>,
@@ -129,7 +130,7 @@ impl Take {
             scene,
             block_frames,
             end: total as u64,
-            audio: vec![0.0; total],
+            audio: vec![vec![0.0; total]; renderer.audio_buses()],
             haptic,
             processing: Duration::ZERO,
             first_refused: None,
@@ -160,15 +161,15 @@ impl Take {
         let at = self.renderer.position() as usize;
         let range = at..at + frames;
         let mut haptic: Vec<_> = self.haptic.iter_mut().map(|channel| &mut channel[range.clone()]).collect();
-        let audio = &mut self.audio[range];
+        let mut audio: Vec<_> = self.audio.iter_mut().map(|bus| &mut bus[range.clone()]).collect();
         let began = Instant::now();
-        self.renderer.render_tapped(&mut haptic, &mut [audio], tap);
+        self.renderer.render_tapped(&mut haptic, &mut audio, tap);
         self.processing += began.elapsed();
     }
 
     fn finish(mut self) -> Render {
         let latency = self.renderer.latency_samples();
-        for channel in self.haptic.iter_mut().chain([&mut self.audio]) {
+        for channel in self.haptic.iter_mut().chain(&mut self.audio) {
             channel.drain(..latency);
         }
         let sand = self.renderer.finish_sand().into_iter();
@@ -189,7 +190,19 @@ impl Render {
     /// Duration, s.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
-        self.audio.len() as f64 / self.sample_rate_hz
+        self.audio.first().map_or(0, Vec::len) as f64 / self.sample_rate_hz
+    }
+
+    /// The sum of all buses: what a single one would have carried, but for limiters.
+    #[must_use]
+    pub fn mix(&self) -> Cow<'_, [f32]> {
+        match self.audio.as_slice() {
+            [only] => Cow::Borrowed(only),
+            buses => {
+                let frames = buses.first().map_or(0, Vec::len);
+                Cow::Owned((0..frames).map(|i| buses.iter().map(|bus| bus[i]).sum()).collect())
+            }
+        }
     }
 
     /// Seconds of signal per second of signal processing.
@@ -198,12 +211,13 @@ impl Render {
         self.duration_s() / self.processing.as_secs_f64().max(1e-9)
     }
 
-    /// Writes the audio bus as a mono 32-bit float WAV file.
+    /// Writes the audio buses as one 32-bit float WAV file, a channel a bus.
     ///
     /// # Errors
     /// When the file cannot be written.
     pub fn write_audio_wav(&self, path: impl AsRef<Path>) -> Result<(), hound::Error> {
-        write_wav(path.as_ref(), &[&self.audio], self.sample_rate_hz)
+        let channels: Vec<_> = self.audio.iter().map(Vec::as_slice).collect();
+        write_wav(path.as_ref(), &channels, self.sample_rate_hz)
     }
 
     /// Writes the haptic channels as one 32-bit float WAV file, in the order of the actuators.

@@ -30,7 +30,7 @@ fn difference_db(make: &dyn Fn() -> Surface, speed_m_s: f64, force_n: f64) -> [f
         let apart: Vec<f32> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         20.0 * (rms(&apart) / rms(a)).max(1e-12).log10()
     };
-    [db(&one.haptic[0], &other.haptic[0]), db(&one.audio, &other.audio)]
+    [db(&one.haptic[0], &other.haptic[0]), db(&one.audio[0], &other.audio[0])]
 }
 
 fn solid(material: SolidMaterial) -> Surface {

@@ -54,7 +54,7 @@ fn a_contact_that_flickers_goes_on_as_if_nothing_had_been() {
         let flicker = take(&flickering(gap_s, 0.05, 0.0));
         assert_eq!(flicker.stats.debounced, 1, "{gap_s} s");
         for (name, x, reference) in
-            [("felt", &flicker.haptic[0], &whole.haptic[0]), ("heard", &flicker.audio, &whole.audio)]
+            [("felt", &flicker.haptic[0], &whole.haptic[0]), ("heard", &flicker.audio[0], &whole.audio[0])]
         {
             let range = 15_000..35_000;
             let step = largest_step(&x[range.clone()]) / peak(reference);
@@ -63,7 +63,7 @@ fn a_contact_that_flickers_goes_on_as_if_nothing_had_been() {
             // No second landing: never louder than the stroke itself.
             assert!(peak(&x[range.clone()]) <= 1.05 * peak(&reference[range]), "{name} after {gap_s} s");
         }
-        let energy = rms(&flicker.audio) / rms(&whole.audio);
+        let energy = rms(&flicker.audio[0]) / rms(&whole.audio[0]);
         assert!((0.8..=1.02).contains(&energy), "{energy}");
     }
 }
@@ -74,6 +74,6 @@ fn a_landing_elsewhere_or_later_is_a_landing() {
         let landed = take(&flickering(gap_s, 0.05, uv_off));
         assert_eq!(landed.stats.debounced, 0);
         let whole = take(&stroke(SIDE_M, 0.1, 0.6, 1.0));
-        assert!(peak(&landed.audio) > 2.0 * peak(&whole.audio), "a landing at 5 cm/s is heard");
+        assert!(peak(&landed.audio[0]) > 2.0 * peak(&whole.audio[0]), "a landing at 5 cm/s is heard");
     }
 }

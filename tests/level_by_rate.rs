@@ -41,7 +41,7 @@ fn levels(case: &Case, rate_hz: f64) -> (f64, f64, u64) {
         let log = stroke(SIDE_M, case.speed_m_s, case.force_n, 0.4);
         let take = offline::render(scene, renderer, &log, &names, &Options::default()).unwrap();
         let db = |x: &[f32]| 20.0 * rms(x).log10() / SEEDS as f64;
-        heard_db += db(&take.audio);
+        heard_db += db(&take.audio[0]);
         felt_db += db(&take.haptic[0]);
         collisions += take.stats.micro_collisions / SEEDS;
     }

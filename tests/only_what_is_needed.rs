@@ -30,7 +30,10 @@ fn strike(config: Config, model: ModalModel, position: usize) -> Vec<f32> {
     let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), surfaces: HashMap::new() };
     let line = r#"{"t":0.01,"event":"impact","body":"b","speed_m_s":0.5,"mass_kg":0.002,"radius_m":0.002,"striker":"steel","position":"#;
     let log = ContactLog::parse(&format!("{line}{position}}}"), "log").unwrap();
-    offline::render(scene, renderer, &log, &names, &Options { block_frames: 256, tail_s: 0.5 }).unwrap().audio
+    offline::render(scene, renderer, &log, &names, &Options { block_frames: 256, tail_s: 0.5 })
+        .unwrap()
+        .audio
+        .swap_remove(0)
 }
 
 /// Energy of the difference over the energy of the reference, dB.
@@ -251,8 +254,11 @@ fn a_hiccup_of_the_host_costs_neither_sound_nor_contacts() {
 fn culling_does_not_touch_what_a_stroke_sounds_like() {
     let log = stroke(SIDE_M, 0.1, 0.5, 0.3);
     let options = Options { block_frames: 256, tail_s: 0.2 };
-    let with =
-        |culling| common::render(Config { culling, ..Config::default() }, plate(0.8), &log, &options).audio;
+    let with = |culling| {
+        common::render(Config { culling, ..Config::default() }, plate(0.8), &log, &options)
+            .audio
+            .swap_remove(0)
+    };
     assert!(
         error_db(&with(Some(Culling::NEGLIGIBLE)), &with(None)) < -100.0
             || with(None) == with(Some(Culling::NEGLIGIBLE))

@@ -34,7 +34,7 @@ fn an_impact_is_equally_loud_at_every_rate() {
             ..Names::default()
         };
         let take = offline::render(scene, renderer, &log, &names, &Options::default()).unwrap();
-        rms(&take.audio)
+        rms(&take.audio[0])
     };
     let reference = level(44_100.0);
     assert!(reference > 1e-3);
@@ -50,7 +50,7 @@ fn stroke_levels_db(wavelength_m: f64, amplitude_m: f64) -> Vec<(f64, f64, f64)>
     let log = stroke(width_m, 0.1, 0.7, 0.5);
     let levels = |rate| {
         let take = render(config(rate), grating(wavelength_m, amplitude_m), &log, &Options::default());
-        (rms(&take.haptic[0]), rms(&take.audio))
+        (rms(&take.haptic[0]), rms(&take.audio[0]))
     };
     let (felt, heard) = levels(44_100.0);
     assert!(felt > 0.0 && heard > 0.0);

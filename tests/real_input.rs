@@ -83,7 +83,7 @@ fn every_map_under_a_real_stroke_is_finite_felt_and_heard() {
         let log = trajectories::strokes(&strokes, "s", [side_m; 2], false);
         let surface = surface(&corpus, file, channel, side_m, relief_m);
         let take = render(si_config(), surface, &log, &Options { tail_s: 0.2, ..Options::default() });
-        let (felt, heard) = (&take.haptic[0], &take.audio);
+        let (felt, heard) = (&take.haptic[0], &take.audio[0]);
         assert!(felt.iter().chain(heard).all(|x| x.is_finite()), "{file}");
         assert_eq!((take.stats.refused, take.stats.quarantined), (0, 0), "{file}");
         // Ten times the threshold of touch at its most sensitive, and 100 dB below full scale.
@@ -200,7 +200,7 @@ fn nothing_clicks_where_a_pen_lifts() {
         let part = &x[(from * take.sample_rate_hz) as usize..(to * take.sample_rate_hz) as usize];
         part.windows(3).map(|w| f64::from(w[0] - 2.0 * w[1] + w[2]).abs()).fold(0.0, f64::max)
     };
-    for (name, x) in [("felt", &take.haptic[0]), ("heard", &take.audio)] {
+    for (name, x) in [("felt", &take.haptic[0]), ("heard", &take.audio[0])] {
         let (during, lift) = (roughest(x, 0.1, end_s - 0.1), roughest(x, end_s - 0.001, end_s + 0.05));
         assert!(lift <= during + 1e-3 * peak(x), "{name}: {lift} at the lift, {during} during the stroke");
     }
@@ -238,10 +238,10 @@ fn published_modes_ring_in_tune_and_tossed_cubes_strike_them() {
             offline::render(scene, renderer, log, &names, &Options::default()).unwrap()
         };
         let tossed = ring(&toss);
-        assert!(tossed.audio.iter().all(|x| x.is_finite()) && rms(&tossed.audio) > 1e-4, "{name}");
+        assert!(tossed.audio[0].iter().all(|x| x.is_finite()) && rms(&tossed.audio[0]) > 1e-4, "{name}");
         let take = ring(&ball);
         if let Some(mode) = loudest {
-            let at = |hz| common::tone_amplitude(&take.audio, hz, take.sample_rate_hz);
+            let at = |hz| common::tone_amplitude(&take.audio[0], hz, take.sample_rate_hz);
             let (on, off) = (at(mode.frequency_hz), at(0.5 * lowest_hz));
             assert!(on > 3.0 * off, "{name}: {on} at {} Hz, {off} below it", mode.frequency_hz);
         }

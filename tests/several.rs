@@ -40,17 +40,16 @@ fn together(a: &ContactLog, b: &ContactLog) -> ContactLog {
 
 fn assert_adds_up(a: &ContactLog, b: &ContactLog) {
     let (first, second, both) = (take(a), take(b), take(&together(a, b)));
-    let worst = both
-        .audio
+    let worst = both.audio[0]
         .iter()
-        .zip(first.audio.iter().zip(&second.audio))
+        .zip(first.audio[0].iter().zip(&second.audio[0]))
         .map(|(both, (first, second))| f64::from((both - (first + second)).abs()))
         .fold(0.0, f64::max);
-    assert!(peak(&first.audio) > 0.0 && peak(&second.audio) > 0.0);
+    assert!(peak(&first.audio[0]) > 0.0 && peak(&second.audio[0]) > 0.0);
     // The bank runs in f32, and modes fall asleep at an absolute level, each about −120 dB of full scale,
     // later when both fingers keep them awake.
-    assert!(worst <= 2e-5 + 1e-5 * peak(&both.audio), "{worst} of {}", peak(&both.audio));
-    assert!(worst <= 0.1 * peak(&both.audio), "{worst} of {}", peak(&both.audio));
+    assert!(worst <= 2e-5 + 1e-5 * peak(&both.audio[0]), "{worst} of {}", peak(&both.audio[0]));
+    assert!(worst <= 0.1 * peak(&both.audio[0]), "{worst} of {}", peak(&both.audio[0]));
     assert!(both.haptic[0] == first.haptic[0], "the first finger's actuator feels the second finger");
     assert!(both.haptic[1] == second.haptic[1], "the second finger's actuator feels the first finger");
     assert_eq!(peak(&first.haptic[1]), 0.0);

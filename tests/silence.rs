@@ -11,17 +11,17 @@ fn a_resting_finger_gives_exactly_zero() {
     let log = stroke(SIDE_M, 0.0, 0.7, 3.0);
     let take = render(si_config(), plate(1.0), &log, &Options::default());
     assert_eq!(peak(&take.haptic[0]), 0.0);
-    assert_eq!(peak(&take.audio), 0.0);
+    assert_eq!(peak(&take.audio[0]), 0.0);
 }
 
 #[test]
 fn after_a_stroke_everything_becomes_exactly_zero() {
     let log = stroke(SIDE_M, 0.1, 0.7, 0.5);
     let take = render(si_config(), plate(1.0), &log, &Options { tail_s: 4.0, ..Options::default() });
-    let tail = take.audio.len() - 1000;
-    assert!(peak(&take.haptic[0]) > 0.0 && peak(&take.audio) > 0.0);
+    let tail = take.audio[0].len() - 1000;
+    assert!(peak(&take.haptic[0]) > 0.0 && peak(&take.audio[0]) > 0.0);
     assert_eq!(peak(&take.haptic[0][tail..]), 0.0);
-    assert_eq!(peak(&take.audio[tail..]), 0.0);
+    assert_eq!(peak(&take.audio[0][tail..]), 0.0);
 }
 
 /// Energy in the second difference, which a click raises and a smooth fade does not.
@@ -33,7 +33,7 @@ fn roughest(x: &[f32]) -> f64 {
 fn begin_and_end_are_no_rougher_than_the_stroke_itself() {
     let log = stroke(SIDE_M, 0.1, 0.7, 0.6);
     let take = render(si_config(), grating(2e-3, 5e-5), &log, &Options::default());
-    for (name, x) in [("haptic", &take.haptic[0]), ("audio", &take.audio)] {
+    for (name, x) in [("haptic", &take.haptic[0]), ("audio", &take.audio[0])] {
         let at = |seconds: f64| (seconds * take.sample_rate_hz) as usize;
         let during = roughest(&x[at(0.2)..at(0.5)]);
         let allowed = during + 1e-3 * peak(x);

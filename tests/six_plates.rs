@@ -64,8 +64,8 @@ fn every_plate_is_felt_and_heard_at_every_speed_and_force() {
         for speed_m_s in [0.05, 0.1, 0.3] {
             for force_n in [0.3, 0.7, 2.0] {
                 let take = stroked(name, speed_m_s, force_n);
-                let (felt, heard) = (rms(&take.haptic[0]), rms(&take.audio));
-                let crest = common::peak(&take.audio) / heard;
+                let (felt, heard) = (rms(&take.haptic[0]), rms(&take.audio[0]));
+                let crest = common::peak(&take.audio[0]) / heard;
                 println!(
                     "{name:>9} {speed_m_s:>5} {force_n:>4}  {:>9.4} {:>9.1} {:>7} {crest:>5.1}",
                     felt * 1e6,
@@ -90,7 +90,8 @@ fn matte_is_felt_and_heard_above_shiny() {
             // 200 Hz and up: where the skin is most sensitive and the ear begins.
             m[9..].iter().zip(&s[9..]).map(|(m, s)| m - s).sum::<f64>() / 18.0
         };
-        let (felt, heard) = (above(&matte.haptic[0], &shiny.haptic[0]), above(&matte.audio, &shiny.audio));
+        let (felt, heard) =
+            (above(&matte.haptic[0], &shiny.haptic[0]), above(&matte.audio[0], &shiny.audio[0]));
         println!("{speed_m_s} m/s: felt {felt:.1} dB, heard {heard:.1} dB");
         assert!(felt > 3.0 && heard > 3.0, "{speed_m_s} m/s: felt {felt} dB, heard {heard} dB");
     }

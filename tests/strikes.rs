@@ -38,7 +38,7 @@ fn struck(modes: &[Mode], contact_s: f64, at: f64, rate_hz: f64, integrator: Int
     // Full scale is an impact like this one: what is 160 dB below it is put to rest.
     let model = ModalModel::new(modes.to_vec(), 2.0 * mass_kg(contact_s) * SPEED_M_S).unwrap();
     let impact = Impact {
-        body: scene.add_body_of(model, material(contact_s)).unwrap(),
+        body: scene.add_body(asperity::Body::new(model).of(material(contact_s))).unwrap(),
         other: None,
         speed_m_s: SPEED_M_S,
         mass_kg: mass_kg(contact_s),
@@ -155,7 +155,8 @@ fn foam(mass_kg: f64, rate_hz: f64) -> (f64, u64) {
         Config { sample_rate_hz: rate_hz, ..Config::default() }.build().unwrap();
     let foam = Material { young_pa: 5e4, poisson: 0.3, ..Material::RUBBER };
     let mode = Mode { frequency_hz: 60.0, decay_per_s: 8.0, amplitude: 1.0, phase_rad: 0.0 };
-    let body = scene.add_body_of(ModalModel::new(vec![mode], 1.0).unwrap(), foam).unwrap();
+    let body =
+        scene.add_body(asperity::Body::new(ModalModel::new(vec![mode], 1.0).unwrap()).of(foam)).unwrap();
     let impact = Impact {
         body,
         other: None,

@@ -62,7 +62,7 @@ fn modes_replaced_while_they_ring_make_no_step() {
     let mut stroke = Stroke::begin(1.0);
     stroke.slide(0.5);
     for i in 0..10 {
-        stroke.scene.replace_body(stroke.body, low_body(), Material::GLASS).unwrap();
+        stroke.scene.replace_body(stroke.body, asperity::Body::new(low_body()).of(Material::GLASS)).unwrap();
         stroke.slide(if i < 8 { 0.003 } else { 0.2 });
     }
     assert_no_step(&stroke, 0.3, "modes replaced");
@@ -95,19 +95,22 @@ fn a_flat_plate_with_micro_relief_takes_over_without_a_step() {
 /// The sound of a stroke over ribs, its collisions alone, on a body that is of `before` and then replaced by one of `after`.
 fn scraped(before: Material, after: Material) -> Vec<f32> {
     let asperity::Engine { mut scene, renderer, .. } = asperity::Config::default().build().unwrap();
-    let body = scene.add_body_of(common::bar(), before).unwrap();
+    let body = scene.add_body(asperity::Body::new(common::bar()).of(before)).unwrap();
     let ribs = grating(2e-3, 2e-4).on(body).excitation(asperity::Excitation::Collisions);
     let width_m = 70.0 * 2e-3;
     let surface = scene.add_surface(ribs).unwrap();
     if after != before {
-        scene.replace_body(body, common::bar(), after).unwrap();
+        scene.replace_body(body, asperity::Body::new(common::bar()).of(after)).unwrap();
     }
     let names = asperity::files::contact_log::Names {
         surfaces: std::collections::HashMap::from([("s".to_owned(), surface)]),
         ..Default::default()
     };
     let log = common::stroke(width_m, 0.2, 0.2, 0.4);
-    asperity::offline::render(scene, renderer, &log, &names, &Default::default()).unwrap().audio
+    asperity::offline::render(scene, renderer, &log, &names, &Default::default())
+        .unwrap()
+        .audio
+        .swap_remove(0)
 }
 
 #[test]

@@ -73,7 +73,9 @@ fn two_threads_lose_no_event_and_no_memory_between_them() {
         }
         if reported.is_multiple_of(1000) {
             swaps += u64::from(scene.replace_surface(surface, grating(2e-3, 1e-5).on(body)).is_ok());
-            swaps += u64::from(scene.replace_body(body, low_body(), Material::GLASS).is_ok());
+            swaps += u64::from(
+                scene.replace_body(body, asperity::Body::new(low_body()).of(Material::GLASS)).is_ok(),
+            );
         }
         freed += scene.collect() as u64;
     }

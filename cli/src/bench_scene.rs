@@ -78,7 +78,9 @@ impl Bench {
         for _ in 0..load.bodies.max(1) {
             let surface = Surface::new(map.clone(), 0.14, 0.14).ok()?;
             let surface = if load.modes_per_body > 0 {
-                surface.on(scene.add_body_of(modes(load.modes_per_body), Material::CERAMIC).ok()?)
+                surface.on(scene
+                    .add_body(asperity::Body::new(modes(load.modes_per_body)).of(Material::CERAMIC))
+                    .ok()?)
             } else {
                 surface
             };

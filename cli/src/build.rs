@@ -9,7 +9,7 @@ use crate::scene_file::{
 };
 use asperity::files::contact_log::Names;
 use asperity::{
-    ActuatorPreset, ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent,
+    ActuatorPreset, ActuatorSettings, AudioBus, Body, BodyId, Config, DeviceProfile, Excitation, Extent,
     Integrator, Material, ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
 };
 use asperity_texture::height_map::HeightMap;
@@ -76,11 +76,12 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
             let residual = model.residual.take();
             model = model.with_residual(residual, gain).map_err(|error| place(CliError::told(error)))?;
         }
-        let material = body.material.as_ref().map(material).transpose().map_err(place)?;
-        let id = match material {
-            Some(material) => scene.add_body_of(model, material),
-            None => scene.add_body(model),
-        };
+        let mut thing = Body::new(model);
+        if let Some(entry) = &body.material {
+            thing = thing.of(material(entry).map_err(place)?);
+        }
+        let named = |name: &String| file.audio.iter().position(|bus| bus.name.as_ref() == Some(name));
+        let id = scene.add_body(thing.on_bus(body.bus.as_ref().and_then(named).unwrap_or(0)));
         names.bodies.insert(body.name.clone(), id.map_err(|error| place(CliError::told(error)))?);
     }
     for entry in &file.surfaces {
@@ -105,7 +106,11 @@ fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
         probe: probe(&file.probe)?,
         actuators: file.actuators.iter().map(|entry| actuator(entry, folder)).collect::<Result<_, _>>()?,
         // A sound card clips what exceeds full scale.
-        audio: AudioSettings { gain: file.audio.gain, limit: file.audio.limit || overrides.live },
+        audio: file
+            .audio
+            .iter()
+            .map(|bus| AudioBus { gain: bus.gain, limit: bus.limit || overrides.live })
+            .collect(),
         max_surfaces: default.max_surfaces.max(file.surfaces.len()),
         max_bodies: default.max_bodies.max(file.bodies.len()),
         // A scene is loaded whole before the first block is rendered.

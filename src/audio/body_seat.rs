@@ -2,15 +2,20 @@
 
 use crate::link::message::Dead;
 use crate::link::ring::Sender;
+use crate::model::id::BodyId;
 use crate::model::stamp::Stamp;
 use crate::prepared::body::{BodySlot, Terms};
 use asperity_dsp::hertz::HertzPulse;
-use asperity_texture::height_field::MAX_BLOCK;
 
 /// A body's place on the audio half. A replaced or removed body rings on without input and fades.
 #[derive(Default)]
 pub(crate) struct BodySeat {
     current: Option<Box<BodySlot>>,
+    /// The name of what is here.
+    id: Option<BodyId>,
+    bus: usize,
+    /// The bus it comes from, and how many samples of the way are left.
+    moving: Option<(usize, u32)>,
     leaving: [Option<Leaving>; LEAVING],
 }
 
@@ -18,9 +23,28 @@ pub(crate) struct BodySeat {
 const LEAVING: usize = 4;
 /// How many samples a body that leaves takes to fade.
 const LEAVING_SAMPLES: u32 = 4096;
+/// How many samples a body takes from one bus to another.
+const MOVING_SAMPLES: u32 = 1024;
+
+/// A body between two buses during a stretch.
+pub(crate) struct BetweenBuses {
+    pub(crate) from: usize,
+    pub(crate) to: usize,
+    /// Samples left at the first of the stretch.
+    left: u32,
+}
+
+impl BetweenBuses {
+    /// Share of the new bus at sample `i` of the stretch.
+    pub(crate) fn weight(&self, i: usize) -> f32 {
+        let left = self.left.saturating_sub(i as u32 + 1);
+        1.0 - left as f32 / MOVING_SAMPLES as f32
+    }
+}
 
 struct Leaving {
     body: Box<BodySlot>,
+    bus: usize,
     left: u32,
 }
 
@@ -36,15 +60,41 @@ impl BodySeat {
     }
 
     /// Puts a body here; the one before it rings out.
-    pub(crate) fn set(&mut self, body: Box<BodySlot>) {
+    pub(crate) fn set(&mut self, id: BodyId, body: Box<BodySlot>, bus: usize) {
         self.remove();
+        if self.id == Some(id) {
+            self.play_on(bus);
+        } else {
+            (self.id, self.bus, self.moving) = (Some(id), bus, None);
+        }
         self.current = Some(body);
+    }
+
+    /// The bus it plays on.
+    pub(crate) fn bus(&self) -> usize {
+        self.bus
+    }
+
+    /// Sounds on another bus from now on.
+    pub(crate) fn play_on(&mut self, bus: usize) {
+        if bus != self.bus {
+            let from = std::mem::replace(&mut self.bus, bus);
+            self.moving = Some((from, MOVING_SAMPLES));
+        }
+    }
+
+    /// The two buses that share the next `n` samples, while it changes from one to the other.
+    pub(crate) fn moves_between(&mut self, n: usize) -> Option<BetweenBuses> {
+        let (from, left) = self.moving?;
+        let rest = left.saturating_sub(n as u32);
+        self.moving = (rest > 0).then_some((from, rest));
+        Some(BetweenBuses { from, to: self.bus, left })
     }
 
     /// Lets the body ring out.
     pub(crate) fn remove(&mut self) {
         if let Some(place) = self.leaving.iter_mut().find(|place| place.is_none()) {
-            *place = self.current.take().map(|body| Leaving { body, left: LEAVING_SAMPLES });
+            *place = self.current.take().map(|body| Leaving { body, bus: self.bus, left: LEAVING_SAMPLES });
         }
     }
 
@@ -62,9 +112,9 @@ impl BodySeat {
         }
     }
 
-    /// Adds what one contact sends.
-    pub(crate) fn touch(&mut self, position: usize, impulse_n_s: &[f64]) {
-        if let Some(body) = &mut self.current {
+    /// Adds what one contact sends to the body of that name; to nobody, if it has gone.
+    pub(crate) fn touch(&mut self, id: BodyId, position: usize, impulse_n_s: &[f64]) {
+        if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
             body.touch(position, impulse_n_s);
         }
     }
@@ -72,27 +122,35 @@ impl BodySeat {
     /// Adds the sound of the next `out.len()` samples to `out` and returns how many groups of modes were
     /// left out.
     pub(crate) fn render(&mut self, terms: Terms, out: &mut [f32]) -> usize {
-        let n = out.len();
-        let shed = self.current.as_mut().map_or(0, |body| body.render(terms, out));
+        self.current.as_mut().map_or(0, |body| body.render(terms, out))
+    }
+
+    /// Renders each body that rings out to `tail` and hands it to its bus.
+    pub(crate) fn render_leaving(
+        &mut self,
+        terms: Terms,
+        tail: &mut [f32],
+        mut add: impl FnMut(usize, &[f32]),
+    ) {
         for leaving in self.leaving.iter_mut().flatten() {
-            let mut tail = [0.0f32; MAX_BLOCK];
-            leaving.body.render(terms, &mut tail[..n]);
-            for (sum, x) in out.iter_mut().zip(&tail) {
+            tail.fill(0.0);
+            leaving.body.render(terms, tail);
+            for x in tail.iter_mut() {
                 leaving.left = leaving.left.saturating_sub(1);
-                *sum += x * (leaving.left as f32 / LEAVING_SAMPLES as f32);
+                *x *= leaving.left as f32 / LEAVING_SAMPLES as f32;
             }
+            add(leaving.bus, tail);
         }
-        shed
     }
 
     /// Sends bodies that have left home.
     pub(crate) fn tidy(&mut self, position: u64, home: &mut Sender<Dead>) {
         for place in &mut self.leaving {
             let gone = place.as_ref().is_some_and(|l| l.left == 0 || l.body.is_silent(position));
-            if let Some(Leaving { body, left }) = gone.then(|| place.take()).flatten()
+            if let Some(Leaving { body, bus, left }) = gone.then(|| place.take()).flatten()
                 && let Err(Dead::Body(body)) = home.send(Dead::Body(body))
             {
-                *place = Some(Leaving { body, left });
+                *place = Some(Leaving { body, bus, left });
             }
         }
     }

@@ -17,10 +17,11 @@ use crate::link::message::{Dead, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
 use crate::model::config::Config;
-use crate::model::event::{BodyId, SurfaceId};
+use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
 use crate::model::stamp::Stamp;
 use crate::prepared::stroking::restitution;
+use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
@@ -31,7 +32,7 @@ use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::sand::{SandFigures, SandPicture};
 use contacts::SilentContact;
-use outputs::{AudioBus, HapticChannel, Mix};
+use outputs::{Bus, HapticChannel, Mix};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -52,7 +53,7 @@ pub struct Renderer {
     seats_used: Occupied,
     bodies_used: Occupied,
     channels: Vec<HapticChannel>,
-    audio: AudioBus,
+    buses: Vec<Bus>,
     kernel: Kernel,
     governor: Governor,
     /// Groups of modes left out in the present stretch.
@@ -104,7 +105,7 @@ impl Renderer {
                 .iter()
                 .map(|settings| HapticChannel::new(settings, rate))
                 .collect::<Result<_, _>>()?,
-            audio: AudioBus::new(&config.audio, rate)?,
+            buses: config.audio.iter().map(|bus| Bus::new(bus, rate)).collect::<Result<_, _>>()?,
             kernel: Kernel::detect(),
             governor: Governor::new(config.shed_load, rate),
             groups_shed: 0,
@@ -121,6 +122,12 @@ impl Renderer {
     #[must_use]
     pub fn haptic_channels(&self) -> usize {
         self.channels.len()
+    }
+
+    /// How many audio buses there are.
+    #[must_use]
+    pub fn audio_buses(&self) -> usize {
+        self.buses.len()
     }
 
     /// Rate of every output, Hz.
@@ -166,8 +173,8 @@ impl Renderer {
     }
 
     /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
-    /// counts and the rest is silent). Haptic channels come in the order of the config; the mono audio
-    /// bus is copied to every audio channel.
+    /// counts and the rest is silent). Haptic channel i goes into haptic slice i, audio bus i into audio slice i, both in the order of
+    /// the config.
     pub fn render(&mut self, haptic: &mut [&mut [f32]], audio: &mut [&mut [f32]]) {
         self.render_tapped(haptic, audio, &mut NoTap);
     }
@@ -206,13 +213,11 @@ impl Renderer {
 
     /// Figures and pictures of the surfaces that are sand, settled; for the end of an offline render.
     pub(crate) fn finish_sand(&mut self) -> Vec<(SurfaceId, SandFigures, SandPicture)> {
-        let seats = self.seats.iter_mut().enumerate();
-        seats
-            .filter_map(|(slot, seat)| {
-                let (figures, picture) = seat.source()?.sand()?.finish()?;
-                Some((SurfaceId(slot as u32), figures, picture))
-            })
-            .collect()
+        let finish = |seat: &mut Seat| {
+            let (id, (figures, picture)) = (seat.id()?, seat.source()?.sand()?.finish()?);
+            Some((id, figures, picture))
+        };
+        self.seats.iter_mut().filter_map(finish).collect()
     }
 
     /// How many samples can be rendered before the next event, the grid or the end of the block.
@@ -236,7 +241,9 @@ impl Renderer {
                 }
                 Message::Reset => true,
                 // Each of these may send something home; it waits until there is room.
-                Message::SetBody { slot, .. } => self.to_game.free() > 0 && self.bodies[*slot].can_change(),
+                Message::SetBody { id, .. } => {
+                    self.to_game.free() > 0 && self.bodies[id.index()].can_change()
+                }
                 _ => self.to_game.free() > 0,
             };
             if !due {
@@ -269,7 +276,7 @@ impl Renderer {
                     self.strike(other, 0, &pulse, stamp);
                 }
             }
-            Message::SetSurface { slot, surface } => self.set_surface(slot, surface),
+            Message::SetSurface { id, surface } => self.set_surface(id, surface),
             Message::ChangeSurface { slot, change } => {
                 if !self.seats[slot].change(&change, self.position) {
                     Counters::add(&self.counters.quarantined, 1);
@@ -281,13 +288,14 @@ impl Renderer {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);
             }
-            Message::SetBody { slot, body, stroking } => {
-                self.bodies[slot].set(body);
-                self.bodies_used.insert(slot);
+            Message::SetBody { id, body, bus, stroking } => {
+                self.bodies[id.index()].set(id, body, bus);
+                self.bodies_used.insert(id.index());
                 for seat in self.seats_used.iter() {
-                    self.seats[seat].body_changed(BodyId(slot as u32), &stroking);
+                    self.seats[seat].body_changed(id, &stroking);
                 }
             }
+            Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
         }
@@ -303,10 +311,10 @@ impl Renderer {
         stamp.max(Stamp::whole(self.position))
     }
 
-    fn set_surface(&mut self, slot: usize, surface: Box<crate::prepared::surface::SurfaceSlot>) {
-        let rate = self.shared.sample_rate_hz;
+    fn set_surface(&mut self, id: SurfaceId, surface: Box<SurfaceSlot>) {
+        let (slot, rate) = (id.index(), self.shared.sample_rate_hz);
         self.seats_used.insert(slot);
-        if self.seats[slot].set(surface, self.position, rate, &mut self.to_game) == Change::Restart {
+        if self.seats[slot].set(id, surface, self.position, rate, &mut self.to_game) == Change::Restart {
             for index in 0..self.voices.len() {
                 if self.voices[index].surface == slot && self.voices[index].phase == Phase::Sounding {
                     self.silence(index, false);
@@ -346,7 +354,7 @@ impl Renderer {
             }
             let surface = seat.current().map(|slot| &slot.surface);
             if let Some((body, place)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
-                self.bodies[body.0 as usize].touch(place, &out.impulse_n_s[..n]);
+                self.bodies[body.index()].touch(body, place, &out.impulse_n_s[..n]);
             }
         }
         Counters::add(&self.counters.micro_collisions, collisions);
@@ -355,6 +363,7 @@ impl Renderer {
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
     fn tidy(&mut self) {
+        self.show_levels();
         self.voices_used.retain(|voice| self.voices[voice].phase != Phase::Free);
         for at in 0..self.voices_used.len() {
             let index = self.voices_used.at(at);

@@ -5,7 +5,7 @@
 
 use crate::link::message::Dead;
 use crate::link::ring::Sender;
-use crate::model::event::BodyId;
+use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
@@ -28,6 +28,8 @@ pub(crate) struct Seat {
     change_began: u64,
     change_samples: f64,
     removed: bool,
+    /// The name of what is here.
+    id: Option<SurfaceId>,
 }
 
 /// The micro-noise along a path.
@@ -56,11 +58,13 @@ impl Seat {
     /// the caller makes sure that `home` has room for it.
     pub(crate) fn set(
         &mut self,
+        id: SurfaceId,
         surface: Box<SurfaceSlot>,
         position: u64,
         sample_rate_hz: f64,
         home: &mut Sender<Dead>,
     ) -> Change {
+        self.id = Some(id);
         self.removed = false;
         self.change_samples = CHANGE_S * sample_rate_hz;
         let Some(current) = &self.current else {
@@ -78,6 +82,11 @@ impl Seat {
             self.start_change(surface, position);
         }
         if same_size { Change::Crossfade } else { Change::Restart }
+    }
+
+    /// The name of what is here.
+    pub(crate) fn id(&self) -> Option<SurfaceId> {
+        self.id
     }
 
     /// No contact may begin here any more.

@@ -6,7 +6,8 @@
 
 mod keys;
 
-use crate::model::event::{Actuator, BodyId, ContactEvent, ContactId, ContactSample, Impact, SurfaceId};
+use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Impact};
+use crate::model::id::{BodyId, SurfaceId};
 use crate::model::material::Material;
 use keys::Unread;
 use serde::{Deserialize, Serialize};
@@ -340,10 +341,18 @@ mod tests {
 {"t":0.9,"event":"end","contact":1}
 "#;
 
+    fn surface() -> SurfaceId {
+        SurfaceId::from_bits(3 << 32)
+    }
+
+    fn body() -> BodyId {
+        BodyId::from_bits(4 << 32)
+    }
+
     fn names() -> Names {
         Names {
-            surfaces: HashMap::from([("tiles".to_owned(), SurfaceId(3))]),
-            bodies: HashMap::from([("tile".to_owned(), BodyId(4))]),
+            surfaces: HashMap::from([("tiles".to_owned(), surface())]),
+            bodies: HashMap::from([("tile".to_owned(), body())]),
         }
     }
 
@@ -361,10 +370,10 @@ mod tests {
     fn names_become_the_ids_of_the_scene() {
         let log = ContactLog::parse(LOG, "log").unwrap();
         let events: Vec<_> = log.lines.iter().map(|l| l.event.resolve(&names()).unwrap()).collect();
-        assert!(matches!(events[0], ContactEvent::Begin { surface: SurfaceId(3), .. }));
+        assert!(matches!(events[0], ContactEvent::Begin { surface: id, .. } if id == surface()));
         assert!(matches!(
             events[2],
-            ContactEvent::Impact(Impact { body: BodyId(4), striker: Material::STEEL, .. })
+            ContactEvent::Impact(Impact { body: id, striker: Material::STEEL, .. }) if id == body()
         ));
     }
 

@@ -1,7 +1,8 @@
 //! What a live game reported, kept as a contact log.
 
 use crate::files::contact_log::{ContactLog, LogEvent, LogLine, Names, Striker};
-use crate::model::event::{BodyId, ContactEvent, SurfaceId};
+use crate::model::event::ContactEvent;
+use crate::model::id::{BodyId, Place, SurfaceId};
 use std::collections::HashMap;
 
 /// A recording in progress.
@@ -52,10 +53,15 @@ impl Recording {
     }
 
     fn surface(&self, id: SurfaceId) -> String {
-        self.surfaces.get(&id).cloned().unwrap_or_else(|| format!("surface {}", id.0))
+        self.surfaces.get(&id).cloned().unwrap_or_else(|| numbered("surface", id.0))
     }
 
     fn body(&self, id: BodyId) -> String {
-        self.bodies.get(&id).cloned().unwrap_or_else(|| format!("body {}", id.0))
+        self.bodies.get(&id).cloned().unwrap_or_else(|| numbered("body", id.0))
     }
+}
+
+/// What a thing without a name is called: its place, and which of its occupants, from the second on.
+fn numbered(kind: &str, Place { index, generation }: Place) -> String {
+    if generation == 1 { format!("{kind} {index}") } else { format!("{kind} {index}.{generation}") }
 }

@@ -2,28 +2,31 @@
 //!
 //! Every call returns at once. Nothing here waits for the audio thread.
 
+mod reports;
+
 use crate::files::contact_log::{ContactLog, Names};
 use crate::game::clock::Clock;
+use crate::game::places::Places;
 use crate::game::recording::Recording;
 use crate::game::silence::{Reported, SilentBecause};
 use crate::link::message::{Dead, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
 use crate::model::bad_value::within;
+use crate::model::body::Body;
 use crate::model::config::Config;
-use crate::model::error::{AddError, Refusal, ReportError};
-use crate::model::event::{Actuator, BodyId, ContactEvent, ContactId, Impact, SurfaceId};
+use crate::model::error::AddError;
+use crate::model::event::{Actuator, ContactEvent, ContactId};
+use crate::model::id::{BodyId, SurfaceId};
 use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
-use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::surface::Surface;
-use crate::prepared::body::{BodySlot, LONGEST_CONTACT_S};
+use crate::prepared::body::BodySlot;
 use crate::prepared::overlay::Overlay;
-use crate::prepared::stroking::{Stroking, elastic};
+use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::DesignError;
-use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::change::SurfaceChange;
 use std::sync::Arc;
@@ -34,8 +37,8 @@ pub struct Scene {
     config: Config,
     clock: Clock,
     last_time_s: f64,
-    surfaces: Vec<bool>,
-    bodies: Vec<Option<KnownBody>>,
+    surfaces: Places<KnownSurface>,
+    bodies: Places<KnownBody>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     to_audio: Sender<Message>,
@@ -44,8 +47,13 @@ pub struct Scene {
     recording: Option<Recording>,
     /// For [`Scene::why_silent`].
     reported: Reported,
-    /// Whether the contacts on each surface ring something.
-    rings: Vec<bool>,
+}
+
+/// What the game half remembers of a surface.
+#[derive(Clone, Copy)]
+struct KnownSurface {
+    /// Whether contacts on it ring something.
+    rings: bool,
 }
 
 /// What the game half remembers of a body.
@@ -54,9 +62,6 @@ struct KnownBody {
     material: Material,
     lowest_mode_hz: f64,
 }
-
-/// What a body, or a surface without one, is made of unless told otherwise.
-const DEFAULT_MATERIAL: Material = Material::PLA;
 
 impl Scene {
     pub(crate) fn new(
@@ -67,10 +72,9 @@ impl Scene {
         counters: Arc<Counters>,
     ) -> Self {
         Self {
-            surfaces: vec![false; config.max_surfaces],
-            rings: vec![false; config.max_surfaces],
+            surfaces: Places::new(config.max_surfaces, "surfaces"),
+            bodies: Places::new(config.max_bodies, "bodies"),
             reported: Reported::default(),
-            bodies: vec![None; config.max_bodies],
             held: Vec::new(),
             config,
             clock,
@@ -88,43 +92,45 @@ impl Scene {
         &self.config
     }
 
-    /// Adds a body that rings, of PLA; [`add_body_of`](Self::add_body_of) sets the material.
+    /// Adds a body that rings: a [`Body`], or the modes of one of PLA on the first bus.
     ///
     /// # Errors
-    /// When every place is taken or the modes cannot be rendered at this rate.
-    pub fn add_body(&mut self, model: ModalModel) -> Result<BodyId, AddError> {
-        self.add_body_of(model, DEFAULT_MATERIAL)
-    }
-
-    /// Adds a body of a material, which decides how long impacts on it last.
-    ///
-    /// # Errors
-    /// As [`add_body`](Self::add_body), or when the material is impossible.
-    pub fn add_body_of(&mut self, model: ModalModel, material: Material) -> Result<BodyId, AddError> {
+    /// When every place is taken, the modes cannot be rendered at this rate, the material is impossible, or there is no such bus.
+    pub fn add_body(&mut self, body: impl Into<Body>) -> Result<BodyId, AddError> {
         self.collect();
-        let slot = free_place(self.bodies.iter().map(Option::is_some), "bodies")?;
-        self.set_body(slot, &model, material)?;
-        Ok(BodyId(slot as u32))
+        let id = BodyId(self.bodies.free()?);
+        self.set_body(id, &body.into())?;
+        Ok(id)
     }
 
-    /// Gives a body other modes and another material while it sounds; the old modes ring out under the new ones, and strokes
-    /// on its surfaces take the new material at once.
+    /// Gives a body other modes, another material and another bus while it sounds; the old modes ring out under the new ones, and
+    /// strokes on its surfaces take the new material at once.
     ///
     /// # Errors
-    /// As [`add_body_of`](Self::add_body_of), or when the body is not in this scene.
-    pub fn replace_body(
-        &mut self,
-        body: BodyId,
-        model: ModalModel,
-        material: Material,
-    ) -> Result<(), AddError> {
+    /// As [`add_body`](Self::add_body), or when the body is not in this scene.
+    pub fn replace_body(&mut self, id: BodyId, body: impl Into<Body>) -> Result<(), AddError> {
         self.collect();
-        self.known_body(body)?;
-        self.set_body(body.0 as usize, &model, material)
+        self.known_body(id)?;
+        self.set_body(id, &body.into())
     }
 
-    fn set_body(&mut self, slot: usize, model: &ModalModel, material: Material) -> Result<(), AddError> {
-        let material = material.checked()?;
+    /// Lets a body sound on another bus from now on, without a click.
+    ///
+    /// # Errors
+    /// When the body is not in this scene, there is no such bus, or the queue is full.
+    pub fn set_body_bus(&mut self, id: BodyId, bus: usize) -> Result<(), AddError> {
+        self.known_body(id)?;
+        self.checked_bus(bus)?;
+        self.send(Message::SetBodyBus { slot: id.index(), bus })
+    }
+
+    fn checked_bus(&self, bus: usize) -> Result<usize, AddError> {
+        let buses = self.config.audio.len();
+        if bus < buses { Ok(bus) } else { Err(AddError::UnknownBus { bus, buses }) }
+    }
+
+    fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {
+        let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
         let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate, inner)?);
@@ -132,8 +138,8 @@ impl Scene {
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let known = KnownBody { material, lowest_mode_hz };
         let stroking = self.stroking(known)?;
-        self.send(Message::SetBody { slot, body, stroking })?;
-        self.bodies[slot] = Some(known);
+        self.send(Message::SetBody { id, body, bus, stroking })?;
+        self.bodies.set(id.0, known);
         Ok(())
     }
 
@@ -149,8 +155,8 @@ impl Scene {
     /// When it is not in this scene or the queue is full.
     pub fn remove_body(&mut self, body: BodyId) -> Result<(), AddError> {
         self.known_body(body)?;
-        self.send(Message::RemoveBody { slot: body.0 as usize })?;
-        self.bodies[body.0 as usize] = None;
+        self.send(Message::RemoveBody { slot: body.index() })?;
+        self.bodies.remove(body.0);
         Ok(())
     }
 
@@ -160,9 +166,9 @@ impl Scene {
     /// When every place is taken, its body is not in this scene, or a number is impossible.
     pub fn add_surface(&mut self, surface: Surface) -> Result<SurfaceId, AddError> {
         self.collect();
-        let slot = free_place(self.surfaces.iter().copied(), "surfaces")?;
-        self.set_surface(slot, surface)?;
-        Ok(SurfaceId(slot as u32))
+        let id = SurfaceId(self.surfaces.free()?);
+        self.set_surface(id, surface)?;
+        Ok(id)
     }
 
     /// Changes a surface under the contacts that slide on it, without a click.
@@ -172,12 +178,12 @@ impl Scene {
     pub fn replace_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
         self.collect();
         self.known_surface(id)?;
-        self.set_surface(id.0 as usize, surface)
+        self.set_surface(id, surface)
     }
 
-    fn set_surface(&mut self, slot: usize, surface: Surface) -> Result<(), AddError> {
+    fn set_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
         let surface = surface.checked()?.tiled();
-        let silent = KnownBody { material: DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
+        let silent = KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let stroking = self.stroking(body)?;
         let config = &self.config;
@@ -187,9 +193,8 @@ impl Scene {
         let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
         let rings = body.lowest_mode_hz.is_finite();
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
-        self.send(Message::SetSurface { slot, surface })?;
-        self.surfaces[slot] = true;
-        self.rings[slot] = rings;
+        self.send(Message::SetSurface { id, surface })?;
+        self.surfaces.set(id.0, KnownSurface { rings });
         Ok(())
     }
 
@@ -200,7 +205,7 @@ impl Scene {
     /// When the surface is not in this scene or the queue is full.
     pub fn change_surface(&mut self, id: SurfaceId, change: SurfaceChange) -> Result<(), AddError> {
         self.known_surface(id)?;
-        self.send(Message::ChangeSurface { slot: id.0 as usize, change })
+        self.send(Message::ChangeSurface { slot: id.index(), change })
     }
 
     /// Takes a surface away; contacts on it fade.
@@ -209,8 +214,8 @@ impl Scene {
     /// When it is not in this scene or the queue is full.
     pub fn remove_surface(&mut self, id: SurfaceId) -> Result<(), AddError> {
         self.known_surface(id)?;
-        self.send(Message::RemoveSurface { slot: id.0 as usize })?;
-        self.surfaces[id.0 as usize] = false;
+        self.send(Message::RemoveSurface { slot: id.index() })?;
+        self.surfaces.remove(id.0);
         Ok(())
     }
 
@@ -225,164 +230,6 @@ impl Scene {
         }
         let gain = within("gain", gain, "0–10", 0.0, 10.0)?;
         self.send(Message::SetHapticGain { channel, gain })
-    }
-
-    /// Reports what a contact did at game time `time_s`. Returns at once.
-    ///
-    /// # Errors
-    /// The event is handed back with the reason: a bad number, an unknown name, time running
-    /// backwards (with an exact clock), or a full queue. Moves are the last to be refused: when the queue runs full only the
-    /// newest move of each contact is kept, and sent with the next report.
-    #[expect(
-        clippy::result_large_err,
-        reason = "the event is handed back whole, without a box on the game thread"
-    )]
-    pub fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), ReportError> {
-        self.try_report(time_s, event).map_err(|reason| {
-            let cell = match reason {
-                Refusal::QueueFull => &self.counters.dropped,
-                _ => &self.counters.refused,
-            };
-            Counters::add(cell, 1);
-            self.reported.refuse(reason);
-            ReportError { event, reason }
-        })
-    }
-
-    fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
-        let event = self.checked(event)?;
-        self.checked_time(time_s)?;
-        let position = self.counters.position.load(Relaxed);
-        let stamped = self.clock.stamp(time_s, position);
-        Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
-        Counters::add(&self.counters.clock_paces, u64::from(stamped.repaced));
-        self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
-        self.flush_held();
-        let stamp = stamped.stamp;
-        let event = event.at_pace(self.clock.pace());
-        self.send_stamped(stamp, event)?;
-        self.reported.accept(&event, stamp, self.rings(&event));
-        if let Some(recording) = &mut self.recording {
-            recording.note(stamp.samples() / self.config.inner_rate_hz(), &event);
-        }
-        Ok(())
-    }
-
-    /// Whether what an event touches has modes.
-    fn rings(&self, event: &ContactEvent) -> bool {
-        let has_modes =
-            |body: BodyId| self.bodies[body.0 as usize].is_some_and(|body| body.lowest_mode_hz.is_finite());
-        match event {
-            ContactEvent::Begin { surface, .. } => self.rings[surface.0 as usize],
-            ContactEvent::Impact(impact) => {
-                [Some(impact.body), impact.other].into_iter().flatten().any(has_modes)
-            }
-            ContactEvent::Moved { .. } | ContactEvent::End { .. } => false,
-        }
-    }
-
-    fn send_stamped(&mut self, stamp: Stamp, event: ContactEvent) -> Result<(), Refusal> {
-        match event {
-            ContactEvent::Moved { contact, .. } => self.send_move(stamp, contact, event),
-            ContactEvent::Begin { contact, .. } | ContactEvent::End { contact } => {
-                let before = self.held.len();
-                self.held.retain(|(_, held, _)| *held != contact);
-                Counters::add(&self.counters.superseded, (before - self.held.len()) as u64);
-                self.send_event(Message::Event { stamp, event })
-            }
-            ContactEvent::Impact(impact) => self.send_impact(stamp, &impact),
-        }
-    }
-
-    fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
-        if self.clock.is_live() {
-            within("time_s", time_s, "finite, within ±1e9 s", -1e9, 1e9)?;
-            return Ok(());
-        }
-        let time_s = within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
-        if time_s < self.last_time_s {
-            return Err(Refusal::TimeBackwards { time_s, before_s: self.last_time_s });
-        }
-        self.last_time_s = time_s;
-        Ok(())
-    }
-
-    fn checked(&self, event: ContactEvent) -> Result<ContactEvent, Refusal> {
-        Ok(match event {
-            ContactEvent::Begin { contact, surface, actuator, sample } => {
-                self.known_surface(surface).map_err(|_| Refusal::UnknownSurface)?;
-                let channels = self.config.actuators.len();
-                if usize::from(actuator.0) >= channels {
-                    return Err(Refusal::UnknownActuator { index: actuator.0, channels });
-                }
-                ContactEvent::Begin { contact, surface, actuator, sample: sample.checked()? }
-            }
-            ContactEvent::Moved { contact, sample } => {
-                ContactEvent::Moved { contact, sample: sample.checked()? }
-            }
-            ContactEvent::End { .. } => event,
-            ContactEvent::Impact(impact) => {
-                for body in [Some(impact.body), impact.other].into_iter().flatten() {
-                    self.known_body(body).map_err(|_| Refusal::UnknownBody)?;
-                }
-                ContactEvent::Impact(impact.checked()?)
-            }
-        })
-    }
-
-    fn send_move(&mut self, stamp: Stamp, contact: ContactId, event: ContactEvent) -> Result<(), Refusal> {
-        // The last quarter of the queue is kept for landings, lift-offs and impacts.
-        if self.to_audio.free() > self.to_audio.capacity() / 4 {
-            return self.send_event(Message::Event { stamp, event });
-        }
-        if let Some(held) = self.held.iter_mut().find(|(_, held, _)| *held == contact) {
-            *held = (stamp, contact, event);
-            Counters::add(&self.counters.superseded, 1);
-        } else if self.held.len() < 4 * self.config.max_contacts {
-            self.held.push((stamp, contact, event));
-        } else {
-            return Err(Refusal::QueueFull);
-        }
-        Ok(())
-    }
-
-    fn flush_held(&mut self) {
-        while self.to_audio.free() > self.to_audio.capacity() / 4 {
-            let oldest = (0..self.held.len()).min_by_key(|&index| self.held[index].0);
-            let Some(oldest) = oldest else { return };
-            let (stamp, _, event) = self.held.swap_remove(oldest);
-            // There is room: checked just above.
-            let _ = self.to_audio.send(Message::Event { stamp, event });
-        }
-    }
-
-    fn send_impact(&mut self, stamp: Stamp, impact: &Impact) -> Result<(), Refusal> {
-        let known = self.bodies[impact.body.0 as usize];
-        let material = known.map_or(DEFAULT_MATERIAL, |body| body.material);
-        let contact =
-            HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg)
-                .map_err(|_| Refusal::UnknownBody)?;
-        let pulse = HertzPulse {
-            impulse_n_s: impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution),
-            contact_time_s: contact.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S),
-        };
-        let shortened = pulse.contact_time_s == LONGEST_CONTACT_S;
-        if pulse.impulse_n_s == 0.0 {
-            return Ok(());
-        }
-        Counters::add(&self.counters.shortened, u64::from(shortened));
-        let other = impact.other.map(|other| other.0 as usize);
-        self.send_event(Message::Strike {
-            stamp,
-            body: impact.body.0 as usize,
-            position: impact.position,
-            other,
-            pulse,
-        })
-    }
-
-    fn send_event(&mut self, message: Message) -> Result<(), Refusal> {
-        self.to_audio.send(message).map_err(|_| Refusal::QueueFull)
     }
 
     fn send(&mut self, message: Message) -> Result<(), AddError> {
@@ -444,17 +291,11 @@ impl Scene {
         Stats { position: stats.position / InnerRate::samples(self.config.sample_rate_hz) as u64, ..stats }
     }
 
-    fn known_surface(&self, id: SurfaceId) -> Result<(), AddError> {
-        let known = self.surfaces.get(id.0 as usize).copied().unwrap_or(false);
-        known.then_some(()).ok_or(AddError::Unknown("surface"))
+    fn known_surface(&self, id: SurfaceId) -> Result<KnownSurface, AddError> {
+        self.surfaces.get(id.0).copied().ok_or(AddError::Unknown("surface"))
     }
 
     fn known_body(&self, id: BodyId) -> Result<KnownBody, AddError> {
-        self.bodies.get(id.0 as usize).copied().flatten().ok_or(AddError::Unknown("body"))
+        self.bodies.get(id.0).copied().ok_or(AddError::Unknown("body"))
     }
-}
-
-fn free_place(mut taken: impl ExactSizeIterator<Item = bool>, kind: &'static str) -> Result<usize, AddError> {
-    let capacity = taken.len();
-    taken.position(|taken| !taken).ok_or(AddError::Full { kind, capacity })
 }

@@ -101,7 +101,7 @@ pub enum SilentBecause {
         count: u64,
     },
     /// The audio gain is zero.
-    #[error("the audio gain is 0; raise gain under [audio], AudioSettings::gain")]
+    #[error("the audio gain is 0; raise gain under [audio], AudioBus::gain")]
     AudioGainZero,
     /// Contacts slide on surfaces that ring nothing.
     #[error(
@@ -180,7 +180,7 @@ impl Reported {
                 because.push(reason);
             }
         };
-        say(config.audio.gain == 0.0, SilentBecause::AudioGainZero);
+        say(config.audio.iter().all(|bus| bus.gain == 0.0), SilentBecause::AudioGainZero);
         say(self.contacts + self.impacts > 0 && self.ringing == 0, SilentBecause::NothingRings);
         let strokes_only = self.contacts > 0 && self.impacts == 0;
         say(strokes_only && !self.pressed, SilentBecause::NeverPressed);

@@ -1,6 +1,7 @@
 //! What crosses: messages from the game to the audio half, and what comes home to be freed.
 
 use crate::model::event::ContactEvent;
+use crate::model::id::{BodyId, SurfaceId};
 use crate::model::stamp::Stamp;
 use crate::prepared::body::BodySlot;
 use crate::prepared::stroking::Stroking;
@@ -16,14 +17,16 @@ pub(crate) enum Message {
     Strike { stamp: Stamp, body: usize, position: usize, other: Option<usize>, pulse: HertzPulse },
     /// What was sent before belongs to a game time that has ended.
     Reset,
-    /// A surface for a new or used slot.
-    SetSurface { slot: usize, surface: Box<SurfaceSlot> },
+    /// A surface for a new or used place.
+    SetSurface { id: SurfaceId, surface: Box<SurfaceSlot> },
     /// Parameters of a surface change while it is touched.
     ChangeSurface { slot: usize, change: SurfaceChange },
     /// A slot falls empty; contacts on it fade.
     RemoveSurface { slot: usize },
-    /// A body for a new or used slot, and how strokes on its surfaces excite it from now on.
-    SetBody { slot: usize, body: Box<BodySlot>, stroking: Stroking },
+    /// A body for a new or used place, the bus it plays on, and how strokes on its surfaces excite it from now on.
+    SetBody { id: BodyId, body: Box<BodySlot>, bus: usize, stroking: Stroking },
+    /// A body sounds on another bus from now on.
+    SetBodyBus { slot: usize, bus: usize },
     /// A slot falls empty; the body rings out unheard from now on.
     RemoveBody { slot: usize },
     /// Per-user haptic gain of one channel, 0 = mute; reached within a few milliseconds.

@@ -1,5 +1,6 @@
 //! What the audio half did, readable from the game thread at any moment.
 
+use crate::model::bus::BusLevels;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
 macro_rules! counters {
@@ -10,6 +11,8 @@ macro_rules! counters {
             $($(#[doc = $doc])+ pub $name: u64,)+
             /// Share of the time budget that the last blocks took, as told by the device; 0 offline.
             pub load: f32,
+            /// Peak level of each audio bus.
+            pub bus_levels: BusLevels,
         }
 
         /// The cells behind [`Stats`]; each has one writer, nobody waits.
@@ -17,13 +20,25 @@ macro_rules! counters {
         pub(crate) struct Counters {
             $(pub(crate) $name: AtomicU64,)+
             load_bits: AtomicU32,
+            /// Peak level of each audio bus.
+            pub(crate) bus_peak_bits: Box<[AtomicU32]>,
             /// Resets that the game half has asked for.
             pub(crate) resets_asked: AtomicU64,
         }
 
         impl Counters {
+            /// All at zero, for so many audio buses.
+            pub(crate) fn new(buses: usize) -> Self {
+                Self { bus_peak_bits: (0..buses).map(|_| AtomicU32::new(0)).collect(), ..Self::default() }
+            }
+
             pub(crate) fn snapshot(&self) -> Stats {
+                let mut bus_levels = BusLevels { buses: self.bus_peak_bits.len(), ..BusLevels::default() };
+                for (peak, cell) in bus_levels.peaks.iter_mut().zip(&self.bus_peak_bits) {
+                    *peak = f32::from_bits(cell.load(Relaxed));
+                }
                 Stats {
+                    bus_levels,
                     $($name: self.$name.load(Relaxed),)+
                     load: f32::from_bits(self.load_bits.load(Relaxed)),
                 }

@@ -2,16 +2,17 @@
 
 use crate::audio::renderer::Renderer;
 use crate::link::ring::Sender;
+use crate::model::bus::MAX_BUSES;
 
 /// Longest stretch rendered at once, frames; longer callbacks are split, so no memory depends on what a
 /// device promised about its block size.
 const CHUNK_FRAMES: usize = 512;
 
-/// Device channels of the audio bus and of each actuator, counted from 0.
+/// Device channels of each audio bus and of each actuator, counted from 0.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ChannelMap {
-    /// Channels that carry the mono audio bus.
-    pub audio: Vec<usize>,
+    /// Channels of each audio bus, in order. Buses beyond these play on the channels of the first, so that none is lost.
+    pub audio: Vec<Vec<usize>>,
     /// Channel of each actuator, in order.
     pub haptic: Vec<usize>,
 }
@@ -29,16 +30,16 @@ impl ChannelMap {
     /// and right. Source: user reports of the USB descriptors; over Bluetooth there is no such device.
     #[must_use]
     pub fn dualsense() -> Self {
-        Self { audio: vec![0, 1], haptic: vec![2, 3] }
+        Self { audio: vec![vec![0, 1]], haptic: vec![2, 3] }
     }
 
     /// Audio on the first two channels, the actuators on those that follow.
     #[must_use]
     pub fn stereo_then_haptics(actuators: usize) -> Self {
-        Self { audio: vec![0, 1], haptic: (2..2 + actuators).collect() }
+        Self { audio: vec![vec![0, 1]], haptic: (2..2 + actuators).collect() }
     }
 
-    /// Reads `audio=0,1 haptic=2,3` (either part may be missing) or `dualsense`.
+    /// Reads `audio=0,1 haptic=2,3` (either part may be missing) or `dualsense`. A further `audio=…` is the next bus's.
     ///
     /// # Errors
     /// When a part is unknown, a channel is no number below 256, or two signals share a channel.
@@ -50,18 +51,16 @@ impl ChannelMap {
         let mut map = Self { audio: Vec::new(), haptic: Vec::new() };
         for part in text.split_whitespace() {
             let (name, list) = part.split_once('=').ok_or_else(|| refuse("a part has no \"=\""))?;
-            let channels = match name {
-                "audio" => &mut map.audio,
-                "haptic" => &mut map.haptic,
+            let number = |channel: &str| channel.parse::<u8>().map(usize::from);
+            let channels = list.split(',').map(number).collect::<Result<Vec<_>, _>>();
+            let channels = channels.map_err(|_| refuse("a channel is no number from 0 to 255"))?;
+            match name {
+                "audio" => map.audio.push(channels),
+                "haptic" => map.haptic.extend(channels),
                 _ => return Err(refuse("only audio and haptic can be mapped")),
-            };
-            for channel in list.split(',') {
-                let channel: u8 =
-                    channel.parse().map_err(|_| refuse("a channel is no number from 0 to 255"))?;
-                channels.push(usize::from(channel));
             }
         }
-        let mut all: Vec<_> = map.audio.iter().chain(&map.haptic).collect();
+        let mut all: Vec<_> = map.audio.iter().flatten().chain(&map.haptic).collect();
         if all.is_empty() {
             return Err(refuse("nothing is mapped"));
         }
@@ -75,7 +74,7 @@ impl ChannelMap {
     /// How many channels a device must have.
     #[must_use]
     pub fn width(&self) -> usize {
-        self.audio.iter().chain(&self.haptic).max().map_or(0, |last| last + 1)
+        self.audio.iter().flatten().chain(&self.haptic).max().map_or(0, |last| last + 1)
     }
 }
 
@@ -83,7 +82,7 @@ impl ChannelMap {
 pub struct Interleaver {
     renderer: Renderer,
     map: ChannelMap,
-    audio: Vec<f32>,
+    audio: Vec<Vec<f32>>,
     haptic: Vec<Vec<f32>>,
     /// Rings that take the actuators when they play on a device of their own.
     tee: Vec<Sender<f32>>,
@@ -94,7 +93,8 @@ impl Interleaver {
     #[must_use]
     pub fn new(renderer: Renderer, map: ChannelMap) -> Self {
         let haptic = vec![vec![0.0; CHUNK_FRAMES]; renderer.haptic_channels()];
-        Self { renderer, map, audio: vec![0.0; CHUNK_FRAMES], haptic, tee: Vec::new() }
+        let audio = vec![vec![0.0; CHUNK_FRAMES]; renderer.audio_buses()];
+        Self { renderer, map, audio, haptic, tee: Vec::new() }
     }
 
     /// Fills an interleaved buffer of `channels` channels; what no signal is mapped to is silent.
@@ -109,12 +109,14 @@ impl Interleaver {
             let mut put = |channel: usize, signal: &[f32]| {
                 if channel < channels {
                     for (frame, x) in chunk.chunks_exact_mut(channels).zip(signal) {
-                        frame[channel] = *x;
+                        frame[channel] += *x;
                     }
                 }
             };
-            for channel in &self.map.audio {
-                put(*channel, &self.audio);
+            for (bus, signal) in self.audio.iter().enumerate() {
+                for channel in self.map.audio.get(bus).or(self.map.audio.first()).into_iter().flatten() {
+                    put(*channel, signal);
+                }
             }
             for (channel, signal) in self.map.haptic.iter().zip(&self.haptic) {
                 put(*channel, signal);
@@ -129,13 +131,17 @@ impl Interleaver {
     }
 
     fn render(&mut self, frames: usize) {
-        // Slices of slices without allocation: actuators are rendered into a fixed array, in groups.
+        // Slices of slices without allocation: signals are rendered into fixed arrays.
         let mut haptic: [&mut [f32]; MAX_ACTUATORS] = std::array::from_fn(|_| &mut [][..]);
-        let count = self.haptic.len().min(MAX_ACTUATORS);
+        let mut audio: [&mut [f32]; MAX_BUSES] = std::array::from_fn(|_| &mut [][..]);
+        let (channels, buses) = (self.haptic.len().min(MAX_ACTUATORS), self.audio.len().min(MAX_BUSES));
         for (slice, channel) in haptic.iter_mut().zip(&mut self.haptic) {
             *slice = &mut channel[..frames];
         }
-        self.renderer.render(&mut haptic[..count], &mut [&mut self.audio[..frames]]);
+        for (slice, bus) in audio.iter_mut().zip(&mut self.audio) {
+            *slice = &mut bus[..frames];
+        }
+        self.renderer.render(&mut haptic[..channels], &mut audio[..buses]);
     }
 
     #[cfg(feature = "device")]

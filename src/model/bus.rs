@@ -1,16 +1,52 @@
-//! An audio bus: where the sound of bodies leaves.
+//! An audio bus: where the sound of bodies leaves, so that a game can place each body somewhere else.
 
-/// Settings of the audio bus.
+/// Most buses of one engine.
+pub const MAX_BUSES: usize = 64;
+
+/// Settings of an audio bus.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AudioSettings {
-    /// Linear gain.
+pub struct AudioBus {
+    /// Linear gain, 0–1e6.
     pub gain: f64,
     /// Whether a peak limiter keeps the output within ±1.
     pub limit: bool,
 }
 
-impl Default for AudioSettings {
+impl Default for AudioBus {
     fn default() -> Self {
         Self { gain: 1.0, limit: false }
+    }
+}
+
+/// Peak level of each bus, as a meter shows it: up at once, down by 20 dB in half a second. One number a bus, linear, 1 = full scale.
+#[derive(Clone, Copy, PartialEq)]
+pub struct BusLevels {
+    pub(crate) peaks: [f32; MAX_BUSES],
+    pub(crate) buses: usize,
+}
+
+impl Default for BusLevels {
+    fn default() -> Self {
+        Self { peaks: [0.0; MAX_BUSES], buses: 0 }
+    }
+}
+
+impl std::ops::Deref for BusLevels {
+    type Target = [f32];
+
+    fn deref(&self) -> &[f32] {
+        &self.peaks[..self.buses]
+    }
+}
+
+impl std::fmt::Debug for BusLevels {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        (**self).fmt(f)
+    }
+}
+
+impl serde::Serialize for BusLevels {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.iter())
     }
 }

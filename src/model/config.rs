@@ -1,7 +1,7 @@
 //! Everything that is fixed when an engine is built: rates, capacities, model choices, channels.
 
 use crate::model::actuator::ActuatorSettings;
-use crate::model::bus::AudioSettings;
+use crate::model::bus::{AudioBus, MAX_BUSES};
 use crate::model::clock_mode::ClockMode;
 use crate::model::inner_rate::InnerRate;
 use asperity_dsp::DesignError;
@@ -27,8 +27,8 @@ pub struct Config {
     pub probe: Probe,
     /// Haptic channels, in order.
     pub actuators: Vec<ActuatorSettings>,
-    /// The audio bus.
-    pub audio: AudioSettings,
+    /// Audio buses, in order; a body plays on one of them, the first unless told otherwise.
+    pub audio: Vec<AudioBus>,
     /// Most contacts that sound at once; more steal the least important.
     pub max_contacts: usize,
     /// Most surfaces at once.
@@ -60,7 +60,7 @@ impl Default for Config {
             integrator: Integrator::default(),
             probe: Probe::default(),
             actuators: vec![ActuatorSettings::default()],
-            audio: AudioSettings::default(),
+            audio: vec![AudioBus::default()],
             max_contacts: 64,
             max_surfaces: 256,
             max_bodies: 256,
@@ -96,7 +96,9 @@ impl Config {
         DesignError::check("contact_timeout_s", self.contact_timeout_s, "0.01–3600 s", |t| {
             (0.01..=3600.0).contains(&t)
         })?;
-        DesignError::check("audio.gain", self.audio.gain, "0–1e6", |g| (0.0..=1e6).contains(&g))?;
+        for bus in &self.audio {
+            DesignError::check("audio.gain", bus.gain, "0–1e6", |g| (0.0..=1e6).contains(&g))?;
+        }
         if let Some(culling) = self.culling {
             // Without end is allowed: nothing is too quiet.
             let level_db = culling.level_db.clamp(-1.0, 1e9);
@@ -109,6 +111,7 @@ impl Config {
             DesignError::check(field, value as f64, expected, |v| v >= 1.0 && v <= most as f64).map(|_| ())
         };
         count("actuators", self.actuators.len(), 1024, "1–1024 channels")?;
+        count("audio", self.audio.len(), MAX_BUSES, "1–64 buses")?;
         count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;
         count("max_surfaces", self.max_surfaces, 65_536, "1–65536 surfaces")?;
         count("max_bodies", self.max_bodies, 65_536, "1–65536 bodies")?;

@@ -75,6 +75,14 @@ pub enum AddError {
     /// A parameter the path stage, the impact model or the modal bank cannot be designed with.
     #[error(transparent)]
     Design(#[from] DesignError),
+    /// There is no such audio bus.
+    #[error("bus: {bus} is refused; must be below {buses}, the number of buses under audio")]
+    UnknownBus {
+        /// The index given.
+        bus: usize,
+        /// How many buses there are.
+        buses: usize,
+    },
     /// What it refers to is not in this scene.
     #[error("{0}: is not in this scene; add it first")]
     Unknown(&'static str),

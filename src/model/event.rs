@@ -14,19 +14,12 @@
 //! of a contact that never ended is a landing.
 
 use crate::model::bad_value::{BadValue, within};
+use crate::model::id::{BodyId, SurfaceId};
 use crate::model::material::Material;
 
 /// A contact's name, chosen by the caller and unique among the contacts that are touching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ContactId(pub u64);
-
-/// A surface that a [`Scene`](crate::Scene) knows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct SurfaceId(pub(crate) u32);
-
-/// A ringing body that a [`Scene`](crate::Scene) knows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct BodyId(pub(crate) u32);
 
 /// A haptic channel: the index of an actuator in [`Config::actuators`](crate::Config::actuators).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

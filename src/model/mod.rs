@@ -2,11 +2,13 @@
 
 pub(crate) mod actuator;
 pub(crate) mod bad_value;
+pub(crate) mod body;
 pub(crate) mod bus;
 pub(crate) mod clock_mode;
 pub(crate) mod config;
 pub(crate) mod error;
 pub(crate) mod event;
+pub(crate) mod id;
 pub(crate) mod inner_rate;
 pub(crate) mod material;
 pub(crate) mod modal_model;

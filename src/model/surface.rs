@@ -1,7 +1,7 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
 use crate::model::bad_value::{BadValue, within};
-use crate::model::event::BodyId;
+use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
 use asperity_texture::height_field::{Beyond, HeightField};

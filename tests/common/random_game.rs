@@ -98,7 +98,8 @@ impl RandomGame {
                 }
             }
             2 => {
-                let _ = self.scene.replace_body(body, clicking_bar(), Material::GLASS);
+                let _ =
+                    self.scene.replace_body(body, asperity::Body::new(clicking_bar()).of(Material::GLASS));
             }
             3 => {
                 let gain = self.rng.uniform();

@@ -108,6 +108,8 @@ pub struct Report {
     pub stolen: u64,
     /// Largest sample of the audio channel, absolute.
     pub audio_peak: f32,
+    /// Peak of each audio bus.
+    pub bus_peak: Vec<f32>,
     /// Largest sample of each haptic channel, absolute.
     pub haptic_peak: Vec<f32>,
     /// Events of contacts that nobody began, or whose voice was stolen.
@@ -198,7 +200,8 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let (render, curves, watching) = play(built, &log, &file, options, recorder)?;
     check_finite(&render)?;
 
-    wav::write(&mut outputs, &with_suffix(stem, "audio.wav"), &[&render.audio], rate_hz)?;
+    let audio: Vec<&[f32]> = render.audio.iter().map(Vec::as_slice).collect();
+    wav::write(&mut outputs, &with_suffix(stem, "audio.wav"), &audio, rate_hz)?;
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
     let mut report = report(&render, watching);
@@ -331,7 +334,7 @@ fn play(
 
 /// The engine promises finite samples; a promise that a WAV file depends on is checked.
 fn check_finite(render: &Render) -> Result<(), CliError> {
-    let channels = render.haptic.iter().chain([&render.audio]);
+    let channels = render.haptic.iter().chain(&render.audio);
     if channels.flatten().all(|sample| sample.is_finite()) {
         Ok(())
     } else {
@@ -359,7 +362,8 @@ fn report(render: &Render, watching: Duration) -> Report {
         dropped: stats.dropped,
         quarantined: stats.quarantined + stats.refused,
         stolen: stats.stolen,
-        audio_peak: peak(&render.audio),
+        audio_peak: render.audio.iter().map(|bus| peak(bus)).fold(0.0, f32::max),
+        bus_peak: render.audio.iter().map(|bus| peak(bus)).collect(),
         haptic_peak: render.haptic.iter().map(|channel| peak(channel)).collect(),
         orphaned: stats.orphaned,
         lapsed: stats.lapsed,

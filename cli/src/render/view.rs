@@ -46,7 +46,7 @@ pub fn draw(
             plot::quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB"),
         )],
         sample_rate_hz: render.sample_rate_hz,
-        audio: &render.audio,
+        audio: &render.mix(),
         haptic: haptic.collect(),
         contacts: curves,
         impacts_s,

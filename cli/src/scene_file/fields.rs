@@ -81,6 +81,12 @@ impl Fields {
         }
     }
 
+    /// Whether a key holds a list.
+    pub fn is_list(&mut self, key: &'static str) -> bool {
+        self.accept(key);
+        matches!(self.table.get(key), Some(Value::Array(_)))
+    }
+
     /// Takes a key's value out.
     pub fn take(&mut self, key: &'static str) -> Option<Value> {
         self.accept(key);

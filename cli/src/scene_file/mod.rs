@@ -16,6 +16,7 @@ pub use source::{Brownian, BrownianForce, Direction, Lattice, SolidNoise, Source
 pub use surface::{Excitation, Roughness, SurfaceEntry, Wrap};
 
 use crate::error::CliError;
+use asperity::MAX_BUSES;
 use fields::{Allowed, Fields};
 use std::path::{Path, PathBuf};
 use toml::Value;
@@ -48,8 +49,8 @@ pub struct SceneFile {
     pub probe: ProbeEntry,
     /// Haptic channels, in order.
     pub actuators: Vec<ActuatorEntry>,
-    /// The audio channel.
-    pub audio: AudioEntry,
+    /// Audio buses, in channel order.
+    pub audio: Vec<AudioEntry>,
 }
 
 /// A body: what an impact on it sounds like.
@@ -63,6 +64,8 @@ pub struct BodyEntry {
     pub material: Option<MaterialEntry>,
     /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
     pub residual: Option<f64>,
+    /// Name of the bus it plays on; none = the first.
+    pub bus: Option<String>,
 }
 
 /// A material by name or by constants.
@@ -139,9 +142,11 @@ pub enum ActuatorOutput {
     Acceleration,
 }
 
-/// The audio channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// An audio bus.
+#[derive(Debug, Clone, PartialEq)]
 pub struct AudioEntry {
+    /// Name that bodies use; none for a single bus.
+    pub name: Option<String>,
     /// Linear gain.
     pub gain: f64,
     /// Keeps the channel within ±1.
@@ -195,8 +200,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, CliError> {
         actuators.push(ActuatorEntry::default());
     }
     let probe = top.table("probe")?.map(read_probe).transpose()?.unwrap_or_default();
-    let audio =
-        top.table("audio")?.map(read_audio).transpose()?.unwrap_or(AudioEntry { gain: 1.0, limit: false });
+    let audio = read_buses(&mut top)?;
     let scene = SceneFile {
         path: path.to_owned(),
         sample_rate_hz: top.number("sample_rate_hz", SAMPLE_RATE_HZ)?,
@@ -226,6 +230,18 @@ fn check_names(scene: &SceneFile) -> Result<(), CliError> {
             }
         }
     }
+    let buses: Vec<&str> = scene.audio.iter().filter_map(|bus| bus.name.as_deref()).collect();
+    for body in &scene.bodies {
+        if let Some(bus) = body.bus.as_deref().filter(|bus| !buses.contains(bus)) {
+            let known: Vec<String> = buses.iter().map(|name| format!("\"{name}\"")).collect();
+            let right = match known.as_slice() {
+                [] => "name a bus under [[audio]]".to_owned(),
+                _ => format!("buses of this scene: {}", fields::any_of(&known)),
+            };
+            let at = format!("body \"{}\": bus", body.name);
+            return Err(CliError::new(at, format!("\"{bus}\" is unknown"), right));
+        }
+    }
     for (index, surface) in scene.surfaces.iter().enumerate() {
         if let Some(body) = surface.body.as_deref().filter(|body| !bodies.contains(body)) {
             let at = format!("surface {} \"{}\": body", index + 1, surface.name);
@@ -253,8 +269,9 @@ fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, CliError> {
         }
     };
     let residual = fields.number("residual", Allowed::between(0.0, 1e3, "(a gain)"))?;
+    let bus = fields.text("bus")?;
     fields.finish()?;
-    Ok(BodyEntry { name, modes, material, residual })
+    Ok(BodyEntry { name, modes, material, residual, bus })
 }
 
 fn read_material(mut fields: Fields) -> Result<MaterialEntry, CliError> {
@@ -319,9 +336,33 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, CliError> {
     Ok(actuator)
 }
 
+/// `[audio]`, one bus for all, or `[[audio]]`, one table a bus.
+fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, CliError> {
+    if !top.is_list("audio") {
+        let only = top.table("audio")?.map(read_audio).transpose()?;
+        return Ok(vec![only.unwrap_or(AudioEntry { name: None, gain: 1.0, limit: false })]);
+    }
+    let buses = top.tables("audio")?.into_iter().map(read_audio).collect::<Result<Vec<_>, _>>()?;
+    for (index, bus) in buses.iter().enumerate() {
+        let at = format!("audio {}", index + 1);
+        if bus.name.is_none() && buses.len() > 1 {
+            return Err(CliError::new(format!("{at}: name"), "is missing", "give each bus a name"));
+        }
+        if bus.name.is_some() && buses[..index].iter().any(|before| before.name == bus.name) {
+            return Err(CliError::new(format!("{at}: name"), "is used twice", "give each a name of its own"));
+        }
+    }
+    match buses.len() {
+        0 => Err(CliError::new("audio", "is an empty list", "write [audio], or one [[audio]] a bus")),
+        1..=MAX_BUSES => Ok(buses),
+        many => Err(CliError::new("audio", format!("has {many} buses"), format!("at most {MAX_BUSES}"))),
+    }
+}
+
 fn read_audio(mut fields: Fields) -> Result<AudioEntry, CliError> {
     let audio = AudioEntry {
-        gain: fields.number_or("gain", 1.0, Allowed::between(0.0, 1e9, ""))?,
+        name: fields.text("name")?,
+        gain: fields.number_or("gain", 1.0, Allowed::between(0.0, 1e6, ""))?,
         limit: fields.flag("limit")?.unwrap_or(false),
     };
     fields.finish()?;

@@ -15,8 +15,8 @@ use asperity::files::contact_log::{LogEvent, Names};
 use asperity::offline::{self, Options};
 use asperity::texture::height_map::HeightMap;
 use asperity::{
-    Actuator, ActuatorSettings, AudioSettings, ClockMode, Config, Extent, Material, ModalModel, Mode,
-    Renderer, Scene, Surface,
+    Actuator, ActuatorSettings, AudioBus, ClockMode, Config, Extent, Material, ModalModel, Mode, Renderer,
+    Scene, Surface,
 };
 use mesh::UvMesh;
 use rapier3d::prelude::*;
@@ -53,8 +53,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (scene, renderer, names) = engine(ClockMode::Exact)?;
     let options = Options { block_frames: 1000, tail_s: 1.0 };
     let take = offline::render(scene, renderer, &log, &names, &options)?;
-    let frames = take.audio.len().min(live.audio.len() - latency);
-    assert!(live.audio[latency..latency + frames] == take.audio[..frames], "live and offline audio differ");
+    let frames = take.audio[0].len().min(live.audio.len() - latency);
+    assert!(
+        live.audio[latency..latency + frames] == take.audio[0][..frames],
+        "live and offline audio differ"
+    );
     for (live, offline) in live.haptic.iter().zip(&take.haptic) {
         assert!(live[latency..latency + frames] == offline[..frames], "live and offline haptics differ");
     }
@@ -81,13 +84,13 @@ struct Heard {
 fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names), Box<dyn Error>> {
     let actuators = vec![ActuatorSettings::default(); 2];
     // A dropped ball is fifty times louder than a finger; a sound card clips at ±1.
-    let audio = AudioSettings { gain: 0.1, limit: true };
+    let audio = vec![AudioBus { gain: 0.1, limit: true }];
     let config = Config { clock, sample_rate_hz: RATE_HZ, actuators, audio, ..Config::default() };
     let asperity::Engine { mut scene, renderer, .. } = config.build()?;
     let mode =
         |frequency_hz, decay_per_s, amplitude| Mode { frequency_hz, decay_per_s, amplitude, phase_rad: 0.0 };
     let modes = vec![mode(412.0, 9.0, 0.3), mode(1133.0, 14.0, 0.25), mode(2219.0, 22.0, 0.2)];
-    let slab = scene.add_body_of(ModalModel::new(modes, 0.01)?, Material::CERAMIC)?;
+    let slab = scene.add_body(asperity::Body::new(ModalModel::new(modes, 0.01)?).of(Material::CERAMIC))?;
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1.0 };
     let surface = Surface::new(HeightMap::flat(extent, 0.8)?, SIDE_M, SIDE_M)?;
     let surface = scene.add_surface(surface.on(slab).wraps(false))?;

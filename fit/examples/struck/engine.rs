@@ -19,7 +19,10 @@ pub fn struck(modes: &[Mode], burst: Option<&[f32]>, rate_hz: f64, count: usize,
     let Ok(asperity::Engine { mut scene, mut renderer, .. }) = config.build() else { return out };
     let Ok(model) = ModalModel::new(modes.to_vec(), IMPULSE_N_S) else { return out };
     let residual = burst.map(|samples| Residual { sample_rate_hz: rate_hz, samples: samples.to_vec() });
-    let body = model.with_residual(residual, 1.0).ok().and_then(|model| scene.add_body_of(model, HARD).ok());
+    let body = model
+        .with_residual(residual, 1.0)
+        .ok()
+        .and_then(|model| scene.add_body(asperity::Body::new(model).of(HARD)).ok());
     let Some(body) = body else { return out };
     let impact = Impact {
         body,

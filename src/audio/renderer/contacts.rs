@@ -20,7 +20,7 @@ impl Renderer {
     pub(super) fn apply_event(&mut self, event: &ContactEvent, stamp: Stamp) {
         match *event {
             ContactEvent::Begin { contact, surface, actuator, sample } => {
-                let (surface, actuator) = (surface.0 as usize, usize::from(actuator.0));
+                let (surface, actuator) = (surface.index(), usize::from(actuator.0));
                 if !self.resume(contact, surface, actuator, &sample, stamp) {
                     self.end(contact);
                     self.land(contact, surface, actuator, &sample, stamp);

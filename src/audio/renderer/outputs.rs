@@ -1,8 +1,8 @@
-//! What leaves the engine: the haptic channels with their actuator stage, and the audio bus.
+//! What leaves the engine: the haptic channels with their actuator stage, and the audio buses.
 
 use super::Renderer;
 use crate::model::actuator::ActuatorSettings;
-use crate::model::bus::AudioSettings;
+use crate::model::bus::AudioBus;
 use crate::prepared::body::Terms;
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{
@@ -10,6 +10,7 @@ use asperity_dsp::actuator::{
     Quantity,
 };
 use asperity_texture::height_field::MAX_BLOCK;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Where limiters hold the peaks: full scale.
 const CEILING: f64 = 1.0;
@@ -25,10 +26,42 @@ pub(super) struct HapticChannel {
     pub(super) sum: [f64; MAX_BLOCK],
 }
 
-/// The mono sound of all bodies.
-pub(super) struct AudioBus {
+/// An audio bus: the sound of the bodies that play on it.
+pub(super) struct Bus {
     gain: f32,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
+    meter: Meter,
+    /// Sum of the bodies.
+    sum: [f32; MAX_BLOCK],
+}
+
+/// A peak meter: up at once, down slowly.
+struct Meter {
+    peak: f32,
+    /// Of the present [`MAX_BLOCK`] samples.
+    now: f32,
+    /// What is left of the peak after [`MAX_BLOCK`] samples.
+    fall: f32,
+}
+
+/// How long a meter takes to fall by 20 dB, s.
+const METER_FALL_S: f64 = 0.5;
+
+impl Meter {
+    fn new(sample_rate_hz: f64) -> Self {
+        let fall = 0.1f64.powf(MAX_BLOCK as f64 / (METER_FALL_S * sample_rate_hz)) as f32;
+        Self { peak: 0.0, now: 0.0, fall }
+    }
+
+    fn watch(&mut self, samples: &[f32]) {
+        self.now = samples.iter().fold(self.now, |peak, x| peak.max(x.abs()));
+    }
+
+    /// Once every [`MAX_BLOCK`] samples.
+    fn settle(&mut self) {
+        let fallen = self.peak * self.fall;
+        self.peak = std::mem::take(&mut self.now).max(if fallen < 1e-9 { 0.0 } else { fallen });
+    }
 }
 
 impl HapticChannel {
@@ -59,18 +92,27 @@ impl HapticChannel {
     }
 }
 
-impl AudioBus {
-    pub(super) fn new(settings: &AudioSettings, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        Ok(Self { gain: settings.gain as f32, limiter: limiter(settings.limit, sample_rate_hz)? })
+impl Bus {
+    pub(super) fn new(settings: &AudioBus, sample_rate_hz: f64) -> Result<Self, DesignError> {
+        Ok(Self {
+            gain: settings.gain as f32,
+            limiter: limiter(settings.limit, sample_rate_hz)?,
+            meter: Meter::new(sample_rate_hz),
+            sum: [0.0; MAX_BLOCK],
+        })
     }
 
-    pub(super) fn finish(&mut self, mix: &mut [f32]) {
-        for x in mix.iter_mut() {
+    /// What leaves of the present stretch of `n` samples.
+    fn finish(&mut self, n: usize) -> &[f32] {
+        let sum = &mut self.sum[..n];
+        for x in sum.iter_mut() {
             *x *= self.gain;
         }
         if let Some((design, state)) = &mut self.limiter {
-            state.run(design, mix);
+            state.run(design, sum);
         }
+        self.meter.watch(sum);
+        sum
     }
 }
 
@@ -90,20 +132,48 @@ impl Renderer {
         }
     }
 
-    /// The same of what the bodies sound like.
+    /// The same of what the bodies sound like, bus by bus.
     pub(super) fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
-        let mix = &mut self.mix.audio[..n];
-        mix.fill(0.0);
+        for bus in &mut self.buses {
+            bus.sum[..n].fill(0.0);
+        }
         let terms =
             Terms { kernel: self.kernel, position: self.position, mode_level: self.governor.mode_level() };
         let mut shed = 0;
         for body in self.bodies_used.iter() {
-            shed += self.bodies[body].render(terms, mix);
+            let body = &mut self.bodies[body];
+            if let Some(share) = body.moves_between(n) {
+                let sound = &mut self.mix.body[..n];
+                sound.fill(0.0);
+                shed += body.render(terms, sound);
+                for (i, x) in sound.iter().enumerate() {
+                    let weight = share.weight(i);
+                    self.buses[share.from].sum[i] += (1.0 - weight) * x;
+                    self.buses[share.to].sum[i] += weight * x;
+                }
+            } else {
+                shed += body.render(terms, &mut self.buses[body.bus()].sum[..n]);
+            }
+            body.render_leaving(terms, &mut self.mix.body[..n], |bus, sound| {
+                for (sum, x) in self.buses[bus].sum.iter_mut().zip(sound) {
+                    *sum += x;
+                }
+            });
         }
         self.groups_shed = shed;
-        self.audio.finish(mix);
-        for out in audio {
-            self.shared.inner.pick(at, mix, out);
+        for (index, bus) in self.buses.iter_mut().enumerate() {
+            let sound = bus.finish(n);
+            if let Some(out) = audio.get_mut(index) {
+                self.shared.inner.pick(at, sound, out);
+            }
+        }
+    }
+
+    /// Tells the game how loud each bus is.
+    pub(super) fn show_levels(&mut self) {
+        for (cell, bus) in self.counters.bus_peak_bits.iter().zip(&mut self.buses) {
+            bus.meter.settle();
+            cell.store(bus.meter.peak.to_bits(), Relaxed);
         }
     }
 }
@@ -119,12 +189,13 @@ fn limiter(
 
 /// One stretch of each kind of output.
 pub(super) struct Mix {
-    pub(super) audio: [f32; MAX_BLOCK],
+    /// One body, while it moves from bus to bus.
+    pub(super) body: [f32; MAX_BLOCK],
     pub(super) haptic: [f32; MAX_BLOCK],
 }
 
 impl Mix {
     pub(super) fn new() -> Box<Self> {
-        Box::new(Self { audio: [0.0; MAX_BLOCK], haptic: [0.0; MAX_BLOCK] })
+        Box::new(Self { body: [0.0; MAX_BLOCK], haptic: [0.0; MAX_BLOCK] })
     }
 }

@@ -167,7 +167,7 @@ pub fn play_on(renderer: Renderer, options: &DeviceOptions) -> Result<Player, De
     let actuators = renderer.haptic_channels();
     let map = match (&options.channels, &options.haptic_device) {
         (Some(map), _) => map.clone(),
-        (None, Some(_)) => ChannelMap { audio: vec![0, 1], haptic: Vec::new() },
+        (None, Some(_)) => ChannelMap { audio: vec![vec![0, 1]], haptic: Vec::new() },
         (None, None) => ChannelMap::stereo_then_haptics(actuators),
     };
     let rate = renderer.sample_rate_hz();

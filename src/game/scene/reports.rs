@@ -1,0 +1,177 @@
+//! What the game reports: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
+
+use super::Scene;
+use crate::link::message::Message;
+use crate::link::stats::Counters;
+use crate::model::bad_value::within;
+use crate::model::body::Body;
+use crate::model::error::{Refusal, ReportError};
+use crate::model::event::{ContactEvent, ContactId, Impact};
+use crate::model::id::BodyId;
+use crate::model::stamp::Stamp;
+use crate::prepared::body::LONGEST_CONTACT_S;
+use crate::prepared::stroking::elastic;
+use asperity_dsp::hertz::{HertzContact, HertzPulse};
+use std::sync::atomic::Ordering::Relaxed;
+
+impl Scene {
+    /// Reports what a contact did at game time `time_s`. Returns at once.
+    ///
+    /// # Errors
+    /// The event is handed back with the reason: a bad number, an unknown name, time running
+    /// backwards (with an exact clock), or a full queue. Moves are the last to be refused: when the queue runs full only the
+    /// newest move of each contact is kept, and sent with the next report.
+    #[expect(
+        clippy::result_large_err,
+        reason = "the event is handed back whole, without a box on the game thread"
+    )]
+    pub fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), ReportError> {
+        self.try_report(time_s, event).map_err(|reason| {
+            let cell = match reason {
+                Refusal::QueueFull => &self.counters.dropped,
+                _ => &self.counters.refused,
+            };
+            Counters::add(cell, 1);
+            self.reported.refuse(reason);
+            ReportError { event, reason }
+        })
+    }
+
+    fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
+        let event = self.checked(event)?;
+        self.checked_time(time_s)?;
+        let position = self.counters.position.load(Relaxed);
+        let stamped = self.clock.stamp(time_s, position);
+        Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
+        Counters::add(&self.counters.clock_paces, u64::from(stamped.repaced));
+        self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
+        self.flush_held();
+        let stamp = stamped.stamp;
+        let event = event.at_pace(self.clock.pace());
+        self.send_stamped(stamp, event)?;
+        self.reported.accept(&event, stamp, self.rings(&event));
+        if let Some(recording) = &mut self.recording {
+            recording.note(stamp.samples() / self.config.inner_rate_hz(), &event);
+        }
+        Ok(())
+    }
+
+    /// Whether what an event touches has modes.
+    fn rings(&self, event: &ContactEvent) -> bool {
+        let has_modes =
+            |id: BodyId| self.bodies.get(id.0).is_some_and(|body| body.lowest_mode_hz.is_finite());
+        match event {
+            ContactEvent::Begin { surface, .. } => {
+                self.surfaces.get(surface.0).is_some_and(|known| known.rings)
+            }
+            ContactEvent::Impact(impact) => {
+                [Some(impact.body), impact.other].into_iter().flatten().any(has_modes)
+            }
+            ContactEvent::Moved { .. } | ContactEvent::End { .. } => false,
+        }
+    }
+
+    fn send_stamped(&mut self, stamp: Stamp, event: ContactEvent) -> Result<(), Refusal> {
+        match event {
+            ContactEvent::Moved { contact, .. } => self.send_move(stamp, contact, event),
+            ContactEvent::Begin { contact, .. } | ContactEvent::End { contact } => {
+                let before = self.held.len();
+                self.held.retain(|(_, held, _)| *held != contact);
+                Counters::add(&self.counters.superseded, (before - self.held.len()) as u64);
+                self.send_event(Message::Event { stamp, event })
+            }
+            ContactEvent::Impact(impact) => self.send_impact(stamp, &impact),
+        }
+    }
+
+    fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
+        if self.clock.is_live() {
+            within("time_s", time_s, "finite, within ±1e9 s", -1e9, 1e9)?;
+            return Ok(());
+        }
+        let time_s = within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
+        if time_s < self.last_time_s {
+            return Err(Refusal::TimeBackwards { time_s, before_s: self.last_time_s });
+        }
+        self.last_time_s = time_s;
+        Ok(())
+    }
+
+    fn checked(&self, event: ContactEvent) -> Result<ContactEvent, Refusal> {
+        Ok(match event {
+            ContactEvent::Begin { contact, surface, actuator, sample } => {
+                self.known_surface(surface).map_err(|_| Refusal::UnknownSurface)?;
+                let channels = self.config.actuators.len();
+                if usize::from(actuator.0) >= channels {
+                    return Err(Refusal::UnknownActuator { index: actuator.0, channels });
+                }
+                ContactEvent::Begin { contact, surface, actuator, sample: sample.checked()? }
+            }
+            ContactEvent::Moved { contact, sample } => {
+                ContactEvent::Moved { contact, sample: sample.checked()? }
+            }
+            ContactEvent::End { .. } => event,
+            ContactEvent::Impact(impact) => {
+                for body in [Some(impact.body), impact.other].into_iter().flatten() {
+                    self.known_body(body).map_err(|_| Refusal::UnknownBody)?;
+                }
+                ContactEvent::Impact(impact.checked()?)
+            }
+        })
+    }
+
+    fn send_move(&mut self, stamp: Stamp, contact: ContactId, event: ContactEvent) -> Result<(), Refusal> {
+        // The last quarter of the queue is kept for landings, lift-offs and impacts.
+        if self.to_audio.free() > self.to_audio.capacity() / 4 {
+            return self.send_event(Message::Event { stamp, event });
+        }
+        if let Some(held) = self.held.iter_mut().find(|(_, held, _)| *held == contact) {
+            *held = (stamp, contact, event);
+            Counters::add(&self.counters.superseded, 1);
+        } else if self.held.len() < 4 * self.config.max_contacts {
+            self.held.push((stamp, contact, event));
+        } else {
+            return Err(Refusal::QueueFull);
+        }
+        Ok(())
+    }
+
+    fn flush_held(&mut self) {
+        while self.to_audio.free() > self.to_audio.capacity() / 4 {
+            let oldest = (0..self.held.len()).min_by_key(|&index| self.held[index].0);
+            let Some(oldest) = oldest else { return };
+            let (stamp, _, event) = self.held.swap_remove(oldest);
+            // There is room: checked just above.
+            let _ = self.to_audio.send(Message::Event { stamp, event });
+        }
+    }
+
+    fn send_impact(&mut self, stamp: Stamp, impact: &Impact) -> Result<(), Refusal> {
+        let known = self.bodies.get(impact.body.0);
+        let material = known.map_or(Body::DEFAULT_MATERIAL, |body| body.material);
+        let contact =
+            HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg)
+                .map_err(|_| Refusal::UnknownBody)?;
+        let pulse = HertzPulse {
+            impulse_n_s: impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution),
+            contact_time_s: contact.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S),
+        };
+        let shortened = pulse.contact_time_s == LONGEST_CONTACT_S;
+        if pulse.impulse_n_s == 0.0 {
+            return Ok(());
+        }
+        Counters::add(&self.counters.shortened, u64::from(shortened));
+        let other = impact.other.map(BodyId::index);
+        self.send_event(Message::Strike {
+            stamp,
+            body: impact.body.index(),
+            position: impact.position,
+            other,
+            pulse,
+        })
+    }
+
+    fn send_event(&mut self, message: Message) -> Result<(), Refusal> {
+        self.to_audio.send(message).map_err(|_| Refusal::QueueFull)
+    }
+}

@@ -1,0 +1,54 @@
+//! A body: what rings, what it is made of, and where its sound leaves.
+
+use crate::model::material::Material;
+use crate::model::modal_model::ModalModel;
+
+/// A body, ready to be added to a scene.
+///
+/// ```
+/// use asperity::{AudioBus, Body, Config, Engine, Material, ModalModel, Mode};
+///
+/// let config = Config { audio: vec![AudioBus::default(); 2], ..Config::default() };
+/// let Engine { mut scene, .. } = config.build()?;
+/// let mode = Mode { frequency_hz: 812.0, decay_per_s: 12.0, amplitude: 0.3, phase_rad: 0.0 };
+/// let body = Body::new(ModalModel::new(vec![mode], 0.01)?).of(Material::CERAMIC).on_bus(1);
+/// scene.add_body(body)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    pub(crate) model: ModalModel,
+    pub(crate) material: Material,
+    pub(crate) bus: usize,
+}
+
+impl Body {
+    /// What a body, or a surface without one, is made of unless told otherwise.
+    pub const DEFAULT_MATERIAL: Material = Material::PLA;
+
+    /// A body of PLA on bus 0.
+    #[must_use]
+    pub fn new(model: ModalModel) -> Self {
+        Self { model, material: Self::DEFAULT_MATERIAL, bus: 0 }
+    }
+
+    /// Of another material, which decides how long impacts on it last.
+    #[must_use]
+    pub fn of(mut self, material: Material) -> Self {
+        self.material = material;
+        self
+    }
+
+    /// Its sound leaves on another bus: an index of [`Config::audio`](crate::Config::audio).
+    #[must_use]
+    pub fn on_bus(mut self, bus: usize) -> Self {
+        self.bus = bus;
+        self
+    }
+}
+
+impl From<ModalModel> for Body {
+    fn from(model: ModalModel) -> Self {
+        Self::new(model)
+    }
+}

@@ -1,0 +1,68 @@
+//! Names of what a scene holds: a place, and which of its occupants is meant.
+
+/// A place in a scene's table and the number of the occupant, from 1 on, so that a name outlives what it named without ever
+/// naming what comes after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct Place {
+    pub(crate) index: u32,
+    pub(crate) generation: u32,
+}
+
+impl Place {
+    fn to_bits(self) -> u64 {
+        u64::from(self.generation) << 32 | u64::from(self.index)
+    }
+
+    fn from_bits(bits: u64) -> Self {
+        Self { index: bits as u32, generation: (bits >> 32) as u32 }
+    }
+}
+
+macro_rules! ids {
+    ($($(#[doc = $doc:literal])+ $name:ident),+ $(,)?) => {$(
+        $(#[doc = $doc])+
+        ///
+        /// 64 bits: the place in the lower half, and in the upper one which of its occupants. Once that one is gone, every call that is
+        /// given its id refuses it, however often the place is used again.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub struct $name(pub(crate) Place);
+
+        impl $name {
+            /// As a number that another language or a file can hold; never 0.
+            #[must_use]
+            pub fn to_bits(self) -> u64 {
+                self.0.to_bits()
+            }
+
+            /// The id that [`to_bits`](Self::to_bits) gave. A number that is none is an id that every call refuses.
+            #[must_use]
+            pub fn from_bits(bits: u64) -> Self {
+                Self(Place::from_bits(bits))
+            }
+
+            /// Index in the engine's tables.
+            pub(crate) fn index(self) -> usize {
+                self.0.index as usize
+            }
+        }
+    )+};
+}
+
+ids! {
+    /// A surface that a [`Scene`](crate::Scene) knows.
+    SurfaceId,
+    /// A ringing body that a [`Scene`](crate::Scene) knows.
+    BodyId,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_id_survives_as_a_number() {
+        let id = BodyId(Place { index: 7, generation: u32::MAX });
+        assert_eq!((BodyId::from_bits(id.to_bits()), id.index()), (id, 7));
+        assert_eq!(id.to_bits(), 0xffff_ffff_0000_0007);
+    }
+}

@@ -1,0 +1,179 @@
+//! Sound leaves on buses, so that a game can place each body somewhere else.
+
+mod common;
+
+use asperity::{
+    Actuator, AddError, AudioBus, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine,
+    Impact, Material, Refusal, Renderer, Scene, SurfaceId,
+};
+use common::{bar, peak, plate};
+
+/// An engine with so many buses, without limiters.
+fn engine(buses: usize) -> (Scene, Renderer) {
+    let config = Config { audio: vec![AudioBus::default(); buses], ..Config::default() };
+    let Engine { scene, renderer, .. } = config.build().unwrap();
+    (scene, renderer)
+}
+
+fn strike(body: BodyId, speed_m_s: f64) -> ContactEvent {
+    ContactEvent::Impact(Impact {
+        body,
+        other: None,
+        speed_m_s,
+        mass_kg: 0.005,
+        radius_m: 0.005,
+        striker: Material::STEEL,
+        restitution: 0.6,
+        position: 0,
+    })
+}
+
+fn touch(u: f64) -> ContactSample {
+    ContactSample { uv: [u, 0.5], velocity_m_s: Some([0.1, 0.0]), normal_force_n: 0.6, closing_m_s: 0.0 }
+}
+
+/// Renders blocks of `block` frames and returns what each bus carried.
+fn render(renderer: &mut Renderer, buses: usize, frames: usize, block: usize) -> Vec<Vec<f32>> {
+    let mut all = vec![vec![0.0f32; frames]; buses];
+    let mut at = 0;
+    while at < frames {
+        let n = block.min(frames - at);
+        let mut haptic = vec![0.0f32; n];
+        let mut slices: Vec<_> = all.iter_mut().map(|bus| &mut bus[at..at + n]).collect();
+        renderer.render(&mut [&mut haptic], &mut slices);
+        at += n;
+    }
+    all
+}
+
+#[test]
+fn of_two_bodies_on_two_buses_the_one_that_is_not_struck_leaves_its_bus_at_exactly_zero() {
+    let (mut scene, mut renderer) = engine(2);
+    let struck = scene.add_body(Body::new(bar()).of(Material::CERAMIC)).unwrap();
+    scene.add_body(Body::new(bar()).of(Material::GLASS).on_bus(1)).unwrap();
+    scene.report(0.0, strike(struck, 1.0)).unwrap();
+    let heard = render(&mut renderer, 2, 44_100, 256);
+    assert!(peak(&heard[0]) > 0.01);
+    assert!(heard[1].iter().all(|x| *x == 0.0));
+    let levels = scene.stats().bus_levels;
+    assert_eq!(levels.len(), 2);
+    assert_eq!(levels[1], 0.0);
+    // A second after the blow the meter has fallen by 40 dB at most, and the body rings below it.
+    assert!(levels[0] > 0.0 && f64::from(levels[0]) < peak(&heard[0]), "{levels:?}");
+}
+
+#[test]
+fn without_limiters_the_buses_add_up_to_what_a_single_one_carries() {
+    let game = |buses: usize| {
+        let (mut scene, mut renderer) = engine(buses);
+        for index in 0..3 {
+            let material = [Material::CERAMIC, Material::GLASS, Material::WOOD][index];
+            let body = scene.add_body(Body::new(bar()).of(material).on_bus(index % buses)).unwrap();
+            let surface = scene.add_surface(plate(0.9).on(body)).unwrap();
+            let contact = ContactId(index as u64);
+            let sample = touch(0.1 + 0.2 * index as f64);
+            scene.report(0.01, ContactEvent::begin(contact, surface, Actuator(0), sample)).unwrap();
+            scene.report(0.02, strike(body, 0.5)).unwrap();
+        }
+        render(&mut renderer, buses, 20_000, 256)
+    };
+    let (one, three) = (game(1), game(3));
+    assert!(three.iter().all(|bus| peak(bus) > 0.0));
+    let worst = (0..20_000)
+        .map(|i| (f64::from(one[0][i]) - three.iter().map(|bus| f64::from(bus[i])).sum::<f64>()).abs())
+        .fold(0.0, f64::max);
+    assert!(worst <= 1e-6 * peak(&one[0]), "{worst} of {}", peak(&one[0]));
+}
+
+#[test]
+fn a_body_that_changes_its_bus_while_it_sounds_makes_no_step_and_any_split_gives_the_same_bits() {
+    let game = |moves: bool, block: usize| {
+        let (mut scene, mut renderer) = engine(2);
+        let body = scene.add_body(bar()).unwrap();
+        scene.report(0.0, strike(body, 1.0)).unwrap();
+        let mut heard = render(&mut renderer, 2, 4096, block);
+        if moves {
+            scene.set_body_bus(body, 1).unwrap();
+        }
+        let after = render(&mut renderer, 2, 16_384, block);
+        heard.iter_mut().zip(after).for_each(|(bus, after)| bus.extend(after));
+        heard
+    };
+    let (stays, moves) = (game(false, 64), game(true, 64));
+    for block in [1, 63, 64, 100, 4096] {
+        assert!(game(true, block) == moves, "blocks of {block} differ");
+    }
+    let step = |x: &[f32]| x.windows(2).map(|w| f64::from((w[1] - w[0]).abs())).fold(0.0, f64::max);
+    let (quiet, change) = (step(&stays[0][4000..]), step(&moves[0][4000..]).max(step(&moves[1][4000..])));
+    assert!(change <= 1.01 * quiet, "{change} against {quiet}");
+    // Nothing is lost on the way, and all of it has arrived.
+    let worst = (0..stays[0].len())
+        .map(|i| f64::from((moves[0][i] + moves[1][i] - stays[0][i]).abs()))
+        .fold(0.0, f64::max);
+    assert!(worst <= 1e-6 * peak(&stays[0]), "{worst}");
+    assert!(moves[0][4096 + 1024..].iter().all(|x| *x == 0.0));
+}
+
+#[test]
+fn a_bus_that_is_not_there_is_refused_with_the_number_there_are() {
+    let (mut scene, _renderer) = engine(2);
+    let refused = scene.add_body(Body::new(bar()).on_bus(2)).unwrap_err();
+    assert_eq!(refused, AddError::UnknownBus { bus: 2, buses: 2 });
+    assert_eq!(refused.to_string(), "bus: 2 is refused; must be below 2, the number of buses under audio");
+    let body = scene.add_body(bar()).unwrap();
+    assert!(scene.set_body_bus(body, 7).is_err());
+}
+
+#[test]
+fn every_call_refuses_the_id_of_what_has_gone_although_its_place_is_used_again() {
+    let (mut scene, mut renderer) = engine(1);
+    let old_body = scene.add_body(bar()).unwrap();
+    let old_surface = scene.add_surface(plate(0.5).on(old_body)).unwrap();
+    scene.remove_surface(old_surface).unwrap();
+    scene.remove_body(old_body).unwrap();
+    render(&mut renderer, 1, 8192, 256);
+    let body = scene.add_body(bar()).unwrap();
+    let surface = scene.add_surface(plate(0.5).on(body)).unwrap();
+    assert_ne!((old_body, old_surface), (body, surface));
+    assert_eq!(old_body.to_bits() as u32, body.to_bits() as u32, "the place is the same");
+    let unknown = [
+        scene.remove_body(old_body),
+        scene.replace_body(old_body, bar()),
+        scene.set_body_bus(old_body, 0),
+        scene.remove_surface(old_surface),
+        scene.replace_surface(old_surface, plate(0.1)),
+        scene.add_surface(plate(0.1).on(old_body)).map(|_| ()),
+    ];
+    for answer in unknown {
+        assert!(matches!(answer, Err(AddError::Unknown(_))), "{answer:?}");
+    }
+    let begin = |surface: SurfaceId| ContactEvent::begin(ContactId(1), surface, Actuator(0), touch(0.3));
+    assert_eq!(scene.report(0.0, begin(old_surface)).unwrap_err().reason, Refusal::UnknownSurface);
+    assert_eq!(scene.report(0.0, strike(old_body, 1.0)).unwrap_err().reason, Refusal::UnknownBody);
+    scene.report(0.0, begin(surface)).unwrap();
+    // From numbers as another language holds them, too.
+    assert_eq!(scene.remove_body(BodyId::from_bits(old_body.to_bits())), Err(AddError::Unknown("body")));
+    assert!(scene.remove_body(BodyId::from_bits(0)).is_err());
+    scene.remove_body(BodyId::from_bits(body.to_bits())).unwrap();
+}
+
+#[test]
+fn strokes_on_the_surface_of_a_body_that_has_gone_do_not_ring_the_one_that_took_its_place() {
+    let (mut scene, mut renderer) = engine(1);
+    let gone = scene.add_body(bar()).unwrap();
+    let surface = scene.add_surface(plate(0.9).on(gone)).unwrap();
+    scene.remove_body(gone).unwrap();
+    render(&mut renderer, 1, 8192, 256);
+    scene.add_body(bar()).unwrap();
+    for step in 0..30 {
+        let (time_s, sample) = (0.2 + f64::from(step) / 60.0, touch(0.1 + 0.01 * f64::from(step)));
+        let event = match step {
+            0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+            _ => ContactEvent::moved(ContactId(1), sample),
+        };
+        scene.report(time_s, event).unwrap();
+    }
+    let heard = render(&mut renderer, 1, 30_000, 256);
+    assert!(heard[0].iter().all(|x| *x == 0.0));
+    assert!(scene.stats().contacts == 1);
+}
