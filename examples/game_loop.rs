@@ -112,6 +112,7 @@ fn steel_ball_on(body: BodyId) -> ContactEvent {
         striker: Material::STEEL,
         restitution: 0.8,
         position: 0,
+        ..Impact::on(body)
     })
 }
 

@@ -71,8 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let surface = Surface::new(noise, SIDE_M, SIDE_M)?.wraps(false).micro_relief_m(0.0).on(board);
         let surface = scene.add_surface(surface)?;
-        let names =
-            Names { surfaces: HashMap::from([("material".to_owned(), surface)]), bodies: HashMap::new() };
+        let names = Names { surfaces: HashMap::from([("material".to_owned(), surface)]), ..Names::default() };
         let mut forces = Forces::new(RATE_HZ);
         let options = Options { tail_s: 0.3, ..Options::default() };
         let take = offline::render_tapped(scene, renderer, &log, &names, &options, &mut forces)?;

@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let sand = Surface::new(SandSource::synchronous(&design, 1, RATE_HZ)?, SIDE_M, SIDE_M)?;
     let surface = scene.add_surface(sand.wraps(false).on(board))?;
-    let names = Names { surfaces: HashMap::from([("sand".to_owned(), surface)]), bodies: HashMap::new() };
+    let names = Names { surfaces: HashMap::from([("sand".to_owned(), surface)]), ..Names::default() };
     let mut forces = Forces::new(RATE_HZ);
     let options = Options { tail_s: 0.3, ..Options::default() };
     let take = offline::render_tapped(scene, renderer, &log, &names, &options, &mut forces)?;

@@ -28,6 +28,7 @@ fn render(model: ModalModel, log: &ContactLog) {
     let names = Names {
         surfaces: HashMap::from([("tiles".to_owned(), surface)]),
         bodies: HashMap::from([("tile".to_owned(), body)]),
+        ..Default::default()
     };
     if log.end_s().is_nan() || log.end_s() > LONGEST_S {
         return;

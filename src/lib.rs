@@ -41,11 +41,12 @@ pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
 pub use model::error::{AddError, ConfigError, Refusal, ReportError};
 pub use model::event::{
-    Actuator, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
+    Actuator, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV, Touching,
 };
-pub use model::id::{BodyId, SurfaceId};
+pub use model::id::{BodyId, ProbeId, SurfaceId};
 pub use model::material::Material;
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
+pub use model::probe::{PROBE_PRESETS, probe_by_name};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
 pub use model::surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,

@@ -25,6 +25,7 @@ fn strike(body: BodyId, speed_m_s: f64) -> ContactEvent {
         striker: Material::STEEL,
         restitution: 0.6,
         position: 0,
+        ..Impact::on(body)
     })
 }
 
@@ -71,9 +72,9 @@ fn without_limiters_the_buses_add_up_to_what_a_single_one_carries() {
             let body = scene.add_body(Body::new(bar()).of(material).on_bus(index % buses)).unwrap();
             let surface = scene.add_surface(plate(0.9).on(body)).unwrap();
             let contact = ContactId(index as u64);
-            let sample = touch(0.1 + 0.2 * index as f64);
-            scene.report(0.01, ContactEvent::begin(contact, surface, Actuator(0), sample)).unwrap();
-            scene.report(0.02, strike(body, 0.5)).unwrap();
+            let (sample, t) = (touch(0.1 + 0.2 * index as f64), 0.02 * index as f64);
+            scene.report(t, ContactEvent::begin(contact, surface, Actuator(0), sample)).unwrap();
+            scene.report(t + 0.01, strike(body, 0.5)).unwrap();
         }
         render(&mut renderer, buses, 20_000, 256)
     };

@@ -25,6 +25,7 @@ fn take(log: &ContactLog) -> Render {
     let names = Names {
         surfaces: HashMap::from([("s".to_owned(), surface)]),
         bodies: HashMap::from([("b".to_owned(), body)]),
+        ..Default::default()
     };
     offline::render(scene, renderer, log, &names, &Options::default()).unwrap()
 }
@@ -38,10 +39,7 @@ fn flickering(gap_s: f64, closing_m_s: f64, uv_off: f64) -> ContactLog {
     let u = sample.uv[0] + uv_off + 0.1 * gap_s / SIDE_M;
     let landed = LogSample { uv: [u, sample.uv[1]], closing_m_s, ..sample };
     let lift_off = LogLine { t: off_s, event: LogEvent::End { contact: 1 } };
-    let landing = LogLine {
-        t: off_s + gap_s,
-        event: LogEvent::Begin { contact: 1, surface: "s".into(), actuator: 0, sample: landed },
-    };
+    let landing = LogLine { t: off_s + gap_s, event: LogEvent::begin(1, "s", 0, landed) };
     lines.splice(at..=at, [lift_off, landing]);
     lines.sort_by(|a, b| a.t.total_cmp(&b.t));
     ContactLog { lines }

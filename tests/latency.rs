@@ -27,6 +27,7 @@ fn impact(body: asperity::BodyId) -> ContactEvent {
         striker: Material::STEEL,
         restitution: 1.0,
         position: 0,
+        ..Impact::on(body)
     })
 }
 

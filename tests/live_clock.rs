@@ -51,6 +51,7 @@ impl Game {
             striker: Material::STEEL,
             restitution: 1.0,
             position: 0,
+            ..Impact::on(self.body)
         };
         self.strikes += 1;
         self.report(time_s, ContactEvent::Impact(impact));
@@ -258,6 +259,7 @@ fn a_reset_ties_an_exact_clock_anew_and_drops_what_waited() {
         striker: Material::STEEL,
         restitution: 1.0,
         position: 0,
+        ..Impact::on(body)
     });
     let (mut haptic, mut audio) = (vec![0.0; 4410], vec![0.0; 4410]);
     scene.report(12.0, impact).unwrap();

@@ -17,6 +17,7 @@ fn scene_of(config: Config) -> (Scene, asperity::Renderer, Names) {
     let names = Names {
         surfaces: HashMap::from([("s".to_owned(), surface)]),
         bodies: HashMap::from([("b".to_owned(), body)]),
+        ..Default::default()
     };
     (scene, renderer, names)
 }

@@ -27,7 +27,7 @@ fn body(modes: usize) -> ModalModel {
 fn strike(config: Config, model: ModalModel, position: usize) -> Vec<f32> {
     let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(model).unwrap();
-    let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), surfaces: HashMap::new() };
+    let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), ..Names::default() };
     let line = r#"{"t":0.01,"event":"impact","body":"b","speed_m_s":0.5,"mass_kg":0.002,"radius_m":0.002,"striker":"steel","position":"#;
     let log = ContactLog::parse(&format!("{line}{position}}}"), "log").unwrap();
     offline::render(scene, renderer, &log, &names, &Options { block_frames: 256, tail_s: 0.5 })

@@ -58,7 +58,7 @@ fn reports(mut change: impl FnMut(usize, f64, &mut LogSample) -> bool) -> Contac
         };
         let stays = change(step, t, &mut sample);
         let event = if step == 0 {
-            LogEvent::Begin { contact: 1, surface: "s".into(), actuator: 0, sample }
+            LogEvent::begin(1, "s", 0, sample)
         } else {
             LogEvent::Move { contact: 1, sample }
         };

@@ -30,7 +30,7 @@ fn struck(model: ModalModel, speeds: &[f64], options: &Options) -> Render {
     });
     let log = ContactLog::parse(&lines.collect::<String>(), "made").unwrap();
     assert!(log.lines.iter().all(|line| matches!(line.event, LogEvent::Impact { .. })));
-    let names = Names { surfaces: HashMap::new(), bodies: HashMap::from([("b".to_owned(), body)]) };
+    let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), ..Names::default() };
     offline::render(scene, renderer, &log, &names, options).unwrap()
 }
 

@@ -54,7 +54,7 @@ impl Hand {
             }
         };
         let at = |step: usize| self.begins_s + step as f64 / self.reports_hz;
-        let begin = LogEvent::Begin { contact: 1, surface: "s".into(), actuator: 0, sample: sample(0) };
+        let begin = LogEvent::begin(1, "s", 0, sample(0));
         let mut lines = vec![LogLine { t: self.begins_s, event: begin }];
         let moved =
             |step: usize| LogLine { t: at(step), event: LogEvent::Move { contact: 1, sample: sample(step) } };
@@ -177,8 +177,8 @@ fn a_finger_at_rest_in_sand_sleeps_until_another_finger_moves_the_sand_under_it(
     let beside = by.log().lines.into_iter().map(|line| {
         let aside = |sample: LogSample| LogSample { uv: [sample.uv[0] - 0.2, sample.uv[1] + 0.06], ..sample };
         let event = match line.event {
-            LogEvent::Begin { surface, actuator, sample, .. } => {
-                LogEvent::Begin { contact: 2, surface, actuator, sample: aside(sample) }
+            LogEvent::Begin { touching, sample, .. } => {
+                LogEvent::Begin { contact: 2, touching, sample: aside(sample) }
             }
             LogEvent::Move { sample, .. } => LogEvent::Move { contact: 2, sample: aside(sample) },
             _ => LogEvent::End { contact: 2 },

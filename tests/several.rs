@@ -17,7 +17,7 @@ fn take(log: &ContactLog) -> Render {
         ("s".to_owned(), scene.add_surface(grating(2e-3, 2e-5).on(body)).unwrap()),
         ("other".to_owned(), scene.add_surface(plate(0.9).on(body)).unwrap()),
     ]);
-    let names = Names { surfaces, bodies: HashMap::from([("b".to_owned(), body)]) };
+    let names = Names { surfaces, bodies: HashMap::from([("b".to_owned(), body)]), ..Names::default() };
     offline::render(scene, renderer, log, &names, &Options::default()).unwrap()
 }
 
@@ -25,8 +25,8 @@ fn take(log: &ContactLog) -> Render {
 fn finger(contact: u64, on: &str, channel: u16, speed_m_s: f64) -> ContactLog {
     let mut log = stroke_of(contact, SIDE_M, speed_m_s, 0.7, 0.5);
     for line in &mut log.lines {
-        if let LogEvent::Begin { surface, actuator, .. } = &mut line.event {
-            (*surface, *actuator) = (on.to_owned(), channel);
+        if let LogEvent::Begin { touching, .. } = &mut line.event {
+            (touching.surface, touching.hand.actuator) = (on.to_owned(), Some(channel));
         }
     }
     log

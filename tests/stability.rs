@@ -352,6 +352,7 @@ fn a_body_struck_a_hundred_thousand_times_rings_out_all_the_same() {
                 striker: Material::STEEL,
                 restitution: 1.0,
                 position: 0,
+                ..Impact::on(body)
             };
             scene.report(f64::from(step) * 0.01, ContactEvent::Impact(impact)).unwrap();
         }

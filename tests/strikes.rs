@@ -37,8 +37,9 @@ fn struck(modes: &[Mode], contact_s: f64, at: f64, rate_hz: f64, integrator: Int
     let asperity::Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     // Full scale is an impact like this one: what is 160 dB below it is put to rest.
     let model = ModalModel::new(modes.to_vec(), 2.0 * mass_kg(contact_s) * SPEED_M_S).unwrap();
+    let body = scene.add_body(asperity::Body::new(model).of(material(contact_s))).unwrap();
     let impact = Impact {
-        body: scene.add_body(asperity::Body::new(model).of(material(contact_s))).unwrap(),
+        body,
         other: None,
         speed_m_s: SPEED_M_S,
         mass_kg: mass_kg(contact_s),
@@ -46,6 +47,7 @@ fn struck(modes: &[Mode], contact_s: f64, at: f64, rate_hz: f64, integrator: Int
         striker: material(contact_s),
         restitution: 1.0,
         position: 0,
+        ..Impact::on(body)
     };
     scene.report(at / rate_hz, ContactEvent::Impact(impact)).unwrap();
     let late = renderer.latency_samples();
@@ -166,6 +168,7 @@ fn foam(mass_kg: f64, rate_hz: f64) -> (f64, u64) {
         striker: foam,
         restitution: 1.0,
         position: 0,
+        ..Impact::on(body)
     };
     scene.report(0.01, ContactEvent::Impact(impact)).unwrap();
     let mut loudest = 0.0f64;

@@ -71,10 +71,7 @@ fn log(seconds: f64, at: impl Fn(f64) -> ([f64; 2], [f64; 2], f64)) -> ContactLo
         let (uv, velocity_m_s, normal_force_n) = at(t);
         LogSample { uv, velocity_m_s: Some(velocity_m_s), normal_force_n, closing_m_s: 0.0 }
     };
-    let mut lines = vec![LogLine {
-        t: 0.0,
-        event: LogEvent::Begin { contact: 1, surface: "s".into(), actuator: 0, sample: sample(0.0) },
-    }];
+    let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "s", 0, sample(0.0)) }];
     for step in 1..(seconds * 60.0) as usize {
         let t = step as f64 / 60.0;
         lines.push(LogLine { t, event: LogEvent::Move { contact: 1, sample: sample(t) } });

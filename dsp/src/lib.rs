@@ -14,6 +14,7 @@
 //! | [`gradient_noise_3d`] | a point in space → solid noise and its gradient |
 //! | [`micro_contact`] | profile heights and normal force → pad, contact force, collisions |
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
+//! | [`mobility`] | force pulses → what the hand feels of an impact |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
 //! | [`actuator`] | pad motion → haptic samples |
 //! | [`limits`] | what all of them accept |
@@ -33,6 +34,7 @@ pub mod gradient_noise_3d;
 pub mod hertz;
 pub mod limits;
 pub mod micro_contact;
+pub mod mobility;
 pub mod modal_bank;
 pub mod mode;
 pub mod pair;

@@ -90,7 +90,7 @@ pub fn strokes(samples: &[PenSample], surface: &str, size_m: [f64; 2], velocity:
         } else {
             contact += 1;
             sample.closing_m_s = LANDING_M_S;
-            LogEvent::Begin { contact, surface: surface.into(), actuator: 0, sample }
+            LogEvent::begin(contact, surface, 0, sample)
         };
         lines.push(LogLine { t: now.t, event });
         last = Some(*now);
@@ -165,5 +165,6 @@ fn impact(body: &str, gained_m_s: f64) -> LogEvent {
         striker: Striker::Preset("plastic".into()),
         restitution: CUBE_RESTITUTION,
         position: 0,
+        hand: Default::default(),
     }
 }

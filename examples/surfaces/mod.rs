@@ -67,7 +67,7 @@ impl Hand {
                 closing_m_s: 0.0,
             };
             let event = match step {
-                0 => LogEvent::Begin { contact, surface: self.surface.into(), actuator: 0, sample },
+                0 => LogEvent::begin(contact, self.surface, 0, sample),
                 _ if step == steps => LogEvent::End { contact },
                 _ => LogEvent::Move { contact, sample },
             };

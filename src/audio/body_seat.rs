@@ -113,9 +113,9 @@ impl BodySeat {
     }
 
     /// Adds what one contact sends to the body of that name; to nobody, if it has gone.
-    pub(crate) fn touch(&mut self, id: BodyId, position: usize, impulse_n_s: &[f64]) {
+    pub(crate) fn touch(&mut self, id: BodyId, position: usize, impulse_n_s: &[f64], sign: f64) {
         if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
-            body.touch(position, impulse_n_s);
+            body.touch(position, impulse_n_s, sign);
         }
     }
 

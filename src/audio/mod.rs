@@ -1,5 +1,6 @@
 //! The audio thread's half: never allocates, locks, waits or fails.
 
+pub(crate) mod blows;
 pub(crate) mod body_seat;
 pub(crate) mod governor;
 pub(crate) mod occupied;

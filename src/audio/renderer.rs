@@ -7,26 +7,26 @@
 mod contacts;
 mod outputs;
 
+use crate::audio::blows::Blows;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::governor::Governor;
 use crate::audio::occupied::Occupied;
 use crate::audio::seat::{Change, Seat};
 use crate::audio::tap::{NoTap, Tap};
 use crate::audio::voice::{Phase, Scratch, Shared, Voice};
-use crate::link::message::{Dead, Message};
+use crate::link::message::{Dead, Felt, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
 use crate::model::config::Config;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
 use crate::model::stamp::Stamp;
-use crate::prepared::stroking::restitution;
+use crate::prepared::probe::{PreparedProbe, row_latency};
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_dsp::micro_contact::MicroContact;
 use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
@@ -54,6 +54,7 @@ pub struct Renderer {
     bodies_used: Occupied,
     channels: Vec<HapticChannel>,
     buses: Vec<Bus>,
+    blows: Blows,
     kernel: Kernel,
     governor: Governor,
     /// Groups of modes left out in the present stretch.
@@ -68,20 +69,22 @@ pub struct Renderer {
 impl Renderer {
     pub(crate) fn new(
         config: &Config,
-        micro_contact: MicroContact,
+        probe: PreparedProbe,
         from_game: Receiver<Message>,
         to_game: Sender<Dead>,
         counters: Arc<Counters>,
     ) -> Result<Self, DesignError> {
         let rate = config.inner_rate_hz();
-        let inner = InnerRate::new(config.sample_rate_hz, micro_contact.latency_samples());
+        let row_latency = row_latency(config.integrator);
+        let inner = InnerRate::new(config.sample_rate_hz, row_latency);
         let shared = Shared {
             sample_rate_hz: rate,
             inner,
-            collision_mass_kg: config.probe.pad_mass_kg * (1.0 + restitution(&config.probe)),
             idle_path: TrajectoryDesign::new(config.path, config.path_cutoff_hz, rate, [f64::INFINITY; 2])?,
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
-            micro_contact,
+            own_probe: probe,
+            probes: (0..config.max_probes).map(|_| None).collect(),
+            row_latency,
             noise: FractalNoise::new(config.seed),
             noise_octaves_gone: 0,
             fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
@@ -106,6 +109,7 @@ impl Renderer {
                 .map(|settings| HapticChannel::new(settings, rate))
                 .collect::<Result<_, _>>()?,
             buses: config.audio.iter().map(|bus| Bus::new(bus, rate)).collect::<Result<_, _>>()?,
+            blows: Blows::new(rate),
             kernel: Kernel::detect(),
             governor: Governor::new(config.shed_load, rate),
             groups_shed: 0,
@@ -145,7 +149,7 @@ impl Renderer {
     /// path filter: the look-ahead of the contact model.
     #[must_use]
     pub fn latency_samples(&self) -> usize {
-        self.shared.inner.lag(self.shared.micro_contact.latency_samples())
+        self.shared.inner.lag(self.shared.row_latency)
     }
 
     /// Index of the next sample to be rendered.
@@ -268,14 +272,22 @@ impl Renderer {
                 self.note_arrival(stamp);
                 self.apply_event(&event, stamp);
             }
-            Message::Strike { stamp, body, position, other, pulse } => {
+            Message::Strike { stamp, body, position, other, holder, felt, pulse } => {
                 self.note_arrival(stamp);
                 Counters::add(&self.counters.impacts, 1);
                 self.strike(body, position, &pulse, stamp);
                 if let Some(other) = other {
                     self.strike(other, 0, &pulse, stamp);
                 }
+                let answer = HertzPulse { impulse_n_s: -pulse.impulse_n_s, ..pulse };
+                if let Some(holder) = holder {
+                    self.strike(holder, 0, &answer, stamp);
+                }
+                if let Some(felt) = felt {
+                    self.feel(felt, &pulse, stamp);
+                }
             }
+            Message::AddProbe { index, probe } => self.shared.probes[index] = Some(probe),
             Message::SetSurface { id, surface } => self.set_surface(id, surface),
             Message::ChangeSurface { slot, change } => {
                 if !self.seats[slot].change(&change, self.position) {
@@ -325,9 +337,16 @@ impl Renderer {
 
     fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
-        let sounds = self.due(stamp).later(self.shared.micro_contact.latency_samples() as u64);
+        let sounds = self.due(stamp).later(self.shared.row_latency as u64);
         let level = self.governor.mode_level();
         self.bodies[body].strike(position, pulse, sounds, level, self.shared.sample_rate_hz);
+    }
+
+    /// A strike is felt: its pulse goes through the mobility of the hand's probe.
+    fn feel(&mut self, felt: Felt, pulse: &HertzPulse, stamp: Stamp) {
+        let sounds = self.due(stamp).later(self.shared.row_latency as u64);
+        let output = &self.channels[felt.channel].output;
+        self.blows.strike(felt, output, pulse, sounds, self.position, self.shared.sample_rate_hz);
     }
 
     fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
@@ -341,22 +360,35 @@ impl Renderer {
                 continue;
             }
             let seat = &mut self.seats[voice.surface];
-            let channel = &mut self.channels[voice.actuator];
-            voice.render(seat, &self.shared, &channel.output, self.position, n, &mut self.scratch, tap);
+            let channel = voice.role.actuator.map(|channel| &mut self.channels[channel]);
+            let output = channel.as_ref().map_or(&self.shared.idle_output, |channel| &channel.output);
+            voice.render(seat, &self.shared, output, self.position, n, &mut self.scratch, tap);
             let out = &self.scratch.out;
             collisions += out.collisions;
             resets += out.resets;
-            for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
-                *sum += x;
+            if let Some(channel) = channel {
+                for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
+                    *sum += x;
+                }
             }
             if !out.excites {
                 continue;
             }
+            if let Some(holder) = voice.role.holder {
+                self.bodies[holder.index()].touch(holder, 0, &out.impulse_n_s[..n], -1.0);
+            }
             let surface = seat.current().map(|slot| &slot.surface);
             if let Some((body, place)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
-                self.bodies[body.index()].touch(body, place, &out.impulse_n_s[..n]);
+                self.bodies[body.index()].touch(body, place, &out.impulse_n_s[..n], 1.0);
             }
         }
+        let channels = &mut self.channels;
+        self.blows.render(&self.shared, self.position, n, |channel, output, moves| {
+            let HapticChannel { output: design, sum, .. } = &mut channels[channel];
+            for (sum, [pad_m, pad_m_s]) in sum.iter_mut().zip(moves) {
+                *sum += output.tick(design, *pad_m, *pad_m_s);
+            }
+        });
         Counters::add(&self.counters.micro_collisions, collisions);
         Counters::add(&self.counters.quarantined, resets);
     }

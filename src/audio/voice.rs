@@ -15,13 +15,15 @@ use excitation::LONGEST_COLLISION_S;
 
 use crate::audio::seat::{Noise, Seat};
 use crate::audio::tap::Tap;
-use crate::model::event::ContactId;
+use crate::model::event::{ContactId, Touching};
+use crate::model::id::{BodyId, ProbeId};
 use crate::model::inner_rate::InnerRate;
+use crate::prepared::probe::PreparedProbe;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::{FORCE_HISTORY, OnsetMerge};
-use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact};
+use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState};
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
@@ -52,10 +54,12 @@ pub(crate) struct Shared {
     /// Inside; which of these samples leave says `inner`.
     pub(crate) sample_rate_hz: f64,
     pub(crate) inner: InnerRate,
-    pub(crate) micro_contact: MicroContact,
+    /// The engine's own probe, and those that were added.
+    pub(crate) own_probe: PreparedProbe,
+    pub(crate) probes: Vec<Option<Box<PreparedProbe>>>,
+    /// By how many samples the rows of every probe lag behind its inputs.
+    pub(crate) row_latency: usize,
     pub(crate) noise: FractalNoise,
-    /// Momentum of a micro-collision per closing speed, kg: pad mass × (1 + restitution).
-    pub(crate) collision_mass_kg: f64,
     /// Octaves of noise left out because blocks run late.
     pub(crate) noise_octaves_gone: u32,
     /// The rise of a fade, 0 to 1.
@@ -63,6 +67,12 @@ pub(crate) struct Shared {
 }
 
 impl Shared {
+    /// The probe of a place; the engine's own for none.
+    pub(crate) fn probe(&self, place: Option<usize>) -> &PreparedProbe {
+        let added = place.and_then(|place| self.probes.get(place)?.as_deref());
+        added.unwrap_or(&self.own_probe)
+    }
+
     fn fade_samples(&self) -> u32 {
         self.fade.len().saturating_sub(1) as u32
     }
@@ -79,11 +89,42 @@ pub(crate) enum Phase {
     Fading { left: u32 },
 }
 
+/// What touches, who feels it and what is held: fixed while a contact lasts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Role {
+    /// Haptic channel; none = heard only.
+    pub(crate) actuator: Option<usize>,
+    /// Place of the probe; none = the engine's own.
+    pub(crate) probe: Option<usize>,
+    /// What rings with it.
+    pub(crate) holder: Option<BodyId>,
+    pub(crate) gain: f64,
+    pub(crate) importance: f64,
+}
+
+impl Default for Role {
+    fn default() -> Self {
+        Self { actuator: None, probe: None, holder: None, gain: 1.0, importance: 1.0 }
+    }
+}
+
+impl From<&Touching> for Role {
+    fn from(touching: &Touching) -> Self {
+        Self {
+            actuator: touching.actuator.map(|actuator| usize::from(actuator.0)),
+            probe: touching.probe.map(ProbeId::index),
+            holder: touching.holder,
+            gain: touching.gain,
+            importance: touching.importance,
+        }
+    }
+}
+
 /// One contact.
 pub(crate) struct Voice {
     pub(crate) contact: ContactId,
     pub(crate) surface: usize,
-    pub(crate) actuator: usize,
+    pub(crate) role: Role,
     pub(crate) phase: Phase,
     pub(crate) begun: u64,
     pub(crate) refreshed: u64,
@@ -107,6 +148,8 @@ pub(crate) struct Voice {
     last_row: PadSample,
     last_felt: f64,
     pad: ContactState,
+    /// The row that waits, where rows have to.
+    late_row: PadSample,
     resets_told: u32,
     merge: OnsetMerge,
     feel: ContactOutputState,
@@ -165,7 +208,7 @@ impl Voice {
         Self {
             contact: ContactId(0),
             surface: 0,
-            actuator: 0,
+            role: Role::default(),
             phase: Phase::Free,
             begun: 0,
             refreshed: 0,
@@ -182,7 +225,8 @@ impl Voice {
             last_point: PathPoint::default(),
             last_row: PadSample::default(),
             last_felt: 0.0,
-            pad: shared.micro_contact.at_rest(0.0, 0.0),
+            pad: shared.own_probe.micro_contact.at_rest(0.0, 0.0),
+            late_row: PadSample::default(),
             resets_told: 0,
             merge: OnsetMerge::default(),
             feel: ContactOutputState::begin(&shared.idle_output, 0.0, 0.0),
@@ -207,7 +251,7 @@ impl Voice {
         let speed_m_s = (u * u + v * v).sqrt();
         match self.phase {
             Phase::Free | Phase::Fading { .. } => -1.0,
-            Phase::Sounding => self.last_point.normal_force_n * (1e-3 + speed_m_s),
+            Phase::Sounding => self.role.importance * self.last_point.normal_force_n * (1e-3 + speed_m_s),
         }
     }
 
@@ -329,18 +373,29 @@ impl Voice {
     }
 
     fn touch(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        shared.micro_contact.run(
+        let probe = shared.probe(self.role.probe);
+        probe.micro_contact.run(
             &mut self.pad,
             &scratch.surface.height_m[..n],
             &scratch.force_n[..n],
             &mut scratch.pad[..n],
         );
+        if probe.waits {
+            self.wait_a_row(&mut scratch.pad[..n]);
+        }
         if self.landing_m_s > 0.0 {
             self.feel_no_air(&mut scratch.pad[..n]);
         }
         let resets = self.pad.resets();
         scratch.out.resets = u64::from(resets.wrapping_sub(self.resets_told));
         self.resets_told = resets;
+    }
+
+    /// Rows come a sample later, so that those of every probe describe the same instant.
+    fn wait_a_row(&mut self, rows: &mut [PadSample]) {
+        for row in rows {
+            std::mem::swap(row, &mut self.late_row);
+        }
     }
 
     /// A resting contact: nothing moves, so nothing is computed; the rows stay as they were.
@@ -375,7 +430,11 @@ impl Voice {
         let feels_still = felt.abs() < still || (felt - row.pad_m).abs() < still;
         self.asleep = feels_still
             && self.trajectory.is_still()
-            && shared.micro_contact.is_settled(&self.pad, row.height_m, row.normal_force_n)
+            && shared.probe(self.role.probe).micro_contact.is_settled(
+                &self.pad,
+                row.height_m,
+                row.normal_force_n,
+            )
             && self.reaction.grain_rate_per_s == 0.0
             && !self.reaction.stirs
             && scratch.out.impulse_n_s[n - 1].abs() < STILL_N_S

@@ -6,8 +6,8 @@
 
 mod keys;
 
-use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Impact};
-use crate::model::id::{BodyId, SurfaceId};
+use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Impact, Touching};
+use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 use keys::Unread;
 use serde::{Deserialize, Serialize};
@@ -33,11 +33,9 @@ pub enum LogEvent {
     Begin {
         /// The contact's name.
         contact: u64,
-        /// Name of the surface.
-        surface: String,
-        /// Haptic channel.
-        #[serde(default)]
-        actuator: u16,
+        /// What touches what, and who feels it.
+        #[serde(flatten)]
+        touching: LogTouching,
         /// Where and how.
         #[serde(flatten)]
         sample: LogSample,
@@ -76,7 +74,40 @@ pub enum LogEvent {
         /// Which of the body's strike positions is hit; missing: 0.
         #[serde(default, skip_serializing_if = "is_first")]
         position: usize,
+        /// The hand: who feels it and what it holds.
+        #[serde(flatten)]
+        hand: LogHand,
     },
+}
+
+/// What touches what, and who feels it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LogTouching {
+    /// Name of the surface.
+    pub surface: String,
+    /// Importance beside other contacts; missing: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub importance: Option<f64>,
+    /// The hand: who feels it and what it holds.
+    #[serde(flatten)]
+    pub hand: LogHand,
+}
+
+/// Who feels it, what is held and what touches.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct LogHand {
+    /// Haptic channel; missing: heard only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub actuator: Option<u16>,
+    /// Name of the probe; missing: the scene's default one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probe: Option<String>,
+    /// Name of the body that holds the probe.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holder: Option<String>,
+    /// Linear gain of what is felt and heard; missing: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<f64>,
 }
 
 /// A striker's material: a preset's name or its elastic constants.
@@ -146,6 +177,8 @@ pub struct Names {
     pub surfaces: HashMap<String, SurfaceId>,
     /// Bodies by name.
     pub bodies: HashMap<String, BodyId>,
+    /// Probes by name.
+    pub probes: HashMap<String, ProbeId>,
 }
 
 /// Why a log, or a line of it, was refused.
@@ -194,7 +227,7 @@ pub enum LogError {
     /// A name the scene does not know.
     #[error("{kind} \"{name}\" is unknown; must be one of: {known}")]
     UnknownName {
-        /// "surface", "body" or "striker".
+        /// "surface", "body", "probe", "holder" or "striker".
         kind: &'static str,
         /// The name.
         name: String,
@@ -280,33 +313,75 @@ impl ContactLog {
 }
 
 impl LogEvent {
+    /// The engine's own probe lands on a surface, felt by a haptic channel.
+    #[must_use]
+    pub fn begin(contact: u64, surface: impl Into<String>, actuator: u16, sample: LogSample) -> Self {
+        let hand = LogHand { actuator: Some(actuator), ..LogHand::default() };
+        Self::Begin {
+            contact,
+            touching: LogTouching { surface: surface.into(), importance: None, hand },
+            sample,
+        }
+    }
+
     /// The event for a scene whose ids `names` gives.
     ///
     /// # Errors
     /// When the event names a surface, body or striker that is not there.
     pub fn resolve(&self, names: &Names) -> Result<ContactEvent, LogError> {
         Ok(match self {
-            Self::Begin { contact, surface, actuator, sample } => ContactEvent::Begin {
+            Self::Begin { contact, touching, sample } => ContactEvent::Begin {
                 contact: ContactId(*contact),
-                surface: find("surface", surface, &names.surfaces)?,
-                actuator: Actuator(*actuator),
+                touching: touching.resolve(names)?,
                 sample: (*sample).into(),
             },
             Self::Move { contact, sample } => ContactEvent::moved(ContactId(*contact), (*sample).into()),
             Self::End { contact } => ContactEvent::end(ContactId(*contact)),
-            Self::Impact { body, other, speed_m_s, mass_kg, radius_m, striker, restitution, position } => {
-                ContactEvent::Impact(Impact {
-                    body: find("body", body, &names.bodies)?,
-                    other: other.as_ref().map(|name| find("body", name, &names.bodies)).transpose()?,
-                    speed_m_s: *speed_m_s,
-                    mass_kg: *mass_kg,
-                    radius_m: *radius_m,
-                    striker: striker.material()?,
-                    restitution: *restitution,
-                    position: *position,
-                })
-            }
+            Self::Impact {
+                body,
+                other,
+                speed_m_s,
+                mass_kg,
+                radius_m,
+                striker,
+                restitution,
+                position,
+                hand,
+            } => ContactEvent::Impact(Impact {
+                body: find("body", body, &names.bodies)?,
+                other: other.as_ref().map(|name| find("body", name, &names.bodies)).transpose()?,
+                speed_m_s: *speed_m_s,
+                mass_kg: *mass_kg,
+                radius_m: *radius_m,
+                striker: striker.material()?,
+                restitution: *restitution,
+                position: *position,
+                actuator: hand.actuator.map(Actuator),
+                holder: hand.holder(names)?,
+                probe: hand.probe(names)?,
+                gain: hand.gain.unwrap_or(1.0),
+            }),
         })
+    }
+}
+
+impl LogTouching {
+    fn resolve(&self, names: &Names) -> Result<Touching, LogError> {
+        let hand = &self.hand;
+        let mut touching = Touching::on(find("surface", &self.surface, &names.surfaces)?);
+        touching.actuator = hand.actuator.map(Actuator);
+        (touching.probe, touching.holder) = (hand.probe(names)?, hand.holder(names)?);
+        Ok(touching.gain(hand.gain.unwrap_or(1.0)).importance(self.importance.unwrap_or(1.0)))
+    }
+}
+
+impl LogHand {
+    fn probe(&self, names: &Names) -> Result<Option<ProbeId>, LogError> {
+        self.probe.as_ref().map(|name| find("probe", name, &names.probes)).transpose()
+    }
+
+    fn holder(&self, names: &Names) -> Result<Option<BodyId>, LogError> {
+        self.holder.as_ref().map(|name| find("holder", name, &names.bodies)).transpose()
     }
 }
 
@@ -352,7 +427,8 @@ mod tests {
     fn names() -> Names {
         Names {
             surfaces: HashMap::from([("tiles".to_owned(), surface())]),
-            bodies: HashMap::from([("tile".to_owned(), body())]),
+            bodies: HashMap::from([("tile".to_owned(), body()), ("pen".to_owned(), body())]),
+            probes: HashMap::from([("stylus".to_owned(), ProbeId::from_bits(1 << 32))]),
         }
     }
 
@@ -370,7 +446,7 @@ mod tests {
     fn names_become_the_ids_of_the_scene() {
         let log = ContactLog::parse(LOG, "log").unwrap();
         let events: Vec<_> = log.lines.iter().map(|l| l.event.resolve(&names()).unwrap()).collect();
-        assert!(matches!(events[0], ContactEvent::Begin { surface: id, .. } if id == surface()));
+        assert!(matches!(events[0], ContactEvent::Begin { touching, .. } if touching.surface == surface()));
         assert!(matches!(
             events[2],
             ContactEvent::Impact(Impact { body: id, striker: Material::STEEL, .. }) if id == body()
@@ -425,7 +501,16 @@ mod tests {
         let text = format!("{}\n{}\n", begin.replace('\n', ""), strike.replace('\n', ""));
         let (log, unread) = ContactLog::parse_telling(&text, "log").unwrap();
         assert_eq!(log.lines.len(), 2);
-        assert!(unread.contains(&"log:1: probe".to_owned()), "{unread:?}");
+        assert!(unread.contains(&"log:1: at_m".to_owned()), "{unread:?}");
+        let begun = log.lines[0].event.resolve(&names()).unwrap();
+        let ContactEvent::Begin { touching, .. } = begun else { panic!("{begun:?}") };
+        assert_eq!((touching.probe, touching.holder), (Some(ProbeId::from_bits(1 << 32)), Some(body())));
+        assert_eq!((touching.actuator, touching.gain), (Some(Actuator(0)), 1.0));
+        let struck = log.lines[1].event.resolve(&names()).unwrap();
+        assert!(
+            matches!(struck, ContactEvent::Impact(Impact { gain: 2.0, holder: Some(_), .. })),
+            "{struck:?}"
+        );
         assert!(ContactLog::parse_telling(LOG, "log").unwrap().1.is_empty());
     }
 

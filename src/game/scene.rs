@@ -17,16 +17,18 @@ use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::error::AddError;
 use crate::model::event::{Actuator, ContactEvent, ContactId};
-use crate::model::id::{BodyId, SurfaceId};
+use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
 use crate::model::stamp::Stamp;
 use crate::model::surface::Surface;
 use crate::prepared::body::BodySlot;
 use crate::prepared::overlay::Overlay;
+use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::DesignError;
+use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::change::SurfaceChange;
 use std::sync::Arc;
@@ -39,6 +41,7 @@ pub struct Scene {
     last_time_s: f64,
     surfaces: Places<KnownSurface>,
     bodies: Places<KnownBody>,
+    probes: Places<()>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     to_audio: Sender<Message>,
@@ -74,6 +77,7 @@ impl Scene {
         Self {
             surfaces: Places::new(config.max_surfaces, "surfaces"),
             bodies: Places::new(config.max_bodies, "bodies"),
+            probes: Places::new(config.max_probes, "probes"),
             reported: Reported::default(),
             held: Vec::new(),
             config,
@@ -158,6 +162,19 @@ impl Scene {
         self.send(Message::RemoveBody { slot: body.index() })?;
         self.bodies.remove(body.0);
         Ok(())
+    }
+
+    /// Adds a probe that contacts may touch with: a [preset](crate::PROBE_PRESETS) or one's own. It stays as long as the scene.
+    ///
+    /// # Errors
+    /// When every place is taken, a number is outside its range, or the queue is full.
+    pub fn add_probe(&mut self, probe: Probe) -> Result<ProbeId, AddError> {
+        let id = ProbeId(self.probes.free()?);
+        let Config { probe: own, integrator, .. } = &self.config;
+        let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz())?;
+        self.send(Message::AddProbe { index: id.index(), probe: Box::new(probe) })?;
+        self.probes.set(id.0, ());
+        Ok(id)
     }
 
     /// Adds a surface.

@@ -4,6 +4,7 @@ use crate::model::event::ContactEvent;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::stamp::Stamp;
 use crate::prepared::body::BodySlot;
+use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
@@ -14,7 +15,17 @@ pub(crate) enum Message {
     /// What a contact does, and when it holds.
     Event { stamp: Stamp, event: ContactEvent },
     /// A rigid striker hits a body, and perhaps rings itself.
-    Strike { stamp: Stamp, body: usize, position: usize, other: Option<usize>, pulse: HertzPulse },
+    Strike {
+        stamp: Stamp,
+        body: usize,
+        position: usize,
+        other: Option<usize>,
+        holder: Option<usize>,
+        felt: Option<Felt>,
+        pulse: HertzPulse,
+    },
+    /// A probe for a new place.
+    AddProbe { index: usize, probe: Box<PreparedProbe> },
     /// What was sent before belongs to a game time that has ended.
     Reset,
     /// A surface for a new or used place.
@@ -31,6 +42,14 @@ pub(crate) enum Message {
     RemoveBody { slot: usize },
     /// Per-user haptic gain of one channel, 0 = mute; reached within a few milliseconds.
     SetHapticGain { channel: usize, gain: f64 },
+}
+
+/// Who feels a strike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Felt {
+    pub(crate) channel: usize,
+    /// What of the hand feels it; none = the engine's own probe.
+    pub(crate) probe: Option<usize>,
 }
 
 /// Audio thread → game thread: what has to be freed.

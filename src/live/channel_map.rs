@@ -192,16 +192,7 @@ mod tests {
             let crate::Engine { mut scene, renderer, .. } = Config::default().build().unwrap();
             let mode = crate::Mode { frequency_hz: 500.0, decay_per_s: 5.0, amplitude: 1.0, phase_rad: 0.0 };
             let body = scene.add_body(crate::ModalModel::new(vec![mode], 0.01).unwrap()).unwrap();
-            let impact = crate::Impact {
-                body,
-                other: None,
-                speed_m_s: 1.0,
-                mass_kg: 0.01,
-                radius_m: 0.005,
-                striker: crate::Material::STEEL,
-                restitution: 1.0,
-                position: 0,
-            };
+            let impact = crate::Impact { body, mass_kg: 0.01, ..crate::Impact::on(body) };
             scene.report(0.01, crate::ContactEvent::Impact(impact)).unwrap();
             let mut device = Interleaver::new(renderer, ChannelMap::parse("audio=2 haptic=0").unwrap());
             let mut out = vec![0.0; 3 * 6000];

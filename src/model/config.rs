@@ -23,7 +23,7 @@ pub struct Config {
     pub path_cutoff_hz: f64,
     /// How the micro-contact model is integrated.
     pub integrator: Integrator,
-    /// The fingertip, or another probe.
+    /// The engine's own probe, for contacts that name no other: the fingertip unless told otherwise.
     pub probe: Probe,
     /// Haptic channels, in order.
     pub actuators: Vec<ActuatorSettings>,
@@ -31,6 +31,8 @@ pub struct Config {
     pub audio: Vec<AudioBus>,
     /// Most contacts that sound at once; more steal the least important.
     pub max_contacts: usize,
+    /// Most probes, the engine's own not counted.
+    pub max_probes: usize,
     /// Most surfaces at once.
     pub max_surfaces: usize,
     /// Most bodies at once.
@@ -62,6 +64,7 @@ impl Default for Config {
             actuators: vec![ActuatorSettings::default()],
             audio: vec![AudioBus::default()],
             max_contacts: 64,
+            max_probes: 64,
             max_surfaces: 256,
             max_bodies: 256,
             queue_capacity: 4096,
@@ -113,6 +116,7 @@ impl Config {
         count("actuators", self.actuators.len(), 1024, "1–1024 channels")?;
         count("audio", self.audio.len(), MAX_BUSES, "1–64 buses")?;
         count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;
+        count("max_probes", self.max_probes, 4096, "1–4096 probes")?;
         count("max_surfaces", self.max_surfaces, 65_536, "1–65536 surfaces")?;
         count("max_bodies", self.max_bodies, 65_536, "1–65536 bodies")?;
         count("queue_capacity", self.queue_capacity, 1 << 24, "1–16777216 events")

@@ -45,6 +45,9 @@ pub enum Refusal {
     /// The body is not, or no longer, in this scene.
     #[error("body: is not in this scene; add it before it is struck")]
     UnknownBody,
+    /// The probe is not in this scene.
+    #[error("probe: is not in this scene; add it before it touches")]
+    UnknownProbe,
     /// There is no such haptic channel.
     #[error("actuator: {index} is refused; must be below {channels}, the number of actuators")]
     UnknownActuator {

@@ -14,7 +14,7 @@
 //! of a contact that never ended is a landing.
 
 use crate::model::bad_value::{BadValue, within};
-use crate::model::id::{BodyId, SurfaceId};
+use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 
 /// A contact's name, chosen by the caller and unique among the contacts that are touching.
@@ -40,6 +40,68 @@ pub struct ContactSample {
     pub closing_m_s: f64,
 }
 
+/// What touches what, and who feels it: fixed for as long as the contact lasts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Touching {
+    /// What is touched.
+    pub surface: SurfaceId,
+    /// What touches; none = the engine's own probe ([`Config::probe`](crate::Config::probe)).
+    pub probe: Option<ProbeId>,
+    /// Which haptic channel feels it; none = it is heard only.
+    pub actuator: Option<Actuator>,
+    /// The body that holds the probe, a pen for instance: it rings too, at its position 0, from the same impulses with
+    /// opposite sign.
+    pub holder: Option<BodyId>,
+    /// Linear gain of what is felt and heard of it, 0–1000.
+    pub gain: f64,
+    /// Factor of its priority when contacts have to be left out, 0–1e6.
+    pub importance: f64,
+}
+
+impl Touching {
+    /// The engine's own probe on a surface, heard and not felt.
+    #[must_use]
+    pub fn on(surface: SurfaceId) -> Self {
+        Self { surface, probe: None, actuator: None, holder: None, gain: 1.0, importance: 1.0 }
+    }
+
+    /// Felt by a haptic channel.
+    #[must_use]
+    pub fn felt_by(mut self, actuator: Actuator) -> Self {
+        self.actuator = Some(actuator);
+        self
+    }
+
+    /// Touching with another probe.
+    #[must_use]
+    pub fn with(mut self, probe: ProbeId) -> Self {
+        self.probe = Some(probe);
+        self
+    }
+
+    /// The probe is held by a body, which rings too.
+    #[must_use]
+    pub fn held_by(mut self, holder: BodyId) -> Self {
+        self.holder = Some(holder);
+        self
+    }
+
+    /// Louder or softer than it is.
+    #[must_use]
+    pub fn gain(mut self, gain: f64) -> Self {
+        self.gain = gain;
+        self
+    }
+
+    /// More or less important than its force and speed say.
+    #[must_use]
+    pub fn importance(mut self, importance: f64) -> Self {
+        self.importance = importance;
+        self
+    }
+}
+
 /// A rigid striker hits a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact {
@@ -60,6 +122,14 @@ pub struct Impact {
     /// Which of the body's strike positions is hit; 0 is the one every body has, and one that the body
     /// does not have counts as its last.
     pub position: usize,
+    /// The haptic channel that feels the blow; none = the first one if somebody holds the striker, else nobody feels it.
+    pub actuator: Option<Actuator>,
+    /// The body in the hand, which rings at its position 0 from the same pulse with opposite sign.
+    pub holder: Option<BodyId>,
+    /// What of the hand feels it; none = the engine's own probe.
+    pub probe: Option<ProbeId>,
+    /// Linear gain of what is felt and heard of it, 0–1000.
+    pub gain: f64,
 }
 
 /// One report of the physics step.
@@ -69,10 +139,8 @@ pub enum ContactEvent {
     Begin {
         /// The contact's name from now on.
         contact: ContactId,
-        /// What it touches.
-        surface: SurfaceId,
-        /// Which haptic channel feels it.
-        actuator: Actuator,
+        /// What touches what, and who feels it.
+        touching: Touching,
         /// Where and how.
         sample: ContactSample,
     },
@@ -96,7 +164,13 @@ impl ContactEvent {
     /// A contact lands.
     #[must_use]
     pub fn begin(contact: ContactId, surface: SurfaceId, actuator: Actuator, sample: ContactSample) -> Self {
-        Self::Begin { contact, surface, actuator, sample }
+        Self::begin_with(contact, Touching::on(surface).felt_by(actuator), sample)
+    }
+
+    /// A contact lands: any kind of contact.
+    #[must_use]
+    pub fn begin_with(contact: ContactId, touching: Touching, sample: ContactSample) -> Self {
+        Self::Begin { contact, touching, sample }
     }
 
     /// A contact goes on.
@@ -143,6 +217,33 @@ impl ContactSample {
 }
 
 impl Impact {
+    /// A loss-free blow of a steel ball of 1 cm and 4 g at 1 m/s: a value to begin with, for the fields that a game does not know.
+    #[must_use]
+    pub fn on(body: BodyId) -> Self {
+        Self {
+            body,
+            other: None,
+            speed_m_s: 1.0,
+            mass_kg: 0.004,
+            radius_m: 0.005,
+            striker: Material::STEEL,
+            restitution: 1.0,
+            position: 0,
+            actuator: None,
+            holder: None,
+            probe: None,
+            gain: 1.0,
+        }
+    }
+
+    /// From what most physics engines tell of a collision: the impulse along the normal, N·s, and the approach speed. The mass follows from
+    /// J = m v (1 + e), so that the body receives the impulse that was reported.
+    #[must_use]
+    pub fn from_impulse(body: BodyId, impulse_n_s: f64, speed_m_s: f64, restitution: f64) -> Self {
+        let mass_kg = impulse_n_s / (speed_m_s.max(1e-6) * (1.0 + restitution));
+        Self { speed_m_s, mass_kg, restitution, ..Self::on(body) }
+    }
+
     /// # Errors
     /// When a number is not finite or no striker can have it.
     pub fn checked(self) -> Result<Self, BadValue> {
@@ -150,6 +251,7 @@ impl Impact {
         within("mass_kg", self.mass_kg, "1e-9–1e4 kg", 1e-9, 1e4)?;
         within("radius_m", self.radius_m, "1e-6–10 m", 1e-6, 10.0)?;
         within("restitution", self.restitution, "0–1", 0.0, 1.0)?;
+        within("gain", self.gain, "0–1000", 0.0, 1e3)?;
         self.striker.checked()?;
         Ok(self)
     }

@@ -53,6 +53,8 @@ ids! {
     SurfaceId,
     /// A ringing body that a [`Scene`](crate::Scene) knows.
     BodyId,
+    /// A probe that a [`Scene`](crate::Scene) knows.
+    ProbeId,
 }
 
 #[cfg(test)]

@@ -163,11 +163,11 @@ impl BodySlot {
     }
 
     /// Adds what one contact sends during the present stretch.
-    pub(crate) fn touch(&mut self, position: usize, impulse_n_s: &[f64]) {
+    pub(crate) fn touch(&mut self, position: usize, impulse_n_s: &[f64], sign: f64) {
         let place = self.place(position);
         place.touched = true;
         for (sum, x) in place.contacts_n_s.iter_mut().zip(impulse_n_s) {
-            *sum += x;
+            *sum += sign * x;
         }
     }
 

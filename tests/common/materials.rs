@@ -29,7 +29,7 @@ fn random_stroke(rng: &mut Rng) -> ContactLog {
         normal_force_n,
         closing_m_s: 0.0,
     };
-    let begin = LogEvent::Begin { contact: 1, surface: "s".into(), actuator: 0, sample: sample(0.0) };
+    let begin = LogEvent::begin(1, "s", 0, sample(0.0));
     let mut lines = vec![LogLine { t: 0.0, event: begin }];
     for step in 1..90 {
         let t = f64::from(step) / 60.0;

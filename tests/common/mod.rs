@@ -69,10 +69,7 @@ pub fn stroke_of(
         closing_m_s: 0.0,
     };
     let steps = (seconds * 60.0) as usize;
-    let mut lines = vec![LogLine {
-        t: 0.0,
-        event: LogEvent::Begin { contact, surface: "s".into(), actuator: 0, sample: sample(0.0) },
-    }];
+    let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(contact, "s", 0, sample(0.0)) }];
     for step in 1..steps {
         let t = step as f64 / 60.0;
         lines.push(LogLine { t, event: LogEvent::Move { contact, sample: sample(t) } });
@@ -108,6 +105,7 @@ pub fn render_tapped<T: Tap>(
     let names = Names {
         surfaces: HashMap::from([("s".to_owned(), surface)]),
         bodies: HashMap::from([("b".to_owned(), body)]),
+        ..Default::default()
     };
     offline::render_tapped(scene, renderer, log, &names, options, tap).unwrap()
 }

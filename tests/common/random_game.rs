@@ -74,6 +74,7 @@ impl RandomGame {
                     striker: Material::STEEL,
                     restitution: 0.7,
                     position: 0,
+                    ..Impact::on(self.bodies[0])
                 }),
                 _ => ContactEvent::moved(contact, sample),
             };

@@ -4,7 +4,7 @@ use super::demo_scene::DemoScene;
 use super::plates::{PLATES, Plate, RELIEF_M, SIDE_M};
 use super::strokes::{Finger, log};
 use crate::pixels;
-use asperity::files::contact_log::{LogEvent, LogLine, Striker};
+use asperity::files::contact_log::{LogEvent, LogHand, LogLine, Striker};
 use asperity::{ModalModel, Mode};
 
 /// Seconds before the first event, so that a player that fades in cuts nothing off.
@@ -144,6 +144,7 @@ fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m)
             striker: Striker::Preset(striker.to_owned()),
             restitution: 0.5,
             position: 0,
+            hand: LogHand::default(),
         },
     }
 }

@@ -76,7 +76,7 @@ impl Finger<'_> {
         };
         if first {
             let surface = self.surface.to_owned();
-            LogEvent::Begin { contact: self.contact, surface, actuator: self.actuator, sample }
+            LogEvent::begin(self.contact, surface, self.actuator, sample)
         } else {
             LogEvent::Move { contact: self.contact, sample }
         }
@@ -187,7 +187,7 @@ mod tests {
             strokes: vec![([0.12, 0.07], 0.08), ([0.02, 0.07], 0.2)],
         };
         let lines = finger.lines();
-        assert!(matches!(&lines[0].event, LogEvent::Begin { surface, .. } if surface == "plate"));
+        assert!(matches!(&lines[0].event, LogEvent::Begin { touching, .. } if touching.surface == "plate"));
         assert!(matches!(lines.last().unwrap().event, LogEvent::End { contact: 1 }));
         assert!(lines.windows(2).all(|pair| pair[1].t > pair[0].t));
         assert!((2.0..3.5).contains(&lines.last().unwrap().t));

@@ -254,8 +254,12 @@ pub fn load_log(file: &SceneFile) -> Result<(ContactLog, Vec<String>), CliError>
 /// A contact on a channel that is not there would be felt nowhere.
 fn check_actuators(log: &ContactLog, path: &Path, channels: usize) -> Result<(), CliError> {
     for line in &log.lines {
-        let LogEvent::Begin { actuator, .. } = line.event else { continue };
-        if usize::from(actuator) >= channels {
+        let hand = match &line.event {
+            LogEvent::Begin { touching, .. } => &touching.hand,
+            LogEvent::Impact { hand, .. } => hand,
+            LogEvent::Move { .. } | LogEvent::End { .. } => continue,
+        };
+        if let Some(actuator) = hand.actuator.filter(|actuator| usize::from(*actuator) >= channels) {
             let what = format!("actuator {actuator} at t = {} s is not in the scene", line.t);
             let right = format!("must be below {channels}, the number of [[actuator]] tables");
             return Err(CliError::new("actuator", what, right).within(path.display()));
@@ -320,10 +324,10 @@ fn play(
         recorder.finish().map_err(|error| CliError::write(&with_suffix(&options.output, "…"), &error))?;
     let labelled = curves.into_iter().map(|(contact, curve)| {
         let surface = log.lines.iter().rev().find_map(|line| match &line.event {
-            LogEvent::Begin { contact: begun, surface, .. }
+            LogEvent::Begin { contact: begun, touching, .. }
                 if *begun == contact.0 && line.t <= curve.start_s + 1e-3 =>
             {
-                Some(surface.as_str())
+                Some(touching.surface.as_str())
             }
             _ => None,
         });

@@ -90,7 +90,7 @@ pub fn strokes(
     };
     let asperity::Engine { mut scene, renderer, .. } = config.build().map_err(CliError::told)?;
     let id = scene.add_surface(surface).map_err(CliError::told)?;
-    let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), bodies: HashMap::new() };
+    let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), ..Names::default() };
     let latency = renderer.latency_samples();
     let log = random_strokes([width_m, height_m], count, seed);
     let options = Options { tail_s: PAUSE_S, ..Options::default() };
@@ -124,7 +124,7 @@ fn random_strokes(size_m: [f64; 2], count: usize, seed: u64) -> ContactLog {
                 closing_m_s: 0.0,
             };
             let event = if step == 0 {
-                LogEvent::Begin { contact, surface: "s".into(), actuator: 0, sample }
+                LogEvent::begin(contact, "s", 0, sample)
             } else {
                 LogEvent::Move { contact, sample }
             };

@@ -59,7 +59,7 @@ impl Probe {
     }
 
     /// Refuses values outside the documented ranges.
-    pub(super) fn check(&self) -> Result<(), DesignError> {
+    pub(crate) fn check(&self) -> Result<(), DesignError> {
         let within = |field, value, low: f64, high: f64, expected| {
             DesignError::check(field, value, expected, |x| x >= low && x <= high).map(|_| ())
         };

@@ -84,14 +84,12 @@ impl Toucher {
                 (landed && rested && self.closing_m_s > QUIET_LANDING_M_S).then(|| {
                     self.last_impact_s = time_s;
                     ContactEvent::Impact(Impact {
-                        position: 0,
-                        body: ground.body,
-                        other: None,
                         speed_m_s: f64::from(self.closing_m_s),
                         mass_kg: f64::from(world.bodies[self.body].mass()),
                         radius_m,
                         striker: material,
                         restitution: f64::from(world.colliders[self.collider].restitution()),
+                        ..Impact::on(ground.body)
                     })
                 })
             }

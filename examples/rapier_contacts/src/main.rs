@@ -97,6 +97,7 @@ fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names), Box<dyn Error>> 
     let names = Names {
         surfaces: HashMap::from([("slab".to_owned(), surface)]),
         bodies: HashMap::from([("slab".to_owned(), slab)]),
+        ..Default::default()
     };
     Ok((scene, renderer, names))
 }

@@ -33,6 +33,7 @@ pub fn struck(modes: &[Mode], burst: Option<&[f32]>, rate_hz: f64, count: usize,
         striker: HARD,
         restitution: 1.0,
         position: 0,
+        ..Impact::on(body)
     };
     if scene.report(before as f64 / rate_hz, ContactEvent::Impact(impact)).is_err() {
         return out;

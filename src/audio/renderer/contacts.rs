@@ -1,7 +1,7 @@
 //! Contacts come, go on, are stolen, revived and let go.
 
 use super::Renderer;
-use crate::audio::voice::{EMPTY_FORCE_N, Phase, Voice};
+use crate::audio::voice::{EMPTY_FORCE_N, Phase, Role, Voice};
 use crate::link::stats::Counters;
 use crate::model::event::{ContactEvent, ContactId, ContactSample};
 use crate::model::stamp::Stamp;
@@ -12,18 +12,18 @@ use asperity_dsp::trajectory::Trajectory;
 pub(super) struct SilentContact {
     contact: ContactId,
     surface: usize,
-    actuator: usize,
+    role: Role,
     stolen: bool,
 }
 
 impl Renderer {
     pub(super) fn apply_event(&mut self, event: &ContactEvent, stamp: Stamp) {
         match *event {
-            ContactEvent::Begin { contact, surface, actuator, sample } => {
-                let (surface, actuator) = (surface.index(), usize::from(actuator.0));
-                if !self.resume(contact, surface, actuator, &sample, stamp) {
+            ContactEvent::Begin { contact, touching, sample } => {
+                let (surface, role) = (touching.surface.index(), Role::from(&touching));
+                if !self.resume(contact, surface, role, &sample, stamp) {
                     self.end(contact);
-                    self.land(contact, surface, actuator, &sample, stamp);
+                    self.land(contact, surface, role, &sample, stamp);
                 }
             }
             ContactEvent::Moved { contact, sample } => self.moved(contact, &sample, stamp),
@@ -44,7 +44,7 @@ impl Renderer {
         &mut self,
         contact: ContactId,
         surface: usize,
-        actuator: usize,
+        role: Role,
         sample: &ContactSample,
         stamp: Stamp,
     ) -> bool {
@@ -57,7 +57,7 @@ impl Renderer {
         }
         let Some(voice) = self.voices.iter_mut().find(|voice| {
             voice.contact == contact
-                && (voice.surface, voice.actuator) == (surface, actuator)
+                && (voice.surface, voice.role) == (surface, role)
                 && voice.ended
                 && matches!(voice.phase, Phase::Fading { .. })
                 && voice.is_near(sample, slot)
@@ -74,19 +74,12 @@ impl Renderer {
     }
 
     /// A contact lands. One that neither presses nor falls is not there yet: its first force begins it.
-    fn land(
-        &mut self,
-        contact: ContactId,
-        surface: usize,
-        actuator: usize,
-        sample: &ContactSample,
-        stamp: Stamp,
-    ) {
+    fn land(&mut self, contact: ContactId, surface: usize, role: Role, sample: &ContactSample, stamp: Stamp) {
         if sample.normal_force_n > EMPTY_FORCE_N || sample.closing_m_s > 0.0 {
-            self.begin(contact, surface, actuator, sample, stamp);
+            self.begin(contact, surface, role, sample, stamp);
         } else if self.seats[surface].is_open() {
             Counters::add(&self.counters.unpressed, 1);
-            self.remember(SilentContact { contact, surface, actuator, stolen: false });
+            self.remember(SilentContact { contact, surface, role, stolen: false });
         } else {
             Counters::add(&self.counters.orphaned, 1);
         }
@@ -97,7 +90,7 @@ impl Renderer {
         &mut self,
         contact: ContactId,
         surface: usize,
-        actuator: usize,
+        role: Role,
         sample: &ContactSample,
         stamp: Stamp,
     ) -> Option<usize> {
@@ -109,12 +102,12 @@ impl Renderer {
         let index = self.take_voice();
         self.voices_used.insert(index);
         let voice = &mut self.voices[index];
-        (voice.surface, voice.actuator) = (surface, actuator);
+        (voice.surface, voice.role) = (surface, role);
         voice.begin(
             contact,
             sample,
             &mut self.seats[surface],
-            &self.channels[actuator].output,
+            role.actuator.map_or(&self.shared.idle_output, |channel| &self.channels[channel].output),
             &self.shared,
             due,
             &mut self.scratch,
@@ -154,7 +147,7 @@ impl Renderer {
         }
         self.silent.swap_remove(index);
         let landed = ContactSample { closing_m_s: 0.0, ..sample };
-        self.begin(contact, silent.surface, silent.actuator, &landed, stamp);
+        self.begin(contact, silent.surface, silent.role, &landed, stamp);
     }
 
     /// A contact that is suddenly elsewhere fades where it was and rises where it is, each over the relief of
@@ -162,7 +155,7 @@ impl Renderer {
     fn jump(&mut self, index: usize, sample: &ContactSample, path: &Trajectory, stamp: Stamp) {
         Counters::add(&self.counters.jumps, 1);
         let voice = &mut self.voices[index];
-        let (contact, surface, actuator) = (voice.contact, voice.surface, voice.actuator);
+        let (contact, surface, role) = (voice.contact, voice.surface, voice.role);
         voice.leave(&self.shared);
         let Some(slot) = self.seats[surface].current() else { return };
         // A late report holds where the contact was; it begins where it is by now.
@@ -173,7 +166,7 @@ impl Renderer {
             sample.uv[1] + velocity_m_s[1] * late_s / slot.surface.height_m,
         ];
         let landed = ContactSample { uv, velocity_m_s: Some(velocity_m_s), closing_m_s: 0.0, ..*sample };
-        let voice = self.begin(contact, surface, actuator, &landed, stamp);
+        let voice = self.begin(contact, surface, role, &landed, stamp);
         if let Some(voice) = voice {
             self.voices[voice].succeed(path);
         }
@@ -224,12 +217,8 @@ impl Renderer {
     pub(super) fn silence(&mut self, voice: usize, stolen: bool) {
         let voice = &mut self.voices[voice];
         voice.fade(&self.shared);
-        let silent = SilentContact {
-            contact: voice.contact,
-            surface: voice.surface,
-            actuator: voice.actuator,
-            stolen,
-        };
+        let silent =
+            SilentContact { contact: voice.contact, surface: voice.surface, role: voice.role, stolen };
         self.remember(silent);
     }
 

@@ -64,7 +64,10 @@ impl Voice {
             let height_m = scratch.surface.height_m[0];
             // It touches at the stamp; without delay it would one sample before the voice's first.
             let later = 1.0 + stamp.fraction();
-            self.pad = shared.micro_contact.landing_later(height_m, force_n, sample.closing_m_s, later);
+            let probe = shared.probe(self.role.probe);
+            self.pad = probe.micro_contact.landing_later(height_m, force_n, sample.closing_m_s, later);
+            let pad_velocity_m_s = -sample.closing_m_s;
+            self.late_row = PadSample { height_m, pad_m: height_m, pad_velocity_m_s, ..PadSample::default() };
             self.feel = ContactOutputState::begin(output, height_m, -sample.closing_m_s);
         } else {
             self.lead_in(seat, output, shared, position, scratch);
@@ -101,14 +104,16 @@ impl Voice {
         // Finger and pad rise as the ground does on the whole: set off from rest they would still swing when they are heard.
         let rise_m_s =
             (heights_m[MAX_BLOCK - 1] - heights_m[0]) * shared.sample_rate_hz / (MAX_BLOCK - 1) as f64;
-        self.pad = shared.micro_contact.riding(heights_m[0], forces_n[0], rise_m_s);
-        shared.micro_contact.run(&mut self.pad, heights_m, forces_n, &mut scratch.pad);
-        let PadSample { pad_m, pad_velocity_m_s, contact_force_n, .. } = scratch.pad[MAX_BLOCK - 1];
+        let micro_contact = &shared.probe(self.role.probe).micro_contact;
+        self.pad = micro_contact.riding(heights_m[0], forces_n[0], rise_m_s);
+        micro_contact.run(&mut self.pad, heights_m, forces_n, &mut scratch.pad);
+        self.late_row = PadSample { onset: None, ..scratch.pad[MAX_BLOCK - 1] };
+        let PadSample { pad_m, pad_velocity_m_s, contact_force_n, .. } = self.late_row;
         let [height_m, force_n] = [heights_m, forces_n].map(|of| of[MAX_BLOCK - 1]);
         if self.pad.resets() > 0 || contact_force_n > LEAD_IN_BLOW * force_n {
             // What never was there cannot have thrown it.
             let rise_m_s = (height_m - heights_m[MAX_BLOCK - 2]) * shared.sample_rate_hz;
-            self.pad = shared.micro_contact.riding(height_m, force_n, rise_m_s);
+            self.pad = micro_contact.riding(height_m, force_n, rise_m_s);
         }
         self.feel = ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
     }

@@ -62,9 +62,11 @@ impl Voice {
     }
 
     pub(super) fn collide(&mut self, slot: &SurfaceSlot, shared: &Shared, onset: &Onset, sample: u64) {
+        let probe = shared.probe(self.role.probe);
+        let own_s = slot.stroking.hertz.contact_time_s(onset.closing_m_s);
         let pulse = HertzPulse {
-            impulse_n_s: shared.collision_mass_kg * onset.closing_m_s,
-            contact_time_s: slot.stroking.hertz.contact_time_s(onset.closing_m_s).min(LONGEST_COLLISION_S),
+            impulse_n_s: probe.collision_mass_kg * onset.closing_m_s,
+            contact_time_s: (probe.contact_time_ratio * own_s).min(LONGEST_COLLISION_S),
         };
         let rate = shared.sample_rate_hz;
         if let Some(pulse) = self.merge.admit(pulse, sample, onset.offset, rate) {

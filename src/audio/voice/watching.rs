@@ -25,7 +25,7 @@ impl Voice {
         let watched = tap.is_watching() && !self.left_behind;
         let Some(slot) = seat.current().filter(|_| watched) else { return };
         let size_m = [slot.surface.width_m, slot.surface.height_m];
-        let latency = shared.micro_contact.latency_samples();
+        let latency = shared.row_latency;
         let (mut count, mut first_sample) = (0, 0);
         for i in 0..n {
             let sample = position + i as u64;

@@ -18,8 +18,20 @@ struct Keys {
 const EVENTS: [Keys; 4] = [
     Keys {
         event: "begin",
-        read: &["contact", "surface", "actuator", "uv", "velocity_m_s", "normal_force_n", "closing_m_s"],
-        read_past: &["probe", "holder", "at_m", "depth_m", "gain", "importance", "direction"],
+        read: &[
+            "contact",
+            "surface",
+            "actuator",
+            "probe",
+            "holder",
+            "gain",
+            "importance",
+            "uv",
+            "velocity_m_s",
+            "normal_force_n",
+            "closing_m_s",
+        ],
+        read_past: &["at_m", "depth_m", "direction"],
     },
     Keys {
         event: "move",
@@ -29,8 +41,21 @@ const EVENTS: [Keys; 4] = [
     Keys { event: "end", read: &["contact"], read_past: &[] },
     Keys {
         event: "impact",
-        read: &["body", "other", "speed_m_s", "mass_kg", "radius_m", "striker", "restitution", "position"],
-        read_past: &["at_m", "direction", "holder", "actuator", "gain"],
+        read: &[
+            "body",
+            "other",
+            "speed_m_s",
+            "mass_kg",
+            "radius_m",
+            "striker",
+            "restitution",
+            "position",
+            "actuator",
+            "probe",
+            "holder",
+            "gain",
+        ],
+        read_past: &["at_m", "direction"],
     },
 ];
 

@@ -1,13 +1,13 @@
 //! What the game reports: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
 
 use super::Scene;
-use crate::link::message::Message;
+use crate::link::message::{Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::error::{Refusal, ReportError};
-use crate::model::event::{ContactEvent, ContactId, Impact};
-use crate::model::id::BodyId;
+use crate::model::event::{Actuator, ContactEvent, ContactId, Impact};
+use crate::model::id::{BodyId, ProbeId};
 use crate::model::stamp::Stamp;
 use crate::prepared::body::LONGEST_CONTACT_S;
 use crate::prepared::stroking::elastic;
@@ -61,11 +61,12 @@ impl Scene {
         let has_modes =
             |id: BodyId| self.bodies.get(id.0).is_some_and(|body| body.lowest_mode_hz.is_finite());
         match event {
-            ContactEvent::Begin { surface, .. } => {
-                self.surfaces.get(surface.0).is_some_and(|known| known.rings)
+            ContactEvent::Begin { touching, .. } => {
+                touching.holder.is_some_and(has_modes)
+                    || self.surfaces.get(touching.surface.0).is_some_and(|known| known.rings)
             }
             ContactEvent::Impact(impact) => {
-                [Some(impact.body), impact.other].into_iter().flatten().any(has_modes)
+                [Some(impact.body), impact.other, impact.holder].into_iter().flatten().any(has_modes)
             }
             ContactEvent::Moved { .. } | ContactEvent::End { .. } => false,
         }
@@ -99,13 +100,12 @@ impl Scene {
 
     fn checked(&self, event: ContactEvent) -> Result<ContactEvent, Refusal> {
         Ok(match event {
-            ContactEvent::Begin { contact, surface, actuator, sample } => {
-                self.known_surface(surface).map_err(|_| Refusal::UnknownSurface)?;
-                let channels = self.config.actuators.len();
-                if usize::from(actuator.0) >= channels {
-                    return Err(Refusal::UnknownActuator { index: actuator.0, channels });
-                }
-                ContactEvent::Begin { contact, surface, actuator, sample: sample.checked()? }
+            ContactEvent::Begin { contact, touching, sample } => {
+                self.known_surface(touching.surface).map_err(|_| Refusal::UnknownSurface)?;
+                self.check_hand(touching.actuator, touching.holder, touching.probe)?;
+                within("gain", touching.gain, "0–1000", 0.0, 1e3)?;
+                within("importance", touching.importance, "0–1e6", 0.0, 1e6)?;
+                ContactEvent::Begin { contact, touching, sample: sample.checked()? }
             }
             ContactEvent::Moved { contact, sample } => {
                 ContactEvent::Moved { contact, sample: sample.checked()? }
@@ -115,9 +115,30 @@ impl Scene {
                 for body in [Some(impact.body), impact.other].into_iter().flatten() {
                     self.known_body(body).map_err(|_| Refusal::UnknownBody)?;
                 }
+                self.check_hand(impact.actuator, impact.holder, impact.probe)?;
                 ContactEvent::Impact(impact.checked()?)
             }
         })
+    }
+
+    /// Who feels it, what is held, and what touches have to be in this scene.
+    fn check_hand(
+        &self,
+        actuator: Option<Actuator>,
+        holder: Option<BodyId>,
+        probe: Option<ProbeId>,
+    ) -> Result<(), Refusal> {
+        let channels = self.config.actuators.len();
+        if let Some(Actuator(index)) = actuator.filter(|actuator| usize::from(actuator.0) >= channels) {
+            return Err(Refusal::UnknownActuator { index, channels });
+        }
+        if let Some(holder) = holder {
+            self.known_body(holder).map_err(|_| Refusal::UnknownBody)?;
+        }
+        match probe {
+            Some(probe) if self.probes.get(probe.0).is_none() => Err(Refusal::UnknownProbe),
+            _ => Ok(()),
+        }
     }
 
     fn send_move(&mut self, stamp: Stamp, contact: ContactId, event: ContactEvent) -> Result<(), Refusal> {
@@ -153,7 +174,7 @@ impl Scene {
             HertzContact::new(&elastic(impact.striker), &elastic(material), impact.radius_m, impact.mass_kg)
                 .map_err(|_| Refusal::UnknownBody)?;
         let pulse = HertzPulse {
-            impulse_n_s: impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution),
+            impulse_n_s: impact.gain * (impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution)),
             contact_time_s: contact.contact_time_s(impact.speed_m_s).min(LONGEST_CONTACT_S),
         };
         let shortened = pulse.contact_time_s == LONGEST_CONTACT_S;
@@ -162,11 +183,17 @@ impl Scene {
         }
         Counters::add(&self.counters.shortened, u64::from(shortened));
         let other = impact.other.map(BodyId::index);
+        // What is held is felt; by the first channel, if no other is named.
+        let channel = impact.actuator.or(impact.holder.map(|_| Actuator(0)));
+        let felt = channel
+            .map(|channel| Felt { channel: usize::from(channel.0), probe: impact.probe.map(ProbeId::index) });
         self.send_event(Message::Strike {
             stamp,
             body: impact.body.index(),
             position: impact.position,
             other,
+            holder: impact.holder.map(BodyId::index),
+            felt,
             pulse,
         })
     }
