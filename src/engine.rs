@@ -9,6 +9,7 @@ use crate::link::stats::Counters;
 use crate::model::config::Config;
 use crate::model::error::ConfigError;
 use crate::prepared::probe::PreparedProbe;
+use asperity_texture::sand::SandWorker;
 use std::sync::Arc;
 
 /// An engine, built: a half for each thread, and what its parts are called.
@@ -30,6 +31,8 @@ pub struct Engine {
     pub renderer: Renderer,
     /// Names of bodies, surfaces and strikers, where the engine was built from a file; empty otherwise.
     pub names: Names,
+    /// Simulations that have to run on threads of their own, sand for instance; empty unless the engine was built to play live.
+    pub workers: Vec<SandWorker>,
 }
 
 impl Config {
@@ -47,6 +50,6 @@ impl Config {
         let renderer = Renderer::new(&self, probe, from_game, to_game, counters.clone())?;
         let clock = Clock::new(self.clock, self.inner_rate_hz());
         let scene = Scene::new(self, clock, to_audio, from_audio, counters);
-        Ok(Engine { scene, renderer, names: Names::default() })
+        Ok(Engine { scene, renderer, names: Names::default(), workers: Vec::new() })
     }
 }

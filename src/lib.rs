@@ -23,6 +23,7 @@ mod link;
 pub mod live;
 mod model;
 pub mod offline;
+pub mod open;
 mod prepared;
 
 pub use asperity_dsp::limits;

@@ -1,58 +1,49 @@
 //! The one line a user gets when something is wrong.
 
+use asperity::files::FileError;
 use std::fmt;
 use std::path::Path;
 
 /// `error: WHERE: WHAT; RIGHT`: which file or field, what is wrong, what would be right.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CliError {
-    at: String,
-    what: String,
-    right: String,
+pub struct CliError(FileError);
+
+impl From<FileError> for CliError {
+    fn from(error: FileError) -> Self {
+        Self(error)
+    }
 }
 
 impl CliError {
     /// An error at a file, a field or an option.
     pub fn new(at: impl fmt::Display, what: impl fmt::Display, right: impl fmt::Display) -> Self {
-        Self { at: at.to_string(), what: what.to_string(), right: right.to_string() }
+        Self(FileError::new(at, what, right))
     }
 
     /// An error at a file.
     pub fn file(path: &Path, what: impl fmt::Display, right: impl fmt::Display) -> Self {
-        Self::new(path.display(), what, right)
+        Self(FileError::file(path, what, right))
     }
 
     /// An error that another crate has put into words: `WHERE: WHAT; RIGHT`, or as much of it as it says.
     pub fn told(text: impl fmt::Display) -> Self {
-        let text = text.to_string();
-        let (front, right) = text.rsplit_once("; ").unwrap_or((&text, "see `asperity --help`"));
-        let (at, what) = front.split_once(": ").unwrap_or(("asperity", front));
-        Self::new(at, what, right)
+        Self(FileError::told(text))
     }
 
     /// Puts an error of a field into its file or table: `WHERE: ` is written before what it names.
     #[must_use]
-    pub fn within(mut self, outer: impl fmt::Display) -> Self {
-        self.at = format!("{outer}: {}", self.at);
-        self
+    pub fn within(self, outer: impl fmt::Display) -> Self {
+        Self(self.0.within(outer))
     }
 
     /// A file that could not be read.
     pub fn read(path: &Path, error: &std::io::Error) -> Self {
-        match error.kind() {
-            std::io::ErrorKind::NotFound => Self::file(path, "no such file", "name a file that exists"),
-            std::io::ErrorKind::IsADirectory => Self::file(path, "is a folder", "name a file"),
-            std::io::ErrorKind::InvalidData => {
-                Self::file(path, "is not UTF-8 text", "save it as UTF-8, or name another file")
-            }
-            _ => Self::file(path, format!("cannot be read ({error})"), "name a readable file"),
-        }
+        Self(FileError::read(path, error))
     }
 
     /// A file that could not be written.
     pub fn write(path: &Path, error: &std::io::Error) -> Self {
-        let right = "choose a folder that can be written and has room";
-        Self::file(path, format!("cannot be written ({error})"), right)
+        Self(FileError::write(path, error))
     }
 
     /// A panic, which is a defect of the program and says so.
@@ -68,11 +59,7 @@ impl CliError {
 
 impl fmt::Display for CliError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let line = format!("error: {}: {}; {}", self.at, self.what, self.right);
-        // Names come from outside and may hold line breaks or terminal codes; the report is one line.
-        f.write_str(
-            &line.split(char::is_control).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
-        )
+        write!(f, "error: {}", self.0)
     }
 }
 
@@ -94,28 +81,4 @@ pub fn usage_line(refusal: &clap::Error) -> String {
     };
     let what: String = what.split(char::is_control).collect::<Vec<_>>().join(" ");
     format!("error: {what}; `asperity --help` and `asperity VERB --help` say what is accepted")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_error_is_one_line_whatever_the_names_in_it() {
-        let line = CliError::new("a\nb\x1b[31m", "is\r\nwrong", "do this").to_string();
-        assert_eq!(line, "error: a b [31m: is wrong; do this");
-    }
-
-    #[test]
-    fn errors_of_other_crates_keep_their_words() {
-        let line = CliError::told("gain: 3 is refused; must be 0 to 1").within("audio").to_string();
-        assert_eq!(line, "error: audio: gain: 3 is refused; must be 0 to 1");
-        assert_eq!(CliError::told("broken").to_string(), "error: asperity: broken; see `asperity --help`");
-    }
-
-    #[test]
-    fn an_outer_place_is_written_first() {
-        let line = CliError::new("width_m", "-1 is refused", "must be above 0").within("scene.toml");
-        assert_eq!(line.to_string(), "error: scene.toml: width_m: -1 is refused; must be above 0");
-    }
 }

@@ -10,7 +10,6 @@
 //! | [`wav`], [`csv`] | samples and tables on disk |
 //! | [`pixels`] | PNG pictures |
 //! | [`plot`] | plots as SVG |
-//! | [`scene_file`], [`build`] | a scene as written, and as an engine |
 //!
 //! A verb is a file with `pub struct Options` (derives `clap::Args`) and `pub fn run(options: &Options)
 //! -> Result<(), CliError>`, one variant of [`Verb`] and one arm of [`run`].
@@ -18,7 +17,6 @@
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
 mod bench_scene;
-mod build;
 mod csv;
 mod demo;
 mod error;
@@ -32,7 +30,6 @@ mod plot;
 mod progress;
 mod render;
 mod report;
-mod scene_file;
 mod texture;
 mod wav;
 

@@ -254,7 +254,7 @@ fn scraped() -> DemoScene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_file::SceneFile;
+    use asperity::files::scene_file::SceneFile;
 
     #[test]
     fn every_scene_of_the_demo_is_a_valid_scene_file() {

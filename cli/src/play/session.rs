@@ -2,15 +2,16 @@
 //! so that what is heard is what `render` writes.
 
 use super::Options;
-use crate::build::{self, Built, Overrides};
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
 use crate::render::{load_log, told};
-use crate::scene_file::SceneFile;
+use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogError};
+use asperity::files::scene_file::SceneFile;
 use asperity::live::channel_map::ChannelMap;
 use asperity::live::device::{self, DeviceOptions, DeviceReport};
+use asperity::open::Overrides;
 use asperity::{ContactEvent, Refusal, Scene, Stats};
 use asperity_texture::sand::SandWorker;
 use serde::Serialize;
@@ -96,7 +97,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         Err(error) if named => return Err(CliError::told(error)),
         Err(_) => None,
     };
-    let built = build::build(&file, &Overrides { sample_rate_hz: rate, live: true, ..Overrides::default() })?;
+    let built =
+        Engine::from_scene(&file, &Overrides { sample_rate_hz: rate, live: true, ..Overrides::default() })?;
     let summary = play(built, &log, &file, &device_options)?;
     if options.json { output::say_json(&summary) } else { print(&summary) }
 }
@@ -115,12 +117,12 @@ fn scene_and_channels(options: &Options) -> Result<(std::path::PathBuf, Option<C
 }
 
 fn play(
-    built: Built,
+    built: Engine,
     log: &ContactLog,
     file: &SceneFile,
     options: &DeviceOptions,
 ) -> Result<Summary, CliError> {
-    let Built { mut scene, renderer, names, workers } = built;
+    let Engine { mut scene, renderer, names, workers, .. } = built;
     let sand: Vec<_> = workers.into_iter().map(SandWorker::spawn).collect();
     let rate_hz = renderer.sample_rate_hz();
     let latency_samples = renderer.latency_samples();

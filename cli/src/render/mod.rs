@@ -5,13 +5,14 @@ mod recorder;
 pub mod told;
 mod view;
 
-use crate::build::{self, Built, Overrides};
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
-use crate::scene_file::SceneFile;
 use crate::{pixels, plot, wav};
+use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogEvent};
+use asperity::files::scene_file::SceneFile;
 use asperity::offline::{self, Render};
+use asperity::open::Overrides;
 use asperity::{Integrator, PathMode, SurfaceId};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -188,7 +189,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         path: options.path,
         live: false,
     };
-    let built = build::build(&file, &overrides)?;
+    let built = Engine::from_scene(&file, &overrides)?;
     let names: Vec<(String, SurfaceId)> =
         built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
     let rate_hz = built.renderer.sample_rate_hz();
@@ -306,14 +307,14 @@ fn start_recorder(
 type Played = (Render, Vec<ContactCurve>, Duration);
 
 fn play(
-    built: Built,
+    built: Engine,
     log: &ContactLog,
     file: &SceneFile,
     options: &Options,
     mut recorder: Recorder,
 ) -> Result<Played, CliError> {
     let settings = offline::Options { block_frames: usize::from(options.block), tail_s: file.tail_s };
-    let Built { scene, renderer, names, workers: _ } = built;
+    let Engine { scene, renderer, names, .. } = built;
     let at = |error| {
         let path = file.contacts.as_deref().unwrap_or(&file.path);
         CliError::told(error).within(path.display())

@@ -1,9 +1,9 @@
 //! What a render tells besides its files: what was refused, lost or clipped, and why a file is silence.
 
 use super::Report;
-use crate::scene_file::SceneFile;
 use asperity::SilentBecause;
 use asperity::files::contact_log::{ContactLog, LogEvent};
+use asperity::files::scene_file::SceneFile;
 use asperity::offline::Render;
 use std::collections::BTreeMap;
 

@@ -2,11 +2,12 @@
 
 use super::Report;
 use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};
-use crate::scene_file::{ActuatorOutput, SceneFile, Source, Wrap};
-use crate::{build, plot};
+use crate::plot;
 use asperity::SurfaceId;
 use asperity::files::contact_log::{ContactLog, LogEvent};
+use asperity::files::scene_file::{ActuatorOutput, SceneFile, Source, Wrap};
 use asperity::offline::Render;
+use asperity::open;
 use asperity_texture::raster::Raster;
 use std::path::Path;
 
@@ -67,12 +68,12 @@ fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> 
             let (title, heights) = match (&surface.source, sand) {
                 (_, Some(sand)) => ("the sand afterwards", sand.picture.raster.clone()),
                 (Source::Map { image, invert, .. }, _) => {
-                    let raster = build::pixels(image).ok()?.raster;
+                    let raster = open::pixels(image).ok()?.raster;
                     let upright = if *invert { raster.map(|height| 1.0 - height) } else { raster };
                     ("from above", upright)
                 }
                 (Source::Flat, _) => return None,
-                _ => ("from above", build::relief(surface, file.seed, GROUND_PX)?),
+                _ => ("from above", open::relief(surface, file.seed, GROUND_PX)?),
             };
             // Sand ends at its edges.
             let wrap = if sand.is_some() { Wrap::Clamp } else { surface.wrap };

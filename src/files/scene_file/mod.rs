@@ -1,8 +1,8 @@
 //! The scene file: one TOML table a thing, in SI units, every key checked and named when refused.
 //!
 //! This file and its neighbours hold what a user wrote, as plain data with paths already relative to the
-//! file. Nothing here opens an image or knows the engine; [`crate::build`] turns a [`SceneFile`] into
-//! engine calls.
+//! file. Nothing here opens an image or knows the engine; [`Engine::from_scene`](crate::Engine::from_scene) turns a
+//! [`SceneFile`] into engine calls.
 
 mod fields;
 mod pixels;
@@ -15,8 +15,8 @@ pub use sand::{Sand, Tool};
 pub use source::{Brownian, BrownianForce, Direction, Lattice, SolidNoise, Source};
 pub use surface::{Excitation, Roughness, SurfaceEntry, Wrap};
 
-use crate::error::CliError;
-use asperity::MAX_BUSES;
+use crate::MAX_BUSES;
+use crate::files::FileError;
 use fields::{Allowed, Fields};
 use std::path::{Path, PathBuf};
 use toml::Value;
@@ -45,8 +45,10 @@ pub struct SceneFile {
     pub bodies: Vec<BodyEntry>,
     /// Things that are touched.
     pub surfaces: Vec<SurfaceEntry>,
-    /// What touches.
+    /// What touches unless a contact says otherwise.
     pub probe: ProbeEntry,
+    /// Further probes, by name.
+    pub probes: Vec<(String, ProbeEntry)>,
     /// Haptic channels, in order.
     pub actuators: Vec<ActuatorEntry>,
     /// Audio buses, in channel order.
@@ -84,7 +86,7 @@ pub enum MaterialEntry {
     },
 }
 
-/// The finger or tool: a preset, and constants that differ from it.
+/// A finger or tool: a preset, and constants that differ from it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ProbeEntry {
     /// Name of a preset; none = the engine's default.
@@ -158,13 +160,13 @@ impl SceneFile {
     ///
     /// # Errors
     /// When the file is missing, is not TOML, or a key is unknown, missing or out of its range.
-    pub fn load(path: &Path) -> Result<Self, CliError> {
-        let size = std::fs::metadata(path).map_err(|error| CliError::read(path, &error))?.len();
+    pub fn load(path: &Path) -> Result<Self, FileError> {
+        let size = std::fs::metadata(path).map_err(|error| FileError::read(path, &error))?.len();
         if size > MAX_BYTES {
             let right = format!("a scene file has at most {} MB", MAX_BYTES >> 20);
-            return Err(CliError::file(path, format!("is {} MB long", size >> 20), right));
+            return Err(FileError::file(path, format!("is {} MB long", size >> 20), right));
         }
-        let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
+        let text = std::fs::read_to_string(path).map_err(|error| FileError::read(path, &error))?;
         Self::parse(&text, path)
     }
 
@@ -172,17 +174,17 @@ impl SceneFile {
     ///
     /// # Errors
     /// As [`Self::load`].
-    pub fn parse(text: &str, path: &Path) -> Result<Self, CliError> {
+    pub fn parse(text: &str, path: &Path) -> Result<Self, FileError> {
         let table: toml::Table = text.parse().map_err(|error: toml::de::Error| {
             let line =
                 error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
-            CliError::file(path, format!("line {line}: {}", error.message()), "a scene file is TOML")
+            FileError::file(path, format!("line {line}: {}", error.message()), "a scene file is TOML")
         })?;
         read(Fields::new(table, ""), path).map_err(|error| error.within(path.display()))
     }
 }
 
-fn read(mut top: Fields, path: &Path) -> Result<SceneFile, CliError> {
+fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut bodies = Vec::new();
     for fields in top.tables("body")? {
@@ -199,7 +201,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, CliError> {
     if actuators.is_empty() {
         actuators.push(ActuatorEntry::default());
     }
-    let probe = top.table("probe")?.map(read_probe).transpose()?.unwrap_or_default();
+    let (probe, probes) = read_probes(&mut top)?;
     let audio = read_buses(&mut top)?;
     let scene = SceneFile {
         path: path.to_owned(),
@@ -210,6 +212,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, CliError> {
         bodies,
         surfaces,
         probe,
+        probes,
         actuators,
         audio,
     };
@@ -219,14 +222,14 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, CliError> {
 }
 
 /// Names are unique, and every name that is used exists.
-fn check_names(scene: &SceneFile) -> Result<(), CliError> {
+fn check_names(scene: &SceneFile) -> Result<(), FileError> {
     let bodies: Vec<&str> = scene.bodies.iter().map(|body| body.name.as_str()).collect();
     let surfaces: Vec<&str> = scene.surfaces.iter().map(|surface| surface.name.as_str()).collect();
     for (what, names) in [("body", &bodies), ("surface", &surfaces)] {
         for (index, name) in names.iter().enumerate() {
             if names[..index].contains(name) {
                 let at = format!("{what} {} \"{name}\": name", index + 1);
-                return Err(CliError::new(at, "is used twice", "give each a name of its own"));
+                return Err(FileError::new(at, "is used twice", "give each a name of its own"));
             }
         }
     }
@@ -239,7 +242,7 @@ fn check_names(scene: &SceneFile) -> Result<(), CliError> {
                 _ => format!("buses of this scene: {}", fields::any_of(&known)),
             };
             let at = format!("body \"{}\": bus", body.name);
-            return Err(CliError::new(at, format!("\"{bus}\" is unknown"), right));
+            return Err(FileError::new(at, format!("\"{bus}\" is unknown"), right));
         }
     }
     for (index, surface) in scene.surfaces.iter().enumerate() {
@@ -247,13 +250,13 @@ fn check_names(scene: &SceneFile) -> Result<(), CliError> {
             let at = format!("surface {} \"{}\": body", index + 1, surface.name);
             let known: Vec<String> = bodies.iter().map(|name| format!("\"{name}\"")).collect();
             let right = format!("bodies of this scene: {}", fields::any_of(&known));
-            return Err(CliError::new(at, format!("\"{body}\" is unknown"), right));
+            return Err(FileError::new(at, format!("\"{body}\" is unknown"), right));
         }
     }
     Ok(())
 }
 
-fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, CliError> {
+fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> {
     let name = fields.needed_text("name")?;
     let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
     fields.rename(place);
@@ -274,7 +277,7 @@ fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, CliError> {
     Ok(BodyEntry { name, modes, material, residual, bus })
 }
 
-fn read_material(mut fields: Fields) -> Result<MaterialEntry, CliError> {
+fn read_material(mut fields: Fields) -> Result<MaterialEntry, FileError> {
     let material = MaterialEntry::Constants {
         young_pa: fields.needed_number("young_pa", Allowed::between(1e3, 2e12, "Pa"))?,
         poisson: fields.needed_number("poisson", Allowed::between(0.0, 0.5, ""))?,
@@ -284,7 +287,35 @@ fn read_material(mut fields: Fields) -> Result<MaterialEntry, CliError> {
     Ok(material)
 }
 
-fn read_probe(mut fields: Fields) -> Result<ProbeEntry, CliError> {
+/// `[probe]`, the only one, or `[[probe]]`, of which the one without a name is the default.
+fn read_probes(top: &mut Fields) -> Result<(ProbeEntry, Vec<(String, ProbeEntry)>), FileError> {
+    if !top.is_list("probe") {
+        let only = top.table("probe")?.map(read_probe).transpose()?;
+        return Ok((only.unwrap_or_default(), Vec::new()));
+    }
+    let (mut default, mut named) = (None, Vec::<(String, ProbeEntry)>::new());
+    for mut fields in top.tables("probe")? {
+        let name = fields.text("name")?;
+        let twice = |right| Err(fields.refuse("name", "is used twice", right));
+        match name {
+            None if default.is_some() => {
+                return Err(fields.refuse(
+                    "name",
+                    "is missing for the second time",
+                    "only one probe is the default",
+                ));
+            }
+            Some(name) if named.iter().any(|(known, _)| *known == name) => {
+                return twice("give each a name of its own");
+            }
+            None => default = Some(read_probe(fields)?),
+            Some(name) => named.push((name, read_probe(fields)?)),
+        }
+    }
+    Ok((default.unwrap_or_default(), named))
+}
+
+fn read_probe(mut fields: Fields) -> Result<ProbeEntry, FileError> {
     let probe = ProbeEntry {
         preset: fields.text("preset")?,
         pad_mass_kg: fields.number("pad_mass_kg", Allowed::between(1e-6, 1.0, "kg"))?,
@@ -298,7 +329,7 @@ fn read_probe(mut fields: Fields) -> Result<ProbeEntry, CliError> {
     Ok(probe)
 }
 
-fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, CliError> {
+fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
     let words =
         [("displacement", ActuatorOutput::Displacement), ("acceleration", ActuatorOutput::Acceleration)];
     let default = ActuatorEntry::default();
@@ -337,7 +368,7 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, CliError> {
 }
 
 /// `[audio]`, one bus for all, or `[[audio]]`, one table a bus.
-fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, CliError> {
+fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
     if !top.is_list("audio") {
         let only = top.table("audio")?.map(read_audio).transpose()?;
         return Ok(vec![only.unwrap_or(AudioEntry { name: None, gain: 1.0, limit: false })]);
@@ -346,20 +377,24 @@ fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, CliError> {
     for (index, bus) in buses.iter().enumerate() {
         let at = format!("audio {}", index + 1);
         if bus.name.is_none() && buses.len() > 1 {
-            return Err(CliError::new(format!("{at}: name"), "is missing", "give each bus a name"));
+            return Err(FileError::new(format!("{at}: name"), "is missing", "give each bus a name"));
         }
         if bus.name.is_some() && buses[..index].iter().any(|before| before.name == bus.name) {
-            return Err(CliError::new(format!("{at}: name"), "is used twice", "give each a name of its own"));
+            return Err(FileError::new(
+                format!("{at}: name"),
+                "is used twice",
+                "give each a name of its own",
+            ));
         }
     }
     match buses.len() {
-        0 => Err(CliError::new("audio", "is an empty list", "write [audio], or one [[audio]] a bus")),
+        0 => Err(FileError::new("audio", "is an empty list", "write [audio], or one [[audio]] a bus")),
         1..=MAX_BUSES => Ok(buses),
-        many => Err(CliError::new("audio", format!("has {many} buses"), format!("at most {MAX_BUSES}"))),
+        many => Err(FileError::new("audio", format!("has {many} buses"), format!("at most {MAX_BUSES}"))),
     }
 }
 
-fn read_audio(mut fields: Fields) -> Result<AudioEntry, CliError> {
+fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
     let audio = AudioEntry {
         name: fields.text("name")?,
         gain: fields.number_or("gain", 1.0, Allowed::between(0.0, 1e6, ""))?,

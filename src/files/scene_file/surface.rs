@@ -3,8 +3,8 @@
 use super::fields::{Allowed, Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
-use crate::error::CliError;
-use asperity::limits;
+use crate::files::FileError;
+use crate::limits;
 use std::path::Path;
 use toml::Value;
 
@@ -76,7 +76,7 @@ pub enum Excitation {
 }
 
 /// Reads one `[[surface]]`.
-pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, CliError> {
+pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError> {
     let name = fields.needed_text("name")?;
     let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
     fields.rename(place);
@@ -103,7 +103,7 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, CliError>
     Ok(surface)
 }
 
-fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<Roughness, CliError> {
+fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<Roughness, FileError> {
     if fields.has("roughness") && fields.has("gloss") {
         return Err(fields.refuse(
             "gloss",

@@ -1,7 +1,7 @@
 //! A picture that a scene names, and the channel of it that is meant.
 
 use super::fields::Fields;
-use crate::error::CliError;
+use crate::files::FileError;
 use std::path::PathBuf;
 
 /// A channel of an image file.
@@ -14,6 +14,6 @@ pub struct Pixels {
 }
 
 /// `r`, `g`, `b`, `a` or `luma`.
-pub fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Option<char>, CliError> {
+pub fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Option<char>, FileError> {
     fields.word(key, &[("r", 'r'), ("g", 'g'), ("b", 'b'), ("a", 'a'), ("luma", 'l')])
 }

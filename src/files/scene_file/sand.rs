@@ -2,7 +2,7 @@
 
 use super::fields::{Allowed, Fields};
 use super::pixels::{Pixels, read_channel};
-use crate::error::CliError;
+use crate::files::FileError;
 use std::path::Path;
 
 /// Layers below the top that the engine knows.
@@ -50,7 +50,7 @@ pub enum Tool {
 }
 
 /// Reads the table.
-pub fn read(mut table: Fields, folder: &Path) -> Result<Sand, CliError> {
+pub fn read(mut table: Fields, folder: &Path) -> Result<Sand, FileError> {
     let sand = Sand {
         cells: table.whole("cells", 16, 2048)?.unwrap_or(512),
         depth_m: table.number_or("depth_m", 0.05, Allowed::above(0.0, 0.45, "m"))?,
@@ -67,7 +67,7 @@ pub fn read(mut table: Fields, folder: &Path) -> Result<Sand, CliError> {
     Ok(sand)
 }
 
-fn read_layers(table: &mut Fields) -> Result<Vec<(f64, f64)>, CliError> {
+fn read_layers(table: &mut Fields) -> Result<Vec<(f64, f64)>, FileError> {
     let mut layers = Vec::new();
     let mut above_m = 0.0;
     for mut layer in table.tables("layers")? {
@@ -83,7 +83,7 @@ fn read_layers(table: &mut Fields) -> Result<Vec<(f64, f64)>, CliError> {
     Ok(layers)
 }
 
-fn read_tool(table: &mut Fields, folder: &Path) -> Result<Tool, CliError> {
+fn read_tool(table: &mut Fields, folder: &Path) -> Result<Tool, FileError> {
     let radius_m = table.number("tool_radius_m", Allowed::between(1e-4, 0.2, "m"))?;
     let Some(mut tool) = table.table("tool")? else {
         return Ok(Tool::Sphere(radius_m.unwrap_or(0.005)));

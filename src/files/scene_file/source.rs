@@ -5,8 +5,8 @@
 use super::fields::{Allowed, Fields, shown};
 use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
-use crate::error::CliError;
-use asperity::limits;
+use crate::files::FileError;
+use crate::limits;
 use std::path::Path;
 use toml::Value;
 
@@ -149,7 +149,7 @@ const SOURCES: [&str; 8] =
     ["displacement", "solid", "brownian", "lattice", "sand", "sum", "mask", "crossfade"];
 
 /// Reads the source of a surface or of a part of one; other keys stay.
-pub fn read(fields: &mut Fields, folder: &Path) -> Result<Source, CliError> {
+pub fn read(fields: &mut Fields, folder: &Path) -> Result<Source, FileError> {
     let given: Vec<&'static str> = SOURCES.into_iter().filter(|key| fields.has(key)).collect();
     if let [first, second, ..] = given[..] {
         let right = format!("write one of {}, or put them into sum", SOURCES.join(", "));
@@ -187,18 +187,18 @@ pub fn read(fields: &mut Fields, folder: &Path) -> Result<Source, CliError> {
     })
 }
 
-fn needed_table(fields: &mut Fields, key: &'static str) -> Result<Fields, CliError> {
+fn needed_table(fields: &mut Fields, key: &'static str) -> Result<Fields, FileError> {
     fields.table(key)?.ok_or_else(|| fields.missing(key, "a table, { key = value }"))
 }
 
 /// A source that is a part of another one: a table with nothing else in it.
-fn read_part(mut table: Fields, folder: &Path) -> Result<Source, CliError> {
+fn read_part(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
     let source = read(&mut table, folder)?;
     table.finish()?;
     Ok(source)
 }
 
-fn read_sum(fields: &mut Fields, folder: &Path) -> Result<Source, CliError> {
+fn read_sum(fields: &mut Fields, folder: &Path) -> Result<Source, FileError> {
     let parts = fields.tables("sum")?;
     if parts.is_empty() {
         return Err(fields.refuse("sum", "is empty", "write sum = [{ … }, { … }]"));
@@ -206,7 +206,7 @@ fn read_sum(fields: &mut Fields, folder: &Path) -> Result<Source, CliError> {
     parts.into_iter().map(|part| read_part(part, folder)).collect::<Result<_, _>>().map(Source::Sum)
 }
 
-fn read_mask(mut table: Fields, folder: &Path) -> Result<Source, CliError> {
+fn read_mask(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
     let channel = read_channel(&mut table, "channel")?;
     let image = Pixels { path: folder.join(table.needed_text("image")?), channel };
     let inside = Box::new(read_part(needed_table(&mut table, "inside")?, folder)?);
@@ -215,7 +215,7 @@ fn read_mask(mut table: Fields, folder: &Path) -> Result<Source, CliError> {
     Ok(Source::Mask { image, inside, outside })
 }
 
-fn read_crossfade(mut table: Fields, folder: &Path) -> Result<Source, CliError> {
+fn read_crossfade(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
     let from = Box::new(read_part(needed_table(&mut table, "from")?, folder)?);
     let to = Box::new(read_part(needed_table(&mut table, "to")?, folder)?);
     let at_s = table.needed_number("at_s", Allowed::between(0.0, 1e6, "s"))?;
@@ -224,7 +224,7 @@ fn read_crossfade(mut table: Fields, folder: &Path) -> Result<Source, CliError> 
 }
 
 /// The name of a preset, or a table of one and what differs from it.
-fn read_solid(fields: &mut Fields) -> Result<Source, CliError> {
+fn read_solid(fields: &mut Fields) -> Result<Source, FileError> {
     let right = "write the name of a material, or { preset = \"NAME\", … }";
     let mut table = match fields.take("solid") {
         Some(Value::Table(table)) => Fields::new(table, fields.inner("solid")),
@@ -259,7 +259,7 @@ fn read_solid(fields: &mut Fields) -> Result<Source, CliError> {
     Ok(Source::Solid(Box::new(solid)))
 }
 
-fn read_brownian(mut table: Fields) -> Result<Source, CliError> {
+fn read_brownian(mut table: Fields) -> Result<Source, FileError> {
     let forces = [("orthogonal", BrownianForce::Orthogonal), ("lateral", BrownianForce::Lateral)];
     let graph = table.flag("graph")?.unwrap_or(false);
     let most = if graph { 1 << 22 } else { 4096 };
@@ -281,7 +281,7 @@ fn read_lattice(
     channel: Option<char>,
     relief_m: f64,
     invert: bool,
-) -> Result<Source, CliError> {
+) -> Result<Source, FileError> {
     let step = Allowed::between(-1_000.0, 1_000.0, "m");
     let cell = table.needed_text("cell")?;
     let t1_m = table.pair("t1_m", step)?.ok_or_else(|| table.missing("t1_m", "[0.01, 0.0]"))?;

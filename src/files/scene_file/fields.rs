@@ -1,6 +1,6 @@
 //! Reads a TOML table key by key, so that every refusal can name the place, the value and the remedy.
 
-use crate::error::CliError;
+use crate::files::FileError;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
@@ -64,9 +64,14 @@ impl Fields {
     }
 
     /// An error at a key of this table.
-    pub fn refuse(&self, key: &str, what: impl std::fmt::Display, right: impl std::fmt::Display) -> CliError {
+    pub fn refuse(
+        &self,
+        key: &str,
+        what: impl std::fmt::Display,
+        right: impl std::fmt::Display,
+    ) -> FileError {
         let at = if self.place.is_empty() { key.to_owned() } else { format!("{}: {key}", self.place) };
-        CliError::new(at, what, right)
+        FileError::new(at, what, right)
     }
 
     /// Whether a key is there; it counts as accepted.
@@ -93,12 +98,12 @@ impl Fields {
         self.table.remove(key)
     }
 
-    fn wrong_kind(&self, key: &str, value: &Value, right: &str) -> CliError {
+    fn wrong_kind(&self, key: &str, value: &Value, right: &str) -> FileError {
         self.refuse(key, format!("{} is not {right}", shown(value)), format!("write {right}"))
     }
 
     /// A number.
-    pub fn number(&mut self, key: &'static str, allowed: Allowed) -> Result<Option<f64>, CliError> {
+    pub fn number(&mut self, key: &'static str, allowed: Allowed) -> Result<Option<f64>, FileError> {
         let Some(value) = self.take(key) else { return Ok(None) };
         let number = as_number(&value).ok_or_else(|| self.wrong_kind(key, &value, "a number"))?;
         if allowed.holds(number) {
@@ -109,17 +114,17 @@ impl Fields {
     }
 
     /// A number that must be there.
-    pub fn needed_number(&mut self, key: &'static str, allowed: Allowed) -> Result<f64, CliError> {
+    pub fn needed_number(&mut self, key: &'static str, allowed: Allowed) -> Result<f64, FileError> {
         self.number(key, allowed)?.ok_or_else(|| self.missing(key, "a number"))
     }
 
     /// A number, or the default.
-    pub fn number_or(&mut self, key: &'static str, default: f64, allowed: Allowed) -> Result<f64, CliError> {
+    pub fn number_or(&mut self, key: &'static str, default: f64, allowed: Allowed) -> Result<f64, FileError> {
         Ok(self.number(key, allowed)?.unwrap_or(default))
     }
 
     /// A whole number.
-    pub fn whole(&mut self, key: &'static str, low: u64, high: u64) -> Result<Option<u64>, CliError> {
+    pub fn whole(&mut self, key: &'static str, low: u64, high: u64) -> Result<Option<u64>, FileError> {
         let Some(value) = self.take(key) else { return Ok(None) };
         let whole = value.as_integer().and_then(|whole| u64::try_from(whole).ok());
         match whole.filter(|whole| (low..=high).contains(whole)) {
@@ -132,7 +137,7 @@ impl Fields {
     }
 
     /// Text.
-    pub fn text(&mut self, key: &'static str) -> Result<Option<String>, CliError> {
+    pub fn text(&mut self, key: &'static str) -> Result<Option<String>, FileError> {
         match self.take(key) {
             None => Ok(None),
             Some(Value::String(text)) if !text.is_empty() => Ok(Some(text)),
@@ -141,12 +146,12 @@ impl Fields {
     }
 
     /// Text that must be there.
-    pub fn needed_text(&mut self, key: &'static str) -> Result<String, CliError> {
+    pub fn needed_text(&mut self, key: &'static str) -> Result<String, FileError> {
         self.text(key)?.ok_or_else(|| self.missing(key, "text in quotes"))
     }
 
     /// One of a few words; `None` when the key is missing.
-    pub fn word<T: Copy>(&mut self, key: &'static str, words: &[(&str, T)]) -> Result<Option<T>, CliError> {
+    pub fn word<T: Copy>(&mut self, key: &'static str, words: &[(&str, T)]) -> Result<Option<T>, FileError> {
         let Some(text) = self.text(key)? else { return Ok(None) };
         match words.iter().find(|(word, _)| *word == text) {
             Some((_, meaning)) => Ok(Some(*meaning)),
@@ -158,7 +163,7 @@ impl Fields {
     }
 
     /// Yes or no.
-    pub fn flag(&mut self, key: &'static str) -> Result<Option<bool>, CliError> {
+    pub fn flag(&mut self, key: &'static str) -> Result<Option<bool>, FileError> {
         match self.take(key) {
             None => Ok(None),
             Some(Value::Boolean(flag)) => Ok(Some(flag)),
@@ -167,12 +172,12 @@ impl Fields {
     }
 
     /// A file named relative to `folder`.
-    pub fn file(&mut self, key: &'static str, folder: &Path) -> Result<Option<PathBuf>, CliError> {
+    pub fn file(&mut self, key: &'static str, folder: &Path) -> Result<Option<PathBuf>, FileError> {
         Ok(self.text(key)?.map(|name| folder.join(name)))
     }
 
     /// Two numbers.
-    pub fn pair(&mut self, key: &'static str, allowed: Allowed) -> Result<Option<[f64; 2]>, CliError> {
+    pub fn pair(&mut self, key: &'static str, allowed: Allowed) -> Result<Option<[f64; 2]>, FileError> {
         let Some(value) = self.take(key) else { return Ok(None) };
         let numbers: Option<Vec<f64>> =
             value.as_array().and_then(|items| items.iter().map(as_number).collect());
@@ -188,7 +193,7 @@ impl Fields {
     }
 
     /// A table.
-    pub fn table(&mut self, key: &'static str) -> Result<Option<Self>, CliError> {
+    pub fn table(&mut self, key: &'static str) -> Result<Option<Self>, FileError> {
         match self.take(key) {
             None => Ok(None),
             Some(Value::Table(table)) => Ok(Some(Self::new(table, self.inner(key)))),
@@ -197,7 +202,7 @@ impl Fields {
     }
 
     /// An array of tables, `[[key]]`.
-    pub fn tables(&mut self, key: &'static str) -> Result<Vec<Self>, CliError> {
+    pub fn tables(&mut self, key: &'static str) -> Result<Vec<Self>, FileError> {
         let Some(value) = self.take(key) else { return Ok(Vec::new()) };
         let right = format!("a list of tables, each begun with [[{key}]]");
         let Value::Array(items) = value else { return Err(self.wrong_kind(key, &value, &right)) };
@@ -219,12 +224,12 @@ impl Fields {
     }
 
     /// An error for a key that must be there.
-    pub fn missing(&self, key: &str, right: &str) -> CliError {
+    pub fn missing(&self, key: &str, right: &str) -> FileError {
         self.refuse(key, "is missing", format!("write {key} = {right}"))
     }
 
     /// Refuses every key that was not asked for.
-    pub fn finish(mut self) -> Result<(), CliError> {
+    pub fn finish(mut self) -> Result<(), FileError> {
         let unknown = self.table.keys().next().cloned();
         match unknown {
             None => Ok(()),

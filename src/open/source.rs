@@ -1,13 +1,16 @@
 //! From what a scene file says about heights to a source the engine samples.
 
 use super::pixels;
-use crate::error::CliError;
-use crate::scene_file::{
-    Brownian, BrownianForce as ForceEntry, Direction, Lattice as LatticeEntry, Sand,
-    SolidNoise as SolidEntry, Source, Tool as ToolEntry,
+use crate::files::FileError;
+#[cfg(feature = "brownian")]
+use crate::files::scene_file::BrownianForce as ForceEntry;
+use crate::files::scene_file::{
+    Brownian, Direction, Lattice as LatticeEntry, Sand, SolidNoise as SolidEntry, Source, Tool as ToolEntry,
 };
-use asperity::{Extent, Wrap};
+use crate::{Extent, Wrap};
+#[cfg(feature = "brownian")]
 use asperity_texture::brownian::BrownianDesign;
+#[cfg(feature = "brownian")]
 use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface, Rendering};
 use asperity_texture::change::SurfaceChange;
 use asperity_texture::combine::{Crossfade, Mask, Scale, Sum};
@@ -24,6 +27,7 @@ use std::cell::RefCell;
 /// has a place for each.
 const CONTACTS: usize = 96;
 /// Points of a graph unless told otherwise.
+#[cfg(feature = "brownian")]
 const GRAPH_POINTS: usize = 1 << 14;
 
 type Boxed = Box<dyn HeightField>;
@@ -41,16 +45,16 @@ pub(super) struct Ground<'a> {
 
 impl Ground<'_> {
     /// The source itself.
-    pub fn source(self, source: &Source) -> Result<Boxed, CliError> {
+    pub fn source(self, source: &Source) -> Result<Boxed, FileError> {
         Ok(match source {
             Source::Flat => {
-                Box::new(HeightMap::flat(self.extent, asperity::DEFAULT_ROUGHNESS).map_err(CliError::told)?)
+                Box::new(HeightMap::flat(self.extent, crate::DEFAULT_ROUGHNESS).map_err(FileError::told)?)
             }
             Source::Map { image, relief_m, invert } => {
                 let heights = upright(pixels(image)?.debanded(self.wrap), *invert);
                 let extent = Extent { relief_m: *relief_m, ..self.extent };
                 let map = HeightMap::new(&heights, extent, self.wrap);
-                Box::new(map.map_err(|error| CliError::told(error).within(image.path.display()))?)
+                Box::new(map.map_err(|error| FileError::told(error).within(image.path.display()))?)
             }
             Source::Solid(solid) => Box::new(self.solid(solid)?),
             Source::Brownian(brownian) => self.brownian(brownian)?,
@@ -61,17 +65,17 @@ impl Ground<'_> {
             }
             Source::Scale(source, factor) => {
                 let scale = Scale::new(self.source(source)?, *factor, self.sample_rate_hz);
-                Box::new(scale.map_err(|error| CliError::told(error).within("scale"))?)
+                Box::new(scale.map_err(|error| FileError::told(error).within("scale"))?)
             }
             Source::Mask { image, inside, outside } => {
                 let weights = pixels(image)?.debanded(self.wrap);
                 let mask = HeightMap::new(&weights, self.extent, self.wrap)
-                    .map_err(|error| CliError::told(error).within(image.path.display()))?;
+                    .map_err(|error| FileError::told(error).within(image.path.display()))?;
                 Box::new(Mask::new(Box::new(mask), self.source(inside)?, self.source(outside)?))
             }
             Source::Crossfade { from, to, at_s } => {
                 let (from, to) = (self.source(from)?, self.source(to)?);
-                let mut fade = Crossfade::new(from, to, self.sample_rate_hz).map_err(CliError::told)?;
+                let mut fade = Crossfade::new(from, to, self.sample_rate_hz).map_err(FileError::told)?;
                 let sample = (at_s * self.sample_rate_hz).round() as u64;
                 fade.change(&SurfaceChange::Crossfade(1.0), sample);
                 Box::new(fade)
@@ -126,11 +130,11 @@ impl Ground<'_> {
         Some(Raster { width, height, values })
     }
 
-    fn solid(self, entry: &SolidEntry) -> Result<SolidNoise, CliError> {
+    fn solid(self, entry: &SolidEntry) -> Result<SolidNoise, FileError> {
         let material = SolidMaterial::from_name(&entry.preset).ok_or_else(|| {
             let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ");
             let what = format!("\"{}\" is unknown", entry.preset);
-            CliError::new("solid", what, format!("must be one of: {known}"))
+            FileError::new("solid", what, format!("must be one of: {known}"))
         })?;
         let mut parameters = material.parameters();
         let set = |to: &mut f64, written: Option<f64>| *to = written.unwrap_or(*to);
@@ -154,11 +158,17 @@ impl Ground<'_> {
             };
         }
         SolidNoise::new(parameters, entry.seed.unwrap_or(self.seed), self.sample_rate_hz)
-            .map_err(|error| CliError::told(error).within("solid"))
+            .map_err(|error| FileError::told(error).within("solid"))
     }
 
-    fn brownian(self, entry: &Brownian) -> Result<Boxed, CliError> {
-        let told = |error| CliError::told(error).within("brownian");
+    #[cfg(not(feature = "brownian"))]
+    fn brownian(self, _entry: &Brownian) -> Result<Boxed, FileError> {
+        Err(FileError::new("brownian", "is not in this build", "build asperity with its feature brownian"))
+    }
+
+    #[cfg(feature = "brownian")]
+    fn brownian(self, entry: &Brownian) -> Result<Boxed, FileError> {
+        let told = |error| FileError::told(error).within("brownian");
         let mut design = BrownianDesign::new(entry.hurst, entry.rms_m, entry.seed.unwrap_or(self.seed));
         let rendering = entry.force.map(|force| match force {
             ForceEntry::Orthogonal => Rendering::Orthogonal,
@@ -177,14 +187,14 @@ impl Ground<'_> {
         // The relief is isotropic and repeats in a square; a surface of another shape is cut from it.
         let side_m = self.extent.width_m.max(self.extent.height_m);
         let square = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
-        let map = Box::new(HeightMap::new(&relief, square, Wrap::Repeat).map_err(CliError::told)?);
+        let map = Box::new(HeightMap::new(&relief, square, Wrap::Repeat).map_err(FileError::told)?);
         let Some(rendering) = rendering else { return Ok(map) };
         let (low, high) = relief.range();
         let force = BrownianForce::surface(rendering, high - low).map_err(told)?;
         Ok(Box::new(BrownianSurface::new(map, force)))
     }
 
-    fn sand(self, entry: &Sand) -> Result<SandSource, CliError> {
+    fn sand(self, entry: &Sand) -> Result<SandSource, FileError> {
         let default = SandLaw::default();
         let mut law = SandLaw {
             stiffness_n: entry.stiffness_n,
@@ -214,7 +224,7 @@ impl Ground<'_> {
             let right = format!(
                 "must be at least {least}: a cell of {cell_m:.3} m is wider than the tool of {tool_m:.3} m, which would leave no groove"
             );
-            return Err(CliError::new("sand: cells", what, right));
+            return Err(FileError::new("sand: cells", what, right));
         }
         let source = match self.workers {
             None => SandSource::synchronous(&design, self.seed, self.sample_rate_hz),
@@ -226,19 +236,19 @@ impl Ground<'_> {
                 })
             }
         };
-        source.map_err(|error| CliError::told(error).within("sand"))
+        source.map_err(|error| FileError::told(error).within("sand"))
     }
 }
 
-fn lattice(entry: &LatticeEntry) -> Result<Lattice, CliError> {
+fn lattice(entry: &LatticeEntry) -> Result<Lattice, FileError> {
     let relief_m = entry.relief_m;
     let cell = upright(pixels(&entry.cell)?.debanded(Wrap::Repeat), entry.invert);
     Lattice::new(&cell.map(|height| height * relief_m), entry.t1_m, entry.t2_m)
-        .map_err(|error| CliError::told(error).within("lattice"))
+        .map_err(|error| FileError::told(error).within("lattice"))
 }
 
 /// A picture of a tool's underside: white is no tool, the darkest point is the lowest.
-fn tool(entry: &ToolEntry) -> Result<Tool, CliError> {
+fn tool(entry: &ToolEntry) -> Result<Tool, FileError> {
     match entry {
         ToolEntry::Sphere(radius_m) => Ok(Tool::Sphere { radius_m: *radius_m }),
         ToolEntry::Map { image, width_m, relief_m } => {
@@ -246,7 +256,7 @@ fn tool(entry: &ToolEntry) -> Result<Tool, CliError> {
             let lowest = grey.range().0;
             if lowest >= 1.0 {
                 let right = "must show the tool darker than white, which is no tool";
-                return Err(CliError::new(image.path.display().to_string(), "is white everywhere", right));
+                return Err(FileError::new(image.path.display().to_string(), "is white everywhere", right));
             }
             let texel_m = width_m / grey.width as f64;
             let map = grey.map(|grey| if grey >= 1.0 { f64::INFINITY } else { (grey - lowest) * relief_m });

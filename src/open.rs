@@ -2,15 +2,16 @@
 
 mod source;
 
-use crate::error::CliError;
-use crate::scene_file::{
+use crate::engine::Engine;
+use crate::files::FileError;
+use crate::files::scene_file::{
     ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MaterialEntry, Pixels, ProbeEntry,
     Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
 };
-use asperity::files::contact_log::Names;
-use asperity::{
+use crate::model::probe::{PROBE_PRESETS, probe_by_name};
+use crate::{
     ActuatorPreset, ActuatorSettings, AudioBus, Body, BodyId, Config, DeviceProfile, Excitation, Extent,
-    Integrator, Material, ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
+    Integrator, Material, ModalModel, PathMode, Probe, Quantity, Roughness, Surface, Wrap,
 };
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
@@ -35,35 +36,40 @@ pub struct Overrides {
     pub live: bool,
 }
 
-/// A scene ready to be rendered.
-pub struct Built {
-    /// Game half.
-    pub scene: Scene,
-    /// Audio half.
-    pub renderer: Renderer,
-    /// Ids by the names of the scene file.
-    pub names: Names,
-    /// What has to run on threads of its own; empty unless [`Overrides::live`].
-    #[cfg_attr(not(feature = "device"), expect(dead_code, reason = "only a sound card needs them"))]
-    pub workers: Vec<SandWorker>,
+impl Engine {
+    /// Reads a scene file and every file that it names, and builds the engine, for a render or a replay.
+    ///
+    /// # Errors
+    /// When a file cannot be used or a number is refused; the message names file and field.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
+        Self::from_scene(&SceneFile::load(path.as_ref())?, &Overrides::default())
+    }
+
+    /// Loads every file that a scene names and builds the engine.
+    ///
+    /// # Errors
+    /// When a file cannot be used or the engine refuses a number; the message names file and field.
+    pub fn from_scene(file: &SceneFile, overrides: &Overrides) -> Result<Self, FileError> {
+        build(file, overrides)
+    }
 }
 
-/// Loads every file that a scene names and builds the engine.
-///
-/// # Errors
-/// When a file cannot be used or the engine refuses a number; the message names file and field.
-pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError> {
-    let at = |error: CliError| error.within(file.path.display());
+fn build(file: &SceneFile, overrides: &Overrides) -> Result<Engine, FileError> {
+    let at = |error: FileError| error.within(file.path.display());
     let config = config(file, overrides).map_err(at)?;
     let (seed, rate_hz) = (config.seed, config.inner_rate_hz());
-    let asperity::Engine { mut scene, renderer, .. } =
-        config.build().map_err(|error| at(CliError::told(error)))?;
-    let mut names = Names::default();
+    let Engine { mut scene, renderer, mut names, .. } =
+        config.build().map_err(|error| at(FileError::told(error)))?;
     let workers = RefCell::default();
+    for (name, entry) in &file.probes {
+        let place = |error: FileError| at(error.within(format!("probe \"{name}\"")));
+        let id = probe(entry).and_then(|probe| scene.add_probe(probe).map_err(FileError::told));
+        names.probes.insert(name.clone(), id.map_err(place)?);
+    }
     for body in &file.bodies {
-        let place = |error: CliError| at(error.within(format!("body \"{}\"", body.name)));
+        let place = |error: FileError| at(error.within(format!("body \"{}\"", body.name)));
         let mut model = match &body.modes {
-            Some(path) => ModalModel::load(path).map_err(CliError::told)?,
+            Some(path) => ModalModel::load(path).map_err(FileError::told)?,
             None => ModalModel {
                 source: String::new(),
                 impulse_n_s: 1.0,
@@ -74,7 +80,7 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
         };
         if let Some(gain) = body.residual {
             let residual = model.residual.take();
-            model = model.with_residual(residual, gain).map_err(|error| place(CliError::told(error)))?;
+            model = model.with_residual(residual, gain).map_err(|error| place(FileError::told(error)))?;
         }
         let mut thing = Body::new(model);
         if let Some(entry) = &body.material {
@@ -82,20 +88,20 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
         }
         let named = |name: &String| file.audio.iter().position(|bus| bus.name.as_ref() == Some(name));
         let id = scene.add_body(thing.on_bus(body.bus.as_ref().and_then(named).unwrap_or(0)));
-        names.bodies.insert(body.name.clone(), id.map_err(|error| place(CliError::told(error)))?);
+        names.bodies.insert(body.name.clone(), id.map_err(|error| place(FileError::told(error)))?);
     }
     for entry in &file.surfaces {
-        let place = |error: CliError| at(error.within(format!("surface \"{}\"", entry.name)));
+        let place = |error: FileError| at(error.within(format!("surface \"{}\"", entry.name)));
         let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
         let live = overrides.live.then_some(&workers);
         let surface = surface(entry, body, (seed, rate_hz), live).map_err(place)?;
-        let id = scene.add_surface(surface).map_err(|error| place(CliError::told(error)))?;
+        let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
-    Ok(Built { scene, renderer, names, workers: workers.into_inner() })
+    Ok(Engine { scene, renderer, names, workers: workers.into_inner() })
 }
 
-fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
+fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, FileError> {
     let default = Config::default();
     let folder = file.path.parent().unwrap_or(Path::new(""));
     Ok(Config {
@@ -103,7 +109,7 @@ fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
         seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
         path: overrides.path.unwrap_or(default.path),
         integrator: overrides.integrator.unwrap_or(default.integrator),
-        probe: probe(&file.probe)?,
+        probe: probe(&file.probe).map_err(|error| error.within("probe"))?,
         actuators: file.actuators.iter().map(|entry| actuator(entry, folder)).collect::<Result<_, _>>()?,
         // A sound card clips what exceeds full scale.
         audio: file
@@ -119,13 +125,14 @@ fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, CliError> {
     })
 }
 
-fn probe(entry: &ProbeEntry) -> Result<Probe, CliError> {
+fn probe(entry: &ProbeEntry) -> Result<Probe, FileError> {
     let preset = match entry.preset.as_deref() {
-        None | Some("fingertip") => Probe::default(),
-        Some(other) => {
-            let what = format!("\"{other}\" is unknown");
-            return Err(CliError::new("probe: preset", what, "must be \"fingertip\", or write the fields"));
-        }
+        None => Probe::default(),
+        Some(name) => probe_by_name(name).ok_or_else(|| {
+            let known = PROBE_PRESETS.map(|(name, _)| format!("\"{name}\"")).join(", ");
+            let right = format!("must be one of {known}, or write the fields");
+            FileError::new("preset", format!("\"{name}\" is unknown"), right)
+        })?,
     };
     Ok(Probe {
         pad_mass_kg: entry.pad_mass_kg.unwrap_or(preset.pad_mass_kg),
@@ -137,7 +144,7 @@ fn probe(entry: &ProbeEntry) -> Result<Probe, CliError> {
     })
 }
 
-fn actuator(entry: &ActuatorEntry, folder: &Path) -> Result<ActuatorSettings, CliError> {
+fn actuator(entry: &ActuatorEntry, folder: &Path) -> Result<ActuatorSettings, FileError> {
     Ok(ActuatorSettings {
         output: match entry.output {
             ActuatorOutput::Displacement => Quantity::Displacement,
@@ -153,7 +160,7 @@ fn actuator(entry: &ActuatorEntry, folder: &Path) -> Result<ActuatorSettings, Cl
 }
 
 /// A shipped profile by name, or a profile's file, relative to the scene's.
-fn device(field: &str, name: Option<&str>, folder: &Path) -> Result<Option<DeviceProfile>, CliError> {
+fn device(field: &str, name: Option<&str>, folder: &Path) -> Result<Option<DeviceProfile>, FileError> {
     let Some(name) = name else { return Ok(None) };
     if let Some(preset) = ActuatorPreset::by_name(name) {
         return Ok(Some(preset.profile));
@@ -161,20 +168,20 @@ fn device(field: &str, name: Option<&str>, folder: &Path) -> Result<Option<Devic
     let at = format!("actuator: {field}");
     if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
         let preset = ActuatorPreset::load(folder.join(name));
-        return preset.map(|preset| Some(preset.profile)).map_err(|error| CliError::told(error).within(at));
+        return preset.map(|preset| Some(preset.profile)).map_err(|error| FileError::told(error).within(at));
     }
     let right = format!("must be none, a profile's file (NAME.toml) or one of: {}", ActuatorPreset::names());
-    Err(CliError::new(at, format!("\"{name}\" is unknown"), right))
+    Err(FileError::new(at, format!("\"{name}\" is unknown"), right))
 }
 
-fn material(entry: &MaterialEntry) -> Result<Material, CliError> {
+fn material(entry: &MaterialEntry) -> Result<Material, FileError> {
     match entry {
         MaterialEntry::Constants { young_pa, poisson, density_kg_m3 } => {
             Ok(Material { young_pa: *young_pa, poisson: *poisson, density_kg_m3: *density_kg_m3 })
         }
         MaterialEntry::Preset(name) => Material::by_name(name).ok_or_else(|| {
             let right = format!("must be one of: {}, or a table of constants", Material::names());
-            CliError::new("material", format!("\"{name}\" is unknown"), right)
+            FileError::new("material", format!("\"{name}\" is unknown"), right)
         }),
     }
 }
@@ -206,11 +213,11 @@ fn surface(
     body: Option<BodyId>,
     seed_and_rate: (u64, f64),
     workers: Option<&RefCell<Vec<SandWorker>>>,
-) -> Result<Surface, CliError> {
+) -> Result<Surface, FileError> {
     let ground = ground(entry, seed_and_rate, workers);
     let (extent, wrap) = (ground.extent, ground.wrap);
     let source = ground.source(&entry.source)?;
-    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(CliError::told)?;
+    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(FileError::told)?;
     let surface = surface.wraps(ground.wrap != Wrap::Clamp);
     let mut surface = match &entry.roughness {
         RoughnessEntry::Number(None) => surface,
@@ -219,7 +226,7 @@ fn surface(
             let raster = pixels(image)?.raster;
             let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
             let map = HeightMap::new(&raster, extent, wrap)
-                .map_err(|error| CliError::told(error).within(image.path.display()))?;
+                .map_err(|error| FileError::told(error).within(image.path.display()))?;
             surface.roughness(Roughness::Map(Box::new(map)))
         }
     };
@@ -244,7 +251,7 @@ fn surface(
 }
 
 /// One channel of an image file.
-pub fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {
+pub fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, FileError> {
     let channel = match image.channel {
         Some('r') => Channel::R,
         Some('g') => Channel::G,
@@ -252,5 +259,5 @@ pub fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, CliError> {
         Some('a') => Channel::A,
         _ => Channel::Luma,
     };
-    image_io::load_channel(&image.path, channel).map_err(CliError::told)
+    image_io::load_channel(&image.path, channel).map_err(FileError::told)
 }
