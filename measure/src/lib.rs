@@ -8,6 +8,7 @@
 //! | [`spectrum`] | power and third octaves of a signal, its strongest line |
 //! | [`coloured_noise`] | stationary noise of any colour |
 //! | [`impact`] | struck bodies of known modes |
+//! | [`corpus`] | where recorded and drawn inputs lie |
 //! | [`cramer_rao`] | how well their modes can be known at all |
 //! | [`score`] | modes that were found against those that are there |
 //! | [`stft_peaks`] | the baseline: modes as peaks of a short-time spectrum |
@@ -15,6 +16,7 @@
 //! | [`process`] | time and memory that this process took |
 
 pub mod coloured_noise;
+pub mod corpus;
 pub mod cramer_rao;
 pub mod exact_brownian;
 pub mod impact;
