@@ -89,8 +89,7 @@ impl Renderer {
             noise_octaves_gone: 0,
             fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
         };
-        // Spare voices let stolen and ended contacts fade while new ones sound.
-        let voices = config.max_contacts + config.max_contacts.div_ceil(2).max(8);
+        let voices = config.voices();
         Ok(Self {
             position: 0,
             resets: 0,

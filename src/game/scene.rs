@@ -31,6 +31,7 @@ use asperity_dsp::DesignError;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::change::SurfaceChange;
+use asperity_texture::height_field::Setup;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -199,7 +200,9 @@ impl Scene {
     }
 
     fn set_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
-        let surface = surface.checked()?.tiled();
+        let mut surface = surface.checked()?.tiled();
+        let setup = Setup { sample_rate_hz: self.config.inner_rate_hz(), voices: self.config.voices() };
+        surface.source.prepare(&setup)?;
         let silent = KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let stroking = self.stroking(body)?;

@@ -92,6 +92,13 @@ impl Config {
         self.sample_rate_hz * InnerRate::samples(self.sample_rate_hz) as f64
     }
 
+    /// Contacts that can be rendered at the same time: as many again as half of [`Self::max_contacts`], at least 8, let those that were stolen or
+    /// have ended fade while new ones sound.
+    #[must_use]
+    pub fn voices(&self) -> usize {
+        self.max_contacts + self.max_contacts.div_ceil(2).max(8)
+    }
+
     pub(crate) fn check(&self) -> Result<(), DesignError> {
         DesignError::check("sample_rate_hz", self.sample_rate_hz, "8000–384000 Hz", |r| {
             (8e3..=384e3).contains(&r)

@@ -23,9 +23,6 @@ use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::{ForceDirection, SolidNoise};
 use std::cell::RefCell;
 
-/// Voices of an engine with 64 contacts, the spare ones for fading included: what remembers its contacts
-/// has a place for each.
-const CONTACTS: usize = 96;
 /// Points of a graph unless told otherwise.
 #[cfg(feature = "brownian")]
 const GRAPH_POINTS: usize = 1 << 14;
@@ -178,9 +175,7 @@ impl Ground<'_> {
             design.size = entry.cells.map_or(GRAPH_POINTS, |cells| cells as usize);
             let heights_m = design.path().map_err(told)?;
             let spacing_m = self.extent.width_m / design.size as f64;
-            return Ok(Box::new(
-                BrownianPath::new(&heights_m, spacing_m, rendering, CONTACTS).map_err(told)?,
-            ));
+            return Ok(Box::new(BrownianPath::new(&heights_m, spacing_m, rendering, 1).map_err(told)?));
         }
         design.size = entry.cells.map_or(design.size, |cells| cells as usize);
         let relief = design.surface().map_err(told)?;
@@ -215,7 +210,7 @@ impl Ground<'_> {
             talus_deg: entry.talus_deg,
             law,
             tool: tool(&entry.tool)?,
-            contacts: CONTACTS,
+            ..SandDesign::default()
         };
         let (tool_m, cell_m) = (2.0 * design.tool.reach_m(), design.width_m / entry.cells as f64);
         if cell_m > tool_m {

@@ -16,7 +16,7 @@
 use crate::change::SurfaceChange;
 use crate::fade::Fade;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use crate::sand::SandSource;
 use asperity_dsp::DesignError;
@@ -39,6 +39,10 @@ impl Sum {
 }
 
 impl HeightField for Sum {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
+    }
+
     fn band(&self) -> WavelengthBand {
         self.sources.iter().fold(WavelengthBand::EMPTY, |band, s| band.union(s.band()))
     }
@@ -112,6 +116,11 @@ fn check_factor(factor: f64) -> Result<f64, DesignError> {
 }
 
 impl HeightField for Scale {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.factor.prepare(setup.sample_rate_hz)?;
+        self.source.prepare(setup)
+    }
+
     fn band(&self) -> WavelengthBand {
         self.source.band()
     }
@@ -180,6 +189,12 @@ impl Mask {
 }
 
 impl HeightField for Mask {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.mask.prepare(setup)?;
+        self.inside.prepare(setup)?;
+        self.outside.prepare(setup)
+    }
+
     fn band(&self) -> WavelengthBand {
         self.inside.band().union(self.outside.band())
     }
@@ -264,6 +279,11 @@ impl Crossfade {
 }
 
 impl HeightField for Crossfade {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.position.prepare(setup.sample_rate_hz)?;
+        self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
+    }
+
     fn band(&self) -> WavelengthBand {
         self.sources[0].band().union(self.sources[1].band())
     }
@@ -359,6 +379,12 @@ impl BandSplit {
 }
 
 impl HeightField for BandSplit {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.weights.prepare(setup.sample_rate_hz)?;
+        self.coarse.prepare(setup)?;
+        self.fine.prepare(setup)
+    }
+
     fn band(&self) -> WavelengthBand {
         let (coarse, fine) = (self.coarse.band(), self.fine.band());
         WavelengthBand {

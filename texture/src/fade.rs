@@ -34,6 +34,15 @@ impl<T: Copy> Fade<T> {
         Ok(Self { values: [value; 3], start: u64::MAX, next_start: u64::MAX, length })
     }
 
+    /// Takes the rate of an engine; for a value that is not changing.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn prepare(&mut self, sample_rate_hz: f64) -> Result<(), DesignError> {
+        self.length = Self::new(self.values[0], sample_rate_hz)?.length;
+        Ok(())
+    }
+
     /// Begins to change to `value` at an absolute sample (or when the running fade ends).
     pub fn set(&mut self, value: T, sample: u64) {
         if sample >= self.next_start {

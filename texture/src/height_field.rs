@@ -7,6 +7,7 @@
 
 use crate::change::SurfaceChange;
 use crate::sand::SandSource;
+use asperity_dsp::DesignError;
 
 /// Longest block a source is ever asked for, samples.
 pub const MAX_BLOCK: usize = 64;
@@ -158,10 +159,28 @@ pub enum Beyond {
     Edge,
 }
 
+/// What an engine tells a source when it takes it, on the game thread: nothing of it is the user's to know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setup {
+    /// Rate of the samples that [`PathBlock::first_sample`] counts, Hz.
+    pub sample_rate_hz: f64,
+    /// Contacts are numbered below this.
+    pub voices: usize,
+}
+
 /// A surface that can be sampled in real time.
 pub trait HeightField: Send {
     /// The wavelengths this source represents.
     fn band(&self) -> WavelengthBand;
+
+    /// Gets ready for an engine, before it is sampled; it may allocate. A source made of others hands this on. What keeps
+    /// time or remembers its contacts must take both from here.
+    ///
+    /// # Errors
+    /// When the source cannot serve such an engine; the message names the field.
+    fn prepare(&mut self, _setup: &Setup) -> Result<(), DesignError> {
+        Ok(())
+    }
 
     /// How far from zero its heights can be, metres; 0 if the source cannot tell.
     fn reach_m(&self) -> f64 {

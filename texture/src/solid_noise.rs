@@ -31,7 +31,7 @@ pub use parameters::{ForceDirection, MAX_OCTAVES, NoiseModule, SolidNoiseParamet
 use crate::change::SurfaceChange;
 use crate::fade::Fade;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use asperity_dsp::DesignError;
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
@@ -250,6 +250,10 @@ fn resolved(footprint_cells: f64) -> f64 {
 }
 
 impl HeightField for SolidNoise {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.parameters.prepare(setup.sample_rate_hz)
+    }
+
     fn band(&self) -> WavelengthBand {
         self.parameters.target().band()
     }

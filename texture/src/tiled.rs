@@ -12,9 +12,10 @@
 use crate::change::SurfaceChange;
 use crate::combine::{Source, add};
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use crate::sand::SandSource;
+use asperity_dsp::DesignError;
 
 /// A place in a tile, and how much of it is already the next tile's beginning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -97,6 +98,10 @@ fn share(places: &[Place; 2], copy: [usize; 2]) -> (f64, [f64; 2]) {
 }
 
 impl HeightField for Tiled {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.source.prepare(setup)
+    }
+
     fn band(&self) -> WavelengthBand {
         self.source.band()
     }

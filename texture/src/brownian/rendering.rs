@@ -19,7 +19,7 @@
 
 use crate::change::SurfaceChange;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use asperity_dsp::DesignError;
 
@@ -106,6 +106,10 @@ impl BrownianSurface {
 }
 
 impl HeightField for BrownianSurface {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.relief.prepare(setup)
+    }
+
     fn band(&self) -> WavelengthBand {
         self.relief.band()
     }
@@ -222,6 +226,11 @@ impl BrownianPath {
 }
 
 impl HeightField for BrownianPath {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.contacts = vec![Travelled::default(); setup.voices.max(self.contacts.len())];
+        Ok(())
+    }
+
     fn band(&self) -> WavelengthBand {
         let longest_m = self.spacing_m * self.coefficients.len() as f64;
         WavelengthBand { shortest_m: 2.0 * self.spacing_m, longest_m }

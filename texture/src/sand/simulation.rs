@@ -40,7 +40,7 @@ pub struct SandDesign {
     pub law: SandLaw,
     /// What every contact drags.
     pub tool: Tool,
-    /// Contacts are numbered below this.
+    /// Contacts are numbered below this. An engine makes more room by itself; sand that is simulated elsewhere has to have enough.
     pub contacts: usize,
 }
 
@@ -55,7 +55,7 @@ impl Default for SandDesign {
             talus_deg: 30.0,
             law: SandLaw::default(),
             tool: Tool::Sphere { radius_m: 0.005 },
-            contacts: 16,
+            contacts: 128,
         }
     }
 }
@@ -153,6 +153,15 @@ impl SandSimulation {
             walls,
             volume_before_units,
         })
+    }
+
+    /// Makes room for contacts numbered below `contacts`, if there is less.
+    pub fn make_room(&mut self, contacts: usize) {
+        if contacts > self.tracks.len() {
+            let track = Track { level_m: self.depth_m, ..Track::default() };
+            self.tracks.resize(contacts, track);
+            self.presses.resize(contacts, Press::new(&self.tool, &self.grid));
+        }
     }
 
     /// The sand.

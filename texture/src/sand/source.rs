@@ -29,7 +29,7 @@ use super::worker::SandWorker;
 use crate::change::SurfaceChange;
 use crate::fade::Fade;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use crate::solid_materials::{FRICTION, SolidMaterial};
 use crate::solid_noise::SolidNoise;
@@ -147,9 +147,6 @@ impl SandSource {
         let cell_m = design.width_m / design.cells as f64;
         grains.texture_factor_per_m =
             grains.texture_factor_per_m.max(1.0 / (cell_m * grains.modules[0].frequency)).min(1e6);
-        let block = MAX_BLOCK as f64;
-        let frame_samples =
-            (sample_rate_hz / FRAMES_PER_S / block).round().max(2.0) as u64 * MAX_BLOCK as u64;
         Ok(Self {
             link,
             slots: (0..design.contacts).map(|_| Slot::new()).collect(),
@@ -159,7 +156,7 @@ impl SandSource {
             law: Fade::new(design.law, sample_rate_hz)?,
             grains: SolidNoise::new(grains, seed, sample_rate_hz)?,
             grain_relief: SurfaceBlock::default(),
-            frame_samples,
+            frame_samples: frame_samples(sample_rate_hz),
             next_frame: 0,
             longest_m: design.width_m.max(design.height_m),
         })
@@ -295,6 +292,11 @@ fn give_back(patch: Option<Box<Patch>>, back: &mut rtrb::Producer<Box<Patch>>, s
     }
 }
 
+/// Samples a frame of the simulation: whole blocks, two at least.
+fn frame_samples(sample_rate_hz: f64) -> u64 {
+    (sample_rate_hz / FRAMES_PER_S / MAX_BLOCK as f64).round().max(2.0) as u64 * MAX_BLOCK as u64
+}
+
 /// The fade ends a block before the next frame.
 fn fade_samples(frame_samples: u64) -> u64 {
     frame_samples - MAX_BLOCK as u64
@@ -307,6 +309,29 @@ fn patches(count: usize) -> Vec<Box<Patch>> {
 }
 
 impl HeightField for SandSource {
+    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+        self.law.prepare(setup.sample_rate_hz)?;
+        self.grains.prepare(setup)?;
+        self.frame_samples = frame_samples(setup.sample_rate_hz);
+        let missing = setup.voices.saturating_sub(self.slots.len());
+        match &mut self.link {
+            Link::Here(simulation) => {
+                simulation.make_room(setup.voices);
+                self.slots.extend((0..missing).map(|_| Slot::new()));
+                self.spare.extend(patches(missing * PATCHES_A_CONTACT));
+                // What comes back finds room without allocating.
+                self.spare.reserve(self.slots.len() * PATCHES_A_CONTACT);
+                Ok(())
+            }
+            Link::Elsewhere { .. } if missing > 0 => {
+                let contacts = self.slots.len() as f64;
+                let expected = "at least the engine's voices, max_contacts and half as many again";
+                DesignError::check("contacts", contacts, expected, |_| false).map(|_| ())
+            }
+            Link::Elsewhere { .. } => Ok(()),
+        }
+    }
+
     fn band(&self) -> WavelengthBand {
         WavelengthBand { shortest_m: self.grains.band().shortest_m, longest_m: self.longest_m }
     }
