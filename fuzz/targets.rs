@@ -33,9 +33,13 @@ fn render(model: ModalModel, log: &ContactLog) {
     if log.end_s().is_nan() || log.end_s() > LONGEST_S {
         return;
     }
-    if let Ok(take) =
-        offline::render(scene, renderer, log, &names, &Options { block_frames: 256, tail_s: 0.01 })
-    {
+    if let Ok(take) = offline::render(
+        scene,
+        renderer,
+        log,
+        &names,
+        &Options { block_frames: 256, tail_s: 0.01, ..Options::default() },
+    ) {
         assert!(take.audio[0].iter().chain(take.haptic.iter().flatten()).all(|x| x.is_finite()));
     }
 }

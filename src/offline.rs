@@ -13,20 +13,22 @@ use crate::model::stamp::Stamp;
 use asperity_texture::sand::{SandFigures, SandPicture};
 use std::borrow::Cow;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How a log is rendered.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Frames a block; the result does not depend on it. What lies outside 1–4096 counts as the nearer of the two.
     pub block_frames: usize,
     /// How long bodies may ring after the last event, s.
     pub tail_s: f64,
+    /// Reads a clock, s, so that [`Render::processing`] is known; nothing here reads one by itself.
+    pub clock_s: Option<fn() -> f64>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { block_frames: 256, tail_s: 1.0 }
+        Self { block_frames: 256, tail_s: 1.0, clock_s: None }
     }
 }
 
@@ -47,7 +49,7 @@ pub struct Render {
     pub why_silent: Vec<SilentBecause>,
     /// Surfaces of sand as they lie after the last contact, settled.
     pub sand: Vec<SandAfter>,
-    /// Time spent in the renderer alone.
+    /// Time spent in the renderer alone; zero without [`Options::clock_s`].
     pub processing: Duration,
 }
 
@@ -97,7 +99,7 @@ pub fn render_tapped<T: Tap>(
         .iter()
         .map(|line| Ok((line.t, line.event.resolve(names)?)))
         .collect::<Result<Vec<_>, LogError>>()?;
-    let mut take = Take::new(scene, renderer, frames, options.block_frames.clamp(1, 4096));
+    let mut take = Take::new(scene, renderer, frames, options);
     for (time_s, event) in events {
         take.make_room(Stamp::at(time_s * inner_rate).sample() / every, tap);
         // Refusals are counted by the scene; the rest of the log still renders.
@@ -114,6 +116,7 @@ struct Take {
     scene: Scene,
     renderer: Renderer,
     block_frames: usize,
+    clock_s: Option<fn() -> f64>,
     /// One past the last sample to render, the latency included.
     end: u64,
     audio: Vec<Vec<f32>>,
@@ -123,12 +126,13 @@ struct Take {
 }
 
 impl Take {
-    fn new(scene: Scene, renderer: Renderer, frames: usize, block_frames: usize) -> Self {
+    fn new(scene: Scene, renderer: Renderer, frames: usize, options: &Options) -> Self {
         let total = frames + renderer.latency_samples();
         let haptic = vec![vec![0.0; total]; renderer.haptic_channels()];
         Self {
             scene,
-            block_frames,
+            block_frames: options.block_frames.clamp(1, 4096),
+            clock_s: options.clock_s,
             end: total as u64,
             audio: vec![vec![0.0; total]; renderer.audio_buses()],
             haptic,
@@ -162,9 +166,11 @@ impl Take {
         let range = at..at + frames;
         let mut haptic: Vec<_> = self.haptic.iter_mut().map(|channel| &mut channel[range.clone()]).collect();
         let mut audio: Vec<_> = self.audio.iter_mut().map(|bus| &mut bus[range.clone()]).collect();
-        let began = Instant::now();
+        let began_s = self.clock_s.map(|clock_s| clock_s());
         self.renderer.render_tapped(&mut haptic, &mut audio, tap);
-        self.processing += began.elapsed();
+        if let (Some(began_s), Some(clock_s)) = (began_s, self.clock_s) {
+            self.processing += Duration::from_secs_f64((clock_s() - began_s).max(0.0));
+        }
     }
 
     fn finish(mut self) -> Render {

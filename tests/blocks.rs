@@ -11,7 +11,7 @@ fn every_block_size_renders_the_same_bits() {
     let log = stroke(SIDE_M, 0.15, 0.6, 0.4);
     let _ = bar();
     let with = |block_frames| {
-        let options = Options { block_frames, tail_s: 0.3 };
+        let options = Options { block_frames, tail_s: 0.3, ..Options::default() };
         let take = render(si_config(), plate(0.8), &log, &options);
         (take.audio, take.haptic)
     };
@@ -42,7 +42,7 @@ impl Tap for Bits {
 fn what_is_traced_and_counted_does_not_depend_on_the_blocks_either() {
     let log = stroke(SIDE_M, 0.3, 0.4, 0.3);
     let with = |block_frames| {
-        let options = Options { block_frames, tail_s: 0.2 };
+        let options = Options { block_frames, tail_s: 0.2, ..Options::default() };
         let mut bits = Bits::default();
         let take = render_tapped(si_config(), plate(1.0), &log, &options, &mut bits);
         (bits.0, take.stats.micro_collisions, take.stats.events)

@@ -59,7 +59,7 @@ fn a_recorded_live_run_and_its_offline_render_agree_to_the_last_bit() {
     let recorded = ContactLog::parse(std::str::from_utf8(&text).unwrap(), "recording").unwrap();
 
     let (scene, offline_renderer, names) = scene_of(Config::default());
-    let options = Options { block_frames: 4096, tail_s: 0.2 };
+    let options = Options { block_frames: 4096, tail_s: 0.2, ..Options::default() };
     let offline = offline::render(scene, offline_renderer, &recorded, &names, &options).unwrap();
     let latency = renderer.latency_samples();
     let frames = offline.audio[0].len().min(audio.len() - latency);

@@ -30,10 +30,16 @@ fn strike(config: Config, model: ModalModel, position: usize) -> Vec<f32> {
     let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), ..Names::default() };
     let line = r#"{"t":0.01,"event":"impact","body":"b","speed_m_s":0.5,"mass_kg":0.002,"radius_m":0.002,"striker":"steel","position":"#;
     let log = ContactLog::parse(&format!("{line}{position}}}"), "log").unwrap();
-    offline::render(scene, renderer, &log, &names, &Options { block_frames: 256, tail_s: 0.5 })
-        .unwrap()
-        .audio
-        .swap_remove(0)
+    offline::render(
+        scene,
+        renderer,
+        &log,
+        &names,
+        &Options { block_frames: 256, tail_s: 0.5, ..Options::default() },
+    )
+    .unwrap()
+    .audio
+    .swap_remove(0)
 }
 
 /// Energy of the difference over the energy of the reference, dB.
@@ -253,7 +259,7 @@ fn a_hiccup_of_the_host_costs_neither_sound_nor_contacts() {
 #[test]
 fn culling_does_not_touch_what_a_stroke_sounds_like() {
     let log = stroke(SIDE_M, 0.1, 0.5, 0.3);
-    let options = Options { block_frames: 256, tail_s: 0.2 };
+    let options = Options { block_frames: 256, tail_s: 0.2, ..Options::default() };
     let with = |culling| {
         common::render(Config { culling, ..Config::default() }, plate(0.8), &log, &options)
             .audio

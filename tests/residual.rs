@@ -34,7 +34,7 @@ fn struck(model: ModalModel, speeds: &[f64], options: &Options) -> Render {
     offline::render(scene, renderer, &log, &names, options).unwrap()
 }
 
-const OPTIONS: Options = Options { block_frames: 256, tail_s: 0.2 };
+const OPTIONS: Options = Options { block_frames: 256, tail_s: 0.2, clock_s: None };
 
 #[test]
 fn an_impact_plays_the_residual_scaled_by_its_impulse_from_its_own_sample() {

@@ -192,7 +192,7 @@ fn a_finger_at_rest_in_sand_sleeps_until_another_finger_moves_the_sand_under_it(
         Surface::new(source, SIDE_M, SIDE_M).unwrap().wraps(false)
     };
     let run = |block_frames| {
-        let options = Options { tail_s: 0.1, block_frames };
+        let options = Options { tail_s: 0.1, block_frames, ..Options::default() };
         let mut felt = Felt::default();
         (render_tapped(si_config(), sand(), &log, &options, &mut felt), felt)
     };

@@ -170,3 +170,11 @@ fn game_time_that_runs_backwards_is_tied_anew_and_counted() {
     assert_no_glitch(&haptic, "time runs backwards, felt");
     assert_no_glitch(&audio, "time runs backwards, heard");
 }
+
+#[test]
+fn both_halves_can_live_where_only_what_is_shared_may() {
+    fn shared<T: Send + Sync>(_: &T) {}
+    let asperity::Engine { scene, renderer, .. } = Config::default().build().unwrap();
+    shared(&scene);
+    shared(&renderer);
+}

@@ -275,7 +275,7 @@ impl Scene {
     }
 
     /// Whether another move might be held back because the audio half lags behind.
-    pub(crate) fn is_filling(&self) -> bool {
+    pub(crate) fn is_filling(&mut self) -> bool {
         self.to_audio.free() <= self.to_audio.capacity() / 4 + 1
     }
 

@@ -2,49 +2,51 @@
 //!
 //! Neither end ever waits. A full ring hands the item back, so the sender decides what is lost.
 
+use asperity_texture::exclusive::Exclusive;
+
 /// Sending end of a ring.
-pub(crate) struct Sender<T>(rtrb::Producer<T>);
+pub(crate) struct Sender<T>(Exclusive<rtrb::Producer<T>>);
 
 /// Receiving end of a ring.
-pub(crate) struct Receiver<T>(rtrb::Consumer<T>);
+pub(crate) struct Receiver<T>(Exclusive<rtrb::Consumer<T>>);
 
 /// A ring that holds up to `capacity` items.
 pub(crate) fn channel<T>(capacity: usize) -> (Sender<T>, Receiver<T>) {
     let (producer, consumer) = rtrb::RingBuffer::new(capacity);
-    (Sender(producer), Receiver(consumer))
+    (Sender(Exclusive::new(producer)), Receiver(Exclusive::new(consumer)))
 }
 
 impl<T> Sender<T> {
     /// Sends, or hands the item back when the ring is full.
     pub(crate) fn send(&mut self, item: T) -> Result<(), T> {
-        self.0.push(item).map_err(|rtrb::PushError::Full(item)| item)
+        self.0.get_mut().push(item).map_err(|rtrb::PushError::Full(item)| item)
     }
 
     /// How many items are sure to fit.
-    pub(crate) fn free(&self) -> usize {
-        self.0.slots()
+    pub(crate) fn free(&mut self) -> usize {
+        self.0.get_mut().slots()
     }
 
     /// How many items the ring holds at most.
-    pub(crate) fn capacity(&self) -> usize {
-        self.0.buffer().capacity()
+    pub(crate) fn capacity(&mut self) -> usize {
+        self.0.get_mut().buffer().capacity()
     }
 }
 
 impl<T> Receiver<T> {
     /// The next item, left in the ring.
     pub(crate) fn peek(&mut self) -> Option<&T> {
-        self.0.peek().ok()
+        self.0.get_mut().peek().ok()
     }
 
     /// How many items wait.
     #[cfg(feature = "device")]
-    pub(crate) fn waiting(&self) -> usize {
-        self.0.slots()
+    pub(crate) fn waiting(&mut self) -> usize {
+        self.0.get_mut().slots()
     }
 
     /// The next item.
     pub(crate) fn receive(&mut self) -> Option<T> {
-        self.0.pop().ok()
+        self.0.get_mut().pop().ok()
     }
 }

@@ -131,6 +131,16 @@ impl Surface {
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
     }
 
+    /// A surface from a displacement map alone, repeated; its roughness is the middle of the scale unless told otherwise.
+    ///
+    /// # Errors
+    /// As [`from_maps`](Self::from_maps).
+    pub fn from_displacement(displacement: impl AsRef<Path>, extent: Extent) -> Result<Self, SurfaceError> {
+        let heights = image_io::load_channel(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
+        let map = HeightMap::new(&heights, extent, Wrap::Repeat)?;
+        Ok(Self::new(map, extent.width_m, extent.height_m)?)
+    }
+
     /// Rings this body when it is touched.
     #[must_use]
     pub fn on(mut self, body: BodyId) -> Self {

@@ -169,7 +169,48 @@ pub struct Setup {
 }
 
 /// A surface that can be sampled in real time.
-pub trait HeightField: Send {
+///
+/// A source of one's own is these two methods; what changes while it is touched goes through a handle of its own (an atomic, a ring):
+///
+/// ```
+/// use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
+///
+/// /// A corrugated sheet along u.
+/// struct Corrugated {
+///     amplitude_m: f64,
+///     wavelength_m: f64,
+/// }
+///
+/// impl HeightField for Corrugated {
+///     fn band(&self) -> WavelengthBand {
+///         WavelengthBand { shortest_m: self.wavelength_m, longest_m: self.wavelength_m }
+///     }
+///
+///     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+///         out.clear(path.len());
+///         for (i, [u_m, _]) in path.position_m.iter().enumerate() {
+///             let turn = std::f64::consts::TAU / self.wavelength_m;
+///             out.height_m[i] = self.amplitude_m * (turn * u_m).sin();
+///             out.gradient[i] = [self.amplitude_m * turn * (turn * u_m).cos(), 0.0];
+///         }
+///     }
+/// }
+///
+/// let mut sheet = Corrugated { amplitude_m: 1e-4, wavelength_m: 4e-3 };
+/// let mut out = SurfaceBlock::default();
+/// let path = PathBlock {
+///     position_m: &[[1e-3, 0.0]],
+///     velocity_m_s: &[[0.1, 0.0]],
+///     footprint_m: &[2e-6],
+///     normal_force_n: &[0.5],
+///     first_sample: 0,
+///     contact: 0,
+///     slopes: true,
+/// };
+/// sheet.sample(&path, &mut out);
+/// assert!((out.height_m[0] - 1e-4).abs() < 1e-12);
+/// ```
+pub trait HeightField: Send + Sync {
     /// The wavelengths this source represents.
     fn band(&self) -> WavelengthBand;
 

@@ -9,6 +9,7 @@
 pub mod brownian;
 pub mod change;
 pub mod combine;
+pub mod exclusive;
 pub mod fade;
 pub mod height_field;
 pub mod height_map;

@@ -21,7 +21,8 @@ use recorder::Recorder;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
 
 /// Renders longer than this show a progress bar even when nothing else watches the contacts, s.
 const LONG_S: f64 = 60.0;
@@ -313,7 +314,11 @@ fn play(
     options: &Options,
     mut recorder: Recorder,
 ) -> Result<Played, CliError> {
-    let settings = offline::Options { block_frames: usize::from(options.block), tail_s: file.tail_s };
+    let settings = offline::Options {
+        block_frames: usize::from(options.block),
+        tail_s: file.tail_s,
+        clock_s: Some(seconds),
+    };
     let Engine { scene, renderer, names, .. } = built;
     let at = |error| {
         let path = file.contacts.as_deref().unwrap_or(&file.path);
@@ -335,6 +340,12 @@ fn play(
         ContactCurve { label: format!("{} on {}", contact.0, surface.unwrap_or("?")), ..curve }
     });
     Ok((render, labelled.collect(), watching))
+}
+
+/// Seconds since this was first asked.
+fn seconds() -> f64 {
+    static BEGAN: OnceLock<Instant> = OnceLock::new();
+    BEGAN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
 /// The engine promises finite samples; a promise that a WAV file depends on is checked.

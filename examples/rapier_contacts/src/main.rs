@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     log.write(&mut std::fs::File::create(folder.join("rapier.jsonl"))?)?;
     let latency = renderer.latency_samples();
     let (scene, renderer, names) = engine(ClockMode::Exact)?;
-    let options = Options { block_frames: 1000, tail_s: 1.0 };
+    let options = Options { block_frames: 1000, tail_s: 1.0, ..Options::default() };
     let take = offline::render(scene, renderer, &log, &names, &options)?;
     let frames = take.audio[0].len().min(live.audio.len() - latency);
     assert!(

@@ -201,6 +201,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     if actuators.is_empty() {
         actuators.push(ActuatorEntry::default());
     }
+    top.whole("version", 1, 1)?;
     let (probe, probes) = read_probes(&mut top)?;
     let audio = read_buses(&mut top)?;
     let scene = SceneFile {

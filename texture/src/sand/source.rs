@@ -27,6 +27,7 @@ use super::patch::Patch;
 use super::simulation::{FRAMES_PER_S, Pose, SandDesign, SandFigures, SandSimulation};
 use super::worker::SandWorker;
 use crate::change::SurfaceChange;
+use crate::exclusive::Exclusive;
 use crate::fade::Fade;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
@@ -43,10 +44,10 @@ const PATCHES_A_CONTACT: usize = 4;
 enum Link {
     Here(Box<SandSimulation>),
     Elsewhere {
-        poses: rtrb::Producer<Pose>,
-        laws: rtrb::Producer<SandLaw>,
-        patches: rtrb::Consumer<Box<Patch>>,
-        back: rtrb::Producer<Box<Patch>>,
+        poses: Exclusive<rtrb::Producer<Pose>>,
+        laws: Exclusive<rtrb::Producer<SandLaw>>,
+        patches: Exclusive<rtrb::Consumer<Box<Patch>>>,
+        back: Exclusive<rtrb::Producer<Box<Patch>>>,
     },
 }
 
@@ -130,7 +131,12 @@ impl SandSource {
             spare: patches(count),
             frames: 0,
         };
-        let link = Link::Elsewhere { poses, laws, patches: patches_out, back };
+        let link = Link::Elsewhere {
+            poses: Exclusive::new(poses),
+            laws: Exclusive::new(laws),
+            patches: Exclusive::new(patches_out),
+            back: Exclusive::new(back),
+        };
         let spare = Vec::with_capacity(count);
         Ok((Self::new(link, spare, design, seed, sample_rate_hz)?, worker))
     }
@@ -223,6 +229,7 @@ impl SandSource {
                 }
             }
             Link::Elsewhere { poses, patches, back, .. } => {
+                let (poses, patches, back) = (poses.get_mut(), patches.get_mut(), back.get_mut());
                 // A full ring: the simulation is late and will hear the next pose.
                 if poses.push(pose).is_ok() {
                     slot.landed = false;
@@ -422,7 +429,7 @@ impl HeightField for SandSource {
         match &mut self.link {
             Link::Here(simulation) => simulation.set_law(*law),
             // A full ring: five changes within a frame, of which the simulation misses one.
-            Link::Elsewhere { laws, .. } => drop(laws.push(*law)),
+            Link::Elsewhere { laws, .. } => drop(laws.get_mut().push(*law)),
         }
         true
     }
