@@ -7,8 +7,56 @@
 //! ```text
 //! game thread                         audio thread
 //! Scene::report ──► queue ──► path ─► profile ─► micro-contact ─┬─► actuator stage ─► haptic channels
-//!                                                               └─► impulses ─► modal bank ─► audio
+//!                                                               └─► impulses ─► modal bank ─► audio buses
 //! ```
+//!
+//! ```
+//! use asperity::texture::height_map::HeightMap;
+//! use asperity::{
+//!     Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Extent, ModalModel, Mode, Surface,
+//! };
+//!
+//! let Engine { mut scene, mut renderer, .. } = Config::live(48_000.0).build()?;
+//!
+//! // What is there: a body that rings, and a plate on it that is touched.
+//! let mode = Mode { frequency_hz: 812.0, decay_per_s: 12.0, amplitude: 0.3, phase_rad: 0.0 };
+//! let body = scene.add_body(ModalModel::new(vec![mode], 0.01)?)?;
+//! let extent = Extent { width_m: 0.14, height_m: 0.14, relief_m: 0.0 };
+//! let plate = scene.add_surface(Surface::new(HeightMap::flat(extent, 0.8)?, 0.14, 0.14)?.on(body))?;
+//!
+//! // Every physics step, on the game thread.
+//! let sample =
+//!     ContactSample { uv: [0.3, 0.5], velocity_m_s: Some([0.1, 0.0]), normal_force_n: 0.6, closing_m_s: 0.02 };
+//! scene.report(0.0, ContactEvent::begin(ContactId(1), plate, Actuator(0), sample))?;
+//!
+//! // Every audio callback, on the audio thread.
+//! let (mut haptic, mut audio) = ([0.0f32; 256], [0.0f32; 256]);
+//! renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Where to begin
+//!
+//! | you have | begin with |
+//! |---|---|
+//! | a game loop | [`Config::live`], [`Scene::report`], [`Renderer::render`] |
+//! | a scene file | [`Engine::open`] |
+//! | a recorded contact log | [`offline::render`] |
+//! | displacement and roughness maps | [`Surface::from_maps`] |
+//! | a surface of your own | [`texture::height_field::HeightField`] |
+//! | several bodies at several places | [`Config::audio`], [`Body::on_bus`] |
+//! | a pen, a nail, a shoe sole | [`PROBE_PRESETS`], [`Scene::add_probe`], [`Touching`] |
+//! | collisions of a physics engine | [`Impact::from_impulse`] |
+//! | a sound card | [`live`] |
+//! | silence | [`Scene::why_silent`] |
+//!
+//! # Features
+//!
+//! | feature | brings |
+//! |---|---|
+//! | `device`, `jack`, `pulseaudio` | sound cards through cpal |
+//! | `brownian` | Brownian surfaces, which need an FFT when they are made |
+//! | `exr` | 16-bit EXR maps |
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

@@ -48,7 +48,7 @@ pub struct Config {
     /// default costs −100 dB of error or less; [`Culling::default`] goes further, as far as the ear does.
     pub culling: Option<Culling>,
     /// Whether the audio half leaves out the least audible work while blocks run late, as told by
-    /// [`Renderer::report_load`]. Where nobody reports a load, nothing is ever left out.
+    /// [`Renderer::report_load`](crate::Renderer::report_load). Where nobody reports a load, nothing is ever left out.
     pub shed_load: bool,
 }
 
