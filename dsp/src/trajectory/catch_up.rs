@@ -1,0 +1,104 @@
+//! Back to the reports after a silence of the game, without hurry.
+//!
+//! ```text
+//! input(t)  = reckoned(t) + o(t)        |do/dt| = w until o = 0
+//! w = 0.35 V, more while the contact itself moves slower than V: 1.35 V − |v₀|
+//! ```
+//!
+//! | symbol | here | |
+//! |---|---|---|
+//! | o | `left_m` along `away` | how far the path still is from where the reports say |
+//! | V | `own_speed_m_s` | the faster of the speeds before and after the silence |
+//!
+//! A path that came back at once would be heard as a zip: the 30 Hz filter follows a step of s metres at up to 86 s m/s,
+//! after 100 ms without reports six times the finger's own speed. With the filter's 4 % overshoot a path that catches up
+//! stays within 1.41 V.
+
+use super::TrajectoryDesign;
+
+/// Share of a contact's own speed by which the path may outrun it.
+pub(super) const HURRY: f64 = 0.35;
+
+/// Longest time a path takes to catch up, s: covers 0.2 s without reports. What is further away is a jump.
+const LONGEST_CATCH_UP_S: f64 = 0.6;
+
+/// Distance that is a tracker's noise and no movement, m. Assumed: twice the 50 µm of the project's bars.
+const NOISE_M: f64 = 1e-4;
+
+/// What is left of a distance between a path and its reports.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct CatchUp {
+    /// m; 0 once it is made up.
+    left_m: f64,
+    /// From where the reports say to where the path is; of length 1.
+    away: [f64; 2],
+    own_speed_m_s: f64,
+    speed_m_s: f64,
+}
+
+/// Whether a path can come back to its reports.
+pub(super) enum Distance {
+    /// The filter alone makes it up without hurry.
+    Small,
+    /// It is made up like this.
+    MadeUp(CatchUp),
+    /// No finger would have come so far: a jump.
+    TooFar,
+}
+
+impl CatchUp {
+    /// A path that is `away_m` from where a late report says, of a contact that moved at `before_m_s` and moves at `now_m_s`.
+    pub fn over(
+        &self,
+        design: &TrajectoryDesign,
+        away_m: [f64; 2],
+        before_m_s: [f64; 2],
+        now_m_s: [f64; 2],
+    ) -> Distance {
+        let own_speed_m_s = length(before_m_s).max(length(now_m_s)).max(self.own_speed_m_s);
+        if length(away_m) <= HURRY * own_speed_m_s * design.step_time_s() {
+            return Distance::Small;
+        }
+        let away_m = [0, 1].map(|axis| away_m[axis] + self.left_m * self.away[axis]);
+        let left_m = length(away_m);
+        if left_m == 0.0 {
+            return Distance::MadeUp(Self::default());
+        }
+        let mut next = Self { left_m, away: away_m.map(|x| x / left_m), own_speed_m_s, speed_m_s: 0.0 };
+        next.go_on_beside(now_m_s);
+        if left_m > LONGEST_CATCH_UP_S * next.speed_m_s { Distance::TooFar } else { Distance::MadeUp(next) }
+    }
+
+    /// Goes on while the contact moves at `now_m_s`.
+    pub fn go_on_beside(&mut self, now_m_s: [f64; 2]) {
+        if self.is_over() {
+            return;
+        }
+        let now_m_s = length(now_m_s);
+        self.own_speed_m_s = self.own_speed_m_s.max(now_m_s);
+        let room_m_s = (1.0 + HURRY) * self.own_speed_m_s - now_m_s;
+        self.speed_m_s = room_m_s.max(NOISE_M / LONGEST_CATCH_UP_S);
+    }
+
+    /// Whether the path is where the reports say.
+    pub fn is_over(&self) -> bool {
+        self.left_m == 0.0
+    }
+
+    /// Adds what is left to the coming inputs.
+    pub fn add_to(&mut self, design: &TrajectoryDesign, inputs: &mut [[f64; 3]]) {
+        let step_m = self.speed_m_s * design.sample_period_s;
+        for [u, v, _] in inputs {
+            *u += self.left_m * self.away[0];
+            *v += self.left_m * self.away[1];
+            self.left_m = (self.left_m - step_m).max(0.0);
+        }
+        if self.is_over() {
+            *self = Self::default();
+        }
+    }
+}
+
+fn length([u, v]: [f64; 2]) -> f64 {
+    libm::hypot(u, v)
+}
