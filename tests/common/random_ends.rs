@@ -38,6 +38,12 @@ pub struct Force {
     pub above_landing: f64,
     /// Whether the fingertip preset touched.
     pub fingertip: bool,
+    /// What touched.
+    pub probe: Probe,
+    /// What pressed, N.
+    pub pressed_n: f64,
+    /// Ground's own acceleration, m/s².
+    pub acceleration_m_s2: f64,
 }
 
 /// An end of a range most of the time, something between at others.
@@ -81,6 +87,9 @@ impl Hardest {
             above: self.contact_n / allowed_n.max(1e-9),
             above_landing: self.contact_n / (allowed_n + landing_n).max(1e-9),
             fingertip: *probe == Probe::default(),
+            probe: *probe,
+            pressed_n: self.pressed_n,
+            acceleration_m_s2: self.acceleration_m_s2,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a report does to a path: it goes on, makes up what a silence cost, or starts elsewhere.
 
-use super::catch_up::Distance;
+use super::catch_up::{Distance, Speeds};
 use super::{PathMode, STILL_DISTANCE_M, Trajectory, TrajectoryDesign, or_rest};
 use crate::trajectory::history::History;
 
@@ -96,8 +96,8 @@ impl Trajectory {
         let distance = if seen.surprise_m > self.reach_m(reported, seen.gap_s) {
             Distance::TooFar
         } else if design.mode != PathMode::Hold && (unknown || self.is_late(design, event, seen.gap_s)) {
-            let away_m = self.away_m(design, event, &seen, velocity);
-            self.catch_up.over(design, away_m, self.reckoning.velocity(), velocity)
+            let (away_m, speeds) = self.part(design, event, &seen, velocity);
+            self.catch_up.over(design, away_m, &speeds)
         } else {
             // The paper's path, which holds, hurries at every event.
             Distance::Small
@@ -192,25 +192,32 @@ impl Trajectory {
         self.reckoning.is_lost(silence_s.max(gap_s), believed_s + read_late_s)
     }
 
-    /// How far the path's input is from the line of a new event, m, now or when the event comes into force.
-    fn away_m(
+    /// How far the path's input is from the line of a new event, m, now or when the event comes into force, and how fast
+    /// both move.
+    fn part(
         &self,
         design: &TrajectoryDesign,
         event: &PathEvent,
         seen: &Seen,
-        velocity: [f64; 2],
-    ) -> [f64; 2] {
+        now_m_s: [f64; 2],
+    ) -> ([f64; 2], Speeds) {
         let now = self.sample.max(event.sample);
-        let origin = now.saturating_sub(self.reckoning.sample()) as f64 * design.sample_period_s;
-        let since_event_s = ((now - event.sample) as f64 - event.fraction) * design.sample_period_s;
-        let (here_m, behind_s) = match design.mode {
-            PathMode::Extrapolate | PathMode::Hold => (self.reckoning.expected(design, origin), 0.0),
-            PathMode::Hermite => (
-                self.history.at(design, now, self.reckoning.belief(design)).0,
-                design.hermite_delay_samples as f64 * design.sample_period_s,
-            ),
-        };
-        [0, 1].map(|axis| here_m[axis] - (seen.step_m[axis] + velocity[axis] * (since_event_s - behind_s)))
+        let read_late =
+            if design.mode == PathMode::Hermite { design.hermite_delay_samples as f64 } else { 0.0 };
+        let since_s = ((now - event.sample) as f64 - event.fraction - read_late) * design.sample_period_s;
+        let (here_m, just_m) = (self.guessed(design, now), self.guessed(design, now.saturating_sub(1)));
+        let away_m = [0, 1].map(|axis| here_m[axis] - (seen.step_m[axis] + now_m_s[axis] * since_s));
+        let path_m_s = [0, 1].map(|axis| (here_m[axis] - just_m[axis]) / design.sample_period_s);
+        (away_m, Speeds { before_m_s: self.reckoning.velocity(), now_m_s, path_m_s })
+    }
+
+    /// Where the path's input is at a sample by the reports so far, from the origin.
+    fn guessed(&self, design: &TrajectoryDesign, sample: u64) -> [f64; 2] {
+        if design.mode == PathMode::Hermite {
+            return self.history.at(design, sample, self.reckoning.belief(design)).0;
+        }
+        let since_s = sample.saturating_sub(self.reckoning.sample()) as f64 * design.sample_period_s;
+        self.reckoning.expected(design, since_s)
     }
 }
 
