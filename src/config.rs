@@ -8,6 +8,7 @@ use crate::renderer::Renderer;
 use crate::scene::Scene;
 use crate::stats::Counters;
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::output as limits;
 use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe};
 use asperity_dsp::modal_bank::Culling;
 use asperity_dsp::trajectory::PathMode;
@@ -161,13 +162,9 @@ impl Config {
     }
 
     fn check(&self) -> Result<(), DesignError> {
-        DesignError::check("sample_rate_hz", self.sample_rate_hz, "8000–384000 Hz", |r| {
-            (8e3..=384e3).contains(&r)
-        })?;
-        DesignError::check("contact_timeout_s", self.contact_timeout_s, "0.01–3600 s", |t| {
-            (0.01..=3600.0).contains(&t)
-        })?;
-        DesignError::check("audio.gain", self.audio.gain, "0–1e6", |g| (0.0..=1e6).contains(&g))?;
+        limits::SAMPLE_RATE_HZ.check("sample_rate_hz", self.sample_rate_hz)?;
+        limits::CONTACT_TIMEOUT_S.check("contact_timeout_s", self.contact_timeout_s)?;
+        limits::AUDIO_GAIN.check("audio.gain", self.audio.gain)?;
         if let Some(culling) = self.culling {
             // Without end is allowed: nothing is too quiet.
             let level_db = culling.level_db.clamp(-1.0, 1e9);

@@ -325,7 +325,7 @@ impl Renderer {
         for channel in &mut self.channels {
             channel.sum[..n].fill(0.0);
         }
-        let (mut collisions, mut resets) = (0, 0);
+        let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
         for voice in self.voices_used.iter() {
             let voice = &mut self.voices[voice];
             if voice.phase == Phase::Free {
@@ -336,6 +336,7 @@ impl Renderer {
             voice.render(seat, &self.shared, &channel.output, self.position, n, &mut self.scratch, tap);
             let out = &self.scratch.out;
             collisions += out.collisions;
+            shortened += out.shortened;
             resets += out.resets;
             for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
                 *sum += x;
@@ -349,6 +350,7 @@ impl Renderer {
             }
         }
         Counters::add(&self.counters.micro_collisions, collisions);
+        Counters::add(&self.counters.shortened_collisions, shortened);
         Counters::add(&self.counters.quarantined, resets);
     }
 

@@ -19,9 +19,9 @@ use crate::silence::{Reported, SilentBecause};
 use crate::stats::{Counters, Stats};
 use crate::stroking::{Stroking, elastic};
 use crate::surface::{Surface, SurfaceSlot};
-use asperity_dsp::DesignError;
 use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_dsp::{DesignError, limits};
 use asperity_texture::change::SurfaceChange;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -220,7 +220,7 @@ impl Scene {
         if channel >= self.config.actuators.len() {
             return Err(AddError::Unknown("actuator"));
         }
-        let gain = within("gain", gain, "0–10", 0.0, 10.0)?;
+        let gain = within("gain", gain, limits::output::HAPTIC_GAIN)?;
         self.send(Message::SetHapticGain { channel, gain })
     }
 
@@ -293,10 +293,10 @@ impl Scene {
 
     fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
         if self.clock.is_live() {
-            within("time_s", time_s, "finite, within ±1e9 s", -1e9, 1e9)?;
+            within("time_s", time_s, limits::LIVE_TIME_S)?;
             return Ok(());
         }
-        let time_s = within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
+        let time_s = within("time_s", time_s, limits::TIME_S)?;
         if time_s < self.last_time_s {
             return Err(Refusal::TimeBackwards { time_s, before_s: self.last_time_s });
         }

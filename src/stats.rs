@@ -41,6 +41,8 @@ counters! {
     impacts,
     /// Impacts so soft or heavy that their contact would outlast 0.17 s; it lasts 0.17 s.
     shortened,
+    /// Micro-collisions on something so soft that they would outlast 0.04 s; they last 0.04 s.
+    shortened_collisions,
     /// Onsets of contact found by the micro-contact model.
     micro_collisions,
     /// Events handed back because the queue was full.

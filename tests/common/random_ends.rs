@@ -55,6 +55,11 @@ fn end(rng: &mut Rng, low: f64, high: f64) -> f64 {
     }
 }
 
+/// An end of an accepted range; 0 is replaced by next to nothing.
+fn end_of(rng: &mut Rng, range: limits::Range) -> f64 {
+    end(rng, if range.low > 0.0 { range.low } else { 1e-3 }, range.high)
+}
+
 fn one_of<T: Copy>(rng: &mut Rng, of: &[T]) -> T {
     of[rng.next_u32() as usize % of.len()]
 }
@@ -114,7 +119,7 @@ impl Tap for Hardest {
 }
 
 fn surface(rng: &mut Rng) -> Result<Surface, String> {
-    let (width_m, height_m) = (end(rng, 1e-3, limits::SIDE_M.1), end(rng, 1e-3, limits::SIDE_M.1));
+    let (width_m, height_m) = (end(rng, 1e-3, limits::SIDE_M.high), end(rng, 1e-3, limits::SIDE_M.high));
     let relief_m = end(rng, 1e-9, 1.5 * limits::MAX_RELIEF_M);
     let n = one_of(rng, &[1usize, 2, 16, 64]);
     let kind = rng.next_u32() % 3;
@@ -141,12 +146,12 @@ pub fn outcome(seed: u64) -> Outcome {
     let mut rng = Rng::new(seed);
     let rng = &mut rng;
     let probe = Probe {
-        pad_mass_kg: end(rng, 1e-6, 1.0),
-        pad_stiffness_n_m: end(rng, 1e-3, 1e7),
-        pad_damping_n_s_m: end(rng, 1e-3, 1e4),
-        finger_mass_kg: end(rng, 1e-5, 100.0),
-        contact_stiffness_n_m: end(rng, 1.0, 1e9),
-        leash_m: end(rng, 1e-6, 0.05),
+        pad_mass_kg: end_of(rng, limits::probe::PAD_MASS_KG),
+        pad_stiffness_n_m: end_of(rng, limits::probe::PAD_STIFFNESS_N_M),
+        pad_damping_n_s_m: end_of(rng, limits::probe::PAD_DAMPING_N_S_M),
+        finger_mass_kg: end_of(rng, limits::probe::FINGER_MASS_KG),
+        contact_stiffness_n_m: end_of(rng, limits::probe::CONTACT_STIFFNESS_N_M),
+        leash_m: end_of(rng, limits::probe::LEASH_M),
     };
     let probe = if rng.next_u32().is_multiple_of(2) { Probe::default() } else { probe };
     let integrator =

@@ -11,6 +11,7 @@ use crate::output::{self, Outputs, check_destination, with_suffix};
 use crate::scene_file::SceneFile;
 use crate::{pixels, plot, wav};
 use asperity::contact_log::{ContactLog, LogEvent};
+use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::{Integrator, PathMode, SurfaceId};
 use clap::Args;
@@ -67,10 +68,10 @@ pub struct Options {
 
 fn sample_rate(text: &str) -> Result<f64, String> {
     let rate: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (8_000.0..=192_000.0).contains(&rate) && rate.fract() == 0.0 {
+    if limits::SAMPLE_RATE_HZ.holds(rate) && rate.fract() == 0.0 {
         Ok(rate)
     } else {
-        Err("must be a whole number from 8000 to 192000".to_owned())
+        Err(format!("must be a whole number, {}", limits::SAMPLE_RATE_HZ.words))
     }
 }
 

@@ -13,6 +13,7 @@ use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
 use super::tool::{Press, Tool};
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::sand as limits;
 
 /// Frames a second.
 pub const FRAMES_PER_S: f64 = 60.0;
@@ -123,10 +124,9 @@ impl SandSimulation {
     pub fn new(design: &SandDesign) -> Result<Self, DesignError> {
         design.law.check()?;
         design.tool.check()?;
-        let extent = |e: f64| (1e-3..=100.0).contains(&e);
-        DesignError::check("width_m", design.width_m, "1e-3 to 100 m", extent)?;
-        DesignError::check("height_m", design.height_m, "1e-3 to 100 m", extent)?;
-        DesignError::check("contacts", design.contacts as f64, "1 to 1024", |n| (1.0..=1024.0).contains(&n))?;
+        limits::SIDE_M.check("width_m", design.width_m)?;
+        limits::SIDE_M.check("height_m", design.height_m)?;
+        limits::CONTACTS.check("contacts", design.contacts as f64)?;
         let cells = design.cells.max(1);
         let cell_m = design.width_m / cells as f64;
         let rows = (design.height_m / cell_m).round().min(1e6) as usize;
