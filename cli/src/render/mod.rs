@@ -135,6 +135,8 @@ pub struct SandReport {
     pub volume_after_m3: f64,
     /// Steepest slope.
     pub max_slope_deg: f64,
+    /// Deepest that a contact stood below the untouched bed, m, before its walls slid.
+    pub print_m: f64,
     /// Height of one grey step of its picture.
     pub metres_per_grey: f64,
     /// Height of black above the bottom of the bed.
@@ -217,6 +219,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
                 volume_before_m3: sand.figures.volume_before_m3,
                 volume_after_m3: sand.figures.volume_after_m3,
                 max_slope_deg: sand.figures.max_slope_deg,
+                print_m: sand.figures.print_m,
                 metres_per_grey: sand.picture.metres_per_grey,
                 lowest_m: sand.picture.lowest_m,
             },

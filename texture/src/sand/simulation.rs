@@ -87,6 +87,8 @@ pub struct SandFigures {
     pub drift_units: i64,
     /// Steepest slope now, degrees.
     pub max_slope_deg: f64,
+    /// Deepest that a tool stood below the untouched bed, metres: what was felt, whatever slid into the print since.
+    pub print_m: f64,
 }
 
 /// What is known of a contact.
@@ -114,6 +116,8 @@ pub struct SandSimulation {
     presses: Vec<Press>,
     walls: Vec<(usize, i32)>,
     volume_before_units: i64,
+    /// Deepest that a tool stood below the untouched bed, metres.
+    print_m: f64,
 }
 
 impl SandSimulation {
@@ -152,6 +156,7 @@ impl SandSimulation {
             presses,
             walls,
             volume_before_units,
+            print_m: 0.0,
         })
     }
 
@@ -254,6 +259,7 @@ impl SandSimulation {
             volume_after_m3: after as f64 * m3,
             drift_units: after - self.volume_before_units,
             max_slope_deg: self.grid.max_slope_deg(),
+            print_m: self.print_m,
         }
     }
 
@@ -314,6 +320,9 @@ impl SandSimulation {
             wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
         }
         track.pose = Some(to);
+        let lowest = self.presses[contact].cut_cells().map(|at| self.grid.heights[at]).min();
+        self.print_m = lowest
+            .map_or(self.print_m, |lowest| self.print_m.max(self.depth_m - f64::from(lowest) / UNITS_PER_M));
     }
 
     /// Makes every tool that is down a wall for the sliding sand.
