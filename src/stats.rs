@@ -57,8 +57,8 @@ counters! {
     debounced,
     /// Contacts faded because nothing was heard of them for the time-out.
     lapsed,
-    /// Contacts that were suddenly elsewhere, or so far ahead after a silence that following would have been
-    /// heard as a zip: faded where they were, risen where they are.
+    /// Contacts that were suddenly elsewhere, or further away after a silence than a path makes up within a second:
+    /// faded where they were, risen where they are.
     jumps,
     /// Reports of no force: the first in a row holds the force before it, more fade the contact until it
     /// presses again.

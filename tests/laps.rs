@@ -5,7 +5,6 @@ mod common;
 use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use asperity::offline::Options;
 use asperity::{ContactBlock, Extent, Surface, Tap, Wrap};
-use asperity_texture::brownian::BrownianDesign;
 use asperity_texture::combine::Sum;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::lattice::Lattice;
@@ -102,11 +101,12 @@ fn sources() -> Vec<Named> {
         ),
     ];
     // A square relief laid over the tile, and one of another size than it.
+    #[cfg(feature = "brownian")]
     for (name, side_m) in [("brownian", SIDE_M), ("brownian, cut from a larger one", 1.3 * SIDE_M)] {
         all.push((
             name,
             Box::new(move || {
-                let relief = BrownianDesign::new(0.5, 1e-4, 7).surface().unwrap();
+                let relief = asperity_texture::brownian::BrownianDesign::new(0.5, 1e-4, 7).surface().unwrap();
                 let extent = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
                 surface(HeightMap::new(&relief, extent, Wrap::Repeat).unwrap())
             }),
