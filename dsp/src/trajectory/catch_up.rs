@@ -48,8 +48,8 @@ pub(super) struct Speeds {
     pub before_m_s: [f64; 2],
     /// … and after it.
     pub now_m_s: [f64; 2],
-    /// What the path has left of it.
-    pub path_m_s: [f64; 2],
+    /// What the path has left of it; none where the contact says that it stands, and the path is to be there as soon as may be.
+    pub path_m_s: Option<[f64; 2]>,
 }
 
 /// Whether a path can come back to its reports.
@@ -67,7 +67,7 @@ impl CatchUp {
     pub fn over(&self, design: &TrajectoryDesign, away_m: [f64; 2], speeds: &Speeds) -> Distance {
         let Speeds { before_m_s, now_m_s, path_m_s } = *speeds;
         let own_speed_m_s = length(before_m_s).max(length(now_m_s)).max(self.own_speed_m_s);
-        if length(away_m) <= HURRY * own_speed_m_s * design.step_time_s() {
+        if length(away_m) <= room_m_s(own_speed_m_s, length(now_m_s)) * design.step_time_s() {
             return Distance::Small;
         }
         let away_m = [0, 1].map(|axis| away_m[axis] + self.left_m * self.away[axis]);
@@ -76,11 +76,12 @@ impl CatchUp {
             return Distance::MadeUp(Self::default());
         }
         let away = away_m.map(|x| x / left_m);
-        let parting_m_s =
-            [0, 1].map(|axis| path_m_s[axis] - now_m_s[axis] - self.closing_m_s * self.away[axis]);
-        let closing_m_s = -(parting_m_s[0] * away[0] + parting_m_s[1] * away[1]);
-        let mut next = Self { left_m, away, own_speed_m_s, limit_m_s: 0.0, closing_m_s };
+        let mut next = Self { left_m, away, own_speed_m_s, ..Self::default() };
         next.go_on_beside(now_m_s);
+        next.closing_m_s = path_m_s.map_or(next.limit_m_s, |path_m_s| {
+            let parting = |axis: usize| path_m_s[axis] - now_m_s[axis] - self.closing_m_s * self.away[axis];
+            -(parting(0) * away[0] + parting(1) * away[1])
+        });
         if left_m > LONGEST_CATCH_UP_S * next.limit_m_s { Distance::TooFar } else { Distance::MadeUp(next) }
     }
 
@@ -91,8 +92,7 @@ impl CatchUp {
         }
         let now_m_s = length(now_m_s);
         self.own_speed_m_s = self.own_speed_m_s.max(now_m_s);
-        let room_m_s = (1.0 + HURRY) * self.own_speed_m_s - now_m_s;
-        self.limit_m_s = room_m_s.max(NOISE_M / LONGEST_CATCH_UP_S);
+        self.limit_m_s = room_m_s(self.own_speed_m_s, now_m_s).max(NOISE_M / LONGEST_CATCH_UP_S);
     }
 
     /// Whether the path is where the reports say.
@@ -116,6 +116,11 @@ impl CatchUp {
             *self = Self::default();
         }
     }
+}
+
+/// How fast a path may move besides a contact that moves at `now_m_s`.
+fn room_m_s(own_speed_m_s: f64, now_m_s: f64) -> f64 {
+    (1.0 + HURRY) * own_speed_m_s - now_m_s
 }
 
 fn length([u, v]: [f64; 2]) -> f64 {

@@ -93,10 +93,11 @@ impl Trajectory {
             self.reckoning.set_force_n(event.normal_force_n);
             return Moved::Followed;
         }
+        let late = unknown || self.is_late(design, event, seen.gap_s);
         let distance = if seen.surprise_m > self.reach_m(reported, seen.gap_s) {
             Distance::TooFar
-        } else if design.mode != PathMode::Hold && (unknown || self.is_late(design, event, seen.gap_s)) {
-            let (away_m, speeds) = self.part(design, event, &seen, velocity);
+        } else if design.mode != PathMode::Hold && (late || velocity == [0.0; 2]) {
+            let (away_m, speeds) = self.part(design, event, &seen, velocity, late);
             self.catch_up.over(design, away_m, &speeds)
         } else {
             // The paper's path, which holds, hurries at every event.
@@ -200,6 +201,7 @@ impl Trajectory {
         event: &PathEvent,
         seen: &Seen,
         now_m_s: [f64; 2],
+        late: bool,
     ) -> ([f64; 2], Speeds) {
         let now = self.sample.max(event.sample);
         let read_late =
@@ -208,6 +210,7 @@ impl Trajectory {
         let (here_m, just_m) = (self.guessed(design, now), self.guessed(design, now.saturating_sub(1)));
         let away_m = [0, 1].map(|axis| here_m[axis] - (seen.step_m[axis] + now_m_s[axis] * since_s));
         let path_m_s = [0, 1].map(|axis| (here_m[axis] - just_m[axis]) / design.sample_period_s);
+        let path_m_s = late.then_some(path_m_s);
         (away_m, Speeds { before_m_s: self.reckoning.velocity(), now_m_s, path_m_s })
     }
 

@@ -122,6 +122,30 @@ fn reports_that_get_lost_make_nobody_hurry() {
 }
 
 #[test]
+fn a_finger_that_stops_dead_is_not_thrown_back() {
+    for (report_hz, bound) in [(30.0, 1.45), (60.0, 1.45), (90.0, 1.2)] {
+        let design = design(PathMode::Extrapolate);
+        let step = (RATE_HZ / report_hz).round() as u64;
+        let place = |n: u64| 0.5 * (n.min(20) * step) as f64 / RATE_HZ;
+        let mut path = Trajectory::begin(&design, &event(0, 0.0, Some(0.5)));
+        let mut points = vec![PathPoint::default(); step as usize];
+        let (mut slowest, mut furthest) = (0.0f64, 0.0f64);
+        for n in 1..60 {
+            path.advance(&design, &mut points);
+            slowest = points.iter().fold(slowest, |least, p| least.min(p.velocity_m_s[0] / 0.5));
+            furthest = points.iter().fold(furthest, |most, p| most.max(p.position_m[0] - place(20)));
+            assert_eq!(
+                path.moved(&design, &event(n * step, place(n), Some(if n <= 20 { 0.5 } else { 0.0 }))),
+                Moved::Followed
+            );
+        }
+        assert!(slowest > -bound, "{report_hz} Hz: back at {slowest} times its speed");
+        assert!(furthest < 0.5 / report_hz, "{report_hz} Hz: {furthest} m too far");
+        assert!((points.last().unwrap().position_m[0] - place(20)).abs() < 1e-6);
+    }
+}
+
+#[test]
 fn where_a_silent_game_is_too_far_gone_the_path_starts_afresh() {
     for mode in [PathMode::Extrapolate, PathMode::Hermite] {
         let design = design(mode);
