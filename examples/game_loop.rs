@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // 1. Build the engine. LIVE ties game time to the audio clock; ask the device for its rate first.
     let audio = AudioSettings { limit: true, ..AudioSettings::default() }; // a sound card clips at ±1
     let config = Config { clock: ClockMode::LIVE, sample_rate_hz: rate_hz(), audio, ..Config::default() };
-    let (mut scene, renderer) = config.build()?;
+    let asperity::Engine { mut scene, renderer, .. } = config.build()?;
 
     // 2. Say what can be touched, and what rings when it is.
     let tile = scene.add_body_of(tile()?, Material::CERAMIC)?;
@@ -139,12 +139,13 @@ fn grooves() -> Result<Surface, Box<dyn Error>> {
 
 #[cfg(feature = "device")]
 fn rate_hz() -> f64 {
-    asperity::device::sample_rate_hz(&asperity::device::DeviceOptions::default()).unwrap_or(48_000.0)
+    asperity::live::device::sample_rate_hz(&asperity::live::device::DeviceOptions::default())
+        .unwrap_or(48_000.0)
 }
 
 #[cfg(feature = "device")]
-fn start(renderer: asperity::Renderer) -> Result<asperity::device::Player, Box<dyn Error>> {
-    let player = asperity::device::play(renderer)?;
+fn start(renderer: asperity::Renderer) -> Result<asperity::live::device::Player, Box<dyn Error>> {
+    let player = asperity::live::device::play(renderer)?;
     if let Some(why) = player.silent_because() {
         eprintln!("playing silently: {why}");
     }
@@ -152,7 +153,7 @@ fn start(renderer: asperity::Renderer) -> Result<asperity::device::Player, Box<d
 }
 
 #[cfg(feature = "device")]
-fn stop(player: asperity::device::Player) {
+fn stop(player: asperity::live::device::Player) {
     let report = player.stop();
     println!("{} underruns, peak load {:.1} %", report.underruns, 100.0 * report.peak_load);
 }
@@ -164,14 +165,14 @@ fn rate_hz() -> f64 {
 
 /// Without a device the engine runs just the same, into a sink that nobody hears.
 #[cfg(not(feature = "device"))]
-fn start(renderer: asperity::Renderer) -> Result<asperity::null_sink::NullSink, Box<dyn Error>> {
-    use asperity::channel_map::{ChannelMap, Interleaver};
+fn start(renderer: asperity::Renderer) -> Result<asperity::live::null_sink::NullSink, Box<dyn Error>> {
+    use asperity::live::channel_map::{ChannelMap, Interleaver};
     let device = Interleaver::new(renderer, ChannelMap::stereo_then_haptics(1));
-    Ok(asperity::null_sink::NullSink::start(device, 256)?)
+    Ok(asperity::live::null_sink::NullSink::start(device, 256)?)
 }
 
 #[cfg(not(feature = "device"))]
-fn stop(sink: asperity::null_sink::NullSink) {
+fn stop(sink: asperity::live::null_sink::NullSink) {
     if let Some((_, pace)) = sink.stop() {
         println!("{} blocks, {} late, mean load {:.1} %", pace.blocks, pace.late, 100.0 * pace.load);
     }

@@ -5,8 +5,8 @@
 //! cargo run --release --example null_sink [SECONDS]     # default 60
 //! ```
 
-use asperity::channel_map::{ChannelMap, Interleaver};
-use asperity::null_sink::{NullSink, Pace};
+use asperity::live::channel_map::{ChannelMap, Interleaver};
+use asperity::live::null_sink::{NullSink, Pace};
 use asperity::texture::height_map::HeightMap;
 use asperity::{
     Actuator, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent, ModalModel, Mode, Surface,
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let seconds: f64 = std::env::args().nth(1).map_or(Ok(60.0), |text| text.parse())?;
     let actuators = vec![asperity::ActuatorSettings::default(); FINGERS as usize];
     let config = Config { clock: ClockMode::LIVE, sample_rate_hz: RATE_HZ, actuators, ..Config::default() };
-    let (mut scene, renderer) = config.build()?;
+    let asperity::Engine { mut scene, renderer, .. } = config.build()?;
     let mode = |i: u32| Mode {
         frequency_hz: 200.0 * 1.05f64.powi(i as i32),
         decay_per_s: 10.0,

@@ -12,7 +12,7 @@
 #[path = "surfaces/mod.rs"]
 mod surfaces;
 
-use asperity::contact_log::{ContactLog, Names};
+use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::texture::solid_materials::SolidMaterial;
 use asperity::texture::solid_noise::{SolidCut, SolidNoise};
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             actuators: vec![ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() }],
             ..Config::default()
         };
-        let (mut scene, renderer) = config.build()?;
+        let asperity::Engine { mut scene, renderer, .. } = config.build()?;
         let board = scene.add_body(surfaces::board()?)?;
         let noise = SolidNoise::new(parameters, 1, RATE_HZ)?;
         let spacing_m = PICTURE.1 / PICTURE.0 as f64;

@@ -11,7 +11,7 @@
 #[path = "surfaces/mod.rs"]
 mod surfaces;
 
-use asperity::contact_log::{ContactLog, Names};
+use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::texture::sand::{SandDesign, SandSource, Tool};
 use asperity::{ActuatorSettings, AudioSettings, Config, Surface};
@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         audio: AudioSettings { gain: 20.0, ..AudioSettings::default() },
         ..Config::default()
     };
-    let (mut scene, renderer) = config.build()?;
+    let asperity::Engine { mut scene, renderer, .. } = config.build()?;
     let board = scene.add_body(surfaces::board()?)?;
     let design = SandDesign {
         width_m: SIDE_M,

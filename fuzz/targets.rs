@@ -2,7 +2,7 @@
 //! it finds a fault.
 #![allow(dead_code)]
 
-use asperity::contact_log::{ContactLog, Names};
+use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{Config, Extent, ModalModel, Surface, Wrap};
 use asperity_texture::height_map::HeightMap;
@@ -21,7 +21,8 @@ fn flat() -> Surface {
 
 /// Renders a log on a body and demands numbers.
 fn render(model: ModalModel, log: &ContactLog) {
-    let (mut scene, renderer) = Config::default().build().expect("the default config is accepted");
+    let asperity::Engine { mut scene, renderer, .. } =
+        Config::default().build().expect("the default config is accepted");
     let Ok(body) = scene.add_body(model) else { return };
     let surface = scene.add_surface(flat().on(body)).expect("a surface that is accepted");
     let names = Names {

@@ -15,63 +15,42 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-mod actuator_preset;
-mod bad_value;
-mod body;
-pub mod channel_map;
-mod clock;
-mod config;
-pub mod contact_log;
-#[cfg(feature = "device")]
-pub mod device;
-pub mod drift;
-mod error;
-mod event;
-mod governor;
-mod inner_rate;
-mod material;
-mod modal_model;
-pub mod null_sink;
-mod occupied;
+mod audio;
+mod engine;
+pub mod files;
+mod game;
+mod link;
+pub mod live;
+mod model;
 pub mod offline;
-mod overlay;
-mod queue;
-mod recording;
-mod renderer;
-pub mod residual;
-mod scene;
-mod seat;
-mod silence;
-mod stats;
-mod stroking;
-mod surface;
-mod tap;
-mod uv_triangle;
-mod voice;
+mod prepared;
 
-pub use actuator_preset::{ActuatorPreset, PresetError};
 pub use asperity_dsp::limits;
-pub use bad_value::BadValue;
-pub use clock::ClockMode;
-pub use config::{ActuatorSettings, AudioSettings, Config, DeviceProfile, Quantity};
-pub use error::{AddError, ConfigError, Refusal, ReportError};
-pub use event::{
+pub use audio::renderer::Renderer;
+pub use audio::tap::{ContactBlock, NoTap, Tap};
+pub use engine::Engine;
+pub use files::actuator_profile::{ActuatorPreset, PresetError};
+pub use game::scene::Scene;
+pub use game::silence::SilentBecause;
+pub use link::stats::Stats;
+pub use model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
+pub use model::bad_value::BadValue;
+pub use model::bus::AudioSettings;
+pub use model::clock_mode::ClockMode;
+pub use model::config::Config;
+pub use model::error::{AddError, ConfigError, Refusal, ReportError};
+pub use model::event::{
     Actuator, BodyId, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
     SurfaceId,
 };
-pub use material::Material;
-pub use modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
-pub use renderer::Renderer;
-pub use residual::Residual;
-pub use scene::Scene;
-pub use silence::SilentBecause;
-pub use stats::Stats;
-pub use surface::{
+pub use model::material::Material;
+pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
+pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
+pub use model::surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,
     Surface, SurfaceError,
 };
-pub use tap::{ContactBlock, NoTap, Tap};
-pub use uv_triangle::UvTriangle;
+pub use model::uv_triangle::UvTriangle;
 
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
 pub use asperity_dsp::modal_bank::Culling;

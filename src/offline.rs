@@ -1,14 +1,15 @@
 //! Rendering a contact log without a device: the same two halves, the same events, to memory or WAV.
 
-use crate::clock::Stamp;
-use crate::contact_log::{ContactLog, LogError, Names};
-use crate::error::ReportError;
-use crate::event::SurfaceId;
-use crate::renderer::Renderer;
-use crate::scene::Scene;
-use crate::silence::SilentBecause;
-use crate::stats::Stats;
-use crate::tap::{NoTap, Tap};
+use crate::audio::renderer::Renderer;
+use crate::audio::tap::{NoTap, Tap};
+use crate::files::contact_log::{ContactLog, LogError, Names};
+use crate::files::wav::write_wav;
+use crate::game::scene::Scene;
+use crate::game::silence::SilentBecause;
+use crate::link::stats::Stats;
+use crate::model::error::ReportError;
+use crate::model::event::SurfaceId;
+use crate::model::stamp::Stamp;
 use asperity_texture::sand::{SandFigures, SandPicture};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -213,25 +214,4 @@ impl Render {
         let channels: Vec<_> = self.haptic.iter().map(Vec::as_slice).collect();
         write_wav(path.as_ref(), &channels, self.sample_rate_hz)
     }
-}
-
-/// Writes equally long channels as a 32-bit float WAV file.
-///
-/// # Errors
-/// When the file cannot be written.
-pub fn write_wav(path: &Path, channels: &[&[f32]], sample_rate_hz: f64) -> Result<(), hound::Error> {
-    let spec = hound::WavSpec {
-        channels: channels.len() as u16,
-        sample_rate: sample_rate_hz.round() as u32,
-        bits_per_sample: 32,
-        sample_format: hound::SampleFormat::Float,
-    };
-    let mut writer = hound::WavWriter::create(path, spec)?;
-    let frames = channels.first().map_or(0, |channel| channel.len());
-    for frame in 0..frames {
-        for channel in channels {
-            writer.write_sample(channel[frame])?;
-        }
-    }
-    writer.finalize()
 }

@@ -3,7 +3,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, LogEvent};
+use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::offline::Options;
 use asperity::texture::solid_materials::SolidMaterial;
 use asperity::texture::solid_noise::SolidNoise;

@@ -5,7 +5,7 @@ mod common;
 #[path = "common/steps.rs"]
 mod steps;
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{ModalModel, Mode};
 use common::{SIDE_M, grating, peak, rms, si_config, stroke};
@@ -19,7 +19,7 @@ fn low_body() -> ModalModel {
 }
 
 fn take(log: &ContactLog) -> Render {
-    let (mut scene, renderer) = si_config().build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } = si_config().build().unwrap();
     let body = scene.add_body(low_body()).unwrap();
     let surface = scene.add_surface(grating(2e-3, 2e-5).on(body)).unwrap();
     let names = Names {

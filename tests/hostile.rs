@@ -9,7 +9,7 @@ use asperity::{
 use common::{bar, plate};
 
 fn engine(config: Config) -> (Scene, Renderer, SurfaceId) {
-    let (mut scene, renderer) = config.build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
     let surface = scene.add_surface(plate(0.8).on(body)).unwrap();
     (scene, renderer, surface)

@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use asperity::offline::Options;
 use asperity::{ContactBlock, Extent, Surface, Tap, Wrap};
 use asperity_texture::combine::Sum;

@@ -34,7 +34,7 @@ fn impact(body: asperity::BodyId) -> ContactEvent {
 fn a_stamped_event_sounds_at_its_own_sample() {
     for block in [64, 256, 1000] {
         for sample in [0u64, 1, 63, 64, 255, 777] {
-            let (mut scene, mut renderer) = Config::default().build().unwrap();
+            let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
             let body = scene.add_body(tick()).unwrap();
             scene.report(sample as f64 / RATE_HZ, impact(body)).unwrap();
             let mut heard = Vec::new();
@@ -52,7 +52,7 @@ fn a_stamped_event_sounds_at_its_own_sample() {
 
 /// Samples from an impact to the first that is not zero: a mode begins at the zero of its sine.
 fn rise_samples() -> f64 {
-    let (mut scene, mut renderer) = Config::default().build().unwrap();
+    let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let body = scene.add_body(tick()).unwrap();
     scene.report(100.0 / RATE_HZ, impact(body)).unwrap();
     let (mut h, mut a) = ([0.0; 512], [0.0; 512]);
@@ -63,7 +63,8 @@ fn rise_samples() -> f64 {
 
 /// A game that reports at random moments, a device that renders at the start of each block.
 fn latencies(block: usize, events: usize) -> Vec<f64> {
-    let (mut scene, mut renderer) = Config { clock: ClockMode::LIVE, ..Config::default() }.build().unwrap();
+    let asperity::Engine { mut scene, mut renderer, .. } =
+        Config { clock: ClockMode::LIVE, ..Config::default() }.build().unwrap();
     let body = scene.add_body(tick()).unwrap();
     let mut rng = Rng::new(3);
     let (mut now, mut heard) = (5000.0, Vec::<f32>::new());
@@ -112,7 +113,8 @@ fn one_micro_collision_is_felt_and_heard_at_the_same_sample() {
                 highpass_hz: 0.0,
                 ..ActuatorSettings::default()
             }];
-            let (mut scene, mut renderer) = Config { actuators, ..Config::default() }.build().unwrap();
+            let asperity::Engine { mut scene, mut renderer, .. } =
+                Config { actuators, ..Config::default() }.build().unwrap();
             let body = scene.add_body(tick()).unwrap();
             let flat = plate(0.5).micro_relief_m(0.0).on(body).excitation(excitation);
             let surface = scene.add_surface(flat).unwrap();

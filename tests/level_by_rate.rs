@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::contact_log::Names;
+use asperity::files::contact_log::Names;
 use asperity::offline::{self, Options};
 use asperity::{ActuatorSettings, Config, Excitation, ModalModel, Mode, Probe, Surface};
 use common::{SIDE_M, grating, plate, rms, stroke};
@@ -34,7 +34,7 @@ fn levels(case: &Case, rate_hz: f64) -> (f64, f64, u64) {
         let probe = Probe { contact_stiffness_n_m: case.contact_stiffness_n_m, ..Probe::default() };
         let actuators = vec![ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() }];
         let config = Config { sample_rate_hz: rate_hz, seed, probe, actuators, ..Config::default() };
-        let (mut scene, renderer) = config.build().unwrap();
+        let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let body = scene.add_body(body()).unwrap();
         let surface = scene.add_surface((case.surface)().on(body).excitation(case.excitation)).unwrap();
         let names = Names { surfaces: HashMap::from([("s".to_owned(), surface)]), ..Names::default() };

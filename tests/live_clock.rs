@@ -29,7 +29,8 @@ struct Game {
 impl Game {
     fn new() -> Self {
         let si = ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() };
-        let (mut scene, renderer) = Config { actuators: vec![si], ..Config::live(RATE_HZ) }.build().unwrap();
+        let asperity::Engine { mut scene, renderer, .. } =
+            Config { actuators: vec![si], ..Config::live(RATE_HZ) }.build().unwrap();
         let body = scene.add_body(bar()).unwrap();
         let surface = scene.add_surface(plate(0.8)).unwrap();
         let (haptic, audio) = (Vec::new(), Vec::new());
@@ -246,7 +247,7 @@ fn eight_ticks_at_once_keep_their_distances() {
 
 #[test]
 fn a_reset_ties_an_exact_clock_anew_and_drops_what_waited() {
-    let (mut scene, mut renderer) = Config::default().build().unwrap();
+    let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let body = scene.add_body(bar()).unwrap();
     let impact = ContactEvent::Impact(Impact {
         body,
@@ -267,7 +268,7 @@ fn a_reset_ties_an_exact_clock_anew_and_drops_what_waited() {
     scene.report(0.0, impact).unwrap();
     scene.report(0.05, impact).unwrap();
     renderer.render(&mut [&mut haptic], &mut [&mut audio]);
-    let (mut at_once, mut fresh) = Config::default().build().unwrap();
+    let asperity::Engine { scene: mut at_once, renderer: mut fresh, .. } = Config::default().build().unwrap();
     at_once.add_body(bar()).unwrap();
     at_once.report(0.0, impact).unwrap();
     at_once.report(0.05, impact).unwrap();

@@ -3,15 +3,15 @@
 
 mod common;
 
-use asperity::contact_log::ContactLog;
-use asperity::contact_log::Names;
+use asperity::files::contact_log::ContactLog;
+use asperity::files::contact_log::Names;
 use asperity::offline::{self, Options};
 use asperity::{ClockMode, Config, Scene};
 use common::{SIDE_M, bar, plate, stroke_of};
 use std::collections::HashMap;
 
 fn scene_of(config: Config) -> (Scene, asperity::Renderer, Names) {
-    let (mut scene, renderer) = config.build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
     let surface = scene.add_surface(plate(0.9).on(body)).unwrap();
     let names = Names {

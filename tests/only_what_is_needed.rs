@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, Names};
+use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{
     Actuator, Config, ContactEvent, ContactId, ContactSample, Culling, MAX_POSITIONS, ModalModel, Mode,
@@ -25,7 +25,7 @@ fn body(modes: usize) -> ModalModel {
 }
 
 fn strike(config: Config, model: ModalModel, position: usize) -> Vec<f32> {
-    let (mut scene, renderer) = config.build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(model).unwrap();
     let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), surfaces: HashMap::new() };
     let line = r#"{"t":0.01,"event":"impact","body":"b","speed_m_s":0.5,"mass_kg":0.002,"radius_m":0.002,"striker":"steel","position":"#;
@@ -90,7 +90,7 @@ fn two_fingers_on_two_positions_add_up() {
     let amplitudes = model.modes.iter().rev().map(|m| m.amplitude).collect();
     let model = model.with_positions(vec![amplitudes]).unwrap();
     let slide = |touching: &[usize]| {
-        let (mut scene, mut renderer) = Config::default().build().unwrap();
+        let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
         let body = scene.add_body(model.clone()).unwrap();
         for (finger, &position) in touching.iter().enumerate() {
             let surface = plate(0.8).on(body).at_strike_position(position);
@@ -137,7 +137,7 @@ struct TenFingers {
 
 impl TenFingers {
     fn new(config: Config) -> Self {
-        let (mut scene, renderer) = config.build().unwrap();
+        let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let body = scene.add_body(body(80)).unwrap();
         let surface = scene.add_surface(plate(0.9).on(body)).unwrap();
         for finger in 0..10 {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, Names};
+use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{ActuatorSettings, Config};
 use common::{bar, grating, render, rms, stroke};
@@ -28,7 +28,7 @@ fn an_impact_is_equally_loud_at_every_rate() {
     )
     .unwrap();
     let level = |rate: f64| {
-        let (mut scene, renderer) = config(rate).build().unwrap();
+        let asperity::Engine { mut scene, renderer, .. } = config(rate).build().unwrap();
         let names = Names {
             bodies: HashMap::from([("b".to_owned(), scene.add_body(bar()).unwrap())]),
             ..Names::default()

@@ -10,7 +10,7 @@ mod profile;
 #[path = "../examples/real_input/trajectories.rs"]
 mod trajectories;
 
-use asperity::contact_log::{ContactLog, Names};
+use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{Config, Extent, Surface, Wrap};
 use asperity_measure::spectrum;
@@ -170,10 +170,14 @@ fn pens_lift_jump_and_pause_where_the_recordings_do() {
     let Some(corpus) = corpus() else { return };
     for (samples, contacts) in pens(&corpus).iter().zip([5, 6]) {
         let log = trajectories::strokes(samples, "s", [0.2; 2], true);
-        let begins =
-            log.lines.iter().filter(|l| matches!(l.event, asperity::contact_log::LogEvent::Begin { .. }));
-        let ends =
-            log.lines.iter().filter(|l| matches!(l.event, asperity::contact_log::LogEvent::End { .. }));
+        let begins = log
+            .lines
+            .iter()
+            .filter(|l| matches!(l.event, asperity::files::contact_log::LogEvent::Begin { .. }));
+        let ends = log
+            .lines
+            .iter()
+            .filter(|l| matches!(l.event, asperity::files::contact_log::LogEvent::End { .. }));
         assert_eq!((begins.count(), ends.count()), (contacts, contacts));
         assert!(log.lines.windows(2).all(|w| w[0].t <= w[1].t));
         let down = samples.iter().filter(|s| s.pressure > 0.0).count();
@@ -228,7 +232,7 @@ fn published_modes_ring_in_tune_and_tossed_cubes_strike_them() {
             .copied();
         let lowest_hz = model.modes.iter().map(|m| m.frequency_hz).fold(f64::INFINITY, f64::min);
         let ring = |log| {
-            let (mut scene, renderer) = Config::default().build().unwrap();
+            let asperity::Engine { mut scene, renderer, .. } = Config::default().build().unwrap();
             let body = scene.add_body(model.clone()).unwrap();
             let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), ..Names::default() };
             offline::render(scene, renderer, log, &names, &Options::default()).unwrap()

@@ -131,7 +131,7 @@ fn five_minutes_of_randomised_events_touch_no_heap(seed: u64) {
 
 #[test]
 fn a_flood_of_a_million_events_a_second_for_ten_seconds_needs_no_more_memory() {
-    let (mut scene, mut renderer) = Config::default().build().unwrap();
+    let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let body = scene.add_body(bar()).unwrap();
     let surface = scene.add_surface(plate(0.8).on(body)).unwrap();
     let sample = |u: f64| ContactSample {

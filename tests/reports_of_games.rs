@@ -3,7 +3,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use asperity::offline::{Options, Render};
 use asperity::{ContactBlock, Extent, Surface, Tap, Wrap};
 use asperity_dsp::rng::Rng;

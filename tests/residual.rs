@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, LogEvent, Names};
+use asperity::files::contact_log::{ContactLog, LogEvent, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{Config, ModalModel, Residual};
 use common::bar;
@@ -20,7 +20,7 @@ fn body(residual: Option<Residual>) -> ModalModel {
 
 /// Impacts of `speeds` on the body, 5 ms apart, on samples that are no block's first.
 fn struck(model: ModalModel, speeds: &[f64], options: &Options) -> Render {
-    let (mut scene, renderer) = Config::default().build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } = Config::default().build().unwrap();
     let body = scene.add_body(model).unwrap();
     let lines = speeds.iter().enumerate().map(|(i, speed)| {
         format!(

@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use asperity::offline::{Options, Render};
 use asperity::texture::sand::{SandDesign, SandLaw, SandSource};
 use asperity::{ContactBlock, Surface, Tap};

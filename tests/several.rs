@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, LogEvent, Names};
+use asperity::files::contact_log::{ContactLog, LogEvent, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{ActuatorSettings, Config};
 use common::{SIDE_M, bar, grating, peak, plate, stroke_of};
@@ -10,7 +10,8 @@ use std::collections::HashMap;
 
 fn take(log: &ContactLog) -> Render {
     let actuators = vec![ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() }; 2];
-    let (mut scene, renderer) = Config { actuators, ..Config::default() }.build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } =
+        Config { actuators, ..Config::default() }.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
     let surfaces = HashMap::from([
         ("s".to_owned(), scene.add_surface(grating(2e-3, 2e-5).on(body)).unwrap()),

@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::contact_log::{LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{LogEvent, LogLine, LogSample};
 use asperity::offline::Options;
 use common::{SIDE_M, grating, peak, plate, render, si_config, stroke};
 

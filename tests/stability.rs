@@ -35,7 +35,7 @@ impl Run {
     fn new(config: Config, surface: Surface) -> Self {
         let si = ActuatorSettings { full_scale: 1.0, highpass_hz: 0.0, ..ActuatorSettings::default() };
         let config = Config { actuators: vec![si], contact_timeout_s: 3600.0, ..config };
-        let (mut scene, renderer) = config.build().unwrap();
+        let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let body = scene.add_body(bar()).unwrap();
         let surface = scene.add_surface(surface.on(body)).unwrap();
         Self { scene, renderer, surface, haptic: vec![0.0; 441], audio: vec![0.0; 441] }
@@ -336,7 +336,8 @@ fn a_soak_of_four_minutes_with_ever_new_events_stays_level() {
 #[test]
 fn a_body_struck_a_hundred_thousand_times_rings_out_all_the_same() {
     let mode = Mode { frequency_hz: 30.0, decay_per_s: 0.69, amplitude: 1.0, phase_rad: 0.0 };
-    let (mut scene, mut renderer) = Config { sample_rate_hz: 48_000.0, ..Config::default() }.build().unwrap();
+    let asperity::Engine { mut scene, mut renderer, .. } =
+        Config { sample_rate_hz: 48_000.0, ..Config::default() }.build().unwrap();
     let body = scene.add_body(ModalModel::new(vec![mode], 1e-3).unwrap()).unwrap();
     let (mut haptic, mut audio) = (vec![0.0; 480], vec![0.0; 480]);
     let mut peak = 0.0f32;

@@ -34,7 +34,7 @@ fn mass_kg(contact_s: f64) -> f64 {
 /// The sound of an impact at `at` samples, on the scale of its own impulse.
 fn struck(modes: &[Mode], contact_s: f64, at: f64, rate_hz: f64, integrator: Integrator) -> Vec<f32> {
     let config = Config { sample_rate_hz: rate_hz, integrator, culling: None, ..Config::default() };
-    let (mut scene, mut renderer) = config.build().unwrap();
+    let asperity::Engine { mut scene, mut renderer, .. } = config.build().unwrap();
     // Full scale is an impact like this one: what is 160 dB below it is put to rest.
     let model = ModalModel::new(modes.to_vec(), 2.0 * mass_kg(contact_s) * SPEED_M_S).unwrap();
     let impact = Impact {
@@ -151,7 +151,8 @@ fn soft_and_long_impacts_are_equally_loud_at_every_rate() {
 
 /// Loudest sample of a 1 kg foam ball that lands on foam: about 100 ms of contact.
 fn foam(mass_kg: f64, rate_hz: f64) -> (f64, u64) {
-    let (mut scene, mut renderer) = Config { sample_rate_hz: rate_hz, ..Config::default() }.build().unwrap();
+    let asperity::Engine { mut scene, mut renderer, .. } =
+        Config { sample_rate_hz: rate_hz, ..Config::default() }.build().unwrap();
     let foam = Material { young_pa: 5e4, poisson: 0.3, ..Material::RUBBER };
     let mode = Mode { frequency_hz: 60.0, decay_per_s: 8.0, amplitude: 1.0, phase_rad: 0.0 };
     let body = scene.add_body_of(ModalModel::new(vec![mode], 1.0).unwrap(), foam).unwrap();

@@ -94,7 +94,7 @@ fn a_flat_plate_with_micro_relief_takes_over_without_a_step() {
 
 /// The sound of a stroke over ribs, its collisions alone, on a body that is of `before` and then replaced by one of `after`.
 fn scraped(before: Material, after: Material) -> Vec<f32> {
-    let (mut scene, renderer) = asperity::Config::default().build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } = asperity::Config::default().build().unwrap();
     let body = scene.add_body_of(common::bar(), before).unwrap();
     let ribs = grating(2e-3, 2e-4).on(body).excitation(asperity::Excitation::Collisions);
     let width_m = 70.0 * 2e-3;
@@ -102,7 +102,7 @@ fn scraped(before: Material, after: Material) -> Vec<f32> {
     if after != before {
         scene.replace_body(body, common::bar(), after).unwrap();
     }
-    let names = asperity::contact_log::Names {
+    let names = asperity::files::contact_log::Names {
         surfaces: std::collections::HashMap::from([("s".to_owned(), surface)]),
         ..Default::default()
     };

@@ -22,7 +22,7 @@ fn low_body() -> ModalModel {
 }
 
 fn engine(config: Config) -> (Scene, Renderer, SurfaceId, asperity::BodyId) {
-    let (mut scene, renderer) = config.build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(low_body()).unwrap();
     let surface = scene.add_surface(grating(2e-3, 2e-5).on(body)).unwrap();
     (scene, renderer, surface, body)

@@ -15,7 +15,7 @@
 
 mod common;
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{
     Config, ContactBlock, Excitation, Extent, Integrator, Material, ModalModel, Mode, PathMode, Probe,
@@ -228,7 +228,8 @@ fn an_oblique_stroke_is_as_clean_as_the_map() {
 
 /// Strikes a body of one mode.
 fn strike(mode: Mode, speed_m_s: f64, radius_m: f64, rate_hz: f64) -> Render {
-    let (mut scene, renderer) = Config { sample_rate_hz: rate_hz, ..Config::default() }.build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } =
+        Config { sample_rate_hz: rate_hz, ..Config::default() }.build().unwrap();
     let model = ModalModel::new(vec![mode], 1.0).unwrap();
     let body = scene.add_body_of(model, Material::STEEL).unwrap();
     let names = Names { bodies: HashMap::from([("b".to_owned(), body)]), ..Names::default() };

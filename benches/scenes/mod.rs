@@ -89,7 +89,8 @@ impl Running {
             max_contacts: plan.contacts.max(64),
             ..config
         };
-        let (mut scene, mut renderer) = config.build().expect("the config of a bench is valid");
+        let asperity::Engine { mut scene, mut renderer, .. } =
+            config.build().expect("the config of a bench is valid");
         let map = map(1e-4);
         let mut surfaces = Vec::new();
         for i in 0..plan.contacts {

@@ -72,7 +72,7 @@ impl Bench {
     /// Builds the scene; none only if the engine refuses what it should accept.
     pub fn new(load: Load, config: Config) -> Option<Self> {
         let rate_hz = config.sample_rate_hz;
-        let (mut scene, renderer) = config.build().ok()?;
+        let asperity::Engine { mut scene, renderer, .. } = config.build().ok()?;
         let map = plate()?;
         let mut surfaces = Vec::new();
         for _ in 0..load.bodies.max(1) {

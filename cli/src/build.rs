@@ -7,7 +7,7 @@ use crate::scene_file::{
     ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MaterialEntry, Pixels, ProbeEntry,
     Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
 };
-use asperity::contact_log::Names;
+use asperity::files::contact_log::Names;
 use asperity::{
     ActuatorPreset, ActuatorSettings, AudioSettings, BodyId, Config, DeviceProfile, Excitation, Extent,
     Integrator, Material, ModalModel, PathMode, Probe, Quantity, Renderer, Roughness, Scene, Surface, Wrap,
@@ -56,7 +56,8 @@ pub fn build(file: &SceneFile, overrides: &Overrides) -> Result<Built, CliError>
     let at = |error: CliError| error.within(file.path.display());
     let config = config(file, overrides).map_err(at)?;
     let (seed, rate_hz) = (config.seed, config.inner_rate_hz());
-    let (mut scene, renderer) = config.build().map_err(|error| at(CliError::told(error)))?;
+    let asperity::Engine { mut scene, renderer, .. } =
+        config.build().map_err(|error| at(CliError::told(error)))?;
     let mut names = Names::default();
     let workers = RefCell::default();
     for body in &file.bodies {

@@ -11,7 +11,7 @@ mod profile;
 mod scenes;
 mod trajectories;
 
-use asperity::contact_log::ContactLog;
+use asperity::files::contact_log::ContactLog;
 use std::error::Error;
 use std::fs;
 use std::path::Path;

@@ -3,7 +3,7 @@
 //! What the recordings do not hold is assumed, and says so: the size of a screen pixel, what force
 //! full pen pressure means, and how fast a pen lands.
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Striker};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Striker};
 
 /// Full pressure of a pen, N. Assumed: tablets saturate at 3–5 N, recordings of writing peak near half.
 pub const FULL_PRESSURE_N: f64 = 2.0;

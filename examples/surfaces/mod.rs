@@ -1,7 +1,7 @@
 //! What the surface examples share: a hand that draws lines, the forces it feels and their plot, pictures.
 #![allow(dead_code)]
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use asperity::{ContactBlock, ModalModel, Mode, Tap};
 use std::error::Error;
 use std::fmt::Write as _;

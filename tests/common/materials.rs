@@ -7,7 +7,7 @@
 
 use crate::common::{render, si_config};
 use asperity::Surface;
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use asperity::offline::Options;
 use asperity::texture::solid_materials::SolidMaterial;
 use asperity::texture::solid_noise::SolidNoise;

@@ -1,7 +1,7 @@
 //! Scenes and strokes that several tests share.
 #![allow(dead_code)]
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{ActuatorSettings, Config, Excitation, Extent, ModalModel, Mode, Surface, Tap, Wrap};
 use asperity_texture::height_map::HeightMap;
@@ -102,7 +102,7 @@ pub fn render_tapped<T: Tap>(
     options: &Options,
     tap: &mut T,
 ) -> Render {
-    let (mut scene, renderer) = config.build().unwrap();
+    let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
     let body = scene.add_body(bar()).unwrap();
     let surface = scene.add_surface(surface.on(body).excitation(Excitation::Both)).unwrap();
     let names = Names {

@@ -169,7 +169,7 @@ pub fn outcome(seed: u64) -> Outcome {
         ..Config::default()
     };
     let inner_rate_hz = config.inner_rate_hz();
-    let (mut scene, mut renderer) = match config.build() {
+    let asperity::Engine { mut scene, mut renderer, .. } = match config.build() {
         Ok(halves) => halves,
         Err(error) => return Outcome::Refused(error.to_string()),
     };

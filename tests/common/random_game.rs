@@ -29,7 +29,7 @@ impl RandomGame {
     /// A game that is the same for the same seed, with fewer voices than fingers and a short time-out.
     pub fn new(seed: u64) -> (Self, Renderer) {
         let config = Config { max_contacts: 6, contact_timeout_s: 0.05, ..Config::default() };
-        let (mut scene, renderer) = config.build().unwrap();
+        let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let bodies = [scene.add_body(clicking_bar()).unwrap(), scene.add_body(bar()).unwrap()];
         let surfaces = [
             scene.add_surface(grating(1e-3, 5e-5).on(bodies[0])).unwrap(),

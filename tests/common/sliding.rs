@@ -36,7 +36,8 @@ impl Stroke {
     /// On any surface.
     pub fn on(surface: Surface, full_scale: f64) -> Self {
         let actuators = vec![ActuatorSettings { full_scale, ..ActuatorSettings::default() }];
-        let (mut scene, renderer) = Config { actuators, ..Config::default() }.build().unwrap();
+        let asperity::Engine { mut scene, renderer, .. } =
+            Config { actuators, ..Config::default() }.build().unwrap();
         let body = scene.add_body(low_body()).unwrap();
         let surface = scene.add_surface(surface.on(body)).unwrap();
         let mut stroke =

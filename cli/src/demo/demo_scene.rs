@@ -1,6 +1,6 @@
 //! What a scene of the demo consists of.
 
-use asperity::contact_log::ContactLog;
+use asperity::files::contact_log::ContactLog;
 
 /// A file of the demo: name and content.
 pub type Asset = (String, Vec<u8>);

@@ -3,7 +3,7 @@
 use super::demo_scene::DemoScene;
 use super::strokes::{Finger, log};
 use crate::pixels;
-use asperity::contact_log::LogLine;
+use asperity::files::contact_log::LogLine;
 
 /// Side of the gallery's surfaces, m.
 const SIDE_M: f64 = 0.12;

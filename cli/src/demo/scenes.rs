@@ -4,7 +4,7 @@ use super::demo_scene::DemoScene;
 use super::plates::{PLATES, Plate, RELIEF_M, SIDE_M};
 use super::strokes::{Finger, log};
 use crate::pixels;
-use asperity::contact_log::{LogEvent, LogLine, Striker};
+use asperity::files::contact_log::{LogEvent, LogLine, Striker};
 use asperity::{ModalModel, Mode};
 
 /// Seconds before the first event, so that a player that fades in cuts nothing off.

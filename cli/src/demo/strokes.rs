@@ -5,7 +5,7 @@
 //! presses with a force that wanders by a few percent. Speeds and forces are those of people exploring
 //! textures: 80–200 mm/s, 0.5–0.6 N (Smith 2002; Greenspon 2019).
 
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
 use std::f64::consts::PI;
 
 /// Events a second.

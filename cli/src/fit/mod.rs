@@ -256,7 +256,7 @@ fn check_options(options: &Options) -> Result<(), CliError> {
     options.base_hz.map_or(Ok(()), |hz| positive("--base-hz", hz))?;
     options.t60.map_or(Ok(()), |seconds| positive("--t60", seconds))?;
     positive("--table-rate", options.table_rate)?;
-    let longest_ms = 1e3 * asperity::residual::LONGEST_S;
+    let longest_ms = 1e3 * asperity::LONGEST_RESIDUAL_S;
     if let Some(ms) = options.burst_ms.filter(|ms| !(*ms > 0.0 && *ms <= longest_ms)) {
         let right = format!("must be above 0 and at most {longest_ms} ms");
         return Err(CliError::new("--burst-ms", format!("{ms} is refused"), right));

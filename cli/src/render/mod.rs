@@ -10,7 +10,7 @@ use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
 use crate::scene_file::SceneFile;
 use crate::{pixels, plot, wav};
-use asperity::contact_log::{ContactLog, LogEvent};
+use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::{Integrator, PathMode, SurfaceId};

@@ -3,7 +3,7 @@
 use super::Report;
 use crate::scene_file::SceneFile;
 use asperity::SilentBecause;
-use asperity::contact_log::{ContactLog, LogEvent};
+use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::offline::Render;
 use std::collections::BTreeMap;
 

@@ -5,7 +5,7 @@ use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};
 use crate::scene_file::{ActuatorOutput, SceneFile, Source, Wrap};
 use crate::{build, plot};
 use asperity::SurfaceId;
-use asperity::contact_log::{ContactLog, LogEvent};
+use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::offline::Render;
 use asperity_texture::raster::Raster;
 use std::path::Path;

@@ -16,7 +16,7 @@
 //! than the observers were.
 
 use crate::error::CliError;
-use asperity::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
 use asperity::offline::{self, Options};
 use asperity::{ActuatorSettings, Config, Extent, Roughness, Surface, Wrap};
 use asperity_dsp::rng::Rng;
@@ -88,7 +88,7 @@ pub fn strokes(
         actuators: vec![ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() }],
         ..Config::default()
     };
-    let (mut scene, renderer) = config.build().map_err(CliError::told)?;
+    let asperity::Engine { mut scene, renderer, .. } = config.build().map_err(CliError::told)?;
     let id = scene.add_surface(surface).map_err(CliError::told)?;
     let names = Names { surfaces: HashMap::from([("s".to_owned(), id)]), bodies: HashMap::new() };
     let latency = renderer.latency_samples();

@@ -40,6 +40,13 @@ impl HertzPulse {
 }
 
 impl HertzPulse {
+    /// One past the last sample that the pulse reaches in a ring, if its contact begins in `onset_sample`.
+    #[must_use]
+    pub fn end_sample(&self, onset_sample: u64, sample_rate_hz: f64) -> u64 {
+        // A saturating cast: an endless pulse is cut to the ring by the deposit itself.
+        onset_sample + (self.contact_time_s * sample_rate_hz) as u64 + KERNEL_SAMPLES as u64 + 2
+    }
+
     /// Contact time in samples as a ring of this length holds it; `None` for a pulse that holds no finite number, or a ring
     /// shorter than 16.
     pub(crate) fn samples_in(&self, ring: usize, sample_rate_hz: f64) -> Option<f64> {

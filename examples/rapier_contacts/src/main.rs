@@ -11,7 +11,7 @@ mod adapter;
 mod mesh;
 
 use adapter::{Ground, Touch, Toucher};
-use asperity::contact_log::{LogEvent, Names};
+use asperity::files::contact_log::{LogEvent, Names};
 use asperity::offline::{self, Options};
 use asperity::texture::height_map::HeightMap;
 use asperity::{
@@ -83,7 +83,7 @@ fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names), Box<dyn Error>> 
     // A dropped ball is fifty times louder than a finger; a sound card clips at ±1.
     let audio = AudioSettings { gain: 0.1, limit: true };
     let config = Config { clock, sample_rate_hz: RATE_HZ, actuators, audio, ..Config::default() };
-    let (mut scene, renderer) = config.build()?;
+    let asperity::Engine { mut scene, renderer, .. } = config.build()?;
     let mode =
         |frequency_hz, decay_per_s, amplitude| Mode { frequency_hz, decay_per_s, amplitude, phase_rad: 0.0 };
     let modes = vec![mode(412.0, 9.0, 0.3), mode(1133.0, 14.0, 0.25), mode(2219.0, 22.0, 0.2)];

@@ -16,7 +16,7 @@ pub fn struck(modes: &[Mode], burst: Option<&[f32]>, rate_hz: f64, count: usize,
     let before = (before_s * rate_hz).round() as usize;
     let mut out = vec![0.0; count + 2 * before];
     let config = Config { sample_rate_hz: rate_hz, ..Config::default() };
-    let Ok((mut scene, mut renderer)) = config.build() else { return out };
+    let Ok(asperity::Engine { mut scene, mut renderer, .. }) = config.build() else { return out };
     let Ok(model) = ModalModel::new(modes.to_vec(), IMPULSE_N_S) else { return out };
     let residual = burst.map(|samples| Residual { sample_rate_hz: rate_hz, samples: samples.to_vec() });
     let body = model.with_residual(residual, 1.0).ok().and_then(|model| scene.add_body_of(model, HARD).ok());

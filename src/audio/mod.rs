@@ -1,0 +1,9 @@
+//! The audio thread's half: never allocates, locks, waits or fails.
+
+pub(crate) mod body_seat;
+pub(crate) mod governor;
+pub(crate) mod occupied;
+pub(crate) mod renderer;
+pub(crate) mod seat;
+pub(crate) mod tap;
+pub(crate) mod voice;

@@ -1,0 +1,396 @@
+//! The audio half: applies events at their samples, runs the voices, rings the bodies, mixes.
+//!
+//! Everything here is infallible and free of allocation, locks, logging and clocks; all memory was
+//! made by [`Config::build`](crate::Config::build). Time is cut at events and on an absolute grid of
+//! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
+
+mod contacts;
+mod outputs;
+
+use crate::audio::body_seat::BodySeat;
+use crate::audio::governor::Governor;
+use crate::audio::occupied::Occupied;
+use crate::audio::seat::{Change, Seat};
+use crate::audio::tap::{NoTap, Tap};
+use crate::audio::voice::{Phase, Scratch, Shared, Voice};
+use crate::link::message::{Dead, Message};
+use crate::link::ring::{Receiver, Sender};
+use crate::link::stats::Counters;
+use crate::model::config::Config;
+use crate::model::event::{BodyId, SurfaceId};
+use crate::model::inner_rate::InnerRate;
+use crate::model::stamp::Stamp;
+use crate::prepared::stroking::restitution;
+use asperity_dsp::DesignError;
+use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
+use asperity_dsp::fractal_noise::FractalNoise;
+use asperity_dsp::hertz::HertzPulse;
+use asperity_dsp::micro_contact::MicroContact;
+use asperity_dsp::modal_bank::Kernel;
+use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_texture::height_field::MAX_BLOCK;
+use asperity_texture::sand::{SandFigures, SandPicture};
+use contacts::SilentContact;
+use outputs::{AudioBus, HapticChannel, Mix};
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// The audio half of an engine.
+pub struct Renderer {
+    position: u64,
+    /// Resets of the game's time so far.
+    resets: u64,
+    shared: Shared,
+    timeout_samples: u64,
+    max_contacts: usize,
+    voices: Vec<Voice>,
+    silent: Vec<SilentContact>,
+    seats: Vec<Seat>,
+    bodies: Vec<BodySeat>,
+    /// Which of the three are in use, so that empty places cost nothing.
+    voices_used: Occupied,
+    seats_used: Occupied,
+    bodies_used: Occupied,
+    channels: Vec<HapticChannel>,
+    audio: AudioBus,
+    kernel: Kernel,
+    governor: Governor,
+    /// Groups of modes left out in the present stretch.
+    groups_shed: usize,
+    from_game: Receiver<Message>,
+    to_game: Sender<Dead>,
+    counters: Arc<Counters>,
+    scratch: Box<Scratch>,
+    mix: Box<Mix>,
+}
+
+impl Renderer {
+    pub(crate) fn new(
+        config: &Config,
+        micro_contact: MicroContact,
+        from_game: Receiver<Message>,
+        to_game: Sender<Dead>,
+        counters: Arc<Counters>,
+    ) -> Result<Self, DesignError> {
+        let rate = config.inner_rate_hz();
+        let inner = InnerRate::new(config.sample_rate_hz, micro_contact.latency_samples());
+        let shared = Shared {
+            sample_rate_hz: rate,
+            inner,
+            collision_mass_kg: config.probe.pad_mass_kg * (1.0 + restitution(&config.probe)),
+            idle_path: TrajectoryDesign::new(config.path, config.path_cutoff_hz, rate, [f64::INFINITY; 2])?,
+            idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
+            micro_contact,
+            noise: FractalNoise::new(config.seed),
+            noise_octaves_gone: 0,
+            fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
+        };
+        // Spare voices let stolen and ended contacts fade while new ones sound.
+        let voices = config.max_contacts + config.max_contacts.div_ceil(2).max(8);
+        Ok(Self {
+            position: 0,
+            resets: 0,
+            timeout_samples: (config.contact_timeout_s * rate) as u64,
+            max_contacts: config.max_contacts,
+            voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
+            voices_used: Occupied::new(voices),
+            seats_used: Occupied::new(config.max_surfaces),
+            bodies_used: Occupied::new(config.max_bodies),
+            silent: Vec::with_capacity(config.max_contacts),
+            seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
+            bodies: (0..config.max_bodies).map(|_| BodySeat::default()).collect(),
+            channels: config
+                .actuators
+                .iter()
+                .map(|settings| HapticChannel::new(settings, rate))
+                .collect::<Result<_, _>>()?,
+            audio: AudioBus::new(&config.audio, rate)?,
+            kernel: Kernel::detect(),
+            governor: Governor::new(config.shed_load, rate),
+            groups_shed: 0,
+            from_game,
+            to_game,
+            counters,
+            scratch: Scratch::new(),
+            mix: Mix::new(),
+            shared,
+        })
+    }
+
+    /// How many haptic channels there are.
+    #[must_use]
+    pub fn haptic_channels(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// Rate of every output, Hz.
+    #[must_use]
+    pub fn sample_rate_hz(&self) -> f64 {
+        self.shared.sample_rate_hz / self.shared.inner.every as f64
+    }
+
+    /// Rate inside, Hz.
+    pub(crate) fn inner_rate_hz(&self) -> f64 {
+        self.shared.sample_rate_hz
+    }
+
+    /// By how many samples every output lags behind the stamps of its events, besides the delay of the
+    /// path filter: the look-ahead of the contact model.
+    #[must_use]
+    pub fn latency_samples(&self) -> usize {
+        self.shared.inner.lag(self.shared.micro_contact.latency_samples())
+    }
+
+    /// Index of the next sample to be rendered.
+    #[must_use]
+    pub fn position(&self) -> u64 {
+        self.position / self.shared.inner.every as u64
+    }
+
+    /// Tells the engine which share of its time budget the last block took (1 = all of it); the device
+    /// measures it, because nothing in here reads a clock. Shown in [`Stats::load`](crate::Stats::load). When
+    /// blocks run late, the least audible work is left out ([`Config::shed_load`](crate::Config::shed_load)).
+    pub fn report_load(&mut self, load: f32) {
+        self.counters.set_load(load);
+        self.governor.hear(load, self.position, self.sounding_count());
+        self.shared.noise_octaves_gone = self.governor.octaves_gone();
+        if self.sounding_count() > self.contact_limit() {
+            Counters::add(&self.counters.shed, 1);
+            self.silence_least();
+        }
+    }
+
+    /// How many contacts may sound at present.
+    fn contact_limit(&self) -> usize {
+        self.governor.contacts(self.max_contacts)
+    }
+
+    /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
+    /// counts and the rest is silent). Haptic channels come in the order of the config; the mono audio
+    /// bus is copied to every audio channel.
+    pub fn render(&mut self, haptic: &mut [&mut [f32]], audio: &mut [&mut [f32]]) {
+        self.render_tapped(haptic, audio, &mut NoTap);
+    }
+
+    /// [`render`](Self::render), with a view into every contact.
+    pub fn render_tapped<T: Tap>(
+        &mut self,
+        haptic: &mut [&mut [f32]],
+        audio: &mut [&mut [f32]],
+        tap: &mut T,
+    ) {
+        let frames = shortest(haptic).min(shortest(audio));
+        let frames = if frames == usize::MAX { 0 } else { frames };
+        for channel in haptic.iter_mut() {
+            channel.fill(0.0);
+        }
+        for channel in audio.iter_mut() {
+            channel.fill(0.0);
+        }
+        let frames = frames * self.shared.inner.every;
+        let mut done = 0;
+        while done < frames {
+            self.apply_due();
+            let n = self.stretch(frames - done);
+            self.render_contacts(n, tap);
+            self.render_haptics(done, n, haptic);
+            self.render_bodies(done, n, audio);
+            done += n;
+            self.position += n as u64;
+            if self.position.is_multiple_of(MAX_BLOCK as u64) {
+                self.tidy();
+            }
+        }
+        self.counters.position.store(self.position, Relaxed);
+    }
+
+    /// Figures and pictures of the surfaces that are sand, settled; for the end of an offline render.
+    pub(crate) fn finish_sand(&mut self) -> Vec<(SurfaceId, SandFigures, SandPicture)> {
+        let seats = self.seats.iter_mut().enumerate();
+        seats
+            .filter_map(|(slot, seat)| {
+                let (figures, picture) = seat.source()?.sand()?.finish()?;
+                Some((SurfaceId(slot as u32), figures, picture))
+            })
+            .collect()
+    }
+
+    /// How many samples can be rendered before the next event, the grid or the end of the block.
+    fn stretch(&mut self, wanted: usize) -> usize {
+        let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
+        let to_event = match self.from_game.peek() {
+            Some(Message::Event { stamp, .. } | Message::Strike { stamp, .. }) => {
+                usize::try_from(stamp.sample().saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
+            }
+            _ => usize::MAX,
+        };
+        wanted.min(to_grid).min(to_event)
+    }
+
+    fn apply_due(&mut self) {
+        while let Some(message) = self.from_game.peek() {
+            let ended = self.counters.resets_asked.load(Relaxed) != self.resets;
+            let due = match message {
+                Message::Event { stamp, .. } | Message::Strike { stamp, .. } => {
+                    ended || stamp.sample() <= self.position
+                }
+                Message::Reset => true,
+                // Each of these may send something home; it waits until there is room.
+                Message::SetBody { slot, .. } => self.to_game.free() > 0 && self.bodies[*slot].can_change(),
+                _ => self.to_game.free() > 0,
+            };
+            if !due {
+                return;
+            }
+            if let Some(message) = self.from_game.receive() {
+                self.apply(message);
+            }
+        }
+    }
+
+    fn apply(&mut self, message: Message) {
+        match message {
+            Message::Reset => self.resets += 1,
+            // It waited for a time that has ended.
+            Message::Event { stamp, .. } | Message::Strike { stamp, .. }
+                if stamp.sample() > self.position =>
+            {
+                Counters::add(&self.counters.superseded, 1);
+            }
+            Message::Event { stamp, event } => {
+                self.note_arrival(stamp);
+                self.apply_event(&event, stamp);
+            }
+            Message::Strike { stamp, body, position, other, pulse } => {
+                self.note_arrival(stamp);
+                Counters::add(&self.counters.impacts, 1);
+                self.strike(body, position, &pulse, stamp);
+                if let Some(other) = other {
+                    self.strike(other, 0, &pulse, stamp);
+                }
+            }
+            Message::SetSurface { slot, surface } => self.set_surface(slot, surface),
+            Message::ChangeSurface { slot, change } => {
+                if !self.seats[slot].change(&change, self.position) {
+                    Counters::add(&self.counters.quarantined, 1);
+                }
+                // A resting finger feels the change.
+                self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(Voice::wake);
+            }
+            Message::RemoveSurface { slot } => {
+                self.seats[slot].remove();
+                self.fade_contacts_on(slot);
+            }
+            Message::SetBody { slot, body, stroking } => {
+                self.bodies[slot].set(body);
+                self.bodies_used.insert(slot);
+                for seat in self.seats_used.iter() {
+                    self.seats[seat].body_changed(BodyId(slot as u32), &stroking);
+                }
+            }
+            Message::RemoveBody { slot } => self.bodies[slot].remove(),
+            Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
+        }
+    }
+
+    fn note_arrival(&self, stamp: Stamp) {
+        Counters::add(&self.counters.events, 1);
+        Counters::add(&self.counters.late, u64::from(stamp.sample() < self.position));
+    }
+
+    /// When something begins that holds at `stamp`: what is late begins at once.
+    fn due(&self, stamp: Stamp) -> Stamp {
+        stamp.max(Stamp::whole(self.position))
+    }
+
+    fn set_surface(&mut self, slot: usize, surface: Box<crate::prepared::surface::SurfaceSlot>) {
+        let rate = self.shared.sample_rate_hz;
+        self.seats_used.insert(slot);
+        if self.seats[slot].set(surface, self.position, rate, &mut self.to_game) == Change::Restart {
+            for index in 0..self.voices.len() {
+                if self.voices[index].surface == slot && self.voices[index].phase == Phase::Sounding {
+                    self.silence(index, false);
+                }
+            }
+        }
+    }
+
+    fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
+        // Impacts pass the same look-ahead as contacts, so that both stay aligned.
+        let sounds = self.due(stamp).later(self.shared.micro_contact.latency_samples() as u64);
+        let level = self.governor.mode_level();
+        self.bodies[body].strike(position, pulse, sounds, level, self.shared.sample_rate_hz);
+    }
+
+    fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
+        for channel in &mut self.channels {
+            channel.sum[..n].fill(0.0);
+        }
+        let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
+        for voice in self.voices_used.iter() {
+            let voice = &mut self.voices[voice];
+            if voice.phase == Phase::Free {
+                continue;
+            }
+            let seat = &mut self.seats[voice.surface];
+            let channel = &mut self.channels[voice.actuator];
+            voice.render(seat, &self.shared, &channel.output, self.position, n, &mut self.scratch, tap);
+            let out = &self.scratch.out;
+            collisions += out.collisions;
+            shortened += out.shortened;
+            resets += out.resets;
+            for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
+                *sum += x;
+            }
+            if !out.excites {
+                continue;
+            }
+            let surface = seat.current().map(|slot| &slot.surface);
+            if let Some((body, place)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
+                self.bodies[body.0 as usize].touch(place, &out.impulse_n_s[..n]);
+            }
+        }
+        Counters::add(&self.counters.micro_collisions, collisions);
+        Counters::add(&self.counters.shortened_collisions, shortened);
+        Counters::add(&self.counters.quarantined, resets);
+    }
+
+    /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
+    fn tidy(&mut self) {
+        self.voices_used.retain(|voice| self.voices[voice].phase != Phase::Free);
+        for at in 0..self.voices_used.len() {
+            let index = self.voices_used.at(at);
+            let voice = &self.voices[index];
+            let lapsed = self.position.saturating_sub(voice.refreshed) > self.timeout_samples;
+            if voice.phase == Phase::Sounding && lapsed {
+                Counters::add(&self.counters.lapsed, 1);
+                self.silence(index, false);
+            }
+        }
+        self.seats_used.retain(|index| {
+            let sounds = |voice: usize| self.voices[voice].phase != Phase::Free;
+            let in_use = || self.voices_used.iter().any(|v| self.voices[v].surface == index && sounds(v));
+            self.seats[index].tidy(self.position, in_use, &mut self.to_game);
+            !self.seats[index].is_empty()
+        });
+        self.bodies_used.retain(|index| {
+            self.bodies[index].tidy(self.position, &mut self.to_game);
+            !self.bodies[index].is_empty()
+        });
+        let sounding = self.sounding_count() as u64;
+        let octaves = u64::from(self.governor.octaves_gone()) * sounding;
+        Counters::add(&self.counters.shed, self.groups_shed as u64 + octaves);
+        self.counters.contacts.store(sounding, Relaxed);
+    }
+}
+
+/// A rise from 0 to 1 in `steps` steps, without step or corner.
+fn raised_cosine(steps: usize) -> Box<[f64]> {
+    let at = |step: usize| 0.5 - 0.5 * (std::f64::consts::PI * step as f64 / steps as f64).cos();
+    (0..=steps).map(at).collect()
+}
+
+/// Length of the shortest channel; `usize::MAX` when there is none.
+fn shortest(channels: &[&mut [f32]]) -> usize {
+    channels.iter().map(|channel| channel.len()).min().unwrap_or(usize::MAX)
+}

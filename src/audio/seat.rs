@@ -1,0 +1,240 @@
+//! A surface's place on the audio half, where one surface can follow another without a click.
+//!
+//! A replaced surface is crossfaded, height by height, over [`CHANGE_S`] of absolute samples; the old
+//! one then goes home to be freed. A surface that is removed stays until the contacts on it have faded.
+
+use crate::link::message::Dead;
+use crate::link::ring::Sender;
+use crate::model::event::BodyId;
+use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
+use crate::prepared::stroking::Stroking;
+use crate::prepared::surface::SurfaceSlot;
+
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
+use asperity_texture::change::SurfaceChange;
+use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
+use asperity_texture::height_map::FRICTION;
+
+/// How long one surface takes to become another, s.
+pub(crate) const CHANGE_S: f64 = 0.02;
+
+/// One surface's place.
+#[derive(Default)]
+pub(crate) struct Seat {
+    current: Option<Box<SurfaceSlot>>,
+    previous: Option<Box<SurfaceSlot>>,
+    /// The newest replacement that came while another was still fading in.
+    waiting: Option<Box<SurfaceSlot>>,
+    change_began: u64,
+    change_samples: f64,
+    removed: bool,
+}
+
+/// The micro-noise along a path.
+pub(crate) struct Noise<'a> {
+    pub(crate) field: &'a FractalNoise,
+    /// As the path's, or wider where octaves are left out.
+    pub(crate) footprint_m: &'a [f64],
+}
+
+/// What setting a surface means for the contacts on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Change {
+    /// Contacts go on; heights crossfade.
+    Crossfade,
+    /// The new surface has another size, so positions on the old mean nothing: contacts must fade.
+    Restart,
+}
+
+impl Seat {
+    /// The surface that contacts are on.
+    pub(crate) fn current(&self) -> Option<&SurfaceSlot> {
+        self.current.as_deref()
+    }
+
+    /// Puts a surface here. A replacement that is itself replaced before its turn goes home at once;
+    /// the caller makes sure that `home` has room for it.
+    pub(crate) fn set(
+        &mut self,
+        surface: Box<SurfaceSlot>,
+        position: u64,
+        sample_rate_hz: f64,
+        home: &mut Sender<Dead>,
+    ) -> Change {
+        self.removed = false;
+        self.change_samples = CHANGE_S * sample_rate_hz;
+        let Some(current) = &self.current else {
+            self.current = Some(surface);
+            return Change::Crossfade;
+        };
+        let same_size = current.surface.width_m == surface.surface.width_m
+            && current.surface.height_m == surface.surface.height_m;
+        if self.previous.is_some() {
+            if let Some(superseded) = self.waiting.replace(surface) {
+                // There is room: see above. Were there none, the surface would be freed here.
+                let _ = home.send(Dead::Surface(superseded));
+            }
+        } else {
+            self.start_change(surface, position);
+        }
+        if same_size { Change::Crossfade } else { Change::Restart }
+    }
+
+    /// No contact may begin here any more.
+    pub(crate) fn remove(&mut self) {
+        self.removed = true;
+    }
+
+    /// Whether contacts may begin here.
+    pub(crate) fn is_open(&self) -> bool {
+        self.current.is_some() && !self.removed
+    }
+
+    /// Whether no surface is here, none fades and none waits.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.current.is_none() && self.previous.is_none() && self.waiting.is_none()
+    }
+
+    fn start_change(&mut self, surface: Box<SurfaceSlot>, position: u64) {
+        self.previous = self.current.replace(surface);
+        self.change_began = position;
+    }
+
+    /// Sends home what nobody needs any more; called on the absolute sample grid.
+    pub(crate) fn tidy(&mut self, position: u64, in_use: impl Fn() -> bool, home: &mut Sender<Dead>) {
+        let faded = (position.saturating_sub(self.change_began)) as f64 >= self.change_samples;
+        if faded
+            && self.previous.is_some()
+            && retire(&mut self.previous, home)
+            && let Some(next) = self.waiting.take()
+        {
+            self.start_change(next, position);
+        }
+        if self.removed && self.current.is_some() && !in_use() {
+            retire(&mut self.waiting, home);
+            retire(&mut self.previous, home);
+            retire(&mut self.current, home);
+        }
+    }
+
+    /// Heights, slopes and roughness along a path, with the micro-noise.
+    pub(crate) fn sample(
+        &mut self,
+        path: &PathBlock<'_>,
+        noise: &Noise<'_>,
+        out: &mut SurfaceBlock,
+        rough: &mut SurfaceBlock,
+    ) {
+        let Some(current) = &mut self.current else { return };
+        current.sample(path, noise, out, rough);
+        let Some(previous) = &mut self.previous else { return };
+        let mut old = SurfaceBlock::default();
+        previous.sample(path, noise, &mut old, rough);
+        for i in 0..path.len() {
+            let age = (path.first_sample + i as u64).saturating_sub(self.change_began) as f64;
+            let weight = smoothstep((age / self.change_samples).min(1.0));
+            let blend = |new: &mut f64, old: f64| *new = old + weight * (*new - old);
+            blend(&mut out.height_m[i], old.height_m[i]);
+            blend(&mut out.gradient[i][0], old.gradient[i][0]);
+            blend(&mut out.gradient[i][1], old.gradient[i][1]);
+            blend(&mut out.roughness[i], old.roughness[i]);
+            blend(&mut out.friction[i], old.friction[i]);
+            blend(&mut out.compliance_m_n[i], old.compliance_m_n[i]);
+        }
+    }
+
+    /// Strokes excite `body` in another way from now on.
+    pub(crate) fn body_changed(&mut self, body: BodyId, stroking: &Stroking) {
+        for slot in [&mut self.current, &mut self.waiting].into_iter().flatten() {
+            if slot.surface.body == Some(body) {
+                slot.stroking = *stroking;
+            }
+        }
+    }
+
+    /// Changes parameters of the source; tells whether it took the change.
+    pub(crate) fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+        self.source().is_some_and(|source| source.change(change, sample))
+    }
+
+    /// What heights come from.
+    pub(crate) fn source(&mut self) -> Option<&mut (dyn HeightField + '_)> {
+        match &mut self.current {
+            Some(slot) => Some(&mut *slot.surface.source),
+            None => None,
+        }
+    }
+
+    /// Tells the surface that a contact begins.
+    pub(crate) fn land(&mut self, touch: &Touch) {
+        if let Some(slot) = &mut self.current {
+            slot.surface.source.land(touch);
+        }
+    }
+
+    /// Tells the surface how it is touched.
+    pub(crate) fn react(&mut self, touch: &Touch) -> Reaction {
+        self.current.as_mut().map_or_else(Reaction::default, |slot| slot.surface.source.react(touch))
+    }
+}
+
+fn retire(seat: &mut Option<Box<SurfaceSlot>>, home: &mut Sender<Dead>) -> bool {
+    match seat.take().map(|surface| home.send(Dead::Surface(surface))) {
+        None | Some(Ok(())) => true,
+        Some(Err(Dead::Surface(surface))) => {
+            *seat = Some(surface);
+            false
+        }
+        Some(Err(Dead::Body(_))) => false,
+    }
+}
+
+/// 0 → 1 with no slope and no curvature at either end.
+fn smoothstep(x: f64) -> f64 {
+    x * x * x * (10.0 + x * (6.0 * x - 15.0))
+}
+
+impl SurfaceSlot {
+    fn sample(
+        &mut self,
+        path: &PathBlock<'_>,
+        noise: &Noise<'_>,
+        out: &mut SurfaceBlock,
+        rough: &mut SurfaceBlock,
+    ) {
+        let n = path.len();
+        let surface = &mut self.surface;
+        // What a source does not know stays as the surface says.
+        out.friction[..n].fill(FRICTION);
+        out.roughness[..n].fill(DEFAULT_ROUGHNESS);
+        out.compliance_m_n[..n].fill(0.0);
+        surface.source.sample(path, out);
+        match &mut surface.roughness {
+            Roughness::FromSource => {}
+            Roughness::Constant(r) => out.roughness[..n].fill(*r),
+            Roughness::Map(map) => {
+                map.sample(path, rough);
+                for (r, mapped) in out.roughness[..n].iter_mut().zip(&rough.height_m) {
+                    *r = mapped.clamp(0.0, 1.0);
+                }
+            }
+        }
+        if let Some(friction) = surface.friction {
+            out.friction[..n].fill(friction);
+        }
+        if surface.micro_relief_m > 0.0 {
+            let mut local_power_m2 = [0.0; MAX_BLOCK];
+            if self.overlay.minds_relief() {
+                surface.source.add_local_power(path.position_m, &mut local_power_m2[..n]);
+            }
+            self.overlay.add(
+                noise.field,
+                &NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m },
+                &out.roughness[..n],
+                surface.micro_relief_m,
+                &local_power_m2[..n],
+                &mut out.height_m[..n],
+            );
+        }
+    }
+}

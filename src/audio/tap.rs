@@ -1,0 +1,51 @@
+//! A view into every contact while it is rendered: traces, force output, tests.
+//!
+//! A tap runs on the audio half. One that is used live must not allocate, lock or wait.
+
+use crate::model::event::ContactId;
+
+/// One contact during up to [`MAX_BLOCK`](asperity_texture::height_field::MAX_BLOCK) consecutive
+/// samples; all slices are equally long and describe the same instants.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactBlock<'a> {
+    /// Absolute index of the first sample.
+    pub first_sample: u64,
+    /// The contact.
+    pub contact: ContactId,
+    /// Smoothed path on the surface, metres.
+    pub position_m: &'a [[f64; 2]],
+    /// Texture coordinates of the path.
+    pub uv: &'a [[f64; 2]],
+    /// Tangential velocity, m/s.
+    pub velocity_m_s: &'a [[f64; 2]],
+    /// The micro-contact model, sample by sample.
+    pub contact_samples: &'a [asperity_dsp::micro_contact::ContactSample],
+    /// Momentum sent to the body at each sample, N·s.
+    pub impulse_n_s: &'a [f64],
+    /// 3-D force on the finger, N: along u, v and out of the surface.
+    pub force_n: &'a [[f64; 3]],
+}
+
+/// Receives what contacts do.
+pub trait Tap {
+    /// Whether blocks are to be shown at all; a tap that says no costs nothing.
+    fn is_watching(&self) -> bool {
+        true
+    }
+
+    /// Called once for each contact and stretch of samples, in order of time.
+    fn contact(&mut self, block: &ContactBlock<'_>);
+}
+
+/// Looks at nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoTap;
+
+impl Tap for NoTap {
+    fn is_watching(&self) -> bool {
+        false
+    }
+
+    #[inline]
+    fn contact(&mut self, _block: &ContactBlock<'_>) {}
+}

@@ -1,0 +1,52 @@
+//! From settings to a running engine: designs what is fixed, makes all memory, ties the two halves together.
+
+use crate::audio::renderer::Renderer;
+use crate::files::contact_log::Names;
+use crate::game::clock::Clock;
+use crate::game::scene::Scene;
+use crate::link::ring;
+use crate::link::stats::Counters;
+use crate::model::config::Config;
+use crate::model::error::ConfigError;
+use asperity_dsp::micro_contact::MicroContact;
+use std::sync::Arc;
+
+/// An engine, built: a half for each thread, and what its parts are called.
+///
+/// ```
+/// use asperity::{Config, Engine};
+///
+/// let Engine { scene, mut renderer, .. } = Config::default().build()?;
+/// let (mut haptic, mut audio) = ([0.0; 64], [0.0; 64]);
+/// renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+/// assert_eq!(scene.stats().position, 64);
+/// # Ok::<(), asperity::ConfigError>(())
+/// ```
+#[non_exhaustive]
+pub struct Engine {
+    /// The game thread's half: takes resources and events.
+    pub scene: Scene,
+    /// The audio thread's half: renders.
+    pub renderer: Renderer,
+    /// Names of bodies, surfaces and strikers, where the engine was built from a file; empty otherwise.
+    pub names: Names,
+}
+
+impl Config {
+    /// Builds the two halves: [`Scene`] for the game thread, [`Renderer`] for the audio thread.
+    ///
+    /// # Errors
+    /// When a setting is outside its range; the message names the field.
+    pub fn build(self) -> Result<Engine, ConfigError> {
+        self.check()?;
+        let micro_contact = MicroContact::new(&self.probe, self.integrator, self.inner_rate_hz())?;
+        let counters = Arc::new(Counters::default());
+        let (to_audio, from_game) = ring::channel(self.queue_capacity);
+        // Every resource that can be alive, and as many that are being replaced.
+        let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies));
+        let renderer = Renderer::new(&self, micro_contact, from_game, to_game, counters.clone())?;
+        let clock = Clock::new(self.clock, self.inner_rate_hz());
+        let scene = Scene::new(self, clock, to_audio, from_audio, counters);
+        Ok(Engine { scene, renderer, names: Names::default() })
+    }
+}

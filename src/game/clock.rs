@@ -1,0 +1,209 @@
+//! Game seconds → absolute sample index.
+//!
+//! Offline, a stamp `t` is the point t · rate between two samples. Live, the game clock and the audio clock are two
+//! clocks: the first event is tied to the sample that is rendered next, and later stamps keep their
+//! distance to it, because jitter of arrival must not become jitter of motion (using arrival times
+//! raises the velocity ripple from 3.4 % to 12 %). Within a device block the audio position stands
+//! still while game time goes on, so the mapping follows the *smallest* lead: a stamp that comes up to
+//! 2 ms after its sample moves the mapping at once, one that comes later keeps its stamp (the path reckons on from
+//! it) and moves the mapping a little, and early stamps let it creep back. What else games do with their time is in
+//! the table of the module `live`.
+
+mod live;
+
+use crate::model::clock_mode::ClockMode;
+use crate::model::stamp::Stamp;
+use live::{Followed, Live};
+
+/// A game time mapped to the audio.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stamped {
+    pub(crate) stamp: Stamp,
+    /// The game's clock was tied to the audio's anew.
+    pub(crate) jumped: bool,
+    /// The game was found to run at another pace.
+    pub(crate) repaced: bool,
+}
+
+/// The mapping's memory.
+#[derive(Debug, Clone)]
+pub(crate) struct Clock {
+    sample_rate_hz: f64,
+    mapping: Mapping,
+    last: Stamp,
+}
+
+#[derive(Debug, Clone)]
+enum Mapping {
+    /// Sample of game time 0; none = the next stamp holds at the next sample.
+    Exact(Option<f64>),
+    Live(Live),
+}
+
+impl Clock {
+    pub(crate) fn new(mode: ClockMode, sample_rate_hz: f64) -> Self {
+        let mapping = match mode {
+            ClockMode::Exact => Mapping::Exact(Some(0.0)),
+            ClockMode::Live { max_lead_s } => Mapping::Live(Live::new(max_lead_s, sample_rate_hz)),
+        };
+        Self { sample_rate_hz, mapping, last: Stamp::default() }
+    }
+
+    /// Whether game time may run backwards.
+    pub(crate) fn is_live(&self) -> bool {
+        matches!(self.mapping, Mapping::Live(_))
+    }
+
+    /// Game seconds a second of audio: 1 unless a live game runs in slow motion or fast.
+    pub(crate) fn pace(&self) -> f64 {
+        match &self.mapping {
+            Mapping::Exact(_) => 1.0,
+            Mapping::Live(live) => live.pace(),
+        }
+    }
+
+    /// From now on: the next stamp holds at the next sample, `position`.
+    pub(crate) fn reset(&mut self, position: u64) {
+        match &mut self.mapping {
+            Mapping::Exact(zero) => *zero = None,
+            Mapping::Live(live) => live.untie(),
+        }
+        self.last = Stamp::whole(position);
+    }
+
+    /// Where a game time lies, never before an earlier one; `position` is the next sample that the
+    /// audio half will render.
+    pub(crate) fn stamp(&mut self, time_s: f64, position: u64) -> Stamped {
+        let target = time_s * self.sample_rate_hz;
+        let Followed { sample, jumped, repaced } = match &mut self.mapping {
+            Mapping::Exact(zero) => {
+                let zero = *zero.get_or_insert(position as f64 - target);
+                Followed { sample: target + zero, jumped: false, repaced: false }
+            }
+            Mapping::Live(live) => live.follow(time_s, position as f64),
+        };
+        if jumped {
+            // Stamps already sent may lie ahead of the audio; events must stay in order.
+            self.last = self.last.min(Stamp::at(sample));
+        }
+        self.last = Stamp::at(sample).max(self.last);
+        Stamped { stamp: self.last, jumped, repaced }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn offline_a_stamp_is_its_own_sample() {
+        let mut clock = Clock::new(ClockMode::Exact, 44_100.0);
+        for (t, sample, fraction) in [(0.0, 0, 0.0), (0.0167, 736, 120.0 / 256.0), (1.0, 44_100, 0.0)] {
+            let stamp = clock.stamp(t, 0).stamp;
+            assert_eq!((stamp.sample(), stamp.fraction()), (sample, fraction));
+        }
+    }
+
+    #[test]
+    fn a_stamp_written_as_a_time_is_read_back_as_the_same_stamp() {
+        let mut rng = asperity_dsp::rng::Rng::new(5);
+        for rate in [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0] {
+            for _ in 0..10_000 {
+                let stamp = Stamp::at(1e9 * rng.uniform());
+                assert_eq!(Clock::new(ClockMode::Exact, rate).stamp(stamp.samples() / rate, 0).stamp, stamp);
+            }
+        }
+    }
+
+    #[test]
+    fn live_the_first_event_holds_at_the_next_sample() {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        assert_eq!(
+            clock.stamp(1234.5, 960),
+            Stamped { stamp: Stamp::at(960.0), jumped: false, repaced: false }
+        );
+    }
+
+    #[test]
+    fn live_stamps_keep_their_distance_although_they_arrive_in_bursts() {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        let first = clock.stamp(10.0, 0).stamp.sample();
+        // Two physics steps reported together, half a step late.
+        let second = clock.stamp(10.0 + 1.0 / 60.0, 1200).stamp.sample();
+        let third = clock.stamp(10.0 + 2.0 / 60.0, 1200).stamp.sample();
+        assert!((second - first).abs_diff(800) <= 1);
+        assert!((third - second).abs_diff(800) <= 21);
+    }
+
+    #[test]
+    fn live_a_clock_that_drifts_by_200_ppm_is_followed() {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        let mut worst = 0.0f64;
+        for step in 0..20_000u64 {
+            let game_s = step as f64 / 60.0;
+            let position = (game_s * 48_000.0 * 1.0002) as u64;
+            let lead = clock.stamp(game_s, position).stamp.samples() - position as f64;
+            worst = worst.max(lead.abs());
+        }
+        assert!(worst < 48.0, "{worst} samples");
+    }
+
+    /// Stamps of 60 game ticks a game second at a pace, reported at 60 frames a second in blocks of 256 samples.
+    fn leads_at_pace(pace: f64, frames: u64) -> (Clock, Vec<f64>, usize) {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        let mut jumps = 0;
+        let leads = (0..frames)
+            .map(|frame| {
+                let position = frame * 800 / 256 * 256;
+                let stamped = clock.stamp(7.0 + pace * frame as f64 / 60.0, position);
+                jumps += usize::from(stamped.jumped);
+                stamped.stamp.samples() - position as f64
+            })
+            .collect();
+        (clock, leads, jumps)
+    }
+
+    #[test]
+    fn live_slow_motion_and_fast_motion_are_followed_within_two_seconds() {
+        for pace in [0.25, 0.5, 1.0, 2.0, 3.0] {
+            let (clock, leads, jumps) = leads_at_pace(pace, 600);
+            assert!((clock.pace() / pace - 1.0).abs() < 0.06, "{pace}: {}", clock.pace());
+            let late = leads[150..].iter().fold(0.0f64, |worst, lead| worst.max(lead.abs()));
+            assert!(late < 0.06 * 48_000.0, "{pace}: {late} samples off");
+            assert!(jumps <= 12, "{pace}: {jumps} jumps");
+        }
+    }
+
+    #[test]
+    fn live_eight_ticks_at_once_keep_their_distance_and_tie_nothing_anew() {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        let mut last = 0.0;
+        for tick in 0..800u64 {
+            let position = (tick / 8 * 8 * 800) / 256 * 256;
+            let stamped = clock.stamp(tick as f64 / 60.0, position);
+            let now = stamped.stamp.samples();
+            assert!(!stamped.jumped && !stamped.repaced, "tick {tick}");
+            assert!(tick == 0 || (now - last - 800.0).abs() < 260.0, "tick {tick}: {}", now - last);
+            last = now;
+        }
+    }
+
+    #[test]
+    fn after_a_reset_the_next_stamp_holds_at_the_next_sample_and_the_rest_exactly() {
+        let mut clock = Clock::new(ClockMode::Exact, 48_000.0);
+        clock.stamp(100.0, 0);
+        clock.reset(9_600);
+        assert_eq!(clock.stamp(0.0, 9_600).stamp, Stamp::whole(9_600));
+        assert_eq!(clock.stamp(0.5, 9_728).stamp, Stamp::whole(33_600));
+    }
+
+    #[test]
+    fn live_a_game_that_stalls_or_skips_is_tied_anew_and_stays_in_order() {
+        let mut clock = Clock::new(ClockMode::LIVE, 48_000.0);
+        clock.stamp(0.0, 0);
+        let tied = |sample| Stamped { stamp: Stamp::at(sample), jumped: true, repaced: false };
+        assert_eq!(clock.stamp(0.01, 96_000), tied(96_000.0));
+        assert_eq!(clock.stamp(500.0, 96_064), tied(96_064.0));
+        assert_eq!(clock.stamp(0.0, 96_128), tied(96_128.0));
+    }
+}

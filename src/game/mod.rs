@@ -1,0 +1,6 @@
+//! The game thread's half: takes resources and reports, checks them, stamps them, sends them.
+
+pub(crate) mod clock;
+pub(crate) mod recording;
+pub(crate) mod scene;
+pub(crate) mod silence;

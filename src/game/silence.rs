@@ -1,0 +1,248 @@
+//! Why nothing is heard or felt: what the game half knows of it, in words.
+//!
+//! Nothing that is refused, lost or left out stops a game, so a mistake of its own shows as silence.
+//! [`Scene::why_silent`](crate::Scene::why_silent) answers with what speaks against sound, the likeliest
+//! reason first. It reads counters only and can be asked at any time, of a scene that sounds as well.
+
+use crate::link::stats::Stats;
+use crate::model::config::Config;
+use crate::model::error::Refusal;
+use crate::model::event::{ContactEvent, ContactSample};
+use crate::model::stamp::Stamp;
+use crate::prepared::body::LONGEST_CONTACT_S;
+
+/// Events this far ahead of what is rendered wait longer than any clock's window, s.
+const FAR_AHEAD_S: f64 = 0.25;
+
+/// A reason why less is heard or felt than was reported. Its text says what would be right.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SilentBecause {
+    /// The audio half has rendered nothing yet.
+    #[error("nothing was rendered; call Renderer::render from the audio callback")]
+    NothingRendered,
+    /// No event was accepted, and none refused.
+    #[error("no event was reported; report a \"begin\" and moves, or an \"impact\"")]
+    NothingReported,
+    /// Events were handed back for what they say.
+    #[error("{count} of {of} events were refused, the last because of {last}")]
+    Refused {
+        /// How many.
+        count: u64,
+        /// Of how many reported ones.
+        of: u64,
+        /// Why the last one was.
+        last: Refusal,
+    },
+    /// Events found no room in the queue.
+    #[error(
+        "{count} events were dropped because the queue was full; report less often, render more often, \
+         or raise Config::queue_capacity"
+    )]
+    Dropped {
+        /// How many.
+        count: u64,
+    },
+    /// The game's clock runs ahead of the audio's.
+    #[error(
+        "the newest event is stamped {ahead_s:.1} s ahead of what is rendered, and waits; stamp events with the \
+         time that has been rendered, or let the clock follow the device (Config::clock = ClockMode::LIVE)"
+    )]
+    AheadOfAudio {
+        /// By how much, s.
+        ahead_s: f64,
+    },
+    /// Events spoke of contacts that do not exist.
+    #[error(
+        "{count} events named a contact that had not begun, whose surface is gone, or whose voice was stolen; \
+         report its \"begin\" first, under the same number"
+    )]
+    Orphaned {
+        /// How many.
+        count: u64,
+    },
+    /// Contacts faded because their moves stayed away.
+    #[error(
+        "{count} contacts faded because nothing was heard of them for {timeout_s} s; report a move of every \
+         contact more often than that, or raise Config::contact_timeout_s"
+    )]
+    Lapsed {
+        /// How many times.
+        count: u64,
+        /// [`Config::contact_timeout_s`].
+        timeout_s: f64,
+    },
+    /// Contacts gave their voices to others.
+    #[error(
+        "{count} contacts were silenced because more than {limit} sounded at once; report an \"end\" for those that \
+         are over, or raise Config::max_contacts"
+    )]
+    Stolen {
+        /// How many times.
+        count: u64,
+        /// [`Config::max_contacts`].
+        limit: usize,
+    },
+    /// Numbers went bad on the audio half.
+    #[error(
+        "{count} samples or changes were quarantined: heights more than 20 m from zero, forces beyond 1e4 N, or a change of \
+         another kind of surface; check relief_m, normal_force_n, and what change_surface was given"
+    )]
+    Quarantined {
+        /// How many.
+        count: u64,
+    },
+    /// Contacts lasted longer than the engine plays.
+    #[error(
+        "{count} impacts or micro-collisions would outlast the longest contact that is played ({longest_s:.2} s, a \
+         micro-collision 0.04 s) and were shortened; let what strikes or what is struck be stiffer, or lighter"
+    )]
+    Shortened {
+        /// How many.
+        count: u64,
+        /// Longest contact of an impact, s.
+        longest_s: f64,
+    },
+    /// Work was left out because blocks were late.
+    #[error(
+        "{count} pieces of sound were left out because blocks ran late; render larger blocks or fewer contacts, \
+         build with optimisation, or set Config::shed_load = false"
+    )]
+    Shed {
+        /// How many, as [`Stats::shed`] counts.
+        count: u64,
+    },
+    /// The audio gain is zero.
+    #[error("the audio gain is 0; raise gain under [audio], AudioSettings::gain")]
+    AudioGainZero,
+    /// Contacts slide on surfaces that ring nothing.
+    #[error(
+        "no contact touched a surface that rings a body; give the surface body = \"…\", Surface::on(body), and the \
+         body modes"
+    )]
+    NothingRings,
+    /// No contact presses.
+    #[error("no contact was pressed onto its surface; report a normal_force_n above 0")]
+    NeverPressed,
+    /// No contact moves.
+    #[error(
+        "no contact moved; a finger that rests is neither heard nor felt: let uv change from move to move"
+    )]
+    NeverMoved,
+}
+
+/// What the game half remembers of its reports in order to answer.
+#[derive(Debug, Default)]
+pub(crate) struct Reported {
+    accepted: u64,
+    last_refusal: Option<Refusal>,
+    newest: Stamp,
+    contacts: u64,
+    impacts: u64,
+    /// Contacts and impacts on something that has modes.
+    ringing: u64,
+    pressed: bool,
+    landed: bool,
+    first_uv: Option<[f64; 2]>,
+    moved: bool,
+}
+
+impl Reported {
+    /// An event was sent; `rings` if what it touches has modes.
+    pub(crate) fn accept(&mut self, event: &ContactEvent, stamp: Stamp, rings: bool) {
+        self.accepted += 1;
+        self.newest = self.newest.max(stamp);
+        self.ringing += u64::from(rings);
+        match event {
+            ContactEvent::Begin { sample, .. } => {
+                self.contacts += 1;
+                self.landed |= sample.closing_m_s > 0.0;
+                self.touch(sample);
+            }
+            ContactEvent::Moved { sample, .. } => self.touch(sample),
+            ContactEvent::Impact(_) => self.impacts += 1,
+            ContactEvent::End { .. } => {}
+        }
+    }
+
+    fn touch(&mut self, sample: &ContactSample) {
+        self.pressed |= sample.normal_force_n > 0.0;
+        let first_uv = *self.first_uv.get_or_insert(sample.uv);
+        self.moved |= sample.uv != first_uv;
+    }
+
+    /// An event was handed back.
+    pub(crate) fn refuse(&mut self, reason: Refusal) {
+        if reason != Refusal::QueueFull {
+            self.last_refusal = Some(reason);
+        }
+    }
+
+    /// What speaks against sound, the likeliest reason first.
+    pub(crate) fn why_silent(&self, stats: &Stats, config: &Config) -> Vec<SilentBecause> {
+        let mut because = self.lost(stats, config);
+        if self.accepted == 0 && because.is_empty() {
+            because.push(SilentBecause::NothingReported);
+        }
+        if stats.position == 0 {
+            because.insert(0, SilentBecause::NothingRendered);
+        }
+        let mut say = |holds: bool, reason| {
+            if holds {
+                because.push(reason);
+            }
+        };
+        say(config.audio.gain == 0.0, SilentBecause::AudioGainZero);
+        say(self.contacts + self.impacts > 0 && self.ringing == 0, SilentBecause::NothingRings);
+        let strokes_only = self.contacts > 0 && self.impacts == 0;
+        say(strokes_only && !self.pressed, SilentBecause::NeverPressed);
+        say(strokes_only && !self.moved && !self.landed, SilentBecause::NeverMoved);
+        because
+    }
+
+    /// What was reported and did not arrive.
+    fn lost(&self, stats: &Stats, config: &Config) -> Vec<SilentBecause> {
+        let mut because = Vec::new();
+        if let Some(last) = self.last_refusal {
+            let of = self.accepted + stats.refused + stats.dropped;
+            because.push(SilentBecause::Refused { count: stats.refused, of, last });
+        }
+        let ahead_s =
+            self.newest.samples() / config.inner_rate_hz() - stats.position as f64 / config.sample_rate_hz;
+        if ahead_s > FAR_AHEAD_S {
+            because.push(SilentBecause::AheadOfAudio { ahead_s });
+        }
+        let counted = [
+            SilentBecause::Dropped { count: stats.dropped },
+            SilentBecause::Orphaned { count: stats.orphaned },
+            SilentBecause::Lapsed { count: stats.lapsed, timeout_s: config.contact_timeout_s },
+            SilentBecause::Stolen { count: stats.stolen, limit: config.max_contacts },
+            SilentBecause::Quarantined { count: stats.quarantined },
+            SilentBecause::Shortened {
+                count: stats.shortened + stats.shortened_collisions,
+                longest_s: LONGEST_CONTACT_S,
+            },
+            SilentBecause::Shed { count: stats.shed },
+        ];
+        because.extend(counted.into_iter().filter(|reason| reason.count() > 0));
+        because
+    }
+}
+
+impl SilentBecause {
+    /// How often it happened; 0 for what is a state.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        match self {
+            Self::Refused { count, .. }
+            | Self::Dropped { count }
+            | Self::Orphaned { count }
+            | Self::Lapsed { count, .. }
+            | Self::Stolen { count, .. }
+            | Self::Quarantined { count }
+            | Self::Shortened { count, .. }
+            | Self::Shed { count } => *count,
+            _ => 0,
+        }
+    }
+}

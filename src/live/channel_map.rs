@@ -1,0 +1,218 @@
+//! Which device channel carries which signal, and interleaving.
+
+use crate::audio::renderer::Renderer;
+use crate::link::ring::Sender;
+
+/// Longest stretch rendered at once, frames; longer callbacks are split, so no memory depends on what a
+/// device promised about its block size.
+const CHUNK_FRAMES: usize = 512;
+
+/// Device channels of the audio bus and of each actuator, counted from 0.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ChannelMap {
+    /// Channels that carry the mono audio bus.
+    pub audio: Vec<usize>,
+    /// Channel of each actuator, in order.
+    pub haptic: Vec<usize>,
+}
+
+/// Why a channel map was refused.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("channels: \"{text}\": {problem}; give for example audio=0,1 haptic=2,3, or dualsense")]
+pub struct ChannelMapError {
+    text: String,
+    problem: &'static str,
+}
+
+impl ChannelMap {
+    /// The four USB channels of a `DualSense` controller at 48 kHz: speaker left and right, actuator left
+    /// and right. Source: user reports of the USB descriptors; over Bluetooth there is no such device.
+    #[must_use]
+    pub fn dualsense() -> Self {
+        Self { audio: vec![0, 1], haptic: vec![2, 3] }
+    }
+
+    /// Audio on the first two channels, the actuators on those that follow.
+    #[must_use]
+    pub fn stereo_then_haptics(actuators: usize) -> Self {
+        Self { audio: vec![0, 1], haptic: (2..2 + actuators).collect() }
+    }
+
+    /// Reads `audio=0,1 haptic=2,3` (either part may be missing) or `dualsense`.
+    ///
+    /// # Errors
+    /// When a part is unknown, a channel is no number below 256, or two signals share a channel.
+    pub fn parse(text: &str) -> Result<Self, ChannelMapError> {
+        let refuse = |problem| ChannelMapError { text: text.into(), problem };
+        if text.trim() == "dualsense" {
+            return Ok(Self::dualsense());
+        }
+        let mut map = Self { audio: Vec::new(), haptic: Vec::new() };
+        for part in text.split_whitespace() {
+            let (name, list) = part.split_once('=').ok_or_else(|| refuse("a part has no \"=\""))?;
+            let channels = match name {
+                "audio" => &mut map.audio,
+                "haptic" => &mut map.haptic,
+                _ => return Err(refuse("only audio and haptic can be mapped")),
+            };
+            for channel in list.split(',') {
+                let channel: u8 =
+                    channel.parse().map_err(|_| refuse("a channel is no number from 0 to 255"))?;
+                channels.push(usize::from(channel));
+            }
+        }
+        let mut all: Vec<_> = map.audio.iter().chain(&map.haptic).collect();
+        if all.is_empty() {
+            return Err(refuse("nothing is mapped"));
+        }
+        all.sort_unstable();
+        if all.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err(refuse("two signals share a channel"));
+        }
+        Ok(map)
+    }
+
+    /// How many channels a device must have.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.audio.iter().chain(&self.haptic).max().map_or(0, |last| last + 1)
+    }
+}
+
+/// A renderer behind an interleaved callback of any size. Nothing in [`fill`](Self::fill) allocates.
+pub struct Interleaver {
+    renderer: Renderer,
+    map: ChannelMap,
+    audio: Vec<f32>,
+    haptic: Vec<Vec<f32>>,
+    /// Rings that take the actuators when they play on a device of their own.
+    tee: Vec<Sender<f32>>,
+}
+
+impl Interleaver {
+    /// Puts a renderer behind a map; actuators beyond the map are rendered and not heard.
+    #[must_use]
+    pub fn new(renderer: Renderer, map: ChannelMap) -> Self {
+        let haptic = vec![vec![0.0; CHUNK_FRAMES]; renderer.haptic_channels()];
+        Self { renderer, map, audio: vec![0.0; CHUNK_FRAMES], haptic, tee: Vec::new() }
+    }
+
+    /// Fills an interleaved buffer of `channels` channels; what no signal is mapped to is silent.
+    pub fn fill(&mut self, out: &mut [f32], channels: usize) {
+        out.fill(0.0);
+        if channels == 0 {
+            return;
+        }
+        for chunk in out.chunks_mut(CHUNK_FRAMES * channels) {
+            let frames = chunk.len() / channels;
+            self.render(frames);
+            let mut put = |channel: usize, signal: &[f32]| {
+                if channel < channels {
+                    for (frame, x) in chunk.chunks_exact_mut(channels).zip(signal) {
+                        frame[channel] = *x;
+                    }
+                }
+            };
+            for channel in &self.map.audio {
+                put(*channel, &self.audio);
+            }
+            for (channel, signal) in self.map.haptic.iter().zip(&self.haptic) {
+                put(*channel, signal);
+            }
+            for (ring, signal) in self.tee.iter_mut().zip(&self.haptic) {
+                for x in &signal[..frames] {
+                    // A full ring means that the other device stands still; the sample is lost.
+                    let _ = ring.send(*x);
+                }
+            }
+        }
+    }
+
+    fn render(&mut self, frames: usize) {
+        // Slices of slices without allocation: actuators are rendered into a fixed array, in groups.
+        let mut haptic: [&mut [f32]; MAX_ACTUATORS] = std::array::from_fn(|_| &mut [][..]);
+        let count = self.haptic.len().min(MAX_ACTUATORS);
+        for (slice, channel) in haptic.iter_mut().zip(&mut self.haptic) {
+            *slice = &mut channel[..frames];
+        }
+        self.renderer.render(&mut haptic[..count], &mut [&mut self.audio[..frames]]);
+    }
+
+    #[cfg(feature = "device")]
+    pub(crate) fn tee_haptics(&mut self, rings: Vec<Sender<f32>>) {
+        self.tee = rings;
+    }
+
+    /// The renderer inside.
+    pub fn renderer(&mut self) -> &mut Renderer {
+        &mut self.renderer
+    }
+
+    /// The map.
+    #[must_use]
+    pub fn map(&self) -> &ChannelMap {
+        &self.map
+    }
+}
+
+/// Most actuators a device can carry.
+const MAX_ACTUATORS: usize = 64;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::config::Config;
+
+    #[test]
+    fn maps_are_read_as_the_command_line_spells_them() {
+        let map = ChannelMap::parse("audio=0,1 haptic=2,3").unwrap();
+        assert_eq!(map, ChannelMap::dualsense());
+        assert_eq!(ChannelMap::parse("dualsense").unwrap(), map);
+        assert_eq!(map.width(), 4);
+        assert_eq!(ChannelMap::parse("haptic=5").unwrap().width(), 6);
+    }
+
+    #[test]
+    fn impossible_maps_are_refused_with_an_example() {
+        for text in ["", "audio", "audio=x", "video=1", "audio=0 haptic=0", "audio=300"] {
+            let message = ChannelMap::parse(text).unwrap_err().to_string();
+            assert!(message.contains("audio=0,1 haptic=2,3"), "{message}");
+        }
+    }
+
+    #[test]
+    fn any_callback_size_gives_the_same_samples() {
+        let fill = |sizes: &[usize]| {
+            let crate::Engine { mut scene, renderer, .. } = Config::default().build().unwrap();
+            let mode = crate::Mode { frequency_hz: 500.0, decay_per_s: 5.0, amplitude: 1.0, phase_rad: 0.0 };
+            let body = scene.add_body(crate::ModalModel::new(vec![mode], 0.01).unwrap()).unwrap();
+            let impact = crate::Impact {
+                body,
+                other: None,
+                speed_m_s: 1.0,
+                mass_kg: 0.01,
+                radius_m: 0.005,
+                striker: crate::Material::STEEL,
+                restitution: 1.0,
+                position: 0,
+            };
+            scene.report(0.01, crate::ContactEvent::Impact(impact)).unwrap();
+            let mut device = Interleaver::new(renderer, ChannelMap::parse("audio=2 haptic=0").unwrap());
+            let mut out = vec![0.0; 3 * 6000];
+            let mut rest = &mut out[..];
+            for size in sizes.iter().cycle() {
+                let (now, later) = rest.split_at_mut((3 * size).min(rest.len()));
+                device.fill(now, 3);
+                rest = later;
+                if rest.is_empty() {
+                    break;
+                }
+            }
+            out
+        };
+        let reference = fill(&[6000]);
+        assert!(reference.chunks(3).any(|frame| frame[2] != 0.0));
+        assert!(reference.chunks(3).all(|frame| frame[1] == 0.0));
+        assert!(fill(&[1, 264, 512, 85, 170, 2]) == reference);
+    }
+}

@@ -1,0 +1,37 @@
+//! A haptic channel: what it plays, how loud, and for which device.
+
+pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
+
+/// One haptic channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActuatorSettings {
+    /// What the channel plays: the pad's displacement (the paper) or its acceleration.
+    pub output: Quantity,
+    /// m or m/s² at sample value 1.0; 1.0 gives SI units.
+    pub full_scale: f64,
+    /// Cutoff of the high-pass that turns pad positions into movement about the mean surface, Hz;
+    /// 0 = off.
+    pub highpass_hz: f64,
+    /// Time from silence to full level after the start, s.
+    pub soft_start_s: f64,
+    /// Device whose frequency response is inverted.
+    pub equalise: Option<DeviceProfile>,
+    /// Device whose excursion and heat are kept within limits.
+    pub limit: Option<DeviceProfile>,
+    /// Whether a peak limiter keeps the channel within ±1, whatever the device.
+    pub limit_peaks: bool,
+}
+
+impl Default for ActuatorSettings {
+    fn default() -> Self {
+        Self {
+            output: Quantity::Displacement,
+            full_scale: 1e-4,
+            highpass_hz: 10.0,
+            soft_start_s: 0.0,
+            equalise: None,
+            limit: None,
+            limit_peaks: false,
+        }
+    }
+}

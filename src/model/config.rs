@@ -1,0 +1,114 @@
+//! Everything that is fixed when an engine is built: rates, capacities, model choices, channels.
+
+use crate::model::actuator::ActuatorSettings;
+use crate::model::bus::AudioSettings;
+use crate::model::clock_mode::ClockMode;
+use crate::model::inner_rate::InnerRate;
+use asperity_dsp::DesignError;
+use asperity_dsp::limits::output as limits;
+use asperity_dsp::micro_contact::{Integrator, Probe};
+use asperity_dsp::modal_bank::Culling;
+use asperity_dsp::trajectory::PathMode;
+
+/// How an engine is built. `Config::default()` is one finger, one actuator, 44.1 kHz, rendered offline;
+/// [`Config::live`] is the same for a game that runs now.
+#[derive(Debug, Clone)]
+pub struct Config {
+    /// Rate of every output, Hz; 8–384 kHz.
+    pub sample_rate_hz: f64,
+    /// Seed of the micro-noise: the same seed feels the same at the same place.
+    pub seed: u64,
+    /// How sparse contact positions become a path.
+    pub path: PathMode,
+    /// Cutoff of the path's Butterworth filter, Hz (Hasti §III-C: 30 Hz).
+    pub path_cutoff_hz: f64,
+    /// How the micro-contact model is integrated.
+    pub integrator: Integrator,
+    /// The fingertip, or another probe.
+    pub probe: Probe,
+    /// Haptic channels, in order.
+    pub actuators: Vec<ActuatorSettings>,
+    /// The audio bus.
+    pub audio: AudioSettings,
+    /// Most contacts that sound at once; more steal the least important.
+    pub max_contacts: usize,
+    /// Most surfaces at once.
+    pub max_surfaces: usize,
+    /// Most bodies at once.
+    pub max_bodies: usize,
+    /// Events that may wait between the threads.
+    pub queue_capacity: usize,
+    /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick.
+    pub contact_timeout_s: f64,
+    /// How game time becomes samples: exactly, as an offline render wants it, unless told otherwise. A game that
+    /// runs now begins with [`Config::live`].
+    pub clock: ClockMode,
+    /// Modes that are left out when a body is added, because nobody can hear them; `None` keeps all. The
+    /// default costs −100 dB of error or less; [`Culling::default`] goes further, as far as the ear does.
+    pub culling: Option<Culling>,
+    /// Whether the audio half leaves out the least audible work while blocks run late, as told by
+    /// [`Renderer::report_load`]. Where nobody reports a load, nothing is ever left out.
+    pub shed_load: bool,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            sample_rate_hz: 44_100.0,
+            seed: 1,
+            path: PathMode::default(),
+            path_cutoff_hz: 30.0,
+            integrator: Integrator::default(),
+            probe: Probe::default(),
+            actuators: vec![ActuatorSettings::default()],
+            audio: AudioSettings::default(),
+            max_contacts: 64,
+            max_surfaces: 256,
+            max_bodies: 256,
+            queue_capacity: 4096,
+            contact_timeout_s: 0.25,
+            clock: ClockMode::default(),
+            culling: Some(Culling::NEGLIGIBLE),
+            shed_load: true,
+        }
+    }
+}
+
+impl Config {
+    /// What a game wants that runs now: the device's rate, and a clock that follows the game through pauses, restarts,
+    /// slow motion and bursts of ticks ([`ClockMode::LIVE`]). The default's exact clock is for offline renders.
+    #[must_use]
+    pub fn live(sample_rate_hz: f64) -> Self {
+        Self { sample_rate_hz, clock: ClockMode::LIVE, ..Self::default() }
+    }
+
+    /// Rate at which the engine runs inside, Hz: the smallest multiple of [`Self::sample_rate_hz`] from 44.1 kHz on, so that what
+    /// a stroke sounds and feels like does not depend on the rate of the outputs. Sources that keep time (sand, scales and
+    /// crossfades that change) are made for this rate.
+    #[must_use]
+    pub fn inner_rate_hz(&self) -> f64 {
+        self.sample_rate_hz * InnerRate::samples(self.sample_rate_hz) as f64
+    }
+
+    pub(crate) fn check(&self) -> Result<(), DesignError> {
+        limits::SAMPLE_RATE_HZ.check("sample_rate_hz", self.sample_rate_hz)?;
+        limits::CONTACT_TIMEOUT_S.check("contact_timeout_s", self.contact_timeout_s)?;
+        limits::AUDIO_GAIN.check("audio.gain", self.audio.gain)?;
+        if let Some(culling) = self.culling {
+            // Without end is allowed: nothing is too quiet.
+            let level_db = culling.level_db.clamp(-1.0, 1e9);
+            DesignError::check("culling.level_db", level_db, "0 dB or more", |l| l >= 0.0)?;
+            DesignError::check("culling.loudest_db_spl", culling.loudest_db_spl, "0–200 dB", |l| {
+                (0.0..=200.0).contains(&l)
+            })?;
+        }
+        let count = |field, value: usize, most: usize, expected| {
+            DesignError::check(field, value as f64, expected, |v| v >= 1.0 && v <= most as f64).map(|_| ())
+        };
+        count("actuators", self.actuators.len(), 1024, "1–1024 channels")?;
+        count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;
+        count("max_surfaces", self.max_surfaces, 65_536, "1–65536 surfaces")?;
+        count("max_bodies", self.max_bodies, 65_536, "1–65536 bodies")?;
+        count("queue_capacity", self.queue_capacity, 1 << 24, "1–16777216 events")
+    }
+}

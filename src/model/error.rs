@@ -1,0 +1,81 @@
+//! One error type for each thing that can fail on the game side. Nothing on the audio half fails.
+
+use crate::model::bad_value::BadValue;
+use crate::model::event::ContactEvent;
+use asperity_dsp::DesignError;
+
+/// Why an engine cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ConfigError {
+    /// A setting is outside its range.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+}
+
+/// Why an event was not taken. The event is handed back.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{reason}")]
+pub struct ReportError {
+    /// The event that was not taken.
+    pub event: ContactEvent,
+    /// Why.
+    pub reason: Refusal,
+}
+
+/// The reasons to refuse an event.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// The audio half is not keeping up or not running; try again, or let the event go.
+    #[error("the event queue is full; report less often, or render more often")]
+    QueueFull,
+    /// A number no contact can have.
+    #[error(transparent)]
+    BadValue(#[from] BadValue),
+    /// Game time ran backwards.
+    #[error("time_s: {time_s} comes after {before_s}; game time must not run backwards")]
+    TimeBackwards {
+        /// The stamp, s.
+        time_s: f64,
+        /// The stamp before it, s.
+        before_s: f64,
+    },
+    /// The surface is not, or no longer, in this scene.
+    #[error("surface: is not in this scene; add it before it is touched")]
+    UnknownSurface,
+    /// The body is not, or no longer, in this scene.
+    #[error("body: is not in this scene; add it before it is struck")]
+    UnknownBody,
+    /// There is no such haptic channel.
+    #[error("actuator: {index} is refused; must be below {channels}, the number of actuators")]
+    UnknownActuator {
+        /// The index given.
+        index: u16,
+        /// How many channels there are.
+        channels: usize,
+    },
+}
+
+/// Why a surface or body was not added.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AddError {
+    /// Every place is taken.
+    #[error("{kind}: all {capacity} places are taken; remove one or raise max_{kind} in the config")]
+    Full {
+        /// "surfaces" or "bodies".
+        kind: &'static str,
+        /// How many places there are.
+        capacity: usize,
+    },
+    /// The way to the audio half is full.
+    #[error("the queue to the audio half is full; render before adding more, or raise queue_capacity")]
+    QueueFull,
+    /// A number no surface or body can have.
+    #[error(transparent)]
+    BadValue(#[from] BadValue),
+    /// A parameter the path stage, the impact model or the modal bank cannot be designed with.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// What it refers to is not in this scene.
+    #[error("{0}: is not in this scene; add it first")]
+    Unknown(&'static str),
+}

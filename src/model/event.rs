@@ -1,0 +1,203 @@
+//! What a game or VR physics step reports: contacts that begin, move and end, and impacts.
+//!
+//! Events are small `Copy` values in SI units, stamped by the caller in game seconds. The same type
+//! serves a live game, a replayed [contact log](crate::files::contact_log) and every test.
+//!
+//! **Impact or slide?** What strikes and leaves, or strikes with a rigid body, is an [`Impact`]: one pulse
+//! into the body. What stays is a contact: its landing sounds through the contact model, by
+//! [`closing_m_s`](ContactSample::closing_m_s). Report one or the other for the same landing, not both.
+//!
+//! **Flicker.** Physics engines lose a contact for a frame and find it again. A begin that comes while
+//! the same contact still fades from its end (25 ms, longer than a frame at 60 Hz), on the same surface
+//! and actuator and within 10 mm of where it left, is the same touch: it goes on from the level it has
+//! faded to, without a landing, and is counted in [`Stats::debounced`](crate::Stats::debounced). A begin
+//! of a contact that never ended is a landing.
+
+use crate::model::bad_value::{BadValue, within};
+use crate::model::material::Material;
+use asperity_dsp::limits;
+pub use asperity_dsp::limits::{MAX_NORMAL_FORCE_N as MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV};
+
+/// A contact's name, chosen by the caller and unique among the contacts that are touching.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ContactId(pub u64);
+
+/// A surface that a [`Scene`](crate::Scene) knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct SurfaceId(pub(crate) u32);
+
+/// A ringing body that a [`Scene`](crate::Scene) knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct BodyId(pub(crate) u32);
+
+/// A haptic channel: the index of an actuator in [`Config::actuators`](crate::Config::actuators).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Actuator(pub u16);
+
+/// Where and how a contact touches at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactSample {
+    /// Texture coordinates of the contact point; 1 spans the surface's width and height. They may
+    /// wrap or run on beyond 0–1.
+    pub uv: [f64; 2],
+    /// Tangential velocity along the surface's u and v axes, m/s; estimated from `uv` when missing.
+    pub velocity_m_s: Option<[f64; 2]>,
+    /// Force pressing the finger onto the surface, N. Physics engines report small negative values
+    /// around lift-off; they count as 0.
+    pub normal_force_n: f64,
+    /// Approach speed at landing, m/s; used by [`ContactEvent::begin`] only.
+    pub closing_m_s: f64,
+}
+
+/// A rigid striker hits a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact {
+    /// The body that rings.
+    pub body: BodyId,
+    /// The striker's own body, when it rings too.
+    pub other: Option<BodyId>,
+    /// Approach speed, m/s.
+    pub speed_m_s: f64,
+    /// Effective mass of the striker, kg.
+    pub mass_kg: f64,
+    /// Radius of curvature at the point of contact, m.
+    pub radius_m: f64,
+    /// What the striker is made of.
+    pub striker: Material,
+    /// Ratio of rebound to approach speed, 0–1; 1 is the loss-free impact of Hertz theory.
+    pub restitution: f64,
+    /// Which of the body's strike positions is hit; 0 is the one every body has, and one that the body
+    /// does not have counts as its last.
+    pub position: usize,
+}
+
+/// One report of the physics step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactEvent {
+    /// A contact lands on a surface.
+    Begin {
+        /// The contact's name from now on.
+        contact: ContactId,
+        /// What it touches.
+        surface: SurfaceId,
+        /// Which haptic channel feels it.
+        actuator: Actuator,
+        /// Where and how.
+        sample: ContactSample,
+    },
+    /// A contact goes on, somewhere else or with another force.
+    Moved {
+        /// The contact's name.
+        contact: ContactId,
+        /// Where and how.
+        sample: ContactSample,
+    },
+    /// A contact lifts off.
+    End {
+        /// The contact's name, free again from now on.
+        contact: ContactId,
+    },
+    /// A rigid striker hits a body.
+    Impact(Impact),
+}
+
+impl ContactEvent {
+    /// A contact lands.
+    #[must_use]
+    pub fn begin(contact: ContactId, surface: SurfaceId, actuator: Actuator, sample: ContactSample) -> Self {
+        Self::Begin { contact, surface, actuator, sample }
+    }
+
+    /// A contact goes on.
+    #[must_use]
+    pub fn moved(contact: ContactId, sample: ContactSample) -> Self {
+        Self::Moved { contact, sample }
+    }
+
+    /// The same in a second of audio during which `pace` seconds of the game go by: in slow motion a contact
+    /// moves slowly. Forces and blows stay what they are.
+    pub(crate) fn at_pace(mut self, pace: f64) -> Self {
+        if let Self::Begin { sample, .. } | Self::Moved { sample, .. } = &mut self {
+            sample.velocity_m_s = sample.velocity_m_s.map(|v| v.map(|v| v * pace));
+        }
+        self
+    }
+
+    /// A contact lifts off.
+    #[must_use]
+    pub fn end(contact: ContactId) -> Self {
+        Self::End { contact }
+    }
+}
+
+impl ContactSample {
+    /// The same sample with a negative force set to 0.
+    ///
+    /// # Errors
+    /// When a number is not finite or beyond the limits of this module.
+    pub fn checked(mut self) -> Result<Self, BadValue> {
+        for uv in self.uv {
+            within("uv", uv, limits::UV)?;
+        }
+        for v in self.velocity_m_s.into_iter().flatten() {
+            within("velocity_m_s", v, limits::VELOCITY_M_S)?;
+        }
+        within("normal_force_n", self.normal_force_n, limits::NORMAL_FORCE_N)?;
+        within("closing_m_s", self.closing_m_s, limits::SPEED_M_S)?;
+        self.normal_force_n = self.normal_force_n.max(0.0);
+        Ok(self)
+    }
+}
+
+impl Impact {
+    /// # Errors
+    /// When a number is not finite or no striker can have it.
+    pub fn checked(self) -> Result<Self, BadValue> {
+        within("speed_m_s", self.speed_m_s, limits::SPEED_M_S)?;
+        within("mass_kg", self.mass_kg, limits::impact::MASS_KG)?;
+        within("radius_m", self.radius_m, limits::impact::RADIUS_M)?;
+        within("restitution", self.restitution, limits::impact::RESTITUTION)?;
+        self.striker.checked()?;
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> ContactSample {
+        ContactSample {
+            uv: [0.1, 0.2],
+            velocity_m_s: Some([0.1, 0.0]),
+            normal_force_n: 0.5,
+            closing_m_s: 0.0,
+        }
+    }
+
+    #[test]
+    fn an_ordinary_sample_is_accepted_unchanged() {
+        assert_eq!(sample().checked(), Ok(sample()));
+    }
+
+    #[test]
+    fn a_negative_force_counts_as_none() {
+        let lifting = ContactSample { normal_force_n: -0.01, ..sample() };
+        assert_eq!(lifting.checked().unwrap().normal_force_n, 0.0);
+    }
+
+    #[test]
+    fn numbers_that_no_contact_has_are_refused_by_name() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+            let cases = [
+                ("uv", ContactSample { uv: [0.0, bad], ..sample() }),
+                ("velocity_m_s", ContactSample { velocity_m_s: Some([bad, 0.0]), ..sample() }),
+                ("normal_force_n", ContactSample { normal_force_n: bad, ..sample() }),
+                ("closing_m_s", ContactSample { closing_m_s: bad, ..sample() }),
+            ];
+            for (field, case) in cases {
+                assert_eq!(case.checked().unwrap_err().field, field);
+            }
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! What a scene consists of: plain data in SI units, each with its range checked in one place.
+
+pub(crate) mod actuator;
+pub(crate) mod bad_value;
+pub(crate) mod bus;
+pub(crate) mod clock_mode;
+pub(crate) mod config;
+pub(crate) mod error;
+pub(crate) mod event;
+pub(crate) mod inner_rate;
+pub(crate) mod material;
+pub(crate) mod modal_model;
+pub(crate) mod residual;
+pub(crate) mod stamp;
+pub(crate) mod surface;
+pub(crate) mod uv_triangle;

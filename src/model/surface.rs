@@ -1,0 +1,215 @@
+//! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
+
+use crate::model::bad_value::{BadValue, within};
+use crate::model::event::BodyId;
+use crate::model::material::Material;
+use asperity_dsp::limits;
+use asperity_texture::height_field::{Beyond, HeightField};
+use asperity_texture::height_map::{Extent, HeightMap, MapError};
+use asperity_texture::image_io::{self, Channel, ImageError};
+use asperity_texture::tiled::Tiled;
+use asperity_texture::wrap::Wrap;
+use std::path::Path;
+
+/// What sliding sends to the body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Excitation {
+    /// Hertz pulses at the micro-collisions only, as the paper does: silent where the pad never lifts
+    /// off, which with measured damping is every smooth grating at 0.5 N.
+    Collisions,
+    /// The alternating part of the contact force only.
+    Force,
+    /// Both.
+    #[default]
+    Both,
+}
+
+/// Where a surface's perceptual roughness R (0–1) comes from.
+#[derive(Debug, Clone)]
+pub enum Roughness {
+    /// The source says, or [`DEFAULT_ROUGHNESS`] where it does not.
+    FromSource,
+    /// The same everywhere.
+    Constant(f64),
+    /// A map of its own: its heights are R.
+    Map(Box<HeightMap>),
+}
+
+/// R of a surface that has no roughness map: the middle of the scale.
+pub const DEFAULT_ROUGHNESS: f64 = 0.5;
+/// Rms height of the micro-noise in the octave around 1 mm wavelength, m. A choice, not a measurement:
+/// it makes a matte plate (R = 1) buzz at about ten times the vibration threshold at 0.1 m/s.
+pub const DEFAULT_MICRO_RELIEF_M: f64 = 2e-6;
+/// Radius of the asperity that stands for the finger in a micro-collision, m. The true skin would give
+/// contact times of 1–8 ms and dull sounds, so the exciter is a hard bead of the pad's mass instead.
+pub const EXCITER_RADIUS_M: f64 = 1e-3;
+/// What that bead is made of.
+pub const EXCITER_MATERIAL: Material = Material::NAIL;
+
+/// A surface, ready to be added to a scene.
+pub struct Surface {
+    pub(crate) source: Box<dyn HeightField>,
+    pub(crate) width_m: f64,
+    pub(crate) height_m: f64,
+    pub(crate) wraps: bool,
+    pub(crate) body: Option<BodyId>,
+    pub(crate) roughness: Roughness,
+    pub(crate) micro_relief_m: f64,
+    pub(crate) friction: Option<f64>,
+    pub(crate) excitation: Excitation,
+    pub(crate) strike_position: usize,
+}
+
+impl std::fmt::Debug for Surface {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Surface")
+            .field("width_m", &self.width_m)
+            .field("height_m", &self.height_m)
+            .field("body", &self.body)
+            .field("micro_relief_m", &self.micro_relief_m)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Why a surface cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum SurfaceError {
+    /// A map cannot be used.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// A size, relief or coefficient no surface has.
+    #[error(transparent)]
+    BadValue(#[from] BadValue),
+    /// The map cannot be sampled at this size.
+    #[error(transparent)]
+    Map(#[from] MapError),
+}
+
+impl Surface {
+    /// A surface whose heights any source gives; uv 1 spans `width_m` × `height_m`.
+    ///
+    /// # Errors
+    /// When a size is not between 1 µm and 1 km.
+    pub fn new(source: impl HeightField + 'static, width_m: f64, height_m: f64) -> Result<Self, BadValue> {
+        Self::from_source(Box::new(source), width_m, height_m)
+    }
+
+    /// The same for a source that is boxed already.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_source(source: Box<dyn HeightField>, width_m: f64, height_m: f64) -> Result<Self, BadValue> {
+        within("width_m", width_m, limits::SIDE_M)?;
+        within("height_m", height_m, limits::SIDE_M)?;
+        Ok(Self {
+            source,
+            width_m,
+            height_m,
+            wraps: true,
+            body: None,
+            roughness: Roughness::FromSource,
+            micro_relief_m: DEFAULT_MICRO_RELIEF_M,
+            friction: None,
+            excitation: Excitation::default(),
+            strike_position: 0,
+        })
+    }
+
+    /// A surface from a displacement map and a roughness map (grey PNG or JPEG, any size), repeated.
+    ///
+    /// # Errors
+    /// When a map cannot be read or the extent is impossible; the message names the file.
+    pub fn from_maps(
+        displacement: impl AsRef<Path>,
+        roughness: impl AsRef<Path>,
+        extent: Extent,
+    ) -> Result<Self, SurfaceError> {
+        let heights = image_io::load_channel(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
+        let rough = image_io::load_channel(roughness, Channel::Luma)?.raster;
+        let map = HeightMap::new(&heights, extent, Wrap::Repeat)?.with_roughness_map(&rough)?;
+        Ok(Self::new(map, extent.width_m, extent.height_m)?)
+    }
+
+    /// Rings this body when it is touched.
+    #[must_use]
+    pub fn on(mut self, body: BodyId) -> Self {
+        self.body = Some(body);
+        self
+    }
+
+    /// Which of the body's strike positions contacts on this surface excite; 0 unless told otherwise. A
+    /// position the body does not have counts as its last.
+    #[must_use]
+    pub fn at_strike_position(mut self, position: usize) -> Self {
+        self.strike_position = position;
+        self
+    }
+
+    /// Sets where R comes from.
+    #[must_use]
+    pub fn roughness(mut self, roughness: Roughness) -> Self {
+        self.roughness = roughness;
+        self
+    }
+
+    /// Rms height of the 1/f^α overlay in the octave around 1 mm wavelength, m; 0 = none.
+    #[must_use]
+    pub fn micro_relief_m(mut self, rms_m: f64) -> Self {
+        self.micro_relief_m = rms_m;
+        self
+    }
+
+    /// Coulomb friction coefficient of the 3-D force output, whatever the source says.
+    #[must_use]
+    pub fn friction(mut self, coefficient: f64) -> Self {
+        self.friction = Some(coefficient);
+        self
+    }
+
+    /// What sliding sends to the body.
+    #[must_use]
+    pub fn excitation(mut self, excitation: Excitation) -> Self {
+        self.excitation = excitation;
+        self
+    }
+
+    /// Whether texture coordinates wrap at 0 and 1 (a repeating surface, the default): then a jump by
+    /// a whole tile is no movement, and the same coordinates are the same place, lap after lap; a source that never
+    /// repeats is cut into tiles without a seam. A source with an edge (a clamped map, sand) never wraps, a mirrored
+    /// one at every second tile. A surface that does not wrap takes uv as they are.
+    #[must_use]
+    pub fn wraps(mut self, wraps: bool) -> Self {
+        self.wraps = wraps;
+        self
+    }
+
+    pub(crate) fn checked(self) -> Result<Self, BadValue> {
+        within("micro_relief_m", self.micro_relief_m, limits::MICRO_RELIEF_M)?;
+        let reach_m = self.source.reach_m();
+        within("relief_m", reach_m, limits::REACH_M)?;
+        within("friction", self.friction.unwrap_or(0.0), limits::FRICTION)?;
+        if let Roughness::Constant(r) = self.roughness {
+            within("roughness", r, limits::ROUGHNESS)?;
+        }
+        Ok(self)
+    }
+
+    /// What the path stage may unwrap by, m.
+    pub(crate) fn wrap_period_m(&self) -> [f64; 2] {
+        let tile_m = [self.width_m, self.height_m];
+        match self.source.beyond(tile_m) {
+            Beyond::Same | Beyond::Fresh if self.wraps => tile_m,
+            Beyond::Mirrored if self.wraps => tile_m.map(|side_m| 2.0 * side_m),
+            _ => [f64::INFINITY; 2],
+        }
+    }
+
+    /// The same surface with a source that repeats, if its coordinates wrap.
+    pub(crate) fn tiled(mut self) -> Self {
+        let tile_m = [self.width_m, self.height_m];
+        if self.wraps && self.source.beyond(tile_m) == Beyond::Fresh {
+            self.source = Box::new(Tiled::new(self.source, tile_m));
+        }
+        self
+    }
+}

@@ -1,0 +1,246 @@
+//! A body, prepared for the audio half: its modal bank and the impulse rings that excite it.
+
+use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
+use crate::model::stamp::Stamp;
+use crate::prepared::bursts::Bursts;
+use asperity_dsp::DesignError;
+use asperity_dsp::hertz::{self, HertzPulse};
+use asperity_dsp::modal_bank::{
+    self, Awake, Bank, FirstSamples, GroupOptions, GroupState, Input, Kernel, LaneGains, MissingSamples,
+    ModeGroup,
+};
+use asperity_dsp::mode::Mode;
+use asperity_texture::height_field::MAX_BLOCK;
+
+/// Longest contact of an impact, s: 5 kg of foam that fall 5 cm. What would last longer lasts so long, at every rate, and is
+/// counted ([`Stats::shortened`](crate::Stats::shortened)).
+pub const LONGEST_CONTACT_S: f64 = 0.17;
+
+/// Levels of modes left out, from none.
+pub(crate) const MODE_LEVELS: usize = 5;
+
+/// How many of a body's groups hear what strikes it at a level of modes left out.
+pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
+    groups - (groups * mode_level / MODE_LEVELS).min(groups.saturating_sub(1))
+}
+
+/// Samples that a body's buses hold ahead: a power of two, the longest impact and its kernel.
+fn bus_samples(sample_rate_hz: f64) -> usize {
+    ((LONGEST_CONTACT_S * sample_rate_hz) as usize + 16).next_power_of_two()
+}
+
+/// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
+const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
+
+/// A body as the audio half owns it.
+pub(crate) struct BodySlot {
+    groups: Vec<ModeGroup>,
+    states: Vec<GroupState>,
+    awake: Awake,
+    places: Vec<Place>,
+    bursts: Bursts,
+    /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
+    early: Vec<f32>,
+    early_busy_until: u64,
+}
+
+/// One strike position: what reaches the body there.
+struct Place {
+    /// What each lane takes; empty for the only position of a body.
+    gains: Vec<LaneGains>,
+    /// For each level of modes left out.
+    first_samples: [FirstSamples; MODE_LEVELS],
+    bus: Vec<f64>,
+    bus_busy_until: u64,
+    /// What contacts send during the present stretch.
+    contacts_n_s: [f64; MAX_BLOCK],
+    touched: bool,
+    /// All of it, while the stretch is rendered.
+    input: [f32; MAX_BLOCK],
+}
+
+/// How a stretch is rendered.
+#[derive(Clone, Copy)]
+pub(crate) struct Terms {
+    pub(crate) kernel: Kernel,
+    /// Absolute index of the first sample.
+    pub(crate) position: u64,
+    /// How many of the [`MODE_LEVELS`] are left out because blocks run late.
+    pub(crate) mode_level: usize,
+}
+
+impl Place {
+    fn new(gains: Vec<LaneGains>, first_samples: [FirstSamples; MODE_LEVELS], sample_rate_hz: f64) -> Self {
+        let bus = vec![0.0; bus_samples(sample_rate_hz)];
+        let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
+        Self { gains, first_samples, bus, bus_busy_until: 0, contacts_n_s, touched: false, input }
+    }
+
+    /// Gathers the impulses of the next `n` samples, and tells whether there may be any.
+    fn gather(&mut self, position: u64, n: usize) -> bool {
+        let input = &mut self.input[..n];
+        input.fill(0.0);
+        let busy = self.bus_busy_until > position;
+        // The bus is empty beyond the last impact.
+        if busy {
+            hertz::take(&mut self.bus, position, input);
+        }
+        if self.touched {
+            for (x, contact) in input.iter_mut().zip(&mut self.contacts_n_s) {
+                *x += std::mem::take(contact) as f32;
+            }
+        }
+        busy | std::mem::take(&mut self.touched)
+    }
+}
+
+impl BodySlot {
+    /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz` stay silent.
+    pub(crate) fn new(
+        model: &ModalModel,
+        output_rate_hz: f64,
+        sample_rate_hz: f64,
+    ) -> Result<Self, DesignError> {
+        let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
+        let mut modes: Vec<_> = model.unit_modes().filter(|(mode, _)| heard(mode)).collect();
+        // What rings longest comes first, so that the groups still awake are always a prefix.
+        let rings = |mode: &Mode| modal_bank::ringing_s(mode, TYPICAL_IMPULSE_N_S);
+        modes.sort_by(|(a, _), (b, _)| {
+            rings(b).total_cmp(&rings(a)).then(a.frequency_hz.total_cmp(&b.frequency_hz))
+        });
+        let options = GroupOptions::IMPULSE_RING;
+        let design = |chunk: &[(Mode, [f32; MAX_POSITIONS])]| {
+            let modes: Vec<_> = chunk.iter().map(|(mode, _)| *mode).collect();
+            modal_bank::design_group(&modes, sample_rate_hz, &options)
+        };
+        let groups = modes.chunks(modal_bank::LANES).map(design).collect::<Result<Vec<_>, _>>()?;
+        let states = vec![GroupState::default(); groups.len()];
+        let gains_at = |position: usize| {
+            let lane = |chunk: &[(Mode, [f32; MAX_POSITIONS])], lane: usize| {
+                chunk.get(lane).map_or(0.0, |(_, shares)| shares[position])
+            };
+            let chunks = modes.chunks(modal_bank::LANES);
+            chunks.map(|chunk| LaneGains(std::array::from_fn(|i| lane(chunk, i)))).collect()
+        };
+        let count = model.position_count();
+        let first_samples = first_samples(&modes, count, groups.len(), sample_rate_hz)?;
+        let places = first_samples.into_iter().enumerate().map(|(position, first_samples)| {
+            let gains = if count == 1 { Vec::new() } else { gains_at(position) };
+            Place::new(gains, first_samples, sample_rate_hz)
+        });
+        let places = places.collect();
+        let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
+        let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
+        let early = vec![0.0; bus_samples(sample_rate_hz)];
+        Ok(Self { groups, states, awake: Awake::default(), places, bursts, early, early_busy_until: 0 })
+    }
+
+    /// The place of a strike position; one the body does not have counts as its last.
+    fn place(&mut self, position: usize) -> &mut Place {
+        let last = self.places.len() - 1;
+        &mut self.places[position.min(last)]
+    }
+
+    /// Adds an impact whose contact begins at `stamp`, while modes are left out as far as `mode_level`.
+    pub(crate) fn strike(
+        &mut self,
+        position: usize,
+        pulse: &HertzPulse,
+        stamp: Stamp,
+        mode_level: usize,
+        sample_rate_hz: f64,
+    ) {
+        let end = pulse.end_sample(stamp.sample(), sample_rate_hz);
+        let last = self.places.len() - 1;
+        let place = &mut self.places[position.min(last)];
+        pulse.deposit(&mut place.bus, stamp.sample(), stamp.fraction(), sample_rate_hz);
+        place.bus_busy_until = place.bus_busy_until.max(end);
+        let missing = &place.first_samples[mode_level];
+        missing.deposit(pulse, &mut self.early, stamp.sample(), stamp.fraction(), sample_rate_hz);
+        self.early_busy_until = self.early_busy_until.max(end);
+        // A burst is noise-like: the whole sample is near enough.
+        self.bursts.strike(stamp.sample(), pulse.impulse_n_s);
+    }
+
+    /// Adds what one contact sends during the present stretch.
+    pub(crate) fn touch(&mut self, position: usize, impulse_n_s: &[f64]) {
+        let place = self.place(position);
+        place.touched = true;
+        for (sum, x) in place.contacts_n_s.iter_mut().zip(impulse_n_s) {
+            *sum += x;
+        }
+    }
+
+    /// Whether nothing rings and nothing is coming.
+    pub(crate) fn is_silent(&self, position: u64) -> bool {
+        self.awake.groups() == 0
+            && self.bursts.is_silent(position)
+            && self.early_busy_until <= position
+            && self.places.iter().all(|place| !place.touched && place.bus_busy_until <= position)
+    }
+
+    /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck it.
+    pub(crate) fn render(&mut self, terms: Terms, out: &mut [f32]) -> usize {
+        if self.is_silent(terms.position) {
+            return 0;
+        }
+        let n = out.len();
+        let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_POSITIONS];
+        let mut count = 0;
+        // Only positions that something reaches are mixed; adding zeros would change nothing.
+        for place in &mut self.places {
+            if place.gather(terms.position, n) || count == 0 {
+                inputs[count] = Input { impulses: &place.input[..n], gains: &place.gains };
+                count += 1;
+            }
+        }
+        let driven = groups_at(terms.mode_level, self.groups.len());
+        let bank = Bank {
+            kernel: terms.kernel,
+            groups: &self.groups,
+            states: &mut self.states,
+            driven,
+            threshold: modal_bank::SLEEP_AMPLITUDE,
+        };
+        self.awake.render_bank(bank, terms.position, &inputs[..count], out);
+        self.bursts.render(terms.position, out);
+        self.begin_strikes(terms.position, out);
+        self.groups.len() - driven
+    }
+
+    /// Adds what the bank leaves out of the first samples of strikes.
+    fn begin_strikes(&mut self, position: u64, out: &mut [f32]) {
+        if self.early_busy_until <= position {
+            return;
+        }
+        let mask = self.early.len() - 1;
+        for (i, y) in out.iter_mut().enumerate() {
+            *y += std::mem::take(&mut self.early[(position as usize).wrapping_add(i) & mask]);
+        }
+    }
+}
+
+/// What a bank of these modes leaves out of the first samples of a strike, for each place and each level of modes left out.
+fn first_samples(
+    modes: &[(Mode, [f32; MAX_POSITIONS])],
+    places: usize,
+    groups: usize,
+    sample_rate_hz: f64,
+) -> Result<Vec<[FirstSamples; MODE_LEVELS]>, DesignError> {
+    let mut sums = vec![MissingSamples::NOTHING; places];
+    let mut all = vec![[FirstSamples::NOTHING; MODE_LEVELS]; places];
+    for group in 0..groups {
+        for (mode, shares) in modes.chunks(modal_bank::LANES).nth(group).into_iter().flatten() {
+            let missing = MissingSamples::of(mode, sample_rate_hz)?;
+            for (sum, share) in sums.iter_mut().zip(shares) {
+                sum.add(&missing, f64::from(*share));
+            }
+        }
+        for level in (0..MODE_LEVELS).filter(|level| groups_at(*level, groups) == group + 1) {
+            for (place, sum) in all.iter_mut().zip(&sums) {
+                place[level] = sum.first_samples();
+            }
+        }
+    }
+    Ok(all)
+}

@@ -1,0 +1,8 @@
+//! What the game half designs and the audio half owns: everything that a body or a surface needs to sound, in memory made
+//! beforehand.
+
+pub(crate) mod body;
+pub(crate) mod bursts;
+pub(crate) mod overlay;
+pub(crate) mod stroking;
+pub(crate) mod surface;

@@ -1,0 +1,18 @@
+//! A surface, prepared for the audio half.
+
+use crate::model::surface::Surface;
+use crate::prepared::overlay::Overlay;
+use crate::prepared::stroking::Stroking;
+use asperity_dsp::trajectory::TrajectoryDesign;
+
+/// A surface as the audio half owns it: everything a contact needs, designed beforehand.
+pub(crate) struct SurfaceSlot {
+    pub(crate) surface: Surface,
+    pub(crate) trajectory: TrajectoryDesign,
+    /// How strokes excite the body below.
+    pub(crate) stroking: Stroking,
+    /// How the micro-noise lies on it.
+    pub(crate) overlay: Overlay,
+    /// After how many metres it is the same again, ∞ for never.
+    pub(crate) period_m: [f64; 2],
+}
