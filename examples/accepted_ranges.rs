@@ -2,7 +2,8 @@
 //! contact force lies above what physics explains.
 //!
 //! ```sh
-//! cargo run --release --example accepted_ranges -- 10000
+//! cargo run --release --example accepted_ranges -- 10000      # scenes 1 to 10000
+//! cargo run --release --example accepted_ranges -- 10000 10001
 //! ```
 
 #[path = "../tests/common/random_ends.rs"]
@@ -11,9 +12,10 @@ mod random_ends;
 use random_ends::{Force, Outcome, outcome};
 
 fn main() {
-    let count = std::env::args().nth(1).and_then(|count| count.parse().ok()).unwrap_or(10_000);
+    let argument = |n| std::env::args().nth(n).and_then(|number| number.parse().ok());
+    let (count, first) = (argument(1).unwrap_or(10_000), argument(2).unwrap_or(1));
     let (mut refused, mut broken, mut forces) = (0u64, 0u64, vec![]);
-    for seed in 1..=count {
+    for seed in first..first + count {
         match outcome(seed) {
             Outcome::Rendered(force) => {
                 if force.above > 1.0 {

@@ -5,6 +5,7 @@
 #   cargo build --release -p asperity-cli --features jack
 #   tests/jack_dummy.sh [target/release/asperity]
 #
+# 0. Only the outputs of the host are listed; a block that it does not run in is refused with the one it does.
 # 1. Four ports are recorded with jack_rec: four different signals on four channels, no underrun in 30 s.
 # 2. The server is killed while it plays: one error line, no panic, no hang.
 # 3. The server is killed and comes back: the stream is built anew and plays to its end.
@@ -109,8 +110,19 @@ wait_for_player() {
     echo "error: the player hangs"; cat "$folder/play.err"; exit 1
 }
 
-echo "== four channels, $seconds s"
 start_first_server
+echo "== the devices of one host, and a block that it does not run in"
+"$play" play --list-devices --host jack >"$folder/devices"
+cat "$folder/devices"
+grep -q '^jack:output' "$folder/devices" || { echo "error: the output is not listed"; exit 1; }
+! grep -vq '^jack:output' "$folder/devices" || { echo "error: more than the outputs of JACK is listed"; exit 1; }
+status=0
+"$play" play "$folder/scene.toml" --host jack --block 32 2>"$folder/play.err" || status=$?
+cat "$folder/play.err"
+[ "$status" = 1 ] && grep -q 'blocks of 32 frames are refused.*ask for 256, or for none' "$folder/play.err" \
+    || { echo "error: the block is not named"; exit 1; }
+
+echo "== four channels, $seconds s"
 start_play
 sleep 2
 ports="$(jack_lsp | sed '/^system:/d' | sort)"

@@ -100,6 +100,18 @@ fn sources() -> Vec<Named> {
             }),
         ),
     ];
+    // A square relief laid over the tile, and one of another size than it.
+    #[cfg(feature = "brownian")]
+    for (name, side_m) in [("brownian", SIDE_M), ("brownian, cut from a larger one", 1.3 * SIDE_M)] {
+        all.push((
+            name,
+            Box::new(move || {
+                let relief = asperity_texture::brownian::BrownianDesign::new(0.5, 1e-4, 7).surface().unwrap();
+                let extent = Extent { width_m: side_m, height_m: side_m, relief_m: 1.0 };
+                surface(HeightMap::new(&relief, extent, Wrap::Repeat).unwrap())
+            }),
+        ));
+    }
     for material in SolidMaterial::SEVEN {
         all.push((material.name(), Box::new(move || surface(solid(material)))));
     }
@@ -209,7 +221,7 @@ fn a_flat_place_is_as_rough_as_a_constant_map_at_every_resolution() {
     };
     let reference = felt(0);
     let level = common::rms(&reference[4410..]);
-    for texels in [256, 512, 1024] {
+    for texels in [256, 512, 1024, 2048] {
         let haptic = felt(texels);
         let db = 20.0 * (common::rms(&haptic[4410..]) / level).log10();
         println!("{texels} texels: {db:.3} dB");

@@ -13,6 +13,7 @@ use common::{SIDE_M, peak, plate, render_tapped, si_config, stroke};
 
 const SPEED_M_S: f64 = 0.1;
 const FORCE_N: f64 = 0.6;
+const RATE_HZ: f64 = 44_100.0;
 /// After the beginning, before the end.
 const MIDDLE: std::ops::Range<usize> = 13_230..83_790;
 
@@ -21,6 +22,10 @@ const MIDDLE: std::ops::Range<usize> = 13_230..83_790;
 struct Hardest {
     force_n: f64,
     speed_m_s: f64,
+    /// By the positions, as a reader of the trace sees it: a step is a speed too.
+    shown_m_s: f64,
+    /// The latest sample and where the contact was.
+    last: Option<(u64, [f64; 2])>,
 }
 
 impl Tap for Hardest {
@@ -31,6 +36,16 @@ impl Tap for Hardest {
                 self.force_n = self.force_n.max(row.contact_force_n);
                 self.speed_m_s = self.speed_m_s.max(u.hypot(*v));
             }
+        }
+        for (sample, at_m) in (block.first_sample..).zip(block.position_m) {
+            if let Some((before, was_m)) = self.last
+                && before + 1 == sample
+                && MIDDLE.contains(&(sample as usize))
+            {
+                let way_m = (at_m[0] - was_m[0]).hypot(at_m[1] - was_m[1]);
+                self.shown_m_s = self.shown_m_s.max(way_m * RATE_HZ);
+            }
+            self.last = Some((sample, *at_m));
         }
     }
 }
@@ -114,6 +129,17 @@ fn hilly_and_matte(what: &str, log: &ContactLog) -> Render {
     is_felt_like_a_stroke(&format!("{what}, matte"), || plate(0.9), log)
 }
 
+/// [`hilly_and_matte`] of a stroke that goes on all the while: one contact, and the places in its trace go no faster.
+fn goes_on(what: &str, log: &ContactLog) {
+    for surface in [hills as fn() -> Surface, || plate(0.9)] {
+        let take = is_felt_like_a_stroke(what, surface, log);
+        let (_, hardest) = felt(surface(), log);
+        assert_eq!(take.stats.jumps, 0, "{what}");
+        let ratio = hardest.shown_m_s / SPEED_M_S;
+        assert!(ratio <= 1.45 && ratio > 0.99, "{what}: {ratio}");
+    }
+}
+
 #[test]
 fn one_step_without_force_does_not_throw_the_finger() {
     let take = hilly_and_matte(
@@ -153,8 +179,8 @@ fn a_finger_that_lifts_off_without_an_end_and_comes_back_fades_and_rises() {
 
 #[test]
 fn a_hitch_of_the_game_is_neither_a_zip_nor_a_blow() {
-    for missing in [2, 3, 4, 6, 9, 12, 20] {
-        hilly_and_matte(
+    for missing in [1, 2, 3, 4, 6, 9, 12] {
+        goes_on(
             &format!("{missing} reports missing"),
             &reports(|step, _, _| !(60..60 + missing).contains(&step)),
         );
@@ -165,30 +191,26 @@ fn a_hitch_of_the_game_is_neither_a_zip_nor_a_blow() {
 fn a_tenth_of_the_reports_may_get_lost() {
     for seed in 1..=4 {
         let mut rng = Rng::new(seed);
-        hilly_and_matte(
-            &format!("a tenth lost, {seed}"),
-            &reports(|step, _, _| step == 0 || rng.uniform() > 0.1),
-        );
+        goes_on(&format!("a tenth lost, {seed}"), &reports(|step, _, _| step == 0 || rng.uniform() > 0.1));
     }
 }
 
 #[test]
 fn a_game_that_starts_slowly_does_not_hurry() {
     for every in [3, 6] {
-        hilly_and_matte(&format!("{} Hz", 60 / every), &reports(|step, _, _| step % every == 0));
+        goes_on(&format!("{} Hz", 60 / every), &reports(|step, _, _| step % every == 0));
     }
 }
 
 #[test]
 fn velocities_that_are_always_zero_make_no_landing_of_every_report() {
-    let take = hilly_and_matte(
+    goes_on(
         "zero velocities",
         &reports(|_, _, sample| {
             sample.velocity_m_s = Some([0.0; 2]);
             true
         }),
     );
-    assert!(take.stats.jumps <= 1, "{} jumps", take.stats.jumps);
 }
 
 #[test]

@@ -133,6 +133,20 @@ fn a_resting_finger_leaves_its_print_whenever_it_comes_and_is_not_hit() {
 }
 
 #[test]
+fn the_print_that_was_felt_is_told_though_shallow_sand_slides_into_it_afterwards() {
+    // The default bed stands at 30 degrees: what is steeper slides once the finger has left.
+    let design = SandDesign { talus_deg: SandDesign::default().talus_deg, ..bed() };
+    for force_n in [1.0, 3.0, 6.0] {
+        let (render, _) = touch(&design, &Hand::rests(force_n, 0.01, 0.3));
+        let off = render.sand[0].figures.print_m / design.law.depth_m(force_n) - 1.0;
+        let left_m = design.depth_m - render.sand[0].picture.lowest_m;
+        println!("{force_n} N: print {:+.3} % off, {:.2} mm of it left", 1e2 * off, 1e3 * left_m);
+        assert!(off.abs() < 0.01, "{force_n} N: {off}");
+        assert!(left_m <= render.sand[0].figures.print_m);
+    }
+}
+
+#[test]
 fn a_finger_that_drags_and_stops_leaves_a_print_of_its_law_and_is_not_hit() {
     for (normal_force_n, drags_m_s, reports_hz) in [(1.5, 0.08, 60.0), (3.0, 0.13, 90.0), (6.0, 0.05, 144.0)]
     {

@@ -140,3 +140,12 @@ fn sand_whose_cells_are_wider_than_the_tool_is_refused_with_the_cells_it_needs()
     scene.write("scene.toml", TOML.replace("width_m = 0.1", sand).replace("roughness = 0.7\n", ""));
     assert_refused(&scene.render(&[]), &["sand: cells", "16 is refused", "must be at least 25"]);
 }
+
+#[test]
+fn an_impact_that_lasts_longer_than_is_played_is_told() {
+    let foam = impact(0.1)
+        .replace("\"mass_kg\":0.01", "\"mass_kg\":900.0")
+        .replace("\"striker\":\"steel\"", "\"striker\":\"rubber\"");
+    let slow = foam.replace("\"speed_m_s\":0.5", "\"speed_m_s\":0.001");
+    assert_says(&said(TOML, &slow), &["1 impacts or micro-collisions would outlast", "(0.17 s"]);
+}

@@ -248,3 +248,31 @@ fn sand_that_gives_way() {
     let mean = rows.iter().map(|row| row.height_m).sum::<f64>() / rows.len() as f64;
     assert!((-2.5e-3..-1.5e-3).contains(&mean), "{mean}");
 }
+
+#[test]
+fn after_a_hitch_of_the_game_the_traced_finger_neither_jumps_nor_races() {
+    for hitch_s in [0.04, 0.1, 0.2] {
+        for velocity in [true, false] {
+            let scene = Scene::new();
+            let hangs = |line: &&str| {
+                let t: f64 = line["{\"t\":".len()..].split(',').next().unwrap().parse().unwrap();
+                t < 0.4 || t >= 0.4 + hitch_s
+            };
+            let log: Vec<_> = straight().lines().filter(hangs).map(str::to_owned).collect();
+            let reported = "\"velocity_m_s\":[0.06, 0.01],";
+            let log = log.join("\n").replace(reported, if velocity { reported } else { "" });
+            assert_eq!(log.contains("velocity_m_s"), velocity);
+            scene.write("stroke.jsonl", log + "\n");
+            let rows = trace(&scene, "roughness = 0.7");
+            let own_m_s = STRAIGHT_M_S[0].hypot(STRAIGHT_M_S[1]);
+            let fastest = rows.windows(2).map(|pair| {
+                assert_eq!(pair[1].sample, pair[0].sample + 1, "two fingers at once");
+                let way = [0, 1].map(|axis| pair[1].position_m[axis] - pair[0].position_m[axis]);
+                way[0].hypot(way[1]) * RATE_HZ / own_m_s
+            });
+            let fastest = fastest.fold(0.0, f64::max);
+            println!("{hitch_s} s without reports, velocity reported {velocity}: {fastest:.2} times as fast");
+            assert!(fastest <= 1.5, "{hitch_s} s: {fastest} times as fast");
+        }
+    }
+}

@@ -1,20 +1,323 @@
-//! What the engine accepts, in one list: events, scene files and the contact's guard quote it.
+//! What the engine accepts, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
+//! `docs/formats.md` prints it.
 //!
 //! What is outside is refused where it enters, by name; what lies inside is rendered as it is.
+
+use crate::DesignError;
+
+/// From where to where a number may lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Smallest …
+    pub low: f64,
+    /// … and largest value.
+    pub high: f64,
+    /// Whether `low` itself is refused.
+    pub above: bool,
+    /// The same as the end of the sentence "must be …".
+    pub words: &'static str,
+}
+
+impl Range {
+    /// From `low` to `high`, both included.
+    #[must_use]
+    pub const fn new(low: f64, high: f64, words: &'static str) -> Self {
+        Self { low, high, above: false, words }
+    }
+
+    /// Above `low`, to `high`.
+    #[must_use]
+    pub const fn above(low: f64, high: f64, words: &'static str) -> Self {
+        Self { low, high, above: true, words }
+    }
+
+    /// Whether a value is accepted; nothing that is not finite is.
+    #[must_use]
+    pub const fn holds(&self, value: f64) -> bool {
+        value.is_finite()
+            && value <= self.high
+            && if self.above { value > self.low } else { value >= self.low }
+    }
+
+    /// The value of a field, if it is accepted.
+    ///
+    /// # Errors
+    /// Names the field and what it must be.
+    pub fn check(&self, field: &'static str, value: f64) -> Result<f64, DesignError> {
+        DesignError::check(field, value, self.words, |value| self.holds(value))
+    }
+}
 
 /// Largest force pressing a contact onto a surface, N: a wedged box in a physics engine reaches some thousands for
 /// a step.
 pub const MAX_NORMAL_FORCE_N: f64 = 1e4;
+/// Force of a report: one below zero presses with none.
+pub const NORMAL_FORCE_N: Range =
+    Range::new(-MAX_NORMAL_FORCE_N, MAX_NORMAL_FORCE_N, "finite and at most 1e4 N");
 /// Farthest that the relief of a surface may lie from zero, m.
 pub const MAX_RELIEF_M: f64 = 10.0;
+/// Height of white over black of an image.
+pub const RELIEF_M: Range = Range::new(0.0, MAX_RELIEF_M, "0 to 10 m");
+/// How far the relief of a whole surface reaches from zero.
+pub const REACH_M: Range = Range::new(0.0, MAX_RELIEF_M, "a surface within ±10 m of zero");
 /// Farthest that a height may lie from zero, m: the relief, what its interpolation overshoots by, and the overlay.
 /// Beyond, the guard of the contact holds the last good height.
 pub const MAX_HEIGHT_M: f64 = 2.0 * MAX_RELIEF_M;
 /// Fastest tangential, closing or striking speed, m/s.
 pub const MAX_SPEED_M_S: f64 = 100.0;
+/// Tangential velocity of a report, each component.
+pub const VELOCITY_M_S: Range = Range::new(-MAX_SPEED_M_S, MAX_SPEED_M_S, "finite and within ±100 m/s");
+/// Speed of a landing or an impact.
+pub const SPEED_M_S: Range = Range::new(0.0, MAX_SPEED_M_S, "0 to 100 m/s");
 /// Widest texture coordinate, in tiles from the origin: a `f64` position is still exact to 1e-9 m.
 pub const MAX_UV: f64 = 1e6;
+/// Texture coordinate of a report.
+pub const UV: Range = Range::new(-MAX_UV, MAX_UV, "finite and within ±1e6");
 /// Largest rms of the micro-relief in the octave about 1 mm, m.
 pub const MAX_MICRO_RELIEF_M: f64 = 0.01;
-/// Smallest and largest side of a surface, m.
-pub const SIDE_M: (f64, f64) = (1e-6, 1e3);
+/// Micro-relief of a surface; 0 is none.
+pub const MICRO_RELIEF_M: Range = Range::new(0.0, MAX_MICRO_RELIEF_M, "0 to 0.01 m, 0 = none");
+/// Side of a surface.
+pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
+/// Roughness of a surface.
+pub const ROUGHNESS: Range = Range::new(0.0, 1.0, "0 to 1");
+/// Friction coefficient.
+pub const FRICTION: Range = Range::new(0.0, 10.0, "0 to 10");
+/// Game time of a report with an exact clock, s.
+pub const TIME_S: Range = Range::new(0.0, 1e9, "finite, 0 to 1e9 s");
+/// Game time of a report with a live clock, s.
+pub const LIVE_TIME_S: Range = Range::new(-1e9, 1e9, "finite, within ±1e9 s");
+
+/// What touches.
+pub mod probe {
+    use super::Range;
+
+    /// m_s.
+    pub const PAD_MASS_KG: Range = Range::new(1e-6, 1.0, "1e-6 to 1 kg");
+    /// k_s.
+    pub const PAD_STIFFNESS_N_M: Range = Range::new(1e-3, 1e7, "1e-3 to 1e7 N/m");
+    /// b_s.
+    pub const PAD_DAMPING_N_S_M: Range = Range::new(0.0, 1e4, "0 to 1e4 N·s/m");
+    /// m_f.
+    pub const FINGER_MASS_KG: Range = Range::new(1e-5, 100.0, "1e-5 to 100 kg");
+    /// k_m.
+    pub const CONTACT_STIFFNESS_N_M: Range = Range::new(1.0, 1e9, "1 to 1e9 N/m");
+    /// Longest gap that the finger's own motion may open.
+    pub const LEASH_M: Range = Range::new(1e-6, 0.05, "1e-6 to 0.05 m");
+}
+
+/// What strikes.
+pub mod impact {
+    use super::Range;
+
+    /// Its mass.
+    pub const MASS_KG: Range = Range::new(1e-9, 1e4, "1e-9 to 1e4 kg");
+    /// Its radius where it strikes.
+    pub const RADIUS_M: Range = Range::new(1e-6, 10.0, "1e-6 to 10 m");
+    /// Share of the speed with which it leaves.
+    pub const RESTITUTION: Range = Range::new(0.0, 1.0, "0 to 1");
+    /// Factor of what is felt and heard of an impact or a contact.
+    pub const GAIN: Range = Range::new(0.0, 1e3, "0 to 1000");
+    /// Factor of a contact's priority.
+    pub const IMPORTANCE: Range = Range::new(0.0, 1e6, "0 to 1e6");
+}
+
+/// What things are made of.
+pub mod material {
+    use super::Range;
+
+    /// Young's modulus.
+    pub const YOUNG_PA: Range = Range::new(1e3, 1e13, "1e3 to 1e13 Pa");
+    /// Poisson ratio.
+    pub const POISSON: Range = Range::new(0.0, 0.5, "0 to 0.5");
+    /// Density.
+    pub const DENSITY_KG_M3: Range = Range::new(1.0, 1e5, "1 to 1e5 kg/m³");
+    /// Gain of a body's residual.
+    pub const RESIDUAL: Range = Range::new(0.0, 1e3, "0 to 1e3 (a gain)");
+}
+
+/// What a whole engine runs at, and what it plays on.
+pub mod output {
+    use super::Range;
+
+    /// Sample rate of everything that leaves.
+    pub const SAMPLE_RATE_HZ: Range = Range::new(8e3, 384e3, "8000 to 384000 Hz");
+    /// Gain of the audio.
+    pub const AUDIO_GAIN: Range = Range::new(0.0, 1e6, "0 to 1e6");
+    /// The user's gain of a haptic channel.
+    pub const HAPTIC_GAIN: Range = Range::new(0.0, 10.0, "0 to 10");
+    /// Metres, or m/s², at sample value 1.
+    pub const FULL_SCALE: Range = Range::new(1e-12, 1e12, "1e-12 to 1e12 m (or m/s²)");
+    /// High-pass about the mean surface; at low sample rates, below 0.49 of the rate as well.
+    pub const HIGHPASS_HZ: Range = Range::new(0.0, 1e3, "0 to 1000 Hz, 0 = off");
+    /// How long a contact goes on without a report.
+    pub const CONTACT_TIMEOUT_S: Range = Range::new(0.01, 3600.0, "0.01 to 3600 s");
+}
+
+/// Sand that gives way.
+pub mod sand {
+    use super::Range;
+
+    /// Depth of the bed.
+    pub const DEPTH_M: Range = Range::above(0.0, 0.45, "above 0, to 0.45 m");
+    /// Side of a bed.
+    pub const SIDE_M: Range = Range::new(1e-3, 100.0, "1e-3 to 100 m");
+    /// Steepest slope that stays.
+    pub const TALUS_DEG: Range = Range::new(1.0, 80.0, "1 to 80 degrees");
+    /// k_s.
+    pub const STIFFNESS_N: Range = Range::new(0.01, 1e6, "0.01 to 1e6 N");
+    /// k_c.
+    pub const EXPONENT_PER_M: Range = Range::new(1e-3, 1e4, "1e-3 to 1e4 1/m");
+    /// k_v.
+    pub const DRAG_S_PER_M: Range = Range::new(0.0, 1e4, "0 to 1e4 s/m");
+    /// Wetness.
+    pub const WETNESS: Range = Range::new(0.0, 1.0, "0 to 1");
+    /// Diameter of a grain.
+    pub const GRAIN_M: Range = Range::new(1e-5, 0.01, "1e-5 to 0.01 m");
+    /// Hardness of a layer over that of the top.
+    pub const HARDNESS: Range = Range::new(0.01, 1e3, "0.01 to 1000");
+    /// Where a layer begins.
+    pub const LAYER_FROM_M: Range =
+        Range::above(0.0, 1.0, "above 0, to 1 m, and deeper than the layer before it");
+    /// Radius of the tool.
+    pub const TOOL_RADIUS_M: Range = Range::new(1e-4, 0.2, "1e-4 to 0.2 m");
+    /// Texel of a tool's map.
+    pub const TOOL_TEXEL_M: Range = Range::new(1e-6, 0.01, "1e-6 to 0.01 m");
+    /// Cells along one side.
+    pub const CELLS: Range = Range::new(4.0, 4096.0, "4 to 4096 cells");
+    /// Width of a cell.
+    pub const CELL_M: Range = Range::new(1e-6, 0.1, "1e-6 to 0.1 m");
+    /// Contacts at once.
+    pub const CONTACTS: Range = Range::new(1.0, 1024.0, "1 to 1024");
+}
+
+/// Solid noise.
+pub mod solid {
+    use super::Range;
+
+    /// M.
+    pub const MAGNITUDE: Range = Range::new(0.0, 1e3, "0 to 1e3");
+    /// N.
+    pub const OCTAVES: Range = Range::new(1.0, 16.0, "1 to 16");
+    /// f, cells per unit of length.
+    pub const FREQUENCY: Range = Range::above(0.0, 1e6, "above 0, to 1e6");
+    /// Ratio of frequencies from octave to octave.
+    pub const LACUNARITY: Range = Range::new(1.0, 8.0, "1 to 8");
+    /// Ratio of amplitudes from octave to octave.
+    pub const PERSISTENCE: Range = Range::new(0.0, 1.0, "0 to 1");
+    /// T.
+    pub const TEXTURE_FACTOR_PER_M: Range = Range::above(0.0, 1e6, "above 0, to 1e6 1/m");
+    /// A.
+    pub const AMPLITUDE_M: Range = Range::new(-0.1, 0.1, "within ±0.1 m");
+    /// L.
+    pub const LIMIT_N: Range = Range::new(0.0, 1.0, "0 to 1 N");
+    /// Largest texture force.
+    pub const CAP_N: Range = Range::new(0.0, 100.0, "0 to 100 N");
+    /// b.
+    pub const VISCOSITY_N_S_M: Range = Range::new(0.0, 1e3, "0 to 1000 N·s/m");
+}
+
+/// Brownian relief.
+pub mod brownian {
+    use super::Range;
+
+    /// Hurst exponent.
+    pub const HURST: Range = Range::new(0.01, 0.99, "0.01 to 0.99");
+    /// Rms height.
+    pub const RMS_M: Range = Range::new(0.0, 0.1, "0 to 0.1 m");
+}
+
+/// Sources made of others.
+pub mod combined {
+    use super::Range;
+
+    /// Factor of a scaled source.
+    pub const FACTOR: Range = Range::new(-1e3, 1e3, "within ±1000");
+    /// Each component of a lattice's translation, and its length.
+    pub const STEP_M: Range = Range::new(-1e3, 1e3, "-1000 to 1000 m");
+    /// Length of a lattice's translation.
+    pub const STEP_LENGTH_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m long");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_holds_its_ends_and_nothing_else() {
+        assert!(probe::PAD_MASS_KG.holds(1e-6) && probe::PAD_MASS_KG.holds(1.0));
+        assert!(!sand::DEPTH_M.holds(0.0) && sand::DEPTH_M.holds(0.45));
+        for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1.1, 0.9e-6] {
+            assert!(!probe::PAD_MASS_KG.holds(bad), "{bad}");
+        }
+        let error = probe::PAD_MASS_KG.check("pad_mass_kg", 2.0).unwrap_err();
+        assert_eq!((error.field, error.expected), ("pad_mass_kg", "1e-6 to 1 kg"));
+    }
+
+    /// The words of a range are what a user reads: the numbers in them are the range's own.
+    #[test]
+    fn the_words_of_every_range_say_its_numbers() {
+        let all = [
+            RELIEF_M,
+            SPEED_M_S,
+            MICRO_RELIEF_M,
+            SIDE_M,
+            ROUGHNESS,
+            FRICTION,
+            probe::PAD_MASS_KG,
+            probe::PAD_STIFFNESS_N_M,
+            probe::PAD_DAMPING_N_S_M,
+            probe::FINGER_MASS_KG,
+            probe::CONTACT_STIFFNESS_N_M,
+            probe::LEASH_M,
+            impact::MASS_KG,
+            impact::RADIUS_M,
+            impact::RESTITUTION,
+            impact::GAIN,
+            impact::IMPORTANCE,
+            material::YOUNG_PA,
+            material::POISSON,
+            material::DENSITY_KG_M3,
+            material::RESIDUAL,
+            output::SAMPLE_RATE_HZ,
+            output::AUDIO_GAIN,
+            output::HAPTIC_GAIN,
+            output::FULL_SCALE,
+            output::HIGHPASS_HZ,
+            output::CONTACT_TIMEOUT_S,
+            sand::DEPTH_M,
+            sand::SIDE_M,
+            sand::TALUS_DEG,
+            sand::STIFFNESS_N,
+            sand::EXPONENT_PER_M,
+            sand::DRAG_S_PER_M,
+            sand::WETNESS,
+            sand::GRAIN_M,
+            sand::HARDNESS,
+            sand::TOOL_RADIUS_M,
+            sand::TOOL_TEXEL_M,
+            sand::CELLS,
+            sand::CELL_M,
+            sand::CONTACTS,
+            solid::MAGNITUDE,
+            solid::OCTAVES,
+            solid::FREQUENCY,
+            solid::LACUNARITY,
+            solid::PERSISTENCE,
+            solid::TEXTURE_FACTOR_PER_M,
+            solid::LIMIT_N,
+            solid::CAP_N,
+            solid::VISCOSITY_N_S_M,
+            brownian::HURST,
+            brownian::RMS_M,
+            combined::STEP_M,
+            combined::STEP_LENGTH_M,
+        ];
+        for range in all {
+            let mut numbers = range.words.split([' ', ',']).filter_map(|word| word.parse::<f64>().ok());
+            assert_eq!(numbers.next(), Some(range.low), "{range:?}");
+            assert_eq!(numbers.next(), Some(range.high), "{range:?}");
+            assert_eq!(range.above, range.words.starts_with("above"), "{range:?}");
+        }
+    }
+}

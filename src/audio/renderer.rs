@@ -352,7 +352,7 @@ impl Renderer {
         for channel in &mut self.channels {
             channel.sum[..n].fill(0.0);
         }
-        let (mut collisions, mut resets) = (0, 0);
+        let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
         for voice in self.voices_used.iter() {
             let voice = &mut self.voices[voice];
             if voice.phase == Phase::Free {
@@ -364,6 +364,7 @@ impl Renderer {
             voice.render(seat, &self.shared, output, self.position, n, &mut self.scratch, tap);
             let out = &self.scratch.out;
             collisions += out.collisions;
+            shortened += out.shortened;
             resets += out.resets;
             if let Some(channel) = channel {
                 for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
@@ -389,6 +390,7 @@ impl Renderer {
             }
         });
         Counters::add(&self.counters.micro_collisions, collisions);
+        Counters::add(&self.counters.shortened_collisions, shortened);
         Counters::add(&self.counters.quarantined, resets);
     }
 

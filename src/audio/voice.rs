@@ -172,6 +172,8 @@ pub(crate) struct VoiceBlock {
     /// Whether `impulse_n_s` is more than zeros.
     pub(crate) excites: bool,
     pub(crate) collisions: u64,
+    /// Collisions that would have lasted longer.
+    pub(crate) shortened: u64,
     pub(crate) resets: u64,
 }
 
@@ -405,7 +407,7 @@ impl Voice {
         scratch.out.haptic[..n].fill(self.last_felt);
         scratch.out.impulse_n_s[..n].fill(0.0);
         scratch.out.excites = false;
-        (scratch.out.collisions, scratch.out.resets) = (0, 0);
+        (scratch.out.collisions, scratch.out.shortened, scratch.out.resets) = (0, 0, 0);
     }
 
     fn fall_asleep_when_still(

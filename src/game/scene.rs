@@ -27,9 +27,9 @@ use crate::prepared::overlay::Overlay;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
-use asperity_dsp::DesignError;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_dsp::{DesignError, limits};
 use asperity_texture::change::SurfaceChange;
 use asperity_texture::height_field::Setup;
 use std::sync::Arc;
@@ -248,7 +248,7 @@ impl Scene {
         if channel >= self.config.actuators.len() {
             return Err(AddError::Unknown("actuator"));
         }
-        let gain = within("gain", gain, "0–10", 0.0, 10.0)?;
+        let gain = within("gain", gain, limits::output::HAPTIC_GAIN)?;
         self.send(Message::SetHapticGain { channel, gain })
     }
 

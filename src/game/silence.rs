@@ -9,6 +9,7 @@ use crate::model::config::Config;
 use crate::model::error::Refusal;
 use crate::model::event::{ContactEvent, ContactSample};
 use crate::model::stamp::Stamp;
+use crate::prepared::body::LONGEST_CONTACT_S;
 
 /// Events this far ahead of what is rendered wait longer than any clock's window, s.
 const FAR_AHEAD_S: f64 = 0.25;
@@ -84,12 +85,23 @@ pub enum SilentBecause {
     },
     /// Numbers went bad on the audio half.
     #[error(
-        "{count} samples or changes were quarantined: heights beyond ±1 m, forces no finger has, or a change of \
+        "{count} samples or changes were quarantined: heights more than 20 m from zero, forces beyond 1e4 N, or a change of \
          another kind of surface; check relief_m, normal_force_n, and what change_surface was given"
     )]
     Quarantined {
         /// How many.
         count: u64,
+    },
+    /// Contacts lasted longer than the engine plays.
+    #[error(
+        "{count} impacts or micro-collisions would outlast the longest contact that is played ({longest_s:.2} s, a \
+         micro-collision 0.04 s) and were shortened; let what strikes or what is struck be stiffer, or lighter"
+    )]
+    Shortened {
+        /// How many.
+        count: u64,
+        /// Longest contact of an impact, s.
+        longest_s: f64,
     },
     /// Work was left out because blocks were late.
     #[error(
@@ -206,6 +218,10 @@ impl Reported {
             SilentBecause::Lapsed { count: stats.lapsed, timeout_s: config.contact_timeout_s },
             SilentBecause::Stolen { count: stats.stolen, limit: config.max_contacts },
             SilentBecause::Quarantined { count: stats.quarantined },
+            SilentBecause::Shortened {
+                count: stats.shortened + stats.shortened_collisions,
+                longest_s: LONGEST_CONTACT_S,
+            },
             SilentBecause::Shed { count: stats.shed },
         ];
         because.extend(counted.into_iter().filter(|reason| reason.count() > 0));
@@ -224,6 +240,7 @@ impl SilentBecause {
             | Self::Lapsed { count, .. }
             | Self::Stolen { count, .. }
             | Self::Quarantined { count }
+            | Self::Shortened { count, .. }
             | Self::Shed { count } => *count,
             _ => 0,
         }

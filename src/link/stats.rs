@@ -56,6 +56,8 @@ counters! {
     impacts,
     /// Impacts so soft or heavy that their contact would outlast 0.17 s; it lasts 0.17 s.
     shortened,
+    /// Micro-collisions on something so soft that they would outlast 0.04 s; they last 0.04 s.
+    shortened_collisions,
     /// Onsets of contact found by the micro-contact model.
     micro_collisions,
     /// Events handed back because the queue was full.
@@ -70,8 +72,8 @@ counters! {
     debounced,
     /// Contacts faded because nothing was heard of them for the time-out.
     lapsed,
-    /// Contacts that were suddenly elsewhere, or so far ahead after a silence that following would have been
-    /// heard as a zip: faded where they were, risen where they are.
+    /// Contacts that were suddenly elsewhere, or further away after a silence than a path makes up within a second:
+    /// faded where they were, risen where they are.
     jumps,
     /// Reports of no force: the first in a row holds the force before it, more fade the contact until it
     /// presses again.

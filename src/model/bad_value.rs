@@ -1,5 +1,7 @@
 //! A number that is refused: its field, itself, and what would be right.
 
+use asperity_dsp::limits::Range;
+
 /// A number that nothing real can have.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{field}: {value} is refused; must be {expected}")]
@@ -12,13 +14,7 @@ pub struct BadValue {
     pub expected: &'static str,
 }
 
-/// `value`, if it lies from `low` to `high`.
-pub(crate) fn within(
-    field: &'static str,
-    value: f64,
-    expected: &'static str,
-    low: f64,
-    high: f64,
-) -> Result<f64, BadValue> {
-    if value >= low && value <= high { Ok(value) } else { Err(BadValue { field, value, expected }) }
+/// The value of a field, if the list of limits accepts it.
+pub(crate) fn within(field: &'static str, value: f64, range: Range) -> Result<f64, BadValue> {
+    if range.holds(value) { Ok(value) } else { Err(BadValue { field, value, expected: range.words }) }
 }

@@ -5,6 +5,7 @@ use crate::model::bus::{AudioBus, MAX_BUSES};
 use crate::model::clock_mode::ClockMode;
 use crate::model::inner_rate::InnerRate;
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::output as limits;
 use asperity_dsp::micro_contact::{Integrator, Probe};
 use asperity_dsp::modal_bank::Culling;
 use asperity_dsp::trajectory::PathMode;
@@ -100,14 +101,10 @@ impl Config {
     }
 
     pub(crate) fn check(&self) -> Result<(), DesignError> {
-        DesignError::check("sample_rate_hz", self.sample_rate_hz, "8000–384000 Hz", |r| {
-            (8e3..=384e3).contains(&r)
-        })?;
-        DesignError::check("contact_timeout_s", self.contact_timeout_s, "0.01–3600 s", |t| {
-            (0.01..=3600.0).contains(&t)
-        })?;
+        limits::SAMPLE_RATE_HZ.check("sample_rate_hz", self.sample_rate_hz)?;
+        limits::CONTACT_TIMEOUT_S.check("contact_timeout_s", self.contact_timeout_s)?;
         for bus in &self.audio {
-            DesignError::check("audio.gain", bus.gain, "0–1e6", |g| (0.0..=1e6).contains(&g))?;
+            limits::AUDIO_GAIN.check("audio.gain", bus.gain)?;
         }
         if let Some(culling) = self.culling {
             // Without end is allowed: nothing is too quiet.

@@ -16,6 +16,8 @@
 use crate::model::bad_value::{BadValue, within};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
+use asperity_dsp::limits;
+pub use asperity_dsp::limits::{MAX_NORMAL_FORCE_N as MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV};
 
 /// A contact's name, chosen by the caller and unique among the contacts that are touching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -195,8 +197,6 @@ impl ContactEvent {
     }
 }
 
-pub use asperity_dsp::limits::{MAX_NORMAL_FORCE_N as MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV};
-
 impl ContactSample {
     /// The same sample with a negative force set to 0.
     ///
@@ -204,13 +204,13 @@ impl ContactSample {
     /// When a number is not finite or beyond the limits of this module.
     pub fn checked(mut self) -> Result<Self, BadValue> {
         for uv in self.uv {
-            within("uv", uv, "finite and within ±1e6", -MAX_UV, MAX_UV)?;
+            within("uv", uv, limits::UV)?;
         }
         for v in self.velocity_m_s.into_iter().flatten() {
-            within("velocity_m_s", v, "finite and within ±100 m/s", -MAX_SPEED_M_S, MAX_SPEED_M_S)?;
+            within("velocity_m_s", v, limits::VELOCITY_M_S)?;
         }
-        within("normal_force_n", self.normal_force_n, "finite and at most 1e4 N", -MAX_FORCE_N, MAX_FORCE_N)?;
-        within("closing_m_s", self.closing_m_s, "0–100 m/s", 0.0, MAX_SPEED_M_S)?;
+        within("normal_force_n", self.normal_force_n, limits::NORMAL_FORCE_N)?;
+        within("closing_m_s", self.closing_m_s, limits::SPEED_M_S)?;
         self.normal_force_n = self.normal_force_n.max(0.0);
         Ok(self)
     }
@@ -247,11 +247,11 @@ impl Impact {
     /// # Errors
     /// When a number is not finite or no striker can have it.
     pub fn checked(self) -> Result<Self, BadValue> {
-        within("speed_m_s", self.speed_m_s, "0–100 m/s", 0.0, MAX_SPEED_M_S)?;
-        within("mass_kg", self.mass_kg, "1e-9–1e4 kg", 1e-9, 1e4)?;
-        within("radius_m", self.radius_m, "1e-6–10 m", 1e-6, 10.0)?;
-        within("restitution", self.restitution, "0–1", 0.0, 1.0)?;
-        within("gain", self.gain, "0–1000", 0.0, 1e3)?;
+        within("speed_m_s", self.speed_m_s, limits::SPEED_M_S)?;
+        within("mass_kg", self.mass_kg, limits::impact::MASS_KG)?;
+        within("radius_m", self.radius_m, limits::impact::RADIUS_M)?;
+        within("restitution", self.restitution, limits::impact::RESTITUTION)?;
+        within("gain", self.gain, limits::impact::GAIN)?;
         self.striker.checked()?;
         Ok(self)
     }

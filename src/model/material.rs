@@ -6,6 +6,7 @@
 //! time (∝ E^−0.4) by a few per cent.
 
 use crate::model::bad_value::{BadValue, within};
+use asperity_dsp::limits::material as limits;
 
 /// Elastic constants of one material.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -80,9 +81,9 @@ impl Material {
     /// # Errors
     /// When a constant is not finite or no solid has it.
     pub fn checked(self) -> Result<Self, BadValue> {
-        within("young_pa", self.young_pa, "1e3–1e13 Pa", 1e3, 1e13)?;
-        within("poisson", self.poisson, "0–0.5", 0.0, 0.5)?;
-        within("density_kg_m3", self.density_kg_m3, "1–1e5 kg/m³", 1.0, 1e5)?;
+        within("young_pa", self.young_pa, limits::YOUNG_PA)?;
+        within("poisson", self.poisson, limits::POISSON)?;
+        within("density_kg_m3", self.density_kg_m3, limits::DENSITY_KG_M3)?;
         Ok(self)
     }
 }

@@ -99,9 +99,8 @@ impl Surface {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn from_source(source: Box<dyn HeightField>, width_m: f64, height_m: f64) -> Result<Self, BadValue> {
-        let (least_m, most_m) = limits::SIDE_M;
-        within("width_m", width_m, "1e-6–1e3 m", least_m, most_m)?;
-        within("height_m", height_m, "1e-6–1e3 m", least_m, most_m)?;
+        within("width_m", width_m, limits::SIDE_M)?;
+        within("height_m", height_m, limits::SIDE_M)?;
         Ok(Self {
             source,
             width_m,
@@ -195,13 +194,12 @@ impl Surface {
     }
 
     pub(crate) fn checked(self) -> Result<Self, BadValue> {
-        let most_m = limits::MAX_MICRO_RELIEF_M;
-        within("micro_relief_m", self.micro_relief_m, "0–0.01 m", 0.0, most_m)?;
+        within("micro_relief_m", self.micro_relief_m, limits::MICRO_RELIEF_M)?;
         let reach_m = self.source.reach_m();
-        within("relief_m", reach_m, "a surface within ±10 m of zero", 0.0, limits::MAX_RELIEF_M)?;
-        within("friction", self.friction.unwrap_or(0.0), "0–10", 0.0, 10.0)?;
+        within("relief_m", reach_m, limits::REACH_M)?;
+        within("friction", self.friction.unwrap_or(0.0), limits::FRICTION)?;
         if let Roughness::Constant(r) = self.roughness {
-            within("roughness", r, "0–1", 0.0, 1.0)?;
+            within("roughness", r, limits::ROUGHNESS)?;
         }
         Ok(self)
     }

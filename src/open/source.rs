@@ -7,7 +7,6 @@ use crate::files::scene_file::BrownianForce as ForceEntry;
 use crate::files::scene_file::{
     Brownian, Direction, Lattice as LatticeEntry, Sand, SolidNoise as SolidEntry, Source, Tool as ToolEntry,
 };
-use crate::{Extent, Wrap};
 #[cfg(feature = "brownian")]
 use asperity_texture::brownian::BrownianDesign;
 #[cfg(feature = "brownian")]
@@ -15,12 +14,14 @@ use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, Brownia
 use asperity_texture::change::SurfaceChange;
 use asperity_texture::combine::{Crossfade, Mask, Scale, Sum};
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
+use asperity_texture::height_map::Extent;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
 use asperity_texture::sand::{Layer, SandDesign, SandLaw, SandSource, SandWorker, Tool};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::{ForceDirection, SolidNoise};
+use asperity_texture::wrap::Wrap;
 use std::cell::RefCell;
 
 /// Points of a graph unless told otherwise.
@@ -44,9 +45,10 @@ impl Ground<'_> {
     /// The source itself.
     pub fn source(self, source: &Source) -> Result<Boxed, FileError> {
         Ok(match source {
-            Source::Flat => {
-                Box::new(HeightMap::flat(self.extent, crate::DEFAULT_ROUGHNESS).map_err(FileError::told)?)
-            }
+            Source::Flat => Box::new(
+                HeightMap::flat(self.extent, crate::model::surface::DEFAULT_ROUGHNESS)
+                    .map_err(FileError::told)?,
+            ),
             Source::Map { image, relief_m, invert } => {
                 let heights = upright(pixels(image)?.debanded(self.wrap), *invert);
                 let extent = Extent { relief_m: *relief_m, ..self.extent };

@@ -38,6 +38,12 @@ pub struct Force {
     pub above_landing: f64,
     /// Whether the fingertip preset touched.
     pub fingertip: bool,
+    /// What touched.
+    pub probe: Probe,
+    /// What pressed, N.
+    pub pressed_n: f64,
+    /// Ground's own acceleration, m/s².
+    pub acceleration_m_s2: f64,
 }
 
 /// An end of a range most of the time, something between at others.
@@ -47,6 +53,11 @@ fn end(rng: &mut Rng, low: f64, high: f64) -> f64 {
         2 | 3 => high,
         _ => low * (high / low).powf(rng.uniform()),
     }
+}
+
+/// An end of an accepted range; 0 is replaced by next to nothing.
+fn end_of(rng: &mut Rng, range: limits::Range) -> f64 {
+    end(rng, if range.low > 0.0 { range.low } else { 1e-3 }, range.high)
 }
 
 fn one_of<T: Copy>(rng: &mut Rng, of: &[T]) -> T {
@@ -81,6 +92,9 @@ impl Hardest {
             above: self.contact_n / allowed_n.max(1e-9),
             above_landing: self.contact_n / (allowed_n + landing_n).max(1e-9),
             fingertip: *probe == Probe::default(),
+            probe: *probe,
+            pressed_n: self.pressed_n,
+            acceleration_m_s2: self.acceleration_m_s2,
         }
     }
 }
@@ -105,7 +119,7 @@ impl Tap for Hardest {
 }
 
 fn surface(rng: &mut Rng) -> Result<Surface, String> {
-    let (width_m, height_m) = (end(rng, 1e-3, limits::SIDE_M.1), end(rng, 1e-3, limits::SIDE_M.1));
+    let (width_m, height_m) = (end(rng, 1e-3, limits::SIDE_M.high), end(rng, 1e-3, limits::SIDE_M.high));
     let relief_m = end(rng, 1e-9, 1.5 * limits::MAX_RELIEF_M);
     let n = one_of(rng, &[1usize, 2, 16, 64]);
     let kind = rng.next_u32() % 3;
@@ -132,12 +146,12 @@ pub fn outcome(seed: u64) -> Outcome {
     let mut rng = Rng::new(seed);
     let rng = &mut rng;
     let probe = Probe {
-        pad_mass_kg: end(rng, 1e-6, 1.0),
-        pad_stiffness_n_m: end(rng, 1e-3, 1e7),
-        pad_damping_n_s_m: end(rng, 1e-3, 1e4),
-        finger_mass_kg: end(rng, 1e-5, 100.0),
-        contact_stiffness_n_m: end(rng, 1.0, 1e9),
-        leash_m: end(rng, 1e-6, 0.05),
+        pad_mass_kg: end_of(rng, limits::probe::PAD_MASS_KG),
+        pad_stiffness_n_m: end_of(rng, limits::probe::PAD_STIFFNESS_N_M),
+        pad_damping_n_s_m: end_of(rng, limits::probe::PAD_DAMPING_N_S_M),
+        finger_mass_kg: end_of(rng, limits::probe::FINGER_MASS_KG),
+        contact_stiffness_n_m: end_of(rng, limits::probe::CONTACT_STIFFNESS_N_M),
+        leash_m: end_of(rng, limits::probe::LEASH_M),
     };
     let probe = if rng.next_u32().is_multiple_of(2) { Probe::default() } else { probe };
     let integrator =

@@ -24,6 +24,7 @@ pub mod rendering;
 
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::brownian as limits;
 use asperity_dsp::rng::Rng;
 use fourier::{Complex, forward_2d, forward_lines};
 
@@ -101,11 +102,11 @@ impl BrownianDesign {
     }
 
     fn check(&self, most: usize) -> Result<(), DesignError> {
-        DesignError::check("hurst", self.hurst, "above 0 and below 1", |h| h > 0.0 && h < 1.0)?;
+        limits::HURST.check("hurst", self.hurst)?;
         let fits = |n: f64| (4.0..=most as f64).contains(&n);
-        let (size, rms) = (self.size as f64, self.rms_m);
+        let size = self.size as f64;
         DesignError::check("size", size, "4 to 1024 (open) or 4096 (periodic) samples along an edge", fits)?;
-        DesignError::check("rms_m", rms, "0 to 0.1 m", |r| (0.0..=0.1).contains(&r))?;
+        limits::RMS_M.check("rms_m", self.rms_m)?;
         let possible = !(self.periodic && self.method == Method::Midpoint);
         let wanted = "false for midpoint displacement, which cannot repeat";
         DesignError::check("periodic", f64::from(u8::from(self.periodic)), wanted, |_| possible)?;

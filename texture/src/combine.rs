@@ -19,7 +19,7 @@ use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use crate::sand::SandSource;
-use asperity_dsp::DesignError;
+use asperity_dsp::{DesignError, limits};
 
 /// A surface of any kind.
 pub type Source = Box<dyn HeightField>;
@@ -112,7 +112,7 @@ impl Scale {
 }
 
 fn check_factor(factor: f64) -> Result<f64, DesignError> {
-    DesignError::check("factor", factor, "within ±1000", |f| f.abs() <= 1e3)
+    limits::combined::FACTOR.check("factor", factor)
 }
 
 impl HeightField for Scale {

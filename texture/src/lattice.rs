@@ -19,6 +19,7 @@
 use crate::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::combined as limits;
 
 /// Most texels along an edge of a cell.
 pub const MAX_CELL: usize = 4096;
@@ -57,9 +58,8 @@ impl Lattice {
             DesignError::check("cell.values", value, "finite heights in metres", |_| true)?;
         }
         let (l1, l2) = (t1_m[0].hypot(t1_m[1]), t2_m[0].hypot(t2_m[1]));
-        let length = |l: f64| (1e-6..=1e3).contains(&l);
-        DesignError::check("t1_m", l1, "1e-6 to 1e3 m long", length)?;
-        DesignError::check("t2_m", l2, "1e-6 to 1e3 m long", length)?;
+        limits::STEP_LENGTH_M.check("t1_m", l1)?;
+        limits::STEP_LENGTH_M.check("t2_m", l2)?;
         let area = t1_m[0] * t2_m[1] - t1_m[1] * t2_m[0];
         DesignError::check(
             "t2_m",

@@ -44,7 +44,7 @@ pub struct Options {
 /// When an input is bad, a named device is not there, or it is lost and does not come back.
 #[cfg(feature = "device")]
 pub fn run(options: &Options) -> Result<(), CliError> {
-    if options.list_devices { session::list() } else { session::run(options) }
+    if options.list_devices { session::list(options) } else { session::run(options) }
 }
 
 /// Runs the verb of a program that was built without sound card support.

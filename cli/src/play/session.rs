@@ -54,12 +54,15 @@ struct Summary {
     warnings: Vec<String>,
 }
 
-/// Prints every output device.
+/// Prints every output device, or those of one host.
 ///
 /// # Errors
-/// Never; a machine without devices is not an error.
-pub fn list() -> Result<(), CliError> {
-    let devices = device::list();
+/// When the host is not in this build; a machine without devices is not an error.
+pub fn list(options: &Options) -> Result<(), CliError> {
+    let devices = match &options.host {
+        Some(host) => device::list_on(host).map_err(CliError::told)?,
+        None => device::list(),
+    };
     if devices.is_empty() {
         eprintln!("no sound card was found; connect one, or start the sound server");
     }

@@ -11,6 +11,7 @@ use crate::{pixels, plot, wav};
 use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::files::scene_file::SceneFile;
+use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
 use asperity::{Integrator, PathMode, SurfaceId};
@@ -69,10 +70,10 @@ pub struct Options {
 
 fn sample_rate(text: &str) -> Result<f64, String> {
     let rate: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if (8_000.0..=192_000.0).contains(&rate) && rate.fract() == 0.0 {
+    if limits::SAMPLE_RATE_HZ.holds(rate) && rate.fract() == 0.0 {
         Ok(rate)
     } else {
-        Err("must be a whole number from 8000 to 192000".to_owned())
+        Err(format!("must be a whole number, {}", limits::SAMPLE_RATE_HZ.words))
     }
 }
 
@@ -138,6 +139,8 @@ pub struct SandReport {
     pub volume_after_m3: f64,
     /// Steepest slope.
     pub max_slope_deg: f64,
+    /// Deepest that a contact stood below the untouched bed, m, before its walls slid.
+    pub print_m: f64,
     /// Height of one grey step of its picture.
     pub metres_per_grey: f64,
     /// Height of black above the bottom of the bed.
@@ -221,6 +224,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
                 volume_before_m3: sand.figures.volume_before_m3,
                 volume_after_m3: sand.figures.volume_after_m3,
                 max_slope_deg: sand.figures.max_slope_deg,
+                print_m: sand.figures.print_m,
                 metres_per_grey: sand.picture.metres_per_grey,
                 lowest_m: sand.picture.lowest_m,
             },

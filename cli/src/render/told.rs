@@ -102,8 +102,8 @@ fn in_words(reason: &SilentBecause, log: &ContactLog, render: &Render) -> String
             "{count} contacts were silenced because more than {limit} sounded at once; write an \"end\" for those that are over"
         ),
         SilentBecause::Quarantined { count } => format!(
-            "{count} samples were quarantined: a height beyond ±1 m or a force no finger has; check relief_m, scale and \
-             normal_force_n"
+            "{count} samples were quarantined: a height more than 20 m from zero, a force beyond 1e4 N, or a probe that was lost; check \
+             relief_m, scale, normal_force_n and [probe]"
         ),
         SilentBecause::NothingReported => {
             "the log holds no event; write a \"begin\" and moves, or an \"impact\"".to_owned()

@@ -5,6 +5,7 @@ use super::device::DeviceProfile;
 use super::equaliser::{Equaliser, EqualiserState};
 use super::limiter::{Protection, ProtectionState};
 use crate::DesignError;
+use crate::limits::output as limits;
 
 /// Time in which a changed user gain or mute takes effect, s (chosen).
 pub const GAIN_RAMP_S: f64 = 0.02;
@@ -90,7 +91,7 @@ impl Channel {
     /// Names the field that is out of range.
     pub fn new(options: &ChannelOptions, sample_rate_hz: f64) -> Result<Self, DesignError> {
         let rate = DesignError::check("sample_rate_hz", sample_rate_hz, "above 0 Hz", |r| r > 0.0)?;
-        let full = DesignError::check("full_scale", options.full_scale, "above 0", |f| f > 0.0)?;
+        let full = limits::FULL_SCALE.check("full_scale", options.full_scale)?;
         let soft = DesignError::check("soft_start_s", options.soft_start_s, "0 s or more", |t| t >= 0.0)?;
         let equaliser = match &options.equalise {
             Some(profile) => Some(Equaliser::new(profile, options.quantity, rate)?),

@@ -2,6 +2,7 @@
 
 use crate::DesignError;
 use crate::butterworth::{Butterworth, State, Two};
+use crate::limits::output as limits;
 use core::f64::consts::PI;
 
 /// Which quantity of the pad is played.
@@ -42,6 +43,7 @@ impl ContactOutput {
     /// Names the field that is out of range.
     pub fn new(quantity: Quantity, highpass_hz: f64, sample_rate_hz: f64) -> Result<Self, DesignError> {
         let rate = DesignError::check("sample_rate_hz", sample_rate_hz, "above 0 Hz", |r| r > 0.0)?;
+        limits::HIGHPASS_HZ.check("highpass_hz", highpass_hz)?;
         let highpass = if highpass_hz == 0.0 {
             None
         } else {

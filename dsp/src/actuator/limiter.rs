@@ -146,8 +146,9 @@ fn rested(z: [f64; 2]) -> [f64; 2] {
 /// that no audible tone sees the gain move between two of its own peaks).
 pub const HOLD_TIME_S: f64 = 0.05;
 
-/// Share of the ceiling from which a peak holds the gain: −0.45 dB.
-const NEAR_CEILING: f32 = 0.95;
+/// Share of the ceiling from which a peak holds the gain: −3.1 dB. A tone near a quarter of the rate beats with it: for a while
+/// all its samples lie up to 3.01 dB below its peaks, and the gain must not rise meanwhile (no other ratio beats deeper).
+const NEAR_CEILING: f32 = 0.7;
 
 /// Deepest gain: what is further above the ceiling, 80 dB, is a broken input and is cut, so that it does not silence the seconds
 /// after it.
@@ -156,11 +157,12 @@ const DEEPEST_GAIN: f32 = 1e-4;
 /// Peak limiter for an audio bus: no latency, never above the ceiling.
 ///
 /// ```text
-/// g ← c / |x|  where g |x| > c        otherwise, once no |g x| was above 0.95 c for 50 ms, g ← min(1, g e^(1/(τ rate)))
+/// g ← c / |x|  where g |x| > c        otherwise, once no |g x| was above 0.7 c for 50 ms, g ← min(1, g e^(1/(τ rate)))
 /// ```
 /// A gain that rises between two peaks of one tone bends the tone: let go towards 1 with τ = 80 ms at once, it left a sine 20 dB
 /// over the ceiling at −32 dB of distortion. So it holds between peaks, and rises in decibels (109 dB a second): a sine's distortion
-/// is below −80 dB from its second period on (`tests/actuator.rs`).
+/// is below −80 dB from its second period on, and below −60 dB from the first beat on where its samples beat with the rate
+/// (`tests/actuator.rs`). What goes on within 3.1 dB of the ceiling after something louder stays as much quieter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakLimiter {
     ceiling: f32,

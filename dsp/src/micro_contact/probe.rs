@@ -1,6 +1,7 @@
 //! What touches the surface: a fingertip as two masses, a spring, a damper and a leash.
 
 use crate::DesignError;
+use crate::limits::probe as limits;
 
 /// Mass of the skin that moves with the surface, kg. Range 0.1–0.25 g: 0.1 g in a 2017 fingertip
 /// model (ROBOMECH Journal, table 1); 0.11–0.255 g recalled from Wiertlewski & Hayward 2012 (which
@@ -60,14 +61,11 @@ impl Probe {
 
     /// Refuses values outside the documented ranges.
     pub(crate) fn check(&self) -> Result<(), DesignError> {
-        let within = |field, value, low: f64, high: f64, expected| {
-            DesignError::check(field, value, expected, |x| x >= low && x <= high).map(|_| ())
-        };
-        within("pad_mass_kg", self.pad_mass_kg, 1e-6, 1.0, "from 1e-6 to 1 kg")?;
-        within("pad_stiffness_n_m", self.pad_stiffness_n_m, 1e-3, 1e7, "from 1e-3 to 1e7 N/m")?;
-        within("pad_damping_n_s_m", self.pad_damping_n_s_m, 0.0, 1e4, "from 0 to 1e4 N·s/m")?;
-        within("finger_mass_kg", self.finger_mass_kg, 1e-5, 100.0, "from 1e-5 to 100 kg")?;
-        within("contact_stiffness_n_m", self.contact_stiffness_n_m, 1.0, 1e9, "from 1 to 1e9 N/m")?;
-        within("leash_m", self.leash_m, 1e-6, 0.05, "from 1e-6 to 0.05 m")
+        limits::PAD_MASS_KG.check("pad_mass_kg", self.pad_mass_kg)?;
+        limits::PAD_STIFFNESS_N_M.check("pad_stiffness_n_m", self.pad_stiffness_n_m)?;
+        limits::PAD_DAMPING_N_S_M.check("pad_damping_n_s_m", self.pad_damping_n_s_m)?;
+        limits::FINGER_MASS_KG.check("finger_mass_kg", self.finger_mass_kg)?;
+        limits::CONTACT_STIFFNESS_N_M.check("contact_stiffness_n_m", self.contact_stiffness_n_m)?;
+        limits::LEASH_M.check("leash_m", self.leash_m).map(|_| ())
     }
 }

@@ -2,6 +2,7 @@
 //! reported velocities, linear for the force.
 
 use super::TrajectoryDesign;
+use super::reckoning::Belief;
 
 /// Events kept. They are at least an eighth of the delay apart (closer ones replace each other), so
 /// the delay never reaches back beyond the oldest.
@@ -31,20 +32,20 @@ impl History {
         Self { knots, len: 1 }
     }
 
-    /// Adds an event at the origin. `limit` as in [`Self::at`].
+    /// Adds an event at the origin. `belief` as in [`Self::at`].
     pub fn push(
         &mut self,
         design: &TrajectoryDesign,
         sample: u64,
-        limit: i64,
+        belief: Belief,
         velocity_m_s: [f64; 2],
         force_n: f64,
     ) {
         let knot = Knot { sample, position_m: [0.0; 2], velocity_m_s, force_n };
-        if self.has_glided_out(design, sample, limit) {
+        if self.has_glided_out(design, sample, belief) {
             // A cubic across a long silence would swing out: leave the place of rest a moment ago.
-            let (position_m, force_n) = self.at(design, sample, limit);
-            let left = sample.saturating_sub(limit.max(1) as u64);
+            let (position_m, force_n) = self.at(design, sample, belief);
+            let left = sample.saturating_sub(belief.whole_samples.max(1) as u64);
             self.knots[0] = Knot { sample: left, position_m, velocity_m_s: [0.0; 2], force_n };
             self.knots[1] = knot;
             self.len = 2;
@@ -84,23 +85,24 @@ impl History {
     }
 
     /// Whether the path beyond the latest event has come to its end.
-    pub fn has_glided_out(&self, design: &TrajectoryDesign, sample: u64, limit: i64) -> bool {
-        self.age_of_latest(design, sample) > 2 * limit
+    pub fn has_glided_out(&self, design: &TrajectoryDesign, sample: u64, belief: Belief) -> bool {
+        self.age_of_latest(design, sample) > belief.whole_samples + fall_samples(design, belief)
     }
 
     fn age_of_latest(&self, design: &TrajectoryDesign, sample: u64) -> i64 {
         sample.wrapping_sub(self.knots[self.len - 1].sample) as i64 - design.hermite_delay_samples as i64
     }
 
-    /// Position and force one delay before `sample`. Beyond the latest event the velocity is believed
-    /// for `limit` samples and then falls linearly to rest over as many again.
-    pub fn at(&self, design: &TrajectoryDesign, sample: u64, limit: i64) -> ([f64; 2], f64) {
+    /// Position and force one delay before `sample`. Beyond the latest event the velocity is wholly
+    /// believed as `belief` says, and then falls linearly to rest over twice the time of its fade.
+    pub fn at(&self, design: &TrajectoryDesign, sample: u64, belief: Belief) -> ([f64; 2], f64) {
         let knots = &self.knots[..self.len];
         let latest = &knots[self.len - 1];
         let age = self.age_of_latest(design, sample);
         if age >= 0 {
-            let late = (age - limit).clamp(0, limit) as f64;
-            let believed = age.min(limit) as f64 + late - 0.5 * late * late / (limit.max(1) as f64);
+            let (whole, fall) = (belief.whole_samples, fall_samples(design, belief));
+            let late = (age - whole).clamp(0, fall) as f64;
+            let believed = age.min(whole) as f64 + late - 0.5 * late * late / fall as f64;
             return (along(latest, believed * design.sample_period_s), latest.force_n);
         }
         let read = sample.wrapping_sub(design.hermite_delay_samples);
@@ -112,6 +114,11 @@ impl History {
         };
         between(&knots[index], &knots[index + 1], age_at(&knots[index]) as f64, design.sample_period_s)
     }
+}
+
+/// How long a velocity falls once it is no longer wholly believed.
+fn fall_samples(design: &TrajectoryDesign, belief: Belief) -> i64 {
+    ((2.0 * belief.fade_s / design.sample_period_s) as i64).max(1)
 }
 
 fn along(knot: &Knot, time_s: f64) -> [f64; 2] {

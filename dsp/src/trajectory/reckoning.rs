@@ -9,9 +9,21 @@ const PERIOD_RANGE_S: (f64, f64) = (0.001, 0.1);
 /// Weight of a new interval in the running estimate.
 const PERIOD_WEIGHT: f64 = 0.25;
 /// Event periods over which a reported velocity is believed.
-pub const BELIEVED_PERIODS: f64 = 1.5;
-/// Time constant with which it then decays, event periods.
-const DECAY_PERIODS: f64 = 0.5;
+const BELIEVED_PERIODS: f64 = 1.5;
+/// Time constant with which it then fades, event periods …
+const FADE_PERIODS: f64 = 0.5;
+/// … and at least so long, s: most fingers go on while a game hangs, and one that has stopped glides 5 mm too far at 0.1 m/s.
+/// Chosen: after 40 ms without reports half the speed is left, after 200 ms none.
+const LEAST_FADE_S: f64 = 0.05;
+
+/// How long a velocity is believed when no report follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Belief {
+    /// Wholly, from its report on.
+    pub whole_samples: i64,
+    /// Time constant with which the velocity then fades, s.
+    pub fade_s: f64,
+}
 
 /// The latest event, at the origin of the path's coordinates, and what follows from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,18 +129,21 @@ impl Reckoning {
         self.glide.after_samples = -1;
     }
 
-    /// Samples after an event for which its velocity is believed.
-    pub fn glide_limit_samples(&self, design: &TrajectoryDesign) -> i64 {
-        (BELIEVED_PERIODS * self.period_s / design.sample_period_s) as i64
+    /// How long the latest event's velocity is believed.
+    pub fn belief(&self, design: &TrajectoryDesign) -> Belief {
+        Belief {
+            whole_samples: (BELIEVED_PERIODS * self.period_s / design.sample_period_s) as i64,
+            fade_s: (FADE_PERIODS * self.period_s).max(LEAST_FADE_S),
+        }
     }
 
     /// Where the input will be `gap_s` after the latest event, relative to it.
     pub fn expected(&self, design: &TrajectoryDesign, gap_s: f64) -> [f64; 2] {
-        let believed_s = self.glide_limit_samples(design) as f64 * design.sample_period_s;
-        let decay_s = DECAY_PERIODS * self.period_s;
+        let Belief { whole_samples, fade_s } = self.belief(design);
+        let believed_s = whole_samples as f64 * design.sample_period_s;
         let late_s = gap_s - believed_s;
         let time_s =
-            if late_s > 0.0 { believed_s + decay_s * (1.0 - libm::exp(-late_s / decay_s)) } else { gap_s };
+            if late_s > 0.0 { believed_s + fade_s * (1.0 - libm::exp(-late_s / fade_s)) } else { gap_s };
         [self.velocity_m_s[0] * time_s, self.velocity_m_s[1] * time_s]
     }
 
@@ -144,8 +159,13 @@ impl Reckoning {
         self.note_interval(gap_s);
         let (period_s, events) = (self.period_s, self.events);
         *self = Self { period_s, events, ..Self::begin(sample, fraction, velocity_m_s, force_n) };
-        self.glide.keep = libm::exp(-design.sample_period_s / (DECAY_PERIODS * period_s));
-        self.glide.after_samples = self.glide_limit_samples(design);
+        self.plan_glide(design);
+    }
+
+    fn plan_glide(&mut self, design: &TrajectoryDesign) {
+        let Belief { whole_samples, fade_s } = self.belief(design);
+        self.glide.after_samples = whole_samples;
+        self.glide.keep = libm::exp(-design.sample_period_s / fade_s);
     }
 
     /// The input from `sample` on, relative to the latest event, and the force. Once the velocity is no longer believed
@@ -154,8 +174,7 @@ impl Reckoning {
     pub fn run(&mut self, design: &TrajectoryDesign, sample: u64, out: &mut [[f64; 3]]) {
         let age = sample.wrapping_sub(self.sample) as i64;
         if self.glide.after_samples < 0 {
-            self.glide.after_samples = self.glide_limit_samples(design);
-            self.glide.keep = libm::exp(-design.sample_period_s / (DECAY_PERIODS * self.period_s));
+            self.plan_glide(design);
         }
         let after = self.glide.after_samples;
         let believed = after.saturating_sub(age).saturating_add(1).clamp(0, out.len() as i64) as usize;

@@ -3,6 +3,8 @@ use crate::rng::Rng;
 use std::vec;
 use std::vec::Vec;
 
+mod silences;
+
 const RATE_HZ: f64 = 44_100.0;
 
 fn design(mode: PathMode) -> TrajectoryDesign {
@@ -115,14 +117,15 @@ fn a_finger_that_sticks_stops() {
 }
 
 #[test]
-fn a_contact_nobody_refreshes_glides_two_event_periods_and_rests() {
+fn a_contact_nobody_refreshes_glides_less_than_a_tenth_of_a_second_and_rests() {
     let mut events = steady(1, 0.0, 0.0, 0.0, true);
     events.truncate(60);
     let design = design(PathMode::Extrapolate);
     let points = render(&design, &events, events[59].sample + 44_100);
     let last = points.last().unwrap();
     let glide = last.position_m[0] - events[59].position_m[0];
-    assert!((glide - 2.0 * 0.1 / 60.0).abs() < 1e-5, "glided {glide}");
+    // Believed for 1.5 periods, then fading with 50 ms.
+    assert!((glide - 0.1 * (1.5 / 60.0 + 0.05)).abs() < 1e-5, "glided {glide}");
     assert_eq!(last.velocity_m_s, [0.0; 2]);
 }
 
@@ -339,74 +342,6 @@ fn ripple_and_lag_are_the_same_at_every_rate_though_stamps_fall_between_samples(
                 assert!(ripple.abs() < 1e-5, "{mode:?}, {rate_hz} Hz: ripple {ripple}");
                 assert!((lag_s - design.lag_s()).abs() < 1e-4, "{mode:?}, {rate_hz} Hz: lag {lag_s}");
             }
-        }
-    }
-}
-
-/// A finger at 0.1 m/s whose reports come at these times, s.
-fn reported_at(times_s: &[f64], velocity: Option<f64>) -> Vec<PathEvent> {
-    times_s.iter().map(|t| event((t * RATE_HZ).round() as u64, 0.1 * t, velocity)).collect()
-}
-
-/// Fastest speed of a path over the finger's.
-fn overshoot(mode: PathMode, events: &[PathEvent]) -> f64 {
-    let end = events.last().unwrap().sample + 4410;
-    let points = render(&design(mode), events, end);
-    points.iter().fold(0.0f64, |most, point| most.max(point.velocity_m_s[0] / 0.1))
-}
-
-#[test]
-fn after_a_hitch_of_the_game_the_path_does_not_hurry() {
-    for mode in [PathMode::Extrapolate, PathMode::Hermite] {
-        for hitch_s in [0.02, 0.03, 0.04, 0.06, 0.1, 0.15, 0.2] {
-            for velocity in [Some(0.1), None] {
-                let times: Vec<f64> =
-                    (0..60).map(|n| f64::from(n) / 60.0 + if n > 30 { hitch_s } else { 0.0 }).collect();
-                let fastest = overshoot(mode, &reported_at(&times, velocity));
-                assert!(fastest < 1.5, "{mode:?}, {hitch_s} s, {velocity:?}: {fastest}");
-            }
-        }
-    }
-}
-
-#[test]
-fn a_game_at_10_or_20_hz_does_not_hurry_at_its_first_reports() {
-    for mode in [PathMode::Extrapolate, PathMode::Hermite] {
-        for report_hz in [5.0, 10.0, 20.0, 30.0] {
-            for velocity in [Some(0.1), None] {
-                let times: Vec<f64> = (0..20).map(|n| f64::from(n) / report_hz).collect();
-                let fastest = overshoot(mode, &reported_at(&times, velocity));
-                assert!(fastest < 1.5, "{mode:?}, {report_hz} Hz, {velocity:?}: {fastest}");
-            }
-        }
-    }
-}
-
-#[test]
-fn reports_that_get_lost_make_nobody_hurry() {
-    for mode in [PathMode::Extrapolate, PathMode::Hermite] {
-        for seed in 1..=8 {
-            let mut rng = Rng::new(seed);
-            let times: Vec<f64> =
-                (0..600).filter(|_| rng.uniform() > 0.1).map(|n| f64::from(n) / 60.0).collect();
-            let fastest = overshoot(mode, &reported_at(&times, Some(0.1)));
-            assert!(fastest < 1.5, "{mode:?}, seed {seed}: {fastest}");
-        }
-    }
-}
-
-#[test]
-fn a_game_that_reports_a_velocity_of_zero_for_a_finger_that_moves_is_not_believed() {
-    for mode in [PathMode::Extrapolate, PathMode::Hermite] {
-        for speed in [0.02, 0.05, 0.1, 0.5] {
-            let events: Vec<PathEvent> =
-                (0..120u64).map(|n| event(n * 735, speed * n as f64 / 60.0, Some(0.0))).collect();
-            let points = render(&design(mode), &events, 120 * 735);
-            let fastest = points.iter().fold(0.0f64, |most, p| most.max(p.velocity_m_s[0] / speed));
-            assert!(fastest < 1.5, "{mode:?}, {speed} m/s: {fastest}");
-            let late = &points[44_100..];
-            let worst = late.iter().fold(0.0f64, |w, p| w.max((p.velocity_m_s[0] / speed - 1.0).abs()));
-            assert!(worst < 1e-4, "{mode:?}, {speed} m/s: {worst}");
         }
     }
 }

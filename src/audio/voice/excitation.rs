@@ -27,7 +27,7 @@ impl Voice {
         let Some(slot) = seat.current() else { return };
         let excitation = slot.surface.excitation;
         let rate = shared.sample_rate_hz;
-        scratch.out.collisions = 0;
+        (scratch.out.collisions, scratch.out.shortened) = (0, 0);
         let grains = self.reaction.grain_rate_per_s > 0.0;
         for i in 0..n {
             let sample = position + i as u64;
@@ -35,7 +35,8 @@ impl Voice {
                 scratch.out.collisions += 1;
                 if excitation != Excitation::Force {
                     // An onset is dated within the step that ends at its row.
-                    self.collide(slot, shared, &onset, sample.saturating_sub(1));
+                    let shortened = self.collide(slot, shared, &onset, sample.saturating_sub(1));
+                    scratch.out.shortened += u64::from(shortened);
                 }
             }
             if grains {
@@ -61,17 +62,26 @@ impl Voice {
         }
     }
 
-    pub(super) fn collide(&mut self, slot: &SurfaceSlot, shared: &Shared, onset: &Onset, sample: u64) {
+    /// Whether the pulse had to be shortened.
+    pub(super) fn collide(
+        &mut self,
+        slot: &SurfaceSlot,
+        shared: &Shared,
+        onset: &Onset,
+        sample: u64,
+    ) -> bool {
         let probe = shared.probe(self.role.probe);
         let own_s = slot.stroking.hertz.contact_time_s(onset.closing_m_s);
+        let contact_time_s = probe.contact_time_ratio * own_s;
         let pulse = HertzPulse {
             impulse_n_s: probe.collision_mass_kg * onset.closing_m_s,
-            contact_time_s: (probe.contact_time_ratio * own_s).min(LONGEST_COLLISION_S),
+            contact_time_s: contact_time_s.min(LONGEST_COLLISION_S),
         };
         let rate = shared.sample_rate_hz;
         if let Some(pulse) = self.merge.admit(pulse, sample, onset.offset, rate) {
             self.deposit(&pulse, sample, onset.offset, rate);
         }
+        contact_time_s > LONGEST_COLLISION_S
     }
 
     /// Grains that give way hit each other at random times (a Poisson process drawn sample by sample).

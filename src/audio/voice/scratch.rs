@@ -27,6 +27,7 @@ impl Scratch {
                 impulse_n_s: [0.0; MAX_BLOCK],
                 excites: false,
                 collisions: 0,
+                shortened: 0,
                 resets: 0,
             },
         })

@@ -1,48 +1,9 @@
 //! Reads a TOML table key by key, so that every refusal can name the place, the value and the remedy.
 
 use crate::files::FileError;
+use asperity_dsp::limits::Range;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
-
-/// What a number may be.
-#[derive(Debug, Clone, Copy)]
-pub struct Allowed {
-    low: f64,
-    high: f64,
-    above: bool,
-    unit: &'static str,
-}
-
-impl Allowed {
-    /// From `low` to `high`, both included.
-    pub const fn between(low: f64, high: f64, unit: &'static str) -> Self {
-        Self { low, high, above: false, unit }
-    }
-
-    /// Above `low`, up to `high`.
-    pub const fn above(low: f64, high: f64, unit: &'static str) -> Self {
-        Self { low, high, above: true, unit }
-    }
-
-    /// Whether a value is allowed; nothing that is not finite is.
-    fn holds(&self, value: f64) -> bool {
-        value.is_finite()
-            && value <= self.high
-            && if self.above { value > self.low } else { value >= self.low }
-    }
-}
-
-impl std::fmt::Display for Allowed {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { low, high, above, unit } = self;
-        let space = if unit.is_empty() { "" } else { " " };
-        if *above {
-            write!(f, "must be above {low} and at most {high}{space}{unit}")
-        } else {
-            write!(f, "must be {low} to {high}{space}{unit}")
-        }
-    }
-}
 
 /// A table being read. Every key asked for becomes an accepted one; [`Fields::finish`] refuses the rest.
 #[derive(Debug)]
@@ -103,23 +64,23 @@ impl Fields {
     }
 
     /// A number.
-    pub fn number(&mut self, key: &'static str, allowed: Allowed) -> Result<Option<f64>, FileError> {
+    pub fn number(&mut self, key: &'static str, allowed: Range) -> Result<Option<f64>, FileError> {
         let Some(value) = self.take(key) else { return Ok(None) };
         let number = as_number(&value).ok_or_else(|| self.wrong_kind(key, &value, "a number"))?;
         if allowed.holds(number) {
             Ok(Some(number))
         } else {
-            Err(self.refuse(key, format!("{} is refused", shown(&value)), allowed))
+            Err(self.refuse(key, format!("{} is refused", shown(&value)), right(allowed)))
         }
     }
 
     /// A number that must be there.
-    pub fn needed_number(&mut self, key: &'static str, allowed: Allowed) -> Result<f64, FileError> {
+    pub fn needed_number(&mut self, key: &'static str, allowed: Range) -> Result<f64, FileError> {
         self.number(key, allowed)?.ok_or_else(|| self.missing(key, "a number"))
     }
 
     /// A number, or the default.
-    pub fn number_or(&mut self, key: &'static str, default: f64, allowed: Allowed) -> Result<f64, FileError> {
+    pub fn number_or(&mut self, key: &'static str, default: f64, allowed: Range) -> Result<f64, FileError> {
         Ok(self.number(key, allowed)?.unwrap_or(default))
     }
 
@@ -177,7 +138,7 @@ impl Fields {
     }
 
     /// Two numbers.
-    pub fn pair(&mut self, key: &'static str, allowed: Allowed) -> Result<Option<[f64; 2]>, FileError> {
+    pub fn pair(&mut self, key: &'static str, allowed: Range) -> Result<Option<[f64; 2]>, FileError> {
         let Some(value) = self.take(key) else { return Ok(None) };
         let numbers: Option<Vec<f64>> =
             value.as_array().and_then(|items| items.iter().map(as_number).collect());
@@ -185,9 +146,11 @@ impl Fields {
             Some([first, second]) if allowed.holds(*first) && allowed.holds(*second) => {
                 Ok(Some([*first, *second]))
             }
-            Some([_, _]) => {
-                Err(self.refuse(key, format!("{} is refused", shown(&value)), format!("each {allowed}")))
-            }
+            Some([_, _]) => Err(self.refuse(
+                key,
+                format!("{} is refused", shown(&value)),
+                format!("each {}", right(allowed)),
+            )),
             _ => Err(self.wrong_kind(key, &value, "two numbers, [u, v]")),
         }
     }
@@ -239,6 +202,10 @@ impl Fields {
             }
         }
     }
+}
+
+fn right(allowed: Range) -> String {
+    format!("must be {}", allowed.words)
 }
 
 /// Integers and floats alike.

@@ -15,9 +15,10 @@ pub use sand::{Sand, Tool};
 pub use source::{Brownian, BrownianForce, Direction, Lattice, SolidNoise, Source};
 pub use surface::{Excitation, Roughness, SurfaceEntry, Wrap};
 
-use crate::MAX_BUSES;
 use crate::files::FileError;
-use fields::{Allowed, Fields};
+use crate::model::bus::MAX_BUSES;
+use asperity_dsp::limits::{self, Range};
+use fields::Fields;
 use std::path::{Path, PathBuf};
 use toml::Value;
 
@@ -25,8 +26,8 @@ use toml::Value;
 const MAX_BYTES: u64 = 16 << 20;
 /// Default ring-out after the last event, seconds.
 const TAIL_S: f64 = 1.0;
-/// Sample rates the engine is tested at, Hz.
-const SAMPLE_RATE_HZ: Allowed = Allowed::between(8_000.0, 192_000.0, "Hz");
+/// Longest ring-out, s.
+const LONGEST_TAIL_S: Range = Range::new(0.0, 600.0, "0 to 600 s");
 
 /// A whole scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -206,10 +207,10 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let audio = read_buses(&mut top)?;
     let scene = SceneFile {
         path: path.to_owned(),
-        sample_rate_hz: top.number("sample_rate_hz", SAMPLE_RATE_HZ)?,
+        sample_rate_hz: top.number("sample_rate_hz", limits::output::SAMPLE_RATE_HZ)?,
         seed: top.whole("seed", 0, u64::MAX)?,
         contacts: top.file("contacts", folder)?,
-        tail_s: top.number_or("tail_s", TAIL_S, Allowed::between(0.0, 600.0, "s"))?,
+        tail_s: top.number_or("tail_s", TAIL_S, LONGEST_TAIL_S)?,
         bodies,
         surfaces,
         probe,
@@ -272,7 +273,7 @@ fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> 
             return Err(fields.refuse("material", what, right));
         }
     };
-    let residual = fields.number("residual", Allowed::between(0.0, 1e3, "(a gain)"))?;
+    let residual = fields.number("residual", limits::material::RESIDUAL)?;
     let bus = fields.text("bus")?;
     fields.finish()?;
     Ok(BodyEntry { name, modes, material, residual, bus })
@@ -280,9 +281,9 @@ fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> 
 
 fn read_material(mut fields: Fields) -> Result<MaterialEntry, FileError> {
     let material = MaterialEntry::Constants {
-        young_pa: fields.needed_number("young_pa", Allowed::between(1e3, 2e12, "Pa"))?,
-        poisson: fields.needed_number("poisson", Allowed::between(0.0, 0.5, ""))?,
-        density_kg_m3: fields.needed_number("density_kg_m3", Allowed::between(1.0, 30_000.0, "kg/m³"))?,
+        young_pa: fields.needed_number("young_pa", limits::material::YOUNG_PA)?,
+        poisson: fields.needed_number("poisson", limits::material::POISSON)?,
+        density_kg_m3: fields.needed_number("density_kg_m3", limits::material::DENSITY_KG_M3)?,
     };
     fields.finish()?;
     Ok(material)
@@ -319,12 +320,13 @@ fn read_probes(top: &mut Fields) -> Result<(ProbeEntry, Vec<(String, ProbeEntry)
 fn read_probe(mut fields: Fields) -> Result<ProbeEntry, FileError> {
     let probe = ProbeEntry {
         preset: fields.text("preset")?,
-        pad_mass_kg: fields.number("pad_mass_kg", Allowed::between(1e-6, 1.0, "kg"))?,
-        pad_stiffness_n_m: fields.number("pad_stiffness_n_m", Allowed::between(1e-3, 1e7, "N/m"))?,
-        pad_damping_n_s_m: fields.number("pad_damping_n_s_m", Allowed::between(0.0, 1e4, "N·s/m"))?,
-        finger_mass_kg: fields.number("finger_mass_kg", Allowed::between(1e-5, 100.0, "kg"))?,
-        contact_stiffness_n_m: fields.number("contact_stiffness_n_m", Allowed::between(1.0, 1e9, "N/m"))?,
-        leash_m: fields.number("leash_m", Allowed::between(1e-6, 0.05, "m"))?,
+        pad_mass_kg: fields.number("pad_mass_kg", limits::probe::PAD_MASS_KG)?,
+        pad_stiffness_n_m: fields.number("pad_stiffness_n_m", limits::probe::PAD_STIFFNESS_N_M)?,
+        pad_damping_n_s_m: fields.number("pad_damping_n_s_m", limits::probe::PAD_DAMPING_N_S_M)?,
+        finger_mass_kg: fields.number("finger_mass_kg", limits::probe::FINGER_MASS_KG)?,
+        contact_stiffness_n_m: fields
+            .number("contact_stiffness_n_m", limits::probe::CONTACT_STIFFNESS_N_M)?,
+        leash_m: fields.number("leash_m", limits::probe::LEASH_M)?,
     };
     fields.finish()?;
     Ok(probe)
@@ -348,18 +350,14 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
     };
     let actuator = ActuatorEntry {
         output,
-        full_scale: match fields.number("full_scale", Allowed::between(1e-12, 1e12, "m (or m/s²)"))? {
+        full_scale: match fields.number("full_scale", limits::output::FULL_SCALE)? {
             Some(full_scale) => full_scale,
             None if output == ActuatorOutput::Displacement => default.full_scale,
             None => {
                 return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0"));
             }
         },
-        highpass_hz: fields.number_or(
-            "highpass_hz",
-            default.highpass_hz,
-            Allowed::between(0.0, 1_000.0, "Hz, 0 = off"),
-        )?,
+        highpass_hz: fields.number_or("highpass_hz", default.highpass_hz, limits::output::HIGHPASS_HZ)?,
         equalise,
         limit,
         limit_peaks,
@@ -398,7 +396,7 @@ fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
 fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
     let audio = AudioEntry {
         name: fields.text("name")?,
-        gain: fields.number_or("gain", 1.0, Allowed::between(0.0, 1e6, ""))?,
+        gain: fields.number_or("gain", 1.0, limits::output::AUDIO_GAIN)?,
         limit: fields.flag("limit")?.unwrap_or(false),
     };
     fields.finish()?;

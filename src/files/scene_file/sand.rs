@@ -1,12 +1,17 @@
 //! `sand = { … }`: a bed of sand and what is dragged through it.
 
-use super::fields::{Allowed, Fields};
+use super::fields::Fields;
 use super::pixels::{Pixels, read_channel};
 use crate::files::FileError;
+use asperity_dsp::limits::{Range, sand as limits};
 use std::path::Path;
 
 /// Layers below the top that the engine knows.
 const MAX_LAYERS: usize = 4;
+/// Width of a tool's picture: both sides of the widest tool.
+const TOOL_WIDTH_M: Range = Range::new(2e-4, 0.4, "2e-4 to 0.4 m");
+/// Height of white over black in it.
+const TOOL_RELIEF_M: Range = Range::above(0.0, 0.4, "above 0, to 0.4 m");
 
 /// Sand.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,13 +58,13 @@ pub enum Tool {
 pub fn read(mut table: Fields, folder: &Path) -> Result<Sand, FileError> {
     let sand = Sand {
         cells: table.whole("cells", 16, 2048)?.unwrap_or(512),
-        depth_m: table.number_or("depth_m", 0.05, Allowed::above(0.0, 0.45, "m"))?,
-        talus_deg: table.number_or("talus_deg", 30.0, Allowed::between(1.0, 80.0, "degrees"))?,
-        stiffness_n: table.number_or("stiffness_n", 1_000.0, Allowed::between(0.01, 1e6, "N"))?,
-        exponent_per_m: table.number_or("exponent_per_m", 1.0, Allowed::between(1e-3, 1e4, "1/m"))?,
-        drag_s_per_m: table.number_or("drag_s_per_m", 20.0, Allowed::between(0.0, 1e4, "s/m"))?,
-        wetness: table.number("wetness", Allowed::between(0.0, 1.0, ""))?,
-        grain_m: table.number("grain_m", Allowed::between(1e-5, 0.01, "m"))?,
+        depth_m: table.number_or("depth_m", 0.05, limits::DEPTH_M)?,
+        talus_deg: table.number_or("talus_deg", 30.0, limits::TALUS_DEG)?,
+        stiffness_n: table.number_or("stiffness_n", 1_000.0, limits::STIFFNESS_N)?,
+        exponent_per_m: table.number_or("exponent_per_m", 1.0, limits::EXPONENT_PER_M)?,
+        drag_s_per_m: table.number_or("drag_s_per_m", 20.0, limits::DRAG_S_PER_M)?,
+        wetness: table.number("wetness", limits::WETNESS)?,
+        grain_m: table.number("grain_m", limits::GRAIN_M)?,
         layers: read_layers(&mut table)?,
         tool: read_tool(&mut table, folder)?,
     };
@@ -71,8 +76,8 @@ fn read_layers(table: &mut Fields) -> Result<Vec<(f64, f64)>, FileError> {
     let mut layers = Vec::new();
     let mut above_m = 0.0;
     for mut layer in table.tables("layers")? {
-        let from_m = layer.needed_number("from_m", Allowed::above(above_m, 1.0, "m"))?;
-        layers.push((from_m, layer.needed_number("hardness", Allowed::between(0.01, 1_000.0, ""))?));
+        let from_m = layer.needed_number("from_m", Range { low: above_m, ..limits::LAYER_FROM_M })?;
+        layers.push((from_m, layer.needed_number("hardness", limits::HARDNESS)?));
         layer.finish()?;
         above_m = from_m;
     }
@@ -84,7 +89,7 @@ fn read_layers(table: &mut Fields) -> Result<Vec<(f64, f64)>, FileError> {
 }
 
 fn read_tool(table: &mut Fields, folder: &Path) -> Result<Tool, FileError> {
-    let radius_m = table.number("tool_radius_m", Allowed::between(1e-4, 0.2, "m"))?;
+    let radius_m = table.number("tool_radius_m", limits::TOOL_RADIUS_M)?;
     let Some(mut tool) = table.table("tool")? else {
         return Ok(Tool::Sphere(radius_m.unwrap_or(0.005)));
     };
@@ -94,8 +99,8 @@ fn read_tool(table: &mut Fields, folder: &Path) -> Result<Tool, FileError> {
     }
     let channel = read_channel(&mut tool, "channel")?;
     let image = Pixels { path: folder.join(tool.needed_text("map")?), channel };
-    let width_m = tool.needed_number("width_m", Allowed::between(2e-4, 0.4, "m"))?;
-    let relief_m = tool.needed_number("relief_m", Allowed::above(0.0, 0.4, "m"))?;
+    let width_m = tool.needed_number("width_m", TOOL_WIDTH_M)?;
+    let relief_m = tool.needed_number("relief_m", TOOL_RELIEF_M)?;
     tool.finish()?;
     Ok(Tool::Map { image, width_m, relief_m })
 }

@@ -2,16 +2,16 @@
 //!
 //! The same keys make a surface's own source and each part of `sum`, `mask` and `crossfade`.
 
-use super::fields::{Allowed, Fields, shown};
+use super::fields::{Fields, shown};
 use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
 use crate::files::FileError;
-use crate::limits;
+use asperity_dsp::limits::{self, Range};
 use std::path::Path;
 use toml::Value;
 
-const RELIEF_M: Allowed = Allowed::between(0.0, limits::MAX_RELIEF_M, "m");
-const AMPLITUDE_M: Allowed = Allowed::between(-0.1, 0.1, "m");
+/// When a crossfade begins.
+const AT_S: Range = Range::new(0.0, 1e6, "0 to 1e6 s");
 
 /// Where heights come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,8 +158,8 @@ pub fn read(fields: &mut Fields, folder: &Path) -> Result<Source, FileError> {
     // `channel`, `invert` and `relief_m` speak of images; beside another source they say nothing.
     let channel = read_channel(fields, "channel")?;
     let invert = fields.flag("invert")?.unwrap_or(false);
-    let relief_m = fields.number("relief_m", RELIEF_M)?;
-    let scale = fields.number("scale", Allowed::between(-1_000.0, 1_000.0, ""))?;
+    let relief_m = fields.number("relief_m", limits::RELIEF_M)?;
+    let scale = fields.number("scale", limits::combined::FACTOR)?;
     let needed_relief = |fields: &Fields| {
         relief_m.ok_or_else(|| fields.missing("relief_m", "the height of white over black in m"))
     };
@@ -218,7 +218,7 @@ fn read_mask(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
 fn read_crossfade(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
     let from = Box::new(read_part(needed_table(&mut table, "from")?, folder)?);
     let to = Box::new(read_part(needed_table(&mut table, "to")?, folder)?);
-    let at_s = table.needed_number("at_s", Allowed::between(0.0, 1e6, "s"))?;
+    let at_s = table.needed_number("at_s", AT_S)?;
     table.finish()?;
     Ok(Source::Crossfade { from, to, at_s })
 }
@@ -237,21 +237,19 @@ fn read_solid(fields: &mut Fields) -> Result<Source, FileError> {
         None => return Err(fields.missing("solid", "the name of a material")),
     };
     let directions = [("x", Direction::X), ("normal", Direction::Normal), ("tangent", Direction::Tangent)];
-    let above_0 = |high: f64, unit| Allowed::above(0.0, high, unit);
-    let from_0 = |high: f64, unit| Allowed::between(0.0, high, unit);
     let solid = SolidNoise {
         preset: table.needed_text("preset")?,
         seed: table.whole("seed", 0, u64::MAX)?,
-        magnitude: table.number("magnitude", from_0(1e3, ""))?,
+        magnitude: table.number("magnitude", limits::solid::MAGNITUDE)?,
         octaves: table.whole("octaves", 1, 16)?,
-        frequency: table.number("frequency", above_0(1e6, "cells per unit of length"))?,
-        lacunarity: table.number("lacunarity", Allowed::between(1.0, 8.0, ""))?,
-        persistence: table.number("persistence", from_0(1.0, ""))?,
-        texture_factor_per_m: table.number("texture_factor_per_m", above_0(1e6, "1/m"))?,
-        amplitude_m: table.number("amplitude_m", AMPLITUDE_M)?,
-        limit_n: table.number("limit_n", from_0(1.0, "N"))?,
-        cap_n: table.number("cap_n", from_0(100.0, "N"))?,
-        viscosity_n_s_m: table.number("viscosity_n_s_m", from_0(1_000.0, "N s/m"))?,
+        frequency: table.number("frequency", limits::solid::FREQUENCY)?,
+        lacunarity: table.number("lacunarity", limits::solid::LACUNARITY)?,
+        persistence: table.number("persistence", limits::solid::PERSISTENCE)?,
+        texture_factor_per_m: table.number("texture_factor_per_m", limits::solid::TEXTURE_FACTOR_PER_M)?,
+        amplitude_m: table.number("amplitude_m", limits::solid::AMPLITUDE_M)?,
+        limit_n: table.number("limit_n", limits::solid::LIMIT_N)?,
+        cap_n: table.number("cap_n", limits::solid::CAP_N)?,
+        viscosity_n_s_m: table.number("viscosity_n_s_m", limits::solid::VISCOSITY_N_S_M)?,
         direction: table.word("direction", &directions)?,
         proportional: table.flag("proportional")?,
     };
@@ -264,8 +262,8 @@ fn read_brownian(mut table: Fields) -> Result<Source, FileError> {
     let graph = table.flag("graph")?.unwrap_or(false);
     let most = if graph { 1 << 22 } else { 4096 };
     let brownian = Brownian {
-        hurst: table.needed_number("hurst", Allowed::between(0.01, 0.99, ""))?,
-        rms_m: table.needed_number("rms_m", Allowed::between(0.0, 0.1, "m"))?,
+        hurst: table.needed_number("hurst", limits::brownian::HURST)?,
+        rms_m: table.needed_number("rms_m", limits::brownian::RMS_M)?,
         seed: table.whole("seed", 0, u64::MAX)?,
         cells: table.whole("cells", 16, most)?,
         graph,
@@ -282,7 +280,7 @@ fn read_lattice(
     relief_m: f64,
     invert: bool,
 ) -> Result<Source, FileError> {
-    let step = Allowed::between(-1_000.0, 1_000.0, "m");
+    let step = limits::combined::STEP_M;
     let cell = table.needed_text("cell")?;
     let t1_m = table.pair("t1_m", step)?.ok_or_else(|| table.missing("t1_m", "[0.01, 0.0]"))?;
     let t2_m = table.pair("t2_m", step)?.ok_or_else(|| table.missing("t2_m", "[0.0, 0.01]"))?;

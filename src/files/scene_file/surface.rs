@@ -1,15 +1,12 @@
 //! `[[surface]]`: what is touched.
 
-use super::fields::{Allowed, Fields, as_number, shown};
+use super::fields::{Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
 use crate::files::FileError;
-use crate::limits;
+use asperity_dsp::limits;
 use std::path::Path;
 use toml::Value;
-
-const EXTENT_M: Allowed = Allowed::between(limits::SIDE_M.0, limits::SIDE_M.1, "m");
-const ROUGHNESS: Allowed = Allowed::between(0.0, 1.0, "");
 
 /// One surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,13 +88,12 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError
         strike_position: fields.whole("strike_position", 0, 15)?.unwrap_or(0) as usize,
         source,
         roughness: read_roughness(&mut fields, folder)?,
-        width_m: fields.needed_number("width_m", EXTENT_M)?,
-        height_m: fields.needed_number("height_m", EXTENT_M)?,
-        micro_relief_m: fields
-            .number("micro_relief_m", Allowed::between(0.0, limits::MAX_MICRO_RELIEF_M, "m, 0 = none"))?,
+        width_m: fields.needed_number("width_m", limits::SIDE_M)?,
+        height_m: fields.needed_number("height_m", limits::SIDE_M)?,
+        micro_relief_m: fields.number("micro_relief_m", limits::MICRO_RELIEF_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?,
-        friction: fields.number("friction", Allowed::between(0.0, 10.0, ""))?,
+        friction: fields.number("friction", limits::FRICTION)?,
     };
     fields.finish()?;
     Ok(surface)
@@ -124,7 +120,7 @@ fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<Roughness, FileE
         value => {
             let number =
                 as_number(&value).filter(|number| (0.0..=1.0).contains(number)).ok_or_else(|| {
-                    let right = format!("{ROUGHNESS}, or name an image");
+                    let right = format!("must be {}, or name an image", limits::ROUGHNESS.words);
                     fields.refuse(key, format!("{} is refused", shown(&value)), right)
                 })?;
             Ok(Roughness::Number(Some(if gloss { 1.0 - number } else { number })))

@@ -12,6 +12,7 @@ use crate::model::stamp::Stamp;
 use crate::prepared::body::LONGEST_CONTACT_S;
 use crate::prepared::stroking::elastic;
 use asperity_dsp::hertz::{HertzContact, HertzPulse};
+use asperity_dsp::limits;
 use std::sync::atomic::Ordering::Relaxed;
 
 impl Scene {
@@ -87,10 +88,10 @@ impl Scene {
 
     fn checked_time(&mut self, time_s: f64) -> Result<(), Refusal> {
         if self.clock.is_live() {
-            within("time_s", time_s, "finite, within ±1e9 s", -1e9, 1e9)?;
+            within("time_s", time_s, limits::LIVE_TIME_S)?;
             return Ok(());
         }
-        let time_s = within("time_s", time_s, "finite, 0–1e9 s", 0.0, 1e9)?;
+        let time_s = within("time_s", time_s, limits::TIME_S)?;
         if time_s < self.last_time_s {
             return Err(Refusal::TimeBackwards { time_s, before_s: self.last_time_s });
         }
@@ -103,8 +104,8 @@ impl Scene {
             ContactEvent::Begin { contact, touching, sample } => {
                 self.known_surface(touching.surface).map_err(|_| Refusal::UnknownSurface)?;
                 self.check_hand(touching.actuator, touching.holder, touching.probe)?;
-                within("gain", touching.gain, "0–1000", 0.0, 1e3)?;
-                within("importance", touching.importance, "0–1e6", 0.0, 1e6)?;
+                within("gain", touching.gain, limits::impact::GAIN)?;
+                within("importance", touching.importance, limits::impact::IMPORTANCE)?;
                 ContactEvent::Begin { contact, touching, sample: sample.checked()? }
             }
             ContactEvent::Moved { contact, sample } => {

@@ -65,6 +65,16 @@ pub enum DeviceError {
     /// The system refused.
     #[error("device: {0}; choose another device, rate or channel map")]
     System(#[from] cpal::Error),
+    /// The device does not run in blocks of the size asked for.
+    #[error("device: blocks of {asked} frames are refused ({why}); {right}")]
+    Block {
+        /// Frames asked for.
+        asked: u32,
+        /// What the system says.
+        why: cpal::Error,
+        /// What would be right.
+        right: String,
+    },
     /// The system gives no thread.
     #[error("device: no thread could be started ({0})")]
     Thread(#[from] std::io::Error),
@@ -74,14 +84,31 @@ pub enum DeviceError {
 #[must_use]
 pub fn list() -> Vec<DeviceInfo> {
     let hosts = cpal::available_hosts().into_iter().filter_map(|id| cpal::host_from_id(id).ok());
-    hosts.filter_map(|host| host.output_devices().ok()).flatten().filter_map(|d| describe(&d)).collect()
+    hosts.flat_map(|host| outputs(&host)).collect()
 }
 
+/// Every output device of one host.
+///
+/// # Errors
+/// When there is no such host in this build.
+pub fn list_on(host: &str) -> Result<Vec<DeviceInfo>, DeviceError> {
+    Ok(outputs(&streams::host(Some(host))?))
+}
+
+fn outputs(host: &cpal::Host) -> Vec<DeviceInfo> {
+    host.output_devices().into_iter().flatten().filter_map(|device| describe(&device)).collect()
+}
+
+/// An output device; none if it only records, which some hosts list among their outputs.
 fn describe(device: &cpal::Device) -> Option<DeviceInfo> {
     let config = device.default_output_config().ok();
+    let description = device.description().ok();
+    if description.as_ref().is_some_and(|d| d.direction() == cpal::DeviceDirection::Input) {
+        return None;
+    }
     Some(DeviceInfo {
         id: device.id().ok()?.to_string(),
-        name: device.description().map_or_else(|_| String::new(), |d| d.name().to_owned()),
+        name: description.map_or_else(String::new, |d| d.name().to_owned()),
         channels: config.as_ref().map_or(0, cpal::SupportedStreamConfig::channels),
         sample_rate_hz: config.as_ref().map_or(0, cpal::SupportedStreamConfig::sample_rate),
     })

@@ -5,7 +5,7 @@ use crate::link::ring::{self, Receiver};
 use crate::live::channel_map::Interleaver;
 use crate::live::drift::DriftResampler;
 use cpal::traits::{DeviceTrait, HostTrait, StreamTrait};
-use cpal::{BufferSize, Device, ErrorKind, OutputCallbackInfo, Stream, StreamConfig};
+use cpal::{BufferSize, Device, ErrorKind, OutputCallbackInfo, Stream, StreamConfig, SupportedBufferSize};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex};
@@ -22,15 +22,7 @@ const HAPTIC_FILL: usize = 1024;
 /// The device that host and id name. Each call opens the host anew: two PulseAudio streams of one host
 /// object refuse to play on two sinks.
 pub(super) fn find(host: Option<&str>, id: Option<&str>) -> Result<Device, DeviceError> {
-    let host = match host {
-        None => cpal::default_host(),
-        Some(name) => {
-            let hosts = cpal::available_hosts();
-            let known = hosts.iter().map(|h| h.to_string().to_lowercase()).collect::<Vec<_>>().join(", ");
-            let id = hosts.into_iter().find(|h| h.to_string().eq_ignore_ascii_case(name));
-            cpal::host_from_id(id.ok_or(DeviceError::UnknownHost { host: name.into(), known })?)?
-        }
-    };
+    let host = self::host(host)?;
     match id {
         None => host.default_output_device().ok_or(DeviceError::NoDevice),
         Some(id) => {
@@ -40,6 +32,25 @@ pub(super) fn find(host: Option<&str>, id: Option<&str>) -> Result<Device, Devic
             host.device_by_id(&parsed).ok_or_else(unknown)
         }
     }
+}
+
+/// The host of a name, or the system's.
+pub(super) fn host(name: Option<&str>) -> Result<cpal::Host, DeviceError> {
+    let Some(name) = name else { return Ok(cpal::default_host()) };
+    let hosts = cpal::available_hosts();
+    let known = hosts.iter().map(|h| h.to_string().to_lowercase()).collect::<Vec<_>>().join(", ");
+    let id = hosts.into_iter().find(|h| h.to_string().eq_ignore_ascii_case(name));
+    Ok(cpal::host_from_id(id.ok_or(DeviceError::UnknownHost { host: name.into(), known })?)?)
+}
+
+/// What a device says to a block size that it does not take: the size it does.
+fn refused_block(device: &Device, asked: u32, why: cpal::Error) -> DeviceError {
+    let right = match device.default_output_config().map(|config| *config.buffer_size()) {
+        Ok(SupportedBufferSize::Range { min, max }) if min == max => format!("ask for {min}, or for none"),
+        Ok(SupportedBufferSize::Range { min, max }) => format!("ask for {min} to {max}, or for none"),
+        Ok(SupportedBufferSize::Unknown) | Err(_) => "ask for another size, or for none".into(),
+    };
+    DeviceError::Block { asked, why, right }
 }
 
 /// What a running stream needs; built anew with every stream.
@@ -155,9 +166,20 @@ impl Job {
         let wanted = self.lock().map_or(2, |device| device.map().width());
         // Some devices only run with all their channels; those that list fewer may still take more.
         let offered = device.default_output_config().map_or(2, |c| usize::from(c.channels()));
-        self.first_that_works(&[wanted, wanted.max(offered)], |config| {
+        let built = self.first_that_works(&[wanted, wanted.max(offered)], |config| {
             self.build_audio(device, config, number)
-        })
+        });
+        match (built, self.options.block_frames) {
+            // It is the block's fault if the device takes any other.
+            (Err(DeviceError::System(why)), Some(asked))
+                if self
+                    .build_audio(device, self.config(wanted.max(offered), BufferSize::Default), number)
+                    .is_ok() =>
+            {
+                Err(refused_block(device, asked, why))
+            }
+            (built, _) => built,
+        }
     }
 
     fn build_audio(&self, device: &Device, config: StreamConfig, number: u64) -> Result<Stream, DeviceError> {

@@ -27,6 +27,7 @@ mod row;
 
 use super::grid::{SandGrid, UNITS_PER_M};
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::sand as limits;
 use row::{Moved, Order, Rows, Steepness};
 
 /// Columns of a tile: wide enough that a vector is not read back before it has been written.
@@ -225,7 +226,7 @@ impl Erosion {
 
 /// Differences of height at a talus angle and where it counts as too steep.
 fn steepness(grid: &SandGrid, talus_deg: f64) -> Result<Steepness, DesignError> {
-    DesignError::check("talus_deg", talus_deg, "1 to 80 degrees", |t| (1.0..=80.0).contains(&t))?;
+    limits::TALUS_DEG.check("talus_deg", talus_deg)?;
     let rise = |degrees: f64| degrees.to_radians().tan() * grid.cell_m() * UNITS_PER_M;
     let (at, above) = (rise(talus_deg), rise(talus_deg + SETTLED_DEG) - rise(talus_deg));
     let over = |run: f64| {

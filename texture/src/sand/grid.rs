@@ -7,6 +7,7 @@
 use super::erosion::TILE;
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::sand as limits;
 
 /// Units of height in a metre.
 pub const UNITS_PER_M: f64 = 1_073_741_824.0;
@@ -48,11 +49,10 @@ impl SandGrid {
     /// When an edge is not 4 to [`MAX_CELLS`] cells, a cell not 1 µm to 0.1 m, or the depth not
     /// above 0 and at most 0.45 m.
     pub fn flat(columns: usize, rows: usize, cell_m: f64, depth_m: f64) -> Result<Self, DesignError> {
-        let edge = |n: f64| (4.0..=MAX_CELLS as f64).contains(&n);
-        DesignError::check("columns", columns as f64, "4 to 4096 cells", edge)?;
-        DesignError::check("rows", rows as f64, "4 to 4096 cells", edge)?;
-        DesignError::check("cell_m", cell_m, "1e-6 to 0.1 m", |c| (1e-6..=0.1).contains(&c))?;
-        DesignError::check("depth_m", depth_m, "above 0, to 0.45 m", |d| d > 0.0 && d <= 0.45)?;
+        limits::CELLS.check("columns", columns as f64)?;
+        limits::CELLS.check("rows", rows as f64)?;
+        limits::CELL_M.check("cell_m", cell_m)?;
+        limits::DEPTH_M.check("depth_m", depth_m)?;
         let mut grid = Self { columns, rows, cell_m, heights: Vec::new() };
         grid.heights = vec![WALL; grid.stride() * (rows + 2)];
         grid.fill(|_, _| depth_m);

@@ -21,6 +21,7 @@
 //! their depth; grains: a share of the displaced grains hits another one at the tool's speed.
 
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::{Range, sand as limits};
 
 /// k_s, N.
 pub const STIFFNESS_N: f64 = 1000.0;
@@ -82,17 +83,16 @@ impl SandLaw {
     /// # Errors
     /// Names the first field out of its range.
     pub fn check(&self) -> Result<(), DesignError> {
-        let between = |low: f64, high: f64| move |x: f64| x >= low && x <= high;
-        DesignError::check("stiffness_n", self.stiffness_n, "0.01 to 1e6 N", between(0.01, 1e6))?;
-        DesignError::check("exponent_per_m", self.exponent_per_m, "1e-3 to 1e4 per m", between(1e-3, 1e4))?;
-        DesignError::check("drag_s_per_m", self.drag_s_per_m, "0 to 1e4 s/m", between(0.0, 1e4))?;
-        DesignError::check("wetness", self.wetness, "0 to 1", between(0.0, 1.0))?;
-        DesignError::check("grain_m", self.grain_m, "1e-5 to 0.01 m", between(1e-5, 0.01))?;
+        limits::STIFFNESS_N.check("stiffness_n", self.stiffness_n)?;
+        limits::EXPONENT_PER_M.check("exponent_per_m", self.exponent_per_m)?;
+        limits::DRAG_S_PER_M.check("drag_s_per_m", self.drag_s_per_m)?;
+        limits::WETNESS.check("wetness", self.wetness)?;
+        limits::GRAIN_M.check("grain_m", self.grain_m)?;
         let mut above = 0.0;
         for layer in self.layers.iter().flatten() {
-            let deeper = |d: f64| d > above && d <= 1.0;
-            above = DesignError::check("layers.from_m", layer.from_m, "increasing, to 1 m", deeper)?;
-            DesignError::check("layers.hardness", layer.hardness, "0.01 to 1000", between(0.01, 1000.0))?;
+            let deeper = Range { low: above, ..limits::LAYER_FROM_M };
+            above = deeper.check("layers.from_m", layer.from_m)?;
+            limits::HARDNESS.check("layers.hardness", layer.hardness)?;
         }
         Ok(())
     }

@@ -13,6 +13,7 @@ use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
 use super::tool::{Press, Tool};
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::sand as limits;
 
 /// Frames a second.
 pub const FRAMES_PER_S: f64 = 60.0;
@@ -86,6 +87,8 @@ pub struct SandFigures {
     pub drift_units: i64,
     /// Steepest slope now, degrees.
     pub max_slope_deg: f64,
+    /// Deepest that a tool stood below the untouched bed, metres: what was felt, whatever slid into the print since.
+    pub print_m: f64,
 }
 
 /// What is known of a contact.
@@ -113,6 +116,8 @@ pub struct SandSimulation {
     presses: Vec<Press>,
     walls: Vec<(usize, i32)>,
     volume_before_units: i64,
+    /// Deepest that a tool stood below the untouched bed, metres.
+    print_m: f64,
 }
 
 impl SandSimulation {
@@ -123,10 +128,9 @@ impl SandSimulation {
     pub fn new(design: &SandDesign) -> Result<Self, DesignError> {
         design.law.check()?;
         design.tool.check()?;
-        let extent = |e: f64| (1e-3..=100.0).contains(&e);
-        DesignError::check("width_m", design.width_m, "1e-3 to 100 m", extent)?;
-        DesignError::check("height_m", design.height_m, "1e-3 to 100 m", extent)?;
-        DesignError::check("contacts", design.contacts as f64, "1 to 1024", |n| (1.0..=1024.0).contains(&n))?;
+        limits::SIDE_M.check("width_m", design.width_m)?;
+        limits::SIDE_M.check("height_m", design.height_m)?;
+        limits::CONTACTS.check("contacts", design.contacts as f64)?;
         let cells = design.cells.max(1);
         let cell_m = design.width_m / cells as f64;
         let rows = (design.height_m / cell_m).round().min(1e6) as usize;
@@ -152,6 +156,7 @@ impl SandSimulation {
             presses,
             walls,
             volume_before_units,
+            print_m: 0.0,
         })
     }
 
@@ -263,6 +268,7 @@ impl SandSimulation {
             volume_after_m3: after as f64 * m3,
             drift_units: after - self.volume_before_units,
             max_slope_deg: self.grid.max_slope_deg(),
+            print_m: self.print_m,
         }
     }
 
@@ -323,6 +329,9 @@ impl SandSimulation {
             wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
         }
         track.pose = Some(to);
+        let lowest = self.presses[contact].cut_cells().map(|at| self.grid.heights[at]).min();
+        self.print_m = lowest
+            .map_or(self.print_m, |lowest| self.print_m.max(self.depth_m - f64::from(lowest) / UNITS_PER_M));
     }
 
     /// Makes every tool that is down a wall for the sliding sand.

@@ -14,6 +14,7 @@
 use super::grid::{HIGHEST, SandGrid, UNITS_PER_M, WALL};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
+use asperity_dsp::limits::{Range, sand as limits};
 
 /// Inner and outer end of the positive side of f.
 const RIM: [f64; 2] = [1.2, 1.607];
@@ -44,19 +45,17 @@ impl Tool {
     /// # Errors
     /// When a size is not 0.1 mm to 0.2 m, or the map is not filled or has no lowest point.
     pub fn check(&self) -> Result<(), DesignError> {
-        let range = |x: f64| (1e-4..=0.2).contains(&x);
         match self {
             Self::Sphere { radius_m } => {
-                DesignError::check("tool_radius_m", *radius_m, "1e-4 to 0.2 m", range)?;
+                limits::TOOL_RADIUS_M.check("tool_radius_m", *radius_m)?;
             }
             Self::LowerMap { map, texel_m } => {
                 let filled = map.values.len() == map.width * map.height;
                 let count = map.values.len() as f64;
                 DesignError::check("tool.map", count, "one value a texel", |n| filled && n > 0.0)?;
-                DesignError::check("tool.texel_m", *texel_m, "1e-6 to 0.01 m", |t| {
-                    (1e-6..=0.01).contains(&t)
-                })?;
-                DesignError::check("tool", self.reach_m(), "1e-4 to 0.2 m in half its diagonal", range)?;
+                limits::TOOL_TEXEL_M.check("tool.texel_m", *texel_m)?;
+                let words = "1e-4 to 0.2 m in half its diagonal";
+                Range { words, ..limits::TOOL_RADIUS_M }.check("tool", self.reach_m())?;
                 let lowest = map.range().0;
                 DesignError::check("tool.map", lowest, "0 m at its lowest point", |l| l.abs() < 1e-9)?;
             }

@@ -1,7 +1,7 @@
 //! What a solid-noise surface is made of, with its ranges.
 
 use crate::height_field::WavelengthBand;
-use asperity_dsp::DesignError;
+use asperity_dsp::{DesignError, limits};
 
 /// Most octaves of a module.
 pub const MAX_OCTAVES: usize = 16;
@@ -27,11 +27,11 @@ impl NoiseModule {
         Self { magnitude: 0.0, octaves: 1, frequency: 1.0, lacunarity: 2.0, persistence: 0.5 };
 
     fn check(&self) -> Result<(), DesignError> {
-        DesignError::check("magnitude", self.magnitude, "0 to 1e3", |m| (0.0..=1e3).contains(&m))?;
-        DesignError::check("octaves", self.octaves as f64, "1 to 16", |n| (1.0..=16.0).contains(&n))?;
-        DesignError::check("frequency", self.frequency, "above 0, to 1e6", |f| f > 0.0 && f <= 1e6)?;
-        DesignError::check("lacunarity", self.lacunarity, "1 to 8", |l| (1.0..=8.0).contains(&l))?;
-        DesignError::check("persistence", self.persistence, "0 to 1", |p| (0.0..=1.0).contains(&p))?;
+        limits::solid::MAGNITUDE.check("magnitude", self.magnitude)?;
+        limits::solid::OCTAVES.check("octaves", self.octaves as f64)?;
+        limits::solid::FREQUENCY.check("frequency", self.frequency)?;
+        limits::solid::LACUNARITY.check("lacunarity", self.lacunarity)?;
+        limits::solid::PERSISTENCE.check("persistence", self.persistence)?;
         Ok(())
     }
 }
@@ -80,14 +80,12 @@ impl SolidNoiseParameters {
         for module in &self.modules {
             module.check()?;
         }
-        let t = self.texture_factor_per_m;
-        DesignError::check("texture_factor_per_m", t, "above 0, to 1e6", |t| t > 0.0 && t <= 1e6)?;
-        DesignError::check("amplitude_m", self.amplitude_m, "within ±0.1 m", |a| a.abs() <= 0.1)?;
-        DesignError::check("limit_n", self.limit_n, "0 to 1", |l| (0.0..=1.0).contains(&l))?;
-        DesignError::check("cap_n", self.cap_n, "0 to 100 N", |c| (0.0..=100.0).contains(&c))?;
-        let b = self.viscosity_n_s_m;
-        DesignError::check("viscosity_n_s_m", b, "0 to 1000", |b| (0.0..=1000.0).contains(&b))?;
-        DesignError::check("friction", self.friction, "0 to 10", |f| (0.0..=10.0).contains(&f))?;
+        limits::solid::TEXTURE_FACTOR_PER_M.check("texture_factor_per_m", self.texture_factor_per_m)?;
+        limits::solid::AMPLITUDE_M.check("amplitude_m", self.amplitude_m)?;
+        limits::solid::LIMIT_N.check("limit_n", self.limit_n)?;
+        limits::solid::CAP_N.check("cap_n", self.cap_n)?;
+        limits::solid::VISCOSITY_N_S_M.check("viscosity_n_s_m", self.viscosity_n_s_m)?;
+        limits::FRICTION.check("friction", self.friction)?;
         Ok(())
     }
 
