@@ -8,8 +8,8 @@ mod sliding;
 mod steps;
 
 use asperity::Surface;
-use asperity::texture::change::SurfaceChange;
 use asperity::texture::combine::{BandSplit, Crossfade, Mask, Scale, Sum};
+use asperity::texture::combine::{BandWeights, CrossfadeTo, ScaleTo};
 use asperity::texture::height_field::HeightField;
 use asperity::texture::height_map::{Extent, HeightMap};
 use asperity::texture::raster::Raster;
@@ -31,7 +31,7 @@ fn surface(source: impl HeightField + 'static) -> Surface {
 }
 
 /// Slides, changes, slides on, and looks for a step from before the first change.
-fn changed(what: &str, surface: Surface, changes: &[SurfaceChange]) -> Stroke {
+fn changed<C: Copy + Send + Sync + 'static>(what: &str, surface: Surface, changes: &[C]) -> Stroke {
     let mut stroke = Stroke::on(surface, 1.0);
     stroke.slide(0.4);
     for change in changes {
@@ -50,7 +50,7 @@ fn every_parameter_of_solid_noise() {
     let with = |spoil: fn(&mut asperity::texture::solid_noise::SolidNoiseParameters)| {
         let mut parameters = start;
         spoil(&mut parameters);
-        SurfaceChange::SolidNoise(parameters)
+        parameters
     };
     let changes = [
         with(|p| p.modules[0].frequency = 6.0),
@@ -62,23 +62,23 @@ fn every_parameter_of_solid_noise() {
         with(|p| p.texture_factor_per_m = 250.0),
         with(|p| p.amplitude_m = -2e-5),
         with(|p| (p.limit_n, p.cap_n, p.viscosity_n_s_m, p.friction) = (0.5, 3.0, 5.0, 0.9)),
-        SurfaceChange::SolidNoise(start),
+        start,
     ];
     changed("solid noise", surface(SolidNoise::new(start, 3, RATE_HZ).unwrap()), &changes);
     let materials = [SolidMaterial::Pebbles, SolidMaterial::Gravel, SolidMaterial::Wood, SolidMaterial::Sand];
-    let changes = materials.map(|m| SurfaceChange::SolidNoise(m.parameters()));
+    let changes = materials.map(|m| m.parameters());
     changed("materials", surface(SolidNoise::new(start, 3, RATE_HZ).unwrap()), &changes);
 }
 
 #[test]
 fn scale_crossfade_band_split_and_a_part_of_a_sum_within_a_mask() {
     let scale = Scale::new(solid(SolidMaterial::Gravel), 1.0, RATE_HZ).unwrap();
-    changed("scale", surface(scale), &[0.0, 3.0, -1.0, 0.2].map(SurfaceChange::Scale));
+    changed("scale", surface(scale), &[0.0, 3.0, -1.0, 0.2].map(ScaleTo));
     let fade = Crossfade::new(solid(SolidMaterial::Pebbles), solid(SolidMaterial::Gravel), RATE_HZ).unwrap();
-    changed("crossfade", surface(fade), &[1.0, 0.3, 0.0].map(SurfaceChange::Crossfade));
+    changed("crossfade", surface(fade), &[1.0, 0.3, 0.0].map(CrossfadeTo));
     let split =
         BandSplit::new(solid(SolidMaterial::Gravel), solid(SolidMaterial::Sand), 2e-3, RATE_HZ).unwrap();
-    let weights = [[0.0, 1.0], [2.0, 0.0], [1.0, 1.0]].map(SurfaceChange::BandSplit);
+    let weights = [[0.0, 1.0], [2.0, 0.0], [1.0, 1.0]].map(BandWeights);
     changed("band split", surface(split), &weights);
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1.0 };
     let half = Raster::from_fn(8, 8, |x, _| 0.5 + 0.4 * (x as f64 * std::f64::consts::FRAC_PI_4).sin());
@@ -86,7 +86,7 @@ fn scale_crossfade_band_split_and_a_part_of_a_sum_within_a_mask() {
     let sum = Box::new(Sum::new(vec![solid(SolidMaterial::Granite), solid(SolidMaterial::RoughGlass)]));
     let scaled = Box::new(Scale::new(sum, 1.0, RATE_HZ).unwrap());
     let masked = Mask::new(mask, scaled, solid(SolidMaterial::Pebbles));
-    changed("scaled sum in a mask", surface(masked), &[4.0, 0.0, 1.0].map(SurfaceChange::Scale));
+    changed("scaled sum in a mask", surface(masked), &[4.0, 0.0, 1.0].map(ScaleTo));
 }
 
 #[test]
@@ -100,8 +100,7 @@ fn the_law_of_sand() {
         SandLaw { stiffness_n: 100.0, drag_s_per_m: 50.0, ..law },
         SandLaw { exponent_per_m: 8.0, layers, grain_m: 1e-3, ..law },
         law,
-    ]
-    .map(SurfaceChange::Sand);
+    ];
     // Grains hit the body one by one: what is heard has onsets of its own, so only what is felt counts.
     let sand = surface(SandSource::synchronous(&design, 1, RATE_HZ).unwrap());
     let mut stroke = Stroke::on(sand.excitation(asperity::Excitation::Collisions), 1.0);

@@ -30,7 +30,7 @@ use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
-use asperity_texture::sand::{SandFigures, SandPicture};
+use asperity_texture::sand::{SandFigures, SandPicture, SandSource};
 use contacts::SilentContact;
 use outputs::{Bus, HapticChannel, Mix};
 use std::sync::Arc;
@@ -216,11 +216,18 @@ impl Renderer {
 
     /// Figures and pictures of the surfaces that are sand, settled; for the end of an offline render.
     pub(crate) fn finish_sand(&mut self) -> Vec<(SurfaceId, SandFigures, SandPicture)> {
-        let finish = |seat: &mut Seat| {
-            let (id, (figures, picture)) = (seat.id()?, seat.source()?.sand()?.finish()?);
-            Some((id, figures, picture))
-        };
-        self.seats.iter_mut().filter_map(finish).collect()
+        let mut found = Vec::new();
+        for seat in &mut self.seats {
+            let (Some(id), Some(source)) = (seat.id(), seat.source()) else { continue };
+            source.visit(&mut |source| {
+                if let Some((figures, picture)) =
+                    source.downcast_mut::<SandSource>().and_then(SandSource::finish)
+                {
+                    found.push((id, figures, picture));
+                }
+            });
+        }
+        found
     }
 
     /// How many samples can be rendered before the next event, the grid or the end of the block.
@@ -289,9 +296,11 @@ impl Renderer {
             Message::AddProbe { index, probe } => self.shared.probes[index] = Some(probe),
             Message::SetSurface { id, surface } => self.set_surface(id, surface),
             Message::ChangeSurface { slot, change } => {
-                if !self.seats[slot].change(&change, self.position) {
+                if !self.seats[slot].change(&*change, self.position) {
                     Counters::add(&self.counters.quarantined, 1);
                 }
+                // There is room: the message waited for it.
+                let _ = self.to_game.send(Dead::Change(change));
                 // A resting finger feels the change.
                 self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(Voice::wake);
             }

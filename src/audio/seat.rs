@@ -11,9 +11,9 @@ use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
-use asperity_texture::change::SurfaceChange;
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
+use std::any::Any;
 
 /// How long one surface takes to become another, s.
 pub(crate) const CHANGE_S: f64 = 0.02;
@@ -162,7 +162,7 @@ impl Seat {
     }
 
     /// Changes parameters of the source; tells whether it took the change.
-    pub(crate) fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+    pub(crate) fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
         self.source().is_some_and(|source| source.change(change, sample))
     }
 
@@ -194,7 +194,7 @@ fn retire(seat: &mut Option<Box<SurfaceSlot>>, home: &mut Sender<Dead>) -> bool 
             *seat = Some(surface);
             false
         }
-        Some(Err(Dead::Body(_))) => false,
+        Some(Err(_)) => false,
     }
 }
 

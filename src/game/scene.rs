@@ -30,8 +30,8 @@ use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_dsp::{DesignError, limits};
-use asperity_texture::change::SurfaceChange;
 use asperity_texture::height_field::Setup;
+use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -218,14 +218,16 @@ impl Scene {
         Ok(())
     }
 
-    /// Changes parameters of a surface's source while it is touched, without a click. A change the
-    /// source does not take (another kind, or impossible numbers) is counted as quarantined.
+    /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
+    /// documented: solid noise its parameters, sand its law, a scaled source a [`ScaleTo`](asperity_texture::combine::ScaleTo), one of your own
+    /// whatever type it looks for. A change that no source of the surface takes (another type, or impossible numbers) is counted as
+    /// quarantined.
     ///
     /// # Errors
     /// When the surface is not in this scene or the queue is full.
-    pub fn change_surface(&mut self, id: SurfaceId, change: SurfaceChange) -> Result<(), AddError> {
+    pub fn change_surface(&mut self, id: SurfaceId, change: impl Any + Send + Sync) -> Result<(), AddError> {
         self.known_surface(id)?;
-        self.send(Message::ChangeSurface { slot: id.index(), change })
+        self.send(Message::ChangeSurface { slot: id.index(), change: Box::new(change) })
     }
 
     /// Takes a surface away; contacts on it fade.

@@ -8,7 +8,7 @@ use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_texture::change::SurfaceChange;
+use std::any::Any;
 
 /// Game thread → audio thread, in order.
 pub(crate) enum Message {
@@ -31,7 +31,7 @@ pub(crate) enum Message {
     /// A surface for a new or used place.
     SetSurface { id: SurfaceId, surface: Box<SurfaceSlot> },
     /// Parameters of a surface change while it is touched.
-    ChangeSurface { slot: usize, change: SurfaceChange },
+    ChangeSurface { slot: usize, change: Box<dyn Any + Send + Sync> },
     /// A slot falls empty; contacts on it fade.
     RemoveSurface { slot: usize },
     /// A body for a new or used place, the bus it plays on, and how strokes on its surfaces excite it from now on.
@@ -56,4 +56,6 @@ pub(crate) struct Felt {
 pub(crate) enum Dead {
     Surface(Box<SurfaceSlot>),
     Body(Box<BodySlot>),
+    #[expect(dead_code, reason = "it is freed with the message and never looked at")]
+    Change(Box<dyn Any + Send + Sync>),
 }

@@ -11,8 +11,7 @@ use crate::files::scene_file::{
 use asperity_texture::brownian::BrownianDesign;
 #[cfg(feature = "brownian")]
 use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface, Rendering};
-use asperity_texture::change::SurfaceChange;
-use asperity_texture::combine::{Crossfade, Mask, Scale, Sum};
+use asperity_texture::combine::{Crossfade, CrossfadeTo, Mask, Scale, Sum};
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
 use asperity_texture::height_map::Extent;
 use asperity_texture::height_map::HeightMap;
@@ -76,7 +75,7 @@ impl Ground<'_> {
                 let (from, to) = (self.source(from)?, self.source(to)?);
                 let mut fade = Crossfade::new(from, to, self.sample_rate_hz).map_err(FileError::told)?;
                 let sample = (at_s * self.sample_rate_hz).round() as u64;
-                fade.change(&SurfaceChange::Crossfade(1.0), sample);
+                fade.change(&CrossfadeTo(1.0), sample);
                 Box::new(fade)
             }
         })

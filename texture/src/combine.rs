@@ -13,13 +13,12 @@
 //! space; the weights' change in time is not a slope. A contact's change messages and touches reach
 //! every part; forces add up by the same weights as heights.
 
-use crate::change::SurfaceChange;
 use crate::fade::Fade;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
-use crate::sand::SandSource;
 use asperity_dsp::{DesignError, limits};
+use std::any::Any;
 
 /// A surface of any kind.
 pub type Source = Box<dyn HeightField>;
@@ -85,14 +84,18 @@ impl HeightField for Sum {
         self.sources.iter_mut().fold(Reaction::default(), |sum, s| add(sum, s.react(touch), 1.0))
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
         self.sources.iter_mut().fold(false, |done, s| s.change(change, sample) | done)
     }
 
-    fn sand(&mut self) -> Option<&mut SandSource> {
-        self.sources.iter_mut().find_map(|s| s.sand())
+    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        self.sources.iter_mut().for_each(|source| source.visit(see));
     }
 }
+
+/// Changes the factor of a [`Scale`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScaleTo(pub f64);
 
 /// A source whose relief is multiplied by a factor that may change.
 pub struct Scale {
@@ -157,15 +160,15 @@ impl HeightField for Scale {
         add(Reaction::default(), self.source.react(touch), self.factor.at(touch.sample))
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
-        match change {
-            SurfaceChange::Scale(factor) => check_factor(*factor).map(|f| self.factor.set(f, sample)).is_ok(),
-            other => self.source.change(other, sample),
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+        match change.downcast_ref() {
+            Some(ScaleTo(factor)) => check_factor(*factor).map(|f| self.factor.set(f, sample)).is_ok(),
+            None => self.source.change(change, sample),
         }
     }
 
-    fn sand(&mut self) -> Option<&mut SandSource> {
-        self.source.sand()
+    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        self.source.visit(see);
     }
 }
 
@@ -249,16 +252,21 @@ impl HeightField for Mask {
         add(add(Reaction::default(), inside, w), self.outside.react(touch), 1.0 - w)
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
         let mask = self.mask.change(change, sample);
         let inside = self.inside.change(change, sample);
         self.outside.change(change, sample) | inside | mask
     }
 
-    fn sand(&mut self) -> Option<&mut SandSource> {
-        self.inside.sand().or_else(|| self.outside.sand())
+    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        self.inside.visit(see);
+        self.outside.visit(see);
     }
 }
+
+/// Moves a [`Crossfade`]: 0 = all of the first source, 1 = all of the second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrossfadeTo(pub f64);
 
 /// From one source to another at run time.
 pub struct Crossfade {
@@ -268,7 +276,7 @@ pub struct Crossfade {
 }
 
 impl Crossfade {
-    /// All of `first`; [`SurfaceChange::Crossfade`] moves towards `second`.
+    /// All of `first`; [`CrossfadeTo`] moves towards `second`.
     ///
     /// # Errors
     /// When the sample rate is not above 0 Hz.
@@ -321,8 +329,8 @@ impl HeightField for Crossfade {
         add(add(Reaction::default(), first.react(touch), 1.0 - w), second.react(touch), w)
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
-        if let SurfaceChange::Crossfade(position) = change {
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+        if let Some(CrossfadeTo(position)) = change.downcast_ref() {
             let accepted = (0.0..=1.0).contains(position);
             if accepted {
                 self.position.set(*position, sample);
@@ -332,10 +340,14 @@ impl HeightField for Crossfade {
         self.sources.iter_mut().fold(false, |done, s| s.change(change, sample) | done)
     }
 
-    fn sand(&mut self) -> Option<&mut SandSource> {
-        self.sources.iter_mut().find_map(|s| s.sand())
+    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        self.sources.iter_mut().for_each(|source| source.visit(see));
     }
 }
+
+/// Changes the weights of a [`BandSplit`]: below and above its wavelength.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandWeights(pub [f64; 2]);
 
 /// The long wavelengths of one source and the short wavelengths of another.
 pub struct BandSplit {
@@ -431,8 +443,8 @@ impl HeightField for BandSplit {
         add(add(Reaction::default(), self.coarse.react(touch), low), self.fine.react(touch), high)
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
-        if let SurfaceChange::BandSplit(weights) = change {
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+        if let Some(BandWeights(weights)) = change.downcast_ref() {
             let accepted = weights.iter().all(|&w| check_factor(w).is_ok());
             if accepted {
                 self.weights.set(*weights, sample);
@@ -443,8 +455,9 @@ impl HeightField for BandSplit {
         self.fine.change(change, sample) | coarse
     }
 
-    fn sand(&mut self) -> Option<&mut SandSource> {
-        self.coarse.sand().or_else(|| self.fine.sand())
+    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        self.coarse.visit(see);
+        self.fine.visit(see);
     }
 }
 

@@ -5,9 +5,8 @@
 //! is anchored to the absolute sample index), so that any split of time into blocks gives the same
 //! bits. The path's positions are finite; they may be any number of periods away from the origin.
 
-use crate::change::SurfaceChange;
-use crate::sand::SandSource;
 use asperity_dsp::DesignError;
+use std::any::Any;
 
 /// Longest block a source is ever asked for, samples.
 pub const MAX_BLOCK: usize = 64;
@@ -254,13 +253,13 @@ pub trait HeightField: Send + Sync {
     }
 
     /// Changes the source at an absolute sample, without a click; tells whether the change was meant
-    /// for this source and acceptable.
-    fn change(&mut self, _change: &SurfaceChange, _sample: u64) -> bool {
+    /// for this source and acceptable. A change is any plain value that the source knows by its type: parameters, a factor.
+    /// A source made of others hands on what it does not know.
+    fn change(&mut self, _change: &dyn Any, _sample: u64) -> bool {
         false
     }
 
-    /// The sand, if this is some: whoever takes a surface back reads its figures and its picture.
-    fn sand(&mut self) -> Option<&mut SandSource> {
-        None
-    }
+    /// Shows the source, and those that it is made of, to whoever knows their types: after a render, sand is asked for its figures. A
+    /// source that has nothing to say shows nothing.
+    fn visit(&mut self, _see: &mut dyn FnMut(&mut dyn Any)) {}
 }

@@ -7,7 +7,6 @@
 // Real time.
 #[cfg(feature = "brownian")]
 pub mod brownian;
-pub mod change;
 pub mod combine;
 pub mod exclusive;
 pub mod fade;

@@ -28,13 +28,13 @@ mod parameters;
 pub use cut::SolidCut;
 pub use parameters::{ForceDirection, MAX_OCTAVES, NoiseModule, SolidNoiseParameters};
 
-use crate::change::SurfaceChange;
 use crate::fade::Fade;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use asperity_dsp::DesignError;
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
+use std::any::Any;
 
 /// Footprint over cell size up to which an octave is whole: 0.66 cycles per cell, below which 90 % of
 /// its energy lies, then stay under 0.26 of the sample rate.
@@ -297,10 +297,9 @@ impl HeightField for SolidNoise {
         Reaction { force_n, ..Reaction::default() }
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
-        match change {
-            SurfaceChange::SolidNoise(parameters) => self.set(*parameters, sample).is_ok(),
-            _ => false,
-        }
+    /// Takes [`SolidNoiseParameters`].
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+        let parameters = change.downcast_ref::<SolidNoiseParameters>();
+        parameters.is_some_and(|parameters| self.set(*parameters, sample).is_ok())
     }
 }

@@ -9,13 +9,12 @@
 //! weights add up to 1 in height, so whatever does repeat (a map in a sum) stays what it is; uncorrelated relief is
 //! 3 dB lower in the middle of the blend.
 
-use crate::change::SurfaceChange;
 use crate::combine::{Source, add};
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
-use crate::sand::SandSource;
 use asperity_dsp::DesignError;
+use std::any::Any;
 
 /// A place in a tile, and how much of it is already the next tile's beginning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -182,12 +181,12 @@ impl HeightField for Tiled {
         })
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
         self.source.change(change, sample)
     }
 
-    fn sand(&mut self) -> Option<&mut SandSource> {
-        self.source.sand()
+    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        self.source.visit(see);
     }
 }
 

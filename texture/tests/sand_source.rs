@@ -2,7 +2,6 @@
 
 mod common;
 
-use asperity_texture::change::SurfaceChange;
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::sand::{SandDesign, SandLaw, SandSource};
 use common::{bits, rms};
@@ -221,12 +220,7 @@ fn the_force_of_another_law_comes_without_a_step() {
     };
     for sample in 0..20_000 {
         if sample == 5000 {
-            assert!(
-                sand.change(
-                    &SurfaceChange::Sand(SandLaw { drag_s_per_m: 200.0, ..SandLaw::default() }),
-                    sample
-                )
-            );
+            assert!(sand.change(&SandLaw { drag_s_per_m: 200.0, ..SandLaw::default() }, sample));
         }
         forces.push(sand.react(&touch(sample)).force_n[0]);
     }
@@ -239,8 +233,8 @@ fn the_force_of_another_law_comes_without_a_step() {
 fn another_law_is_taken_at_run_time_and_an_impossible_one_is_not() {
     let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
     let wet = SandLaw { wetness: 1.0, ..SandLaw::default() };
-    assert!(sand.change(&SurfaceChange::Sand(wet), 0));
-    assert!(!sand.change(&SurfaceChange::Sand(SandLaw { drag_s_per_m: -1.0, ..wet }), 0));
+    assert!(sand.change(&wet, 0));
+    assert!(!sand.change(&SandLaw { drag_s_per_m: -1.0, ..wet }, 0));
     assert_eq!(sand.simulation().unwrap().law().wetness, 1.0);
     let mut drag = 0.0;
     play(&mut sand, 0, 6400, &[64], 1.0, |r| drag = r.force_n[0]);

@@ -3,7 +3,6 @@
 mod common;
 
 use asperity_dsp::rng::Rng;
-use asperity_texture::change::SurfaceChange;
 use asperity_texture::height_field::{HeightField, Touch};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::{ForceDirection, SolidCut, SolidNoise};
@@ -75,8 +74,8 @@ fn any_split_into_blocks_gives_the_same_bits_also_across_a_change() {
     let run = |lengths: &[usize]| {
         let mut source = made(SolidMaterial::Wood);
         // The engine splits blocks at messages, so a change always meets the start of a block.
-        assert!(source.change(&SurfaceChange::SolidNoise(SolidMaterial::Gravel.parameters()), 1001));
-        assert!(source.change(&SurfaceChange::SolidNoise(SolidMaterial::Sand.parameters()), 3003));
+        assert!(source.change(&SolidMaterial::Gravel.parameters(), 1001));
+        assert!(source.change(&SolidMaterial::Sand.parameters(), 3003));
         stroke.heights(&mut source, lengths)
     };
     let whole = bits(&run(&[64]));
@@ -146,7 +145,7 @@ fn no_change_of_parameters_makes_a_step_above_minus_60_db() {
         (SolidMaterial::Wood, SolidMaterial::Gravel),
     ] {
         for rate in [22_050.0, 44_100.0, 192_000.0] {
-            let change = SurfaceChange::SolidNoise(to.parameters());
+            let change = to.parameters();
             // At rest nothing but the change moves the height, so that every step is its step.
             for place in 0..30 {
                 let at = [0.0007 * f64::from(place), 0.011];
@@ -203,7 +202,7 @@ fn impossible_parameters_are_refused_by_name_and_change_nothing() {
         let mut parameters = before;
         spoil(&mut parameters);
         assert_eq!(SolidNoise::new(parameters, 1, RATE).unwrap_err().field, field);
-        assert!(!source.change(&SurfaceChange::SolidNoise(parameters), 10));
+        assert!(!source.change(&parameters, 10));
         assert_eq!(source.parameters(), before);
     }
     assert_eq!(SolidNoise::new(before, 1, 0.0).unwrap_err().field, "sample_rate_hz");

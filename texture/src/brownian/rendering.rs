@@ -17,11 +17,11 @@
 //! the same at any rate. Equation 6.8 replaces the gradient by (Δy, 0, Δy), which fixes the direction
 //! at 45°; ours is the gradient of 6.7, per millimetre (the unit is ours: the thesis has none).
 
-use crate::change::SurfaceChange;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use asperity_dsp::DesignError;
+use std::any::Any;
 
 /// Grey levels over the range of the document's maps.
 pub const GREY_LEVELS: f64 = 256.0;
@@ -143,8 +143,12 @@ impl HeightField for BrownianSurface {
         }
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
         self.relief.change(change, sample)
+    }
+
+    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        self.relief.visit(see);
     }
 }
 

@@ -26,7 +26,6 @@ use super::law::SandLaw;
 use super::patch::Patch;
 use super::simulation::{FRAMES_PER_S, Pose, SandDesign, SandFigures, SandSimulation};
 use super::worker::SandWorker;
-use crate::change::SurfaceChange;
 use crate::exclusive::Exclusive;
 use crate::fade::Fade;
 use crate::height_field::{
@@ -35,6 +34,7 @@ use crate::height_field::{
 use crate::solid_materials::{FRICTION, SolidMaterial};
 use crate::solid_noise::SolidNoise;
 use asperity_dsp::DesignError;
+use std::any::Any;
 
 /// Patches in circulation for every contact, besides the one it landed on: one that fades out, one that fades in, one that waits,
 /// one under way.
@@ -420,8 +420,9 @@ impl HeightField for SandSource {
         Reaction { force_n: [drag[0], drag[1], 0.0], grain_rate_per_s, grain_impulse_n_s, stirs }
     }
 
-    fn change(&mut self, change: &SurfaceChange, sample: u64) -> bool {
-        let SurfaceChange::Sand(law) = change else { return false };
+    /// Takes a [`SandLaw`].
+    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+        let Some(law) = change.downcast_ref::<SandLaw>() else { return false };
         if law.check().is_err() {
             return false;
         }
@@ -434,7 +435,7 @@ impl HeightField for SandSource {
         true
     }
 
-    fn sand(&mut self) -> Option<&mut SandSource> {
-        Some(self)
+    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        see(self);
     }
 }
