@@ -75,6 +75,7 @@ fn names_that_are_not_there_and_tables_that_contradict_each_other_are_refused() 
     assert_refused(&scene.render(&[]), &["holder \"hand\" is unknown", "pen"]);
     log("\"event\":\"move\"", "\"event\":\"move\",\"probe\":\"stylus\"");
     assert_refused(&scene.render(&[]), &["stroke.jsonl:2: probe"]);
+    scene.write("stroke.jsonl", stroke(1, 0.5));
     let refused = |text: String, parts: &[&str]| {
         scene.write("scene.toml", text);
         scene.write("bar.modes.json", MODES);
