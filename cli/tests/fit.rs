@@ -144,9 +144,12 @@ fn asperity_model(folder: &Path, name: &str) -> asperity::ModalModel {
 fn a_fitted_body_struck_by_the_engine_and_fitted_again_is_the_same_body() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    // A body whose modes stand apart: in the demo's tile, whose room is fitted along, they crowd and trade places.
-    recording(folder, "tile.wav");
-    fit(folder, &["tile.wav", "-o", "tile.modes.json"]);
+    std::fs::copy(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/tile_strike.wav"),
+        folder.join("tile.wav"),
+    )
+    .unwrap();
+    fit(folder, &["tile.wav", "-o", "tile.modes.json", "--max-modes", "32"]);
     let scene =
         "contacts = \"hit.jsonl\"\ntail_s = 1.5\n[[body]]\nname = \"tile\"\nmodes = \"tile.modes.json\"\n";
     std::fs::write(folder.join("scene.toml"), scene).unwrap();
@@ -156,16 +159,20 @@ fn a_fitted_body_struck_by_the_engine_and_fitted_again_is_the_same_body() {
     assert_eq!((status, err.as_str()), (0, ""));
     fit(folder, &["take.audio.wav", "-o", "again.modes.json"]);
     let (first, again) = (modes(folder, "tile.modes.json"), modes(folder, "again.modes.json"));
-    assert_eq!(first.len(), BODY.len());
-    for &[hz, decay, _] in &first {
-        // A pair 3.5 Hz apart comes back within 0.2 Hz only: the engine's pulse is longer than the impulse that a fit assumes.
-        if first.iter().any(|other| other[0] != hz && (other[0] - hz).abs() < 5.0) {
-            assert!((nearest(&again, hz)[0] - hz).abs() < 0.5, "{hz} Hz of the pair");
-            continue;
-        }
+    assert!(first.len() >= 10, "{}", first.len());
+    // What the tile rings with: modes that last, down to 30 dB under the strongest. The others are its strike.
+    let energy = |[_, decay, amplitude]: &[f64; 3]| amplitude * amplitude / decay;
+    let ringing = || first.iter().filter(|mode| mode[1] < 100.0);
+    let strongest = ringing().map(energy).fold(0.0, f64::max);
+    let body: Vec<_> = ringing().filter(|mode| energy(mode) > 1e-3 * strongest).collect();
+    assert!(body.len() >= 5, "{first:?}");
+    for &&[hz, decay, _] in &body {
         let found = nearest(&again, hz);
-        assert!((found[0] / hz - 1.0).abs() < 1e-4, "{hz} Hz came back as {}", found[0]);
-        assert!((found[1] / decay - 1.0).abs() < 0.02, "{hz} Hz: {decay}/s came back as {}", found[1]);
+        assert!((found[0] / hz - 1.0).abs() < 1e-5, "{hz} Hz came back as {}", found[0]);
+        assert!((found[1] / decay - 1.0).abs() < 0.01, "{hz} Hz: {decay}/s came back as {}", found[1]);
+        // One mode each: they crowded at 750 to 791 Hz and traded places.
+        let near = first.iter().filter(|other| (other[0] / hz - 1.0).abs() < 0.01);
+        assert_eq!(near.count(), 1, "{hz} Hz of {first:?}");
     }
 }
 

@@ -9,7 +9,7 @@ use crate::pruning::{Uncertainty, uncertainties};
 use crate::recording::Recording;
 use crate::residual::{Burst, Residual, ratio_db};
 use crate::strike::{FitOptions, Found, LARGEST_AMPLITUDE};
-use crate::struck::{KERNEL, lead, struck};
+use crate::struck::{lead, struck};
 use crate::suspicion::{self, energy_spectrum};
 pub use crate::warning::Warning;
 use asperity_dsp::mode::Mode;
@@ -101,11 +101,8 @@ pub struct Fit {
     pub noise_floor_db: f64,
     /// Recording over residual from `onset_s` + `start_offset_s` to `end_s`, dB.
     pub resynthesis_snr_db: f64,
-    /// The same from the onset on, the contact included, once the three samples are over across which the engine spreads
-    /// every strike: they alone hold a body that begins with a jump to some 20 to 40 dB, however good its modes are.
+    /// The same from the onset on, the contact included: all that the engine plays.
     pub snr_from_onset_db: f64,
-    /// The same with those samples: all that the engine plays.
-    pub struck_snr_db: f64,
     /// The same within the band of the modes, half an octave around: without a rumble or a hiss that is no business
     /// of the modes.
     pub snr_in_band_db: f64,
@@ -160,8 +157,7 @@ impl Fit {
         left[onset..].iter_mut().zip(&struck).for_each(|(left, struck)| *left -= struck);
         let snr = |from: usize| -ratio_db(&left[from..end], &samples[from..end]);
         let resynthesis_snr_db = snr(onset + offset);
-        let struck_snr_db = snr(onset);
-        let snr_from_onset_db = snr((onset + KERNEL).min(end - 1));
+        let snr_from_onset_db = snr(onset);
         let struck_peak_db = 20.0 * (peak(&struck[..end - onset]).max(1e-15) / peak(sound)).log10();
         let snr_in_band_db = in_band_snr_db(sound, &left[onset..end], &partials);
         let mut modes: Vec<FittedMode> = uncertainties(&partials, &analysis.noise, count)
@@ -189,7 +185,6 @@ impl Fit {
             noise_floor_db: 10.0 * analysis.noise.mean_variance().max(1e-30).log10(),
             resynthesis_snr_db,
             snr_from_onset_db,
-            struck_snr_db,
             snr_in_band_db,
             struck_peak_db,
             residual: Residual::new(left, samples, onset, end, rate),

@@ -16,6 +16,7 @@
 //! | [`ringing`] | segment → is there anything but noise; partials → which stand out of steep noise |
 //! | [`analysis`] | sum of modes → partials: levels, refinement, proof |
 //! | [`tail_to_attack`], [`ranking`] | any other recording → partials: stages from the tail to the attack, those that are heard |
+//! | [`merging`], `one_mode` | partials of one stage, of all stages → one for each resonance |
 //! | `candidates` | residual → what may be modes |
 //! | [`sub_band`] | segment → decimated bands |
 //! | [`noise_floor`] | segment → noise variance per frequency |
@@ -51,6 +52,7 @@ pub mod merging;
 pub mod model_order;
 pub mod noise_floor;
 pub mod normal_equations;
+mod one_mode;
 pub mod onset;
 mod packed_file;
 pub mod partial;

@@ -34,13 +34,15 @@ const PROPOSED_LOSS: f64 = 0.06;
 const REFIT_STEPS: usize = 3;
 /// Most partials that are tried as one resonance.
 const LARGEST_GROUP: usize = 4;
+/// Partials within so many half-bandwidths of the narrower one may be one resonance.
+const HALF_WIDTHS: f64 = 3.0;
 /// Halvings of the search for the best single pole.
 const HALVINGS: usize = 18;
 
 /// Merges what is one resonance in `signal`; says how many partials went.
 ///
 /// The closed form proposes; what decides is the squared residual after the merged partial and its
-/// neighbours have been refitted, which may rise by the part `most_lost` of the resonance's energy ([`MERGED_LOSS`] at most).
+/// neighbours have been refitted, which may rise by the part `most_lost` of the resonance's energy ([`MERGED_LOSS`], for one).
 pub fn merge_resonances(
     signal: &[f64],
     partials: &mut Vec<Partial>,
@@ -151,12 +153,13 @@ fn proposals(
     groups
 }
 
-/// Whether two partials lie within their half-bandwidths.
+/// Whether two partials lie within their half-bandwidths, or within three of the narrower one.
 fn touches(a: &Partial, b: &Partial, count: usize) -> bool {
-    (a.omega - b.omega).abs() <= a.delta + b.delta + 1.0 / count as f64
+    let gap = (a.omega - b.omega).abs();
+    gap <= (a.delta + b.delta + 1.0 / count as f64).max(HALF_WIDTHS * a.delta.min(b.delta))
 }
 
-/// `k` and those its half-bandwidth touches, nearest pole first, at most [`LARGEST_GROUP`].
+/// `k` and those that touch it, nearest pole first, at most [`LARGEST_GROUP`].
 fn around(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
     let own = &partials[k];
     let gap = |i: usize| (partials[i].omega - own.omega).hypot(partials[i].delta - own.delta);
@@ -167,7 +170,7 @@ fn around(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
 }
 
 /// The part of the energy of a sum that the one partial nearest to it misses, that energy, and the partial.
-fn single(parts: Vec<Partial>, count: usize) -> (f64, f64, Partial) {
+pub(crate) fn single(parts: Vec<Partial>, count: usize) -> (f64, f64, Partial) {
     let widest = parts.iter().map(|p| p.delta).fold(1.0 / count as f64, f64::max);
     let sum = Sum { parts, count };
     let energy = sum.energy();

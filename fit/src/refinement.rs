@@ -57,6 +57,14 @@ impl Bounds {
         }
     }
 
+    /// Whether a partial is within all of them.
+    #[must_use]
+    pub fn allow(&self, partial: &Partial) -> bool {
+        (self.omega_low..=self.omega_high).contains(&partial.omega)
+            && (self.delta_low..=self.delta_high).contains(&partial.delta)
+            && partial.c.norm() <= self.amplitude_high
+    }
+
     fn apply(&self, partial: &mut Partial) {
         partial.omega = partial.omega.clamp(self.omega_low, self.omega_high);
         partial.delta = partial.delta.clamp(self.delta_low, self.delta_high);

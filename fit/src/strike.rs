@@ -15,6 +15,7 @@ use crate::analysis::{Analysis, analyse, subtract};
 use crate::contact::contact_samples;
 use crate::fitted::{Fit, Warning};
 use crate::limits::Limits;
+use crate::merging::{MERGED_LOSS, merge_resonances};
 use crate::noise_floor::NoiseFloor;
 use crate::onset::{self, Strike};
 use crate::ranking::keep_heard;
@@ -42,6 +43,8 @@ const BACK_NEPERS: f64 = 1.5;
 /// Most modes of a sum, whatever is to be kept of them, and steps of the refit of those kept.
 const MODES_OF_A_SUM: usize = 150;
 const LIMITED_STEPS: usize = 12;
+/// Rounds of merging before.
+const LIMITED_ROUNDS: usize = 6;
 /// Nothing so far below the strongest mode's energy is looked for, dB.
 const FAINTEST_DB: f64 = -90.0;
 /// A mode that falls by this many nepers within the contact is over when that is; of as many modes as this part of them
@@ -262,6 +265,13 @@ fn analysed_as_sum(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f6
     let all = Limits { max_partials: most.max(MODES_OF_A_SUM), ..*limits };
     let mut sum = analyse(segment, &all, progress);
     if sum.explained && sum.partials.len() > most {
+        // What is one resonance takes one place.
+        for _ in 0..LIMITED_ROUNDS {
+            if merge_resonances(segment, &mut sum.partials, &limits.bounds, MERGED_LOSS) == 0 {
+                break;
+            }
+            refine(segment, &mut sum.partials, &limits.bounds, LIMITED_STEPS);
+        }
         keep_heard(&mut sum.partials, segment.len(), most, limits.rate_hz);
         refine(segment, &mut sum.partials, &limits.bounds, LIMITED_STEPS);
         sum.residual = subtract(segment, &sum.partials);

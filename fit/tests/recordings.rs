@@ -46,10 +46,8 @@ fn against_peaks(name: &str) -> Option<(f64, f64)> {
 /// The quick ones; `examples/recordings` prints all.
 #[test]
 fn sixty_modes_explain_more_than_sixty_spectral_peaks() {
-    // The glass is a fifth of a second of soft codec: its stages explain 1.5 dB more than the peaks, not 13 as one fit
-    // of everything did.
     for (name, more_db) in [
-        ("kenney_impactGlass_light_000.wav", 1.0),
+        ("kenney_impactGlass_light_000.wav", 3.0),
         ("kenney_impactMetal_light_000.wav", 3.0),
         ("vcsl_wood_click_ff.wav", 3.0),
     ] {
@@ -66,11 +64,13 @@ fn the_decay_of_a_vibraphone_bar_is_one_exponential() {
     // T60 2.05 s by the slope of its level; 2.0–2.3 s by least squares, by where one starts.
     let t60_s = strongest.mode().t60_s();
     assert!((1.9..2.4).contains(&t60_s), "{t60_s}");
-    // What lies within its bandwidth would split it; the attack's own falls many times as fast.
+    // What lies within its bandwidth would split it; the attack's own falls many times as fast. (The bar beats a little: 1.5 Hz
+    // away a second mode of the same decay, 18 dB down, is worth more than the 16 dB that a resonance may lose.)
     let half_width_hz = strongest.decay_per_s / (2.0 * std::f64::consts::PI);
     for other in &fit.modes[1..] {
         let near = (other.frequency_hz - strongest.frequency_hz).abs() < 3.0 * half_width_hz;
-        assert!(!near || other.decay_per_s > 3.0 * strongest.decay_per_s, "{other:?}");
+        let faster = other.decay_per_s > 3.0 * strongest.decay_per_s;
+        assert!(!near || faster || other.energy < 0.025 * strongest.energy, "{other:?}");
     }
 }
 
@@ -86,7 +86,7 @@ fn what_the_engine_plays_is_no_louder_than_the_recording_and_what_is_told_of_it_
         let rate = recording.sample_rate_hz;
         let modes: Vec<Mode> = fit.modes.iter().map(FittedMode::mode).collect();
         let played = render_fast(&modes, rate, 4410);
-        for (n, played) in played.iter().enumerate().skip(3) {
+        for (n, played) in played.iter().enumerate().skip(1) {
             let at = fit.onset_sample + n;
             let told = recording.samples[at] - fit.residual.samples[at];
             assert!((told - played).abs() < 0.01, "{name}: {n} {told} {played}");

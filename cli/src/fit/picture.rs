@@ -16,7 +16,7 @@ pub fn svg(recording: &Recording, fit: &Fit) -> String {
     let start_s = recording.starts_at_s;
     let mut figure = Figure::new(format!("{}: {} modes", fit.source, fit.modes.len())).subtitle(format!(
         "struck body {:.1} dB above what is left, its peak {:+.1} dB of the recording's, onset {:.4} s",
-        fit.struck_snr_db, fit.struck_peak_db, fit.onset_s
+        fit.snr_from_onset_db, fit.struck_peak_db, fit.onset_s
     ));
     for warning in &fit.warnings {
         figure = figure.subtitle(format!("warning: {warning}"));

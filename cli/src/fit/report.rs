@@ -55,7 +55,7 @@ impl Report {
             onset_s: fit.onset_s,
             start_offset_s: fit.start_offset_s,
             resynthesis_snr_db: fit.resynthesis_snr_db,
-            snr_from_onset_db: fit.struck_snr_db,
+            snr_from_onset_db: fit.snr_from_onset_db,
             snr_in_band_db: fit.snr_in_band_db,
             struck_peak_db: fit.struck_peak_db,
             noise_floor_db: fit.noise_floor_db,

@@ -29,7 +29,7 @@ pub fn in_process(path: &str, burst_s: f64) -> Result<Fitted, String> {
         burst: fit.burst(burst_s).samples.iter().map(|&x| x as f32).collect(),
         onset_s: fit.onset_s,
         end_s: fit.end_s,
-        told_snr_db: fit.struck_snr_db,
+        told_snr_db: fit.snr_from_onset_db,
         warnings: fit.warnings.iter().map(ToString::to_string).collect(),
     })
 }

@@ -12,18 +12,20 @@
 //! | `snr`, `told` | recording over difference from the onset on, dB; what the fit says it is |
 //! | `late` | partials at 0.3–0.6 s within 25 dB of the loudest that are more than 20 dB too quiet, of all |
 //! | `decay` | median error of the decays of partials within 25 dB of the loudest, % |
-//! | `split` | modes within 25 dB of the strongest (energy) that have another within 3 half widths and 20 dB, of all |
+//! | `split` | strong resonances of several modes of which fewer would do + those that beat, of all ([`resonances`]) |
 //! | `ring` | longest T60 over the length of sound that was seen |
 //! | `modes`, `limit` | how many; whether a warning names the mode limit |
 
 mod engine;
 mod fitting;
 mod partials;
+mod resonances;
 
 use asperity_fit::{ChannelChoice, Recording, load};
 use asperity_measure::score::snr_db;
 use fitting::{Fitted, by_program, in_process};
-use partials::{decay_errors, late_partials, split_resonances};
+use partials::{decay_errors, late_partials};
+use resonances::{Resonances, resonances};
 
 /// Length of the burst that bodies carry, s.
 const BURST_S: f64 = 0.04;
@@ -36,7 +38,7 @@ const ALIGNED_S: f64 = 0.05;
 fn main() {
     let mut args = std::env::args().skip(1).peekable();
     let program = args.next_if(|arg| arg == "--program").and_then(|_| args.next());
-    println!("    s   peak   err5  burst    snr   told    late  decay  split  ring  modes limit  file");
+    println!("    s   peak   err5  burst    snr   told    late  decay  split     ring  modes limit  file");
     let mut rows = Vec::new();
     for path in args {
         let name = path.rsplit('/').next().unwrap_or_default().to_owned();
@@ -69,7 +71,7 @@ struct Row {
     told_db: f64,
     late: (usize, usize),
     decays: Vec<f64>,
-    split: (usize, usize),
+    resonances: Resonances,
     ring: f64,
     modes: usize,
     limit: bool,
@@ -86,6 +88,7 @@ impl Row {
         let alone = aligned(&sound, &engine::struck(&fitted.modes, None, rate, sound.len(), SHIFT_S), rate);
         let whole = engine::struck(&fitted.modes, Some(&fitted.burst), rate, sound.len(), SHIFT_S);
         let whole = aligned(&sound, &whole, rate);
+        let left: Vec<f64> = sound.iter().zip(&alone).map(|(x, y)| x - y).collect();
         let attack = ((ATTACK_S * rate) as usize).min(sound.len());
         let strongest = fitted.modes.iter().map(|m| m.t60_s()).fold(0.0, f64::max);
         Self {
@@ -97,7 +100,7 @@ impl Row {
             told_db: fitted.told_snr_db,
             late: late_partials(&sound, &alone, rate),
             decays: decay_errors(&sound, &alone, rate),
-            split: split_resonances(&fitted.modes, sound.len() as f64 / rate),
+            resonances: resonances(&fitted.modes, &sound, &left, rate),
             ring: strongest * rate / sound.len() as f64,
             modes: fitted.modes.len(),
             limit: fitted.warnings.iter().any(|w| w.starts_with("mode limit")),
@@ -106,7 +109,7 @@ impl Row {
 
     fn text(&self) -> String {
         format!(
-            "{:5.2} {:6.1} {:6.1} {:6.1} {:6.1} {:6.1} {:3}/{:<3} {:6.1} {:3}/{:<3} {:5.1} {:5}  {:4}",
+            "{:5.2} {:6.1} {:6.1} {:6.1} {:6.1} {:6.1} {:3}/{:<3} {:6.1} {:3}+{:2}/{:<3} {:5.1} {:5}  {:4}",
             self.cpu_s,
             self.peak_db,
             self.err5_db,
@@ -116,8 +119,9 @@ impl Row {
             self.late.0,
             self.late.1,
             100.0 * quantile(&self.decays, 0.5),
-            self.split.0,
-            self.split.1,
+            self.resonances.split,
+            self.resonances.beating,
+            self.resonances.all,
             self.ring,
             self.modes,
             if self.limit { "yes" } else { "no" }
@@ -156,10 +160,12 @@ fn summary(rows: &[Row]) {
     let sum = |part: fn(&Row) -> (usize, usize)| {
         rows.iter().map(part).fold((0, 0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
     };
-    let (late, split) = (sum(|r| r.late), sum(|r| r.split));
+    let late = sum(|r| r.late);
+    let of_all = |part: fn(&Resonances) -> usize| rows.iter().map(|r| part(&r.resonances)).sum::<usize>();
+    let (split, beating, all) = (of_all(|r| r.split), of_all(|r| r.beating), of_all(|r| r.all));
     println!(
-        "late partials absent: {} of {}; strong resonances split: {} of {}",
-        late.0, late.1, split.0, split.1
+        "late partials absent: {} of {}; of {all} strong resonances {split} split, {beating} beating",
+        late.0, late.1
     );
     println!("mode limit named: {} of {}", rows.iter().filter(|r| r.limit).count(), rows.len());
 }

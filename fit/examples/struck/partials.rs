@@ -1,6 +1,5 @@
 //! Partials of a sound, found in its spectra without any model.
 
-use asperity_dsp::mode::Mode;
 use asperity_fft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::PI;
 
@@ -19,9 +18,6 @@ const STEP_S: f64 = 0.01;
 /// How far down a decay is followed, and how far over the end of the sound it must stay, dB.
 const FOLLOWED_DB: f64 = 35.0;
 const OVER_END_DB: f64 = 10.0;
-/// Strong modes, and what splits one: another within so many half widths of both, at most so far below it.
-const HALF_WIDTHS: f64 = 3.0;
-const SPLIT_DB: f64 = 20.0;
 
 /// Late partials that are absent from `played`, and all of them.
 pub fn late_partials(sound: &[f64], played: &[f64], rate: f64) -> (usize, usize) {
@@ -69,24 +65,6 @@ pub fn decay_errors(sound: &[f64], played: &[f64], rate: f64) -> Vec<f64> {
             (slope < -0.02).then(|| (self::slope(&ours[..followed]) / slope - 1.0).abs())
         })
         .collect()
-}
-
-/// Modes within 25 dB of the strongest in energy that another one splits, and all of them.
-pub fn split_resonances(modes: &[Mode], seconds: f64) -> (usize, usize) {
-    let energy = |m: &Mode| {
-        let d = m.decay_per_s.max(1e-9);
-        m.amplitude.powi(2) * (1.0 - (-2.0 * d * seconds).exp()) / d
-    };
-    let most = modes.iter().map(energy).fold(0.0, f64::max);
-    let strong = |m: &&Mode| energy(m) > most * 10.0_f64.powf(-0.1 * WITHIN_DB);
-    let splits = |m: &Mode, other: &Mode| {
-        let gap = (m.frequency_hz - other.frequency_hz).abs();
-        m != other
-            && gap < HALF_WIDTHS * m.decay_per_s.min(other.decay_per_s) / (2.0 * PI)
-            && energy(other) > energy(m) * 10.0_f64.powf(-0.1 * SPLIT_DB)
-    };
-    let all: Vec<&Mode> = modes.iter().filter(strong).collect();
-    (all.iter().filter(|m| modes.iter().any(|other| splits(m, other))).count(), all.len())
 }
 
 /// Hann-windowed, padded fourfold.
