@@ -11,7 +11,7 @@ use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::normal_map::{NormalMapOptions, heights_from_normals};
 use asperity_texture::raster::Raster;
 use image::imageops::FilterType;
-use normals::{as_jpeg, cut, halved, halved_heights, thirds, without_slant};
+use normals::{as_jpeg, cut, halved, halved_heights_by, thirds, without_slant};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -45,8 +45,14 @@ fn set(name: &str, normals: &Path, displacement: &Path) {
     let map = [Channel::R, Channel::G, Channel::B].map(|c| load_channel(normals, c).expect("a map").raster);
     let truth = load_channel(displacement, Channel::Luma).expect("a map").raster;
     row(name, "whole", &map, &truth);
-    let (small, half) = (halved_heights(&truth), |filter| halved(&map, filter));
-    row(name, "halved, bilinear", &half(FilterType::Triangle), &small);
+    let half = |filter| halved(&map, filter);
+    row(
+        name,
+        "halved, bilinear",
+        &half(FilterType::Triangle),
+        &halved_heights_by(&truth, FilterType::Triangle),
+    );
+    let small = halved_heights_by(&truth, FilterType::Lanczos3);
     row(name, "halved, Lanczos", &half(FilterType::Lanczos3), &small);
     row(name, "halved, JPEG 75", &as_jpeg(&half(FilterType::Lanczos3), 75, true), &small);
     for quality in [75, 90] {

@@ -73,6 +73,8 @@ pub struct Repetition {
 pub enum Doubt {
     /// An input condition of the document that does not hold.
     Condition(Condition),
+    /// A pattern repeats, with this confidence: heights are its mean cell's.
+    Repeats(f64),
     /// Another way to heights was taken than the light seemed to allow.
     Fallback(Fallback),
     /// Which way up the heights are is a guess.
@@ -93,6 +95,10 @@ impl std::fmt::Display for Doubt {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Condition(condition) => condition.fmt(f),
+            Self::Repeats(confidence) => write!(
+                f,
+                "a pattern repeats (confidence {confidence:.2}): heights are those of its mean cell, roughness and micro-relief those of what differs from it"
+            ),
             Self::Fallback(reason) => reason.fmt(f),
             Self::GuessedSign => f.write_str(
                 "whether bright is high is a guess; look at overview.png, `--bright-is-deep` turns it over",
@@ -200,6 +206,11 @@ pub fn surface_from_photo(
     });
     let mut doubts =
         doubts_of(picture, averaged.then_some(&parts.residual), &law, quiet.noise, scale.relief_m);
+    if let Some(found) = repetition.as_ref().filter(|_| scale.relief_m > 0.0) {
+        let confidence = found.lattice.confidence;
+        let repeats = Doubt::Repeats(confidence);
+        doubts.push(if averaged { repeats } else { Doubt::Condition(Condition::Symmetric(confidence)) });
+    }
     doubts.extend(found.fallback.map(Doubt::Fallback));
     doubts.extend((!found.sign.is_decided() && scale.relief_m > 0.0).then_some(Doubt::GuessedSign));
     doubts.extend((micro_m > LARGEST_MICRO_RELIEF_M).then_some(Doubt::MicroReliefCut));

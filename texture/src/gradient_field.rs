@@ -53,7 +53,7 @@ pub enum Derivative {
     Sobel,
     /// Half way between [`Derivative::Exact`] and [`Derivative::Central`]: for slopes that either may have made. With D_x the smaller of two
     /// symbols and D_x' the larger, (D_x' − D_x)/(D_x' + D_x) is the least relative error of a wave's height that can be had in the worse case. Waves shorter than
-    /// four texels, which central differences hardly see, are not raised above 1.22 times what they are if true slopes made them, half more power.
+    /// six texels, which central differences hardly see, are not raised above 1.1 times what they are if true slopes made them, a fifth more power.
     ExactOrCentral,
 }
 
@@ -65,8 +65,8 @@ pub const DERIVATIVES: [Derivative; 3] = [Derivative::Exact, Derivative::Central
 const BLIND: f64 = 0.004;
 /// The same for [`Derivative::Sobel`], which is nearly blind to many more.
 const SOBEL_BLIND: f64 = 0.01;
-/// By how much [`Derivative::ExactOrCentral`] may raise waves above those of true slopes: half more power.
-const MOST_RAISED: f64 = 1.22;
+/// By how much [`Derivative::ExactOrCentral`] may raise waves above those of true slopes: a fifth more power.
+const MOST_RAISED: f64 = 1.1;
 
 impl Derivative {
     /// D_x / i and D_y / i at one frequency, radians per texel.
@@ -108,7 +108,7 @@ impl Derivative {
     }
 }
 
-/// Half way between a true derivative's and a central difference's symbol, and at least 1/1.22 of the former.
+/// Half way between a true derivative's and a central difference's symbol, and at least 1/1.1 of the former.
 fn half_way(omega: f64) -> f64 {
     let half = 0.5 * (omega + omega.sin());
     if half.abs() < omega.abs() / MOST_RAISED { omega / MOST_RAISED } else { half }

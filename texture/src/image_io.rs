@@ -6,6 +6,8 @@
 //! [`MAX_TEXELS`], before any pixel is decoded.
 
 use crate::deband::deband;
+#[cfg(feature = "offline")]
+use crate::fractal_dimension::ColourSums;
 use crate::raster::Raster;
 use crate::wrap::Wrap;
 use image::metadata::Orientation;
@@ -126,6 +128,18 @@ pub fn load_channel(path: impl AsRef<Path>, channel: Channel) -> Result<ChannelI
     load(path, channel).map_err(|problem| ImageError { file: path.to_path_buf(), problem })
 }
 
+/// Reads the brightness of a photograph, and how much of it is colour rather than light ([`ColourSums::fraction`]), decoding it once.
+///
+/// # Errors
+/// As [`load_channel`].
+#[cfg(feature = "offline")]
+pub fn load_photograph(path: impl AsRef<Path>) -> Result<(ChannelImage, f64), ImageError> {
+    let path = path.as_ref();
+    decode(path, Channel::Luma)
+        .and_then(|image| Ok((extract(&image, Channel::Luma)?, colour_of(&image))))
+        .map_err(|problem| ImageError { file: path.to_path_buf(), problem })
+}
+
 /// Writes values 0–1 (clamped) as a 16-bit grey PNG. The file appears under its name complete or not
 /// at all.
 ///
@@ -137,6 +151,11 @@ pub fn save_gray16(path: impl AsRef<Path>, raster: &Raster) -> Result<(), ImageE
 }
 
 fn load(path: &Path, channel: Channel) -> Result<ChannelImage, Problem> {
+    extract(&decode(path, channel)?, channel)
+}
+
+/// The picture of a file that has this channel, turned as EXIF says.
+fn decode(path: &Path, channel: Channel) -> Result<DynamicImage, Problem> {
     let file = File::open(path).map_err(Problem::Io)?;
     let metadata = file.metadata().map_err(Problem::Io)?;
     if metadata.is_dir() {
@@ -168,7 +187,29 @@ fn load(path: &Path, channel: Channel) -> Result<ChannelImage, Problem> {
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     let mut image = DynamicImage::from_decoder(decoder).map_err(translate)?;
     image.apply_orientation(orientation);
-    extract(&image, channel)
+    Ok(image)
+}
+
+/// How much of a picture is colour; 0 of a grey one.
+#[cfg(feature = "offline")]
+fn colour_of(image: &DynamicImage) -> f64 {
+    let mut sums = ColourSums::default();
+    let channels = usize::from(image.color().channel_count());
+    match image.color() {
+        ColorType::L8 | ColorType::La8 | ColorType::L16 | ColorType::La16 => {}
+        ColorType::Rgb8 | ColorType::Rgba8 => {
+            for pixel in image.as_bytes().chunks_exact(channels) {
+                sums.add([pixel[0], pixel[1], pixel[2]].map(f64::from));
+            }
+        }
+        ColorType::Rgb16 | ColorType::Rgba16 => {
+            for pixel in image.as_bytes().chunks_exact(2 * channels) {
+                sums.add([0, 2, 4].map(|at| f64::from(u16::from_ne_bytes([pixel[at], pixel[at + 1]]))));
+            }
+        }
+        _ => image.to_rgb32f().pixels().for_each(|pixel| sums.add(pixel.0.map(f64::from))),
+    }
+    sums.fraction()
 }
 
 fn translate(error: image::ImageError) -> Problem {
@@ -343,5 +384,23 @@ mod tests {
         shaded().save(&path).unwrap_or_else(|_| DynamicImage::from(shaded()).to_rgb8().save(&path).unwrap());
         let picture = load_channel(&path, Channel::Luma).unwrap().raster;
         assert!((picture.at(4, 4) - 176.0 / 255.0).abs() < 0.03, "{}", picture.at(4, 4));
+    }
+
+    #[cfg(feature = "offline")]
+    #[test]
+    fn a_photographs_colour_is_known_at_8_and_16_bits_and_grey_has_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("picture.png");
+        let colour = |image: DynamicImage| {
+            image.save(&path).unwrap();
+            let (picture, colour) = load_photograph(&path).unwrap();
+            assert_eq!(picture, load_channel(&path, Channel::Luma).unwrap());
+            colour
+        };
+        assert_eq!(colour(DynamicImage::from(shaded())), 0.0);
+        let red = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb([(x * 9) as u8, (y * 5) as u8, 40]));
+        let narrow = colour(DynamicImage::from(red.clone()));
+        let wide = colour(DynamicImage::from(DynamicImage::from(red).to_rgb16()));
+        assert!(narrow > 0.5 && (wide / narrow - 1.0).abs() < 1e-6, "{narrow} {wide}");
     }
 }

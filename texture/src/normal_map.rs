@@ -168,7 +168,9 @@ fn which_derivative(spectrum: &SlopeSpectrum, noise: f64, told: Option<Derivativ
     let may_be = |derivative| possible.contains(&derivative);
     match possible[..] {
         [only] => (only, certain),
-        _ if may_be(Derivative::Exact) && may_be(Derivative::Central) => (Derivative::ExactOrCentral, false),
+        _ if certain && may_be(Derivative::Exact) && may_be(Derivative::Central) => {
+            (Derivative::ExactOrCentral, false)
+        }
         _ if may_be(Derivative::Exact) => (Derivative::Exact, false),
         _ => (Derivative::Central, false),
     }

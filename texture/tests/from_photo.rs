@@ -59,6 +59,8 @@ fn a_pattern_that_wanders_off_its_lattice_is_not_blurred_into_a_mean_cell() {
     let surface = made(&bent, PhotoOptions::default());
     let repetition = surface.repetition.as_ref().expect("bumps repeat");
     assert!(repetition.wanders && repetition.share < 0.8, "{repetition:?}");
+    let repeats = |doubt: &Doubt| doubt.to_string().contains("a pattern repeats");
+    assert!(surface.doubts.iter().any(repeats), "{:?}", surface.doubts);
     assert!(correlation(&surface.displacement, &bent) > 0.9);
     // Noise as strong as the pattern is no reason: there the mean cell is what is wanted.
     let noisy = made(&bumps(0.0, 0.2), PhotoOptions::default());
@@ -250,6 +252,7 @@ fn a_pattern_comes_with_a_cell_of_heights_as_high_as_the_map() {
         0.3 + 0.4 * (-(u * u + v * v) / 60.0).exp() + 0.02 * (rough.at(x, y) - 0.5)
     });
     let surface = made(&tiles, PhotoOptions::default());
+    assert!(surface.doubts.iter().any(|doubt| matches!(doubt, Doubt::Repeats(sure) if *sure > 0.5)));
     let cell = surface.cell.expect("tiles repeat");
     assert!((cell.relief_m / surface.relief_m - 1.0).abs() < 0.15, "{} {}", cell.relief_m, surface.relief_m);
     let length = cell.t1_m[0].hypot(cell.t1_m[1]);

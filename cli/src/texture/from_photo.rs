@@ -5,12 +5,13 @@ mod report;
 mod scene;
 
 use super::object::ObjectOptions;
-use super::{bar, grey, positive, refused};
+use super::{bar, grey, photograph, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity::ActuatorSettings;
+use asperity_texture::fractal_dimension::{COLOUR_LIMIT, Condition};
 use asperity_texture::from_photo::{
-    PhotoOptions, PhotoSurface, TEXEL_M, calibration, reduced, surface_from_photo,
+    Doubt, PhotoOptions, PhotoSurface, TEXEL_M, calibration, reduced, surface_from_photo,
 };
 use asperity_texture::image_io;
 use asperity_texture::light::Light;
@@ -96,7 +97,7 @@ fn light(text: &str) -> Result<Light, String> {
 /// # Errors
 /// When a photograph cannot be read or is too small, or the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
-    let picture = grey(&options.photo)?;
+    let (picture, colour) = photograph(&options.photo)?;
     options.object.check_destination()?;
     let width_m = options.object.width_mm.map(|mm| 1e-3 * mm).or(options.width_m);
     let texel_m = width_m.map_or(TEXEL_M, |width_m| width_m / picture.width as f64);
@@ -124,8 +125,11 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let size = Size { texel_m: settings.texel_m, reduced_by, calibration: settings.calibration };
     output::ensure_folder(&options.output)?;
     let start = Instant::now();
-    let surface = surface_from_photo(&picture, &settings, bar("from photo"))
+    let mut surface = surface_from_photo(&picture, &settings, bar("from photo"))
         .map_err(|error| refused(&options.photo, &error))?;
+    if colour > COLOUR_LIMIT {
+        surface.doubts.push(Doubt::Condition(Condition::Coloured(colour)));
+    }
     let report = write(options, &picture, &surface, size, start)?;
     if options.json {
         return output::say_json(&report);
@@ -240,6 +244,31 @@ mod tests {
         let mapped = render_scene(&out.join("scene_x1.toml"), &out.join("stroke"));
         let repeated = render_scene(&out.join("scene_lattice.toml"), &out.join("stroke"));
         assert!((repeated / mapped - 1.0).abs() < 0.3, "{repeated} against {mapped}");
+    }
+
+    #[test]
+    fn colours_and_patterns_are_doubted_in_the_report_as_analyze_doubts_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let photo = folder.path().join("photo.png");
+        let tile = |x: u32, y: u32| if x % 16 < 2 || y % 16 < 2 { 40 } else { 180 };
+        let coloured = |x: u32, y: u32| if (x / 16 + y / 16) % 3 == 0 { 0 } else { tile(x, y) };
+        let picture: Vec<u8> = (0..80)
+            .flat_map(|y| (0..96).flat_map(move |x| [tile(x, y), coloured(x, y), tile(x, y)]))
+            .map(|level: u32| level as u8)
+            .collect();
+        std::fs::write(&photo, crate::pixels::png_rgb(96, 80, &picture)).unwrap();
+        let out = folder.path().join("out");
+        let arguments = ["from-photo", photo.to_str().unwrap(), "-o", out.to_str().unwrap()];
+        #[derive(clap::Parser)]
+        struct Line {
+            #[command(flatten)]
+            options: Options,
+        }
+        run(&<Line as clap::Parser>::parse_from(arguments).options).unwrap();
+        let report: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
+        let warnings = report["warnings"].to_string();
+        assert!(warnings.contains("coloured") && warnings.contains("a pattern repeats"), "{warnings}");
     }
 
     /// Peak of what is felt, as a part of full scale.

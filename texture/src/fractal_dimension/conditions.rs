@@ -125,21 +125,39 @@ pub fn conditions(picture: &Raster, along: &Transects) -> Vec<Condition> {
 /// the three. An even tint gives 0. Above [`COLOUR_LIMIT`] the picture is coloured.
 #[must_use]
 pub fn colour_fraction(red: &Raster, green: &Raster, blue: &Raster) -> f64 {
-    let texels = red.values.iter().zip(&green.values).zip(&blue.values);
-    let grey: Vec<f64> = texels.map(|((r, g), b)| (r + g + b) / 3.0).collect();
-    let deviation = |values: &mut dyn Iterator<Item = f64>| {
-        let (mut n, mut sum, mut squares) = (0.0_f64, 0.0, 0.0);
-        for v in values {
-            n += 1.0;
-            sum += v;
-            squares += v * v;
+    let mut sums = ColourSums::default();
+    for ((&r, &g), &b) in red.values.iter().zip(&green.values).zip(&blue.values) {
+        sums.add([r, g, b]);
+    }
+    sums.fraction()
+}
+
+/// [`colour_fraction`] of texels that come one by one.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ColourSums {
+    texels: f64,
+    /// Sums and sums of squares of red − grey, blue − grey and grey.
+    sums: [[f64; 2]; 3],
+}
+
+impl ColourSums {
+    /// One texel more: red, green and blue in any unit.
+    pub fn add(&mut self, [red, green, blue]: [f64; 3]) {
+        let grey = (red + green + blue) / 3.0;
+        self.texels += 1.0;
+        for ([sum, squares], value) in self.sums.iter_mut().zip([red - grey, blue - grey, grey]) {
+            *sum += value;
+            *squares += value * value;
         }
-        (squares / n - sum / n * (sum / n)).max(0.0)
-    };
-    let colour = deviation(&mut red.values.iter().zip(&grey).map(|(r, g)| r - g))
-        + deviation(&mut blue.values.iter().zip(&grey).map(|(b, g)| b - g));
-    let light = deviation(&mut grey.iter().copied());
-    if colour <= 0.0 { 0.0 } else { (colour / light).sqrt() }
+    }
+
+    /// The fraction of all texels so far.
+    #[must_use]
+    pub fn fraction(&self) -> f64 {
+        let n = self.texels.max(1.0);
+        let [red, blue, grey] = self.sums.map(|[sum, squares]| (squares / n - (sum / n).powi(2)).max(0.0));
+        if red + blue <= 0.0 { 0.0 } else { ((red + blue) / grey).sqrt() }
+    }
 }
 
 /// |h(p + d) − 2h(p) + h(p − d)| of a texel at least two from the border: blind to a slow tilt.

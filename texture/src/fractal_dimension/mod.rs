@@ -26,7 +26,7 @@ mod local;
 mod probability;
 mod transect;
 
-pub use conditions::{COLOUR_LIMIT, Condition, colour_fraction, conditions};
+pub use conditions::{COLOUR_LIMIT, ColourSums, Condition, colour_fraction, conditions};
 pub use grid_cubes::{CUBE_SIDES, CubeDimensions, cube_dimensions};
 pub use local::{LocalMap, local_map};
 pub use probability::{PROBABILITY_SIDES, probability_dimension};

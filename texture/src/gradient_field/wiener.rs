@@ -47,6 +47,10 @@ pub(super) struct Bands {
     ring: Vec<u32>,
     sector: Vec<u8>,
     pub rings: usize,
+    /// Width of a ring, radians per texel.
+    pub width: f64,
+    /// Whether k and its mirror image are one, as in waves of a map that goes on mirrored.
+    mirrored: bool,
 }
 
 impl Bands {
@@ -55,7 +59,8 @@ impl Bands {
         let places = || along_u.iter().flat_map(|&wx| along_v.iter().map(move |&wy| (wx, wy)));
         let ring: Vec<u32> = places().map(|(wx, wy)| (wx.hypot(wy) / width).round() as u32).collect();
         let rings = 1 + ring.iter().max().copied().unwrap_or(0) as usize;
-        Self { ring, sector: places().map(|(wx, wy)| sector(wx, wy)).collect(), rings }
+        let mirrored = along_v.iter().all(|&wy| wy >= 0.0);
+        Self { ring, sector: places().map(|(wx, wy)| sector(wx, wy)).collect(), rings, width, mirrored }
     }
 
     pub fn ring(&self, place: usize) -> usize {
@@ -70,6 +75,13 @@ impl Bands {
     /// Which ring of which sector, sector after sector.
     pub fn of(&self, place: usize) -> usize {
         self.sector[place] as usize * self.rings + self.ring(place)
+    }
+
+    /// The same ring of the sector a quarter turn away.
+    pub fn across(&self, band: usize) -> usize {
+        let turned = (band / self.rings + SECTORS / 2) % SECTORS;
+        let sector = if self.mirrored { (SECTORS - turned) % SECTORS } else { turned };
+        sector * self.rings + band % self.rings
     }
 }
 
@@ -113,32 +125,36 @@ impl<'a> Wiener<'a> {
             if at.square >= UNSEEN && self.line(place, at).is_none() {
                 let band = self.bands.of(place);
                 let [over, under] = &mut sums[band];
-                *over += at.along - self.noise.mean(self.bands.ring(place)) * at.square;
+                *over += at.along - self.noise.mean(self.bands.of(place)) * at.square;
                 *under += at.square * at.square;
                 places[band] += 1.0;
             }
         }
         for (band, ([over, under], places)) in sums.iter_mut().zip(places).enumerate() {
-            *over -= self.noise.excess(band % rings, *under, places);
+            *over -= self.noise.excess(band, *under, places);
         }
         sums.chunks(rings).flat_map(never_rising).collect()
     }
 
     /// The power of a line, if there is one.
     fn line(&self, place: usize, at: &Seen) -> Option<f64> {
-        let ring = self.bands.ring(place);
-        let own = at.along / at.square.max(UNSEEN) - self.noise.mean(ring);
-        let expected = self.noise.gathered(ring) + at.square * self.power[self.bands.of(place)];
+        let band = self.bands.of(place);
+        let own = at.along / at.square.max(UNSEEN) - self.noise.of_line(band);
+        let expected = self.noise.gathered(band) + at.square * self.power[band];
         (at.square >= LEAST_OF_LINE && own >= LINE * expected).then_some(own / at.square)
     }
 
     /// 1/(|D|² + N/S).
     pub fn gain(&self, place: usize, at: &Seen) -> f64 {
-        let power = self.line(place, at).unwrap_or_else(|| self.power[self.bands.of(place)]);
+        let band = self.bands.of(place);
+        let (power, noise) = match self.line(place, at) {
+            Some(power) => (power, self.noise.of_line(band)),
+            None => (self.power[band], self.noise.mean(band)),
+        };
         if at.square < UNSEEN || power <= 0.0 {
             return 0.0;
         }
-        1.0 / (at.square + self.noise.mean(self.bands.ring(place)) / power)
+        1.0 / (at.square + noise / power)
     }
 }
 

@@ -6,9 +6,9 @@ use asperity_texture::fft2::{Fft2, angular_frequency};
 use asperity_texture::gradient_field::Slopes;
 use asperity_texture::normal_map::Green;
 use asperity_texture::raster::Raster;
-use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
 use image::imageops::{self, FilterType};
+use image::{ImageBuffer, Luma, RgbImage};
 use std::f64::consts::{PI, TAU};
 
 /// An 8-bit normal map with the slopes of a surface, as red, green and blue.
@@ -99,6 +99,17 @@ pub fn halved_heights(heights: &Raster) -> Raster {
         let at = |i: usize, j: usize| heights.at(2 * x + i, 2 * y + j);
         0.125 * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1))
     })
+}
+
+/// Heights at half the size by the filter that halved their normals, in the new texels.
+pub fn halved_heights_by(heights: &Raster, filter: FilterType) -> Raster {
+    let (w, h) = (heights.width as u32, heights.height as u32);
+    let values = heights.values.iter().map(|&z| z as f32).collect();
+    let picture =
+        ImageBuffer::<Luma<f32>, Vec<f32>>::from_raw(w, h, values).expect("as many values as texels");
+    let small = imageops::resize(&picture, w / 2, h / 2, filter);
+    let values = small.into_raw().into_iter().map(|z| 0.5 * f64::from(z)).collect();
+    Raster { width: heights.width / 2, height: heights.height / 2, values }
 }
 
 /// Power of the made heights over the true ones' in each third of the spectrum; of maps that do not tile without their slant and under a window.
