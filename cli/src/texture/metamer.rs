@@ -291,7 +291,7 @@ fn warnings(options: &Options, report: &Report) -> Vec<String> {
     if is_iterated && report.correlation_with_original < LITTLE_IS_LEFT {
         warnings.push(format!(
             "little of the original's arrangement is left (correlation {:.2}, with the reference's {:.2}): surfaces with this \
-             reference's sub-bands hardly admit another; a larger --until keeps more",
+             reference's sub-bands hardly admit another",
             report.correlation_with_original, report.correlation_with_reference
         ));
     }

@@ -14,6 +14,8 @@ use asperity_fft::num_complex::Complex64;
 
 /// Most that an original without relief is raised before it is mixed with the reference.
 const MOST_GAIN: f64 = 1e6;
+/// Part of the distance asked for at which starts count as near enough.
+const MARGIN: f64 = 0.9;
 
 /// A reference on the texels of originals of one size: its sub-bands, heights and envelope.
 #[derive(Debug, Clone)]
@@ -197,7 +199,7 @@ impl Feel {
         // What serves the coarser copy may not serve the surface itself, whose finest waves only it has.
         let most = self.options.borrow;
         let more = BORROWED.into_iter().filter(|&share| share > made.borrowed && share <= most);
-        let more = more.step_by(2).map(|share| (share, briskly));
+        let more = more.skip(1).step_by(2).map(|share| (share, briskly));
         self.nearest(original, seam, std::iter::once(begun).chain(more))
     }
 
@@ -276,8 +278,11 @@ impl Feel {
         Made { mean: mean(level, &distances), image, passes, borrowed }
     }
 
+    /// What counts as near enough while starts are tried: of large surfaces a little less than asked for, because their bands are
+    /// judged by as many samples as the waves need.
     fn goal(&self) -> f64 {
-        self.options.until.unwrap_or(REACH)
+        let margin = if self.level.is_large() { MARGIN } else { 1.0 };
+        margin * self.options.until.unwrap_or(REACH)
     }
 
     fn mean_of(&mut self, image: &Raster) -> f64 {

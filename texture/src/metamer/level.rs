@@ -80,8 +80,8 @@ impl Level {
         let design = [bands, orientations];
         let tiling = &reference.periodic;
         let full = Bands::new(tiling, size, design, scratch)?;
-        let fine = texels_a_side(size) > SIDE;
-        let reduced = fine.then(|| full.reduced(tiling, scratch));
+        let is_large = texels_a_side(size) > SIDE;
+        let reduced = is_large.then(|| full.reduced(tiling, scratch));
         let coarser = (bands > 1).then(|| {
             let [w, h] = [tiling.width, tiling.height].map(|n| n.div_ceil(2));
             let smooth = reference.smooth.as_ref().map(|smooth| resample_mirrored(smooth, w, h));
@@ -159,6 +159,11 @@ impl Level {
             }
         }
         passes
+    }
+
+    /// Whether the grid is finer than [`SIDE`].
+    pub fn is_large(&self) -> bool {
+        self.reduced.is_some()
     }
 
     /// The bands as large as their waves need: a third of the work, and nearly the same distances.
