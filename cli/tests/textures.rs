@@ -116,6 +116,18 @@ fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_referenc
         let warned = made["warnings"].to_string();
         assert_eq!(stretched, warned.contains("relief_m"), "{warned}");
         assert!((number(&made, "relief_m") - 0.002 * scale).abs() < 1e-12);
+        // A grid's sub-bands leave room for little else, and what is left is told and warned of.
+        let kept = number(&made, "correlation_with_original");
+        let taken = number(&made, "correlation_with_reference");
+        assert!(kept.abs() <= 1.0 && taken.abs() <= 1.0, "{kept} {taken}");
+        assert_eq!(
+            !more.contains(&"--method") && kept < 0.3,
+            warned.contains("arrangement is left"),
+            "{more:?}: {kept} {warned}"
+        );
+        if more.is_empty() {
+            assert!(number(&made, "borrowed") > 0.0 && taken > 0.5 && taken > kept, "{kept} {taken}");
+        }
     }
     let (low, high) = grey(&scene, "both.png").range();
     assert_eq!((low, high), (0.0, 1.0));

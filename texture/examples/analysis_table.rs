@@ -1,5 +1,6 @@
-//! Prints the measured tables of the offline analysis; `dimension`, `cubes`, `lattice`, `framed`, `controls` or `groups` prints one,
-//! names of picture files print what is found in them.
+//! Prints the measured tables of the offline analysis; `dimension`, `cubes`, `lattice`, `framed`, `unseen`, `controls` or `groups`
+//! prints one, names of picture files print what is found in them, and `reliefs` writes the six reliefs of the thesis (§8.3) as
+//! height maps into the working directory, for `asperity texture compare`.
 //! `cargo run --release -p asperity-texture --features offline --example analysis_table`
 
 #[path = "../tests/support/exact_brownian.rs"]
@@ -13,7 +14,7 @@ mod wallpaper;
 
 use asperity_measure::exact_brownian::ExactBrownian;
 use asperity_texture::fractal_dimension as fd;
-use asperity_texture::image_io::{Channel, load_channel};
+use asperity_texture::image_io::{Channel, load_channel, save_gray16};
 use asperity_texture::raster::Raster;
 use asperity_texture::symmetry::{self, WallpaperGroup};
 use exact_brownian::{pair, quantise};
@@ -33,6 +34,12 @@ fn main() {
     }
     if asked("framed") {
         framed_squares();
+    }
+    if wanted.iter().any(|w| w == "unseen") {
+        unseen();
+    }
+    if wanted.iter().any(|w| w == "reliefs") {
+        write_reliefs();
     }
     if asked("controls") {
         controls();
@@ -169,6 +176,40 @@ fn framed_squares() {
         thesis.add(&name, &picture, truth);
     }
     thesis.print("thesis");
+}
+
+/// Seeds that nothing was tuned on: frames and random motifs of any rotation with 5 to 8 repeats a side, clean and under noise.
+fn unseen() {
+    println!("\nSeeds that nothing was tuned on");
+    let mut drawn = Tally::default();
+    for seed in 50_000..50_200 {
+        let case = framed::Framed::drawn(seed, 5.0);
+        drawn.add(&format!("{case:?}"), &case.picture(seed), case.truth());
+    }
+    drawn.print("frames");
+    for (name, stress) in patterns::ROWS.into_iter().take(3) {
+        let mut few = Tally::default();
+        for (kind, seed) in patterns::KINDS.into_iter().flat_map(|kind| (0..16).map(move |seed| (kind, seed)))
+        {
+            // A picture that holds 5 to 8 of the longer translation.
+            let (_, basis) = patterns::picture(kind, stress, 32, 70_000 + seed);
+            let longest = basis.iter().map(|t| t[0].hypot(t[1])).fold(0.0, f64::max);
+            let side = ((5.0 + seed as f64 % 4.0) * longest).ceil() as usize;
+            let (pattern, truth) = patterns::picture(kind, stress, side, 70_000 + seed);
+            few.add(&format!("{kind:?} {seed}, {side} px"), &pattern, truth);
+        }
+        few.print(name);
+    }
+}
+
+/// The six reliefs as height maps, 320 texels a side, the same height of elements in all.
+fn write_reliefs() {
+    for (shape, across) in framed::SHAPES.into_iter().flat_map(|shape| [(shape, 6.0), (shape, 8.0)]) {
+        let (relief, _) = framed::thesis_relief(shape, across, 320);
+        let (low, high) = relief.range();
+        let name = format!("{shape:?}{across}.png").to_lowercase();
+        save_gray16(&name, &relief.map(|v| (v - low) / (high - low))).expect("a folder to write to");
+    }
 }
 
 /// The standard errors behind a confidence.

@@ -3,7 +3,6 @@
 
 use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::metamer::{MetamerOptions, metamer};
-use asperity_texture::pyramid::{Pyramid, Sampling};
 use asperity_texture::raster::Raster;
 use std::path::Path;
 use std::time::Instant;
@@ -12,23 +11,10 @@ fn load(path: &str) -> Raster {
     load_channel(path, Channel::Luma).expect("a map").raster
 }
 
-/// Mean correlation of the oriented sub-bands of two images.
-fn kept(a: &Raster, b: &Raster) -> f64 {
-    let mut pyramid =
-        Pyramid::new(a.width, a.height, 4, 4, Sampling::Full).expect("maps of 32 texels and more");
-    let (a, b) = (pyramid.split(&a.values), pyramid.split(&b.values));
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let correlation = |i: usize| {
-        let (a, b) = (a.get(i), b.get(i));
-        dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
-    };
-    (1..17).map(correlation).sum::<f64>() / 16.0
-}
-
 fn main() {
     let paths: Vec<String> = std::env::args().skip(1).collect();
     println!(
-        "| original | reference | before | after | heights | kept | borrowed | s |\n|---|---|---|---|---|---|---|---|"
+        "| original | reference | before | after | heights | kept | of the reference | borrowed | s |\n|---|---|---|---|---|---|---|---|---|"
     );
     for pair in paths.chunks_exact(2) {
         let (original, reference) = (load(&pair[0]), load(&pair[1]));
@@ -37,13 +23,14 @@ fn main() {
         let name =
             |path: &str| Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         println!(
-            "| {} | {} | {:.3} | {:.4} | {:.4} | {:.2} | {} | {:.2} |",
+            "| {} | {} | {:.3} | {:.4} | {:.4} | {:.2} | {:.2} | {} | {:.2} |",
             name(&pair[0]),
             name(&pair[1]),
             made.before.mean,
             made.after.mean,
             made.after.heights,
-            kept(&original, &made.image),
+            made.correlation_with_original,
+            made.correlation_with_reference,
             made.borrowed,
             start.elapsed().as_secs_f64()
         );

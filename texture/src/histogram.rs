@@ -94,16 +94,19 @@ impl Matcher {
     /// keep their order.
     pub fn run(&mut self, values: &mut [f64], reference: &Histogram) {
         let count = values.len();
+        if count == reference.sorted.len() {
+            self.by_rank(values, |rank| reference.sorted[rank]);
+        } else {
+            self.by_rank(values, |rank| reference.quantile(rank, count));
+        }
+    }
+
+    /// Replaces each of `values` by what its rank says, the smallest first.
+    pub(crate) fn by_rank(&mut self, values: &mut [f64], mut value: impl FnMut(usize) -> f64) {
         // What is still equal keeps no trace of its position either.
         self.order(values, TIE, |run| run.sort_unstable_by_key(|&key| (key >> 32, hash_u32(key as u32))));
-        if count == reference.sorted.len() {
-            for (&key, &value) in self.keys.iter().zip(&reference.sorted) {
-                values[position(key)] = value;
-            }
-        } else {
-            for (rank, &key) in self.keys.iter().enumerate() {
-                values[position(key)] = reference.quantile(rank, count);
-            }
+        for (rank, &key) in self.keys.iter().enumerate() {
+            values[position(key)] = value(rank);
         }
     }
 

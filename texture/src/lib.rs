@@ -38,6 +38,8 @@ pub mod camera_noise;
 #[cfg(feature = "offline")]
 pub mod dark_is_deep;
 #[cfg(feature = "offline")]
+pub mod distribution;
+#[cfg(feature = "offline")]
 pub mod fft2;
 #[cfg(feature = "offline")]
 pub mod fractal_dimension;

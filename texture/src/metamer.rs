@@ -39,6 +39,7 @@
 //! The result has the original's steps at its borders, as strong as the reference's, where both have some, and tiles
 //! otherwise. What a reference at another scale has beyond its own range after resampling is cut off.
 
+mod arrangement;
 mod bands;
 mod feel;
 mod level;
@@ -139,9 +140,14 @@ pub struct Metamer {
     pub tileable: bool,
     /// Passes done on the image's own grid.
     pub passes: usize,
-    /// Share of the reference's own arrangement that was taken. A surface of few heights that repeats exactly (a grid, a
-    /// perforated sheet) admits hardly any other.
+    /// Share of the reference's own arrangement in the surface that the passes began with. A surface of few heights that repeats
+    /// exactly (a grid, a perforated sheet) admits hardly any other. What is left of either arrangement in the end the
+    /// correlations tell.
     pub borrowed: f64,
+    /// Mean correlation of the oriented sub-bands with the original's: 1 where its arrangement is kept, 0 where nothing of it is left.
+    pub correlation_with_original: f64,
+    /// The same with the reference's, laid out over the original's size without a shift.
+    pub correlation_with_reference: f64,
 }
 
 /// Makes `original` feel like `reference`. `progress` is told the fraction done.
@@ -156,7 +162,7 @@ pub fn metamer(
     progress: impl FnMut(f64),
 ) -> Result<Metamer, DesignError> {
     check_finite("original", original)?;
-    Feel::new(reference, original.width, original.height, options)?.metamer(original, progress)
+    Feel::new(reference, original.width, original.height, options)?.metamer(original, |image| image, progress)
 }
 
 fn check_finite(field: &'static str, image: &Raster) -> Result<(), DesignError> {

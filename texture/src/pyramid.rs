@@ -152,6 +152,11 @@ impl Pyramid {
         self.levels[0].fft.height()
     }
 
+    /// Bands and orientations.
+    pub(crate) fn design(&self) -> [usize; 2] {
+        [self.levels.len() - 1, self.orientations]
+    }
+
     /// Splits an image into its real sub-bands.
     ///
     /// # Panics
@@ -249,31 +254,54 @@ impl Pyramid {
         image
     }
 
+    /// The same filters for sub-bands of another sampling: most of the work of a design is to evaluate them.
+    #[must_use]
+    pub(crate) fn sampled(&self, sampling: Sampling) -> Self {
+        let mut planner = FftPlanner::new();
+        let size = [self.width(), self.height()];
+        let mut other = self.clone();
+        let levels = 0..self.levels.len();
+        other.levels = levels.map(|level| Level::new(&mut planner, size, level, sampling)).collect();
+        for (subband, filter) in other.subbands.iter_mut().zip(&other.filters) {
+            let fft = &other.levels[filter.level].fft;
+            (subband.width, subband.height) = (fft.width(), fft.height());
+        }
+        other
+    }
+
     /// Adds the filters of one level: the oriented band λ = `level` (and the high residual on the
     /// first), or the low residual on the level after the last band.
     fn add_filters(&mut self, level: usize, bands: usize) {
+        let width = self.width();
+        // Distance and direction of each wave, the same for all filters of the level.
+        let polar = |[wx, wy]: [f64; 2]| {
+            let r = wx.hypot(wy);
+            if r == 0.0 { (r, [0.0; 2]) } else { (r, [wx / r, wy / r]) }
+        };
+        let waves: Vec<(f64, [f64; 2])> =
+            self.levels[level].frequencies(width).map(|(_, frequency)| polar(frequency)).collect();
+        let radial = |kind| waves.iter().map(|(r, _)| filter::radial(kind, level, *r)).collect::<Vec<f64>>();
         if level == 0 {
-            self.add_filter(level, Kind::HighResidual, |_| 1.0);
+            self.add_filter(level, Kind::HighResidual, radial(Kind::HighResidual));
         }
         if level == bands {
-            self.add_filter(level, Kind::LowResidual, |_| 1.0);
+            self.add_filter(level, Kind::LowResidual, radial(Kind::LowResidual));
             return;
         }
+        let band = radial(Kind::Oriented { band: level, orientation: 0 });
         for orientation in 0..self.orientations {
             let angular = filter::angular(orientation, self.orientations);
-            self.add_filter(level, Kind::Oriented { band: level, orientation }, angular);
+            let gain = |(radial, (r, direction)): (&f64, &(f64, [f64; 2]))| {
+                if *radial == 0.0 || *r == 0.0 { *radial } else { radial * angular(*direction) }
+            };
+            let gains = band.iter().zip(&waves).map(gain).collect();
+            self.add_filter(level, Kind::Oriented { band: level, orientation }, gains);
         }
     }
 
-    fn add_filter(&mut self, level: usize, kind: Kind, angular: impl Fn([f64; 2]) -> f64) {
-        let grid = &self.levels[level];
-        let mut gains = Vec::with_capacity(grid.len());
-        gains.extend(grid.frequencies(self.width()).map(|(_, [wx, wy])| {
-            let r = wx.hypot(wy);
-            let radial = filter::radial(kind, level, r);
-            if radial == 0.0 || r == 0.0 { radial } else { radial * angular([wx / r, wy / r]) }
-        }));
-        let (width, height) = (grid.fft.width(), grid.fft.height());
+    fn add_filter(&mut self, level: usize, kind: Kind, gains: Vec<f64>) {
+        let fft = &self.levels[level].fft;
+        let (width, height) = (fft.width(), fft.height());
         let wavelength_px = match kind {
             Kind::HighResidual => 2.0,
             Kind::Oriented { band, .. } => 4.0 * (1_u64 << band) as f64,
@@ -315,6 +343,24 @@ impl Pyramid {
         level.fft.forward(values, level.columns, &mut self.work, |kx, column| {
             level.add_filtered(kx, column, &filter.gains, scale, spectrum);
         });
+    }
+
+    /// Sums of squares and products of one sub-band of two images with these half spectra: Σ a², Σ a b, Σ b², times the number
+    /// of texels.
+    pub(crate) fn powers(&self, a: &[Complex64], b: &[Complex64], index: usize) -> [f64; 3] {
+        let filter = &self.filters[index];
+        let (width, height) = (self.width(), self.height());
+        let mut sums = [0.0; 3];
+        for ((place, _), gain) in self.levels[filter.level].frequencies(width).zip(&filter.gains) {
+            let kx = place / height;
+            // Half the spectrum stands for both halves, but for the columns that are their own mirror images.
+            let weight = if (2 * kx).is_multiple_of(width) { gain * gain } else { 2.0 * gain * gain };
+            let (a, b) = (a[place], b[place]);
+            sums[0] += weight * a.norm_sqr();
+            sums[1] += weight * (a.re * b.re + a.im * b.im);
+            sums[2] += weight * b.norm_sqr();
+        }
+        sums
     }
 
     /// Replaces `values` by the image with this half spectrum.

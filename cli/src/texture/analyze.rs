@@ -243,8 +243,8 @@ fn text(analysis: &Analysis) -> String {
 /// What repeats along one direction, or that a pattern of few repeats would not be seen.
 fn without_lattice(frieze: Option<&Frieze>) -> String {
     let Some(frieze) = frieze else {
-        return "no pattern repeats along two directions, or fewer than five times a side; none along one, or \
-                fewer than six times"
+        return "no pattern repeats along two directions, or fewer than five times a side (twice where the map tiles); none \
+                along one, or fewer than six times"
             .into();
     };
     let ([x, y], kind) = (frieze.t_px, if frieze.stripes { "stripes" } else { "a frieze" });

@@ -9,13 +9,16 @@ use asperity_dsp::DesignError;
 use asperity_texture::borders::Borders;
 use asperity_texture::from_photo::TEXEL_M;
 use asperity_texture::image_io;
-use asperity_texture::metamer::{self as core, Distance, Feel, Metamer, MetamerOptions, Method};
+use asperity_texture::metamer::{self as core, Feel, Metamer, MetamerOptions, Method};
 use asperity_texture::pyramid::{Kind, Subband};
 use asperity_texture::raster::Raster;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// Correlation with the original below which a metamer is warned of: what it shares with its original is hardly seen.
+const LITTLE_IS_LEFT: f64 = 0.3;
 
 /// Make one height map feel like another
 #[derive(Debug, Args)]
@@ -115,8 +118,12 @@ struct Report {
     mean_after: f64,
     heights_before: f64,
     heights_after: f64,
-    /// Share of the reference's own arrangement that was taken.
+    /// Share of the reference's own arrangement in the surface that the passes began with.
     borrowed: f64,
+    /// Mean correlation of the oriented sub-bands with the original's and with the reference's: how much of either
+    /// arrangement the surface has, 1 all and 0 none.
+    correlation_with_original: f64,
+    correlation_with_reference: f64,
     tileable: bool,
     /// Height = `offset` + `scale` · grey, grey 0–1, in units of the reference's white over black.
     offset: f64,
@@ -144,18 +151,20 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let refuse = |error| refused(at(&error, &options.original, &options.reference), &error);
     let mut feel =
         Feel::new(&reference, original.width, original.height, &settings(options)).map_err(refuse)?;
-    let made = feel.metamer(&original, bar("metamer")).map_err(refuse)?;
-    let file = Levels::holding(&made.image);
-    let heights = file.read_back(&made.image);
-    let after = feel.distance(&heights, made.tileable);
+    let mut file = Levels::default();
+    let stored = |image| {
+        file = Levels::holding(&image);
+        file.read_back(&image)
+    };
+    let made = feel.metamer(&original, stored, bar("metamer")).map_err(refuse)?;
     let seconds = start.elapsed().as_secs_f64();
     let mut outputs = Outputs::new();
     let grey = file.grey(&made.image);
     outputs.write_at(&options.output, |path| image_io::save_gray16(path, &grey).map_err(CliError::told))?;
     let texel_m = texel_m(options, original.width);
-    let heights_m = heights.map(|height| 1e-3 * options.relief_mm * height);
+    let heights_m = made.image.map(|height| 1e-3 * options.relief_mm * height);
     options.object.write(&mut outputs, &heights_m, texel_m)?;
-    let mut report = report(options, &made, after, file, SizeMm::of(&heights_m, texel_m));
+    let mut report = report(options, &made, file, SizeMm::of(&heights_m, texel_m));
     report.seconds = seconds;
     report.files = outputs.commit()?;
     if options.json {
@@ -201,13 +210,20 @@ struct Levels {
     scale: f64,
 }
 
+impl Default for Levels {
+    /// Black is 0 and white 1, as in the reference's file.
+    fn default() -> Self {
+        Self { offset: 0.0, scale: 1.0 }
+    }
+}
+
 impl Levels {
-    /// Black is 0 and white 1, as in the reference's file, unless a height lies outside by more than is rounded away.
+    /// The default, unless a height lies outside by more than is rounded away.
     fn holding(image: &Raster) -> Self {
         const HALF_A_STEP: f64 = 0.5 / 65_535.0;
         let (low, high) = image.range();
         if low >= -HALF_A_STEP && high <= 1.0 + HALF_A_STEP {
-            return Self { offset: 0.0, scale: 1.0 };
+            return Self::default();
         }
         Self { offset: low, scale: if high > low { high - low } else { 1.0 } }
     }
@@ -223,8 +239,9 @@ impl Levels {
     }
 }
 
-fn report(options: &Options, made: &Metamer, after: Distance, file: Levels, size: SizeMm) -> Report {
-    let bands = made.subbands.iter().zip(made.before.subbands.iter().zip(&after.subbands));
+fn report(options: &Options, made: &Metamer, file: Levels, size: SizeMm) -> Report {
+    let Metamer { before, after, .. } = made;
+    let bands = made.subbands.iter().zip(before.subbands.iter().zip(&after.subbands));
     let mut report = Report {
         width: made.image.width,
         height: made.image.height,
@@ -232,11 +249,13 @@ fn report(options: &Options, made: &Metamer, after: Distance, file: Levels, size
         iterations: (options.method == MethodName::Iterated).then_some(options.iterations),
         passes: made.passes,
         bands: bands.map(|(subband, (before, after))| band(subband, *before, *after)).collect(),
-        mean_before: made.before.mean,
+        mean_before: before.mean,
         mean_after: after.mean,
-        heights_before: made.before.heights,
+        heights_before: before.heights,
         heights_after: after.heights,
         borrowed: made.borrowed,
+        correlation_with_original: made.correlation_with_original,
+        correlation_with_reference: made.correlation_with_reference,
         tileable: made.tileable,
         offset: file.offset,
         scale: file.scale,
@@ -264,9 +283,16 @@ fn warnings(options: &Options, report: &Report) -> Vec<String> {
     }
     if report.borrowed > 0.0 {
         warnings.push(format!(
-            "{:.0} % of the reference's own arrangement was taken, because the original's alone does not come near enough; \
-             --borrow 0 keeps the original's",
+            "it was begun with {:.0} % of the reference's own arrangement, because the original's alone does not come near enough; \
+             --borrow 0 begins with the original's",
             100.0 * report.borrowed
+        ));
+    }
+    if is_iterated && report.correlation_with_original < LITTLE_IS_LEFT {
+        warnings.push(format!(
+            "little of the original's arrangement is left (correlation {:.2}, with the reference's {:.2}): surfaces with this \
+             reference's sub-bands hardly admit another",
+            report.correlation_with_original, report.correlation_with_reference
         ));
     }
     if (report.offset, report.scale) != (0.0, 1.0) {
@@ -289,6 +315,10 @@ fn in_words(options: &Options, report: &Report) -> String {
         "histogram distance of the sub-bands: {:.3} → {:.4} σ, of the heights: {:.3} → {:.4} σ, in {:.2} s\n",
         report.mean_before, report.mean_after, report.heights_before, report.heights_after, report.seconds
     );
+    text.push_str(&format!(
+        "arrangement: correlation {:.2} with the original's, {:.2} with the reference's\n",
+        report.correlation_with_original, report.correlation_with_reference
+    ));
     for warning in &report.warnings {
         text.push_str(&format!("warning: {warning}\n"));
     }

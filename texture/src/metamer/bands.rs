@@ -1,6 +1,7 @@
-//! The sub-bands of images of one size, and the reference's histograms that they are matched to.
+//! The sub-bands of images of one size, and how those of the reference are spread, which they are matched to.
 
-use crate::histogram::{Histogram, Matcher};
+use crate::distribution::Distribution;
+use crate::histogram::Matcher;
 use crate::pyramid::{Kind, Pyramid, Sampling};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
@@ -9,9 +10,7 @@ use asperity_fft::num_complex::Complex64;
 /// Which sub-bands a pass changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Parts {
-    /// The oriented ones: the document's pass.
-    Oriented,
-    /// These and the high residual: what a tilt, which no surface that tiles can have, leaves alone.
+    /// The oriented ones and the high residual: what a tilt, which no surface that tiles can have, leaves alone.
     AllButTheSlowest,
     /// All of them.
     All,
@@ -20,8 +19,7 @@ pub(super) enum Parts {
 impl Parts {
     fn hold(self, kind: Kind) -> bool {
         match kind {
-            Kind::Oriented { .. } => true,
-            Kind::HighResidual => self != Self::Oriented,
+            Kind::Oriented { .. } | Kind::HighResidual => true,
             Kind::LowResidual => self == Self::All,
         }
     }
@@ -37,43 +35,60 @@ pub(super) struct Scratch {
     subband: Vec<f64>,
 }
 
-/// A pyramid and one histogram of the reference a sub-band.
+/// A pyramid and one distribution of the reference a sub-band.
 #[derive(Debug, Clone)]
 pub(super) struct Bands {
     pub pyramid: Pyramid,
-    wanted: Vec<Histogram>,
+    wanted: Vec<Distribution>,
 }
 
 impl Bands {
-    /// Analyses `reference` (which tiles) by `bands` × `orientations` for images of `width` × `height`.
+    /// Analyses `reference` (which tiles) by `bands` × `orientations` for images of `width` × `height`; every band is as large as
+    /// the image.
     pub fn new(
         reference: &Raster,
         [width, height]: [usize; 2],
         [bands, orientations]: [usize; 2],
-        sampling: Sampling,
         scratch: &mut Scratch,
     ) -> Result<Self, DesignError> {
         let (w, h) = (reference.width, reference.height);
-        let mut pyramid = Pyramid::new(w, h, bands, orientations, sampling).map_err(of_the_reference)?;
+        let design = |w, h| Pyramid::new(w, h, bands, orientations, Sampling::Full);
+        let mut pyramid = design(w, h).map_err(of_the_reference)?;
         let mut wanted = Vec::new();
-        each_subband(&mut pyramid, reference, scratch, |_, histogram| wanted.push(histogram));
+        each_subband(&mut pyramid, reference, scratch, |_, values| wanted.push(Distribution::new(values)));
         if (w, h) != (width, height) {
-            pyramid = Pyramid::new(width, height, bands, orientations, sampling)?;
+            pyramid = design(width, height)?;
         }
         Ok(Self { pyramid, wanted })
     }
 
-    /// [`relative`] distance of each sub-band of `image`.
+    /// The same, of the same reference, with bands as large as their waves need.
+    pub fn reduced(&self, reference: &Raster, scratch: &mut Scratch) -> Result<Self, DesignError> {
+        let pyramid = self.pyramid.sampled(Sampling::Reduced);
+        let mut theirs = pyramid.clone();
+        if [reference.width, reference.height] != [pyramid.width(), pyramid.height()] {
+            let [bands, orientations] = pyramid.design();
+            theirs = Pyramid::new(reference.width, reference.height, bands, orientations, Sampling::Reduced)?;
+        }
+        let mut wanted = Vec::new();
+        each_subband(&mut theirs, reference, scratch, |_, values| wanted.push(Distribution::new(values)));
+        Ok(Self { pyramid, wanted })
+    }
+
+    /// Mean distance of equal quantiles of each sub-band of `image`, over the deviation of the reference's or over `floor`
+    /// where that is larger.
     pub fn distances(&mut self, image: &Raster, floor: f64, scratch: &mut Scratch) -> Vec<f64> {
         let mut distances = Vec::new();
         let wanted = &self.wanted;
-        each_subband(&mut self.pyramid, image, scratch, |index, histogram| {
-            distances.push(relative(&histogram, &wanted[index], floor));
+        each_subband(&mut self.pyramid, image, scratch, |index, values| {
+            let wanted = &wanted[index];
+            let distance = Distribution::on_the_bins_of(values, wanted).distance(wanted);
+            distances.push(distance / wanted.deviation().max(floor));
         });
         distances
     }
 
-    /// Splits `image`, gives the sub-bands of `parts` the reference's histograms and leaves half the spectrum of what all
+    /// Splits `image`, spreads the sub-bands of `parts` like the reference's and leaves half the spectrum of what all
     /// add up to in `scratch.sum`.
     pub fn match_all(&mut self, image: &[f64], parts: Parts, scratch: &mut Scratch) {
         let Scratch { matcher, spectrum, sum, subband } = scratch;
@@ -83,30 +98,25 @@ impl Bands {
             subband.clear();
             self.pyramid.split_subband(spectrum, index, subband);
             if parts.hold(self.pyramid.subbands()[index].kind) {
-                matcher.run(subband, wanted);
+                wanted.give_to(subband, matcher);
             }
             self.pyramid.join_subband(subband, index, sum);
         }
     }
 }
 
-/// Mean distance of equal quantiles over the deviation of `to`, or over `floor` where that is larger.
-pub(super) fn relative(of: &Histogram, to: &Histogram, floor: f64) -> f64 {
-    of.distance(to) / to.deviation().max(floor)
-}
-
-/// Calls `each` with the histograms of the sub-bands of an image.
+/// Calls `each` with the values of the sub-bands of an image.
 fn each_subband(
     pyramid: &mut Pyramid,
     image: &Raster,
     scratch: &mut Scratch,
-    mut each: impl FnMut(usize, Histogram),
+    mut each: impl FnMut(usize, &[f64]),
 ) {
     pyramid.half_spectrum(&image.values, &mut scratch.spectrum);
     for index in 0..pyramid.subbands().len() {
         scratch.subband.clear();
         pyramid.split_subband(&scratch.spectrum, index, &mut scratch.subband);
-        each(index, scratch.matcher.histogram(&scratch.subband));
+        each(index, &scratch.subband);
     }
 }
 

@@ -1,11 +1,12 @@
 //! What a finger feels of a reference, and surfaces that are given it.
 
-use super::bands::{Parts, Scratch, relative};
+use super::arrangement::correlation;
+use super::bands::{Parts, Scratch};
 use super::level::{Level, MOMENTUM, Task, add, on_grid};
 use super::{BORROWED, Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, REACH, check_finite};
 use crate::borders::{Borders, SplitBorders};
 use crate::fft2::Fft2;
-use crate::pyramid::Kind;
+use crate::pyramid::{Kind, Pyramid, Sampling, Subband};
 use crate::raster::Raster;
 use crate::spectral_resample::resample_spectrum;
 use asperity_dsp::DesignError;
@@ -13,6 +14,8 @@ use asperity_fft::num_complex::Complex64;
 
 /// Most that an original without relief is raised before it is mixed with the reference.
 const MOST_GAIN: f64 = 1e6;
+/// Part of the distance asked for at which starts count as near enough.
+const MARGIN: f64 = 0.9;
 
 /// A reference on the texels of originals of one size: its sub-bands, heights and envelope.
 #[derive(Debug, Clone)]
@@ -65,11 +68,13 @@ impl Feel {
         Distance {
             mean: mean(&self.level, &subbands),
             subbands,
-            heights: relative(&heights, &self.level.heights, floor(&self.level)),
+            heights: heights.distance(&self.level.heights)
+                / self.level.heights.deviation().max(floor(&self.level)),
         }
     }
 
-    /// Makes `original` feel like the reference. `progress` is told the fraction done.
+    /// Makes `original` feel like the reference. `stored` is given the heights and returns what is left of them in a file: that is
+    /// measured and returned. `progress` is told the fraction done.
     ///
     /// # Errors
     /// When the original holds numbers that are not finite.
@@ -79,6 +84,7 @@ impl Feel {
     pub fn metamer(
         &mut self,
         original: &Raster,
+        stored: impl FnOnce(Raster) -> Raster,
         mut progress: impl FnMut(f64),
     ) -> Result<Metamer, DesignError> {
         check_finite("original", original)?;
@@ -90,7 +96,7 @@ impl Feel {
         let before = self.distance(original, borders == Borders::Periodic);
         let (mut passes, mut borrowed) = (1, 0.0);
         let mut image = match self.options.method {
-            Method::SinglePass => self.single_pass(&ours.periodic),
+            Method::SinglePass => self.single_pass(&ours.periodic)?,
             Method::Spectrum => with_amplitudes(&ours.periodic, &self.reference.periodic),
             Method::Iterated(asked) => {
                 let task = Task { passes: asked, parts: self.parts(seam.as_ref()), momentum: 0.0 };
@@ -100,10 +106,37 @@ impl Feel {
             }
         };
         add(&mut image, seam.as_ref(), 1.0);
+        let image = stored(image);
         let tileable = seam.is_none();
         let after = self.distance(&image, tileable);
         let subbands = self.level.full.pyramid.subbands().to_vec();
-        Ok(Metamer { image, subbands, before, after, tileable, passes, borrowed })
+        let [with_original, with_reference] = self.arrangement(&ours.periodic, &image, tileable);
+        Ok(Metamer {
+            image,
+            subbands,
+            before,
+            after,
+            tileable,
+            passes,
+            borrowed,
+            correlation_with_original: with_original,
+            correlation_with_reference: with_reference,
+        })
+    }
+
+    /// Correlations of the sub-bands of an image with those of an original, and of the reference laid out over its size.
+    fn arrangement(&mut self, original: &Raster, image: &Raster, tiles: bool) -> [f64; 2] {
+        let borders = if tiles { Borders::Periodic } else { Borders::Smooth };
+        let image = SplitBorders::of(image, borders).periodic;
+        let reference = Raster::from_fn(image.width, image.height, |x, y| self.laid_out(x, y));
+        let pyramid = &mut self.level.quick_bands().pyramid;
+        [original, &reference].map(|other| correlation(other, &image, pyramid))
+    }
+
+    /// The reference's height at a texel of the original's grid, which it covers again and again.
+    fn laid_out(&self, x: usize, y: usize) -> f64 {
+        let reference = &self.reference.periodic;
+        reference.at(x % reference.width, y % reference.height)
     }
 
     /// The slowest waves are left to the heights where the reference has others than a surface like the original can have: a
@@ -114,13 +147,19 @@ impl Feel {
         if has_tilt || [width, height] != self.level.size { Parts::AllButTheSlowest } else { Parts::All }
     }
 
-    /// The document's: the oriented bands once.
-    fn single_pass(&mut self, original: &Raster) -> Raster {
-        let mut made = original.clone();
-        let bands = &mut self.level.full;
-        bands.match_all(&original.values, Parts::Oriented, &mut self.scratch);
-        bands.pyramid.image(&self.scratch.sum, &mut made.values);
-        made
+    /// The document's: the oriented bands once, each by the ranks of its values.
+    fn single_pass(&mut self, original: &Raster) -> Result<Raster, DesignError> {
+        let MetamerOptions { bands, orientations, .. } = self.options;
+        let pyramid = |of: &Raster| Pyramid::new(of.width, of.height, bands, orientations, Sampling::Full);
+        let reference = &self.reference.periodic;
+        let wanted = pyramid(reference)?.split(&reference.values);
+        let mut pyramid = pyramid(original)?;
+        let mut split = pyramid.split(&original.values);
+        for index in (0..split.len()).filter(|&index| is_oriented(&pyramid.subbands()[index])) {
+            let histogram = self.scratch.matcher.histogram(wanted.get(index));
+            self.scratch.matcher.run(split.get_mut(index), &histogram);
+        }
+        Ok(pyramid.join(&split))
     }
 
     /// Passes from the original, then with momentum, then from surfaces that have more and more of the reference's own
@@ -155,8 +194,34 @@ impl Feel {
         if is_moderate {
             return made;
         }
-        let start = self.start(original, seam, made.borrowed);
-        self.settle_unless_near(start, seam, task, made.borrowed)
+        let begun = (made.borrowed, task);
+        let briskly = Task { momentum: MOMENTUM, ..task };
+        // What serves the coarser copy may not serve the surface itself, whose finest waves only it has.
+        let most = self.options.borrow;
+        let more = BORROWED.into_iter().filter(|&share| share > made.borrowed && share <= most);
+        let more = more.skip(1).step_by(2).map(|share| (share, briskly));
+        self.nearest(original, seam, std::iter::once(begun).chain(more))
+    }
+
+    /// The nearest of what passes make of some starts, none of them tried after one that is near enough.
+    fn nearest(
+        &mut self,
+        original: &Raster,
+        seam: Option<&Raster>,
+        tries: impl Iterator<Item = (f64, Task)>,
+    ) -> Made {
+        let mut best: Option<Made> = None;
+        for (share, task) in tries {
+            let start = self.start(original, seam, share);
+            let made = self.try_out(start, seam, task, share);
+            if best.as_ref().is_none_or(|best| made.mean < best.mean) {
+                best = Some(made);
+            }
+            if best.as_ref().is_some_and(|best| best.mean <= self.goal()) {
+                break;
+            }
+        }
+        best.expect("at least one start")
     }
 
     /// Shares to borrow and how to go on from there.
@@ -213,12 +278,16 @@ impl Feel {
         Made { mean: mean(level, &distances), image, passes, borrowed }
     }
 
+    /// What counts as near enough while starts are tried: of large surfaces a little less than asked for, because their bands are
+    /// judged by as many samples as the waves need.
     fn goal(&self) -> f64 {
-        self.options.until.unwrap_or(REACH)
+        let margin = if self.level.is_large() { MARGIN } else { 1.0 };
+        margin * self.options.until.unwrap_or(REACH)
     }
 
     fn mean_of(&mut self, image: &Raster) -> f64 {
-        let distances = distances(&mut self.level, image, &mut self.scratch);
+        let floor = floor(&self.level);
+        let distances = self.level.quick_bands().distances(image, floor, &mut self.scratch);
         mean(&self.level, &distances)
     }
 
@@ -233,8 +302,7 @@ impl Feel {
         let gain = deviation(reference) / deviation(original).max(f64::MIN_POSITIVE);
         let mut start = Raster::from_fn(original.width, original.height, |x, y| {
             let matched = theirs + gain.min(MOST_GAIN) * (original.at(x, y) - ours);
-            let borrowed = reference.at(x % reference.width, y % reference.height);
-            matched + share * (borrowed - matched)
+            matched + share * (self.laid_out(x, y) - matched)
         });
         self.level.match_heights(&mut start, seam, &mut self.scratch);
         start
@@ -264,10 +332,14 @@ fn deviation(image: &Raster) -> f64 {
     (image.values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / image.values.len() as f64).sqrt()
 }
 
+fn is_oriented(band: &Subband) -> bool {
+    matches!(band.kind, Kind::Oriented { .. })
+}
+
 /// Mean over the oriented bands.
 fn mean(level: &Level, distances: &[f64]) -> f64 {
     let subbands = level.full.pyramid.subbands().iter().zip(distances);
-    let oriented = subbands.filter(|(band, _)| matches!(band.kind, Kind::Oriented { .. }));
+    let oriented = subbands.filter(|(band, _)| is_oriented(band));
     let (sum, count) = oriented.fold((0.0, 0.0), |(sum, count), (_, distance)| (sum + distance, count + 1.0));
     sum / count
 }

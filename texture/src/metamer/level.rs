@@ -17,7 +17,6 @@ use super::bands::{Bands, Parts, Scratch};
 use crate::borders::{Borders, SplitBorders};
 use crate::fft2::Fft2;
 use crate::histogram::Histogram;
-use crate::pyramid::Sampling;
 use crate::raster::Raster;
 use crate::spectral_envelope::Envelope;
 use crate::spectral_resample::{resample, resample_mirrored};
@@ -80,9 +79,9 @@ impl Level {
     ) -> Result<Self, DesignError> {
         let design = [bands, orientations];
         let tiling = &reference.periodic;
-        let full = Bands::new(tiling, size, design, Sampling::Full, scratch)?;
-        let fine = texels_a_side(size) > SIDE;
-        let reduced = fine.then(|| Bands::new(tiling, size, design, Sampling::Reduced, scratch));
+        let full = Bands::new(tiling, size, design, scratch)?;
+        let is_large = texels_a_side(size) > SIDE;
+        let reduced = is_large.then(|| full.reduced(tiling, scratch));
         let coarser = (bands > 1).then(|| {
             let [w, h] = [tiling.width, tiling.height].map(|n| n.div_ceil(2));
             let smooth = reference.smooth.as_ref().map(|smooth| resample_mirrored(smooth, w, h));
@@ -160,6 +159,16 @@ impl Level {
             }
         }
         passes
+    }
+
+    /// Whether the grid is finer than [`SIDE`].
+    pub fn is_large(&self) -> bool {
+        self.reduced.is_some()
+    }
+
+    /// The bands as large as their waves need: a third of the work, and nearly the same distances.
+    pub fn quick_bands(&mut self) -> &mut Bands {
+        self.reduced.as_mut().unwrap_or(&mut self.full)
     }
 
     /// Gives `image` and `seam` together the reference's heights, through changes of `image`.

@@ -36,11 +36,6 @@ impl Level {
         Self { columns, rows, height, fft: RealFft2::new(planner, w, h) }
     }
 
-    /// Frequencies that are kept.
-    pub fn len(&self) -> usize {
-        self.columns * (self.rows[0] + self.rows[1])
-    }
-
     /// A column of the level's spectrum: that of the image where it is kept, times the filter and `scale`.
     pub fn filtered(
         &self,

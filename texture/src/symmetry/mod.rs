@@ -9,6 +9,7 @@
 //! | distortion of every shift | `feature_matrix` |
 //! | its minima | `minima` |
 //! | lattice, or none | `search`, `nodes` |
+//! | lattice of a map that tiles and repeats few times | `torus` |
 //! | averaged primitive, symmetric part, residual | `cell` |
 //! | lattice by the document's own steps, with its threshold | `document` |
 //! | one translation where there are not two; one of 7 groups | `frieze`, `frieze_group` |
@@ -25,6 +26,7 @@ mod minima;
 mod nodes;
 mod operation;
 mod search;
+mod torus;
 mod wallpaper;
 
 pub use cell::{AveragedCell, Separation, averaged_cell, separate, steadiness, with_cell};

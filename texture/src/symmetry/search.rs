@@ -26,6 +26,7 @@ use super::feature_matrix::{feature_matrix, tapered_feature_matrix};
 use super::lattice::{Lattice, combine, cross, length, reduced, upright};
 use super::minima::{Fit, Minimum};
 use super::nodes::{CLEARLY_UNEVEN, COARSER, Mean, Nodes, coarser, coarser_lattices, for_each_node};
+use super::torus::tiling_lattice;
 use crate::raster::Raster;
 
 /// Numbers of deepest minima that propose lattices.
@@ -65,10 +66,12 @@ pub const SMALLEST_SIDE: usize = 24;
 pub const MERIT_LIMIT: f64 = 5.0;
 
 /// The lattice of a picture's pattern, or nothing if no pattern repeats along two directions. There is no
-/// threshold to tune; values should be finite, their unit does not matter.
+/// threshold to tune; values should be finite, their unit does not matter. Five repeats a side are needed, two of a map
+/// that tiles.
 #[must_use]
 pub fn find_lattice(picture: &Raster) -> Option<Lattice> {
-    best_lattice(picture).filter(|lattice| lattice.confidence >= 0.5)
+    let found = best_lattice(picture).filter(|lattice| lattice.confidence >= 0.5);
+    found.or_else(|| tiling_lattice(picture))
 }
 
 /// The best lattice there is, however unlikely; nothing for pictures that are flat or small.
