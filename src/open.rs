@@ -5,8 +5,8 @@ mod source;
 use crate::engine::Engine;
 use crate::files::FileError;
 use crate::files::scene_file::{
-    ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MaterialEntry, Pixels, ProbeEntry,
-    Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
+    ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MakeSource, MaterialEntry, Pixels,
+    ProbeEntry, Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
 };
 use crate::model::probe::{PROBE_PRESETS, probe_by_name};
 use crate::{
@@ -34,6 +34,8 @@ pub struct Overrides {
     pub path: Option<PathMode>,
     /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are limited.
     pub live: bool,
+    /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names them.
+    pub own: &'static [(&'static str, MakeSource)],
 }
 
 impl Engine {
@@ -94,7 +96,8 @@ fn build(file: &SceneFile, overrides: &Overrides) -> Result<Engine, FileError> {
         let place = |error: FileError| at(error.within(format!("surface \"{}\"", entry.name)));
         let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
         let live = overrides.live.then_some(&workers);
-        let surface = surface(entry, body, (seed, rate_hz), live).map_err(place)?;
+        let ground = Ground { own: overrides.own, ..ground(entry, (seed, rate_hz), live) };
+        let surface = surface(entry, body, ground).map_err(place)?;
         let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
@@ -205,16 +208,10 @@ fn ground<'a>(
         WrapEntry::Mirror => Wrap::Mirror,
     };
     let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
-    Ground { extent, wrap, seed, sample_rate_hz, workers }
+    Ground { extent, wrap, seed, sample_rate_hz, workers, own: &[] }
 }
 
-fn surface(
-    entry: &SurfaceEntry,
-    body: Option<BodyId>,
-    seed_and_rate: (u64, f64),
-    workers: Option<&RefCell<Vec<SandWorker>>>,
-) -> Result<Surface, FileError> {
-    let ground = ground(entry, seed_and_rate, workers);
+fn surface(entry: &SurfaceEntry, body: Option<BodyId>, ground: Ground<'_>) -> Result<Surface, FileError> {
     let (extent, wrap) = (ground.extent, ground.wrap);
     let source = ground.source(&entry.source)?;
     let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(FileError::told)?;

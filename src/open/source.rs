@@ -5,7 +5,8 @@ use crate::files::FileError;
 #[cfg(feature = "brownian")]
 use crate::files::scene_file::BrownianForce as ForceEntry;
 use crate::files::scene_file::{
-    Brownian, Direction, Lattice as LatticeEntry, Sand, SolidNoise as SolidEntry, Source, Tool as ToolEntry,
+    Brownian, Direction, Lattice as LatticeEntry, MakeSource, Sand, SolidNoise as SolidEntry, Source,
+    Tool as ToolEntry,
 };
 #[cfg(feature = "brownian")]
 use asperity_texture::brownian::BrownianDesign;
@@ -38,6 +39,8 @@ pub(super) struct Ground<'a> {
     pub sample_rate_hz: f64,
     /// Where the workers of sand go that is simulated elsewhere; none = it is simulated within the source.
     pub workers: Option<&'a RefCell<Vec<SandWorker>>>,
+    /// Makers of sources that the engine does not know.
+    pub own: &'static [(&'static str, MakeSource)],
 }
 
 impl Ground<'_> {
@@ -58,6 +61,7 @@ impl Ground<'_> {
             Source::Brownian(brownian) => self.brownian(brownian)?,
             Source::Lattice(entry) => Box::new(lattice(entry)?),
             Source::Sand(sand) => Box::new(self.sand(sand)?),
+            Source::Own(own) => own.make(self.own, [self.extent.width_m, self.extent.height_m])?,
             Source::Sum(parts) => {
                 Box::new(Sum::new(parts.iter().map(|part| self.source(part)).collect::<Result<_, _>>()?))
             }

@@ -191,7 +191,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         seed: options.seed,
         integrator: options.integrator,
         path: options.path,
-        live: false,
+        ..Overrides::default()
     };
     let built = Engine::from_scene(&file, &overrides)?;
     let names: Vec<(String, SurfaceId)> =

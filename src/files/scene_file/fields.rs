@@ -191,6 +191,11 @@ impl Fields {
         self.refuse(key, "is missing", format!("write {key} = {right}"))
     }
 
+    /// Every key that was not asked for, for somebody else to read.
+    pub fn rest(self) -> Table {
+        self.table
+    }
+
     /// Refuses every key that was not asked for.
     pub fn finish(mut self) -> Result<(), FileError> {
         let unknown = self.table.keys().next().cloned();

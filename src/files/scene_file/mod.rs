@@ -5,11 +5,13 @@
 //! [`SceneFile`] into engine calls.
 
 mod fields;
+mod own;
 mod pixels;
 mod sand;
 mod source;
 mod surface;
 
+pub use own::{MakeSource, OwnSource};
 pub use pixels::Pixels;
 pub use sand::{Sand, Tool};
 pub use source::{Brownian, BrownianForce, Direction, Lattice, SolidNoise, Source};

@@ -3,6 +3,7 @@
 //! The same keys make a surface's own source and each part of `sum`, `mask` and `crossfade`.
 
 use super::fields::{Fields, shown};
+use super::own::{self, OwnSource};
 use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
 use crate::files::FileError;
@@ -35,6 +36,8 @@ pub enum Source {
     Lattice(Lattice),
     /// Sand that gives way.
     Sand(Box<Sand>),
+    /// One that the engine does not know.
+    Own(OwnSource),
     /// All of them on top of each other.
     Sum(Vec<Self>),
     /// One, times a factor.
@@ -145,8 +148,8 @@ pub struct Lattice {
 }
 
 /// The keys of which at most one may be there.
-const SOURCES: [&str; 8] =
-    ["displacement", "solid", "brownian", "lattice", "sand", "sum", "mask", "crossfade"];
+const SOURCES: [&str; 9] =
+    ["displacement", "solid", "brownian", "lattice", "sand", "sum", "mask", "crossfade", "own"];
 
 /// Reads the source of a surface or of a part of one; other keys stay.
 pub fn read(fields: &mut Fields, folder: &Path) -> Result<Source, FileError> {
@@ -177,6 +180,7 @@ pub fn read(fields: &mut Fields, folder: &Path) -> Result<Source, FileError> {
         }
         Some("brownian") => read_brownian(needed_table(fields, "brownian")?)?,
         Some("sand") => Source::Sand(Box::new(sand::read(needed_table(fields, "sand")?, folder)?)),
+        Some("own") => Source::Own(own::read(needed_table(fields, "own")?)?),
         Some("sum") => read_sum(fields, folder)?,
         Some("mask") => read_mask(needed_table(fields, "mask")?, folder)?,
         Some(_) => read_crossfade(needed_table(fields, "crossfade")?, folder)?,

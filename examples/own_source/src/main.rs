@@ -1,0 +1,141 @@
+//! A woven cloth: a surface source of one's own, in one file.
+//!
+//! ```text
+//! h(u, v) = a · cos(2πu/p) · cos(2πv/p)      p: pitch of the threads, a: half of their height
+//! ```
+//! [`Woven`] is all a source is: its wavelengths and its heights along a path. [`Thread`] is its handle: the game thickens the threads while
+//! a finger strokes them. [`make`] is its key in scene files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 1e-4 }`.
+//!
+//! Run `cargo run --release -p asperity-own-source`: a finger strokes the cloth of a scene file, then one whose threads grow.
+
+use asperity::files::FileError;
+use asperity::files::scene_file::{OwnSource, SceneFile};
+use asperity::open::Overrides;
+use asperity::texture::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
+use asperity::{
+    Actuator, ActuatorSettings, Config, ContactEvent, ContactId, ContactSample, Engine, Renderer, Scene,
+    Surface, SurfaceId,
+};
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A woven cloth.
+struct Woven {
+    pitch_m: f64,
+    /// Half of the threads' height, m, as the game wants it.
+    wanted_m: Arc<AtomicU64>,
+    /// The same as it is: it follows without a click.
+    amplitude_m: f64,
+}
+
+/// Changes a [`Woven`] while it is touched.
+struct Thread(Arc<AtomicU64>);
+
+impl Thread {
+    /// Makes the threads so high, m.
+    fn set_height_m(&self, height_m: f64) {
+        self.0.store((0.5 * height_m).to_bits(), Ordering::Relaxed);
+    }
+}
+
+/// What a scene says of a cloth.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Cloth {
+    pitch_m: f64,
+    height_m: f64,
+}
+
+impl Cloth {
+    fn weave(&self) -> (Woven, Thread) {
+        let wanted_m = Arc::new(AtomicU64::new((0.5 * self.height_m).to_bits()));
+        let woven =
+            Woven { pitch_m: self.pitch_m, wanted_m: wanted_m.clone(), amplitude_m: 0.5 * self.height_m };
+        (woven, Thread(wanted_m))
+    }
+}
+
+/// The scene key.
+fn make(own: &OwnSource, _size_m: [f64; 2]) -> Result<Box<dyn HeightField>, FileError> {
+    Ok(Box::new(own.read::<Cloth>()?.weave().0))
+}
+
+impl HeightField for Woven {
+    fn band(&self) -> WavelengthBand {
+        WavelengthBand { shortest_m: self.pitch_m, longest_m: self.pitch_m }
+    }
+
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        let (wanted_m, turn) = (f64::from_bits(self.wanted_m.load(Ordering::Relaxed)), TAU / self.pitch_m);
+        out.clear(path.len());
+        for (i, [u_m, v_m]) in path.position_m.iter().enumerate() {
+            // A tenth of a second from one height to another.
+            self.amplitude_m += (wanted_m - self.amplitude_m) * 5e-4;
+            let ((su, cu), (sv, cv)) = ((turn * u_m).sin_cos(), (turn * v_m).sin_cos());
+            out.height_m[i] = self.amplitude_m * cu * cv;
+            out.gradient[i] = [-self.amplitude_m * turn * su * cv, -self.amplitude_m * turn * cu * sv];
+        }
+    }
+}
+
+const RATE_HZ: f64 = 44_100.0;
+
+/// Strokes a surface for half a second from `from_s` on; rms of what is felt, m.
+fn stroke(
+    scene: &mut Scene,
+    renderer: &mut Renderer,
+    cloth: SurfaceId,
+    from_s: f64,
+) -> Result<f64, Box<dyn Error>> {
+    let mut squares = 0.0;
+    for step in 0..30 {
+        let t = from_s + f64::from(step) / 60.0;
+        let sample = ContactSample {
+            uv: [0.2 + t, 0.5],
+            velocity_m_s: Some([0.1, 0.0]),
+            normal_force_n: 0.5,
+            closing_m_s: 0.0,
+        };
+        let event = match step {
+            0 => ContactEvent::begin(ContactId(1), cloth, Actuator(0), sample),
+            _ => ContactEvent::moved(ContactId(1), sample),
+        };
+        scene.report(t, event)?;
+        let (mut haptic, mut audio) = ([0.0f32; 735], [0.0f32; 735]);
+        renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+        squares += haptic.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>();
+    }
+    scene.report(from_s + 0.5, ContactEvent::end(ContactId(1)))?;
+    Ok((squares / (0.5 * RATE_HZ)).sqrt())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    // From a scene file.
+    let text = "[[surface]]\nname = \"cloth\"\nwidth_m = 0.1\nheight_m = 0.1\nmicro_relief_m = 0.0\n\
+                own = { kind = \"woven\", pitch_m = 1e-3, height_m = 2e-5 }\n[[actuator]]\nfull_scale = 1.0\n";
+    let file = SceneFile::parse(text, Path::new("cloth.toml"))?;
+    let knows_cloth = Overrides { own: &[("woven", make)], ..Overrides::default() };
+    let Engine { mut scene, mut renderer, names, .. } = Engine::from_scene(&file, &knows_cloth)?;
+    let from_file_m = stroke(&mut scene, &mut renderer, names.surfaces["cloth"], 0.0)?;
+    println!("the cloth of the scene file is felt with {:.1} um rms", 1e6 * from_file_m);
+    let stranger = Engine::from_scene(&file, &Overrides::default()).err().map(|error| error.to_string());
+    println!("who does not know it is told: {}", stranger.unwrap_or_default());
+
+    // From code, with its handle.
+    let (cloth, thread) = Cloth { pitch_m: 1e-3, height_m: 2e-5 }.weave();
+    let si = ActuatorSettings { full_scale: 1.0, ..ActuatorSettings::default() };
+    let Engine { mut scene, mut renderer, .. } =
+        Config { actuators: vec![si], ..Config::default() }.build()?;
+    let cloth = scene.add_surface(Surface::new(cloth, 0.1, 0.1)?.micro_relief_m(0.0))?;
+    let thin_m = stroke(&mut scene, &mut renderer, cloth, 0.0)?;
+    thread.set_height_m(4e-5);
+    stroke(&mut scene, &mut renderer, cloth, 0.6)?;
+    let thick_m = stroke(&mut scene, &mut renderer, cloth, 1.2)?;
+    println!("thin threads {:.1} um rms, twice as high {:.1} um rms", 1e6 * thin_m, 1e6 * thick_m);
+    assert!((thin_m / from_file_m - 1.0).abs() < 1e-6, "the scene file's cloth is another");
+    assert!((thick_m / thin_m - 2.0).abs() < 0.1, "the handle did not arrive");
+    Ok(())
+}
