@@ -199,7 +199,7 @@ impl Feel {
         // What serves the coarser copy may not serve the surface itself, whose finest waves only it has.
         let most = self.options.borrow;
         let more = BORROWED.into_iter().filter(|&share| share > made.borrowed && share <= most);
-        let more = more.skip(1).step_by(2).map(|share| (share, briskly));
+        let more = more.step_by(2).map(|share| (share, briskly));
         self.nearest(original, seam, std::iter::once(begun).chain(more))
     }
 
