@@ -251,9 +251,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let photo = folder.path().join("photo.png");
         let tile = |x: u32, y: u32| if x % 16 < 2 || y % 16 < 2 { 40 } else { 180 };
-        let coloured = |x: u32, y: u32| if (x / 16 + y / 16) % 3 == 0 { 0 } else { tile(x, y) };
+        // Red above, blue below, and brightness nearly the same.
+        let half = |x: u32, y: u32, more: bool| tile(x, y) / 2 + if more { 80 } else { 0 };
         let picture: Vec<u8> = (0..80)
-            .flat_map(|y| (0..96).flat_map(move |x| [tile(x, y), coloured(x, y), tile(x, y)]))
+            .flat_map(|y| (0..96).flat_map(move |x| [half(x, y, y < 40), tile(x, y), half(x, y, y >= 40)]))
             .map(|level: u32| level as u8)
             .collect();
         std::fs::write(&photo, crate::pixels::png_rgb(96, 80, &picture)).unwrap();
