@@ -4,7 +4,7 @@
 //! h(u, v) = a · cos(2πu/p) · cos(2πv/p)      p: pitch of the threads, a: half of their height
 //! ```
 //! [`Woven`] is all a source is: its wavelengths and its heights along a path. [`Thread`] is its handle: the game thickens the threads while
-//! a finger strokes them. [`make`] is its key in scene files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 1e-4 }`.
+//! a finger strokes them. [`make`] is its key in scene files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 2e-5 }`.
 //!
 //! Run `cargo run --release -p asperity-own-source`: a finger strokes the cloth of a scene file, then one whose threads grow.
 
@@ -132,8 +132,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cloth = scene.add_surface(Surface::new(cloth, 0.1, 0.1)?.micro_relief_m(0.0))?;
     let thin_m = stroke(&mut scene, &mut renderer, cloth, 0.0)?;
     thread.set_height_m(4e-5);
-    stroke(&mut scene, &mut renderer, cloth, 0.6)?;
-    let thick_m = stroke(&mut scene, &mut renderer, cloth, 1.2)?;
+    stroke(&mut scene, &mut renderer, cloth, 0.5)?;
+    let thick_m = stroke(&mut scene, &mut renderer, cloth, 1.0)?;
     println!("thin threads {:.1} um rms, twice as high {:.1} um rms", 1e6 * thin_m, 1e6 * thick_m);
     assert!((thin_m / from_file_m - 1.0).abs() < 1e-6, "the scene file's cloth is another");
     assert!((thick_m / thin_m - 2.0).abs() < 0.1, "the handle did not arrive");
