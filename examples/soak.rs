@@ -1,4 +1,4 @@
-//! A finger that strokes for as many samples as you say: `cargo run --release --example soak 1000000000`.
+//! A finger, or several, that stroke for as many samples as you say: `cargo run --release --example soak 1000000000 [contacts] [modes]`.
 //!
 //! A billion samples are six hours of touch. Prints the peaks of every tenth; they must stay level, and
 //! the engine must fall silent at the end.
@@ -13,7 +13,8 @@ use std::time::Instant;
 fn main() {
     let samples: f64 = std::env::args().nth(1).and_then(|arg| arg.parse().ok()).unwrap_or(1e8);
     let frames = 441;
-    let plan = Plan { contacts: 1, modes: 16, speed_m_s: 0.1 };
+    let count = |nth, default| std::env::args().nth(nth).and_then(|arg| arg.parse().ok()).unwrap_or(default);
+    let plan = Plan { contacts: count(2, 1), modes: count(3, 16), speed_m_s: 0.1 };
     let mut running = Running::new(Config::default(), plan, frames);
     let began = Instant::now();
     for tenth in 1..=10 {
