@@ -13,27 +13,13 @@ mod trajectories;
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{Config, Extent, Surface, Wrap};
+use asperity_measure::corpus::corpus;
 use asperity_measure::spectrum;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
 use common::{peak, render, rms, si_config, stroke};
 use std::collections::HashMap;
-use std::path::PathBuf;
 use trajectories::PenSample;
-
-/// The corpus, or `None` with a note; on the build server it has to be there.
-fn corpus() -> Option<PathBuf> {
-    let folder = std::env::var_os("ASPERITY_CORPUS").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/corpus")),
-        PathBuf::from,
-    );
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "no corpus at {}", folder.display());
-    println!("skipped: no corpus at {}; set ASPERITY_CORPUS", folder.display());
-    None
-}
 
 fn text(corpus: &std::path::Path, name: &str) -> String {
     std::fs::read_to_string(corpus.join(name)).unwrap()
@@ -76,7 +62,7 @@ const MAPS: [(&str, Channel, f64, f64); 12] = [
 
 #[test]
 fn every_map_under_a_real_stroke_is_finite_felt_and_heard() {
-    let Some(corpus) = corpus() else { return };
+    let Some(corpus) = corpus("") else { return };
     let [_, painting] = pens(&corpus);
     let strokes = piece(&painting, 1.7, 1.0);
     for (file, channel, side_m, relief_m) in MAPS {
@@ -94,7 +80,7 @@ fn every_map_under_a_real_stroke_is_finite_felt_and_heard() {
 
 #[test]
 fn corrugated_steel_vibrates_at_speed_over_pitch() {
-    let Some(corpus) = corpus() else { return };
+    let Some(corpus) = corpus("") else { return };
     let file = "CorrugatedSteel003_1K-PNG_Displacement.png";
     // Small, so that the ridges pass at rates that are felt.
     let side_m = 0.02;
@@ -129,7 +115,7 @@ fn corrugated_steel_vibrates_at_speed_over_pitch() {
 
 #[test]
 fn sixteen_and_eight_bits_of_one_ground_feel_alike() {
-    let Some(corpus) = corpus() else { return };
+    let Some(corpus) = corpus("") else { return };
     for (samples, from) in pens(&corpus).iter().zip([0.2, 1.7]) {
         let log = trajectories::strokes(&piece(samples, from, 1.5), "s", [0.3; 2], false);
         let octaves = |file| {
@@ -148,7 +134,7 @@ fn sixteen_and_eight_bits_of_one_ground_feel_alike() {
 
 #[test]
 fn a_measured_profile_of_wood_is_felt_with_its_own_relief() {
-    let Some(corpus) = corpus() else { return };
+    let Some(corpus) = corpus("") else { return };
     let bytes = std::fs::read(corpus.join("textures/profile_bass_wood.npy")).unwrap();
     let heights_m = profile::read_npy(&bytes).unwrap();
     assert_eq!(heights_m.len(), 100_800);
@@ -167,7 +153,7 @@ fn a_measured_profile_of_wood_is_felt_with_its_own_relief() {
 
 #[test]
 fn pens_lift_jump_and_pause_where_the_recordings_do() {
-    let Some(corpus) = corpus() else { return };
+    let Some(corpus) = corpus("") else { return };
     for (samples, contacts) in pens(&corpus).iter().zip([5, 6]) {
         let log = trajectories::strokes(samples, "s", [0.2; 2], true);
         let begins = log
@@ -187,7 +173,7 @@ fn pens_lift_jump_and_pause_where_the_recordings_do() {
 
 #[test]
 fn nothing_clicks_where_a_pen_lifts() {
-    let Some(corpus) = corpus() else { return };
+    let Some(corpus) = corpus("") else { return };
     let [handwriting, _] = pens(&corpus);
     let (side_m, relief_m) = (0.2, 2e-3);
     let log = trajectories::strokes(&piece(&handwriting, 0.0, 2.2), "s", [side_m; 2], true);
@@ -208,7 +194,7 @@ fn nothing_clicks_where_a_pen_lifts() {
 
 #[test]
 fn published_modes_ring_in_tune_and_tossed_cubes_strike_them() {
-    let Some(corpus) = corpus() else { return };
+    let Some(corpus) = corpus("") else { return };
     let mut models = Vec::new();
     for name in ["tdw_ceramic_0_mm", "tdw_wood_medium_0_mm", "tdw_stone_1_mm"] {
         models.push(modal_tables::fitted(name, &text(&corpus, &format!("modal/{name}.json"))).unwrap());

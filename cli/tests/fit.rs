@@ -251,7 +251,7 @@ fn tables_of_other_programs_become_bodies_that_the_engine_reads() {
 
 #[test]
 fn the_modal_tables_of_the_corpus_are_imported() {
-    let Some(corpus) = corpus() else { return };
+    let Some(corpus) = asperity_measure::corpus::corpus("") else { return };
     let folder = tempfile::tempdir().unwrap();
     for (file, arguments, modes) in [
         ("tdw_ceramic_0_mm.json", &[][..], 349),
@@ -268,19 +268,6 @@ fn the_modal_tables_of_the_corpus_are_imported() {
         assert_eq!(report["modes"], modes, "{file}: {report}");
         assert_eq!(asperity_model(folder.path(), "x.modes.json").modes.len(), modes, "{file}");
     }
-}
-
-fn corpus() -> Option<std::path::PathBuf> {
-    let root = std::env::var_os("ASPERITY_CORPUS").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus"),
-        std::path::PathBuf::from,
-    );
-    if root.is_dir() {
-        return Some(root);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "the corpus is missing in CI");
-    println!("skipped: no corpus at {}", root.display());
-    None
 }
 
 #[test]

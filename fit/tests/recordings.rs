@@ -4,25 +4,13 @@
 use asperity_dsp::hertz::{Elastic, HertzContact};
 use asperity_dsp::mode::Mode;
 use asperity_fit::{ChannelChoice, Fit, FitOptions, FittedMode, Recording, fit, load};
+use asperity_measure::corpus::corpus;
 use asperity_measure::impact::render_fast;
 use asperity_measure::score::snr_db;
 use asperity_measure::stft_peaks::stft_peaks;
-use std::path::PathBuf;
-
-/// The corpus, or `None` (said aloud) when it is not there; in CI it must be.
-fn corpus() -> Option<PathBuf> {
-    let root = std::env::var_os("ASPERITY_CORPUS")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus"), PathBuf::from);
-    if root.is_dir() {
-        return Some(root);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "the corpus is missing in CI");
-    println!("skipped: no corpus at {}", root.display());
-    None
-}
 
 fn fitted(name: &str, max_modes: usize) -> Option<(Recording, Fit)> {
-    let path = corpus()?.join("impacts").join(name);
+    let path = corpus("impacts")?.join(name);
     let recording = load(path, ChannelChoice::Loudest).unwrap();
     let options = FitOptions { max_modes, threads: 1, ..FitOptions::default() };
     let fit = fit(&recording, &options, &mut |_| {}).unwrap();
@@ -142,7 +130,7 @@ fn velocity_layers_of_one_object_agree_in_frequency() {
 
 /// Time a pulse stays above half its peak, s, of an oscilloscope's text file.
 fn half_width_s(name: &str) -> Option<f64> {
-    let text = std::fs::read_to_string(corpus()?.join("impacts").join(name)).unwrap();
+    let text = std::fs::read_to_string(corpus("impacts")?.join("impacts").join(name)).unwrap();
     let rows: Vec<(f64, f64)> = text
         .lines()
         .skip(5)

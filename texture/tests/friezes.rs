@@ -12,7 +12,6 @@ use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::raster::Raster;
 use asperity_texture::symmetry::{Frieze, FriezeGroup, find_frieze, find_lattice};
 use std::f64::consts::TAU;
-use std::path::PathBuf;
 
 /// Where a group carries a point of a band, in periods.
 type Image = fn(f64, f64) -> (f64, f64);
@@ -125,15 +124,8 @@ fn pictures_without_a_pattern_have_no_frieze() {
 
 #[test]
 fn a_real_corrugated_sheet_shows_its_profile() {
-    let root = std::env::var("ASPERITY_CORPUS").map_or_else(
-        |_| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus"),
-        PathBuf::from,
-    );
-    let path = root.join("textures/CorrugatedSteel003_1K-PNG_Displacement.png");
-    if !path.exists() {
-        println!("skipped: {} is missing", path.display());
-        return;
-    }
+    let sheet = "textures/CorrugatedSteel003_1K-PNG_Displacement.png";
+    let Some(path) = asperity_measure::corpus::corpus(sheet) else { return };
     let sheet = load_channel(path, Channel::Luma).unwrap().raster;
     let found = find_frieze(&sheet).unwrap();
     assert!(found.stripes, "{:?} {}", found.t_px, found.confidence);

@@ -286,13 +286,7 @@ fn bad_photographs_and_options_are_refused_by_name() {
 
 #[test]
 fn real_photographs_pass_without_a_tuned_parameter() {
-    let folder = std::env::var("ASPERITY_CORPUS").unwrap_or_else(|_| "../../shared/corpus".into());
-    let folder = std::path::Path::new(&folder).join("photos");
-    if !folder.exists() {
-        assert!(std::env::var("CI").is_err(), "the test corpus is missing: {}", folder.display());
-        println!("skipped: no test corpus at {}", folder.display());
-        return;
-    }
+    let Some(folder) = asperity_measure::corpus::corpus("photos") else { return };
     // Which of them repeat, as a person sees it, and which of those wander off their lattice.
     let photographs = [
         ("MetalWalkway006_1K-PNG_Color.png", true, false),

@@ -16,7 +16,6 @@ use asperity_texture::symmetry::{
     WallpaperGroup, averaged_cell, best_lattice, find_lattice, wallpaper_group,
 };
 use patterns::{KINDS, Kind, ROWS, Stress, is_lattice, picture};
-use std::path::PathBuf;
 
 #[test]
 fn lattices_are_found_in_every_row_of_the_stress_table() {
@@ -162,16 +161,7 @@ fn averaging_within_the_fundamental_domain_removes_noise() {
 
 /// A picture of the corpus, or nothing where it is allowed to be absent.
 fn corpus(file: &str) -> Option<Raster> {
-    let root = std::env::var("ASPERITY_CORPUS").map_or_else(
-        |_| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus"),
-        PathBuf::from,
-    );
-    let path = root.join("photos").join(file);
-    if !path.exists() {
-        assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", path.display());
-        println!("skipped: {} is missing", path.display());
-        return None;
-    }
+    let path = asperity_measure::corpus::corpus(&format!("photos/{file}"))?;
     Some(load_channel(path, Channel::Luma).unwrap().raster)
 }
 

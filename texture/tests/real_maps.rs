@@ -1,7 +1,6 @@
 //! Maps that nobody made for us: 16 and 8 bits, indexed, interlaced, packed, measured, hostile.
 //!
-//! The corpus is not part of the repository: `ASPERITY_CORPUS` names its folder (default `../shared/corpus`
-//! beside the repository). Without it the tests say that they skip; under `CI=true` they fail.
+//! The corpus is not part of the repository: see `asperity_measure::corpus`.
 #![cfg(feature = "image")]
 
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
@@ -15,15 +14,7 @@ const RATE_HZ: f64 = 44_100.0;
 
 /// A corpus file, or nothing (said aloud) where there is no corpus.
 fn corpus(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("ASPERITY_CORPUS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus"), PathBuf::from);
-    let path = root.join("textures").join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    assert!(std::env::var("CI").as_deref() != Ok("true"), "{} is missing", path.display());
-    println!("skipped: {} is not here", path.display());
-    None
+    asperity_measure::corpus::corpus(&format!("textures/{name}"))
 }
 
 fn load(name: &str, channel: Channel) -> Option<ChannelImage> {
