@@ -4,11 +4,11 @@
 //! struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t + φ) from the onset on and nothing else.
 
 use crate::analysis::Analysis;
+use crate::options::{FitOptions, Found, LARGEST_AMPLITUDE};
 use crate::partial::Partial;
 use crate::pruning::{Uncertainty, uncertainties};
 use crate::recording::Recording;
 use crate::residual::{Burst, Residual, ratio_db};
-use crate::strike::{FitOptions, Found, LARGEST_AMPLITUDE};
 use crate::struck::{lead, struck};
 use crate::suspicion::{self, energy_spectrum};
 pub use crate::warning::Warning;

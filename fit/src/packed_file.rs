@@ -2,7 +2,7 @@
 //!
 //! FLAC gives the integers that were packed, exactly; Vorbis what its decoder makes of it.
 
-use crate::sound_file::{Format, MOST_CHANNELS, Refusal};
+use crate::sound_format::{Format, MOST_CHANNELS, Refusal};
 use std::fs::File;
 use symphonia::core::codecs::audio::{AudioDecoder, AudioDecoderOptions};
 use symphonia::core::errors::Error;

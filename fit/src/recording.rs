@@ -3,7 +3,8 @@
 //! WAV, FLAC or Ogg (`sound_file`), up to 64 channels, 1 kHz – 1 MHz. Long files are read
 //! in two passes, so that only the minute around the first strike is ever in memory.
 
-use crate::sound_file::{Refusal, SoundFile};
+use crate::sound_file::SoundFile;
+use crate::sound_format::Refusal;
 use std::path::{Path, PathBuf};
 
 /// Most seconds kept of a file.
@@ -86,6 +87,17 @@ pub enum RecordingError {
         /// The file.
         name: String,
     },
+}
+
+impl RecordingError {
+    /// What a file was refused for.
+    fn of(refusal: Refusal, path: &Path) -> Self {
+        let path = path.to_owned();
+        match refusal {
+            Refusal::Not(what) => Self::NotSound { path, what },
+            Refusal::Io(source) => Self::Io { path, source },
+        }
+    }
 }
 
 /// One channel of sound, ±1 full scale, with its mean still in it.
@@ -179,7 +191,7 @@ impl Recording {
 pub fn load(path: impl AsRef<Path>, choice: ChannelChoice) -> Result<Recording, RecordingError> {
     let path = path.as_ref();
     let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into());
-    let open = || SoundFile::open(path).map_err(|refusal| refusal.of(path));
+    let open = || SoundFile::open(path).map_err(|refusal| RecordingError::of(refusal, path));
     let mut file = open()?;
     let format = file.format();
     let (channels, rate) = (format.channels, format.rate_hz);
@@ -195,14 +207,15 @@ pub fn load(path: impl AsRef<Path>, choice: ChannelChoice) -> Result<Recording, 
     let mut frame = vec![0.0; channels];
     let (mut first, mut frames) = (0, format.frames as usize);
     if format.frames > longest as u64 {
-        let loud = first_loud_frame(&mut file, &mut frame, rate).map_err(|refusal| refusal.of(path))?;
+        let loud = first_loud_frame(&mut file, &mut frame, rate)
+            .map_err(|refusal| RecordingError::of(refusal, path))?;
         first = loud.at.saturating_sub((KEPT_BEFORE_S * rate) as usize);
         frames = loud.frames;
         file = open()?;
     }
     let mut kept: Vec<Vec<f64>> = vec![Vec::new(); channels];
     let mut index = 0;
-    while file.next(&mut frame).map_err(|refusal| refusal.of(path))? {
+    while file.next(&mut frame).map_err(|refusal| RecordingError::of(refusal, path))? {
         if index >= first {
             kept.iter_mut().zip(&frame).for_each(|(channel, &x)| channel.push(x));
             if kept[0].len() >= longest {

@@ -8,48 +8,10 @@
 //! Everything else is refused by name.
 
 use crate::packed_file::PackedFile;
-use crate::recording::RecordingError;
+use crate::sound_format::{Format, Refusal};
 use crate::wav_file::WavFile;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
-
-/// Most channels of a file.
-pub(crate) const MOST_CHANNELS: usize = 64;
-
-/// What a file says of its sound.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Format {
-    pub(crate) channels: usize,
-    pub(crate) rate_hz: f64,
-    /// Size of a quantisation step; 0 where samples are no integers.
-    pub(crate) quantum: f64,
-    /// Frames that are said to be there; as many as can be where nothing is said.
-    pub(crate) frames: u64,
-}
-
-/// Why bytes are no sound.
-pub(crate) enum Refusal {
-    /// What cannot be decoded, and what it is.
-    Not(String),
-    /// What the system said.
-    Io(std::io::Error),
-}
-
-impl From<std::io::Error> for Refusal {
-    fn from(error: std::io::Error) -> Self {
-        Self::Io(error)
-    }
-}
-
-impl Refusal {
-    pub(crate) fn of(self, path: &Path) -> RecordingError {
-        let path = path.to_owned();
-        match self {
-            Self::Not(what) => RecordingError::NotSound { path, what },
-            Self::Io(source) => RecordingError::Io { path, source },
-        }
-    }
-}
 
 /// A file that is read from its first frame on.
 pub(crate) enum SoundFile {

@@ -18,6 +18,7 @@ use crate::limits::Limits;
 use crate::merging::{MERGED_LOSS, merge_resonances};
 use crate::noise_floor::NoiseFloor;
 use crate::onset::{self, Strike};
+use crate::options::{FitOptions, Found, LARGEST_AMPLITUDE};
 use crate::ranking::keep_heard;
 use crate::recording::{FEWEST_SAMPLES, Recording};
 use crate::refinement::{Bounds, refine};
@@ -30,9 +31,6 @@ const SHORT_S: f64 = 0.05;
 /// Longest analysed part, s; recordings above `UNTRIMMED_S` are trimmed where they reach their noise.
 const LONGEST_S: f64 = 40.0;
 const UNTRIMMED_S: f64 = 5.0;
-/// Largest amplitude of a mode, in peaks of the recording.
-pub(crate) const LARGEST_AMPLITUDE: f64 = 8.0;
-
 /// Slowest decay that may be asked for as the fastest, 1/s: T60 = 60 s.
 const LEAST_DECAY_PER_S: f64 = 0.115;
 /// Lowest frequency analysed unless a lower one is asked for, Hz.
@@ -51,39 +49,6 @@ const FAINTEST_DB: f64 = -90.0;
 /// it may be that they are the push; and this part of them must be saved by a fit without it.
 const OVER_NEPERS: f64 = 1.0;
 const QUARTER: f64 = 0.25;
-
-/// What a fit may find and how.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FitOptions {
-    /// Most modes.
-    pub max_modes: usize,
-    /// Lowest and highest frequency, Hz; the upper one is also bounded by 0.49 of the rate.
-    pub band_hz: (f64, f64),
-    /// Modes whose energy lies further than this below the strongest one's are dropped, dB (negative).
-    pub least_level_db: f64,
-    /// Fastest decay, 1/s.
-    pub fastest_decay_per_s: f64,
-    /// From the onset to where modes are fitted, s; `None` finds out.
-    pub start_offset_s: Option<f64>,
-    /// Which strike of the recording, from 1; `None` takes the best.
-    pub strike: Option<usize>,
-    /// Threads for the bands; 0 takes what the machine has, up to 8.
-    pub threads: usize,
-}
-
-impl Default for FitOptions {
-    fn default() -> Self {
-        Self {
-            max_modes: 150,
-            band_hz: (20.0, f64::INFINITY),
-            least_level_db: -90.0,
-            fastest_decay_per_s: 1500.0,
-            start_offset_s: None,
-            strike: None,
-            threads: 0,
-        }
-    }
-}
 
 /// Why a recording cannot be fitted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -278,13 +243,6 @@ fn analysed_as_sum(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f6
         sum.capped = true;
     }
     sum
-}
-
-/// The analysed part, in samples of the recording.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Found {
-    pub(crate) onset: usize,
-    pub(crate) end: usize,
 }
 
 /// The samples less the mean of their last quarter (where a strike is no more).

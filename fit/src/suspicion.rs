@@ -1,9 +1,9 @@
 //! What in a list of modes is not a ringing body: hum, tones that do not decay, decays that are no
 //! exponential, pairs that cancel.
 
-use crate::fitted::Warning;
 use crate::noise_floor::NoiseFloor;
 use crate::partial::Partial;
+use crate::warning::Warning;
 use asperity_fft::FftPlanner;
 use nalgebra::Complex;
 use std::f64::consts::PI;

@@ -9,7 +9,7 @@
 //! recorders leave it. Other chunks (`bext`, `LIST`, `iXML`, `JUNK`, cues) are passed over. Whatever is said of sizes, no
 //! more is read than there is.
 
-use crate::sound_file::{Format, MOST_CHANNELS, Refusal};
+use crate::sound_format::{Format, MOST_CHANNELS, Refusal};
 use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 

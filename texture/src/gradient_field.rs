@@ -16,6 +16,7 @@
 //!
 //! A field that does not tile is not taken to repeat but to go on mirrored ([`integrate_open`]).
 
+mod bands;
 mod blind;
 mod border_share;
 mod differences;

@@ -9,7 +9,8 @@
 //! with S from the waves the derivative sees, never rising with frequency.
 
 use super::Derivative;
-use super::wiener::{Bands, never_rising};
+use super::bands::Bands;
+use super::wiener::never_rising;
 use std::f64::consts::FRAC_PI_2;
 
 /// |D|²/ω² below which a derivative is nearly blind.

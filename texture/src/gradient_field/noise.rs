@@ -10,7 +10,7 @@
 //! direction n, as much as lies across D a quarter turn away; noise that follows the surface's own waves lies in their sector. N of a sector's ring and its
 //! neighbours is the larger of both means, and Σ a² / 2 Σ a where it falls on few frequencies.
 
-use super::wiener::{Bands, Seen, UNSEEN};
+use super::bands::{Bands, Seen, UNSEEN};
 
 /// Power of a single frequency, over that expected of its ring and the noise, from which it is a line of its own: noise reaches it once in
 /// e¹² frequencies.

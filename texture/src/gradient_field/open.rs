@@ -4,11 +4,12 @@
 //! ([`super::steps`]) are such differences, which no wave escapes: true slopes are made into steps first. Central differences and Sobel's are mirrored
 //! as they are, borders as in [`super::border_share`]. In each case one transform solves the least squares exactly.
 
+use super::bands::{Bands, Seen};
 use super::border_share::BorderShare;
 use super::mirror_transform::{Mirror, MirrorTransform, Waves, frequencies};
 use super::noise::Noise;
 use super::steps;
-use super::wiener::{Bands, Seen, Wiener};
+use super::wiener::Wiener;
 use super::{Derivative, Slopes};
 use crate::raster::Raster;
 use std::f64::consts::PI;

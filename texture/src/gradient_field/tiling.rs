@@ -1,7 +1,8 @@
 //! Slopes of a surface that tiles, by frequencies.
 
+use super::bands::{Bands, Seen};
 use super::noise::Noise;
-use super::wiener::{Bands, Seen, Wiener};
+use super::wiener::Wiener;
 use super::{Derivative, Slopes, unpack};
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;

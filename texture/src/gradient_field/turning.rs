@@ -7,9 +7,9 @@
 //! factor, and their map is the same to the last bit. A derivative that is blind to waves which the map has is ruled out by [`super::blind`].
 //! Source of the tests: ours.
 
+use super::bands::Seen;
 use super::blind::made_blind;
 use super::tiling::Tiling;
-use super::wiener::Seen;
 use super::{DERIVATIVES, Derivative, Slopes, differences};
 use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;

@@ -18,80 +18,13 @@
 //! of 2.63 % (1.86 % if the true power of every frequency were known), wood 0.08 in place of 0.12 %; waves of one length, 11 to 26 texels,
 //! told how they were made, 0.01–0.5 % (up to 1.1 % when all frequencies up to the waves' were believed for their sake).
 
+use super::bands::{Bands, Seen, UNSEEN};
 use super::noise::{LINE, Noise};
-use std::f64::consts::PI;
 
-/// Sectors of directions whose power is measured apart. Ours: 4 to 24 differ by less than a tenth of the error.
-const SECTORS: usize = 8;
 /// How often lines are looked for at the most, weaker ones once the stronger are known.
 const ROUNDS: usize = 4;
 /// |D|² from which a line is believed.
 const LEAST_OF_LINE: f64 = 0.01;
-/// |D|² below which a derivative sees nothing.
-pub(super) const UNSEEN: f64 = 1e-9;
-
-/// What a field of slopes shows at one frequency.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Seen {
-    /// |D|².
-    pub square: f64,
-    /// |D_x* P + D_y* Q|².
-    pub along: f64,
-    /// |D_y P − D_x Q|²/|D|², which no surface has.
-    pub across: f64,
-}
-
-/// Which ring of frequencies and which sector of directions every place of a spectrum lies in.
-#[derive(Debug)]
-pub(super) struct Bands {
-    ring: Vec<u32>,
-    sector: Vec<u8>,
-    pub rings: usize,
-    /// Width of a ring, radians per texel.
-    pub width: f64,
-    /// Whether k and its mirror image are one, as in waves of a map that goes on mirrored.
-    mirrored: bool,
-}
-
-impl Bands {
-    /// Of a spectrum stored column by column, from its frequencies along u and v, radians per texel, and the rings' width.
-    pub fn new(along_u: &[f64], along_v: &[f64], width: f64) -> Self {
-        let places = || along_u.iter().flat_map(|&wx| along_v.iter().map(move |&wy| (wx, wy)));
-        let ring: Vec<u32> = places().map(|(wx, wy)| (wx.hypot(wy) / width).round() as u32).collect();
-        let rings = 1 + ring.iter().max().copied().unwrap_or(0) as usize;
-        let mirrored = along_v.iter().all(|&wy| wy >= 0.0);
-        Self { ring, sector: places().map(|(wx, wy)| sector(wx, wy)).collect(), rings, width, mirrored }
-    }
-
-    pub fn ring(&self, place: usize) -> usize {
-        self.ring[place] as usize
-    }
-
-    /// Number of rings of all sectors.
-    pub fn count(&self) -> usize {
-        SECTORS * self.rings
-    }
-
-    /// Which ring of which sector, sector after sector.
-    pub fn of(&self, place: usize) -> usize {
-        self.sector[place] as usize * self.rings + self.ring(place)
-    }
-
-    /// The same ring of the sector a quarter turn away.
-    pub fn across(&self, band: usize) -> usize {
-        let turned = (band / self.rings + SECTORS / 2) % SECTORS;
-        let sector = if self.mirrored { (SECTORS - turned) % SECTORS } else { turned };
-        sector * self.rings + band % self.rings
-    }
-}
-
-/// Which sector of directions a frequency lies in; k and −k lie in the same.
-fn sector(wx: f64, wy: f64) -> u8 {
-    // The sectors' middles, not their edges, lie on the axes, and the smallest step decides no sector.
-    let turn = wy.atan2(wx).rem_euclid(PI) / PI * SECTORS as f64;
-    (turn + 0.5) as u8 % SECTORS as u8
-}
-
 /// The power spectrum of a surface by directions and rings, never rising with frequency, its lines, and the noise of its slopes.
 pub(super) struct Wiener<'a> {
     bands: &'a Bands,

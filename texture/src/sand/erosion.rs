@@ -25,13 +25,11 @@
 
 mod row;
 
-use super::grid::{SandGrid, UNITS_PER_M};
+use super::grid::{SandGrid, TILE, UNITS_PER_M};
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
 use row::{Moved, Order, Rows, Steepness};
 
-/// Columns of a tile: wide enough that a vector is not read back before it has been written.
-pub const TILE: usize = 64;
 /// Rows of a tile: the bits of a word.
 const TILE_ROWS: usize = u32::BITS as usize;
 /// Excess over the talus angle that is left alone, degrees.

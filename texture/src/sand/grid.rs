@@ -4,10 +4,12 @@
 //! drift by a single unit however long the sand is played with (floating point drifts by 1e-6).
 //! The grid is surrounded by a wall one cell thick that nothing slides over.
 
-use super::erosion::TILE;
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
+
+/// Columns of a tile of the erosion: wide enough that a vector is not read back before it has been written.
+pub const TILE: usize = 64;
 
 /// Units of height in a metre.
 pub const UNITS_PER_M: f64 = 1_073_741_824.0;

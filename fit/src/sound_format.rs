@@ -1,0 +1,29 @@
+//! What a sound file says of itself, and why bytes are no sound.
+
+/// Most channels of a file.
+pub(crate) const MOST_CHANNELS: usize = 64;
+
+/// What a file says of its sound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Format {
+    pub(crate) channels: usize,
+    pub(crate) rate_hz: f64,
+    /// Size of a quantisation step; 0 where samples are no integers.
+    pub(crate) quantum: f64,
+    /// Frames that are said to be there; as many as can be where nothing is said.
+    pub(crate) frames: u64,
+}
+
+/// Why bytes are no sound.
+pub(crate) enum Refusal {
+    /// What cannot be decoded, and what it is.
+    Not(String),
+    /// What the system said.
+    Io(std::io::Error),
+}
+
+impl From<std::io::Error> for Refusal {
+    fn from(error: std::io::Error) -> Self {
+        Self::Io(error)
+    }
+}
