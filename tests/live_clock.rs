@@ -212,7 +212,8 @@ fn a_game_that_pauses_goes_on_sounding() {
         let at = (from_s * RATE_HZ) as usize;
         rms(&game.haptic[at..at + 24_000])
     };
-    assert!(felt(4.0) < 0.1 * felt(2.0), "a paused finger is felt: {} against {}", felt(4.0), felt(2.0));
+    // It has glided on for want of news and comes back to where the game says it stands: at rest 1.25 s after the pause began.
+    assert!(felt(4.25) < 0.02 * felt(2.0), "a paused finger is felt: {} against {}", felt(4.25), felt(2.0));
     assert!(felt(6.0) > 0.3 * felt(2.0), "{} against {}", felt(6.0), felt(2.0));
 }
 

@@ -67,10 +67,13 @@ fn pictures_without_a_pattern_have_no_lattice() {
     }
     controls.push(("ramp", Raster::from_fn(128, 128, |x, y| (x + 2 * y) as f64)));
     controls.push(("grey", Raster::constant(128, 128, 0.5)));
-    controls.push(("tiny", Raster::from_fn(20, 20, |x, y| ((x % 4) * (y % 4)) as f64)));
     for (name, control) in &controls {
         assert!(find_lattice(control).is_none(), "{name}: {:?}", find_lattice(control));
     }
+    // Five repeats on twenty texels: too few for the feature matrix; what the seam shows is the pattern or nothing.
+    let tiny = Raster::from_fn(20, 20, |x, y| ((x % 4) * (y % 4)) as f64);
+    let found = find_lattice(&tiny).map(|lattice| [lattice.t1_px, lattice.t2_px]);
+    assert!(found.is_none_or(|basis| is_lattice(basis, [[4.0, 0.0], [0.0, 4.0]])), "{found:?}");
 }
 
 #[test]
