@@ -130,7 +130,7 @@ fn velocity_layers_of_one_object_agree_in_frequency() {
 
 /// Time a pulse stays above half its peak, s, of an oscilloscope's text file.
 fn half_width_s(name: &str) -> Option<f64> {
-    let text = std::fs::read_to_string(corpus("impacts")?.join("impacts").join(name)).unwrap();
+    let text = std::fs::read_to_string(corpus("impacts")?.join(name)).unwrap();
     let rows: Vec<(f64, f64)> = text
         .lines()
         .skip(5)

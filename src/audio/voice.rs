@@ -7,16 +7,17 @@ mod excitation;
 mod fades;
 mod high_passes;
 mod landing;
+mod role;
 mod scratch;
 mod watching;
 
 pub(crate) use events::EMPTY_FORCE_N;
 use excitation::LONGEST_COLLISION_S;
+pub(crate) use role::Role;
 
 use crate::audio::seat::{Noise, Seat};
 use crate::audio::tap::Tap;
-use crate::model::event::{ContactId, Touching};
-use crate::model::id::{BodyId, ProbeId};
+use crate::model::event::ContactId;
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::probe::PreparedProbe;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
@@ -87,37 +88,6 @@ pub(crate) enum Phase {
     Sounding,
     /// Going silent within `left` samples.
     Fading { left: u32 },
-}
-
-/// What touches, who feels it and what is held: fixed while a contact lasts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Role {
-    /// Haptic channel; none = heard only.
-    pub(crate) actuator: Option<usize>,
-    /// Place of the probe; none = the engine's own.
-    pub(crate) probe: Option<usize>,
-    /// What rings with it.
-    pub(crate) holder: Option<BodyId>,
-    pub(crate) gain: f64,
-    pub(crate) importance: f64,
-}
-
-impl Default for Role {
-    fn default() -> Self {
-        Self { actuator: None, probe: None, holder: None, gain: 1.0, importance: 1.0 }
-    }
-}
-
-impl From<&Touching> for Role {
-    fn from(touching: &Touching) -> Self {
-        Self {
-            actuator: touching.actuator.map(|actuator| usize::from(actuator.0)),
-            probe: touching.probe.map(ProbeId::index),
-            holder: touching.holder,
-            gain: touching.gain,
-            importance: touching.importance,
-        }
-    }
 }
 
 /// One contact.

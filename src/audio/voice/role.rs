@@ -1,0 +1,35 @@
+//! The part a contact plays: what touches, who feels it, what is held.
+
+use crate::model::event::Touching;
+use crate::model::id::{BodyId, ProbeId};
+
+/// What touches, who feels it and what is held: fixed while a contact lasts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Role {
+    /// Haptic channel; none = heard only.
+    pub(crate) actuator: Option<usize>,
+    /// Place of the probe; none = the engine's own.
+    pub(crate) probe: Option<usize>,
+    /// What rings with it.
+    pub(crate) holder: Option<BodyId>,
+    pub(crate) gain: f64,
+    pub(crate) importance: f64,
+}
+
+impl Default for Role {
+    fn default() -> Self {
+        Self { actuator: None, probe: None, holder: None, gain: 1.0, importance: 1.0 }
+    }
+}
+
+impl From<&Touching> for Role {
+    fn from(touching: &Touching) -> Self {
+        Self {
+            actuator: touching.actuator.map(|actuator| usize::from(actuator.0)),
+            probe: touching.probe.map(ProbeId::index),
+            holder: touching.holder,
+            gain: touching.gain,
+            importance: touching.importance,
+        }
+    }
+}
