@@ -7,7 +7,7 @@
 //! ```
 //! | symbol | here |
 //! |---|---|
-//! | c, s | [`Grid`]: the reference's mean and a tenth of its deviation |
+//! | c, s | `Grid`: the reference's mean and a tenth of its deviation |
 //!
 //! Bins are 10⁻⁴ of the deviation wide in the middle and a thousandth of the value outside, so that what lies between two
 //! edges may be taken as even. Where it may not, because many numbers of one bin have to be spread (a flat original), ranks
