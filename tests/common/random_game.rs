@@ -4,8 +4,8 @@
 
 use crate::common::{bar, grating, plate};
 use asperity::{
-    Actuator, BodyId, Config, ContactEvent, ContactId, ContactSample, Excitation, Impact, Material,
-    ModalModel, Renderer, Residual, Scene, SurfaceId,
+    Actuator, AudioBus, BodyId, Config, ContactEvent, ContactId, ContactSample, Excitation, Impact, Material,
+    ModalModel, ProbeId, Renderer, Residual, Scene, SurfaceId, Touching, probe_by_name,
 };
 use asperity_dsp::rng::Rng;
 
@@ -20,6 +20,7 @@ pub struct RandomGame {
     pub scene: Scene,
     surfaces: [SurfaceId; 3],
     bodies: [BodyId; 2],
+    probes: [ProbeId; 2],
     pub rng: Rng,
     /// How far it has come.
     pub time_s: f64,
@@ -28,7 +29,8 @@ pub struct RandomGame {
 impl RandomGame {
     /// A game that is the same for the same seed, with fewer voices than fingers and a short time-out.
     pub fn new(seed: u64) -> (Self, Renderer) {
-        let config = Config { max_contacts: 6, contact_timeout_s: 0.05, ..Config::default() };
+        let audio = vec![AudioBus::default(); 2];
+        let config = Config { max_contacts: 6, contact_timeout_s: 0.05, audio, ..Config::default() };
         let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let bodies = [scene.add_body(clicking_bar()).unwrap(), scene.add_body(bar()).unwrap()];
         let surfaces = [
@@ -36,7 +38,8 @@ impl RandomGame {
             scene.add_surface(plate(1.0).on(bodies[1])).unwrap(),
             scene.add_surface(plate(0.0)).unwrap(),
         ];
-        (Self { scene, surfaces, bodies, rng: Rng::new(seed), time_s: 0.0 }, renderer)
+        let probes = ["stylus", "rigid"].map(|name| scene.add_probe(probe_by_name(name).unwrap()).unwrap());
+        (Self { scene, surfaces, bodies, probes, rng: Rng::new(seed), time_s: 0.0 }, renderer)
     }
 
     /// Mostly 0–1, and now and then what no game should report.
@@ -63,7 +66,7 @@ impl RandomGame {
             };
             let surface = self.surfaces[self.rng.next_u32() as usize % self.surfaces.len()];
             let event = match self.rng.next_u32() % 12 {
-                0 | 1 => ContactEvent::begin(contact, surface, Actuator(0), sample),
+                0 | 1 => ContactEvent::begin_with(contact, self.touching(contact, surface), sample),
                 2 => ContactEvent::end(contact),
                 3 => ContactEvent::Impact(Impact {
                     body: self.bodies[0],
@@ -74,6 +77,8 @@ impl RandomGame {
                     striker: Material::STEEL,
                     restitution: 0.7,
                     position: 0,
+                    holder: Some(self.bodies[1]),
+                    probe: Some(self.probes[0]),
                     ..Impact::on(self.bodies[0])
                 }),
                 _ => ContactEvent::moved(contact, sample),
@@ -82,6 +87,16 @@ impl RandomGame {
             let _ = self.scene.report(self.time_s, event);
         }
         self.swap();
+    }
+
+    /// A finger, a stylus that a body holds, and a stick that nobody feels.
+    fn touching(&self, contact: ContactId, surface: SurfaceId) -> Touching {
+        let here = Touching::on(surface);
+        match contact.0 % 3 {
+            0 => here.felt_by(Actuator(0)),
+            1 => here.felt_by(Actuator(0)).with(self.probes[0]).held_by(self.bodies[1]).gain(0.8),
+            _ => here.with(self.probes[1]),
+        }
     }
 
     fn swap(&mut self) {
@@ -105,6 +120,9 @@ impl RandomGame {
             3 => {
                 let gain = self.rng.uniform();
                 let _ = self.scene.set_haptic_gain(Actuator(0), gain);
+                let _ = self.scene.set_body_bus(body, usize::from(gain > 0.5));
+                // No source here takes it; its box goes home all the same.
+                let _ = self.scene.change_surface(self.surfaces[which], gain);
             }
             4 => {
                 let removed = self.scene.remove_body(self.bodies[which % 2]).is_ok();

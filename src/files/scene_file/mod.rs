@@ -299,18 +299,13 @@ fn read_probes(top: &mut Fields) -> Result<(ProbeEntry, Vec<(String, ProbeEntry)
     }
     let (mut default, mut named) = (None, Vec::<(String, ProbeEntry)>::new());
     for mut fields in top.tables("probe")? {
-        let name = fields.text("name")?;
-        let twice = |right| Err(fields.refuse("name", "is used twice", right));
-        match name {
+        match fields.text("name")? {
             None if default.is_some() => {
-                return Err(fields.refuse(
-                    "name",
-                    "is missing for the second time",
-                    "only one probe is the default",
-                ));
+                let right = "only one probe is the default";
+                return Err(fields.refuse("name", "is missing for the second time", right));
             }
             Some(name) if named.iter().any(|(known, _)| *known == name) => {
-                return twice("give each a name of its own");
+                return Err(fields.refuse("name", "is used twice", "give each a name of its own"));
             }
             None => default = Some(read_probe(fields)?),
             Some(name) => named.push((name, read_probe(fields)?)),
