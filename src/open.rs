@@ -1,12 +1,13 @@
 //! From a scene file to a running engine.
 
+pub mod levels;
 mod source;
 
 use crate::engine::Engine;
 use crate::files::FileError;
 use crate::files::scene_file::{
-    ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MakeSource, MaterialEntry, Pixels,
-    ProbeEntry, Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
+    ActuatorEntry, ActuatorOutput, AudioEntry, Excitation as ExcitationEntry, MakeSource, MaterialEntry,
+    Pixels, ProbeEntry, Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
 };
 use crate::model::probe::{PROBE_PRESETS, probe_by_name};
 use crate::{
@@ -17,6 +18,7 @@ use asperity_texture::height_map::HeightMap;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::raster::Raster;
 use asperity_texture::sand::SandWorker;
+use levels::Levels;
 use source::Ground;
 use std::cell::RefCell;
 use std::path::Path;
@@ -57,8 +59,30 @@ impl Engine {
 }
 
 fn build(file: &SceneFile, overrides: &Overrides) -> Result<Engine, FileError> {
+    let trial = |levels: &Levels| {
+        let plain = |mut config: Config| {
+            for actuator in &mut config.actuators {
+                (actuator.equalise, actuator.limit, actuator.limit_peaks) = (None, None, false);
+            }
+            config.audio.iter_mut().for_each(|bus| bus.limit = false);
+            config
+        };
+        assemble(file, &Overrides { live: false, ..*overrides }, levels, plain)
+    };
+    let levels = levels::resolve(file, trial)?;
+    let mut engine = assemble(file, overrides, &levels, |config| config)?;
+    engine.levels = levels;
+    Ok(engine)
+}
+
+fn assemble(
+    file: &SceneFile,
+    overrides: &Overrides,
+    levels: &Levels,
+    change: impl FnOnce(Config) -> Config,
+) -> Result<Engine, FileError> {
     let at = |error: FileError| error.within(file.path.display());
-    let config = config(file, overrides).map_err(at)?;
+    let config = change(config(file, overrides, levels).map_err(at)?);
     let (seed, rate_hz) = (config.seed, config.inner_rate_hz());
     let Engine { mut scene, renderer, mut names, .. } =
         config.build().map_err(|error| at(FileError::told(error)))?;
@@ -101,10 +125,10 @@ fn build(file: &SceneFile, overrides: &Overrides) -> Result<Engine, FileError> {
         let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
-    Ok(Engine { scene, renderer, names, workers: workers.into_inner() })
+    Ok(Engine { scene, renderer, names, workers: workers.into_inner(), levels: Levels::default() })
 }
 
-fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, FileError> {
+fn config(file: &SceneFile, overrides: &Overrides, levels: &Levels) -> Result<Config, FileError> {
     let default = Config::default();
     let folder = file.path.parent().unwrap_or(Path::new(""));
     Ok(Config {
@@ -113,12 +137,17 @@ fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, FileError> 
         path: overrides.path.unwrap_or(default.path),
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: probe(&file.probe).map_err(|error| error.within("probe"))?,
-        actuators: file.actuators.iter().map(|entry| actuator(entry, folder)).collect::<Result<_, _>>()?,
-        // A sound card clips what exceeds full scale.
+        actuators: file
+            .actuators
+            .iter()
+            .zip(&levels.full_scale)
+            .map(|(entry, full_scale)| actuator(entry, *full_scale, folder))
+            .collect::<Result<_, _>>()?,
         audio: file
             .audio
             .iter()
-            .map(|bus| AudioBus { gain: bus.gain, limit: bus.limit || overrides.live })
+            .zip(&levels.gain)
+            .map(|(bus, gain)| bus_of(bus, *gain, file, overrides))
             .collect(),
         max_surfaces: default.max_surfaces.max(file.surfaces.len()),
         max_bodies: default.max_bodies.max(file.bodies.len()),
@@ -144,20 +173,32 @@ fn probe(entry: &ProbeEntry) -> Result<Probe, FileError> {
         finger_mass_kg: entry.finger_mass_kg.unwrap_or(preset.finger_mass_kg),
         contact_stiffness_n_m: entry.contact_stiffness_n_m.unwrap_or(preset.contact_stiffness_n_m),
         leash_m: entry.leash_m.unwrap_or(preset.leash_m),
+        tip_radius_m: entry.tip_radius_m.unwrap_or(preset.tip_radius_m),
+        force_exponent: entry.force_exponent.unwrap_or(preset.force_exponent),
     })
 }
 
-fn actuator(entry: &ActuatorEntry, folder: &Path) -> Result<ActuatorSettings, FileError> {
+/// A bus without a word about a limiter has one where something is known to clip or nobody knows: before a sound card, where a device is
+/// named, behind a level that nobody wrote.
+fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides) -> AudioBus {
+    let names_device =
+        file.actuators.iter().any(|actuator| actuator.equalise.is_some() || actuator.limit.is_some());
+    let limit = entry.limit.unwrap_or(overrides.live || names_device || entry.gain.is_none());
+    AudioBus { gain, limit: limit || overrides.live }
+}
+
+fn actuator(entry: &ActuatorEntry, full_scale: f64, folder: &Path) -> Result<ActuatorSettings, FileError> {
     Ok(ActuatorSettings {
         output: match entry.output {
             ActuatorOutput::Displacement => Quantity::Displacement,
             ActuatorOutput::Acceleration => Quantity::Acceleration,
         },
-        full_scale: entry.full_scale,
+        full_scale,
+        lowpass_hz: entry.lowpass_hz,
         highpass_hz: entry.highpass_hz,
         equalise: device("equalise", entry.equalise.as_deref(), folder)?,
         limit: device("limit", entry.limit.as_deref(), folder)?,
-        limit_peaks: entry.limit_peaks,
+        limit_peaks: entry.limit_peaks.unwrap_or(entry.full_scale.is_none() && entry.limit.is_none()),
         ..ActuatorSettings::default()
     })
 }
@@ -229,6 +270,9 @@ fn surface(entry: &SurfaceEntry, body: Option<BodyId>, ground: Ground<'_>) -> Re
     };
     if let Some(rms_m) = entry.micro_relief_m {
         surface = surface.micro_relief_m(rms_m);
+    }
+    if let Some(wavelength_m) = entry.outer_scale_m {
+        surface = surface.outer_scale_m(wavelength_m);
     }
     if let Some(friction) = entry.friction {
         surface = surface.friction(friction);

@@ -43,6 +43,8 @@ pub struct Scene {
     surfaces: Places<KnownSurface>,
     bodies: Places<KnownBody>,
     probes: Places<()>,
+    /// Radii of the tips that surfaces get ready for, m.
+    tips_m: Vec<f64>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     to_audio: Sender<Message>,
@@ -79,6 +81,7 @@ impl Scene {
             surfaces: Places::new(config.max_surfaces, "surfaces"),
             bodies: Places::new(config.max_bodies, "bodies"),
             probes: Places::new(config.max_probes, "probes"),
+            tips_m: vec![config.probe.tip_radius_m],
             reported: Reported::default(),
             held: Vec::new(),
             config,
@@ -172,9 +175,13 @@ impl Scene {
     pub fn add_probe(&mut self, probe: Probe) -> Result<ProbeId, AddError> {
         let id = ProbeId(self.probes.free()?);
         let Config { probe: own, integrator, .. } = &self.config;
+        let tip_m = probe.tip_radius_m;
         let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz())?;
         self.send(Message::AddProbe { index: id.index(), probe: Box::new(probe) })?;
         self.probes.set(id.0, ());
+        if !self.tips_m.contains(&tip_m) {
+            self.tips_m.push(tip_m);
+        }
         Ok(id)
     }
 
@@ -203,6 +210,9 @@ impl Scene {
         let mut surface = surface.checked()?.tiled();
         let setup = Setup { sample_rate_hz: self.config.inner_rate_hz(), voices: self.config.voices() };
         surface.source.prepare(&setup)?;
+        for radius_m in &self.tips_m {
+            surface.source.prepare_tip(*radius_m);
+        }
         let silent = KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let stroking = self.stroking(body)?;
@@ -210,7 +220,8 @@ impl Scene {
         let period_m = surface.wrap_period_m();
         let trajectory =
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
-        let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
+        let relief = (surface.micro_relief_m, surface.outer_scale_m);
+        let overlay = Overlay::new(period_m, surface.source.band().shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
         self.send(Message::SetSurface { id, surface })?;

@@ -26,6 +26,7 @@ pub mod deband;
 #[cfg(feature = "image")]
 pub mod image_io;
 mod resample;
+pub mod ridden;
 mod spline;
 pub mod stl;
 pub mod wrap;

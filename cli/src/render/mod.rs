@@ -14,12 +14,14 @@ use asperity::files::scene_file::SceneFile;
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
+use asperity::open::levels::Levels;
 use asperity::{Integrator, PathMode, SurfaceId};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
 use recorder::Recorder;
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -117,6 +119,12 @@ pub struct Report {
     pub haptic_peak: Vec<f32>,
     /// Events of contacts that nobody began, or whose voice was stolen.
     pub orphaned: u64,
+    /// m or m/s² at sample value 1 of each haptic channel, written or by the level policy.
+    pub full_scale: Vec<f64>,
+    /// Gain of the audio, written or by the level policy; a list where there are several buses.
+    pub gain: Value,
+    /// By how much the peak limiters turned down at most, dB.
+    pub limiter_db: f64,
     /// Contacts faded because nothing was heard of them.
     pub lapsed: u64,
     /// Rate of both WAV files.
@@ -196,6 +204,10 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let built = Engine::from_scene(&file, &overrides)?;
     let names: Vec<(String, SurfaceId)> =
         built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
+    let levels = built.levels.clone();
+    for (actuator, full_scale) in file.actuators.iter_mut().zip(&levels.full_scale) {
+        actuator.full_scale = Some(*full_scale);
+    }
     let rate_hz = built.renderer.sample_rate_hz();
     let duration_s = log.end_s() + file.tail_s;
     check_length(&file, duration_s, rate_hz)?;
@@ -209,7 +221,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     wav::write(&mut outputs, &with_suffix(stem, "audio.wav"), &audio, rate_hz)?;
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
-    let mut report = report(&render, watching);
+    let mut report = report(&render, levels, watching);
     report.warnings = unread.iter().map(|place| told::read_past(place)).collect();
     report.warnings.extend(told::warnings(&file, &log, &render, &report));
     for sand in &render.sand {
@@ -370,7 +382,7 @@ fn peak(samples: &[f32]) -> f32 {
     samples.iter().fold(0.0, |peak, sample| sample.abs().max(peak))
 }
 
-fn report(render: &Render, watching: Duration) -> Report {
+fn report(render: &Render, levels: Levels, watching: Duration) -> Report {
     let stats = &render.stats;
     let processing_s = render.processing.saturating_sub(watching).as_secs_f64().max(1e-9);
     Report {
@@ -385,12 +397,23 @@ fn report(render: &Render, watching: Duration) -> Report {
         audio_peak: render.audio.iter().map(|bus| peak(bus)).fold(0.0, f32::max),
         bus_peak: render.audio.iter().map(|bus| peak(bus)).collect(),
         haptic_peak: render.haptic.iter().map(|channel| peak(channel)).collect(),
+        full_scale: levels.full_scale,
+        gain: one_or_all(levels.gain),
+        limiter_db: render.limiter_db,
         orphaned: stats.orphaned,
         lapsed: stats.lapsed,
         sample_rate_hz: render.sample_rate_hz,
         sand: BTreeMap::new(),
         files: Vec::new(),
         warnings: Vec::new(),
+    }
+}
+
+/// A number where there is one bus, a list where there are several.
+fn one_or_all(gain: Vec<f64>) -> Value {
+    match gain.as_slice() {
+        [only] => Value::from(*only),
+        all => Value::from(all.to_vec()),
     }
 }
 

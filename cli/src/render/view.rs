@@ -25,7 +25,7 @@ pub fn draw(
             ActuatorOutput::Displacement => ("displacement", "m"),
             ActuatorOutput::Acceleration => ("acceleration", "m/s²"),
         };
-        HapticChannel { quantity, unit, full_scale: actuator.full_scale, samples }
+        HapticChannel { quantity, unit, full_scale: actuator.full_scale.unwrap_or(1.0), samples }
     });
     let impacts_s = log
         .lines

@@ -106,6 +106,10 @@ pub struct ProbeEntry {
     pub contact_stiffness_n_m: Option<f64>,
     /// How far the finger may leave the surface, m.
     pub leash_m: Option<f64>,
+    /// Radius of the sphere that rides on surfaces, m; 0 = a point.
+    pub tip_radius_m: Option<f64>,
+    /// n of the contact's stiffness, k ∝ Fⁿ.
+    pub force_exponent: Option<f64>,
 }
 
 /// One haptic channel.
@@ -113,27 +117,30 @@ pub struct ProbeEntry {
 pub struct ActuatorEntry {
     /// What the channel carries.
     pub output: ActuatorOutput,
-    /// Metres or m/s² at sample value 1.
-    pub full_scale: f64,
+    /// Metres or m/s² at sample value 1; none = by the level policy.
+    pub full_scale: Option<f64>,
+    /// Cutoff of the low-pass that keeps to the band of touch, Hz; 0 = off, none = the engine's default.
+    pub lowpass_hz: Option<f64>,
     /// Cutoff of the high-pass about the mean surface, Hz; 0 = off.
     pub highpass_hz: f64,
     /// Name of a device profile whose response is inverted; none = no equaliser.
     pub equalise: Option<String>,
     /// Name of the device profile whose excursion and heat are kept within limits; none = no limit.
     pub limit: Option<String>,
-    /// Keeps the channel within ±1, whatever the device.
-    pub limit_peaks: bool,
+    /// Keeps the channel within ±1, whatever the device; none = where the level is by policy.
+    pub limit_peaks: Option<bool>,
 }
 
 impl Default for ActuatorEntry {
     fn default() -> Self {
         Self {
             output: ActuatorOutput::Displacement,
-            full_scale: 1e-4,
+            full_scale: None,
+            lowpass_hz: None,
             highpass_hz: 10.0,
             equalise: None,
             limit: None,
-            limit_peaks: false,
+            limit_peaks: None,
         }
     }
 }
@@ -152,10 +159,10 @@ pub enum ActuatorOutput {
 pub struct AudioEntry {
     /// Name that bodies use; none for a single bus.
     pub name: Option<String>,
-    /// Linear gain.
-    pub gain: f64,
-    /// Keeps the channel within ±1.
-    pub limit: bool,
+    /// Linear gain; none = by the level policy.
+    pub gain: Option<f64>,
+    /// Keeps the channel within ±1; none = before a sound card, where a device is named, and where the gain is by policy.
+    pub limit: Option<bool>,
 }
 
 impl SceneFile {
@@ -324,6 +331,8 @@ fn read_probe(mut fields: Fields) -> Result<ProbeEntry, FileError> {
         contact_stiffness_n_m: fields
             .number("contact_stiffness_n_m", limits::probe::CONTACT_STIFFNESS_N_M)?,
         leash_m: fields.number("leash_m", limits::probe::LEASH_M)?,
+        tip_radius_m: fields.number("tip_radius_m", limits::probe::TIP_RADIUS_M)?,
+        force_exponent: fields.number("force_exponent", limits::probe::FORCE_EXPONENT)?,
     };
     fields.finish()?;
     Ok(probe)
@@ -336,10 +345,12 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
     let output = fields.word("output", &words)?.unwrap_or(default.output);
     let equalise = fields.text("equalise")?.filter(|name| name != "none");
     let (limit, limit_peaks) = match fields.take("limit") {
-        None | Some(Value::Boolean(false)) => (None, false),
+        // A device that is named is kept whole unless the scene says otherwise.
+        None => (equalise.clone(), None),
+        Some(Value::Boolean(false)) => (None, Some(false)),
         // The limits of the device that is equalised; without one, those of the file: full scale.
-        Some(Value::Boolean(true)) => (equalise.clone(), equalise.is_none()),
-        Some(Value::String(device)) => (Some(device), false),
+        Some(Value::Boolean(true)) => (equalise.clone(), Some(equalise.is_none())),
+        Some(Value::String(device)) => (Some(device), Some(false)),
         Some(other) => {
             let what = format!("{} is refused", fields::shown(&other));
             return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
@@ -347,13 +358,8 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
     };
     let actuator = ActuatorEntry {
         output,
-        full_scale: match fields.number("full_scale", limits::output::FULL_SCALE)? {
-            Some(full_scale) => full_scale,
-            None if output == ActuatorOutput::Displacement => default.full_scale,
-            None => {
-                return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0"));
-            }
-        },
+        full_scale: fields.number("full_scale", limits::output::FULL_SCALE)?,
+        lowpass_hz: fields.number("lowpass_hz", limits::output::LOWPASS_HZ)?,
         highpass_hz: fields.number_or("highpass_hz", default.highpass_hz, limits::output::HIGHPASS_HZ)?,
         equalise,
         limit,
@@ -367,7 +373,7 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
 fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
     if !top.is_list("audio") {
         let only = top.table("audio")?.map(read_audio).transpose()?;
-        return Ok(vec![only.unwrap_or(AudioEntry { name: None, gain: 1.0, limit: false })]);
+        return Ok(vec![only.unwrap_or(AudioEntry { name: None, gain: None, limit: None })]);
     }
     let buses = top.tables("audio")?.into_iter().map(read_audio).collect::<Result<Vec<_>, _>>()?;
     for (index, bus) in buses.iter().enumerate() {
@@ -393,8 +399,8 @@ fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
 fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
     let audio = AudioEntry {
         name: fields.text("name")?,
-        gain: fields.number_or("gain", 1.0, limits::output::AUDIO_GAIN)?,
-        limit: fields.flag("limit")?.unwrap_or(false),
+        gain: fields.number("gain", limits::output::AUDIO_GAIN)?,
+        limit: fields.flag("limit")?,
     };
     fields.finish()?;
     Ok(audio)

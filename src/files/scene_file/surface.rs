@@ -27,6 +27,8 @@ pub struct SurfaceEntry {
     pub height_m: f64,
     /// Level of the 1/f^α overlay; none = the engine's default.
     pub micro_relief_m: Option<f64>,
+    /// Wavelength beyond which the overlay is flat, m; none = the engine's default.
+    pub outer_scale_m: Option<f64>,
     /// What lies beyond the edge.
     pub wrap: Wrap,
     /// What sliding sends to the body; none = the engine's default.
@@ -91,6 +93,7 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError
         width_m: fields.needed_number("width_m", limits::SIDE_M)?,
         height_m: fields.needed_number("height_m", limits::SIDE_M)?,
         micro_relief_m: fields.number("micro_relief_m", limits::MICRO_RELIEF_M)?,
+        outer_scale_m: fields.number("outer_scale_m", limits::OUTER_SCALE_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?,
         friction: fields.number("friction", limits::FRICTION)?,
