@@ -174,7 +174,11 @@ fn probe(entry: &ProbeEntry) -> Result<Probe, FileError> {
         contact_stiffness_n_m: entry.contact_stiffness_n_m.unwrap_or(preset.contact_stiffness_n_m),
         leash_m: entry.leash_m.unwrap_or(preset.leash_m),
         tip_radius_m: entry.tip_radius_m.unwrap_or(preset.tip_radius_m),
-        force_exponent: entry.force_exponent.unwrap_or(preset.force_exponent),
+        force_exponent: entry.force_exponent.unwrap_or(match entry.contact_stiffness_n_m {
+            // A stiffness that is written is one, whatever presses.
+            Some(_) => 0.0,
+            None => preset.force_exponent,
+        }),
     })
 }
 

@@ -114,6 +114,11 @@ impl Tap for Rows {
     }
 }
 
+/// k_m Fⁿ under the 0.6 N of these strokes.
+fn stiffness_n_m(probe: &Probe) -> f64 {
+    probe.contact_stiffness_n_m * 0.6f64.powf(probe.force_exponent)
+}
+
 /// |x_s / x_m| of a pressed probe: k_m over k_m and the probe's dynamic stiffness.
 fn pressed_gain(probe: &Probe, frequency_hz: f64) -> f64 {
     let w = TAU * frequency_hz;
@@ -123,8 +128,9 @@ fn pressed_gain(probe: &Probe, frequency_hz: f64) -> f64 {
     let below = [tie[0] + mass, tie[1]];
     let square = below[0] * below[0] + below[1] * below[1];
     let behind = multiply(multiply(tie, [mass, 0.0]), [below[0] / square, -below[1] / square]);
-    let all = [probe.contact_stiffness_n_m - probe.pad_mass_kg * w * w + behind[0], behind[1]];
-    probe.contact_stiffness_n_m / all[0].hypot(all[1])
+    let stiffness_n_m = stiffness_n_m(probe);
+    let all = [stiffness_n_m - probe.pad_mass_kg * w * w + behind[0], behind[1]];
+    stiffness_n_m / all[0].hypot(all[1])
 }
 
 fn amplitude(x: &[f64], frequency_hz: f64) -> f64 {
@@ -147,7 +153,7 @@ fn over_one_plate_the_pads_of_three_probes_move_as_their_closed_forms_say() {
         for frequency_hz in [20.0, 40.0, 80.0, 160.0, 315.0, 630.0, 1000.0] {
             // So low that the probe never leaves it: a tenth of what it is pressed in, at the wave's own acceleration.
             let w = TAU * frequency_hz;
-            let dynamic = probe.contact_stiffness_n_m * pressed_gain(&probe, frequency_hz);
+            let dynamic = stiffness_n_m(&probe) * pressed_gain(&probe, frequency_hz);
             let amplitude_m = (0.05 * 0.6 / dynamic).min(0.02 * 0.6 / ((probe.pad_mass_kg + 0.02) * w * w));
             let speed_m_s = 0.1;
             let wavelength_m = speed_m_s / frequency_hz;

@@ -238,5 +238,6 @@ fn a_rough_map_is_not_rough_twice() {
     let map = || HeightMap::new(&relief, extent, Wrap::Repeat).unwrap();
     let level = |surface: Surface| common::rms(&felt(surface, &laps(1.0, |u| u)).1[4410..]);
     let db = 20.0 * (level(surface(map())) / level(surface(map()).micro_relief_m(0.0))).log10();
-    assert!(db.abs() < 0.5, "{db} dB");
+    // 9 µm of micro-relief at R = 0.5, below two texels, on 50 µm of its own.
+    assert!(db.abs() < 0.8, "{db} dB");
 }

@@ -220,7 +220,8 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
         let louder = 20.0 * (common::rms(&found) / common::rms(&wanted)).log10();
         println!("level {level}: error {error:.1} dB, {louder:+.2} dB louder");
         errors.push(error);
-        assert!(louder.abs() < 20.0, "level {level} is {louder} dB louder");
+        // Without their finest octaves the pads no longer leave the ground, and the micro-collisions fall silent.
+        assert!(louder.abs() < 30.0, "level {level} is {louder} dB louder");
         assert!(late.scene.stats().shed > shed, "level {level} leaves something out");
         shed = late.scene.stats().shed;
         assert_eq!(late.scene.stats().contacts, 10);

@@ -157,7 +157,9 @@ fn every_stiffness_mass_integrator_and_rate_stays_within_what_force_and_relief_c
 fn an_undamped_pad_that_bounces_for_ten_seconds_never_rises_higher_than_its_energy_lets_it() {
     for integrator in [Integrator::ExactEvent, Integrator::EnergyConserving] {
         for contact_stiffness_n_m in [5e4, 5e6] {
-            let probe = Probe { pad_damping_n_s_m: 0.0, contact_stiffness_n_m, ..Probe::default() };
+            let force_exponent = 0.0;
+            let probe =
+                Probe { pad_damping_n_s_m: 0.0, contact_stiffness_n_m, force_exponent, ..Probe::default() };
             let (speed_m_s, force_n) = (0.05, 0.3);
             let mut run = Run::new(Config { integrator, probe, ..Config::default() }, plate(0.0));
             run.begin(ContactSample { closing_m_s: speed_m_s, ..pressed(0.2, 0.0, force_n) });

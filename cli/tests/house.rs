@@ -9,7 +9,7 @@ fn with(more: &str) -> Scene {
     let scene = Scene::new();
     let pen =
         "[[body]]\nname = \"pen\"\nmodes = \"bar.modes.json\"\nmaterial = \"steel\"\nbus = \"right\"\n\n";
-    let buses = "\n[[audio]]\nname = \"left\"\n[[audio]]\nname = \"right\"\ngain = 1.0\n";
+    let buses = "\n[[audio]]\nname = \"left\"\ngain = 1.0\n[[audio]]\nname = \"right\"\ngain = 1.0\n";
     let probes = "\n[[probe]]\npreset = \"fingertip\"\n[[probe]]\nname = \"stylus\"\npreset = \"stylus\"\n";
     scene.write(
         "scene.toml",

@@ -25,13 +25,15 @@ fn a_render_writes_two_float_files_of_equal_length() {
 fn a_surface_excites_the_strike_position_it_names() {
     let scene = Scene::new();
     let peak = |scene: &Scene| scene.report(&[])["audio_peak"].as_f64().unwrap();
+    let toml = format!("{TOML}\n[audio]\ngain = 1.0\n");
+    scene.write("scene.toml", &toml);
     let own = peak(&scene);
     // Half as loud at position 1, a node of every mode at position 2.
     let modes = MODES.trim_end_matches('}');
     scene.write("bar.modes.json", format!("{modes},\"positions\":[[0.15,0.05],[0.0,0.0]]}}"));
     let at = |position: usize| {
         let surface = format!("body = \"bar\"\nstrike_position = {position}\nwidth_m");
-        scene.write("scene.toml", TOML.replace("body = \"bar\"\nwidth_m", &surface));
+        scene.write("scene.toml", toml.replace("body = \"bar\"\nwidth_m", &surface));
         peak(&scene)
     };
     assert!((at(0) / own - 1.0).abs() < 1e-3);

@@ -18,6 +18,7 @@ use crate::files::FileError;
 use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, LogSample, Striker};
 use crate::files::scene_file::{ActuatorOutput, SceneFile, Source};
 use crate::offline::{self, Options, Render};
+use asperity_dsp::limits::output as limits;
 
 /// Speed of the reference stroke, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 0.1;
@@ -100,6 +101,7 @@ pub(super) fn resolve(
             (_, true) => STRIKE_REFERENCE / struck,
             _ => 1.0,
         };
+        *level = level.min(limits::AUDIO_GAIN.high);
     }
     Ok(levels)
 }

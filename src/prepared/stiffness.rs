@@ -4,9 +4,9 @@
 //! 1/k(F) = 1/(k_m Fⁿ) + 1/(k_g Fᵍ)        k_g = (6 E*² r)^(1/3),  F in newtons
 //! ```
 //! k_m and n are the probe's. k_g is the slope at 1 N of Hertz' sphere of the tip's radius r on ground of the modulus
-//! E* = E/(1 − ν²); g is ⅓ with it, and 0.8 on what is soft, because pile and foam close up under load (0.7–0.8, fitted to published strokes
-//! with a tool: Culbertson, Lopez Delgado, Kuchenbecker 2014). Stone, wood and plastic are hundreds of times stiffer than a probe and
-//! change nothing; rubber and foam are softer and are felt softer.
+//! E* = E/(1 − ν²), and g = 0.8, because pile and foam close up under load (0.7–0.8, fitted to published strokes with a tool:
+//! Culbertson, Lopez Delgado, Kuchenbecker 2014). From 0.1 GPa on ground counts as rigid and k = k_m Fⁿ: stone, wood and plastic do not give
+//! way beside skin or a hand-held tool. Rubber and foam do, and are felt softer.
 
 use crate::model::material::Material;
 use asperity_dsp::DesignError;
@@ -14,9 +14,9 @@ use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe, RUNGS_AN_OCTA
 
 /// Forces between which the laws hold, N; beyond, the nearer end counts.
 const FORCE_N: (f64, f64) = (0.01, 300.0);
-/// Ground of a lower modulus is soft, Pa.
+/// Ground of a lower modulus gives way, Pa.
 const SOFT_PA: f64 = 1e8;
-/// g of soft ground.
+/// g.
 const SOFT_EXPONENT: f64 = 0.8;
 /// Least radius with which a probe presses on its ground, m: the exciter's.
 const LEAST_RADIUS_M: f64 = crate::model::surface::EXCITER_RADIUS_M;
@@ -27,15 +27,19 @@ const OCTAVES: (usize, usize) = (5, 3);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ground {
     modulus_pa: f64,
-    exponent: f64,
+    hard: bool,
 }
 
 impl Ground {
     /// Of a material.
     pub(crate) fn of(material: Material) -> Self {
         let modulus_pa = material.young_pa / (1.0 - material.poisson * material.poisson);
-        let exponent = if material.young_pa < SOFT_PA { SOFT_EXPONENT } else { 1.0 / 3.0 };
-        Self { modulus_pa, exponent }
+        Self { modulus_pa, hard: material.young_pa >= SOFT_PA }
+    }
+
+    /// Whether it counts as rigid beside a probe.
+    fn is_hard(&self) -> bool {
+        self.hard
     }
 }
 
@@ -43,9 +47,12 @@ impl Ground {
 pub(crate) fn stiffness_n_m(probe: &Probe, ground: &Ground, force_n: f64) -> f64 {
     let force_n = within(force_n);
     let own_n_m = probe.contact_stiffness_n_m * force_n.powf(probe.force_exponent);
+    if ground.is_hard() {
+        return own_n_m;
+    }
     let radius_m = probe.tip_radius_m.max(LEAST_RADIUS_M);
     let ground_n_m =
-        (6.0 * ground.modulus_pa * ground.modulus_pa * radius_m).cbrt() * force_n.powf(ground.exponent);
+        (6.0 * ground.modulus_pa * ground.modulus_pa * radius_m).cbrt() * force_n.powf(SOFT_EXPONENT);
     own_n_m * ground_n_m / (own_n_m + ground_n_m)
 }
 

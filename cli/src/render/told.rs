@@ -17,7 +17,10 @@ pub fn warnings(file: &SceneFile, log: &ContactLog, render: &Render, report: &Re
     let lost = render.why_silent.iter().filter(|reason| reason.count() > 0);
     let mut told: Vec<String> = lost.map(|reason| in_words(reason, log, render)).collect();
     told.extend(clipped(report));
-    told.extend(turned_down(report));
+    // Who asked for a limiter knows that it works.
+    let asked = file.audio.iter().any(|bus| bus.limit == Some(true))
+        || file.actuators.iter().any(|actuator| actuator.limit_peaks == Some(true));
+    told.extend(turned_down(report).filter(|_| !asked));
     told.extend(silence(file, log, render, report));
     told
 }

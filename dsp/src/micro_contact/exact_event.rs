@@ -66,9 +66,9 @@ impl ExactEvent {
     }
 
     /// The scheme between two that differ in the contact's stiffness.
-    pub fn become_between(&mut self, softer: &Self, harder: &Self, share: f64) {
+    pub fn become_between(&mut self, softer: &Self, harder: &Self, share: f64, rest_m_n: [f64; 2]) {
         self.regimes[0] = softer.regimes[0];
-        self.regimes[1].become_between(&softer.regimes[1], &harder.regimes[1], share);
+        self.regimes[1].become_between(&softer.regimes[1], &harder.regimes[1], share, rest_m_n);
         (self.coarsest, self.finest) = (harder.coarsest, harder.finest);
         (self.step_s, self.mass_rate) = (softer.step_s, softer.mass_rate);
         self.stiffness_per_mass =

@@ -90,12 +90,20 @@ impl Regime {
 
 impl Regime {
     /// The mean of two regimes, weighed.
-    pub fn become_between(&mut self, a: &Self, b: &Self, share: f64) {
+    ///
+    /// `rest_m_n` is where (d, p) rests under 1 N. The mean of two maps rests elsewhere by a few picometres; its force column is made to
+    /// fit, so that a pressed finger stays where it is.
+    pub fn become_between(&mut self, a: &Self, b: &Self, share: f64, rest_m_n: [f64; 2]) {
         for (own, (a, b)) in self.maps.iter_mut().zip(a.maps.iter().zip(&b.maps)) {
             for (own, (a, b)) in own.columns.iter_mut().zip(a.columns.iter().zip(&b.columns)) {
                 for (own, (a, b)) in own.iter_mut().zip(a.iter().zip(b)) {
                     *own = a + share * (b - a);
                 }
+            }
+            let [gap, stretch, .., force] = &mut own.columns;
+            for (row, force) in force.iter_mut().enumerate() {
+                let rest = if row < 2 { rest_m_n[row] } else { 0.0 };
+                *force = rest - gap[row] * rest_m_n[0] - stretch[row] * rest_m_n[1];
             }
         }
         for (own, (a, b)) in self.push.iter_mut().zip(a.push.iter().zip(&b.push)) {

@@ -32,9 +32,10 @@ impl MicroContact {
             mix(softer.probe.contact_stiffness_n_m, harder.probe.contact_stiffness_n_m);
         self.choice = harder.choice;
         (self.step_s, self.leash_m) = (softer.step_s, softer.leash_m);
+        let rest_m_n = [-1.0 / self.probe.contact_stiffness_n_m, 1.0 / self.probe.pad_stiffness_n_m];
         match (&mut self.scheme, &softer.scheme, &harder.scheme) {
             (Scheme::ExactEvent(own), Scheme::ExactEvent(a), Scheme::ExactEvent(b)) => {
-                own.become_between(a, b, share)
+                own.become_between(a, b, share, rest_m_n);
             }
             (Scheme::SemiImplicit(own), Scheme::SemiImplicit(a), Scheme::SemiImplicit(b)) => {
                 // Everything but the contact's column is the same, and that is proportional to k.

@@ -57,7 +57,8 @@ limit = false
     assert!(matches!(&surface.source, Source::Map { image, relief_m, invert: false }
         if image.path == Path::new("dir/tiles_disp.png") && *relief_m == 0.004));
     assert_eq!(surface.excitation, Some(Excitation::Both));
-    assert_eq!(scene.actuators, [ActuatorEntry::default()]);
+    assert_eq!(scene.actuators.len(), 1);
+    assert_eq!((scene.actuators[0].full_scale, scene.actuators[0].highpass_hz), (Some(1e-4), 10.0));
 }
 
 #[test]
@@ -174,7 +175,6 @@ fn numbers_out_of_range_are_named_with_what_would_be_right() {
             "[[actuator]]\noutput = \"smell\"",
             "\"smell\" is unknown; must be \"displacement\" or \"acceleration\"",
         ),
-        ("[[actuator]]\noutput = \"acceleration\"", "full_scale: is missing"),
         ("[[body]]\nname = \"b\"\nmaterial = 3", "body 1 \"b\": material: 3 is not a material"),
         (
             "[[body]]\nname = \"b\"\nmaterial = { young_pa = 1e9 }",
