@@ -189,4 +189,11 @@ fn a_stylus_is_shaken_as_measured_tools_are() {
         "median: v^{speed:.2} F^{force:.2} centroid {centroid:.0} Hz v^{rise:.2}, {level:.2} m/s², shape {shape:.1} dB"
     );
     assert!((0.75..1.15).contains(&speed) && (0.05..0.35).contains(&force), "v^{speed} F^{force}");
+    assert!(rows.iter().all(|row| (0.2..1.5).contains(&row.speed_exponent)));
+    let inside = rows.iter().filter(|row| (70.0..190.0).contains(&row.centroid_hz)).count();
+    assert!(5 * inside >= 4 * rows.len(), "{inside} of {} centroids", rows.len());
+    assert!(
+        (0.1..0.4).contains(&rise) && (0.5..2.0).contains(&level) && shape < 3.5,
+        "v^{rise}, {level} m/s², {shape} dB"
+    );
 }
