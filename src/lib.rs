@@ -76,12 +76,12 @@ mod prepared;
 
 pub use asperity_dsp::limits;
 pub use audio::renderer::Renderer;
-pub use audio::tap::{ContactBlock, NoTap, Tap};
 pub use engine::Engine;
 pub use files::actuator_profile::{ActuatorPreset, PresetError};
 pub use game::scene::Scene;
 pub use game::silence::SilentBecause;
 pub use link::stats::Stats;
+pub use link::tap::{ContactBlock, NoTap, Tap};
 pub use model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
 pub use model::bad_value::BadValue;
 pub use model::body::Body;

@@ -150,6 +150,10 @@ pub mod output {
     pub const FULL_SCALE: Range = Range::new(1e-12, 1e12, "1e-12 to 1e12 m (or m/s²)");
     /// High-pass about the mean surface; at low sample rates, below 0.49 of the rate as well.
     pub const HIGHPASS_HZ: Range = Range::new(0.0, 1e3, "0 to 1000 Hz, 0 = off");
+    /// How much of its signal a port holds for a late reader.
+    pub const PORT_HOLDS_S: Range = Range::new(1e-3, 60.0, "1e-3 to 60 s");
+    /// Rows a second of a force port.
+    pub const FORCE_RATE_HZ: Range = Range::new(1.0, 2e4, "1 to 20000 Hz");
     /// How long a contact goes on without a report.
     pub const CONTACT_TIMEOUT_S: Range = Range::new(0.01, 3600.0, "0.01 to 3600 s");
 }
@@ -285,6 +289,8 @@ mod tests {
             output::FULL_SCALE,
             output::HIGHPASS_HZ,
             output::CONTACT_TIMEOUT_S,
+            output::PORT_HOLDS_S,
+            output::FORCE_RATE_HZ,
             sand::DEPTH_M,
             sand::SIDE_M,
             sand::TALUS_DEG,

@@ -14,6 +14,7 @@ pub mod height_field;
 pub mod height_map;
 pub mod lattice;
 mod local_relief;
+pub mod moving_picture;
 pub mod raster;
 pub mod sand;
 pub mod solid_materials;

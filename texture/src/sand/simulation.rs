@@ -12,8 +12,10 @@ use super::erosion::Erosion;
 use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
 use super::tool::{Press, Tool};
+use crate::moving_picture::MovingPicture;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
+use std::sync::Arc;
 
 /// Frames a second.
 pub const FRAMES_PER_S: f64 = 60.0;
@@ -118,6 +120,8 @@ pub struct SandSimulation {
     volume_before_units: i64,
     /// Deepest that a tool stood below the untouched bed, metres.
     print_m: f64,
+    /// For whoever draws the sand.
+    moving_picture: Arc<MovingPicture>,
 }
 
 impl SandSimulation {
@@ -135,6 +139,7 @@ impl SandSimulation {
         let cell_m = design.width_m / cells as f64;
         let rows = (design.height_m / cell_m).round().min(1e6) as usize;
         let grid = SandGrid::flat(design.cells, rows, cell_m, design.depth_m)?;
+        let (columns, rows) = (grid.columns(), grid.rows());
         let reach = design.tool.reach_m() / cell_m;
         DesignError::check("tool_radius_m", reach, "at most 256 cells", |r| r <= 256.0)?;
         // A tool that fits into a cell would leave no groove.
@@ -157,6 +162,7 @@ impl SandSimulation {
             walls,
             volume_before_units,
             print_m: 0.0,
+            moving_picture: MovingPicture::new(columns, rows, cell_m),
         })
     }
 
@@ -239,6 +245,14 @@ impl SandSimulation {
             cells += self.erosion.pass(&mut self.grid);
         }
         self.lower_walls();
+        let grid = &self.grid;
+        self.moving_picture.write(|column, row| grid.height_m(column, row) as f32);
+    }
+
+    /// The sand as it moves, written once a frame.
+    #[must_use]
+    pub fn moving_picture(&self) -> &Arc<MovingPicture> {
+        &self.moving_picture
     }
 
     /// Lifts all tools and lets the sand slide until nothing moves.

@@ -31,10 +31,12 @@ use crate::fade::Fade;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
+use crate::moving_picture::MovingPicture;
 use crate::solid_materials::{FRICTION, SolidMaterial};
 use crate::solid_noise::SolidNoise;
 use asperity_dsp::DesignError;
 use std::any::Any;
+use std::sync::Arc;
 
 /// Patches in circulation for every contact, besides the one it landed on: one that fades out, one that fades in, one that waits,
 /// one under way.
@@ -93,6 +95,7 @@ pub struct SandSource {
     longest_m: f64,
     /// Depth of the untouched bed, metres.
     depth_m: f64,
+    moving_picture: Arc<MovingPicture>,
 }
 
 impl SandSource {
@@ -102,8 +105,9 @@ impl SandSource {
     /// Names the field that is out of its range.
     pub fn synchronous(design: &SandDesign, seed: u64, sample_rate_hz: f64) -> Result<Self, DesignError> {
         let simulation = SandSimulation::new(design)?;
+        let picture = simulation.moving_picture().clone();
         let spare = patches(design.contacts * PATCHES_A_CONTACT);
-        Self::new(Link::Here(Box::new(simulation)), spare, design, seed, sample_rate_hz)
+        Self::new(Link::Here(Box::new(simulation)), picture, spare, design, seed, sample_rate_hz)
     }
 
     /// Sand that is simulated elsewhere: the surface, and the worker to be run on another thread.
@@ -116,6 +120,7 @@ impl SandSource {
         sample_rate_hz: f64,
     ) -> Result<(Self, SandWorker), DesignError> {
         let simulation = SandSimulation::new(design)?;
+        let picture = simulation.moving_picture().clone();
         let count = design.contacts * PATCHES_A_CONTACT + 2;
         let (poses, poses_out) = rtrb::RingBuffer::new(design.contacts * 64);
         let (laws, laws_out) = rtrb::RingBuffer::new(4);
@@ -138,11 +143,12 @@ impl SandSource {
             back: Exclusive::new(back),
         };
         let spare = Vec::with_capacity(count);
-        Ok((Self::new(link, spare, design, seed, sample_rate_hz)?, worker))
+        Ok((Self::new(link, picture, spare, design, seed, sample_rate_hz)?, worker))
     }
 
     fn new(
         link: Link,
+        moving_picture: Arc<MovingPicture>,
         spare: Vec<Box<Patch>>,
         design: &SandDesign,
         seed: u64,
@@ -155,6 +161,7 @@ impl SandSource {
             grains.texture_factor_per_m.max(1.0 / (cell_m * grains.modules[0].frequency)).min(1e6);
         Ok(Self {
             link,
+            moving_picture,
             slots: (0..design.contacts).map(|_| Slot::new()).collect(),
             depth_m: design.depth_m,
             overview: Box::new(Patch::flat()),
@@ -436,6 +443,7 @@ impl HeightField for SandSource {
     }
 
     fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        see(&mut self.moving_picture);
         see(self);
     }
 }
