@@ -1,4 +1,4 @@
-//! From a scene file to a running engine.
+//! Opening a scene: a scene file becomes a running engine.
 
 mod source;
 

@@ -1,4 +1,4 @@
-//! What the engine accepts, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
+//! Accepted ranges, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
 //! `docs/formats.md` prints it.
 //!
 //! What is outside is refused where it enters, by name; what lies inside is rendered as it is.

@@ -1,4 +1,4 @@
-//! What a live game reported, kept as a contact log.
+//! Recording of a live game's reports as a contact log.
 
 use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, LogTouching, Names, Striker};
 use crate::model::event::{Actuator, ContactEvent};

@@ -1,4 +1,4 @@
-//! What a scene consists of: plain data in SI units, each with its range checked in one place.
+//! The parts of a scene: plain data in SI units, each with its range checked in one place.
 
 pub(crate) mod actuator;
 pub(crate) mod bad_value;
