@@ -15,5 +15,6 @@ pub(crate) mod modal_model;
 pub(crate) mod probe;
 pub(crate) mod residual;
 pub(crate) mod stamp;
+pub(crate) mod stock;
 pub(crate) mod surface;
 pub(crate) mod uv_triangle;
