@@ -290,9 +290,8 @@ fn what_a_port_cannot_be_is_refused_by_name_and_a_dropped_reader_makes_room() {
 
 #[test]
 fn sand_is_seen_as_it_moves_tile_by_tile_without_the_audio_half() {
-    let design =
-        SandDesign { width_m: 0.1, height_m: 0.1, cells: 256, contacts: 96, ..SandDesign::default() };
-    let (source, mut worker) = SandSource::threaded(&design, 1, 44_100.0).unwrap();
+    let design = SandDesign { width_m: 0.1, height_m: 0.1, cells: 256, ..SandDesign::default() };
+    let (source, mut worker) = SandSource::threaded(&design, 1).unwrap();
     let Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let surface = scene.add_surface(Surface::new(source, 0.1, 0.1).unwrap().wraps(false)).unwrap();
     let mut picture = scene.open_port(Picture { surface }).unwrap();

@@ -199,8 +199,6 @@ pub mod sand {
     pub const CELLS: Range = Range::new(4.0, 4096.0, "4 to 4096 cells");
     /// Width of a cell.
     pub const CELL_M: Range = Range::new(1e-6, 0.1, "1e-6 to 0.1 m");
-    /// Contacts at once.
-    pub const CONTACTS: Range = Range::new(1.0, 1024.0, "1 to 1024");
 }
 
 /// Solid noise.
@@ -312,7 +310,6 @@ mod tests {
             sand::TOOL_TEXEL_M,
             sand::CELLS,
             sand::CELL_M,
-            sand::CONTACTS,
             solid::MAGNITUDE,
             solid::OCTAVES,
             solid::FREQUENCY,

@@ -5,6 +5,7 @@
 ///
 /// The paper's modes have `phase_rad` = 0; fitted ones do not.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mode {
     /// Frequency of the damped oscillation, Hz, above 0.
     pub frequency_hz: f64,
@@ -13,6 +14,7 @@ pub struct Mode {
     /// Amplitude at t = 0 for an impulse of 1 N·s, in output units.
     pub amplitude: f64,
     /// Phase at t = 0, radians.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub phase_rad: f64,
 }
 

@@ -6,7 +6,9 @@
 
 mod keys;
 
-use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Impact, Touching};
+use super::storage::{self, Disk, Files};
+pub use crate::model::event::ContactSample;
+use crate::model::event::{Actuator, ContactEvent, ContactId, Impact, Touching};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 use keys::Unread;
@@ -38,7 +40,7 @@ pub enum LogEvent {
         touching: LogTouching,
         /// Where and how.
         #[serde(flatten)]
-        sample: LogSample,
+        sample: ContactSample,
     },
     /// A contact goes on.
     Move {
@@ -46,7 +48,7 @@ pub enum LogEvent {
         contact: u64,
         /// Where and how.
         #[serde(flatten)]
-        sample: LogSample,
+        sample: ContactSample,
     },
     /// A contact lifts off.
     End {
@@ -120,54 +122,12 @@ pub enum Striker {
     Constants(Material),
 }
 
-/// Where and how a contact touches.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct LogSample {
-    /// Texture coordinates.
-    pub uv: [f64; 2],
-    /// Tangential velocity, m/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity_m_s: Option<[f64; 2]>,
-    /// Normal force, N.
-    pub normal_force_n: f64,
-    /// Approach speed at landing, m/s.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub closing_m_s: f64,
-}
-
 fn is_first(position: &usize) -> bool {
     *position == 0
 }
 
 fn loss_free() -> f64 {
     1.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
-impl From<LogSample> for ContactSample {
-    fn from(s: LogSample) -> Self {
-        Self {
-            uv: s.uv,
-            velocity_m_s: s.velocity_m_s,
-            normal_force_n: s.normal_force_n,
-            closing_m_s: s.closing_m_s,
-        }
-    }
-}
-
-impl From<ContactSample> for LogSample {
-    fn from(s: ContactSample) -> Self {
-        Self {
-            uv: s.uv,
-            velocity_m_s: s.velocity_m_s,
-            normal_force_n: s.normal_force_n,
-            closing_m_s: s.closing_m_s,
-        }
-    }
 }
 
 /// Which id of a running scene a name stands for.
@@ -253,8 +213,16 @@ impl ContactLog {
     /// When it cannot be read, a line is not an event or has a key that its event does not know, or time
     /// runs backwards.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, LogError> {
+        Self::load_from(&Disk, path)
+    }
+
+    /// [`load`](Self::load), from wherever the files lie.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: impl AsRef<Path>) -> Result<Self, LogError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path)
+        let text = storage::text(files, path)
             .map_err(|source| LogError::Unreadable { path: path.into(), source })?;
         Self::parse(&text, &path.display().to_string())
     }
@@ -315,7 +283,7 @@ impl ContactLog {
 impl LogEvent {
     /// The engine's own probe lands on a surface, felt by a haptic channel.
     #[must_use]
-    pub fn begin(contact: u64, surface: impl Into<String>, actuator: u16, sample: LogSample) -> Self {
+    pub fn begin(contact: u64, surface: impl Into<String>, actuator: u16, sample: ContactSample) -> Self {
         let hand = LogHand { actuator: Some(actuator), ..LogHand::default() };
         Self::Begin {
             contact,
@@ -333,9 +301,9 @@ impl LogEvent {
             Self::Begin { contact, touching, sample } => ContactEvent::Begin {
                 contact: ContactId(*contact),
                 touching: touching.resolve(names)?,
-                sample: (*sample).into(),
+                sample: *sample,
             },
-            Self::Move { contact, sample } => ContactEvent::moved(ContactId(*contact), (*sample).into()),
+            Self::Move { contact, sample } => ContactEvent::moved(ContactId(*contact), *sample),
             Self::End { contact } => ContactEvent::end(ContactId(*contact)),
             Self::Impact {
                 body,

@@ -3,7 +3,10 @@
 pub mod actuator_profile;
 pub mod contact_log;
 mod file_error;
+pub mod modes_file;
 pub mod scene_file;
+pub(crate) mod storage;
 pub mod wav;
 
 pub use file_error::FileError;
+pub use storage::{Disk, Files, Memory};

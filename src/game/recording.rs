@@ -33,11 +33,9 @@ impl Recording {
                     importance: unless_one(touching.importance),
                     hand: self.hand(touching.actuator, touching.probe, touching.holder, touching.gain),
                 },
-                sample: sample.into(),
+                sample,
             },
-            ContactEvent::Moved { contact, sample } => {
-                LogEvent::Move { contact: contact.0, sample: sample.into() }
-            }
+            ContactEvent::Moved { contact, sample } => LogEvent::Move { contact: contact.0, sample },
             ContactEvent::End { contact } => LogEvent::End { contact: contact.0 },
             ContactEvent::Impact(impact) => LogEvent::Impact {
                 body: self.body(impact.body),

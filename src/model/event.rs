@@ -28,18 +28,25 @@ pub struct ContactId(pub u64);
 pub struct Actuator(pub u16);
 
 /// Where and how a contact touches at one instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactSample {
     /// Texture coordinates of the contact point; 1 spans the surface's width and height. They may
     /// wrap or run on beyond 0–1.
     pub uv: [f64; 2],
     /// Tangential velocity along the surface's u and v axes, m/s; estimated from `uv` when missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_m_s: Option<[f64; 2]>,
     /// Force pressing the finger onto the surface, N. Physics engines report small negative values
     /// around lift-off; they count as 0.
     pub normal_force_n: f64,
     /// Approach speed at landing, m/s; used by [`ContactEvent::begin`] only.
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub closing_m_s: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// What touches what, and who feels it: fixed for as long as the contact lasts.

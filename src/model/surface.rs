@@ -5,14 +5,23 @@ use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
 use asperity_texture::height_field::{Beyond, HeightField};
-use asperity_texture::height_map::{Extent, HeightMap, MapError};
-use asperity_texture::image_io::{self, Channel, ImageError};
+#[cfg(feature = "image")]
+use asperity_texture::height_map::Extent;
+use asperity_texture::height_map::{HeightMap, MapError};
+#[cfg(feature = "image")]
+use asperity_texture::image_io;
+#[cfg(feature = "image")]
+use asperity_texture::picture::Channel;
+use asperity_texture::picture::ImageError;
 use asperity_texture::tiled::Tiled;
+#[cfg(feature = "image")]
 use asperity_texture::wrap::Wrap;
+#[cfg(feature = "image")]
 use std::path::Path;
 
 /// What sliding sends to the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Excitation {
     /// Hertz pulses at the micro-collisions only, as the paper does: silent where the pad never lifts
     /// off, which with measured damping is every smooth grating at 0.5 N.
@@ -119,6 +128,7 @@ impl Surface {
     ///
     /// # Errors
     /// When a map cannot be read or the extent is impossible; the message names the file.
+    #[cfg(feature = "image")]
     pub fn from_maps(
         displacement: impl AsRef<Path>,
         roughness: impl AsRef<Path>,
@@ -134,6 +144,7 @@ impl Surface {
     ///
     /// # Errors
     /// As [`from_maps`](Self::from_maps).
+    #[cfg(feature = "image")]
     pub fn from_displacement(displacement: impl AsRef<Path>, extent: Extent) -> Result<Self, SurfaceError> {
         let heights = image_io::load_channel(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
         let map = HeightMap::new(&heights, extent, Wrap::Repeat)?;

@@ -107,10 +107,9 @@ impl Scale {
     /// The source times `factor`.
     ///
     /// # Errors
-    /// When the factor is not within ±1e3 or the sample rate not above 0 Hz.
-    pub fn new(source: Source, factor: f64, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let factor = check_factor(factor)?;
-        Ok(Self { source, factor: Fade::new(factor, sample_rate_hz)? })
+    /// When the factor is not within ±1e3.
+    pub fn new(source: Source, factor: f64) -> Result<Self, DesignError> {
+        Ok(Self { source, factor: Fade::new(check_factor(factor)?) })
     }
 }
 
@@ -120,7 +119,7 @@ fn check_factor(factor: f64) -> Result<f64, DesignError> {
 
 impl HeightField for Scale {
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.factor.prepare(setup.sample_rate_hz)?;
+        self.factor.prepare(setup.sample_rate_hz);
         self.source.prepare(setup)
     }
 
@@ -272,23 +271,34 @@ pub struct CrossfadeTo(pub f64);
 pub struct Crossfade {
     sources: [Source; 2],
     position: Fade<f64>,
+    /// When it moves to the second source by itself, s.
+    at_s: Option<f64>,
     other: SurfaceBlock,
 }
 
 impl Crossfade {
     /// All of `first`; [`CrossfadeTo`] moves towards `second`.
-    ///
-    /// # Errors
-    /// When the sample rate is not above 0 Hz.
-    pub fn new(first: Source, second: Source, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let position = Fade::new(0.0, sample_rate_hz)?;
-        Ok(Self { sources: [first, second], position, other: SurfaceBlock::default() })
+    #[must_use]
+    pub fn new(first: Source, second: Source) -> Self {
+        let (position, other) = (Fade::new(0.0), SurfaceBlock::default());
+        Self { sources: [first, second], position, at_s: None, other }
+    }
+
+    /// Moves to all of the second source by itself, once the engine has rendered so many seconds.
+    #[must_use]
+    pub fn at_s(self, at_s: f64) -> Self {
+        Self { at_s: Some(at_s), ..self }
     }
 }
 
 impl HeightField for Crossfade {
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.position.prepare(setup.sample_rate_hz)?;
+        self.position.prepare(setup.sample_rate_hz);
+        if let Some(at_s) = self.at_s {
+            self.position = Fade::new(0.0);
+            self.position.prepare(setup.sample_rate_hz);
+            self.position.set(1.0, (at_s * setup.sample_rate_hz).round() as u64);
+        }
         self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
     }
 
@@ -333,6 +343,7 @@ impl HeightField for Crossfade {
         if let Some(CrossfadeTo(position)) = change.downcast_ref() {
             let accepted = (0.0..=1.0).contains(position);
             if accepted {
+                self.at_s = None;
                 self.position.set(*position, sample);
             }
             return accepted;
@@ -365,16 +376,11 @@ impl BandSplit {
     /// filter, about an octave wide.
     ///
     /// # Errors
-    /// When the wavelength is not within 1e-6 to 1 m, or the sample rate not above 0 Hz.
-    pub fn new(
-        coarse: Source,
-        fine: Source,
-        wavelength_m: f64,
-        sample_rate_hz: f64,
-    ) -> Result<Self, DesignError> {
+    /// When the wavelength is not within 1e-6 to 1 m.
+    pub fn new(coarse: Source, fine: Source, wavelength_m: f64) -> Result<Self, DesignError> {
         let range = |w: f64| (1e-6..=1.0).contains(&w);
         DesignError::check("wavelength_m", wavelength_m, "1e-6 to 1 m", range)?;
-        let weights = Fade::new([1.0; 2], sample_rate_hz)?;
+        let weights = Fade::new([1.0; 2]);
         let (low, all) = (SurfaceBlock::default(), SurfaceBlock::default());
         Ok(Self { coarse, fine, wavelength_m, weights, low, all })
     }
@@ -392,7 +398,7 @@ impl BandSplit {
 
 impl HeightField for BandSplit {
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.weights.prepare(setup.sample_rate_hz)?;
+        self.weights.prepare(setup.sample_rate_hz);
         self.coarse.prepare(setup)?;
         self.fine.prepare(setup)
     }

@@ -167,6 +167,13 @@ pub struct Setup {
     pub voices: usize,
 }
 
+impl Default for Setup {
+    /// What every source is made for until an engine takes it: 44.1 kHz and the 96 voices of a default engine.
+    fn default() -> Self {
+        Self { sample_rate_hz: 44_100.0, voices: 96 }
+    }
+}
+
 /// A surface that can be sampled in real time.
 ///
 /// A source of one's own is these two methods; what changes while it is touched goes through a handle of its own (an atomic, a ring):
@@ -213,8 +220,9 @@ pub trait HeightField: Send + Sync {
     /// The wavelengths this source represents.
     fn band(&self) -> WavelengthBand;
 
-    /// Gets ready for an engine, before it is sampled; it may allocate. A source made of others hands this on. What keeps
-    /// time or remembers its contacts must take both from here.
+    /// Gets ready for an engine, before it is sampled, and again when that engine's rate changes; it may allocate. A source made of
+    /// others hands this on. What keeps time or remembers its contacts must take both from here: no contact touches, and
+    /// samples are counted anew.
     ///
     /// # Errors
     /// When the source cannot serve such an engine; the message names the field.

@@ -26,6 +26,7 @@ pub mod triplanar;
 pub mod deband;
 #[cfg(feature = "image")]
 pub mod image_io;
+pub mod picture;
 mod resample;
 mod spline;
 pub mod stl;

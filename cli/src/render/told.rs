@@ -59,7 +59,7 @@ fn silence(file: &SceneFile, log: &ContactLog, render: &Render, report: &Report)
         ));
     }
     let mut channels = report.haptic_peak.iter().zip(&file.actuators);
-    if channels.all(|(peak, actuator)| f64::from(*peak) * actuator.full_scale < UNFELT) {
+    if channels.all(|(peak, actuator)| f64::from(*peak) * actuator.settings.full_scale < UNFELT) {
         let begins = log.lines.iter().any(|line| matches!(line.event, LogEvent::Begin { .. }));
         let sounds_only = [SilentBecause::AudioGainZero, SilentBecause::NothingRings];
         let why = if begins {

@@ -22,6 +22,11 @@ pub const LEASH_M: f64 = 1e-3;
 
 /// The mechanical parameters of one probe (Hasti Fig. 6). All SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Probe {
     /// m_s: skin mass, kg; 1e-6 to 1.
     pub pad_mass_kg: f64,

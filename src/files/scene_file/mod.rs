@@ -13,21 +13,25 @@ mod surface;
 
 pub use own::{MakeSource, OwnSource};
 pub use pixels::Pixels;
-pub use sand::{Sand, Tool};
-pub use source::{Brownian, BrownianForce, Direction, Lattice, SolidNoise, Source};
-pub use surface::{Excitation, Roughness, SurfaceEntry, Wrap};
+pub use sand::{Sand, ToolPicture};
+pub use source::{Brownian, BrownianForce, Lattice, Source};
+pub use surface::{RoughnessEntry, SurfaceEntry};
 
 use crate::files::FileError;
-use crate::model::bus::MAX_BUSES;
+use crate::files::storage::{Disk, Files};
+use crate::model::actuator::{ActuatorSettings, Quantity};
+use crate::model::bus::{AudioBus, MAX_BUSES};
 use crate::model::material::Material;
+use crate::model::probe::{PROBE_PRESETS, probe_by_name};
 use crate::model::stock::Stock;
 use asperity_dsp::limits::{self, Range};
+use asperity_dsp::micro_contact::Probe;
 use fields::Fields;
 use std::path::{Path, PathBuf};
 use toml::Value;
 
 /// Scene files larger than this are refused; a scene is a page, not a database.
-const MAX_BYTES: u64 = 16 << 20;
+const MAX_BYTES: usize = 16 << 20;
 /// Default ring-out after the last event, seconds.
 const TAIL_S: f64 = 1.0;
 /// Longest ring-out, s.
@@ -51,9 +55,9 @@ pub struct SceneFile {
     /// Things that are touched.
     pub surfaces: Vec<SurfaceEntry>,
     /// What touches unless a contact says otherwise.
-    pub probe: ProbeEntry,
+    pub probe: Probe,
     /// Further probes, by name.
-    pub probes: Vec<(String, ProbeEntry)>,
+    pub probes: Vec<(String, Probe)>,
     /// Haptic channels, in order.
     pub actuators: Vec<ActuatorEntry>,
     /// Audio buses, in channel order.
@@ -77,73 +81,24 @@ pub struct BodyEntry {
     pub bus: Option<String>,
 }
 
-/// A finger or tool: a preset, and constants that differ from it.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ProbeEntry {
-    /// Name of a preset; none = the engine's default.
-    pub preset: Option<String>,
-    /// Mass of the moving pad, kg.
-    pub pad_mass_kg: Option<f64>,
-    /// Stiffness between pad and finger, N/m.
-    pub pad_stiffness_n_m: Option<f64>,
-    /// Damping between pad and finger, N·s/m.
-    pub pad_damping_n_s_m: Option<f64>,
-    /// Mass of the finger, kg.
-    pub finger_mass_kg: Option<f64>,
-    /// Stiffness of pad against surface, N/m.
-    pub contact_stiffness_n_m: Option<f64>,
-    /// How far the finger may leave the surface, m.
-    pub leash_m: Option<f64>,
-}
-
 /// One haptic channel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ActuatorEntry {
-    /// What the channel carries.
-    pub output: ActuatorOutput,
-    /// Metres or m/s² at sample value 1.
-    pub full_scale: f64,
-    /// Cutoff of the high-pass about the mean surface, Hz; 0 = off.
-    pub highpass_hz: f64,
-    /// Name of a device profile whose response is inverted; none = no equaliser.
+    /// All that needs no other file.
+    pub settings: ActuatorSettings,
+    /// Name or file of the device whose response is inverted; none = no equaliser.
     pub equalise: Option<String>,
-    /// Name of the device profile whose excursion and heat are kept within limits; none = no limit.
+    /// Name or file of the device whose excursion and heat are kept within limits; none = no limit.
     pub limit: Option<String>,
-    /// Keeps the channel within ±1, whatever the device.
-    pub limit_peaks: bool,
-}
-
-impl Default for ActuatorEntry {
-    fn default() -> Self {
-        Self {
-            output: ActuatorOutput::Displacement,
-            full_scale: 1e-4,
-            highpass_hz: 10.0,
-            equalise: None,
-            limit: None,
-            limit_peaks: false,
-        }
-    }
-}
-
-/// What a haptic channel carries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ActuatorOutput {
-    /// Displacement of the pad, m.
-    Displacement,
-    /// Acceleration of the pad, m/s².
-    Acceleration,
 }
 
 /// An audio bus.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct AudioEntry {
     /// Name that bodies use; none for a single bus.
     pub name: Option<String>,
-    /// Linear gain.
-    pub gain: f64,
-    /// Keeps the channel within ±1.
-    pub limit: bool,
+    /// Its settings.
+    pub bus: AudioBus,
 }
 
 impl SceneFile {
@@ -152,13 +107,23 @@ impl SceneFile {
     /// # Errors
     /// When the file is missing, is not TOML, or a key is unknown, missing or out of its range.
     pub fn load(path: &Path) -> Result<Self, FileError> {
-        let size = std::fs::metadata(path).map_err(|error| FileError::read(path, &error))?.len();
-        if size > MAX_BYTES {
+        Self::load_from(&Disk, path)
+    }
+
+    /// [`load`](Self::load), from wherever the files lie.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, FileError> {
+        let bytes = files.read(path).map_err(|error| FileError::read(path, &error))?;
+        if bytes.len() > MAX_BYTES {
             let right = format!("a scene file has at most {} MB", MAX_BYTES >> 20);
-            return Err(FileError::file(path, format!("is {} MB long", size >> 20), right));
+            return Err(FileError::file(path, format!("is {} MB long", bytes.len() >> 20), right));
         }
-        let text = std::fs::read_to_string(path).map_err(|error| FileError::read(path, &error))?;
-        Self::parse(&text, path)
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Self::parse(text, path),
+            Err(_) => Err(FileError::read(path, &std::io::ErrorKind::InvalidData.into())),
+        }
     }
 
     /// Checks the text of a scene file that lies at `path`.
@@ -322,12 +287,12 @@ fn read_material(fields: &mut Fields) -> Result<Option<Material>, FileError> {
 }
 
 /// `[probe]`, the only one, or `[[probe]]`, of which the one without a name is the default.
-fn read_probes(top: &mut Fields) -> Result<(ProbeEntry, Vec<(String, ProbeEntry)>), FileError> {
+fn read_probes(top: &mut Fields) -> Result<(Probe, Vec<(String, Probe)>), FileError> {
     if !top.is_list("probe") {
         let only = top.table("probe")?.map(read_probe).transpose()?;
         return Ok((only.unwrap_or_default(), Vec::new()));
     }
-    let (mut default, mut named) = (None, Vec::<(String, ProbeEntry)>::new());
+    let (mut default, mut named) = (None, Vec::<(String, Probe)>::new());
     for mut fields in top.tables("probe")? {
         match fields.text("name")? {
             None if default.is_some() => {
@@ -344,25 +309,44 @@ fn read_probes(top: &mut Fields) -> Result<(ProbeEntry, Vec<(String, ProbeEntry)
     Ok((default.unwrap_or_default(), named))
 }
 
-fn read_probe(mut fields: Fields) -> Result<ProbeEntry, FileError> {
-    let probe = ProbeEntry {
-        preset: fields.text("preset")?,
-        pad_mass_kg: fields.number("pad_mass_kg", limits::probe::PAD_MASS_KG)?,
-        pad_stiffness_n_m: fields.number("pad_stiffness_n_m", limits::probe::PAD_STIFFNESS_N_M)?,
-        pad_damping_n_s_m: fields.number("pad_damping_n_s_m", limits::probe::PAD_DAMPING_N_S_M)?,
-        finger_mass_kg: fields.number("finger_mass_kg", limits::probe::FINGER_MASS_KG)?,
-        contact_stiffness_n_m: fields
-            .number("contact_stiffness_n_m", limits::probe::CONTACT_STIFFNESS_N_M)?,
-        leash_m: fields.number("leash_m", limits::probe::LEASH_M)?,
+/// A preset, and what differs from it.
+fn read_probe(mut fields: Fields) -> Result<Probe, FileError> {
+    let preset = match fields.text("preset")? {
+        None => Probe::default(),
+        Some(name) => probe_by_name(&name).ok_or_else(|| {
+            let known = PROBE_PRESETS.map(|(name, _)| format!("\"{name}\"")).join(", ");
+            let right = format!("must be one of {known}, or write the fields");
+            fields.refuse("preset", format!("\"{name}\" is unknown"), right)
+        })?,
+    };
+    let mut number = |key, preset, range| fields.number_or(key, preset, range);
+    let probe = Probe {
+        pad_mass_kg: number("pad_mass_kg", preset.pad_mass_kg, limits::probe::PAD_MASS_KG)?,
+        pad_stiffness_n_m: number(
+            "pad_stiffness_n_m",
+            preset.pad_stiffness_n_m,
+            limits::probe::PAD_STIFFNESS_N_M,
+        )?,
+        pad_damping_n_s_m: number(
+            "pad_damping_n_s_m",
+            preset.pad_damping_n_s_m,
+            limits::probe::PAD_DAMPING_N_S_M,
+        )?,
+        finger_mass_kg: number("finger_mass_kg", preset.finger_mass_kg, limits::probe::FINGER_MASS_KG)?,
+        contact_stiffness_n_m: number(
+            "contact_stiffness_n_m",
+            preset.contact_stiffness_n_m,
+            limits::probe::CONTACT_STIFFNESS_N_M,
+        )?,
+        leash_m: number("leash_m", preset.leash_m, limits::probe::LEASH_M)?,
     };
     fields.finish()?;
     Ok(probe)
 }
 
 fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
-    let words =
-        [("displacement", ActuatorOutput::Displacement), ("acceleration", ActuatorOutput::Acceleration)];
-    let default = ActuatorEntry::default();
+    let words = [("displacement", Quantity::Displacement), ("acceleration", Quantity::Acceleration)];
+    let default = ActuatorSettings::default();
     let output = fields.word("output", &words)?.unwrap_or(default.output);
     let equalise = fields.text("equalise")?.filter(|name| name != "none");
     let (limit, limit_peaks) = match fields.take("limit") {
@@ -375,29 +359,22 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
             return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
         }
     };
-    let actuator = ActuatorEntry {
-        output,
-        full_scale: match fields.number("full_scale", limits::output::FULL_SCALE)? {
-            Some(full_scale) => full_scale,
-            None if output == ActuatorOutput::Displacement => default.full_scale,
-            None => {
-                return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0"));
-            }
-        },
-        highpass_hz: fields.number_or("highpass_hz", default.highpass_hz, limits::output::HIGHPASS_HZ)?,
-        equalise,
-        limit,
-        limit_peaks,
+    let full_scale = match fields.number("full_scale", limits::output::FULL_SCALE)? {
+        Some(full_scale) => full_scale,
+        None if output == Quantity::Displacement => default.full_scale,
+        None => return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0")),
     };
+    let highpass_hz = fields.number_or("highpass_hz", default.highpass_hz, limits::output::HIGHPASS_HZ)?;
     fields.finish()?;
-    Ok(actuator)
+    let settings = ActuatorSettings { output, full_scale, highpass_hz, limit_peaks, ..default };
+    Ok(ActuatorEntry { settings, equalise, limit })
 }
 
 /// `[audio]`, one bus for all, or `[[audio]]`, one table a bus.
 fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
     if !top.is_list("audio") {
         let only = top.table("audio")?.map(read_audio).transpose()?;
-        return Ok(vec![only.unwrap_or(AudioEntry { name: None, gain: 1.0, limit: false })]);
+        return Ok(vec![only.unwrap_or_default()]);
     }
     let buses = top.tables("audio")?.into_iter().map(read_audio).collect::<Result<Vec<_>, _>>()?;
     for (index, bus) in buses.iter().enumerate() {
@@ -421,13 +398,14 @@ fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
 }
 
 fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
-    let audio = AudioEntry {
-        name: fields.text("name")?,
-        gain: fields.number_or("gain", 1.0, limits::output::AUDIO_GAIN)?,
-        limit: fields.flag("limit")?.unwrap_or(false),
+    let default = AudioBus::default();
+    let bus = AudioBus {
+        gain: fields.number_or("gain", default.gain, limits::output::AUDIO_GAIN)?,
+        limit: fields.flag("limit")?.unwrap_or(default.limit),
     };
+    let name = fields.text("name")?;
     fields.finish()?;
-    Ok(audio)
+    Ok(AudioEntry { name, bus })
 }
 
 #[cfg(test)]

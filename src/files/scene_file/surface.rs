@@ -4,7 +4,9 @@ use super::fields::{Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
 use crate::files::FileError;
+use crate::model::surface::Excitation;
 use asperity_dsp::limits;
+use asperity_texture::wrap::Wrap;
 use std::path::Path;
 use toml::Value;
 
@@ -20,24 +22,24 @@ pub struct SurfaceEntry {
     /// Where its heights come from.
     pub source: Source,
     /// Perceptual roughness R.
-    pub roughness: Roughness,
+    pub roughness: RoughnessEntry,
     /// What uv 1 spans along u, m.
     pub width_m: f64,
     /// What uv 1 spans along v, m.
     pub height_m: f64,
-    /// Level of the 1/f^α overlay; none = the engine's default.
+    /// Level of the 1/f^α overlay, m; none = that of its material, or the engine's default.
     pub micro_relief_m: Option<f64>,
     /// What lies beyond the edge.
     pub wrap: Wrap,
-    /// What sliding sends to the body; none = the engine's default.
-    pub excitation: Option<Excitation>,
-    /// Coulomb friction coefficient, for the 3-D force; none = the engine's default.
+    /// What sliding sends to the body.
+    pub excitation: Excitation,
+    /// Coulomb friction coefficient, for the 3-D force; none = the source's.
     pub friction: Option<f64>,
 }
 
 /// Where R comes from.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Roughness {
+pub enum RoughnessEntry {
     /// The same everywhere; none = the engine's default.
     Number(Option<f64>),
     /// A map of R, or of gloss 1 − R.
@@ -47,29 +49,6 @@ pub enum Roughness {
         /// The map holds gloss.
         gloss: bool,
     },
-}
-
-/// What lies beyond the edge of a map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Wrap {
-    /// The map again.
-    #[default]
-    Repeat,
-    /// Its edge for ever.
-    Clamp,
-    /// The map, mirrored.
-    Mirror,
-}
-
-/// What sliding sends to the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Excitation {
-    /// Hertz pulses of micro-collisions, as the paper.
-    Collisions,
-    /// The alternating part of the contact force.
-    Force,
-    /// Both.
-    Both,
 }
 
 /// Reads one `[[surface]]`.
@@ -92,14 +71,14 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError
         height_m: fields.needed_number("height_m", limits::SIDE_M)?,
         micro_relief_m: fields.number("micro_relief_m", limits::MICRO_RELIEF_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
-        excitation: fields.word("excitation", &excitations)?,
+        excitation: fields.word("excitation", &excitations)?.unwrap_or_default(),
         friction: fields.number("friction", limits::FRICTION)?,
     };
     fields.finish()?;
     Ok(surface)
 }
 
-fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<Roughness, FileError> {
+fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<RoughnessEntry, FileError> {
     if fields.has("roughness") && fields.has("gloss") {
         return Err(fields.refuse(
             "gloss",
@@ -111,11 +90,11 @@ fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<Roughness, FileE
     let (value, gloss, key) = match (fields.take("roughness"), fields.take("gloss")) {
         (Some(value), _) => (value, false, "roughness"),
         (None, Some(value)) => (value, true, "gloss"),
-        (None, None) => return Ok(Roughness::Number(None)),
+        (None, None) => return Ok(RoughnessEntry::Number(None)),
     };
     match value {
         Value::String(name) => {
-            Ok(Roughness::Map { image: Pixels { path: folder.join(name), channel }, gloss })
+            Ok(RoughnessEntry::Map { image: Pixels { path: folder.join(name), channel }, gloss })
         }
         value => {
             let number =
@@ -123,7 +102,7 @@ fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<Roughness, FileE
                     let right = format!("must be {}, or name an image", limits::ROUGHNESS.words);
                     fields.refuse(key, format!("{} is refused", shown(&value)), right)
                 })?;
-            Ok(Roughness::Number(Some(if gloss { 1.0 - number } else { number })))
+            Ok(RoughnessEntry::Number(Some(if gloss { 1.0 - number } else { number })))
         }
     }
 }
