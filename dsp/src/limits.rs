@@ -85,6 +85,8 @@ pub const ROUGHNESS: Range = Range::new(0.0, 1.0, "0 to 1");
 pub const FRICTION: Range = Range::new(0.0, 10.0, "0 to 10");
 /// Game time of a report with an exact clock, s.
 pub const TIME_S: Range = Range::new(0.0, 1e9, "finite, 0 to 1e9 s");
+/// Game seconds a second of audio.
+pub const TIME_SCALE: Range = Range::new(0.01, 100.0, "0.01 to 100");
 /// Game time of a report with a live clock, s.
 pub const LIVE_TIME_S: Range = Range::new(-1e9, 1e9, "finite, within ±1e9 s");
 
@@ -272,6 +274,7 @@ mod tests {
             SPEED_M_S,
             MICRO_RELIEF_M,
             SIDE_M,
+            TIME_SCALE,
             ROUGHNESS,
             FRICTION,
             probe::PAD_MASS_KG,

@@ -13,6 +13,7 @@ use crate::audio::governor::Governor;
 use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::{Change, Seat};
+use crate::audio::smoothed::Smoothed;
 use crate::audio::voice::{Phase, Scratch, Shared, Voice};
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::ring::{Receiver, Sender};
@@ -64,6 +65,10 @@ pub struct Renderer {
     from_game: Receiver<Message>,
     to_game: Sender<Dead>,
     counters: Arc<Counters>,
+    muted: bool,
+    paused: bool,
+    /// On its way to silence or back.
+    master: Smoothed,
     scratch: Box<Scratch>,
     mix: Box<Mix>,
 }
@@ -103,7 +108,7 @@ impl Renderer {
             bodies_used: Occupied::new(config.max_bodies),
             silent: Vec::with_capacity(config.max_contacts),
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
-            bodies: (0..config.max_bodies).map(|_| BodySeat::default()).collect(),
+            bodies: (0..config.max_bodies).map(|_| BodySeat::new(rate)).collect(),
             channels: config
                 .actuators
                 .iter()
@@ -118,6 +123,9 @@ impl Renderer {
             from_game,
             to_game,
             counters,
+            muted: false,
+            paused: false,
+            master: Smoothed::new(rate),
             scratch: Scratch::new(),
             mix: Mix::new(),
             shared,
@@ -208,6 +216,7 @@ impl Renderer {
             self.render_contacts(n, tap);
             let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
             self.outlets.shown(shown / self.shared.inner.every as u64);
+            self.render_master(n);
             self.render_haptics(done, n, haptic);
             self.render_bodies(done, n, audio);
             done += n;
@@ -313,14 +322,26 @@ impl Renderer {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);
             }
-            Message::SetBody { id, body, bus, stroking } => {
-                self.bodies[id.index()].set(id, body, bus);
+            Message::SetBody { id, body, bus, gain, stroking } => {
+                self.bodies[id.index()].set(id, body, bus, gain);
                 self.bodies_used.insert(id.index());
                 for seat in self.seats_used.iter() {
                     self.seats[seat].body_changed(id, &stroking);
                 }
             }
             Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
+            Message::SetBodyGain { slot, gain } => self.bodies[slot].set_gain(gain),
+            Message::Mute(muted) => self.muted = muted,
+            Message::Pause(paused) => {
+                self.paused = paused;
+                if paused {
+                    self.silence_all();
+                }
+            }
+            Message::FadeAll => {
+                self.end_all();
+                self.bodies_used.iter().for_each(|body| self.bodies[body].damp());
+            }
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
             Message::AddOutlet(outlet) => self.outlets.add(outlet),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,

@@ -8,7 +8,7 @@ mod keys;
 
 use super::storage::{self, Disk, Files};
 pub use crate::model::event::ContactSample;
-use crate::model::event::{Actuator, ContactEvent, ContactId, Impact, Touching};
+use crate::model::event::{Actuator, ContactEvent, ContactId, Emphasis, Impact, Touching};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 use keys::Unread;
@@ -49,6 +49,9 @@ pub enum LogEvent {
         /// Where and how.
         #[serde(flatten)]
         sample: ContactSample,
+        /// How loud and how important from now on.
+        #[serde(flatten)]
+        emphasis: Emphasis,
     },
     /// A contact lifts off.
     End {
@@ -292,6 +295,12 @@ impl LogEvent {
         }
     }
 
+    /// A contact goes on.
+    #[must_use]
+    pub fn moved(contact: u64, sample: ContactSample) -> Self {
+        Self::Move { contact, sample, emphasis: Emphasis::default() }
+    }
+
     /// The event for a scene whose ids `names` gives.
     ///
     /// # Errors
@@ -303,7 +312,9 @@ impl LogEvent {
                 touching: touching.resolve(names)?,
                 sample: *sample,
             },
-            Self::Move { contact, sample } => ContactEvent::moved(ContactId(*contact), *sample),
+            Self::Move { contact, sample, emphasis } => {
+                ContactEvent::moved_with(ContactId(*contact), *sample, *emphasis)
+            }
             Self::End { contact } => ContactEvent::end(ContactId(*contact)),
             Self::Impact {
                 body,

@@ -3,6 +3,7 @@
 //! Every call returns at once. Nothing here waits for the audio thread.
 
 mod ports;
+mod quiet;
 mod reports;
 
 use crate::files::contact_log::{ContactLog, Names};
@@ -142,6 +143,7 @@ impl Scene {
 
     fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
+        let gain = within("gain", body.gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
         let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate, inner)?);
@@ -149,7 +151,7 @@ impl Scene {
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let known = KnownBody { material, lowest_mode_hz };
         let stroking = self.stroking(known)?;
-        self.send(Message::SetBody { id, body, bus, stroking })?;
+        self.send(Message::SetBody { id, body, bus, gain, stroking })?;
         self.bodies.set(id.0, known);
         Ok(())
     }

@@ -141,6 +141,32 @@ pub struct Impact {
     pub gain: f64,
 }
 
+/// How loud and how important a contact is from now on; none = as it was.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Emphasis {
+    /// Linear gain of what is felt and heard of it, 0–1000; reached within some milliseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<f64>,
+    /// Factor of its priority when contacts have to be left out, 0–1e6.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub importance: Option<f64>,
+}
+
+impl Emphasis {
+    /// What an earlier report said, where this one says nothing.
+    pub(crate) fn or(self, earlier: Self) -> Self {
+        Self { gain: self.gain.or(earlier.gain), importance: self.importance.or(earlier.importance) }
+    }
+
+    /// # Errors
+    /// When a factor is outside its range.
+    pub fn checked(self) -> Result<Self, BadValue> {
+        within("gain", self.gain.unwrap_or(1.0), limits::impact::GAIN)?;
+        within("importance", self.importance.unwrap_or(1.0), limits::impact::IMPORTANCE)?;
+        Ok(self)
+    }
+}
+
 /// One report of the physics step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactEvent {
@@ -159,6 +185,8 @@ pub enum ContactEvent {
         contact: ContactId,
         /// Where and how.
         sample: ContactSample,
+        /// How loud and how important.
+        emphasis: Emphasis,
     },
     /// A contact lifts off.
     End {
@@ -185,7 +213,13 @@ impl ContactEvent {
     /// A contact goes on.
     #[must_use]
     pub fn moved(contact: ContactId, sample: ContactSample) -> Self {
-        Self::Moved { contact, sample }
+        Self::moved_with(contact, sample, Emphasis::default())
+    }
+
+    /// A contact goes on, louder or softer, or of another importance.
+    #[must_use]
+    pub fn moved_with(contact: ContactId, sample: ContactSample, emphasis: Emphasis) -> Self {
+        Self::Moved { contact, sample, emphasis }
     }
 
     /// The same in a second of audio during which `pace` seconds of the game go by: in slow motion a contact

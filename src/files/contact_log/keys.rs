@@ -35,8 +35,8 @@ const EVENTS: [Keys; 4] = [
     },
     Keys {
         event: "move",
-        read: &["contact", "uv", "velocity_m_s", "normal_force_n", "closing_m_s"],
-        read_past: &["actuator", "at_m", "depth_m", "gain", "importance", "direction"],
+        read: &["contact", "gain", "importance", "uv", "velocity_m_s", "normal_force_n", "closing_m_s"],
+        read_past: &["actuator", "at_m", "depth_m", "direction"],
     },
     Keys { event: "end", read: &["contact"], read_past: &[] },
     Keys {
