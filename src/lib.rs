@@ -94,6 +94,7 @@ pub use model::event::{
     Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
     Touching,
 };
+pub use model::frame::SurfaceFrame;
 pub use model::id::{BodyId, ProbeId, SurfaceId};
 pub use model::material::{Material, MaterialPreset};
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};

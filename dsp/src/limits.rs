@@ -79,6 +79,10 @@ pub const MAX_MICRO_RELIEF_M: f64 = 0.01;
 pub const MICRO_RELIEF_M: Range = Range::new(0.0, MAX_MICRO_RELIEF_M, "0 to 0.01 m, 0 = none");
 /// Side of a surface.
 pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
+/// Each coordinate of a place in a body.
+pub const PLACE_M: Range = Range::new(-1e3, 1e3, "-1000 to 1000 m");
+/// Length of a direction, of which only the direction counts.
+pub const AXIS: Range = Range::new(1e-6, 1e6, "1e-6 to 1e6 long");
 /// Roughness of a surface.
 pub const ROUGHNESS: Range = Range::new(0.0, 1.0, "0 to 1");
 /// Friction coefficient.
@@ -275,6 +279,8 @@ mod tests {
             MICRO_RELIEF_M,
             SIDE_M,
             TIME_SCALE,
+            PLACE_M,
+            AXIS,
             ROUGHNESS,
             FRICTION,
             probe::PAD_MASS_KG,

@@ -19,6 +19,7 @@ use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::error::AddError;
 use crate::model::event::{Actuator, ContactEvent, ContactId};
+use crate::model::frame::SurfaceFrame;
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
@@ -64,6 +65,8 @@ struct KnownSurface {
     rings: bool,
     /// How it looks, if it changes.
     picture: Option<Arc<MovingPicture>>,
+    size_m: [f64; 2],
+    frame: Option<SurfaceFrame>,
 }
 
 /// What the game half remembers of a body.
@@ -220,11 +223,12 @@ impl Scene {
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
         let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
         let rings = body.lowest_mode_hz.is_finite();
+        let (size_m, frame) = ([surface.width_m, surface.height_m], surface.frame);
         let mut picture = None;
         surface.source.visit(&mut |part| picture = picture.take().or(part.downcast_ref().cloned()));
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
         self.send(Message::SetSurface { id, surface })?;
-        self.surfaces.set(id.0, KnownSurface { rings, picture });
+        self.surfaces.set(id.0, KnownSurface { rings, picture, size_m, frame });
         Ok(())
     }
 
@@ -238,6 +242,19 @@ impl Scene {
     pub fn change_surface(&mut self, id: SurfaceId, change: impl Any + Send + Sync) -> Result<(), AddError> {
         self.known_surface(id)?;
         self.send(Message::ChangeSurface { slot: id.index(), change: Box::new(change) })
+    }
+
+    /// Texture coordinates of a point in the body of a surface that has a [frame](Surface::frame), m; none for one that has none.
+    ///
+    /// # Errors
+    /// When the surface is not in this scene.
+    pub fn uv_at(
+        &self,
+        id: SurfaceId,
+        point_m: impl Into<mint::Vector3<f64>>,
+    ) -> Result<Option<[f64; 2]>, AddError> {
+        let known = self.known_surface(id)?;
+        Ok(known.frame.map(|frame| frame.uv(point_m, known.size_m)))
     }
 
     /// Takes a surface away; contacts on it fade.

@@ -1,6 +1,7 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
 use crate::model::bad_value::{BadValue, within};
+use crate::model::frame::SurfaceFrame;
 use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
@@ -67,6 +68,7 @@ pub struct Surface {
     pub(crate) friction: Option<f64>,
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
+    pub(crate) frame: Option<SurfaceFrame>,
 }
 
 impl std::fmt::Debug for Surface {
@@ -121,6 +123,7 @@ impl Surface {
             friction: None,
             excitation: Excitation::default(),
             strike_position: 0,
+            frame: None,
         })
     }
 
@@ -198,6 +201,13 @@ impl Surface {
     #[must_use]
     pub fn at_strike_position(mut self, position: usize) -> Self {
         self.strike_position = position;
+        self
+    }
+
+    /// Where it lies in its body.
+    #[must_use]
+    pub fn frame(mut self, frame: SurfaceFrame) -> Self {
+        self.frame = Some(frame);
         self
     }
 
