@@ -94,6 +94,7 @@ fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
         path: None,
         trace: false,
         force: false,
+        force_rate: 1000.0,
         plot: true,
         json: false,
     })

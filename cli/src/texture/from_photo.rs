@@ -284,6 +284,7 @@ mod tests {
             path: None,
             trace: false,
             force: false,
+            force_rate: 1000.0,
             plot: false,
             json: false,
         };
