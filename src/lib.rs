@@ -105,6 +105,11 @@ pub use model::surface::{
 };
 pub use model::uv_triangle::UvTriangle;
 
+/// Kernels: what happens to one sample.
+pub use asperity_dsp as dsp;
+pub use asperity_dsp::DesignError;
+/// What [`ContactBlock::contact_samples`] holds: the pad at one sample.
+pub use asperity_dsp::micro_contact::ContactSample as PadSample;
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
 pub use asperity_dsp::modal_bank::Culling;
 pub use asperity_dsp::mode::Mode;
