@@ -76,7 +76,8 @@ pub struct SandAfter {
 /// let log = r#"{"t":0.1,"event":"impact","body":"bell","speed_m_s":0.8,"mass_kg":0.01,"radius_m":0.005,"striker":"wood"}"#;
 /// let log = ContactLog::parse(log, "bell.jsonl")?;
 /// let take = offline::render(scene, renderer, &log, &names, &Options::default())?;
-/// assert_eq!((take.stats.impacts, take.audio[0].len()), (1, 48_510));
+/// // A tenth of a second before the blow, a second to ring out.
+/// assert!(take.stats.impacts == 1 && take.audio[0].len() >= 48_510);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

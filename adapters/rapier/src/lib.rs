@@ -131,7 +131,7 @@ impl Adapter {
                 rigid: self.rigid,
             };
             let key = colliders.map(ColliderHandle::into_raw_parts);
-            let pair = self.pairs.entry(key).or_insert_with(Pair::default);
+            let pair = self.pairs.entry(key).or_default();
             pair.seen = true;
             pair.advance(&step, &mut self.next_contact, &mut events);
         }

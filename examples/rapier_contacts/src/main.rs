@@ -79,10 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     assert!(travelled.is_some_and(|u| u * SIDE_M > 0.2), "the finger did not get along: {travelled:?}");
     take.write_audio_wav(folder.join("rapier.audio.wav"))?;
     take.write_haptic_wav(folder.join("rapier.haptic.wav"))?;
-    println!(
-        "offline: {frames} samples a channel, equal to the last bit; {:.0}x real time",
-        take.real_time_factor()
-    );
+    println!("offline: {frames} samples a channel, equal to the last bit");
     Ok(())
 }
 
