@@ -47,9 +47,20 @@
 //! | a surface of your own | [`texture::height_field::HeightField`] |
 //! | several bodies at several places | [`Config::audio`], [`Body::on_bus`] |
 //! | a pen, a nail, a shoe sole | [`PROBE_PRESETS`], [`Scene::add_probe`], [`Touching`] |
-//! | collisions of a physics engine | [`Impact::from_impulse`] |
+//! | collisions of a physics engine | [`Impact::from_impulse`]; the crate `asperity-rapier` |
 //! | a sound card | [`live`] |
 //! | silence | [`Scene::why_silent`] |
+//!
+//! # Crates
+//!
+//! | crate | holds |
+//! |---|---|
+//! | [`dsp`] | kernels: what happens to one sample |
+//! | [`texture`] | surfaces: sources sampled in real time, tools behind a feature |
+//! | `asperity` | scenes, events, the two halves, files, offline renders, sound cards |
+//! | `asperity-fit` | a recorded hit becomes modes |
+//! | `asperity-rapier` | contacts of a physics engine as events |
+//! | `asperity-cli` | the program |
 //!
 //! # Features
 //!
