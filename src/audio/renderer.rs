@@ -189,6 +189,20 @@ impl Renderer {
     /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
     /// counts and the rest is silent). Haptic channel i goes into haptic slice i, audio bus i into audio slice i, both in the order of
     /// the config.
+    ///
+    /// ```
+    /// use asperity::{ActuatorSettings, AudioBus, Config, Engine};
+    ///
+    /// let config = Config {
+    ///     actuators: vec![ActuatorSettings::default(); 3],
+    ///     audio: vec![AudioBus::default(); 2],
+    ///     ..Config::default()
+    /// };
+    /// let Engine { mut renderer, .. } = config.build()?;
+    /// let (mut haptic, mut audio) = ([[0.0f32; 128]; 3], [[0.0f32; 128]; 2]);
+    /// renderer.render(&mut haptic.each_mut().map(|c| &mut c[..]), &mut audio.each_mut().map(|c| &mut c[..]));
+    /// # Ok::<(), asperity::ConfigError>(())
+    /// ```
     pub fn render(&mut self, haptic: &mut [&mut [f32]], audio: &mut [&mut [f32]]) {
         self.render_tapped(haptic, audio, &mut NoTap);
     }

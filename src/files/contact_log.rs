@@ -146,6 +146,7 @@ pub struct Names {
 
 /// Why a log, or a line of it, was refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LogError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({source}); give a readable contact log", path.display())]

@@ -40,6 +40,20 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// The game half of an engine.
+///
+/// ```
+/// use asperity::{Config, ContactEvent, ContactId, ContactSample, Engine, Surface, Touching};
+///
+/// let Engine { mut scene, .. } = Config::live(48_000.0).build()?;
+/// let desk = scene.add_surface(Surface::flat(1.2, 0.6)?)?;
+/// let sample = ContactSample::new([0.5, 0.5], 0.4).sliding([0.1, 0.0]);
+/// scene.report(0.0, ContactEvent::begin_with(ContactId(1), Touching::on(desk), sample))?;
+/// // What is wrong is said by name, and the event is handed back.
+/// let heavy = ContactSample { normal_force_n: f64::NAN, ..sample };
+/// let refused = scene.report(0.02, ContactEvent::moved(ContactId(1), heavy)).unwrap_err();
+/// assert!(refused.to_string().starts_with("normal_force_n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Scene {
     config: Config,
     clock: Clock,
@@ -315,6 +329,14 @@ impl Scene {
 
     /// What speaks against anything being heard or felt, the likeliest reason first; empty when nothing
     /// does. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
+    ///
+    /// ```
+    /// use asperity::{Config, Engine};
+    ///
+    /// let Engine { scene, .. } = Config::default().build()?;
+    /// assert!(scene.why_silent()[0].to_string().contains("Renderer::render"));
+    /// # Ok::<(), asperity::ConfigError>(())
+    /// ```
     #[must_use]
     pub fn why_silent(&self) -> Vec<SilentBecause> {
         self.reported.why_silent(&self.stats(), &self.config)

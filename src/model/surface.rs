@@ -23,6 +23,7 @@ use std::path::Path;
 /// What sliding sends to the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Excitation {
     /// Hertz pulses at the micro-collisions only, as the paper does: silent where the pad never lifts
     /// off, which with measured damping is every smooth grating at 0.5 N.
@@ -84,6 +85,7 @@ impl std::fmt::Debug for Surface {
 
 /// Why a surface cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// A map cannot be used.
     #[error(transparent)]
