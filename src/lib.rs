@@ -72,6 +72,7 @@ pub mod live;
 mod model;
 pub mod offline;
 pub mod open;
+pub mod parameters;
 mod prepared;
 
 pub use asperity_dsp::limits;
@@ -104,7 +105,7 @@ pub use model::surface::{
 pub use model::uv_triangle::UvTriangle;
 
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
-pub use asperity_dsp::modal_bank::Culling;
+pub use asperity_dsp::modal_bank::{Culling, Isa};
 pub use asperity_dsp::mode::Mode;
 pub use asperity_dsp::trajectory::PathMode;
 /// Sources of surfaces, and maps.

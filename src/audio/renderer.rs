@@ -27,7 +27,7 @@ use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_dsp::modal_bank::Kernel;
+use asperity_dsp::modal_bank::{Isa, Kernel};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::sand::{SandFigures, SandPicture, SandSource};
@@ -69,6 +69,7 @@ pub struct Renderer {
 impl Renderer {
     pub(crate) fn new(
         config: &Config,
+        kernel: Kernel,
         probe: PreparedProbe,
         from_game: Receiver<Message>,
         to_game: Sender<Dead>,
@@ -109,7 +110,7 @@ impl Renderer {
                 .collect::<Result<_, _>>()?,
             buses: config.audio.iter().map(|bus| Bus::new(bus, rate)).collect::<Result<_, _>>()?,
             blows: Blows::new(rate),
-            kernel: Kernel::detect(),
+            kernel,
             governor: Governor::new(config.shed_load, rate),
             groups_shed: 0,
             from_game,
@@ -131,6 +132,12 @@ impl Renderer {
     #[must_use]
     pub fn audio_buses(&self) -> usize {
         self.buses.len()
+    }
+
+    /// The instruction set of the kernels whose last bits depend on it ([`Config::kernel`]).
+    #[must_use]
+    pub fn kernel(&self) -> Isa {
+        self.kernel.isa()
     }
 
     /// Rate of every output, Hz.

@@ -1,6 +1,7 @@
 //! What is read from files and written to them; no other room names their formats.
 
 pub mod actuator_profile;
+mod config_file;
 pub mod contact_log;
 mod file_error;
 pub mod modes_file;

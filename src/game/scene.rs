@@ -28,6 +28,7 @@ use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::micro_contact::Probe;
+use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_dsp::{DesignError, limits};
 use asperity_texture::height_field::Setup;
@@ -172,7 +173,9 @@ impl Scene {
     pub fn add_probe(&mut self, probe: Probe) -> Result<ProbeId, AddError> {
         let id = ProbeId(self.probes.free()?);
         let Config { probe: own, integrator, .. } = &self.config;
-        let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz())?;
+        // An engine that was built has its kernel.
+        let kernel = self.config.kernel().unwrap_or(Kernel::PORTABLE);
+        let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz(), kernel)?;
         self.send(Message::AddProbe { index: id.index(), probe: Box::new(probe) })?;
         self.probes.set(id.0, ());
         Ok(id)

@@ -3,7 +3,8 @@
 pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
 
 /// One haptic channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct ActuatorSettings {
     /// What the channel plays: the pad's displacement (the paper) or its acceleration.
     pub output: Quantity,

@@ -4,7 +4,8 @@
 pub const MAX_BUSES: usize = 64;
 
 /// Settings of an audio bus.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct AudioBus {
     /// Linear gain, 0–1e6.
     pub gain: f64,

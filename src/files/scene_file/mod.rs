@@ -23,7 +23,7 @@ use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::bus::{AudioBus, MAX_BUSES};
 use crate::model::material::Material;
 use crate::model::probe::{PROBE_PRESETS, probe_by_name};
-use asperity_dsp::limits::{self, Range};
+use crate::parameters;
 use asperity_dsp::micro_contact::Probe;
 use fields::Fields;
 use std::path::{Path, PathBuf};
@@ -33,8 +33,6 @@ use toml::Value;
 const MAX_BYTES: usize = 16 << 20;
 /// Default ring-out after the last event, seconds.
 const TAIL_S: f64 = 1.0;
-/// Longest ring-out, s.
-const LONGEST_TAIL_S: Range = Range::new(0.0, 600.0, "0 to 600 s");
 
 /// A whole scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,10 +157,10 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let audio = read_buses(&mut top)?;
     let scene = SceneFile {
         path: path.to_owned(),
-        sample_rate_hz: top.number("sample_rate_hz", limits::output::SAMPLE_RATE_HZ)?,
+        sample_rate_hz: top.number(&parameters::scene::SAMPLE_RATE_HZ)?,
         seed: top.whole("seed", 0, u64::MAX)?,
         contacts: top.file("contacts", folder)?,
-        tail_s: top.number_or("tail_s", TAIL_S, LONGEST_TAIL_S)?,
+        tail_s: top.number_or(&parameters::scene::TAIL_S, TAIL_S)?,
         bodies,
         surfaces,
         probe,
@@ -228,7 +226,7 @@ fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> 
             return Err(fields.refuse("material", what, right));
         }
     };
-    let residual = fields.number("residual", limits::material::RESIDUAL)?;
+    let residual = fields.number(&parameters::body::RESIDUAL)?;
     let bus = fields.text("bus")?;
     fields.finish()?;
     Ok(BodyEntry { name, modes, material, residual, bus })
@@ -236,9 +234,9 @@ fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> 
 
 fn read_material(mut fields: Fields) -> Result<Material, FileError> {
     let material = Material {
-        young_pa: fields.needed_number("young_pa", limits::material::YOUNG_PA)?,
-        poisson: fields.needed_number("poisson", limits::material::POISSON)?,
-        density_kg_m3: fields.needed_number("density_kg_m3", limits::material::DENSITY_KG_M3)?,
+        young_pa: fields.needed_number(&parameters::material::YOUNG_PA)?,
+        poisson: fields.needed_number(&parameters::material::POISSON)?,
+        density_kg_m3: fields.needed_number(&parameters::material::DENSITY_KG_M3)?,
     };
     fields.finish()?;
     Ok(material)
@@ -277,26 +275,16 @@ fn read_probe(mut fields: Fields) -> Result<Probe, FileError> {
             fields.refuse("preset", format!("\"{name}\" is unknown"), right)
         })?,
     };
-    let mut number = |key, preset, range| fields.number_or(key, preset, range);
     let probe = Probe {
-        pad_mass_kg: number("pad_mass_kg", preset.pad_mass_kg, limits::probe::PAD_MASS_KG)?,
-        pad_stiffness_n_m: number(
-            "pad_stiffness_n_m",
-            preset.pad_stiffness_n_m,
-            limits::probe::PAD_STIFFNESS_N_M,
-        )?,
-        pad_damping_n_s_m: number(
-            "pad_damping_n_s_m",
-            preset.pad_damping_n_s_m,
-            limits::probe::PAD_DAMPING_N_S_M,
-        )?,
-        finger_mass_kg: number("finger_mass_kg", preset.finger_mass_kg, limits::probe::FINGER_MASS_KG)?,
-        contact_stiffness_n_m: number(
-            "contact_stiffness_n_m",
-            preset.contact_stiffness_n_m,
-            limits::probe::CONTACT_STIFFNESS_N_M,
-        )?,
-        leash_m: number("leash_m", preset.leash_m, limits::probe::LEASH_M)?,
+        pad_mass_kg: fields.number_or(&parameters::probe::PAD_MASS_KG, preset.pad_mass_kg)?,
+        pad_stiffness_n_m: fields
+            .number_or(&parameters::probe::PAD_STIFFNESS_N_M, preset.pad_stiffness_n_m)?,
+        pad_damping_n_s_m: fields
+            .number_or(&parameters::probe::PAD_DAMPING_N_S_M, preset.pad_damping_n_s_m)?,
+        finger_mass_kg: fields.number_or(&parameters::probe::FINGER_MASS_KG, preset.finger_mass_kg)?,
+        contact_stiffness_n_m: fields
+            .number_or(&parameters::probe::CONTACT_STIFFNESS_N_M, preset.contact_stiffness_n_m)?,
+        leash_m: fields.number_or(&parameters::probe::LEASH_M, preset.leash_m)?,
     };
     fields.finish()?;
     Ok(probe)
@@ -317,12 +305,12 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
             return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
         }
     };
-    let full_scale = match fields.number("full_scale", limits::output::FULL_SCALE)? {
+    let full_scale = match fields.number(&parameters::actuator::FULL_SCALE)? {
         Some(full_scale) => full_scale,
         None if output == Quantity::Displacement => default.full_scale,
         None => return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0")),
     };
-    let highpass_hz = fields.number_or("highpass_hz", default.highpass_hz, limits::output::HIGHPASS_HZ)?;
+    let highpass_hz = fields.number_or(&parameters::actuator::HIGHPASS_HZ, default.highpass_hz)?;
     fields.finish()?;
     let settings = ActuatorSettings { output, full_scale, highpass_hz, limit_peaks, ..default };
     Ok(ActuatorEntry { settings, equalise, limit })
@@ -358,7 +346,7 @@ fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
 fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
     let default = AudioBus::default();
     let bus = AudioBus {
-        gain: fields.number_or("gain", default.gain, limits::output::AUDIO_GAIN)?,
+        gain: fields.number_or(&parameters::audio::GAIN, default.gain)?,
         limit: fields.flag("limit")?.unwrap_or(default.limit),
     };
     let name = fields.text("name")?;
