@@ -1,12 +1,12 @@
 //! Rendering a contact log without a device: the same two halves, the same events, to memory or WAV.
 
 use crate::audio::renderer::Renderer;
-use crate::audio::tap::{NoTap, Tap};
 use crate::files::contact_log::{ContactLog, LogError, Names};
 use crate::files::wav::write_wav;
 use crate::game::scene::Scene;
 use crate::game::silence::SilentBecause;
 use crate::link::stats::Stats;
+use crate::link::tap::{NoTap, Tap};
 use crate::model::error::ReportError;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;

@@ -100,7 +100,9 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
     }
     for entry in &file.surfaces {
         let place = |error: FileError| at(error.within(format!("surface \"{}\"", entry.name)));
-        let surface = maker.surface(entry, &names).map_err(place)?;
+        let body = file.bodies.iter().find(|body| Some(&body.name) == entry.body.as_ref());
+        let material = body.and_then(|body| body.material);
+        let surface = maker.surface(entry, material, &names).map_err(place)?;
         let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }

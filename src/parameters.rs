@@ -3,7 +3,6 @@
 //! One list for everybody: the reader of scene files takes its ranges from here, `docs/formats.md` its tables, an inspector its sliders.
 //! The ranges themselves are those of [`limits`], which the kernels check.
 
-use crate::model::surface::{DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS};
 use asperity_dsp::limits::{self, Range};
 use asperity_dsp::micro_contact as contact;
 use asperity_texture::sand::SandLaw;
@@ -111,12 +110,20 @@ parameters! {
     mod body = "body" {
         RESIDUAL: "residual", "", limits::material::RESIDUAL,
             "Gain of the residual that the modes file may carry; 0 = not played", or(1.0);
+        SIZE_M: "size_m", "m", limits::material::SIZE_M, "Longest side or diameter of a stock body";
     }
     /// What a body is made of.
     mod material = "material" {
         YOUNG_PA: "young_pa", "Pa", limits::material::YOUNG_PA, "Young's modulus";
         POISSON: "poisson", "", limits::material::POISSON, "Poisson ratio";
         DENSITY_KG_M3: "density_kg_m3", "kg/m³", limits::material::DENSITY_KG_M3, "Density";
+        ALPHA_PER_S: "alpha_per_s", "1/s", limits::material::ALPHA_PER_S, "α of the damping d = (α + ηω + βω²)/2";
+        ETA: "eta", "", limits::material::ETA, "η of the same";
+        BETA_S: "beta_s", "s", limits::material::BETA_S, "β of the same";
+        MU_STATIC: "mu_static", "", limits::FRICTION, "Coefficient of static friction";
+        MU_KINETIC: "mu_kinetic", "", limits::FRICTION, "Coefficient of kinetic friction";
+        ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R of its surfaces";
+        MICRO_RELIEF_M: "micro_relief_m", "m", limits::MICRO_RELIEF_M, "Micro-relief of its surfaces";
     }
     /// A surface.
     mod surface = "surface" {
@@ -124,10 +131,8 @@ parameters! {
         HEIGHT_M: "height_m", "m", limits::SIDE_M, "What uv 1 spans along v", changes(Anew);
         RELIEF_M: "relief_m", "m", limits::RELIEF_M, "Height of white over black of an image";
         MICRO_RELIEF_M: "micro_relief_m", "m", limits::MICRO_RELIEF_M,
-            "Rms of the 1/f^α overlay in the octave around 1 mm", or(DEFAULT_MICRO_RELIEF_M),
-            from("chosen: a matte plate at 0.1 m/s buzzes at ten times the threshold of vibration");
-        ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R", or(DEFAULT_ROUGHNESS),
-            from("chosen: the middle of the scale");
+            "Rms of the 1/f^α overlay in the octave around 1 mm; missing: its material's";
+        ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R; missing: its map's or its material's";
         FRICTION: "friction", "", limits::FRICTION, "Coulomb coefficient of the 3-D force; missing: the source's";
         SCALE: "scale", "", limits::combined::FACTOR, "Factor of the heights", or(1.0);
         STRIKE_POSITION: "strike_position", "", Range::new(0.0, 15.0, "0 to 15"),

@@ -89,7 +89,10 @@ fn scene(parameter: &Parameter, value: &str) -> Option<String> {
     let in_surface = |line: String| format!("{SURFACE}{size}{line}\n");
     Some(match parameter.table {
         "" => written,
-        "body" => format!("[[body]]\nname = \"b\"\n{written}"),
+        "body" => {
+            let other = if parameter.key == "size_m" { "stock = \"bar\"" } else { "" };
+            format!("[[body]]\nname = \"b\"\n{written}\n{other}")
+        }
         "material" => {
             let others = [("young_pa", "1e9"), ("poisson", "0.3"), ("density_kg_m3", "1e3")];
             let others = others.into_iter().filter(|(key, _)| *key != parameter.key);
@@ -174,8 +177,6 @@ fn what_is_not_written_is_as_the_list_says() {
     let mut read = vec![
         ("", "sample_rate_hz", config.sample_rate_hz),
         ("", "tail_s", file.tail_s),
-        ("surface", "micro_relief_m", file.surfaces[0].micro_relief_m),
-        ("surface", "roughness", asperity::DEFAULT_ROUGHNESS),
         ("surface", "strike_position", file.surfaces[0].strike_position as f64),
         ("actuator", "full_scale", actuator.full_scale),
         ("actuator", "highpass_hz", actuator.highpass_hz),

@@ -1,4 +1,4 @@
-//! What the engine accepts, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
+//! Accepted ranges, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
 //! `docs/formats.md` prints it.
 //!
 //! What is outside is refused where it enters, by name; what lies inside is rendered as it is.
@@ -132,6 +132,14 @@ pub mod material {
     pub const POISSON: Range = Range::new(0.0, 0.5, "0 to 0.5");
     /// Density.
     pub const DENSITY_KG_M3: Range = Range::new(1.0, 1e5, "1 to 1e5 kg/m³");
+    /// Damping that is the same at every frequency.
+    pub const ALPHA_PER_S: Range = Range::new(0.0, 1e6, "0 to 1e6 1/s");
+    /// Loss factor.
+    pub const ETA: Range = Range::new(0.0, 10.0, "0 to 10");
+    /// Viscous damping.
+    pub const BETA_S: Range = Range::new(0.0, 1.0, "0 to 1 s");
+    /// Longest side of a stock shape.
+    pub const SIZE_M: Range = Range::new(1e-3, 100.0, "1e-3 to 100 m");
     /// Gain of a body's residual.
     pub const RESIDUAL: Range = Range::new(0.0, 1e3, "0 to 1e3 (a gain)");
 }
@@ -150,6 +158,10 @@ pub mod output {
     pub const FULL_SCALE: Range = Range::new(1e-12, 1e12, "1e-12 to 1e12 m (or m/s²)");
     /// High-pass about the mean surface; at low sample rates, below 0.49 of the rate as well.
     pub const HIGHPASS_HZ: Range = Range::new(0.0, 1e3, "0 to 1000 Hz, 0 = off");
+    /// How much of its signal a port holds for a late reader.
+    pub const PORT_HOLDS_S: Range = Range::new(1e-3, 60.0, "1e-3 to 60 s");
+    /// Rows a second of a force port.
+    pub const FORCE_RATE_HZ: Range = Range::new(1.0, 2e4, "1 to 20000 Hz");
     /// How long a contact goes on without a report.
     pub const CONTACT_TIMEOUT_S: Range = Range::new(0.01, 3600.0, "0.01 to 3600 s");
 }
@@ -283,6 +295,8 @@ mod tests {
             output::FULL_SCALE,
             output::HIGHPASS_HZ,
             output::CONTACT_TIMEOUT_S,
+            output::PORT_HOLDS_S,
+            output::FORCE_RATE_HZ,
             sand::DEPTH_M,
             sand::SIDE_M,
             sand::TALUS_DEG,

@@ -4,7 +4,7 @@ pub(crate) mod blows;
 pub(crate) mod body_seat;
 pub(crate) mod governor;
 pub(crate) mod occupied;
+pub(crate) mod outlets;
 pub(crate) mod renderer;
 pub(crate) mod seat;
-pub(crate) mod tap;
 pub(crate) mod voice;

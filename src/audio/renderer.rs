@@ -11,12 +11,13 @@ use crate::audio::blows::Blows;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::governor::Governor;
 use crate::audio::occupied::Occupied;
+use crate::audio::outlets::Outlets;
 use crate::audio::seat::{Change, Seat};
-use crate::audio::tap::{NoTap, Tap};
 use crate::audio::voice::{Phase, Scratch, Shared, Voice};
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
+use crate::link::tap::{NoTap, Tap};
 use crate::model::config::Config;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
@@ -55,6 +56,7 @@ pub struct Renderer {
     channels: Vec<HapticChannel>,
     buses: Vec<Bus>,
     blows: Blows,
+    outlets: Outlets,
     kernel: Kernel,
     governor: Governor,
     /// Groups of modes left out in the present stretch.
@@ -110,6 +112,7 @@ impl Renderer {
                 .collect::<Result<_, _>>()?,
             buses: config.audio.iter().map(|bus| Bus::new(bus, rate)).collect::<Result<_, _>>()?,
             blows: Blows::new(rate),
+            outlets: Outlets::new(config.max_ports, config.actuators.len()),
             kernel,
             governor: Governor::new(config.shed_load, rate),
             groups_shed: 0,
@@ -210,6 +213,8 @@ impl Renderer {
             self.apply_due();
             let n = self.stretch(frames - done);
             self.render_contacts(n, tap);
+            let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
+            self.outlets.shown(shown / self.shared.inner.every as u64);
             self.render_haptics(done, n, haptic);
             self.render_bodies(done, n, audio);
             done += n;
@@ -324,6 +329,7 @@ impl Renderer {
             }
             Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
+            Message::AddOutlet(outlet) => self.outlets.add(outlet),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
         }
     }
@@ -368,6 +374,7 @@ impl Renderer {
         for channel in &mut self.channels {
             channel.sum[..n].fill(0.0);
         }
+        let tap = &mut self.outlets.beside(tap);
         let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
         for voice in self.voices_used.iter() {
             let voice = &mut self.voices[voice];
@@ -413,6 +420,7 @@ impl Renderer {
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
     fn tidy(&mut self) {
         self.show_levels();
+        self.outlets.tidy(&mut self.to_game);
         self.voices_used.retain(|voice| self.voices[voice].phase != Phase::Free);
         for at in 0..self.voices_used.len() {
             let index = self.voices_used.at(at);

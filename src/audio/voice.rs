@@ -16,7 +16,7 @@ use excitation::LONGEST_COLLISION_S;
 pub(crate) use role::Role;
 
 use crate::audio::seat::{Noise, Seat};
-use crate::audio::tap::Tap;
+use crate::link::tap::Tap;
 use crate::model::event::ContactId;
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::probe::PreparedProbe;

@@ -2,6 +2,7 @@
 //!
 //! Every call returns at once. Nothing here waits for the audio thread.
 
+mod ports;
 mod reports;
 
 use crate::files::contact_log::{ContactLog, Names};
@@ -32,6 +33,7 @@ use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_dsp::{DesignError, limits};
 use asperity_texture::height_field::Setup;
+use asperity_texture::moving_picture::MovingPicture;
 use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -44,6 +46,7 @@ pub struct Scene {
     surfaces: Places<KnownSurface>,
     bodies: Places<KnownBody>,
     probes: Places<()>,
+    open_ports: usize,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     to_audio: Sender<Message>,
@@ -55,10 +58,12 @@ pub struct Scene {
 }
 
 /// What the game half remembers of a surface.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct KnownSurface {
     /// Whether contacts on it ring something.
     rings: bool,
+    /// How it looks, if it changes.
+    picture: Option<Arc<MovingPicture>>,
 }
 
 /// What the game half remembers of a body.
@@ -80,6 +85,7 @@ impl Scene {
             surfaces: Places::new(config.max_surfaces, "surfaces"),
             bodies: Places::new(config.max_bodies, "bodies"),
             probes: Places::new(config.max_probes, "probes"),
+            open_ports: 0,
             reported: Reported::default(),
             held: Vec::new(),
             config,
@@ -215,9 +221,11 @@ impl Scene {
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
         let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
         let rings = body.lowest_mode_hz.is_finite();
+        let mut picture = None;
+        surface.source.visit(&mut |part| picture = picture.take().or(part.downcast_ref().cloned()));
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
         self.send(Message::SetSurface { id, surface })?;
-        self.surfaces.set(id.0, KnownSurface { rings });
+        self.surfaces.set(id.0, KnownSurface { rings, picture });
         Ok(())
     }
 
@@ -273,10 +281,15 @@ impl Scene {
         self.recording.take().map(Recording::into_log).unwrap_or_default()
     }
 
-    /// Frees surfaces and bodies that the audio half no longer needs; `add_…` and `replace_…` do it
+    /// Frees surfaces, bodies and ports that the audio half no longer needs; `add_…` and `replace_…` do it
     /// too. Returns how many were freed.
     pub fn collect(&mut self) -> usize {
-        std::iter::from_fn(|| self.from_audio.receive()).count()
+        let mut freed = 0;
+        while let Some(dead) = self.from_audio.receive() {
+            self.open_ports -= usize::from(matches!(dead, Dead::Outlet(_)));
+            freed += 1;
+        }
+        freed
     }
 
     /// Whether another move might be held back because the audio half lags behind.
@@ -316,8 +329,8 @@ impl Scene {
         Stats { position: stats.position / InnerRate::samples(self.config.sample_rate_hz) as u64, ..stats }
     }
 
-    fn known_surface(&self, id: SurfaceId) -> Result<KnownSurface, AddError> {
-        self.surfaces.get(id.0).copied().ok_or(AddError::Unknown("surface"))
+    fn known_surface(&self, id: SurfaceId) -> Result<&KnownSurface, AddError> {
+        self.surfaces.get(id.0).ok_or(AddError::Unknown("surface"))
     }
 
     fn known_body(&self, id: BodyId) -> Result<KnownBody, AddError> {

@@ -1,5 +1,6 @@
-//! What crosses: messages from the game to the audio half, and what comes home to be freed.
+//! Messages from the game to the audio half, and the dead resources that come home to be freed.
 
+use crate::link::outlet::Outlet;
 use crate::model::event::ContactEvent;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::stamp::Stamp;
@@ -40,6 +41,8 @@ pub(crate) enum Message {
     SetBodyBus { slot: usize, bus: usize },
     /// A slot falls empty; the body rings out unheard from now on.
     RemoveBody { slot: usize },
+    /// The audio half's end of a port that was opened.
+    AddOutlet(Box<dyn Outlet>),
     /// Per-user haptic gain of one channel, 0 = mute; reached within a few milliseconds.
     SetHapticGain { channel: usize, gain: f64 },
 }
@@ -56,6 +59,9 @@ pub(crate) struct Felt {
 pub(crate) enum Dead {
     Surface(Box<SurfaceSlot>),
     Body(Box<BodySlot>),
+    /// A port that nobody reads any more.
+    #[expect(dead_code, reason = "it is freed with the message and never looked at")]
+    Outlet(Box<dyn Outlet>),
     #[expect(dead_code, reason = "it is freed with the message and never looked at")]
     Change(Box<dyn Any + Send + Sync>),
 }

@@ -39,6 +39,8 @@ pub struct Config {
     pub max_contacts: usize,
     /// Most probes, the engine's own not counted.
     pub max_probes: usize,
+    /// Most ports that can be open at once.
+    pub max_ports: usize,
     /// Most surfaces at once.
     pub max_surfaces: usize,
     /// Most bodies at once.
@@ -75,6 +77,7 @@ impl Default for Config {
             audio: vec![AudioBus::default()],
             max_contacts: 64,
             max_probes: 64,
+            max_ports: 16,
             max_surfaces: 256,
             max_bodies: 256,
             queue_capacity: 4096,
@@ -150,6 +153,7 @@ impl Config {
         count("audio", self.audio.len(), MAX_BUSES, "1–64 buses")?;
         count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;
         count("max_probes", self.max_probes, 4096, "1–4096 probes")?;
+        count("max_ports", self.max_ports, 4096, "1–4096 ports")?;
         count("max_surfaces", self.max_surfaces, 65_536, "1–65536 surfaces")?;
         count("max_bodies", self.max_bodies, 65_536, "1–65536 bodies")?;
         count("queue_capacity", self.queue_capacity, 1 << 24, "1–16777216 events")

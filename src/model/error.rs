@@ -77,7 +77,7 @@ pub enum AddError {
     /// Every place is taken.
     #[error("{kind}: all {capacity} places are taken; remove one or raise max_{kind} in the config")]
     Full {
-        /// "surfaces" or "bodies".
+        /// "surfaces", "bodies", "probes" or "ports".
         kind: &'static str,
         /// How many places there are.
         capacity: usize,
@@ -99,6 +99,9 @@ pub enum AddError {
         /// How many buses there are.
         buses: usize,
     },
+    /// The surface never changes, so that there is nothing to be shown.
+    #[error("surface: its source never changes, so that there is no moving picture of it; only sand has one")]
+    NeverChanges,
     /// What it refers to is not in this scene.
     #[error("{0}: is not in this scene; add it first")]
     Unknown(&'static str),

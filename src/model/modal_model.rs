@@ -85,6 +85,20 @@ impl ModalModel {
         }
     }
 
+    /// The same model, every answer `gain` times as strong.
+    ///
+    /// # Errors
+    /// When an amplitude leaves ±1e9.
+    pub fn with_gain(mut self, gain: f64) -> Result<Self, ModalModelError> {
+        self.modes.iter_mut().for_each(|mode| mode.amplitude *= gain);
+        self.positions.iter_mut().flatten().for_each(|amplitude| *amplitude *= gain);
+        if let Some(residual) = &mut self.residual {
+            residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
+        }
+        self.check()?;
+        Ok(self)
+    }
+
     /// The same model with more strike positions: one amplitude for every mode in each list.
     ///
     /// # Errors

@@ -3,11 +3,12 @@
 use super::source::Ground;
 use crate::files::contact_log::Names;
 use crate::files::scene_file::{
-    ActuatorEntry, AudioEntry, BodyEntry, MakeSource, RoughnessEntry, SurfaceEntry,
+    ActuatorEntry, AudioEntry, BodyEntry, MakeSource, RoughnessEntry, Source, SurfaceEntry,
 };
 use crate::files::{FileError, Files, storage};
 use crate::{
-    ActuatorPreset, ActuatorSettings, Body, DeviceProfile, Extent, ModalModel, Roughness, Surface, Wrap,
+    ActuatorPreset, ActuatorSettings, Body, DeviceProfile, Extent, Material, ModalModel, Roughness, Surface,
+    Wrap,
 };
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::sand::SandWorker;
@@ -29,9 +30,11 @@ pub(crate) struct Maker<'a> {
 impl<'a> Maker<'a> {
     /// A body, on the bus that it names.
     pub fn body(&self, entry: &BodyEntry, audio: &[AudioEntry]) -> Result<Body, FileError> {
-        let mut model = match &entry.modes {
-            Some(path) => ModalModel::load_from(self.files, path).map_err(FileError::told)?,
-            None => ModalModel::silent(),
+        let material = entry.material.unwrap_or(Body::DEFAULT_MATERIAL);
+        let mut model = match (&entry.modes, entry.stock) {
+            (Some(path), _) => ModalModel::load_from(self.files, path).map_err(FileError::told)?,
+            (None, Some((shape, size_m))) => shape.modes(&material, size_m).map_err(FileError::told)?,
+            (None, None) => ModalModel::silent(),
         };
         if let Some(gain) = entry.residual {
             let residual = model.residual.take();
@@ -39,7 +42,7 @@ impl<'a> Maker<'a> {
         }
         let bus =
             entry.bus.as_ref().and_then(|name| audio.iter().position(|bus| bus.name.as_ref() == Some(name)));
-        Ok(Body::new(model).of(entry.material.unwrap_or(Body::DEFAULT_MATERIAL)).on_bus(bus.unwrap_or(0)))
+        Ok(Body::new(model).of(material).on_bus(bus.unwrap_or(0)))
     }
 
     /// What all sources of a surface share.
@@ -48,17 +51,36 @@ impl<'a> Maker<'a> {
         Ground { maker: *self, extent, wrap: entry.wrap }
     }
 
-    /// A surface, on the body that it names.
-    pub fn surface(&self, entry: &SurfaceEntry, names: &Names) -> Result<Surface, FileError> {
+    /// A surface, on the body that it names. On one of a `material` that the scene names it has that material's finish where it says
+    /// nothing else.
+    pub fn surface(
+        &self,
+        entry: &SurfaceEntry,
+        material: Option<Material>,
+        names: &Names,
+    ) -> Result<Surface, FileError> {
         let ground = self.ground(entry);
         let source = ground.source(&entry.source)?;
         let surface = Surface::from_source(source, entry.width_m, entry.height_m).map_err(FileError::told)?;
+        let surface = match (material, &entry.source) {
+            (Some(material), Source::Flat) => surface.of(material),
+            // How rough a pictured surface is, its material does not tell: it may be glazed or sanded.
+            (Some(material), Source::Map { .. } | Source::Lattice(_)) => {
+                surface.of(material).roughness(Roughness::FromSource)
+            }
+            // Other sources bring a finish of their own.
+            _ => surface,
+        };
         let mut surface = surface
             .wraps(entry.wrap != Wrap::Clamp)
-            .micro_relief_m(entry.micro_relief_m)
             .at_strike_position(entry.strike_position)
-            .excitation(entry.excitation)
-            .roughness(self.roughness(entry, ground.extent)?);
+            .excitation(entry.excitation);
+        if let Some(roughness) = self.roughness(entry, ground.extent)? {
+            surface = surface.roughness(roughness);
+        }
+        if let Some(rms_m) = entry.micro_relief_m {
+            surface = surface.micro_relief_m(rms_m);
+        }
         if let Some(friction) = entry.friction {
             surface = surface.friction(friction);
         }
@@ -69,16 +91,15 @@ impl<'a> Maker<'a> {
         })
     }
 
-    fn roughness(&self, entry: &SurfaceEntry, extent: Extent) -> Result<Roughness, FileError> {
+    fn roughness(&self, entry: &SurfaceEntry, extent: Extent) -> Result<Option<Roughness>, FileError> {
         Ok(match &entry.roughness {
-            RoughnessEntry::Number(None) => Roughness::FromSource,
-            RoughnessEntry::Number(Some(r)) => Roughness::Constant(*r),
+            RoughnessEntry::Number(r) => r.map(Roughness::Constant),
             RoughnessEntry::Map { image, gloss } => {
                 let raster = storage::channel(self.files, image)?.raster;
                 let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
                 let map = HeightMap::new(&raster, extent, entry.wrap)
                     .map_err(|error| FileError::told(error).within(image.path.display()))?;
-                Roughness::Map(Box::new(map))
+                Some(Roughness::Map(Box::new(map)))
             }
         })
     }

@@ -3,6 +3,7 @@
 //! real-time sanitizer.
 
 use crate::common::{bar, grating, plate};
+use asperity::live::ports::{Feed, Force, ForcePort, Pcm, PcmPort};
 use asperity::{
     Actuator, AudioBus, BodyId, Config, ContactEvent, ContactId, ContactSample, Excitation, Impact, Material,
     ModalModel, ProbeId, Renderer, Residual, Scene, SurfaceId, Touching, probe_by_name,
@@ -21,6 +22,8 @@ pub struct RandomGame {
     surfaces: [SurfaceId; 3],
     bodies: [BodyId; 2],
     probes: [ProbeId; 2],
+    /// Ports that nobody reads, opened and closed again.
+    ports: (Option<PcmPort>, Option<ForcePort>),
     pub rng: Rng,
     /// How far it has come.
     pub time_s: f64,
@@ -39,7 +42,10 @@ impl RandomGame {
             scene.add_surface(plate(0.0)).unwrap(),
         ];
         let probes = ["stylus", "rigid"].map(|name| scene.add_probe(probe_by_name(name).unwrap()).unwrap());
-        (Self { scene, surfaces, bodies, probes, rng: Rng::new(seed), time_s: 0.0 }, renderer)
+        (
+            Self { scene, surfaces, bodies, probes, ports: (None, None), rng: Rng::new(seed), time_s: 0.0 },
+            renderer,
+        )
     }
 
     /// Mostly 0–1, and now and then what no game should report.
@@ -130,6 +136,11 @@ impl RandomGame {
                     self.bodies[which % 2] = id;
                 }
             }
+            5 => {
+                let pcm = Pcm { from: Feed::Haptic(Actuator(0)), holds_s: 0.01 };
+                self.ports = (self.scene.open_port(pcm).ok(), None);
+            }
+            6 => self.ports.1 = self.scene.open_port(Force { rate_hz: 1000.0, holds_s: 0.01 }).ok(),
             _ => {}
         }
     }

@@ -60,15 +60,24 @@ pub struct Options {
     /// Write STEM.trace.csv, one row a sample and contact
     #[arg(long)]
     pub trace: bool,
-    /// Write STEM.force.csv, the 3-D force once a millisecond
+    /// Write STEM.force.csv, the 3-D force, one row a millisecond and contact
     #[arg(long)]
     pub force: bool,
+    /// Rows a second of STEM.force.csv, up to the sample rate
+    #[arg(long, value_name = "HZ", default_value_t = 1000.0, requires = "force", value_parser = force_rate)]
+    pub force_rate: f64,
     /// Write STEM.svg, a picture of what happened
     #[arg(long)]
     pub plot: bool,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+fn force_rate(text: &str) -> Result<f64, String> {
+    let rate: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    let range = limits::FORCE_RATE_HZ;
+    if range.holds(rate) { Ok(rate) } else { Err(format!("must be {}", range.words)) }
 }
 
 fn sample_rate(text: &str) -> Result<f64, String> {
@@ -308,8 +317,14 @@ fn start_recorder(
         recorder.trace(outputs.create(&path)?).map_err(|error| CliError::write(&path, &error))?;
     }
     if options.force {
+        if options.force_rate > rate_hz {
+            let what = format!("{} Hz is above the sample rate", options.force_rate);
+            return Err(CliError::new("--force-rate", what, format!("must be at most {rate_hz} Hz")));
+        }
         let path = with_suffix(&options.output, "force.csv");
-        recorder.force(outputs.create(&path)?).map_err(|error| CliError::write(&path, &error))?;
+        recorder
+            .force(outputs.create(&path)?, options.force_rate)
+            .map_err(|error| CliError::write(&path, &error))?;
     }
     if options.plot {
         recorder.curves();

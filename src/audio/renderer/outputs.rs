@@ -1,4 +1,4 @@
-//! What leaves the engine: the haptic channels with their actuator stage, and the audio buses.
+//! Output stage: the haptic channels with their actuators, and the audio buses.
 
 use super::Renderer;
 use crate::model::actuator::ActuatorSettings;
@@ -123,10 +123,17 @@ impl Renderer {
         for (index, channel) in self.channels.iter_mut().enumerate() {
             let block = &mut self.mix.haptic[..n];
             channel.run(block);
+            let averages = channel.output.quantity() == Quantity::Acceleration && inner.every > 1;
+            if averages {
+                self.outlets.haptic_means(index, inner, self.position, block);
+            } else {
+                self.outlets.haptic(index, inner, self.position, block);
+            }
             if let Some(out) = haptic.get_mut(index) {
-                match channel.output.quantity() {
-                    Quantity::Acceleration if inner.every > 1 => inner.average(at, block, out),
-                    _ => inner.pick(at, block, out),
+                if averages {
+                    inner.average(at, block, out);
+                } else {
+                    inner.pick(at, block, out);
                 }
             }
         }
@@ -163,6 +170,7 @@ impl Renderer {
         self.groups_shed = shed;
         for (index, bus) in self.buses.iter_mut().enumerate() {
             let sound = bus.finish(n);
+            self.outlets.bus(index, self.shared.inner, self.position, sound);
             if let Some(out) = audio.get_mut(index) {
                 self.shared.inner.pick(at, sound, out);
             }

@@ -4,6 +4,7 @@
 //! file. Nothing here opens an image or knows the engine; [`Engine::from_scene`](crate::Engine::from_scene) turns a
 //! [`SceneFile`] into engine calls.
 
+mod body;
 mod fields;
 mod own;
 mod pixels;
@@ -11,6 +12,7 @@ mod sand;
 mod source;
 mod surface;
 
+pub use body::BodyEntry;
 pub use own::{MakeSource, OwnSource};
 pub use pixels::Pixels;
 pub use sand::{Sand, ToolPicture};
@@ -21,7 +23,6 @@ use crate::files::FileError;
 use crate::files::storage::{Disk, Files};
 use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::bus::{AudioBus, MAX_BUSES};
-use crate::model::material::Material;
 use crate::model::probe::{PROBE_PRESETS, probe_by_name};
 use crate::parameters;
 use asperity_dsp::micro_contact::Probe;
@@ -59,21 +60,6 @@ pub struct SceneFile {
     pub actuators: Vec<ActuatorEntry>,
     /// Audio buses, in channel order.
     pub audio: Vec<AudioEntry>,
-}
-
-/// A body: what an impact on it sounds like.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BodyEntry {
-    /// Name that surfaces and impacts use.
-    pub name: String,
-    /// Modes file; none = silent.
-    pub modes: Option<PathBuf>,
-    /// What it is made of; none = the engine's default.
-    pub material: Option<Material>,
-    /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
-    pub residual: Option<f64>,
-    /// Name of the bus it plays on; none = the first.
-    pub bus: Option<String>,
 }
 
 /// One haptic channel.
@@ -139,7 +125,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut bodies = Vec::new();
     for fields in top.tables("body")? {
-        bodies.push(read_body(fields, folder)?);
+        bodies.push(body::read(fields, folder)?);
     }
     let mut surfaces = Vec::new();
     for fields in top.tables("surface")? {
@@ -206,40 +192,6 @@ fn check_names(scene: &SceneFile) -> Result<(), FileError> {
         }
     }
     Ok(())
-}
-
-fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> {
-    let name = fields.needed_text("name")?;
-    let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
-    fields.rename(place);
-    let modes = fields.file("modes", folder)?;
-    let material = match fields.take("material") {
-        None => None,
-        Some(Value::String(name)) => Some(Material::by_name(&name).ok_or_else(|| {
-            let right = format!("must be one of: {}, or a table of constants", Material::names());
-            fields.refuse("material", format!("\"{name}\" is unknown"), right)
-        })?),
-        Some(Value::Table(table)) => Some(read_material(Fields::new(table, fields.inner("material")))?),
-        Some(other) => {
-            let what = format!("{} is not a material", fields::shown(&other));
-            let right = "write a preset's name, or { young_pa = …, poisson = …, density_kg_m3 = … }";
-            return Err(fields.refuse("material", what, right));
-        }
-    };
-    let residual = fields.number(&parameters::body::RESIDUAL)?;
-    let bus = fields.text("bus")?;
-    fields.finish()?;
-    Ok(BodyEntry { name, modes, material, residual, bus })
-}
-
-fn read_material(mut fields: Fields) -> Result<Material, FileError> {
-    let material = Material {
-        young_pa: fields.needed_number(&parameters::material::YOUNG_PA)?,
-        poisson: fields.needed_number(&parameters::material::POISSON)?,
-        density_kg_m3: fields.needed_number(&parameters::material::DENSITY_KG_M3)?,
-    };
-    fields.finish()?;
-    Ok(material)
 }
 
 /// `[probe]`, the only one, or `[[probe]]`, of which the one without a name is the default.

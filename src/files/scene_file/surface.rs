@@ -4,7 +4,7 @@ use super::fields::{Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
 use crate::files::FileError;
-use crate::model::surface::{DEFAULT_MICRO_RELIEF_M, Excitation};
+use crate::model::surface::Excitation;
 use crate::parameters::surface as parameters;
 use asperity_texture::wrap::Wrap;
 use std::path::Path;
@@ -27,8 +27,8 @@ pub struct SurfaceEntry {
     pub width_m: f64,
     /// What uv 1 spans along v, m.
     pub height_m: f64,
-    /// Level of the 1/f^α overlay, m.
-    pub micro_relief_m: f64,
+    /// Level of the 1/f^α overlay, m; none = that of its material, or the engine's default.
+    pub micro_relief_m: Option<f64>,
     /// What lies beyond the edge.
     pub wrap: Wrap,
     /// What sliding sends to the body.
@@ -68,7 +68,7 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError
         roughness: read_roughness(&mut fields, folder)?,
         width_m: fields.needed_number(&parameters::WIDTH_M)?,
         height_m: fields.needed_number(&parameters::HEIGHT_M)?,
-        micro_relief_m: fields.number_or(&parameters::MICRO_RELIEF_M, DEFAULT_MICRO_RELIEF_M)?,
+        micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?.unwrap_or_default(),
         friction: fields.number(&parameters::FRICTION)?,

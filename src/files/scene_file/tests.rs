@@ -1,4 +1,5 @@
 use super::*;
+use crate::Material;
 use crate::model::surface::Excitation;
 use asperity_texture::picture::Channel;
 use asperity_texture::sand::Layer;
@@ -57,7 +58,7 @@ limit = false
     assert_eq!(scene.contacts.as_deref(), Some(Path::new("dir/stroke.jsonl")));
     assert_eq!(scene.bodies[0].material, Some(Material::CERAMIC));
     let surface = &scene.surfaces[0];
-    assert_eq!((surface.width_m, surface.micro_relief_m), (0.14, 2e-6));
+    assert_eq!((surface.width_m, surface.micro_relief_m), (0.14, Some(2e-6)));
     assert!(matches!(&surface.source, Source::Map { image, relief_m, invert: false }
         if image.path == Path::new("dir/tiles_disp.png") && *relief_m == 0.004));
     assert_eq!(surface.excitation, Excitation::Both);

@@ -13,8 +13,10 @@ use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
 use super::tool::{Press, Tool};
 use crate::height_field::Setup;
+use crate::moving_picture::MovingPicture;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
+use std::sync::Arc;
 
 /// Frames a second.
 pub const FRAMES_PER_S: f64 = 60.0;
@@ -116,6 +118,8 @@ pub struct SandSimulation {
     volume_before_units: i64,
     /// Deepest that a tool stood below the untouched bed, metres.
     print_m: f64,
+    /// For whoever draws the sand.
+    moving_picture: Arc<MovingPicture>,
 }
 
 impl SandSimulation {
@@ -132,6 +136,7 @@ impl SandSimulation {
         let cell_m = design.width_m / cells as f64;
         let rows = (design.height_m / cell_m).round().min(1e6) as usize;
         let grid = SandGrid::flat(design.cells, rows, cell_m, design.depth_m)?;
+        let (columns, rows) = (grid.columns(), grid.rows());
         let reach = design.tool.reach_m() / cell_m;
         DesignError::check("tool_radius_m", reach, "at most 256 cells", |r| r <= 256.0)?;
         // A tool that fits into a cell would leave no groove.
@@ -152,6 +157,7 @@ impl SandSimulation {
             walls,
             volume_before_units,
             print_m: 0.0,
+            moving_picture: MovingPicture::new(columns, rows, cell_m),
         };
         sand.make_room(Setup::default().voices);
         Ok(sand)
@@ -236,6 +242,14 @@ impl SandSimulation {
             cells += self.erosion.pass(&mut self.grid);
         }
         self.lower_walls();
+        let grid = &self.grid;
+        self.moving_picture.write(|column, row| grid.height_m(column, row) as f32);
+    }
+
+    /// The sand as it moves, written once a frame.
+    #[must_use]
+    pub fn moving_picture(&self) -> &Arc<MovingPicture> {
+        &self.moving_picture
     }
 
     /// Lifts all tools and lets the sand slide until nothing moves.

@@ -31,6 +31,7 @@ use crate::fade::Fade;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
+use crate::moving_picture::MovingPicture;
 use crate::solid_materials::{FRICTION, SolidMaterial};
 use crate::solid_noise::SolidNoise;
 use asperity_dsp::DesignError;
@@ -131,6 +132,7 @@ pub struct SandSource {
     longest_m: f64,
     /// Depth of the untouched bed, metres.
     depth_m: f64,
+    moving_picture: Arc<MovingPicture>,
 }
 
 impl SandSource {
@@ -140,7 +142,8 @@ impl SandSource {
     /// Names the field that is out of its range.
     pub fn synchronous(design: &SandDesign, seed: u64) -> Result<Self, DesignError> {
         let simulation = SandSimulation::new(design)?;
-        Self::new(Link::Here(Box::new(simulation)), design, seed)
+        let picture = simulation.moving_picture().clone();
+        Self::new(Link::Here(Box::new(simulation)), picture, design, seed)
     }
 
     /// Sand that is simulated elsewhere: the surface, and the worker to be run on another thread.
@@ -149,13 +152,19 @@ impl SandSource {
     /// Names the field that is out of its range.
     pub fn threaded(design: &SandDesign, seed: u64) -> Result<(Self, SandWorker), DesignError> {
         let simulation = SandSimulation::new(design)?;
+        let picture = simulation.moving_picture().clone();
         let (far, near) = rings(simulation.contacts());
         let line = Arc::new(Mutex::new(None));
         let worker = SandWorker { simulation, far, line: line.clone(), frames: 0 };
-        Ok((Self::new(Link::Elsewhere { near, line }, design, seed)?, worker))
+        Ok((Self::new(Link::Elsewhere { near, line }, picture, design, seed)?, worker))
     }
 
-    fn new(link: Link, design: &SandDesign, seed: u64) -> Result<Self, DesignError> {
+    fn new(
+        link: Link,
+        moving_picture: Arc<MovingPicture>,
+        design: &SandDesign,
+        seed: u64,
+    ) -> Result<Self, DesignError> {
         // Grains fill the wavelengths below two cells.
         let mut grains = SolidMaterial::Sand.parameters();
         let cell_m = design.width_m / design.cells as f64;
@@ -163,6 +172,7 @@ impl SandSource {
             grains.texture_factor_per_m.max(1.0 / (cell_m * grains.modules[0].frequency)).min(1e6);
         let mut sand = Self {
             link,
+            moving_picture,
             slots: Vec::new(),
             depth_m: design.depth_m,
             overview: Box::new(Patch::flat()),
@@ -452,6 +462,7 @@ impl HeightField for SandSource {
     }
 
     fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        see(&mut self.moving_picture);
         see(self);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A tap runs on the audio half. One that is used live must not allocate, lock or wait.
 
-use crate::model::event::ContactId;
+use crate::model::event::{Actuator, ContactId};
 
 /// One contact during up to [`MAX_BLOCK`](asperity_texture::height_field::MAX_BLOCK) consecutive
 /// samples; all slices are equally long and describe the same instants.
@@ -12,6 +12,8 @@ pub struct ContactBlock<'a> {
     pub first_sample: u64,
     /// The contact.
     pub contact: ContactId,
+    /// Who feels it; none = it is heard only.
+    pub actuator: Option<Actuator>,
     /// Smoothed path on the surface, metres.
     pub position_m: &'a [[f64; 2]],
     /// Texture coordinates of the path.
