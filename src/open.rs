@@ -1,5 +1,6 @@
 //! From a scene file to a running engine.
 
+mod change;
 mod maker;
 mod source;
 
@@ -8,6 +9,7 @@ use crate::files::scene_file::{MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
 use crate::{AudioBus, Config, Integrator, Isa, PathMode};
 use asperity_texture::raster::Raster;
+pub use change::Changes;
 use maker::Maker;
 use std::cell::RefCell;
 use std::path::Path;

@@ -330,6 +330,7 @@ impl Renderer {
             Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
             Message::AddOutlet(outlet) => self.outlets.add(outlet),
+            Message::SetAudioGain { bus, gain } => self.buses[bus].set_gain(gain),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
         }
     }

@@ -265,6 +265,18 @@ impl Scene {
         self.send(Message::SetHapticGain { channel, gain })
     }
 
+    /// Sets the gain of one audio bus, linear; it is reached within a few milliseconds.
+    ///
+    /// # Errors
+    /// When there is no such bus, the gain is not in 0–1e6, or the queue is full.
+    pub fn set_audio_gain(&mut self, bus: usize, gain: f64) -> Result<(), AddError> {
+        self.checked_bus(bus)?;
+        let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
+        self.send(Message::SetAudioGain { bus, gain })?;
+        self.config.audio[bus].gain = gain;
+        Ok(())
+    }
+
     fn send(&mut self, message: Message) -> Result<(), AddError> {
         self.to_audio.send(message).map_err(|_| AddError::QueueFull)
     }

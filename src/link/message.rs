@@ -39,6 +39,8 @@ pub(crate) enum Message {
     SetBody { id: BodyId, body: Box<BodySlot>, bus: usize, stroking: Stroking },
     /// A body sounds on another bus from now on.
     SetBodyBus { slot: usize, bus: usize },
+    /// Gain of an audio bus, reached within a few milliseconds.
+    SetAudioGain { bus: usize, gain: f64 },
     /// A slot falls empty; the body rings out unheard from now on.
     RemoveBody { slot: usize },
     /// The audio half's end of a port that was opened.

@@ -95,6 +95,7 @@ fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
         kernel: None,
         trace: false,
         force: false,
+        force_rate: 1000.0,
         plot: true,
         json: false,
     })

@@ -284,6 +284,8 @@ mod tests {
             path: None,
             trace: false,
             force: false,
+            force_rate: 1000.0,
+            kernel: None,
             plot: false,
             json: false,
         };
