@@ -48,12 +48,14 @@ impl Config {
     /// When a setting is outside its range; the message names the field.
     pub fn build(self) -> Result<Engine, ConfigError> {
         self.check()?;
-        let probe = PreparedProbe::new(&self.probe, &self.probe, self.integrator, self.inner_rate_hz())?;
+        let kernel = self.kernel()?;
+        let probe =
+            PreparedProbe::new(&self.probe, &self.probe, self.integrator, self.inner_rate_hz(), kernel)?;
         let counters = Arc::new(Counters::new(self.audio.len()));
         let (to_audio, from_game) = ring::channel(self.queue_capacity);
         // Every resource that can be alive, and as many that are being replaced, and every port.
         let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies) + self.max_ports);
-        let renderer = Renderer::new(&self, probe, from_game, to_game, counters.clone())?;
+        let renderer = Renderer::new(&self, kernel, probe, from_game, to_game, counters.clone())?;
         let clock = Clock::new(self.clock, self.inner_rate_hz());
         let scene = Scene::new(self, clock, to_audio, from_audio, counters);
         Ok(Engine { scene, renderer, names: Names::default(), workers: Vec::new() })

@@ -84,6 +84,7 @@ pub mod live;
 mod model;
 pub mod offline;
 pub mod open;
+pub mod parameters;
 mod prepared;
 
 pub use asperity_dsp::limits;
@@ -124,7 +125,7 @@ pub use asperity_dsp::DesignError;
 /// What [`ContactBlock::contact_samples`] holds: the pad at one sample.
 pub use asperity_dsp::micro_contact::ContactSample as PadSample;
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
-pub use asperity_dsp::modal_bank::Culling;
+pub use asperity_dsp::modal_bank::{Culling, Isa};
 pub use asperity_dsp::mode::Mode;
 pub use asperity_dsp::trajectory::PathMode;
 /// Sources of surfaces, and maps.

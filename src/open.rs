@@ -1,13 +1,15 @@
 //! From a scene file to a running engine.
 
+mod change;
 mod maker;
 mod source;
 
 use crate::engine::Engine;
 use crate::files::scene_file::{MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
-use crate::{AudioBus, Config, Integrator, PathMode};
+use crate::{AudioBus, Config, Integrator, Isa, PathMode};
 use asperity_texture::raster::Raster;
+pub use change::Changes;
 use maker::Maker;
 use std::cell::RefCell;
 use std::path::Path;
@@ -25,6 +27,8 @@ pub struct Overrides<'a> {
     pub integrator: Option<Integrator>,
     /// How sparse positions become a path.
     pub path: Option<PathMode>,
+    /// Instruction set of the kernels whose last bits depend on it.
+    pub kernel: Option<Isa>,
     /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are limited.
     pub live: bool,
     /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names them.
@@ -39,6 +43,7 @@ impl Default for Overrides<'_> {
             seed: None,
             integrator: None,
             path: None,
+            kernel: None,
             live: false,
             own: &[],
         }
@@ -115,6 +120,7 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Config, FileErr
         path: overrides.path.unwrap_or(default.path),
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: file.probe,
+        kernel: overrides.kernel,
         actuators: actuators.collect::<Result<_, _>>()?,
         // A sound card clips what exceeds full scale.
         audio: file

@@ -29,7 +29,7 @@ use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_dsp::modal_bank::Kernel;
+use asperity_dsp::modal_bank::{Isa, Kernel};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::sand::{SandFigures, SandPicture, SandSource};
@@ -76,6 +76,7 @@ pub struct Renderer {
 impl Renderer {
     pub(crate) fn new(
         config: &Config,
+        kernel: Kernel,
         probe: PreparedProbe,
         from_game: Receiver<Message>,
         to_game: Sender<Dead>,
@@ -117,7 +118,7 @@ impl Renderer {
             buses: config.audio.iter().map(|bus| Bus::new(bus, rate)).collect::<Result<_, _>>()?,
             blows: Blows::new(rate),
             outlets: Outlets::new(config.max_ports, config.actuators.len()),
-            kernel: Kernel::detect(),
+            kernel,
             governor: Governor::new(config.shed_load, rate),
             groups_shed: 0,
             from_game,
@@ -142,6 +143,12 @@ impl Renderer {
     #[must_use]
     pub fn audio_buses(&self) -> usize {
         self.buses.len()
+    }
+
+    /// The instruction set of the kernels whose last bits depend on it ([`Config::kernel`]).
+    #[must_use]
+    pub fn kernel(&self) -> Isa {
+        self.kernel.isa()
     }
 
     /// Rate of every output, Hz.
@@ -358,6 +365,7 @@ impl Renderer {
             }
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
             Message::AddOutlet(outlet) => self.outlets.add(outlet),
+            Message::SetAudioGain { bus, gain } => self.buses[bus].set_gain(gain),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
         }
     }

@@ -17,6 +17,9 @@ use std::collections::HashMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+/// The `version` that is read and written; a log without one is of this version.
+pub const VERSION: u64 = 1;
+
 /// One line of a log.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LogLine {
@@ -178,6 +181,14 @@ pub enum LogError {
         /// The key that was meant, or every key that would be right.
         right: String,
     },
+    /// A format that this program does not know.
+    #[error("{place}: version: {version} is unknown; must be {VERSION}, or missing")]
+    Version {
+        /// File and line.
+        place: String,
+        /// What is written.
+        version: String,
+    },
     /// Time runs backwards.
     #[error("{place}: t = {t} s comes after {before} s; events must be in time order, from 0 s on")]
     TimeBackwards {
@@ -249,7 +260,9 @@ impl ContactLog {
         let mut before = 0.0;
         for (index, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
             let place = || format!("{name}:{}", index + 1);
-            keys::check(text, place, &mut unread)?;
+            if !keys::check(text, place, &mut unread)? {
+                continue;
+            }
             let line: LogLine = serde_json::from_str(text)
                 .map_err(|error| LogError::Malformed { place: place(), message: error.to_string() })?;
             if line.t.is_nan() || line.t < before {
@@ -270,17 +283,31 @@ impl ContactLog {
     /// # Errors
     /// When `out` does.
     pub fn write(&self, mut out: impl Write) -> io::Result<()> {
-        for line in &self.lines {
-            serde_json::to_writer(&mut out, line)?;
-            out.write_all(b"\n")?;
-        }
-        Ok(())
+        self.lines.iter().enumerate().try_for_each(|(index, line)| line.write(index == 0, &mut out))
     }
 
     /// Time of the last event, s; 0 for an empty log.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.lines.last().map_or(0.0, |line| line.t)
+    }
+}
+
+impl LogLine {
+    /// Writes the line; the first of a log says the version.
+    pub(crate) fn write(&self, is_first: bool, mut out: impl Write) -> io::Result<()> {
+        #[derive(Serialize)]
+        struct First<'a> {
+            version: u64,
+            #[serde(flatten)]
+            line: &'a LogLine,
+        }
+        if is_first {
+            serde_json::to_writer(&mut out, &First { version: VERSION, line: self })?;
+        } else {
+            serde_json::to_writer(&mut out, self)?;
+        }
+        out.write_all(b"\n")
     }
 }
 

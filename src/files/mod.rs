@@ -1,6 +1,7 @@
 //! File formats that the engine reads and writes; no other room names them.
 
 pub mod actuator_profile;
+mod config_file;
 pub mod contact_log;
 mod file_error;
 pub mod modes_file;

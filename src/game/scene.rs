@@ -31,6 +31,7 @@ use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::micro_contact::Probe;
+use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_dsp::{DesignError, limits};
 use asperity_texture::height_field::Setup;
@@ -197,7 +198,9 @@ impl Scene {
     pub fn add_probe(&mut self, probe: Probe) -> Result<ProbeId, AddError> {
         let id = ProbeId(self.probes.free()?);
         let Config { probe: own, integrator, .. } = &self.config;
-        let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz())?;
+        // An engine that was built has its kernel.
+        let kernel = self.config.kernel().unwrap_or(Kernel::PORTABLE);
+        let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz(), kernel)?;
         self.send(Message::AddProbe { index: id.index(), probe: Box::new(probe) })?;
         self.probes.set(id.0, ());
         Ok(id)
@@ -293,6 +296,18 @@ impl Scene {
         }
         let gain = within("gain", gain, limits::output::HAPTIC_GAIN)?;
         self.send(Message::SetHapticGain { channel, gain })
+    }
+
+    /// Sets the gain of one audio bus, linear; it is reached within a few milliseconds.
+    ///
+    /// # Errors
+    /// When there is no such bus, the gain is not in 0–1e6, or the queue is full.
+    pub fn set_audio_gain(&mut self, bus: usize, gain: f64) -> Result<(), AddError> {
+        self.checked_bus(bus)?;
+        let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
+        self.send(Message::SetAudioGain { bus, gain })?;
+        self.config.audio[bus].gain = gain;
+        Ok(())
     }
 
     fn send(&mut self, message: Message) -> Result<(), AddError> {

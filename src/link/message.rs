@@ -47,6 +47,8 @@ pub(crate) enum Message {
     Pause(bool),
     /// Every contact ends, and everything that rings is damped.
     FadeAll,
+    /// Gain of an audio bus, reached within a few milliseconds.
+    SetAudioGain { bus: usize, gain: f64 },
     /// A slot falls empty; the body rings out unheard from now on.
     RemoveBody { slot: usize },
     /// The audio half's end of a port that was opened.

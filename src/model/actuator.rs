@@ -13,7 +13,8 @@ pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
 /// let config = Config { actuators: vec![channel; 2], ..Config::default() };
 /// assert!(config.build().is_ok());
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct ActuatorSettings {
     /// What the channel plays: the pad's displacement (the paper) or its acceleration.
     pub output: Quantity,

@@ -3,6 +3,7 @@
 use crate::model::bad_value::BadValue;
 use crate::model::event::ContactEvent;
 use asperity_dsp::DesignError;
+use asperity_dsp::modal_bank::{Isa, Kernel};
 
 /// Why an engine cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -11,6 +12,18 @@ pub enum ConfigError {
     /// A setting is outside its range.
     #[error(transparent)]
     Design(#[from] DesignError),
+    /// An instruction set that this processor lacks.
+    #[error("kernel: \"{isa}\" is not in this processor; must be one of: {}", known_kernels())]
+    Kernel {
+        /// The instruction set asked for.
+        isa: &'static str,
+    },
+}
+
+/// The instruction sets of this processor, separated by commas.
+fn known_kernels() -> String {
+    let here = Isa::ALL.into_iter().filter(|isa| Kernel::find(*isa).is_some());
+    here.map(Isa::name).collect::<Vec<_>>().join(", ")
 }
 
 /// Why an event was not taken. The event is handed back.

@@ -6,16 +6,13 @@ use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
 use asperity_texture::height_field::{Beyond, HeightField};
-#[cfg(feature = "image")]
-use asperity_texture::height_map::Extent;
-use asperity_texture::height_map::{HeightMap, MapError};
+use asperity_texture::height_map::{Extent, HeightMap, MapError};
 #[cfg(feature = "image")]
 use asperity_texture::image_io;
 #[cfg(feature = "image")]
 use asperity_texture::picture::Channel;
 use asperity_texture::picture::ImageError;
 use asperity_texture::tiled::Tiled;
-#[cfg(feature = "image")]
 use asperity_texture::wrap::Wrap;
 #[cfg(feature = "image")]
 use std::path::Path;

@@ -14,7 +14,7 @@ use asperity::files::scene_file::SceneFile;
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
-use asperity::{Integrator, PathMode, SurfaceId};
+use asperity::{Integrator, Isa, PathMode, SurfaceId};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
@@ -54,6 +54,9 @@ pub struct Options {
     /// How sparse positions become a path
     #[arg(long, value_name = "NAME", value_parser = paths())]
     pub path: Option<PathMode>,
+    /// Instruction set of the kernels whose last bits depend on it: portable gives the same files on every processor
+    #[arg(long, value_name = "NAME", value_parser = kernels())]
+    pub kernel: Option<Isa>,
     /// Write STEM.trace.csv, one row a sample and contact
     #[arg(long)]
     pub trace: bool,
@@ -89,6 +92,11 @@ fn sample_rate(text: &str) -> Result<f64, String> {
 fn integrators() -> impl TypedValueParser<Value = Integrator> {
     PossibleValuesParser::new(Integrator::ALL.map(Integrator::name))
         .map(|name| Integrator::from_name(&name).unwrap_or_default())
+}
+
+fn kernels() -> impl TypedValueParser<Value = Isa> {
+    PossibleValuesParser::new(Isa::ALL.map(Isa::name))
+        .map(|name| Isa::from_name(&name).unwrap_or(Isa::Portable))
 }
 
 fn paths() -> impl TypedValueParser<Value = PathMode> {
@@ -130,6 +138,8 @@ pub struct Report {
     pub lapsed: u64,
     /// Rate of both WAV files.
     pub sample_rate_hz: f64,
+    /// Instruction set of the kernels whose last bits depend on it.
+    pub kernel: Isa,
     /// Surfaces of sand as they lie afterwards, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub sand: BTreeMap<String, SandReport>,
@@ -200,12 +210,13 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         seed: options.seed,
         integrator: options.integrator,
         path: options.path,
+        kernel: options.kernel,
         ..Overrides::default()
     };
     let built = Engine::from_scene(&file, &overrides)?;
     let names: Vec<(String, SurfaceId)> =
         built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
-    let rate_hz = built.renderer.sample_rate_hz();
+    let (rate_hz, kernel) = (built.renderer.sample_rate_hz(), built.renderer.kernel());
     let duration_s = log.end_s() + file.tail_s;
     check_length(&file, duration_s, rate_hz)?;
 
@@ -218,7 +229,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     wav::write(&mut outputs, &with_suffix(stem, "audio.wav"), &audio, rate_hz)?;
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
-    let mut report = report(&render, watching);
+    let mut report = report(&render, kernel, watching);
     report.warnings = unread.iter().map(|place| told::read_past(place)).collect();
     report.warnings.extend(told::warnings(&file, &log, &render, &report));
     for sand in &render.sand {
@@ -385,7 +396,7 @@ fn peak(samples: &[f32]) -> f32 {
     samples.iter().fold(0.0, |peak, sample| sample.abs().max(peak))
 }
 
-fn report(render: &Render, watching: Duration) -> Report {
+fn report(render: &Render, kernel: Isa, watching: Duration) -> Report {
     let stats = &render.stats;
     let processing_s = render.processing.saturating_sub(watching).as_secs_f64().max(1e-9);
     Report {
@@ -403,6 +414,7 @@ fn report(render: &Render, watching: Duration) -> Report {
         orphaned: stats.orphaned,
         lapsed: stats.lapsed,
         sample_rate_hz: render.sample_rate_hz,
+        kernel,
         sand: BTreeMap::new(),
         files: Vec::new(),
         warnings: Vec::new(),

@@ -285,6 +285,7 @@ mod tests {
             trace: false,
             force: false,
             force_rate: 1000.0,
+            kernel: None,
             plot: false,
             json: false,
         };

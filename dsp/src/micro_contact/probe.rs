@@ -65,7 +65,10 @@ impl Probe {
     }
 
     /// Refuses values outside the documented ranges.
-    pub(crate) fn check(&self) -> Result<(), DesignError> {
+    ///
+    /// # Errors
+    /// Names the first field that is outside.
+    pub fn check(&self) -> Result<(), DesignError> {
         limits::PAD_MASS_KG.check("pad_mass_kg", self.pad_mass_kg)?;
         limits::PAD_STIFFNESS_N_M.check("pad_stiffness_n_m", self.pad_stiffness_n_m)?;
         limits::PAD_DAMPING_N_S_M.check("pad_damping_n_s_m", self.pad_damping_n_s_m)?;

@@ -13,6 +13,9 @@ use asperity_dsp::actuator::{
 use asperity_texture::height_field::MAX_BLOCK;
 use std::sync::atomic::Ordering::Relaxed;
 
+/// How many samples a bus takes from one gain to another.
+const MOVING_SAMPLES: u32 = 1024;
+
 /// Where limiters hold the peaks: full scale.
 const CEILING: f64 = 1.0;
 
@@ -30,6 +33,8 @@ pub(super) struct HapticChannel {
 /// An audio bus: the sound of the bodies that play on it.
 pub(super) struct Bus {
     gain: f32,
+    /// The gain it comes from, and how many samples of the way are left.
+    moving: Option<(f32, u32)>,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
     meter: Meter,
     /// Sum of the bodies.
@@ -97,16 +102,37 @@ impl Bus {
     pub(super) fn new(settings: &AudioBus, sample_rate_hz: f64) -> Result<Self, DesignError> {
         Ok(Self {
             gain: settings.gain as f32,
+            moving: None,
             limiter: limiter(settings.limit, sample_rate_hz)?,
             meter: Meter::new(sample_rate_hz),
             sum: [0.0; MAX_BLOCK],
         })
     }
 
+    /// Goes to another gain.
+    pub(super) fn set_gain(&mut self, gain: f64) {
+        let now = self.moving.map_or(self.gain, |(from, left)| self.between(from, left));
+        self.moving = Some((now, MOVING_SAMPLES));
+        self.gain = gain as f32;
+    }
+
+    /// The gain while so many samples of the way are left.
+    fn between(&self, from: f32, left: u32) -> f32 {
+        self.gain + (from - self.gain) * (left as f32 / MOVING_SAMPLES as f32)
+    }
+
     /// What leaves of the present stretch of `n` samples.
     fn finish(&mut self, n: usize, master: Option<&[f32]>) -> &[f32] {
+        // The samples of the way from one gain to another come first.
+        let mut done = 0;
+        while let Some((from, left)) = self.moving.filter(|_| done < n) {
+            let left = left - 1;
+            self.sum[done] *= self.between(from, left);
+            self.moving = (left > 0).then_some((from, left));
+            done += 1;
+        }
         let sum = &mut self.sum[..n];
-        for x in sum.iter_mut() {
+        for x in &mut sum[done..] {
             *x *= self.gain;
         }
         if let Some((design, state)) = &mut self.limiter {

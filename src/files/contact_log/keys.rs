@@ -1,6 +1,6 @@
 //! Keys of a line of the contact log: a misspelt one would otherwise be no key at all.
 
-use super::LogError;
+use super::{LogError, VERSION};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
@@ -68,14 +68,23 @@ pub(super) struct Unread {
 
 #[derive(Deserialize)]
 struct Kind {
-    event: String,
+    #[serde(default)]
+    event: Option<String>,
+    #[serde(default)]
+    version: Option<serde_json::Value>,
 }
 
-/// Refuses a key that the line's event does not know. What is no event at all is told when it is read.
-pub(super) fn check(text: &str, place: impl Fn() -> String, unread: &mut Unread) -> Result<(), LogError> {
-    let Ok(Kind { event }) = serde_json::from_str(text) else { return Ok(()) };
-    let Some(known) = EVENTS.iter().find(|known| known.event == event) else { return Ok(()) };
-    let Ok(line) = serde_json::from_str::<BTreeMap<String, IgnoredAny>>(text) else { return Ok(()) };
+/// Refuses a version that is not ours and a key that the line's event does not know; tells whether the line is an event, not a
+/// version alone. What is no event at all is told when it is read.
+pub(super) fn check(text: &str, place: impl Fn() -> String, unread: &mut Unread) -> Result<bool, LogError> {
+    let Ok(Kind { event, version }) = serde_json::from_str(text) else { return Ok(true) };
+    let says_version = version.is_some();
+    if let Some(version) = version.filter(|version| version.as_u64() != Some(VERSION)) {
+        return Err(LogError::Version { place: place(), version: version.to_string() });
+    }
+    let Some(event) = event else { return Ok(!says_version) };
+    let Some(known) = EVENTS.iter().find(|known| known.event == event) else { return Ok(true) };
+    let Ok(line) = serde_json::from_str::<BTreeMap<String, IgnoredAny>>(text) else { return Ok(true) };
     for key in line.into_keys() {
         if OF_ANY.contains(&key.as_str()) || known.read.contains(&key.as_str()) {
             continue;
@@ -89,7 +98,7 @@ pub(super) fn check(text: &str, place: impl Fn() -> String, unread: &mut Unread)
             unread.keys.push(key);
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 impl Keys {

@@ -4,6 +4,7 @@
 //! file. Nothing here opens an image or knows the engine; [`Engine::from_scene`](crate::Engine::from_scene) turns a
 //! [`SceneFile`] into engine calls.
 
+mod body;
 mod fields;
 mod own;
 mod pixels;
@@ -11,6 +12,7 @@ mod sand;
 mod source;
 mod surface;
 
+pub use body::BodyEntry;
 pub use own::{MakeSource, OwnSource};
 pub use pixels::Pixels;
 pub use sand::{Sand, ToolPicture};
@@ -21,10 +23,8 @@ use crate::files::FileError;
 use crate::files::storage::{Disk, Files};
 use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::bus::{AudioBus, MAX_BUSES};
-use crate::model::material::Material;
 use crate::model::probe::{PROBE_PRESETS, probe_by_name};
-use crate::model::stock::Stock;
-use asperity_dsp::limits::{self, Range};
+use crate::parameters;
 use asperity_dsp::micro_contact::Probe;
 use fields::Fields;
 use std::path::{Path, PathBuf};
@@ -34,8 +34,6 @@ use toml::Value;
 const MAX_BYTES: usize = 16 << 20;
 /// Default ring-out after the last event, seconds.
 const TAIL_S: f64 = 1.0;
-/// Longest ring-out, s.
-const LONGEST_TAIL_S: Range = Range::new(0.0, 600.0, "0 to 600 s");
 
 /// A whole scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,23 +60,6 @@ pub struct SceneFile {
     pub actuators: Vec<ActuatorEntry>,
     /// Audio buses, in channel order.
     pub audio: Vec<AudioEntry>,
-}
-
-/// A body: what an impact on it sounds like.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BodyEntry {
-    /// Name that surfaces and impacts use.
-    pub name: String,
-    /// Modes file; none = those of `stock`, or silent.
-    pub modes: Option<PathBuf>,
-    /// A stock shape and its size, m.
-    pub stock: Option<(Stock, f64)>,
-    /// What it is made of; none = the engine's default.
-    pub material: Option<Material>,
-    /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
-    pub residual: Option<f64>,
-    /// Name of the bus it plays on; none = the first.
-    pub bus: Option<String>,
 }
 
 /// One haptic channel.
@@ -144,7 +125,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut bodies = Vec::new();
     for fields in top.tables("body")? {
-        bodies.push(read_body(fields, folder)?);
+        bodies.push(body::read(fields, folder)?);
     }
     let mut surfaces = Vec::new();
     for fields in top.tables("surface")? {
@@ -162,10 +143,10 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let audio = read_buses(&mut top)?;
     let scene = SceneFile {
         path: path.to_owned(),
-        sample_rate_hz: top.number("sample_rate_hz", limits::output::SAMPLE_RATE_HZ)?,
+        sample_rate_hz: top.number(&parameters::scene::SAMPLE_RATE_HZ)?,
         seed: top.whole("seed", 0, u64::MAX)?,
         contacts: top.file("contacts", folder)?,
-        tail_s: top.number_or("tail_s", TAIL_S, LONGEST_TAIL_S)?,
+        tail_s: top.number_or(&parameters::scene::TAIL_S, TAIL_S)?,
         bodies,
         surfaces,
         probe,
@@ -213,79 +194,6 @@ fn check_names(scene: &SceneFile) -> Result<(), FileError> {
     Ok(())
 }
 
-fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> {
-    let name = fields.needed_text("name")?;
-    let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
-    fields.rename(place);
-    let body = BodyEntry {
-        name,
-        modes: fields.file("modes", folder)?,
-        stock: read_stock(&mut fields)?,
-        material: read_material(&mut fields)?,
-        residual: fields.number("residual", limits::material::RESIDUAL)?,
-        bus: fields.text("bus")?,
-    };
-    if body.modes.is_some() && body.stock.is_some() {
-        return Err(fields.refuse("stock", "stands beside modes", "write one of them"));
-    }
-    fields.finish()?;
-    Ok(body)
-}
-
-/// `stock` and the `size_m` that it needs.
-fn read_stock(fields: &mut Fields) -> Result<Option<(Stock, f64)>, FileError> {
-    let shape = fields.word("stock", &Stock::ALL)?;
-    let size_m = fields.number("size_m", limits::material::SIZE_M)?;
-    match (shape, size_m) {
-        (Some(shape), Some(size_m)) => Ok(Some((shape, size_m))),
-        (Some(_), None) => {
-            Err(fields.missing("size_m", "its longest side or its diameter, for instance 0.3"))
-        }
-        (None, Some(_)) => {
-            Err(fields.refuse("size_m", "stands without stock", "write stock = \"bar\", or leave it out"))
-        }
-        (None, None) => Ok(None),
-    }
-}
-
-/// A preset's name, or a table of constants: elastic ones, and what else differs from the default material.
-fn read_material(fields: &mut Fields) -> Result<Option<Material>, FileError> {
-    let table = match fields.take("material") {
-        None => return Ok(None),
-        Some(Value::String(name)) => {
-            let unknown = || {
-                let right = format!("must be one of: {}, or a table of constants", Material::names());
-                fields.refuse("material", format!("\"{name}\" is unknown"), right)
-            };
-            return Material::by_name(&name).map(Some).ok_or_else(unknown);
-        }
-        Some(Value::Table(table)) => table,
-        Some(other) => {
-            let what = format!("{} is not a material", fields::shown(&other));
-            let right = "write a preset's name, or { young_pa = …, poisson = …, density_kg_m3 = … }";
-            return Err(fields.refuse("material", what, right));
-        }
-    };
-    use limits::material as range;
-    let mut fields = Fields::new(table, fields.inner("material"));
-    let young_pa = fields.needed_number("young_pa", range::YOUNG_PA)?;
-    let poisson = fields.needed_number("poisson", range::POISSON)?;
-    let other =
-        Material::new(young_pa, poisson, fields.needed_number("density_kg_m3", range::DENSITY_KG_M3)?);
-    let material = Material {
-        alpha_per_s: fields.number_or("alpha_per_s", other.alpha_per_s, range::ALPHA_PER_S)?,
-        eta: fields.number_or("eta", other.eta, range::ETA)?,
-        beta_s: fields.number_or("beta_s", other.beta_s, range::BETA_S)?,
-        mu_static: fields.number_or("mu_static", other.mu_static, limits::FRICTION)?,
-        mu_kinetic: fields.number_or("mu_kinetic", other.mu_kinetic, limits::FRICTION)?,
-        roughness: fields.number_or("roughness", other.roughness, limits::ROUGHNESS)?,
-        micro_relief_m: fields.number_or("micro_relief_m", other.micro_relief_m, limits::MICRO_RELIEF_M)?,
-        ..other
-    };
-    fields.finish()?;
-    Ok(Some(material))
-}
-
 /// `[probe]`, the only one, or `[[probe]]`, of which the one without a name is the default.
 fn read_probes(top: &mut Fields) -> Result<(Probe, Vec<(String, Probe)>), FileError> {
     if !top.is_list("probe") {
@@ -319,26 +227,16 @@ fn read_probe(mut fields: Fields) -> Result<Probe, FileError> {
             fields.refuse("preset", format!("\"{name}\" is unknown"), right)
         })?,
     };
-    let mut number = |key, preset, range| fields.number_or(key, preset, range);
     let probe = Probe {
-        pad_mass_kg: number("pad_mass_kg", preset.pad_mass_kg, limits::probe::PAD_MASS_KG)?,
-        pad_stiffness_n_m: number(
-            "pad_stiffness_n_m",
-            preset.pad_stiffness_n_m,
-            limits::probe::PAD_STIFFNESS_N_M,
-        )?,
-        pad_damping_n_s_m: number(
-            "pad_damping_n_s_m",
-            preset.pad_damping_n_s_m,
-            limits::probe::PAD_DAMPING_N_S_M,
-        )?,
-        finger_mass_kg: number("finger_mass_kg", preset.finger_mass_kg, limits::probe::FINGER_MASS_KG)?,
-        contact_stiffness_n_m: number(
-            "contact_stiffness_n_m",
-            preset.contact_stiffness_n_m,
-            limits::probe::CONTACT_STIFFNESS_N_M,
-        )?,
-        leash_m: number("leash_m", preset.leash_m, limits::probe::LEASH_M)?,
+        pad_mass_kg: fields.number_or(&parameters::probe::PAD_MASS_KG, preset.pad_mass_kg)?,
+        pad_stiffness_n_m: fields
+            .number_or(&parameters::probe::PAD_STIFFNESS_N_M, preset.pad_stiffness_n_m)?,
+        pad_damping_n_s_m: fields
+            .number_or(&parameters::probe::PAD_DAMPING_N_S_M, preset.pad_damping_n_s_m)?,
+        finger_mass_kg: fields.number_or(&parameters::probe::FINGER_MASS_KG, preset.finger_mass_kg)?,
+        contact_stiffness_n_m: fields
+            .number_or(&parameters::probe::CONTACT_STIFFNESS_N_M, preset.contact_stiffness_n_m)?,
+        leash_m: fields.number_or(&parameters::probe::LEASH_M, preset.leash_m)?,
     };
     fields.finish()?;
     Ok(probe)
@@ -359,12 +257,12 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
             return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
         }
     };
-    let full_scale = match fields.number("full_scale", limits::output::FULL_SCALE)? {
+    let full_scale = match fields.number(&parameters::actuator::FULL_SCALE)? {
         Some(full_scale) => full_scale,
         None if output == Quantity::Displacement => default.full_scale,
         None => return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0")),
     };
-    let highpass_hz = fields.number_or("highpass_hz", default.highpass_hz, limits::output::HIGHPASS_HZ)?;
+    let highpass_hz = fields.number_or(&parameters::actuator::HIGHPASS_HZ, default.highpass_hz)?;
     fields.finish()?;
     let settings = ActuatorSettings { output, full_scale, highpass_hz, limit_peaks, ..default };
     Ok(ActuatorEntry { settings, equalise, limit })
@@ -400,7 +298,7 @@ fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
 fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
     let default = AudioBus::default();
     let bus = AudioBus {
-        gain: fields.number_or("gain", default.gain, limits::output::AUDIO_GAIN)?,
+        gain: fields.number_or(&parameters::audio::GAIN, default.gain)?,
         limit: fields.flag("limit")?.unwrap_or(default.limit),
     };
     let name = fields.text("name")?;

@@ -3,14 +3,10 @@
 use super::fields::Fields;
 use super::pixels::{Pixels, read_channel};
 use crate::files::FileError;
-use asperity_dsp::limits::{Range, sand as limits};
+use crate::parameters::{Parameter, layer, sand, tool};
+use asperity_dsp::limits::Range;
 use asperity_texture::sand::{Layer, MAX_LAYERS, SandDesign, SandLaw, Tool};
 use std::path::Path;
-
-/// Width of a tool's picture: both sides of the widest tool.
-const TOOL_WIDTH_M: Range = Range::new(2e-4, 0.4, "2e-4 to 0.4 m");
-/// Height of white over black in it.
-const TOOL_RELIEF_M: Range = Range::above(0.0, 0.4, "above 0, to 0.4 m");
 
 /// A bed of sand.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,22 +32,18 @@ pub struct ToolPicture {
 pub fn read(mut table: Fields, folder: &Path) -> Result<Sand, FileError> {
     let default = SandDesign::default();
     let law = SandLaw {
-        stiffness_n: table.number_or("stiffness_n", default.law.stiffness_n, limits::STIFFNESS_N)?,
-        exponent_per_m: table.number_or(
-            "exponent_per_m",
-            default.law.exponent_per_m,
-            limits::EXPONENT_PER_M,
-        )?,
-        drag_s_per_m: table.number_or("drag_s_per_m", default.law.drag_s_per_m, limits::DRAG_S_PER_M)?,
-        wetness: table.number_or("wetness", default.law.wetness, limits::WETNESS)?,
+        stiffness_n: table.number_or(&sand::STIFFNESS_N, default.law.stiffness_n)?,
+        exponent_per_m: table.number_or(&sand::EXPONENT_PER_M, default.law.exponent_per_m)?,
+        drag_s_per_m: table.number_or(&sand::DRAG_S_PER_M, default.law.drag_s_per_m)?,
+        wetness: table.number_or(&sand::WETNESS, default.law.wetness)?,
         layers: read_layers(&mut table)?,
-        grain_m: table.number_or("grain_m", default.law.grain_m, limits::GRAIN_M)?,
+        grain_m: table.number_or(&sand::GRAIN_M, default.law.grain_m)?,
     };
     let (round, tool) = read_tool(&mut table, folder)?;
     let design = SandDesign {
-        cells: table.whole("cells", 16, 2048)?.map_or(default.cells, |cells| cells as usize),
-        depth_m: table.number_or("depth_m", default.depth_m, limits::DEPTH_M)?,
-        talus_deg: table.number_or("talus_deg", default.talus_deg, limits::TALUS_DEG)?,
+        cells: table.count(&sand::CELLS)?.unwrap_or(default.cells),
+        depth_m: table.number_or(&sand::DEPTH_M, default.depth_m)?,
+        talus_deg: table.number_or(&sand::TALUS_DEG, default.talus_deg)?,
         tool: round.unwrap_or_else(|| default.tool.clone()),
         law,
         ..default
@@ -67,28 +59,31 @@ fn read_layers(table: &mut Fields) -> Result<[Option<Layer>; MAX_LAYERS], FileEr
         let what = format!("holds {}", written.len());
         return Err(table.refuse("layers", what, format!("at most {MAX_LAYERS} layers below the top")));
     }
-    for (slot, mut layer) in layers.iter_mut().zip(written) {
-        let from_m = layer.needed_number("from_m", Range { low: above_m, ..limits::LAYER_FROM_M })?;
-        *slot = Some(Layer { from_m, hardness: layer.needed_number("hardness", limits::HARDNESS)? });
-        layer.finish()?;
+    for (slot, mut written) in layers.iter_mut().zip(written) {
+        let from_m = written.needed_number(&Parameter {
+            range: Range { low: above_m, ..layer::FROM_M.range },
+            ..layer::FROM_M
+        })?;
+        *slot = Some(Layer { from_m, hardness: written.needed_number(&layer::HARDNESS)? });
+        written.finish()?;
         above_m = from_m;
     }
     Ok(layers)
 }
 
 fn read_tool(table: &mut Fields, folder: &Path) -> Result<(Option<Tool>, Option<ToolPicture>), FileError> {
-    let radius_m = table.number("tool_radius_m", limits::TOOL_RADIUS_M)?;
-    let Some(mut tool) = table.table("tool")? else {
+    let radius_m = table.number(&sand::TOOL_RADIUS_M)?;
+    let Some(mut picture) = table.table("tool")? else {
         return Ok((radius_m.map(|radius_m| Tool::Sphere { radius_m }), None));
     };
     if radius_m.is_some() {
         let right = "write one of them; a tool's picture has its own width_m";
         return Err(table.refuse("tool", "stands beside tool_radius_m", right));
     }
-    let channel = read_channel(&mut tool, "channel")?;
-    let image = Pixels { path: folder.join(tool.needed_text("map")?), channel };
-    let width_m = tool.needed_number("width_m", TOOL_WIDTH_M)?;
-    let relief_m = tool.needed_number("relief_m", TOOL_RELIEF_M)?;
-    tool.finish()?;
+    let channel = read_channel(&mut picture, "channel")?;
+    let image = Pixels { path: folder.join(picture.needed_text("map")?), channel };
+    let width_m = picture.needed_number(&tool::WIDTH_M)?;
+    let relief_m = picture.needed_number(&tool::RELIEF_M)?;
+    picture.finish()?;
     Ok((None, Some(ToolPicture { image, width_m, relief_m })))
 }

@@ -7,15 +7,13 @@ use super::own::{self, OwnSource};
 use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
 use crate::files::FileError;
-use asperity_dsp::limits::{self, Range};
+use crate::parameters::{self, solid};
+use asperity_dsp::limits;
 use asperity_texture::picture::Channel;
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::{ForceDirection, SolidNoiseParameters};
 use std::path::Path;
 use toml::Value;
-
-/// When a crossfade begins.
-const AT_S: Range = Range::new(0.0, 1e6, "0 to 1e6 s");
 
 /// Where heights come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -125,8 +123,8 @@ pub(crate) fn read(fields: &mut Fields, folder: &Path) -> Result<Source, FileErr
     // `channel`, `invert` and `relief_m` speak of images; beside another source they say nothing.
     let channel = read_channel(fields, "channel")?;
     let invert = fields.flag("invert")?.unwrap_or(false);
-    let relief_m = fields.number("relief_m", limits::RELIEF_M)?;
-    let scale = fields.number("scale", limits::combined::FACTOR)?;
+    let relief_m = fields.number(&parameters::surface::RELIEF_M)?;
+    let scale = fields.number(&parameters::surface::SCALE)?;
     let needed_relief = |fields: &Fields| {
         relief_m.ok_or_else(|| fields.missing("relief_m", "the height of white over black in m"))
     };
@@ -186,7 +184,7 @@ fn read_mask(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
 fn read_crossfade(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
     let from = Box::new(read_part(needed_table(&mut table, "from")?, folder)?);
     let to = Box::new(read_part(needed_table(&mut table, "to")?, folder)?);
-    let at_s = table.needed_number("at_s", AT_S)?;
+    let at_s = table.needed_number(&parameters::crossfade::AT_S)?;
     table.finish()?;
     Ok(Source::Crossfade { from, to, at_s })
 }
@@ -220,19 +218,19 @@ fn read_solid_table(mut table: Fields) -> Result<Source, FileError> {
     let mut parameters = solid_preset(&table, "preset", &preset)?;
     let seed = table.whole("seed", 0, u64::MAX)?;
     let [first, _] = &mut parameters.modules;
-    first.octaves = table.whole("octaves", 1, 16)?.map_or(first.octaves, |octaves| octaves as usize);
-    for (to, key, range) in [
-        (&mut first.magnitude, "magnitude", limits::solid::MAGNITUDE),
-        (&mut first.frequency, "frequency", limits::solid::FREQUENCY),
-        (&mut first.lacunarity, "lacunarity", limits::solid::LACUNARITY),
-        (&mut first.persistence, "persistence", limits::solid::PERSISTENCE),
-        (&mut parameters.texture_factor_per_m, "texture_factor_per_m", limits::solid::TEXTURE_FACTOR_PER_M),
-        (&mut parameters.amplitude_m, "amplitude_m", limits::solid::AMPLITUDE_M),
-        (&mut parameters.limit_n, "limit_n", limits::solid::LIMIT_N),
-        (&mut parameters.cap_n, "cap_n", limits::solid::CAP_N),
-        (&mut parameters.viscosity_n_s_m, "viscosity_n_s_m", limits::solid::VISCOSITY_N_S_M),
+    first.octaves = table.count(&solid::OCTAVES)?.unwrap_or(first.octaves);
+    for (to, of) in [
+        (&mut first.magnitude, &solid::MAGNITUDE),
+        (&mut first.frequency, &solid::FREQUENCY),
+        (&mut first.lacunarity, &solid::LACUNARITY),
+        (&mut first.persistence, &solid::PERSISTENCE),
+        (&mut parameters.texture_factor_per_m, &solid::TEXTURE_FACTOR_PER_M),
+        (&mut parameters.amplitude_m, &solid::AMPLITUDE_M),
+        (&mut parameters.limit_n, &solid::LIMIT_N),
+        (&mut parameters.cap_n, &solid::CAP_N),
+        (&mut parameters.viscosity_n_s_m, &solid::VISCOSITY_N_S_M),
     ] {
-        *to = table.number_or(key, *to, range)?;
+        *to = table.number_or(of, *to)?;
     }
     parameters.direction = table.word("direction", &directions)?.unwrap_or(parameters.direction);
     let proportional = table.flag("proportional")?;
@@ -246,8 +244,8 @@ fn read_brownian(mut table: Fields) -> Result<Source, FileError> {
     let graph = table.flag("graph")?.unwrap_or(false);
     let most = if graph { 1 << 22 } else { 4096 };
     let brownian = Brownian {
-        hurst: table.needed_number("hurst", limits::brownian::HURST)?,
-        rms_m: table.needed_number("rms_m", limits::brownian::RMS_M)?,
+        hurst: table.needed_number(&parameters::brownian::HURST)?,
+        rms_m: table.needed_number(&parameters::brownian::RMS_M)?,
         seed: table.whole("seed", 0, u64::MAX)?,
         cells: table.whole("cells", 16, most)?,
         graph,

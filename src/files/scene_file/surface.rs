@@ -6,7 +6,7 @@ use super::source::{self, Source};
 use crate::files::FileError;
 use crate::model::frame::SurfaceFrame;
 use crate::model::surface::Excitation;
-use asperity_dsp::limits;
+use crate::parameters::surface as parameters;
 use asperity_texture::wrap::Wrap;
 use std::path::Path;
 use toml::Value;
@@ -66,17 +66,16 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError
     let surface = SurfaceEntry {
         name,
         body: fields.text("body")?,
-        // The engine takes 16 positions.
-        strike_position: fields.whole("strike_position", 0, 15)?.unwrap_or(0) as usize,
+        strike_position: fields.count(&parameters::STRIKE_POSITION)?.unwrap_or(0),
         source,
         roughness: read_roughness(&mut fields, folder)?,
-        width_m: fields.needed_number("width_m", limits::SIDE_M)?,
-        height_m: fields.needed_number("height_m", limits::SIDE_M)?,
-        micro_relief_m: fields.number("micro_relief_m", limits::MICRO_RELIEF_M)?,
+        width_m: fields.needed_number(&parameters::WIDTH_M)?,
+        height_m: fields.needed_number(&parameters::HEIGHT_M)?,
+        micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?.unwrap_or_default(),
         frame: read_frame(&mut fields)?,
-        friction: fields.number("friction", limits::FRICTION)?,
+        friction: fields.number(&parameters::FRICTION)?,
     };
     fields.finish()?;
     Ok(surface)
@@ -113,9 +112,10 @@ fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<RoughnessEntry, 
             Ok(RoughnessEntry::Map { image: Pixels { path: folder.join(name), channel }, gloss })
         }
         value => {
-            let number =
-                as_number(&value).filter(|number| (0.0..=1.0).contains(number)).ok_or_else(|| {
-                    let right = format!("must be {}, or name an image", limits::ROUGHNESS.words);
+            let number = as_number(&value)
+                .filter(|number| parameters::ROUGHNESS.range.holds(*number))
+                .ok_or_else(|| {
+                    let right = format!("must be {}, or name an image", parameters::ROUGHNESS.range.words);
                     fields.refuse(key, format!("{} is refused", shown(&value)), right)
                 })?;
             Ok(RoughnessEntry::Number(Some(if gloss { 1.0 - number } else { number })))

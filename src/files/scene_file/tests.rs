@@ -1,4 +1,5 @@
 use super::*;
+use crate::Material;
 use crate::model::surface::Excitation;
 use asperity_texture::picture::Channel;
 use asperity_texture::sand::Layer;
