@@ -63,6 +63,8 @@ pub struct Scene {
     bodies: Places<KnownBody>,
     probes: Places<()>,
     open_ports: usize,
+    /// Radii of the tips that surfaces get ready for, m.
+    tips_m: Vec<f64>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     to_audio: Sender<Message>,
@@ -104,6 +106,7 @@ impl Scene {
             bodies: Places::new(config.max_bodies, "bodies"),
             probes: Places::new(config.max_probes, "probes"),
             open_ports: 0,
+            tips_m: vec![config.probe.tip_radius_m],
             reported: Reported::default(),
             held: Vec::new(),
             config,
@@ -200,9 +203,13 @@ impl Scene {
         let Config { probe: own, integrator, .. } = &self.config;
         // An engine that was built has its kernel.
         let kernel = self.config.kernel().unwrap_or(Kernel::PORTABLE);
+        let tip_m = probe.tip_radius_m;
         let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz(), kernel)?;
         self.send(Message::AddProbe { index: id.index(), probe: Box::new(probe) })?;
         self.probes.set(id.0, ());
+        if !self.tips_m.contains(&tip_m) {
+            self.tips_m.push(tip_m);
+        }
         Ok(id)
     }
 
@@ -231,6 +238,9 @@ impl Scene {
         let mut surface = surface.checked()?.tiled();
         let setup = Setup { sample_rate_hz: self.config.inner_rate_hz(), voices: self.config.voices() };
         surface.source.prepare(&setup)?;
+        for radius_m in &self.tips_m {
+            surface.source.prepare_tip(*radius_m);
+        }
         let silent = KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let stroking = self.stroking(body)?;
@@ -238,7 +248,8 @@ impl Scene {
         let period_m = surface.wrap_period_m();
         let trajectory =
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
-        let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
+        let relief = (surface.micro_relief_m, surface.outer_scale_m);
+        let overlay = Overlay::new(period_m, surface.source.band().shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
         let (size_m, frame) = ([surface.width_m, surface.height_m], surface.frame);
         let mut picture = None;

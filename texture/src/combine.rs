@@ -38,6 +38,14 @@ impl Sum {
 }
 
 impl HeightField for Sum {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.sources.iter_mut().for_each(|source| source.prepare_tip(radius_m));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.sources.iter_mut().for_each(|source| source.ride(radius_m));
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
     }
@@ -118,6 +126,14 @@ fn check_factor(factor: f64) -> Result<f64, DesignError> {
 }
 
 impl HeightField for Scale {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.source.prepare_tip(radius_m);
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.source.ride(radius_m);
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.factor.prepare(setup.sample_rate_hz);
         self.source.prepare(setup)
@@ -191,6 +207,14 @@ impl Mask {
 }
 
 impl HeightField for Mask {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        [&mut self.inside, &mut self.outside].into_iter().for_each(|source| source.prepare_tip(radius_m));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        [&mut self.inside, &mut self.outside].into_iter().for_each(|source| source.ride(radius_m));
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.mask.prepare(setup)?;
         self.inside.prepare(setup)?;
@@ -292,6 +316,14 @@ impl Crossfade {
 }
 
 impl HeightField for Crossfade {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.sources.iter_mut().for_each(|source| source.prepare_tip(radius_m));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.sources.iter_mut().for_each(|source| source.ride(radius_m));
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.position.prepare(setup.sample_rate_hz);
         if let Some(at_s) = self.at_s {
@@ -397,6 +429,14 @@ impl BandSplit {
 }
 
 impl HeightField for BandSplit {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        [&mut self.coarse, &mut self.fine].into_iter().for_each(|source| source.prepare_tip(radius_m));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        [&mut self.coarse, &mut self.fine].into_iter().for_each(|source| source.ride(radius_m));
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.weights.prepare(setup.sample_rate_hz);
         self.coarse.prepare(setup)?;

@@ -28,6 +28,7 @@ pub mod deband;
 pub mod image_io;
 pub mod picture;
 mod resample;
+pub mod ridden;
 mod spline;
 pub mod stl;
 pub mod wrap;
