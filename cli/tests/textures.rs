@@ -6,7 +6,7 @@ mod support;
 #[path = "../../texture/tests/surfaces/mod.rs"]
 mod surfaces;
 
-use asperity_texture::image_io::{Channel, load_channel, save_gray16};
+use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::metamer::{Feel, MetamerOptions};
 use asperity_texture::raster::Raster;
 use maps::with_maps;
