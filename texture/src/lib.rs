@@ -45,6 +45,8 @@ pub mod distribution;
 #[cfg(feature = "offline")]
 pub mod fft2;
 #[cfg(feature = "offline")]
+pub mod flat_ground;
+#[cfg(feature = "offline")]
 pub mod fractal_dimension;
 #[cfg(feature = "offline")]
 pub mod from_photo;
