@@ -75,6 +75,7 @@ pub mod offline;
 pub mod open;
 pub mod parameters;
 mod prepared;
+mod rate;
 
 pub use asperity_dsp::limits;
 pub use audio::renderer::Renderer;
@@ -105,6 +106,7 @@ pub use model::surface::{
     Surface, SurfaceError,
 };
 pub use model::uv_triangle::UvTriangle;
+pub use rate::{AtRate, RateError};
 
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
 pub use asperity_dsp::modal_bank::{Culling, Isa};

@@ -1,5 +1,6 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
+use crate::files::contact_log::LogSurface;
 use crate::model::bad_value::{BadValue, within};
 use crate::model::id::BodyId;
 use crate::model::material::Material;
@@ -64,6 +65,8 @@ pub struct Surface {
     pub(crate) friction: Option<f64>,
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
+    /// What a scene file says of it, if it comes from one.
+    pub(crate) described: Option<Box<LogSurface>>,
 }
 
 impl std::fmt::Debug for Surface {
@@ -118,6 +121,7 @@ impl Surface {
             friction: None,
             excitation: Excitation::default(),
             strike_position: 0,
+            described: None,
         })
     }
 
