@@ -35,6 +35,12 @@ pub struct Engine {
     pub workers: Vec<SandWorker>,
 }
 
+impl std::fmt::Debug for Engine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Engine").field("names", &self.names).finish_non_exhaustive()
+    }
+}
+
 impl Config {
     /// Builds the two halves: [`Scene`] for the game thread, [`Renderer`] for the audio thread.
     ///

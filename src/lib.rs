@@ -47,9 +47,20 @@
 //! | a surface of your own | [`texture::height_field::HeightField`] |
 //! | several bodies at several places | [`Config::audio`], [`Body::on_bus`] |
 //! | a pen, a nail, a shoe sole | [`PROBE_PRESETS`], [`Scene::add_probe`], [`Touching`] |
-//! | collisions of a physics engine | [`Impact::from_impulse`] |
+//! | collisions of a physics engine | [`Impact::from_impulse`]; the crate `asperity-rapier` |
 //! | a sound card | [`live`] |
 //! | silence | [`Scene::why_silent`] |
+//!
+//! # Crates
+//!
+//! | crate | holds |
+//! |---|---|
+//! | [`dsp`] | kernels: what happens to one sample |
+//! | [`texture`] | surfaces: sources sampled in real time, tools behind a feature |
+//! | `asperity` | scenes, events, the two halves, files, offline renders, sound cards |
+//! | `asperity-fit` | a recorded hit becomes modes |
+//! | `asperity-rapier` | contacts of a physics engine as events |
+//! | `asperity-cli` | the program |
 //!
 //! # Features
 //!
@@ -93,8 +104,10 @@ pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
 pub use model::error::{AddError, ConfigError, Refusal, ReportError};
 pub use model::event::{
-    Actuator, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV, Touching,
+    Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
+    Touching,
 };
+pub use model::frame::SurfaceFrame;
 pub use model::id::{BodyId, ProbeId, SurfaceId};
 pub use model::material::{Material, MaterialPreset};
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
@@ -108,6 +121,11 @@ pub use model::surface::{
 pub use model::uv_triangle::UvTriangle;
 pub use rate::{AtRate, RateError};
 
+/// Kernels: what happens to one sample.
+pub use asperity_dsp as dsp;
+pub use asperity_dsp::DesignError;
+/// What [`ContactBlock::contact_samples`] holds: the pad at one sample.
+pub use asperity_dsp::micro_contact::ContactSample as PadSample;
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
 pub use asperity_dsp::modal_bank::{Culling, Isa};
 pub use asperity_dsp::mode::Mode;

@@ -65,7 +65,24 @@ pub struct SandAfter {
     pub picture: SandPicture,
 }
 
-/// Renders a log. Events with bad numbers are left out and counted in
+/// Renders a log.
+///
+/// ```
+/// use asperity::files::contact_log::ContactLog;
+/// use asperity::offline::{self, Options};
+/// use asperity::{Body, Config, Engine, Material, Stock};
+///
+/// let Engine { mut scene, renderer, mut names, .. } = Config::default().build()?;
+/// names.bodies.insert("bell".into(), scene.add_body(Body::stock(Stock::Bowl, Material::BRASS, 0.1)?)?);
+/// let log = r#"{"t":0.1,"event":"impact","body":"bell","speed_m_s":0.8,"mass_kg":0.01,"radius_m":0.005,"striker":"wood"}"#;
+/// let log = ContactLog::parse(log, "bell.jsonl")?;
+/// let take = offline::render(scene, renderer, &log, &names, &Options::default())?;
+/// // A tenth of a second before the blow, a second to ring out.
+/// assert!(take.stats.impacts == 1 && take.audio[0].len() >= 48_510);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Events with bad numbers are left out and counted in
 /// [`Stats::refused`](crate::Stats::refused); the first is told in [`Render::first_refused`].
 ///
 /// # Errors

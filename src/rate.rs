@@ -105,6 +105,7 @@ impl Scene {
             }
         }
         (self.to_audio, self.from_audio) = (to_audio, from_audio);
+        self.open_ports = 0;
         self.clock.at_rate(self.config.inner_rate_hz());
         for message in renderer.take_over(old) {
             // As many as the old queue held.

@@ -47,7 +47,7 @@ fn laps(u_per_tile: f64, wrap: impl Fn(f64) -> f64) -> ContactLog {
     let mut lines = vec![LogLine { t: 0.0, event: begin }];
     for step in 1..275 {
         let t = f64::from(step) / 60.0;
-        lines.push(LogLine { t, event: LogEvent::Move { contact: 1, sample: sample(t) } });
+        lines.push(LogLine { t, event: LogEvent::moved(1, sample(t)) });
     }
     ContactLog { lines }
 }

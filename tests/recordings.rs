@@ -78,6 +78,10 @@ impl Game {
                     self.scene.apply(&mut self.names, &file(), &softer, &Overrides::default()).unwrap();
                 }
                 110 if own_surfaces => self.scene.replace_surface(plate, bumps(&self.names)).unwrap(),
+                120 => self.scene.set_body_gain(bell, 0.4).unwrap(),
+                125 => self.scene.set_muted(true).unwrap(),
+                132 => self.scene.set_muted(false).unwrap(),
+                170 => self.scene.fade_all().unwrap(),
                 150 => self.scene.remove_body(added.unwrap()).unwrap(),
                 _ => {}
             }
@@ -131,7 +135,7 @@ fn a_recording_with_edits_renders_to_the_bits_of_the_game() {
     game.play(false);
     let log = game.scene.stop_recording();
     let edits = log.lines.iter().filter(|line| matches!(line.event, LogEvent::Edit(_))).count();
-    assert_eq!(edits, 8);
+    assert_eq!(edits, 12);
     assert!(log.lines.iter().any(
         |line| matches!(&line.event, LogEvent::Edit(LogEdit::ReplaceSurface { is, .. }) if is.is.is_some())
     ));

@@ -72,11 +72,7 @@ fn reports(mut change: impl FnMut(usize, f64, &mut ContactSample) -> bool) -> Co
             closing_m_s: 0.0,
         };
         let stays = change(step, t, &mut sample);
-        let event = if step == 0 {
-            LogEvent::begin(1, "s", 0, sample)
-        } else {
-            LogEvent::Move { contact: 1, sample }
-        };
+        let event = if step == 0 { LogEvent::begin(1, "s", 0, sample) } else { LogEvent::moved(1, sample) };
         if stays {
             lines.push(LogLine { t, event });
         }

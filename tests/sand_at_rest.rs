@@ -55,8 +55,7 @@ impl Hand {
         let at = |step: usize| self.begins_s + step as f64 / self.reports_hz;
         let begin = LogEvent::begin(1, "s", 0, sample(0));
         let mut lines = vec![LogLine { t: self.begins_s, event: begin }];
-        let moved =
-            |step: usize| LogLine { t: at(step), event: LogEvent::Move { contact: 1, sample: sample(step) } };
+        let moved = |step: usize| LogLine { t: at(step), event: LogEvent::moved(1, sample(step)) };
         lines.extend((1..=steps).map(moved));
         lines.push(LogLine { t: at(steps), event: LogEvent::End { contact: 1 } });
         ContactLog { lines }
@@ -194,7 +193,7 @@ fn a_finger_at_rest_in_sand_sleeps_until_another_finger_moves_the_sand_under_it(
             LogEvent::Begin { touching, sample, .. } => {
                 LogEvent::Begin { contact: 2, touching, sample: aside(sample) }
             }
-            LogEvent::Move { sample, .. } => LogEvent::Move { contact: 2, sample: aside(sample) },
+            LogEvent::Move { sample, .. } => LogEvent::moved(2, aside(sample)),
             _ => LogEvent::End { contact: 2 },
         };
         LogLine { event, ..line }

@@ -64,7 +64,7 @@ fn stroke(engine: Engine) -> Render {
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "tiles", 0, sample(0.0)) }];
     lines.extend((1..20).map(|i| {
         let t = f64::from(i) / 60.0;
-        LogLine { t, event: LogEvent::Move { contact: 1, sample: sample(t) } }
+        LogLine { t, event: LogEvent::moved(1, sample(t)) }
     }));
     let Engine { scene, renderer, names, .. } = engine;
     offline::render(scene, renderer, &ContactLog { lines }, &names, &Options::default()).unwrap()
@@ -90,10 +90,8 @@ fn decoded_pictures_give_the_bits_of_their_files() {
         )
         .unwrap();
     }
-    let texels: Vec<u8> = match bumps().channel(asperity::texture::picture::Channel::G).unwrap().raster.values
-    {
-        green => green.iter().flat_map(|g| [3, (255.0 * g).round() as u8, 9]).collect(),
-    };
+    let green = bumps().channel(asperity::texture::picture::Channel::G).unwrap().raster.values;
+    let texels: Vec<u8> = green.iter().flat_map(|g| [3, (255.0 * g).round() as u8, 9]).collect();
     image::RgbImage::from_raw(64, 64, texels).unwrap().save(folder.join("level/maps/disp.png")).unwrap();
     let rough = image::GrayImage::from_pixel(1, 1, image::Luma([51]));
     rough.save(folder.join("level/maps/rough.png")).unwrap();

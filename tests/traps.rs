@@ -74,7 +74,7 @@ fn log(seconds: f64, at: impl Fn(f64) -> ([f64; 2], [f64; 2], f64)) -> ContactLo
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "s", 0, sample(0.0)) }];
     for step in 1..(seconds * 60.0) as usize {
         let t = step as f64 / 60.0;
-        lines.push(LogLine { t, event: LogEvent::Move { contact: 1, sample: sample(t) } });
+        lines.push(LogLine { t, event: LogEvent::moved(1, sample(t)) });
     }
     lines.push(LogLine { t: seconds, event: LogEvent::End { contact: 1 } });
     ContactLog { lines }

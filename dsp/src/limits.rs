@@ -79,12 +79,18 @@ pub const MAX_MICRO_RELIEF_M: f64 = 0.01;
 pub const MICRO_RELIEF_M: Range = Range::new(0.0, MAX_MICRO_RELIEF_M, "0 to 0.01 m, 0 = none");
 /// Side of a surface.
 pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
+/// Each coordinate of a place in a body.
+pub const PLACE_M: Range = Range::new(-1e3, 1e3, "-1000 to 1000 m");
+/// Length of a direction, of which only the direction counts.
+pub const AXIS: Range = Range::new(1e-6, 1e6, "1e-6 to 1e6 long");
 /// Roughness of a surface.
 pub const ROUGHNESS: Range = Range::new(0.0, 1.0, "0 to 1");
 /// Friction coefficient.
 pub const FRICTION: Range = Range::new(0.0, 10.0, "0 to 10");
 /// Game time of a report with an exact clock, s.
 pub const TIME_S: Range = Range::new(0.0, 1e9, "finite, 0 to 1e9 s");
+/// Game seconds a second of audio.
+pub const TIME_SCALE: Range = Range::new(0.01, 100.0, "0.01 to 100");
 /// Game time of a report with a live clock, s.
 pub const LIVE_TIME_S: Range = Range::new(-1e9, 1e9, "finite, within ±1e9 s");
 
@@ -272,6 +278,9 @@ mod tests {
             SPEED_M_S,
             MICRO_RELIEF_M,
             SIDE_M,
+            TIME_SCALE,
+            PLACE_M,
+            AXIS,
             ROUGHNESS,
             FRICTION,
             probe::PAD_MASS_KG,

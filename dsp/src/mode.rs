@@ -4,6 +4,13 @@
 /// `amplitude · e^(−decay_per_s · t) · sin(2π · frequency_hz · t + phase_rad)`.
 ///
 /// The paper's modes have `phase_rad` = 0; fitted ones do not.
+///
+/// ```
+/// use asperity_dsp::mode::Mode;
+///
+/// let mode = Mode { frequency_hz: 440.0, decay_per_s: 6.908, amplitude: 1.0, phase_rad: 0.0 };
+/// assert!((mode.t60_s() - 1.0).abs() < 1e-4);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mode {

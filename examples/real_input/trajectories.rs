@@ -86,7 +86,7 @@ pub fn strokes(samples: &[PenSample], surface: &str, size_m: [f64; 2], velocity:
             closing_m_s: 0.0,
         };
         let event = if last.is_some() {
-            LogEvent::Move { contact, sample }
+            LogEvent::moved(contact, sample)
         } else {
             contact += 1;
             sample.closing_m_s = LANDING_M_S;

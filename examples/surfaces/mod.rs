@@ -69,7 +69,7 @@ impl Hand {
             let event = match step {
                 0 => LogEvent::begin(contact, self.surface, 0, sample),
                 _ if step == steps => LogEvent::End { contact },
-                _ => LogEvent::Move { contact, sample },
+                _ => LogEvent::moved(contact, sample),
             };
             log.lines.push(LogLine { t: start_s + t, event });
         }

@@ -52,6 +52,7 @@ const QUARTER: f64 = 0.25;
 
 /// Why a recording cannot be fitted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// An option outside its range.
     #[error("{field}: {value} is refused; {right}")]

@@ -7,4 +7,5 @@ pub(crate) mod occupied;
 pub(crate) mod outlets;
 pub(crate) mod renderer;
 pub(crate) mod seat;
+pub(crate) mod smoothed;
 pub(crate) mod voice;

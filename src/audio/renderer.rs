@@ -14,6 +14,7 @@ use crate::audio::governor::Governor;
 use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::{Change, Seat};
+use crate::audio::smoothed::Smoothed;
 use crate::audio::voice::{Phase, Scratch, Shared, Voice};
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::ring::{Receiver, Sender};
@@ -65,6 +66,10 @@ pub struct Renderer {
     from_game: Receiver<Message>,
     to_game: Sender<Dead>,
     counters: Arc<Counters>,
+    muted: bool,
+    paused: bool,
+    /// On its way to silence or back.
+    master: Smoothed,
     scratch: Box<Scratch>,
     mix: Box<Mix>,
 }
@@ -105,7 +110,7 @@ impl Renderer {
             bodies_used: Occupied::new(config.max_bodies),
             silent: Vec::with_capacity(config.max_contacts),
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
-            bodies: (0..config.max_bodies).map(|_| BodySeat::default()).collect(),
+            bodies: (0..config.max_bodies).map(|_| BodySeat::new(rate)).collect(),
             channels: config
                 .actuators
                 .iter()
@@ -120,6 +125,9 @@ impl Renderer {
             from_game,
             to_game,
             counters,
+            muted: false,
+            paused: false,
+            master: Smoothed::new(rate),
             scratch: Scratch::new(),
             mix: Mix::new(),
             shared,
@@ -189,6 +197,20 @@ impl Renderer {
     /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
     /// counts and the rest is silent). Haptic channel i goes into haptic slice i, audio bus i into audio slice i, both in the order of
     /// the config.
+    ///
+    /// ```
+    /// use asperity::{ActuatorSettings, AudioBus, Config, Engine};
+    ///
+    /// let config = Config {
+    ///     actuators: vec![ActuatorSettings::default(); 3],
+    ///     audio: vec![AudioBus::default(); 2],
+    ///     ..Config::default()
+    /// };
+    /// let Engine { mut renderer, .. } = config.build()?;
+    /// let (mut haptic, mut audio) = ([[0.0f32; 128]; 3], [[0.0f32; 128]; 2]);
+    /// renderer.render(&mut haptic.each_mut().map(|c| &mut c[..]), &mut audio.each_mut().map(|c| &mut c[..]));
+    /// # Ok::<(), asperity::ConfigError>(())
+    /// ```
     pub fn render(&mut self, haptic: &mut [&mut [f32]], audio: &mut [&mut [f32]]) {
         self.render_tapped(haptic, audio, &mut NoTap);
     }
@@ -216,6 +238,7 @@ impl Renderer {
             self.render_contacts(n, tap);
             let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
             self.outlets.shown(shown / self.shared.inner.every as u64);
+            self.render_master(n);
             self.render_haptics(done, n, haptic);
             self.render_bodies(done, n, audio);
             done += n;
@@ -321,14 +344,26 @@ impl Renderer {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);
             }
-            Message::SetBody { id, body, bus, stroking } => {
-                self.bodies[id.index()].set(id, body, bus);
+            Message::SetBody { id, body, bus, gain, stroking } => {
+                self.bodies[id.index()].set(id, body, bus, gain);
                 self.bodies_used.insert(id.index());
                 for seat in self.seats_used.iter() {
                     self.seats[seat].body_changed(id, &stroking);
                 }
             }
             Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
+            Message::SetBodyGain { slot, gain } => self.bodies[slot].set_gain(gain),
+            Message::Mute(muted) => self.muted = muted,
+            Message::Pause(paused) => {
+                self.paused = paused;
+                if paused {
+                    self.silence_all();
+                }
+            }
+            Message::FadeAll => {
+                self.end_all();
+                self.bodies_used.iter().for_each(|body| self.bodies[body].damp());
+            }
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
             Message::AddOutlet(outlet) => self.outlets.add(outlet),
             Message::SetAudioGain { bus, gain } => self.buses[bus].set_gain(gain),

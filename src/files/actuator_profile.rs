@@ -31,6 +31,7 @@ pub struct ActuatorPreset {
 
 /// Why a profile was refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PresetError {
     /// The file cannot be read.
     #[error(

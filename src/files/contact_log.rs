@@ -10,7 +10,7 @@ mod keys;
 use super::FileError;
 use super::storage::{self, Disk, Files};
 pub use crate::model::event::ContactSample;
-use crate::model::event::{Actuator, ContactEvent, ContactId, Impact, Touching};
+use crate::model::event::{Actuator, ContactEvent, ContactId, Emphasis, Impact, Touching};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 pub use edit::{LogBody, LogEdit, LogSurface};
@@ -55,6 +55,9 @@ pub enum LogEvent {
         /// Where and how.
         #[serde(flatten)]
         sample: ContactSample,
+        /// How loud and how important from now on.
+        #[serde(flatten)]
+        emphasis: Emphasis,
     },
     /// A contact lifts off.
     End {
@@ -152,6 +155,7 @@ pub struct Names {
 
 /// Why a log, or a line of it, was refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LogError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({source}); give a readable contact log", path.display())]
@@ -336,6 +340,12 @@ impl LogEvent {
         }
     }
 
+    /// A contact goes on.
+    #[must_use]
+    pub fn moved(contact: u64, sample: ContactSample) -> Self {
+        Self::Move { contact, sample, emphasis: Emphasis::default() }
+    }
+
     /// The event for a scene whose ids `names` gives.
     ///
     /// # Errors
@@ -347,7 +357,9 @@ impl LogEvent {
                 touching: touching.resolve(names)?,
                 sample: *sample,
             },
-            Self::Move { contact, sample } => ContactEvent::moved(ContactId(*contact), *sample),
+            Self::Move { contact, sample, emphasis } => {
+                ContactEvent::moved_with(ContactId(*contact), *sample, *emphasis)
+            }
             Self::End { contact } => ContactEvent::end(ContactId(*contact)),
             Self::Impact {
                 body,

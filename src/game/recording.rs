@@ -112,7 +112,9 @@ impl Recording {
                 },
                 sample,
             },
-            ContactEvent::Moved { contact, sample } => LogEvent::Move { contact: contact.0, sample },
+            ContactEvent::Moved { contact, sample, emphasis } => {
+                LogEvent::Move { contact: contact.0, sample, emphasis }
+            }
             ContactEvent::End { contact } => LogEvent::End { contact: contact.0 },
             ContactEvent::Impact(impact) => LogEvent::Impact {
                 body: self.body(impact.body),

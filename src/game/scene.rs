@@ -3,6 +3,7 @@
 //! Every call returns at once. Nothing here waits for the audio thread.
 
 mod ports;
+mod quiet;
 mod recorded;
 mod reports;
 
@@ -19,6 +20,7 @@ use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::error::AddError;
 use crate::model::event::{Actuator, ContactEvent, ContactId};
+use crate::model::frame::SurfaceFrame;
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
@@ -41,6 +43,20 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// The game half of an engine.
+///
+/// ```
+/// use asperity::{Config, ContactEvent, ContactId, ContactSample, Engine, Surface, Touching};
+///
+/// let Engine { mut scene, .. } = Config::live(48_000.0).build()?;
+/// let desk = scene.add_surface(Surface::flat(1.2, 0.6)?)?;
+/// let sample = ContactSample::new([0.5, 0.5], 0.4).sliding([0.1, 0.0]);
+/// scene.report(0.0, ContactEvent::begin_with(ContactId(1), Touching::on(desk), sample))?;
+/// // What is wrong is said by name, and the event is handed back.
+/// let heavy = ContactSample { normal_force_n: f64::NAN, ..sample };
+/// let refused = scene.report(0.02, ContactEvent::moved(ContactId(1), heavy)).unwrap_err();
+/// assert!(refused.to_string().starts_with("normal_force_n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Scene {
     pub(crate) config: Config,
     pub(crate) clock: Clock,
@@ -48,7 +64,7 @@ pub struct Scene {
     pub(crate) surfaces: Places<KnownSurface>,
     pub(crate) bodies: Places<KnownBody>,
     pub(crate) probes: Places<Probe>,
-    open_ports: usize,
+    pub(crate) open_ports: usize,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     pub(crate) to_audio: Sender<Message>,
@@ -68,6 +84,8 @@ pub(crate) struct KnownSurface {
     rings: bool,
     /// How it looks, if it changes.
     picture: Option<Arc<MovingPicture>>,
+    size_m: [f64; 2],
+    frame: Option<SurfaceFrame>,
 }
 
 /// What the game half remembers of a body.
@@ -167,6 +185,7 @@ impl Scene {
     /// A body as the audio half takes it.
     pub(crate) fn prepared_body(&self, id: BodyId, body: &Body) -> Result<(Message, KnownBody), AddError> {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
+        let gain = within("gain", body.gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
         let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate, inner)?);
@@ -174,7 +193,7 @@ impl Scene {
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let known = KnownBody { material, lowest_mode_hz };
         let stroking = self.stroking(known)?;
-        Ok((Message::SetBody { id, body, bus, stroking }, known))
+        Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
     }
 
     /// How strokes excite a body.
@@ -269,10 +288,11 @@ impl Scene {
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
         let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
         let rings = body.lowest_mode_hz.is_finite();
+        let (size_m, frame) = ([surface.width_m, surface.height_m], surface.frame);
         let mut picture = None;
         surface.source.visit(&mut |part| picture = picture.take().or(part.downcast_ref().cloned()));
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
-        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture }))
+        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, size_m, frame }))
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
@@ -287,6 +307,19 @@ impl Scene {
         self.send(Message::ChangeSurface { slot: id.index(), change: Box::new(change) })?;
         self.note(|names| LogEdit::ChangeSurface { surface: names.surface(id) });
         Ok(())
+    }
+
+    /// Texture coordinates of a point in the body of a surface that has a [frame](Surface::frame), m; none for one that has none.
+    ///
+    /// # Errors
+    /// When the surface is not in this scene.
+    pub fn uv_at(
+        &self,
+        id: SurfaceId,
+        point_m: impl Into<mint::Vector3<f64>>,
+    ) -> Result<Option<[f64; 2]>, AddError> {
+        let known = self.known_surface(id)?;
+        Ok(known.frame.map(|frame| frame.uv(point_m, known.size_m)))
     }
 
     /// Takes a surface away; contacts on it fade.
@@ -351,6 +384,14 @@ impl Scene {
 
     /// What speaks against anything being heard or felt, the likeliest reason first; empty when nothing
     /// does. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
+    ///
+    /// ```
+    /// use asperity::{Config, Engine};
+    ///
+    /// let Engine { scene, .. } = Config::default().build()?;
+    /// assert!(scene.why_silent()[0].to_string().contains("Renderer::render"));
+    /// # Ok::<(), asperity::ConfigError>(())
+    /// ```
     #[must_use]
     pub fn why_silent(&self) -> Vec<SilentBecause> {
         self.reported.why_silent(&self.stats(), &self.config)

@@ -35,10 +35,18 @@ pub(crate) enum Message {
     ChangeSurface { slot: usize, change: Box<dyn Any + Send + Sync> },
     /// A slot falls empty; contacts on it fade.
     RemoveSurface { slot: usize },
-    /// A body for a new or used place, the bus it plays on, and how strokes on its surfaces excite it from now on.
-    SetBody { id: BodyId, body: Box<BodySlot>, bus: usize, stroking: Stroking },
+    /// A body for a new or used place, the bus it plays on, its gain, and how strokes on its surfaces excite it from now on.
+    SetBody { id: BodyId, body: Box<BodySlot>, bus: usize, gain: f64, stroking: Stroking },
     /// A body sounds on another bus from now on.
     SetBodyBus { slot: usize, bus: usize },
+    /// A body is louder or softer from now on.
+    SetBodyGain { slot: usize, gain: f64 },
+    /// Everything that leaves fades to nothing, or comes back.
+    Mute(bool),
+    /// The same, and contacts wait for their next report.
+    Pause(bool),
+    /// Every contact ends, and everything that rings is damped.
+    FadeAll,
     /// Gain of an audio bus, reached within a few milliseconds.
     SetAudioGain { bus: usize, gain: f64 },
     /// A slot falls empty; the body rings out unheard from now on.

@@ -3,6 +3,16 @@
 pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
 
 /// One haptic channel.
+///
+/// ```
+/// use asperity::{ActuatorPreset, ActuatorSettings, Config};
+///
+/// // A voice coil in a controller: its response inverted, its excursion kept within limits.
+/// let device = ActuatorPreset::by_name("vr-controller").unwrap().profile;
+/// let channel = ActuatorSettings { equalise: Some(device), limit: Some(device), ..ActuatorSettings::default() };
+/// let config = Config { actuators: vec![channel; 2], ..Config::default() };
+/// assert!(config.build().is_ok());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ActuatorSettings {

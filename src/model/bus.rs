@@ -4,6 +4,14 @@
 pub const MAX_BUSES: usize = 64;
 
 /// Settings of an audio bus.
+///
+/// ```
+/// use asperity::{AudioBus, Config};
+///
+/// // Eight places around a listener, each kept within ±1.
+/// let config = Config { audio: vec![AudioBus { gain: 0.5, limit: true }; 8], ..Config::default() };
+/// assert!(config.build().is_ok());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AudioBus {

@@ -16,12 +16,21 @@ use serde::{Deserialize, Serialize};
 /// [`Config::live`] is the same for a game that runs now.
 ///
 /// As text it is a table with these fields, of which any may be missing, and no others ([`Config::parse`]).
+///
+/// ```
+/// use asperity::Config;
+///
+/// let many = Config { max_contacts: 128, seed: 7, ..Config::live(48_000.0) };
+/// assert!(many.build().is_ok());
+/// let wrong = Config { sample_rate_hz: 10.0, ..Config::default() };
+/// assert!(wrong.build().unwrap_err().to_string().contains("8000 to 384000 Hz"));
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Config {
-    /// Rate of every output, Hz; 8–384 kHz.
+    /// Rate of every output, Hz; 8–384 kHz, default 44.1 kHz.
     pub sample_rate_hz: f64,
-    /// Seed of the micro-noise: the same seed feels the same at the same place.
+    /// Seed of the micro-noise: the same seed feels the same at the same place. Default 1.
     pub seed: u64,
     /// How sparse contact positions become a path.
     pub path: PathMode,
@@ -31,23 +40,23 @@ pub struct Config {
     pub integrator: Integrator,
     /// The engine's own probe, for contacts that name no other: the fingertip unless told otherwise.
     pub probe: Probe,
-    /// Haptic channels, in order.
+    /// Haptic channels, in order; by default one of 0.1 mm at full scale, without limiter.
     pub actuators: Vec<ActuatorSettings>,
-    /// Audio buses, in order; a body plays on one of them, the first unless told otherwise.
+    /// Audio buses, in order; a body plays on one of them, the first unless told otherwise. By default one with gain 1, without limiter.
     pub audio: Vec<AudioBus>,
-    /// Most contacts that sound at once; more steal the least important.
+    /// Most contacts that sound at once, 1–4096, default 64; more steal the least important: force times speed times importance.
     pub max_contacts: usize,
-    /// Most probes, the engine's own not counted.
+    /// Most probes, the engine's own not counted; 1–4096, default 64.
     pub max_probes: usize,
-    /// Most ports that can be open at once.
+    /// Most ports that can be open at once; 1–4096, default 16.
     pub max_ports: usize,
-    /// Most surfaces at once.
+    /// Most surfaces at once; 1–65,536, default 256.
     pub max_surfaces: usize,
-    /// Most bodies at once.
+    /// Most bodies at once; 1–65,536, default 256.
     pub max_bodies: usize,
-    /// Events that may wait between the threads.
+    /// Events that may wait between the threads; 1–16,777,216, default 4096.
     pub queue_capacity: usize,
-    /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick.
+    /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick. 0.01–3600 s, default 0.25 s.
     pub contact_timeout_s: f64,
     /// How game time becomes samples: exactly, as an offline render wants it, unless told otherwise. A game that
     /// runs now begins with [`Config::live`].

@@ -7,6 +7,7 @@ use asperity_dsp::modal_bank::{Isa, Kernel};
 
 /// Why an engine cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConfigError {
     /// A setting is outside its range.
     #[error(transparent)]
@@ -37,6 +38,7 @@ pub struct ReportError {
 
 /// The reasons to refuse an event.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The audio half is not keeping up or not running; try again, or let the event go.
     #[error("the event queue is full; report less often, or render more often")]
@@ -73,6 +75,7 @@ pub enum Refusal {
 
 /// Why a surface or body was not added.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AddError {
     /// Every place is taken.
     #[error("{kind}: all {capacity} places are taken; remove one or raise max_{kind} in the config")]

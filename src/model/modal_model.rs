@@ -13,6 +13,16 @@ use std::path::PathBuf;
 pub const MAX_MODES: usize = 65_536;
 
 /// Validated modes of one body.
+///
+/// ```
+/// use asperity::{ModalModel, Mode};
+///
+/// // What a strike of 0.01 N·s was answered with.
+/// let mode = Mode { frequency_hz: 812.0, decay_per_s: 12.0, amplitude: 0.3, phase_rad: 0.0 };
+/// let tile = ModalModel::new(vec![mode], 0.01)?;
+/// assert_eq!(ModalModel::parse(&tile.to_json())?, tile);
+/// # Ok::<(), asperity::ModalModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalModel {
     /// What was recorded or where the modes come from; free text.
@@ -33,6 +43,7 @@ pub const MAX_POSITIONS: usize = modal_bank::MAX_INPUTS;
 
 /// Why a modes file was refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModalModelError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({source}); give a readable modes file", path.display())]

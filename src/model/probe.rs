@@ -48,6 +48,11 @@ const fn held(
 }
 
 /// The preset of that name.
+///
+/// ```
+/// let sole = asperity::probe_by_name("sole").unwrap();
+/// assert!(sole.finger_mass_kg > 1.0 && asperity::probe_by_name("broom").is_none());
+/// ```
 #[must_use]
 pub fn probe_by_name(name: &str) -> Option<Probe> {
     PROBE_PRESETS.iter().find(|(known, _)| *known == name).map(|(_, probe)| *probe)

@@ -2,6 +2,7 @@
 
 use crate::files::contact_log::LogSurface;
 use crate::model::bad_value::{BadValue, within};
+use crate::model::frame::SurfaceFrame;
 use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
@@ -20,6 +21,7 @@ use std::path::Path;
 /// What sliding sends to the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Excitation {
     /// Hertz pulses at the micro-collisions only, as the paper does: silent where the pad never lifts
     /// off, which with measured damping is every smooth grating at 0.5 N.
@@ -65,6 +67,7 @@ pub struct Surface {
     pub(crate) friction: Option<f64>,
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
+    pub(crate) frame: Option<SurfaceFrame>,
     /// What a scene file says of it, if it comes from one.
     pub(crate) described: Option<Box<LogSurface>>,
 }
@@ -82,6 +85,7 @@ impl std::fmt::Debug for Surface {
 
 /// Why a surface cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// A map cannot be used.
     #[error(transparent)]
@@ -121,6 +125,7 @@ impl Surface {
             friction: None,
             excitation: Excitation::default(),
             strike_position: 0,
+            frame: None,
             described: None,
         })
     }
@@ -199,6 +204,13 @@ impl Surface {
     #[must_use]
     pub fn at_strike_position(mut self, position: usize) -> Self {
         self.strike_position = position;
+        self
+    }
+
+    /// Where it lies in its body.
+    #[must_use]
+    pub fn frame(mut self, frame: SurfaceFrame) -> Self {
+        self.frame = Some(frame);
         self
     }
 

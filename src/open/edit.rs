@@ -45,6 +45,10 @@ impl Edits<'_> {
                 scene.replace_body(known_body(names, body)?, new)
             }
             LogEdit::BodyBus { body, bus } => scene.set_body_bus(known_body(names, body)?, *bus),
+            LogEdit::BodyGain { body, gain } => scene.set_body_gain(known_body(names, body)?, *gain),
+            LogEdit::Mute { muted } => scene.set_muted(*muted),
+            LogEdit::Pause { paused } => scene.set_paused(*paused),
+            LogEdit::FadeAll => scene.fade_all(),
             LogEdit::RemoveBody { body } => scene.remove_body(known_body(names, body)?),
             LogEdit::AddProbe { probe, is } => scene.add_probe(*is).map(|id| {
                 names.probes.insert(probe.clone(), id);

@@ -48,7 +48,7 @@ impl<'a> Maker<'a> {
     /// What all sources of a surface share.
     pub fn ground(&self, entry: &SurfaceEntry) -> Ground<'a> {
         let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
-        Ground { maker: *self, extent, wrap: entry.wrap }
+        Ground { maker: *self, extent, wrap: entry.wrap, frame: entry.frame }
     }
 
     /// A surface, on the body that it names. On one of a `material` that the scene names it has that material's finish where it says
@@ -71,8 +71,10 @@ impl<'a> Maker<'a> {
             // Other sources bring a finish of their own.
             _ => surface,
         };
+        // A solid in a body is cut from a block that goes on: another uv is another place.
+        let in_block = entry.frame.is_some() && matches!(entry.source, Source::Solid { .. });
         let mut surface = surface
-            .wraps(entry.wrap != Wrap::Clamp)
+            .wraps(entry.wrap != Wrap::Clamp && !in_block)
             .at_strike_position(entry.strike_position)
             .excitation(entry.excitation);
         if let Some(roughness) = self.roughness(entry, ground.extent)? {
@@ -80,6 +82,9 @@ impl<'a> Maker<'a> {
         }
         if let Some(rms_m) = entry.micro_relief_m {
             surface = surface.micro_relief_m(rms_m);
+        }
+        if let Some(frame) = entry.frame {
+            surface = surface.frame(frame);
         }
         if let Some(friction) = entry.friction {
             surface = surface.friction(friction);

@@ -1,6 +1,7 @@
 //! Sources made of a scene file's words: heights that the engine samples.
 
 use super::maker::Maker;
+use crate::SurfaceFrame;
 #[cfg(feature = "brownian")]
 use crate::files::scene_file::BrownianForce as ForceEntry;
 use crate::files::scene_file::{Brownian, Lattice as LatticeEntry, Sand, Source, ToolPicture};
@@ -15,7 +16,7 @@ use asperity_texture::height_map::{Extent, HeightMap};
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
 use asperity_texture::sand::{SandDesign, SandSource, Tool};
-use asperity_texture::solid_noise::{SolidNoise, SolidNoiseParameters};
+use asperity_texture::solid_noise::{SolidCut, SolidNoise, SolidNoiseParameters};
 use asperity_texture::wrap::Wrap;
 
 /// Points of a graph unless told otherwise.
@@ -30,6 +31,7 @@ pub(crate) struct Ground<'a> {
     pub maker: Maker<'a>,
     pub extent: Extent,
     pub wrap: Wrap,
+    pub frame: Option<SurfaceFrame>,
 }
 
 impl Ground<'_> {
@@ -119,8 +121,15 @@ impl Ground<'_> {
     }
 
     fn solid(self, parameters: &SolidNoiseParameters, seed: Option<u64>) -> Result<SolidNoise, FileError> {
-        SolidNoise::new(*parameters, seed.unwrap_or(self.maker.seed))
-            .map_err(|error| FileError::told(error).within("solid"))
+        let noise = SolidNoise::new(*parameters, seed.unwrap_or(self.maker.seed))
+            .map_err(|error| FileError::told(error).within("solid"))?;
+        Ok(match self.frame {
+            Some(frame) => {
+                let [u_axis, v_axis] = frame.axes();
+                noise.with_cut(SolidCut::of_body(frame.origin_m(), u_axis, v_axis))
+            }
+            None => noise,
+        })
     }
 
     #[cfg(not(feature = "brownian"))]

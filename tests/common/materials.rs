@@ -33,7 +33,7 @@ fn random_stroke(rng: &mut Rng) -> ContactLog {
     let mut lines = vec![LogLine { t: 0.0, event: begin }];
     for step in 1..90 {
         let t = f64::from(step) / 60.0;
-        lines.push(LogLine { t, event: LogEvent::Move { contact: 1, sample: sample(t) } });
+        lines.push(LogLine { t, event: LogEvent::moved(1, sample(t)) });
     }
     lines.push(LogLine { t: 1.5, event: LogEvent::End { contact: 1 } });
     ContactLog { lines }

@@ -72,7 +72,7 @@ pub fn stroke_of(
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(contact, "s", 0, sample(0.0)) }];
     for step in 1..steps {
         let t = step as f64 / 60.0;
-        lines.push(LogLine { t, event: LogEvent::Move { contact, sample: sample(t) } });
+        lines.push(LogLine { t, event: LogEvent::moved(contact, sample(t)) });
     }
     lines.push(LogLine { t: seconds, event: LogEvent::End { contact } });
     ContactLog { lines }

@@ -5,8 +5,8 @@
 use crate::common::{bar, grating, plate};
 use asperity::live::ports::{Feed, Force, ForcePort, Pcm, PcmPort};
 use asperity::{
-    Actuator, AudioBus, BodyId, Config, ContactEvent, ContactId, ContactSample, Excitation, Impact, Material,
-    ModalModel, ProbeId, Renderer, Residual, Scene, SurfaceId, Touching, probe_by_name,
+    Actuator, AudioBus, BodyId, Config, ContactEvent, ContactId, ContactSample, Emphasis, Excitation, Impact,
+    Material, ModalModel, ProbeId, Renderer, Residual, Scene, SurfaceId, Touching, probe_by_name,
 };
 use asperity_dsp::rng::Rng;
 
@@ -87,6 +87,10 @@ impl RandomGame {
                     probe: Some(self.probes[0]),
                     ..Impact::on(self.bodies[0])
                 }),
+                4 => {
+                    let emphasis = Emphasis { gain: Some(self.number()), importance: Some(self.number()) };
+                    ContactEvent::moved_with(contact, sample, emphasis)
+                }
                 _ => ContactEvent::moved(contact, sample),
             };
             // Refusals are part of the game.
@@ -139,6 +143,14 @@ impl RandomGame {
             5 => {
                 let pcm = Pcm { from: Feed::Haptic(Actuator(0)), holds_s: 0.01 };
                 self.ports = (self.scene.open_port(pcm).ok(), None);
+            }
+            7 => {
+                let gain = 2.0 * self.rng.uniform();
+                let _ = self.scene.set_body_gain(body, gain);
+                let _ = self.scene.set_muted(gain < 0.2);
+            }
+            8 if self.rng.next_u32().is_multiple_of(20) => {
+                let _ = self.scene.fade_all();
             }
             6 => self.ports.1 = self.scene.open_port(Force { rate_hz: 1000.0, holds_s: 0.01 }).ok(),
             _ => {}

@@ -176,7 +176,9 @@ impl Default for Setup {
 
 /// A surface that can be sampled in real time.
 ///
-/// A source of one's own is these two methods; what changes while it is touched goes through a handle of its own (an atomic, a ring):
+/// A source of one's own is these two methods; what changes while it is touched goes through a handle of its own (an atomic, a ring). Positions
+/// are metres from uv (0, 0) and run on beyond the surface; where texture coordinates wrap, heights must be the same again after the surface's
+/// width and height, or [`beyond`](Self::beyond) says that they are not:
 ///
 /// ```
 /// use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
@@ -194,6 +196,9 @@ impl Default for Setup {
 ///
 ///     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
 ///         out.clear(path.len());
+///         // A cleared surface is as smooth as can be and without friction; this one is a little rough.
+///         out.roughness[..path.len()].fill(0.4);
+///         out.friction[..path.len()].fill(0.5);
 ///         for (i, [u_m, _]) in path.position_m.iter().enumerate() {
 ///             let turn = std::f64::consts::TAU / self.wavelength_m;
 ///             out.height_m[i] = self.amplitude_m * (turn * u_m).sin();

@@ -78,7 +78,7 @@ impl Finger<'_> {
             let surface = self.surface.to_owned();
             LogEvent::begin(self.contact, surface, self.actuator, sample)
         } else {
-            LogEvent::Move { contact: self.contact, sample }
+            LogEvent::moved(self.contact, sample)
         }
     }
 }

@@ -202,7 +202,9 @@ impl Force {
         means.close(before, |row| {
             if let (Of::Contact(contact), Ok(())) = (row.of, &written) {
                 table.number(row.tick as f64 / *rate_hz).whole(contact.0);
-                row.force_n.iter().for_each(|n| drop(table.number(*n)));
+                for force_n in row.force_n {
+                    table.number(force_n);
+                }
                 written = table.end_row();
             }
         });

@@ -126,7 +126,7 @@ fn random_strokes(size_m: [f64; 2], count: usize, seed: u64) -> ContactLog {
             let event = if step == 0 {
                 LogEvent::begin(contact, "s", 0, sample)
             } else {
-                LogEvent::Move { contact, sample }
+                LogEvent::moved(contact, sample)
             };
             lines.push(LogLine { t: start_s + t, event });
         }

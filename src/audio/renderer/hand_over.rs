@@ -19,6 +19,8 @@ pub(crate) struct HandedOver {
     /// Events that wait for their time.
     waiting: Vec<Message>,
     haptic: Vec<ChannelControl>,
+    muted: bool,
+    paused: bool,
     /// Samples rendered, at the old rate inside.
     position: u64,
     rate_hz: f64,
@@ -43,6 +45,8 @@ impl Renderer {
             surfaces: self.seats.iter_mut().filter_map(crate::audio::seat::Seat::take).collect(),
             waiting,
             haptic: self.channels.iter().map(|channel| channel.control).collect(),
+            muted: self.muted,
+            paused: self.paused,
             position: self.position,
             rate_hz: self.shared.sample_rate_hz,
             resets: self.resets,
@@ -56,6 +60,7 @@ impl Renderer {
         self.position = (old.position as f64 * ratio / every as f64).round() as u64 * every;
         self.counters.position.store(self.position, Relaxed);
         self.resets = old.resets;
+        (self.muted, self.paused) = (old.muted, old.paused);
         self.silent.extend(old.contacts.into_iter().take(self.max_contacts));
         for (channel, control) in self.channels.iter_mut().zip(old.haptic) {
             channel.control = control;

@@ -1,6 +1,7 @@
 //! Output stage: the haptic channels with their actuators, and the audio buses.
 
 use super::Renderer;
+use crate::audio::body_seat::BetweenBuses;
 use crate::model::actuator::ActuatorSettings;
 use crate::model::bus::AudioBus;
 use crate::prepared::body::Terms;
@@ -121,7 +122,7 @@ impl Bus {
     }
 
     /// What leaves of the present stretch of `n` samples.
-    fn finish(&mut self, n: usize) -> &[f32] {
+    fn finish(&mut self, n: usize, master: Option<&[f32]>) -> &[f32] {
         // The samples of the way from one gain to another come first.
         let mut done = 0;
         while let Some((from, left)) = self.moving.filter(|_| done < n) {
@@ -137,18 +138,33 @@ impl Bus {
         if let Some((design, state)) = &mut self.limiter {
             state.run(design, sum);
         }
+        if let Some(master) = master {
+            sum.iter_mut().zip(master).for_each(|(x, gain)| *x *= gain);
+        }
         self.meter.watch(sum);
         sum
     }
 }
 
 impl Renderer {
+    /// The gain of all that leaves, where it is not 1.
+    pub(super) fn render_master(&mut self, n: usize) {
+        let target = if self.muted || self.paused { 0.0 } else { 1.0 };
+        self.mix.mastered = target != 1.0 || !self.master.settled_at(1.0);
+        if self.mix.mastered {
+            self.mix.master[..n].iter_mut().for_each(|gain| *gain = self.master.tick(target) as f32);
+        }
+    }
+
     /// Writes what the actuators play of `n` inner samples, from `at` on in the outputs.
     pub(super) fn render_haptics(&mut self, at: usize, n: usize, haptic: &mut [&mut [f32]]) {
         let inner = self.shared.inner;
         for (index, channel) in self.channels.iter_mut().enumerate() {
             let block = &mut self.mix.haptic[..n];
             channel.run(block);
+            if self.mix.mastered {
+                block.iter_mut().zip(&self.mix.master).for_each(|(x, gain)| *x *= gain);
+            }
             let averages = channel.output.quantity() == Quantity::Acceleration && inner.every > 1;
             if averages {
                 self.outlets.haptic_means(index, inner, self.position, block);
@@ -175,10 +191,14 @@ impl Renderer {
         let mut shed = 0;
         for body in self.bodies_used.iter() {
             let body = &mut self.bodies[body];
-            if let Some(share) = body.moves_between(n) {
+            let between = body.moves_between(n);
+            if between.is_some() || !body.is_plain() {
                 let sound = &mut self.mix.body[..n];
                 sound.fill(0.0);
                 shed += body.render(terms, sound);
+                body.scale(sound);
+                let here = BetweenBuses::one(body.bus());
+                let share = between.unwrap_or(here);
                 for (i, x) in sound.iter().enumerate() {
                     let weight = share.weight(i);
                     self.buses[share.from].sum[i] += (1.0 - weight) * x;
@@ -195,7 +215,8 @@ impl Renderer {
         }
         self.groups_shed = shed;
         for (index, bus) in self.buses.iter_mut().enumerate() {
-            let sound = bus.finish(n);
+            let master = self.mix.mastered.then_some(&self.mix.master[..n]);
+            let sound = bus.finish(n, master);
             self.outlets.bus(index, self.shared.inner, self.position, sound);
             if let Some(out) = audio.get_mut(index) {
                 self.shared.inner.pick(at, sound, out);
@@ -226,10 +247,18 @@ pub(super) struct Mix {
     /// One body, while it moves from bus to bus.
     pub(super) body: [f32; MAX_BLOCK],
     pub(super) haptic: [f32; MAX_BLOCK],
+    /// Gain of all that leaves, and whether it is another than 1.
+    master: [f32; MAX_BLOCK],
+    mastered: bool,
 }
 
 impl Mix {
     pub(super) fn new() -> Box<Self> {
-        Box::new(Self { body: [0.0; MAX_BLOCK], haptic: [0.0; MAX_BLOCK] })
+        Box::new(Self {
+            body: [0.0; MAX_BLOCK],
+            haptic: [0.0; MAX_BLOCK],
+            master: [1.0; MAX_BLOCK],
+            mastered: false,
+        })
     }
 }

@@ -41,6 +41,25 @@ pub enum LogEdit {
         /// Index of the bus.
         bus: usize,
     },
+    /// A body is louder or softer.
+    BodyGain {
+        /// Its name.
+        body: String,
+        /// Linear gain.
+        gain: f64,
+    },
+    /// All that leaves fades, or comes back.
+    Mute {
+        /// Whether it fades.
+        muted: bool,
+    },
+    /// The game stands still, or goes on.
+    Pause {
+        /// Whether it stands still.
+        paused: bool,
+    },
+    /// Every contact ends, and what rings is damped.
+    FadeAll,
     /// A body goes.
     RemoveBody {
         /// Its name.
@@ -104,6 +123,18 @@ pub struct LogBody {
     pub material: Material,
     /// Index of the bus it plays on.
     pub bus: usize,
+    /// Linear gain; missing: 1.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub gain: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
+fn is_one(gain: &f64) -> bool {
+    *gain == 1.0
 }
 
 /// A surface, if it can be written down.
@@ -123,7 +154,7 @@ pub struct LogSurface {
 impl From<&Body> for LogBody {
     fn from(body: &Body) -> Self {
         let modes = serde_json::from_str(&body.model.to_json()).unwrap_or_default();
-        Self { modes, material: body.material, bus: body.bus }
+        Self { modes, material: body.material, bus: body.bus, gain: body.gain }
     }
 }
 
@@ -133,6 +164,7 @@ impl LogBody {
     /// # Errors
     /// When the modes are none.
     pub(crate) fn body(&self) -> Result<Body, crate::model::modal_model::ModalModelError> {
-        Ok(Body::new(ModalModel::parse(&self.modes.to_string())?).of(self.material).on_bus(self.bus))
+        let body = Body::new(ModalModel::parse(&self.modes.to_string())?);
+        Ok(Body { material: self.material, bus: self.bus, gain: self.gain, ..body })
     }
 }

@@ -15,7 +15,7 @@ struct Keys {
     read_past: &'static [&'static str],
 }
 
-const BODY: &[&str] = &["body", "modes", "material", "bus"];
+const BODY: &[&str] = &["body", "modes", "material", "bus", "gain"];
 const SURFACE: &[&str] = &["surface", "is", "folder", "material"];
 
 const fn edit(event: &'static str, read: &'static [&'static str]) -> Keys {
@@ -42,8 +42,8 @@ const EVENTS: &[Keys] = &[
     },
     Keys {
         event: "move",
-        read: &["contact", "uv", "velocity_m_s", "normal_force_n", "closing_m_s"],
-        read_past: &["actuator", "at_m", "depth_m", "gain", "importance", "direction"],
+        read: &["contact", "gain", "importance", "uv", "velocity_m_s", "normal_force_n", "closing_m_s"],
+        read_past: &["actuator", "at_m", "depth_m", "direction"],
     },
     Keys { event: "end", read: &["contact"], read_past: &[] },
     Keys {
@@ -68,6 +68,10 @@ const EVENTS: &[Keys] = &[
     edit("replace_body", BODY),
     edit("remove_body", &["body"]),
     edit("body_bus", &["body", "bus"]),
+    edit("body_gain", &["body", "gain"]),
+    edit("mute", &["muted"]),
+    edit("pause", &["paused"]),
+    edit("fade_all", &[]),
     edit("add_probe", &["probe", "is"]),
     edit("add_surface", SURFACE),
     edit("replace_surface", SURFACE),

@@ -162,6 +162,15 @@ impl Fields {
         }
     }
 
+    /// A vector.
+    pub fn vector(&mut self, key: &'static str) -> Result<Option<[f64; 3]>, FileError> {
+        let Some(value) = self.take(key) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> =
+            value.as_array().and_then(|items| items.iter().map(as_number).collect());
+        let vector = numbers.and_then(|numbers| numbers.try_into().ok());
+        vector.map(Some).ok_or_else(|| self.wrong_kind(key, &value, "three numbers, [x, y, z]"))
+    }
+
     /// A table.
     pub fn table(&mut self, key: &'static str) -> Result<Option<Self>, FileError> {
         match self.take(key) {

@@ -4,6 +4,7 @@ use super::fields::{Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
 use crate::files::FileError;
+use crate::model::frame::SurfaceFrame;
 use crate::model::surface::Excitation;
 use crate::parameters::surface as parameters;
 use asperity_texture::wrap::Wrap;
@@ -35,6 +36,8 @@ pub struct SurfaceEntry {
     pub wrap: Wrap,
     /// What sliding sends to the body.
     pub excitation: Excitation,
+    /// Where it lies in its body.
+    pub frame: Option<SurfaceFrame>,
     /// Coulomb friction coefficient, for the 3-D force; none = the source's.
     pub friction: Option<f64>,
 }
@@ -75,10 +78,23 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
         micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?.unwrap_or_default(),
+        frame: read_frame(&mut fields)?,
         friction: fields.number(&parameters::FRICTION)?,
     };
     fields.finish()?;
     Ok(surface)
+}
+
+/// `[surface.frame]`; what is missing is the body's origin, its x and its y axis.
+fn read_frame(fields: &mut Fields) -> Result<Option<SurfaceFrame>, FileError> {
+    let Some(mut fields) = fields.table("frame")? else { return Ok(None) };
+    let origin_m = fields.vector("origin_m")?.unwrap_or_default();
+    let u_axis = fields.vector("u_axis")?.unwrap_or([1.0, 0.0, 0.0]);
+    let v_axis = fields.vector("v_axis")?.unwrap_or([0.0, 1.0, 0.0]);
+    let place = fields.inner("");
+    fields.finish()?;
+    let told = |error| FileError::told(error).within(place.trim_end_matches([':', ' ', '.']));
+    SurfaceFrame::new(origin_m, u_axis, v_axis).map(Some).map_err(told)
 }
 
 fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<RoughnessEntry, FileError> {
