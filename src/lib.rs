@@ -86,6 +86,7 @@ pub mod offline;
 pub mod open;
 pub mod parameters;
 mod prepared;
+mod rate;
 
 pub use asperity_dsp::limits;
 pub use audio::renderer::Renderer;
@@ -118,6 +119,7 @@ pub use model::surface::{
     Surface, SurfaceError,
 };
 pub use model::uv_triangle::UvTriangle;
+pub use rate::{AtRate, RateError};
 
 /// Kernels: what happens to one sample.
 pub use asperity_dsp as dsp;

@@ -1,6 +1,7 @@
 //! From a scene file to a running engine.
 
 mod change;
+mod edit;
 pub mod levels;
 mod maker;
 mod source;
@@ -11,6 +12,7 @@ use crate::files::{Disk, FileError, Files};
 use crate::{AudioBus, Config, Integrator, Isa, PathMode};
 use asperity_texture::raster::Raster;
 pub use change::Changes;
+pub use edit::{Edits, MakeSurface};
 use levels::Levels;
 use maker::Maker;
 use std::cell::RefCell;

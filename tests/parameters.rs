@@ -1,6 +1,6 @@
 //! The list of parameters is what the reader of scene files accepts and what `docs/formats.md` says.
 //!
-//! `ASPERITY_BLESS=1 cargo test --release --test parameters` writes the tables of the document anew.
+//! `ASPERITY_WRITE_DOCS=1 cargo test --release --test parameters` writes the tables of the document anew.
 
 use asperity::files::scene_file::{SceneFile, Source};
 use asperity::parameters::{ALL, Changes, Parameter};
@@ -54,11 +54,11 @@ fn the_document_has_the_tables_of_the_list() {
     let document = std::fs::read_to_string(DOCUMENT).unwrap();
     let (front, rest) = document.split_once(BEGIN).expect("where the tables begin");
     let (written, back) = rest.split_once(END).expect("where they end");
-    if std::env::var_os("ASPERITY_BLESS").is_some() {
+    if std::env::var_os("ASPERITY_WRITE_DOCS").is_some() {
         std::fs::write(DOCUMENT, format!("{front}{BEGIN}{}{END}{back}", tables())).unwrap();
         return;
     }
-    assert_eq!(written, tables(), "ASPERITY_BLESS=1 writes them anew");
+    assert_eq!(written, tables(), "ASPERITY_WRITE_DOCS=1 writes them anew");
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
 
 mod contacts;
+mod hand_over;
 mod outputs;
 
 use crate::audio::blows::Blows;

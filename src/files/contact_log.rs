@@ -4,13 +4,16 @@
 //! running [`Scene`](crate::Scene). Replaying a log offline gives the same samples as the live engine
 //! that recorded it.
 
+mod edit;
 mod keys;
 
+use super::FileError;
 use super::storage::{self, Disk, Files};
 pub use crate::model::event::ContactSample;
 use crate::model::event::{Actuator, ContactEvent, ContactId, Emphasis, Impact, Touching};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
+pub use edit::{LogBody, LogEdit, LogSurface};
 use keys::Unread;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -86,6 +89,9 @@ pub enum LogEvent {
         #[serde(flatten)]
         hand: LogHand,
     },
+    /// The scene was edited.
+    #[serde(untagged)]
+    Edit(LogEdit),
 }
 
 /// What touches what, and who feels it.
@@ -188,6 +194,17 @@ pub enum LogError {
         place: String,
         /// What is written.
         version: String,
+    },
+    /// An edit where only events can be used.
+    #[error("an edit of the scene; must be an event, or replayed by offline::render")]
+    Edit,
+    /// An edit that cannot be made.
+    #[error("t = {t} s: {problem}")]
+    CannotEdit {
+        /// Its time, s.
+        t: f64,
+        /// What is wrong.
+        problem: FileError,
     },
     /// Time runs backwards.
     #[error("{place}: t = {t} s comes after {before} s; events must be in time order, from 0 s on")]
@@ -368,6 +385,7 @@ impl LogEvent {
                 probe: hand.probe(names)?,
                 gain: hand.gain.unwrap_or(1.0),
             }),
+            Self::Edit(_) => return Err(LogError::Edit),
         })
     }
 }

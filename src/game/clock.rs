@@ -49,6 +49,21 @@ impl Clock {
         Self { sample_rate_hz, mapping, last: Stamp::default() }
     }
 
+    /// The same times at another rate; a live clock ties itself anew.
+    pub(crate) fn at_rate(&mut self, sample_rate_hz: f64) {
+        let ratio = sample_rate_hz / self.sample_rate_hz;
+        match &mut self.mapping {
+            Mapping::Exact(zero, _) => *zero = zero.map(|zero| zero * ratio),
+            Mapping::Live(live) => live.at_rate(sample_rate_hz),
+        }
+        (self.sample_rate_hz, self.last) = (sample_rate_hz, Stamp::at(self.last.samples() * ratio));
+    }
+
+    /// The newest stamp.
+    pub(crate) fn last(&self) -> Stamp {
+        self.last
+    }
+
     /// Whether game time may run backwards.
     pub(crate) fn is_live(&self) -> bool {
         matches!(self.mapping, Mapping::Live(_))

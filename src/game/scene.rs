@@ -4,9 +4,10 @@
 
 mod ports;
 mod quiet;
+mod recorded;
 mod reports;
 
-use crate::files::contact_log::{ContactLog, Names};
+use crate::files::contact_log::LogEdit;
 use crate::game::clock::Clock;
 use crate::game::places::Places;
 use crate::game::recording::Recording;
@@ -37,6 +38,7 @@ use asperity_dsp::{DesignError, limits};
 use asperity_texture::height_field::Setup;
 use asperity_texture::moving_picture::MovingPicture;
 use std::any::Any;
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -56,28 +58,30 @@ use std::sync::atomic::Ordering::Relaxed;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Scene {
-    config: Config,
-    clock: Clock,
+    pub(crate) config: Config,
+    pub(crate) clock: Clock,
     last_time_s: f64,
-    surfaces: Places<KnownSurface>,
-    bodies: Places<KnownBody>,
-    probes: Places<()>,
-    open_ports: usize,
+    pub(crate) surfaces: Places<KnownSurface>,
+    pub(crate) bodies: Places<KnownBody>,
+    pub(crate) probes: Places<Probe>,
+    pub(crate) open_ports: usize,
     /// Radii of the tips that surfaces get ready for, m.
-    tips_m: Vec<f64>,
+    pub(crate) tips_m: Vec<f64>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
-    to_audio: Sender<Message>,
-    from_audio: Receiver<Dead>,
-    counters: Arc<Counters>,
+    pub(crate) to_audio: Sender<Message>,
+    pub(crate) from_audio: Receiver<Dead>,
+    pub(crate) counters: Arc<Counters>,
     recording: Option<Recording>,
+    /// Bodies as they were given, for another rate.
+    pub(crate) given: HashMap<BodyId, Body>,
     /// For [`Scene::why_silent`].
     reported: Reported,
 }
 
 /// What the game half remembers of a surface.
 #[derive(Clone)]
-struct KnownSurface {
+pub(crate) struct KnownSurface {
     /// Whether contacts on it ring something.
     rings: bool,
     /// How it looks, if it changes.
@@ -88,7 +92,7 @@ struct KnownSurface {
 
 /// What the game half remembers of a body.
 #[derive(Clone, Copy)]
-struct KnownBody {
+pub(crate) struct KnownBody {
     material: Material,
     lowest_mode_hz: f64,
 }
@@ -107,6 +111,7 @@ impl Scene {
             probes: Places::new(config.max_probes, "probes"),
             open_ports: 0,
             tips_m: vec![config.probe.tip_radius_m],
+            given: HashMap::new(),
             reported: Reported::default(),
             held: Vec::new(),
             config,
@@ -131,8 +136,10 @@ impl Scene {
     /// When every place is taken, the modes cannot be rendered at this rate, the material is impossible, or there is no such bus.
     pub fn add_body(&mut self, body: impl Into<Body>) -> Result<BodyId, AddError> {
         self.collect();
-        let id = BodyId(self.bodies.free()?);
-        self.set_body(id, &body.into())?;
+        let (id, body) = (BodyId(self.bodies.free()?), body.into());
+        self.set_body(id, &body)?;
+        self.given.insert(id, body.clone());
+        self.note(|names| LogEdit::AddBody { body: names.body(id), is: (&body).into() });
         Ok(id)
     }
 
@@ -144,7 +151,11 @@ impl Scene {
     pub fn replace_body(&mut self, id: BodyId, body: impl Into<Body>) -> Result<(), AddError> {
         self.collect();
         self.known_body(id)?;
-        self.set_body(id, &body.into())
+        let body = body.into();
+        self.set_body(id, &body)?;
+        self.given.insert(id, body.clone());
+        self.note(|names| LogEdit::ReplaceBody { body: names.body(id), is: (&body).into() });
+        Ok(())
     }
 
     /// Lets a body sound on another bus from now on, without a click.
@@ -154,7 +165,12 @@ impl Scene {
     pub fn set_body_bus(&mut self, id: BodyId, bus: usize) -> Result<(), AddError> {
         self.known_body(id)?;
         self.checked_bus(bus)?;
-        self.send(Message::SetBodyBus { slot: id.index(), bus })
+        self.send(Message::SetBodyBus { slot: id.index(), bus })?;
+        if let Some(given) = self.given.get_mut(&id) {
+            given.bus = bus;
+        }
+        self.note(|names| LogEdit::BodyBus { body: names.body(id), bus });
+        Ok(())
     }
 
     fn checked_bus(&self, bus: usize) -> Result<usize, AddError> {
@@ -163,6 +179,14 @@ impl Scene {
     }
 
     fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {
+        let (message, known) = self.prepared_body(id, body)?;
+        self.send(message)?;
+        self.bodies.set(id.0, known);
+        Ok(())
+    }
+
+    /// A body as the audio half takes it.
+    pub(crate) fn prepared_body(&self, id: BodyId, body: &Body) -> Result<(Message, KnownBody), AddError> {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
         let gain = within("gain", body.gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
@@ -172,9 +196,7 @@ impl Scene {
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let known = KnownBody { material, lowest_mode_hz };
         let stroking = self.stroking(known)?;
-        self.send(Message::SetBody { id, body, bus, gain, stroking })?;
-        self.bodies.set(id.0, known);
-        Ok(())
+        Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
     }
 
     /// How strokes excite a body.
@@ -191,6 +213,8 @@ impl Scene {
         self.known_body(body)?;
         self.send(Message::RemoveBody { slot: body.index() })?;
         self.bodies.remove(body.0);
+        self.given.remove(&body);
+        self.note(|names| LogEdit::RemoveBody { body: names.body(body) });
         Ok(())
     }
 
@@ -200,17 +224,23 @@ impl Scene {
     /// When every place is taken, a number is outside its range, or the queue is full.
     pub fn add_probe(&mut self, probe: Probe) -> Result<ProbeId, AddError> {
         let id = ProbeId(self.probes.free()?);
+        let message = self.prepared_probe(id, &probe)?;
+        self.send(message)?;
+        self.probes.set(id.0, probe);
+        if !self.tips_m.contains(&probe.tip_radius_m) {
+            self.tips_m.push(probe.tip_radius_m);
+        }
+        self.note(|names| LogEdit::AddProbe { probe: names.probe(id), is: probe });
+        Ok(id)
+    }
+
+    /// A probe as the audio half takes it.
+    pub(crate) fn prepared_probe(&self, id: ProbeId, probe: &Probe) -> Result<Message, AddError> {
         let Config { probe: own, integrator, .. } = &self.config;
         // An engine that was built has its kernel.
         let kernel = self.config.kernel().unwrap_or(Kernel::PORTABLE);
-        let tip_m = probe.tip_radius_m;
-        let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz(), kernel)?;
-        self.send(Message::AddProbe { index: id.index(), probe: Box::new(probe) })?;
-        self.probes.set(id.0, ());
-        if !self.tips_m.contains(&tip_m) {
-            self.tips_m.push(tip_m);
-        }
-        Ok(id)
+        let probe = PreparedProbe::new(probe, own, *integrator, self.config.inner_rate_hz(), kernel)?;
+        Ok(Message::AddProbe { index: id.index(), probe: Box::new(probe) })
     }
 
     /// Adds a surface.
@@ -220,7 +250,9 @@ impl Scene {
     pub fn add_surface(&mut self, surface: Surface) -> Result<SurfaceId, AddError> {
         self.collect();
         let id = SurfaceId(self.surfaces.free()?);
+        let is = self.described(&surface);
         self.set_surface(id, surface)?;
+        self.note(|names| LogEdit::AddSurface { surface: names.surface(id), is });
         Ok(id)
     }
 
@@ -231,10 +263,25 @@ impl Scene {
     pub fn replace_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
         self.collect();
         self.known_surface(id)?;
-        self.set_surface(id, surface)
+        let is = self.described(&surface);
+        self.set_surface(id, surface)?;
+        self.note(|names| LogEdit::ReplaceSurface { surface: names.surface(id), is });
+        Ok(())
     }
 
     fn set_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
+        let (message, known) = self.prepared_surface(id, surface)?;
+        self.send(message)?;
+        self.surfaces.set(id.0, known);
+        Ok(())
+    }
+
+    /// A surface as the audio half takes it.
+    pub(crate) fn prepared_surface(
+        &self,
+        id: SurfaceId,
+        surface: Surface,
+    ) -> Result<(Message, KnownSurface), AddError> {
         let mut surface = surface.checked()?.tiled();
         let setup = Setup { sample_rate_hz: self.config.inner_rate_hz(), voices: self.config.voices() };
         surface.source.prepare(&setup)?;
@@ -255,9 +302,7 @@ impl Scene {
         let mut picture = None;
         surface.source.visit(&mut |part| picture = picture.take().or(part.downcast_ref().cloned()));
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
-        self.send(Message::SetSurface { id, surface })?;
-        self.surfaces.set(id.0, KnownSurface { rings, picture, size_m, frame });
-        Ok(())
+        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, size_m, frame }))
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
@@ -269,7 +314,9 @@ impl Scene {
     /// When the surface is not in this scene or the queue is full.
     pub fn change_surface(&mut self, id: SurfaceId, change: impl Any + Send + Sync) -> Result<(), AddError> {
         self.known_surface(id)?;
-        self.send(Message::ChangeSurface { slot: id.index(), change: Box::new(change) })
+        self.send(Message::ChangeSurface { slot: id.index(), change: Box::new(change) })?;
+        self.note(|names| LogEdit::ChangeSurface { surface: names.surface(id) });
+        Ok(())
     }
 
     /// Texture coordinates of a point in the body of a surface that has a [frame](Surface::frame), m; none for one that has none.
@@ -293,6 +340,7 @@ impl Scene {
         self.known_surface(id)?;
         self.send(Message::RemoveSurface { slot: id.index() })?;
         self.surfaces.remove(id.0);
+        self.note(|names| LogEdit::RemoveSurface { surface: names.surface(id) });
         Ok(())
     }
 
@@ -306,7 +354,9 @@ impl Scene {
             return Err(AddError::Unknown("actuator"));
         }
         let gain = within("gain", gain, limits::output::HAPTIC_GAIN)?;
-        self.send(Message::SetHapticGain { channel, gain })
+        self.send(Message::SetHapticGain { channel, gain })?;
+        self.note(|_| LogEdit::HapticGain { actuator: actuator.0, gain });
+        Ok(())
     }
 
     /// Sets the gain of one audio bus, linear; it is reached within a few milliseconds.
@@ -318,23 +368,12 @@ impl Scene {
         let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
         self.send(Message::SetAudioGain { bus, gain })?;
         self.config.audio[bus].gain = gain;
+        self.note(|_| LogEdit::AudioGain { bus, gain });
         Ok(())
     }
 
     fn send(&mut self, message: Message) -> Result<(), AddError> {
         self.to_audio.send(message).map_err(|_| AddError::QueueFull)
-    }
-
-    /// Records from now on what is reported, with the time at which the engine applies it, so that
-    /// [`offline::render`](crate::offline::render) gives the same samples. Ids that `names` does not
-    /// name are recorded by number. Recording allocates on the game thread as it grows.
-    pub fn start_recording(&mut self, names: &Names) {
-        self.recording = Some(Recording::new(names));
-    }
-
-    /// Ends the recording and hands it over; empty if there was none.
-    pub fn stop_recording(&mut self) -> ContactLog {
-        self.recording.take().map(Recording::into_log).unwrap_or_default()
     }
 
     /// Frees surfaces, bodies and ports that the audio half no longer needs; `add_…` and `replace_…` do it
@@ -381,6 +420,7 @@ impl Scene {
         self.counters.resets_asked.fetch_add(1, Relaxed);
         Counters::add(&self.counters.superseded, self.held.len() as u64);
         self.held.clear();
+        self.forget_what_waits();
         self.clock.reset(self.counters.position.load(Relaxed));
         self.last_time_s = f64::NEG_INFINITY;
         Ok(())

@@ -1,5 +1,6 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
+use crate::files::contact_log::LogSurface;
 use crate::model::bad_value::{BadValue, within};
 use crate::model::frame::SurfaceFrame;
 use crate::model::id::BodyId;
@@ -72,6 +73,8 @@ pub struct Surface {
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
     pub(crate) frame: Option<SurfaceFrame>,
+    /// What a scene file says of it, if it comes from one.
+    pub(crate) described: Option<Box<LogSurface>>,
 }
 
 impl std::fmt::Debug for Surface {
@@ -129,6 +132,7 @@ impl Surface {
             excitation: Excitation::default(),
             strike_position: 0,
             frame: None,
+            described: None,
         })
     }
 

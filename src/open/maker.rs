@@ -1,7 +1,7 @@
 //! From what a scene file says of bodies, surfaces and actuators to what the engine takes.
 
 use super::source::Ground;
-use crate::files::contact_log::Names;
+use crate::files::contact_log::{LogSurface, Names};
 use crate::files::scene_file::{
     ActuatorEntry, AudioEntry, BodyEntry, MakeSource, RoughnessEntry, Source, SurfaceEntry,
 };
@@ -92,6 +92,9 @@ impl<'a> Maker<'a> {
         if let Some(friction) = entry.friction {
             surface = surface.friction(friction);
         }
+        let (table, folder) = &entry.written;
+        let folder = Some(folder.display().to_string()).filter(|folder| !folder.is_empty());
+        surface.described = Some(Box::new(LogSurface { is: Some(table.clone()), folder, material }));
         let body = entry.body.as_ref().and_then(|name| names.bodies.get(name));
         Ok(match body {
             Some(body) => surface.on(*body),

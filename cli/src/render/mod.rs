@@ -295,7 +295,7 @@ fn check_actuators(log: &ContactLog, path: &Path, channels: usize) -> Result<(),
         let hand = match &line.event {
             LogEvent::Begin { touching, .. } => &touching.hand,
             LogEvent::Impact { hand, .. } => hand,
-            LogEvent::Move { .. } | LogEvent::End { .. } => continue,
+            LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => continue,
         };
         if let Some(actuator) = hand.actuator.filter(|actuator| usize::from(*actuator) >= channels) {
             let what = format!("actuator {actuator} at t = {} s is not in the scene", line.t);

@@ -156,7 +156,7 @@ fn first_gap(log: &ContactLog, timeout_s: f64) -> Option<(f64, u64)> {
         let (contact, ends) = match line.event {
             LogEvent::Begin { contact, .. } | LogEvent::Move { contact, .. } => (contact, false),
             LogEvent::End { contact } => (contact, true),
-            LogEvent::Impact { .. } => continue,
+            LogEvent::Impact { .. } | LogEvent::Edit(_) => continue,
         };
         let before_s = if ends { heard.remove(&contact) } else { heard.insert(contact, line.t) };
         gaps.extend(

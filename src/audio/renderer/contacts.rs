@@ -16,6 +16,13 @@ pub(super) struct SilentContact {
     stolen: bool,
 }
 
+impl SilentContact {
+    /// A contact whose voice goes away.
+    pub(super) fn of(voice: &Voice) -> Self {
+        Self { contact: voice.contact, surface: voice.surface, role: voice.role, stolen: false }
+    }
+}
+
 impl Renderer {
     pub(super) fn apply_event(&mut self, event: &ContactEvent, stamp: Stamp) {
         match *event {

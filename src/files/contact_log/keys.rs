@@ -15,7 +15,14 @@ struct Keys {
     read_past: &'static [&'static str],
 }
 
-const EVENTS: [Keys; 4] = [
+const BODY: &[&str] = &["body", "modes", "material", "bus", "gain"];
+const SURFACE: &[&str] = &["surface", "is", "folder", "material"];
+
+const fn edit(event: &'static str, read: &'static [&'static str]) -> Keys {
+    Keys { event, read, read_past: &[] }
+}
+
+const EVENTS: &[Keys] = &[
     Keys {
         event: "begin",
         read: &[
@@ -57,6 +64,21 @@ const EVENTS: [Keys; 4] = [
         ],
         read_past: &["at_m", "direction"],
     },
+    edit("add_body", BODY),
+    edit("replace_body", BODY),
+    edit("remove_body", &["body"]),
+    edit("body_bus", &["body", "bus"]),
+    edit("body_gain", &["body", "gain"]),
+    edit("mute", &["muted"]),
+    edit("pause", &["paused"]),
+    edit("fade_all", &[]),
+    edit("add_probe", &["probe", "is"]),
+    edit("add_surface", SURFACE),
+    edit("replace_surface", SURFACE),
+    edit("remove_surface", &["surface"]),
+    edit("change_surface", &["surface"]),
+    edit("haptic_gain", &["actuator", "gain"]),
+    edit("audio_gain", &["bus", "gain"]),
 ];
 
 /// Keys that were read past, each where it was met first.

@@ -207,6 +207,11 @@ impl Fields {
         self.refuse(key, "is missing", format!("write {key} = {right}"))
     }
 
+    /// The table as it is, before anything is taken out.
+    pub fn written(&self) -> Table {
+        self.table.clone()
+    }
+
     /// Every key that was not asked for, for somebody else to read.
     pub fn rest(self) -> Table {
         self.table

@@ -88,6 +88,13 @@ pub struct AudioEntry {
     pub limit: Option<bool>,
 }
 
+impl SurfaceEntry {
+    /// Reads one table of `[[surface]]` by itself.
+    pub(crate) fn read(table: toml::Table, folder: &Path) -> Result<Self, FileError> {
+        surface::read(Fields::new(table, "surface"), folder)
+    }
+}
+
 impl SceneFile {
     /// Reads and checks a scene file.
     ///

@@ -8,14 +8,16 @@ use crate::model::frame::SurfaceFrame;
 use crate::model::surface::Excitation;
 use crate::parameters::surface as parameters;
 use asperity_texture::wrap::Wrap;
-use std::path::Path;
-use toml::Value;
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
 
 /// One surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceEntry {
     /// Name that the contact log uses.
     pub name: String,
+    /// The table as it is written, and what its paths are relative to.
+    pub(crate) written: (Table, PathBuf),
     /// Body that rings when the surface is touched; none = silent.
     pub body: Option<String>,
     /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is its own amplitudes.
@@ -57,7 +59,8 @@ pub enum RoughnessEntry {
 }
 
 /// Reads one `[[surface]]`.
-pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError> {
+pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError> {
+    let written = (fields.written(), folder.to_owned());
     let name = fields.needed_text("name")?;
     let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
     fields.rename(place);
@@ -67,6 +70,7 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError
         [("collisions", Excitation::Collisions), ("force", Excitation::Force), ("both", Excitation::Both)];
     let surface = SurfaceEntry {
         name,
+        written,
         body: fields.text("body")?,
         strike_position: fields.count(&parameters::STRIKE_POSITION)?.unwrap_or(0),
         source,

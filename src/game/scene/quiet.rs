@@ -1,6 +1,7 @@
 //! Quiet: gains, mute, pause, slow motion, and an end to everything.
 
 use super::Scene;
+use crate::files::contact_log::LogEdit;
 use crate::link::message::Message;
 use crate::model::bad_value::within;
 use crate::model::error::AddError;
@@ -15,7 +16,12 @@ impl Scene {
     pub fn set_body_gain(&mut self, id: BodyId, gain: f64) -> Result<(), AddError> {
         self.known_body(id)?;
         let gain = within("gain", gain, limits::impact::GAIN)?;
-        self.send(Message::SetBodyGain { slot: id.index(), gain })
+        self.send(Message::SetBodyGain { slot: id.index(), gain })?;
+        if let Some(given) = self.given.get_mut(&id) {
+            given.gain = gain;
+        }
+        self.note(|names| LogEdit::BodyGain { body: names.body(id), gain });
+        Ok(())
     }
 
     /// All that is felt and heard fades within 20 ms, or comes back; everything goes on meanwhile.
@@ -23,7 +29,9 @@ impl Scene {
     /// # Errors
     /// When the queue is full.
     pub fn set_muted(&mut self, muted: bool) -> Result<(), AddError> {
-        self.send(Message::Mute(muted))
+        self.send(Message::Mute(muted))?;
+        self.note(|_| LogEdit::Mute { muted });
+        Ok(())
     }
 
     /// The game stands still: all that is felt and heard fades within 20 ms, bodies ring out unheard, and contacts wait, however long,
@@ -32,7 +40,7 @@ impl Scene {
     /// # Errors
     /// When the queue is full.
     pub fn pause(&mut self) -> Result<(), AddError> {
-        self.send(Message::Pause(true))
+        self.set_paused(true)
     }
 
     /// The game goes on: a contact comes back where its next report says. With an exact clock the next report holds at the sample that
@@ -41,7 +49,7 @@ impl Scene {
     /// # Errors
     /// When the queue is full.
     pub fn resume(&mut self) -> Result<(), AddError> {
-        self.send(Message::Pause(false))?;
+        self.set_paused(false)?;
         self.reset()
     }
 
@@ -52,7 +60,16 @@ impl Scene {
     /// When the queue is full.
     pub fn fade_all(&mut self) -> Result<(), AddError> {
         self.held.clear();
-        self.send(Message::FadeAll)
+        self.send(Message::FadeAll)?;
+        self.note(|_| LogEdit::FadeAll);
+        Ok(())
+    }
+
+    /// Stands still or goes on; the clock stays as it is.
+    pub(crate) fn set_paused(&mut self, paused: bool) -> Result<(), AddError> {
+        self.send(Message::Pause(paused))?;
+        self.note(|_| LogEdit::Pause { paused });
+        Ok(())
     }
 
     /// Slow motion or fast: so many game seconds a second of audio, from the last report on. It is for the exact clock; a live one finds

@@ -52,6 +52,7 @@ impl Scene {
         self.send_stamped(stamp, event)?;
         self.reported.accept(&event, stamp, self.rings(&event));
         if let Some(recording) = &mut self.recording {
+            recording.settle(position as f64 / self.config.inner_rate_hz());
             recording.note(stamp.samples() / self.config.inner_rate_hz(), &event);
         }
         Ok(())
