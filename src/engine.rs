@@ -1,4 +1,4 @@
-//! From settings to a running engine: designs what is fixed, makes all memory, ties the two halves together.
+//! Assembly of an engine from its settings: designs what is fixed, makes all memory, ties the two halves together.
 
 use crate::audio::renderer::Renderer;
 use crate::files::contact_log::Names;
@@ -38,6 +38,12 @@ pub struct Engine {
     pub levels: Levels,
 }
 
+impl std::fmt::Debug for Engine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Engine").field("names", &self.names).finish_non_exhaustive()
+    }
+}
+
 impl Config {
     /// Builds the two halves: [`Scene`] for the game thread, [`Renderer`] for the audio thread.
     ///
@@ -45,12 +51,14 @@ impl Config {
     /// When a setting is outside its range; the message names the field.
     pub fn build(self) -> Result<Engine, ConfigError> {
         self.check()?;
-        let probe = PreparedProbe::new(&self.probe, &self.probe, self.integrator, self.inner_rate_hz())?;
+        let kernel = self.kernel()?;
+        let probe =
+            PreparedProbe::new(&self.probe, &self.probe, self.integrator, self.inner_rate_hz(), kernel)?;
         let counters = Arc::new(Counters::new(self.audio.len()));
         let (to_audio, from_game) = ring::channel(self.queue_capacity);
-        // Every resource that can be alive, and as many that are being replaced.
-        let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies));
-        let renderer = Renderer::new(&self, probe, from_game, to_game, counters.clone())?;
+        // Every resource that can be alive, and as many that are being replaced, and every port.
+        let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies) + self.max_ports);
+        let renderer = Renderer::new(&self, kernel, probe, from_game, to_game, counters.clone())?;
         let clock = Clock::new(self.clock, self.inner_rate_hz());
         let scene = Scene::new(self, clock, to_audio, from_audio, counters);
         Ok(Engine {

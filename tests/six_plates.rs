@@ -7,7 +7,7 @@
 
 mod common;
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::{Options, Render};
 use asperity::{Config, Excitation, Extent, Roughness, Surface, Wrap};
 use asperity_dsp::rng::Rng;
@@ -87,13 +87,13 @@ impl Exploration {
                 uv[axis] += speed_m_s * t / SIDE_M;
                 let mut velocity = [0.0; 2];
                 velocity[axis] = speed_m_s;
-                LogSample { uv, velocity_m_s: Some(velocity), normal_force_n, closing_m_s: 0.0 }
+                ContactSample { uv, velocity_m_s: Some(velocity), normal_force_n, closing_m_s: 0.0 }
             };
             let contact = axis as u64;
             log.lines.push(LogLine { t: at_s, event: LogEvent::begin(contact, "s", 0, sample(0.0)) });
             for step in 1..(length_s * 60.0) as usize {
                 let t = step as f64 / 60.0;
-                log.lines.push(LogLine { t: at_s + t, event: LogEvent::Move { contact, sample: sample(t) } });
+                log.lines.push(LogLine { t: at_s + t, event: LogEvent::moved(contact, sample(t)) });
             }
             log.lines.push(LogLine { t: at_s + length_s, event: LogEvent::End { contact } });
             *stroke = (at_s, at_s + length_s, from, speed_m_s);

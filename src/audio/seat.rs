@@ -91,6 +91,12 @@ impl Seat {
         self.id
     }
 
+    /// Takes away what is here, or comes here, under its name; nothing if it was removed.
+    pub(crate) fn take(&mut self) -> Option<(SurfaceId, Box<SurfaceSlot>)> {
+        let surface = self.waiting.take().or(self.current.take()).filter(|_| !self.removed)?;
+        Some((self.id?, surface))
+    }
+
     /// No contact may begin here any more.
     pub(crate) fn remove(&mut self) {
         self.removed = true;

@@ -17,7 +17,8 @@ use excitation::LONGEST_COLLISION_S;
 pub(crate) use role::Role;
 
 use crate::audio::seat::{Noise, Seat};
-use crate::audio::tap::Tap;
+use crate::audio::smoothed::Smoothed;
+use crate::link::tap::Tap;
 use crate::model::event::ContactId;
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::probe::PreparedProbe;
@@ -115,6 +116,8 @@ pub(crate) struct Voice {
     rising: Option<Rising>,
     /// Gain of the last sample.
     gain: f64,
+    /// On its way to the role's gain.
+    role_gain: Smoothed,
     trajectory: Trajectory,
     last_point: PathPoint,
     last_row: PadSample,
@@ -198,6 +201,7 @@ impl Voice {
             landing_m_s: 0.0,
             rising: None,
             gain: 0.0,
+            role_gain: Smoothed::new(shared.sample_rate_hz),
             trajectory: Trajectory::begin(&shared.idle_path, &IDLE),
             last_point: PathPoint::default(),
             last_row: PadSample::default(),

@@ -7,7 +7,18 @@ pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
 pub const ACCELERATION_BAND_HZ: f64 = 1000.0;
 
 /// One haptic channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// ```
+/// use asperity::{ActuatorPreset, ActuatorSettings, Config};
+///
+/// // A voice coil in a controller: its response inverted, its excursion kept within limits.
+/// let device = ActuatorPreset::by_name("vr-controller").unwrap().profile;
+/// let channel = ActuatorSettings { equalise: Some(device), limit: Some(device), ..ActuatorSettings::default() };
+/// let config = Config { actuators: vec![channel; 2], ..Config::default() };
+/// assert!(config.build().is_ok());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct ActuatorSettings {
     /// What the channel plays: the pad's displacement (the paper) or its acceleration.
     pub output: Quantity,

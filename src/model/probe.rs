@@ -1,4 +1,4 @@
-//! What touches: the presets of a scene, each number with its source.
+//! Probe presets, each number with its source.
 
 use asperity_dsp::micro_contact::Probe;
 
@@ -53,6 +53,11 @@ const fn held(
 }
 
 /// The preset of that name.
+///
+/// ```
+/// let sole = asperity::probe_by_name("sole").unwrap();
+/// assert!(sole.finger_mass_kg > 1.0 && asperity::probe_by_name("broom").is_none());
+/// ```
 #[must_use]
 pub fn probe_by_name(name: &str) -> Option<Probe> {
     PROBE_PRESETS.iter().find(|(known, _)| *known == name).map(|(_, probe)| *probe)

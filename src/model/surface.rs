@@ -1,18 +1,27 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
+use crate::files::contact_log::LogSurface;
 use crate::model::bad_value::{BadValue, within};
+use crate::model::frame::SurfaceFrame;
 use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
 use asperity_texture::height_field::{Beyond, HeightField};
 use asperity_texture::height_map::{Extent, HeightMap, MapError};
-use asperity_texture::image_io::{self, Channel, ImageError};
+#[cfg(feature = "image")]
+use asperity_texture::image_io;
+#[cfg(feature = "image")]
+use asperity_texture::picture::Channel;
+use asperity_texture::picture::ImageError;
 use asperity_texture::tiled::Tiled;
 use asperity_texture::wrap::Wrap;
+#[cfg(feature = "image")]
 use std::path::Path;
 
 /// What sliding sends to the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Excitation {
     /// Hertz pulses at the micro-collisions only, as the paper does: silent where the pad never lifts
     /// off, which with measured damping is every smooth grating at 0.5 N.
@@ -63,6 +72,9 @@ pub struct Surface {
     pub(crate) friction: Option<f64>,
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
+    pub(crate) frame: Option<SurfaceFrame>,
+    /// What a scene file says of it, if it comes from one.
+    pub(crate) described: Option<Box<LogSurface>>,
 }
 
 impl std::fmt::Debug for Surface {
@@ -78,6 +90,7 @@ impl std::fmt::Debug for Surface {
 
 /// Why a surface cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// A map cannot be used.
     #[error(transparent)]
@@ -118,6 +131,8 @@ impl Surface {
             friction: None,
             excitation: Excitation::default(),
             strike_position: 0,
+            frame: None,
+            described: None,
         })
     }
 
@@ -125,6 +140,7 @@ impl Surface {
     ///
     /// # Errors
     /// When a map cannot be read or the extent is impossible; the message names the file.
+    #[cfg(feature = "image")]
     pub fn from_maps(
         displacement: impl AsRef<Path>,
         roughness: impl AsRef<Path>,
@@ -140,10 +156,46 @@ impl Surface {
     ///
     /// # Errors
     /// As [`from_maps`](Self::from_maps).
+    #[cfg(feature = "image")]
     pub fn from_displacement(displacement: impl AsRef<Path>, extent: Extent) -> Result<Self, SurfaceError> {
         let heights = image_io::load_channel(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
         let map = HeightMap::new(&heights, extent, Wrap::Repeat)?;
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
+    }
+
+    /// A plane: uv 1 spans `width_m` × `height_m`, and what is felt of it is its finish ([`of`](Self::of)).
+    ///
+    /// ```
+    /// use asperity::{Material, Surface};
+    ///
+    /// let desk = Surface::flat(1.2, 0.6)?.of(Material::WOOD);
+    /// # Ok::<(), asperity::SurfaceError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When a size is not between 1 µm and 1 km.
+    pub fn flat(width_m: f64, height_m: f64) -> Result<Self, SurfaceError> {
+        let extent = Extent { width_m, height_m, relief_m: 0.0 };
+        Ok(Self::from_map(HeightMap::flat(extent, DEFAULT_ROUGHNESS)?)?)
+    }
+
+    /// A surface from a map that is in memory already, with the map's size and edges.
+    ///
+    /// # Errors
+    /// When a size is not between 1 µm and 1 km.
+    pub fn from_map(map: HeightMap) -> Result<Self, BadValue> {
+        let (extent, wraps) = (map.extent(), map.wrap() != Wrap::Clamp);
+        Ok(Self::new(map, extent.width_m, extent.height_m)?.wraps(wraps))
+    }
+
+    /// With the ordinary finish of a material: its roughness everywhere, its micro-relief and its friction. What is said after this counts
+    /// instead: `.of(material).roughness(Roughness::FromSource)` keeps a map's own roughness.
+    #[must_use]
+    pub fn of(mut self, material: Material) -> Self {
+        self.roughness = Roughness::Constant(material.roughness);
+        self.micro_relief_m = material.micro_relief_m;
+        self.friction = Some(material.mu_kinetic);
+        self
     }
 
     /// Rings this body when it is touched.
@@ -158,6 +210,13 @@ impl Surface {
     #[must_use]
     pub fn at_strike_position(mut self, position: usize) -> Self {
         self.strike_position = position;
+        self
+    }
+
+    /// Where it lies in its body.
+    #[must_use]
+    pub fn frame(mut self, frame: SurfaceFrame) -> Self {
+        self.frame = Some(frame);
         self
     }
 

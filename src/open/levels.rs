@@ -15,8 +15,10 @@
 
 use crate::engine::Engine;
 use crate::files::FileError;
-use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, LogSample, Striker};
-use crate::files::scene_file::{ActuatorOutput, SceneFile, Source};
+use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Striker};
+use crate::files::scene_file::{SceneFile, Source};
+use crate::model::actuator::Quantity;
+use crate::model::event::ContactSample;
 use crate::offline::{self, Options, Render};
 use asperity_dsp::limits::output as limits;
 
@@ -83,14 +85,15 @@ pub(super) fn resolve(
     let options = Options { tail_s: 0.3, ..Options::default() };
     let render = offline::render(scene, renderer, &trials.log, &names, &options).map_err(FileError::told)?;
     for (channel, level) in levels.full_scale.iter_mut().enumerate().filter(|(_, level)| level.is_nan()) {
-        let kind = file.actuators[channel].output;
+        let kind = file.actuators[channel].settings.output;
         let strongest = trials.strongest(&render, |stroke| {
-            (file.actuators[stroke.actuator].output == kind).then(|| &render.haptic[stroke.actuator][..])
+            (file.actuators[stroke.actuator].settings.output == kind)
+                .then(|| &render.haptic[stroke.actuator][..])
         });
         *level = match kind {
             _ if strongest > SILENT => strongest / HAPTIC_REFERENCE,
-            ActuatorOutput::Displacement => FALLBACK_FULL_SCALE_M,
-            ActuatorOutput::Acceleration => FALLBACK_FULL_SCALE_M_S2,
+            Quantity::Displacement => FALLBACK_FULL_SCALE_M,
+            Quantity::Acceleration => FALLBACK_FULL_SCALE_M_S2,
         };
     }
     for (bus, level) in levels.gain.iter_mut().enumerate().filter(|(_, level)| level.is_nan()) {
@@ -164,7 +167,7 @@ impl Trials {
             let mut velocity_m_s = [0.0; 2];
             velocity_m_s[axis] = REFERENCE_SPEED_M_S;
             let velocity_m_s = Some(velocity_m_s);
-            LogSample { uv, velocity_m_s, normal_force_n: REFERENCE_FORCE_N, closing_m_s: 0.0 }
+            ContactSample { uv, velocity_m_s, normal_force_n: REFERENCE_FORCE_N, closing_m_s: 0.0 }
         };
         let mut begin = LogEvent::begin(contact, &entry.name, actuator as u16, sample(0.0));
         if let LogEvent::Begin { touching, .. } = &mut begin {
@@ -174,9 +177,7 @@ impl Trials {
         let steps = (STROKE_S * 60.0) as usize;
         for step in 1..steps {
             let t = step as f64 / 60.0;
-            self.log
-                .lines
-                .push(LogLine { t: start_s + t, event: LogEvent::Move { contact, sample: sample(t) } });
+            self.log.lines.push(LogLine { t: start_s + t, event: LogEvent::moved(contact, sample(t)) });
         }
         self.log.lines.push(LogLine { t: start_s + STROKE_S, event: LogEvent::End { contact } });
         self.strokes.push(Trial { actuator, start_s });
@@ -206,8 +207,8 @@ impl Trials {
 
 /// The first actuator of each kind of output.
 fn kinds(file: &SceneFile) -> Vec<usize> {
-    let first = |kind| file.actuators.iter().position(|entry| entry.output == kind);
-    [ActuatorOutput::Displacement, ActuatorOutput::Acceleration].into_iter().filter_map(first).collect()
+    let first = |kind| file.actuators.iter().position(|entry| entry.settings.output == kind);
+    [Quantity::Displacement, Quantity::Acceleration].into_iter().filter_map(first).collect()
 }
 
 /// The reference strike on a body.

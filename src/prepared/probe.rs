@@ -5,6 +5,7 @@ use crate::prepared::stroking::restitution;
 use asperity_dsp::DesignError;
 use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe};
 use asperity_dsp::mobility::Mobility;
+use asperity_dsp::modal_bank::Kernel;
 
 /// Everything a contact of this probe needs.
 #[derive(Debug, Clone)]
@@ -38,8 +39,10 @@ impl PreparedProbe {
         own: &Probe,
         integrator: Integrator,
         sample_rate_hz: f64,
+        kernel: Kernel,
     ) -> Result<Self, DesignError> {
-        let micro_contact = MicroContact::new(probe, integrator, sample_rate_hz)?;
+        let micro_contact =
+            MicroContact::new(probe, integrator, sample_rate_hz)?.portable(kernel == Kernel::PORTABLE);
         Ok(Self {
             waits: micro_contact.latency_samples() < row_latency(integrator),
             ladder: Ladder::new(&micro_contact, integrator, sample_rate_hz)?,

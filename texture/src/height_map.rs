@@ -74,6 +74,18 @@ pub enum MapError {
 }
 
 /// A surface made of maps.
+///
+/// ```
+/// use asperity_texture::height_map::{Extent, HeightMap};
+/// use asperity_texture::raster::Raster;
+/// use asperity_texture::wrap::Wrap;
+///
+/// // Waves of 5 mm, 0.1 mm high, on 4 cm.
+/// let wave = Raster::from_fn(128, 4, |x, _| 0.5 + 0.5 * (std::f64::consts::TAU * x as f64 / 16.0).sin());
+/// let extent = Extent { width_m: 0.04, height_m: 0.04, relief_m: 1e-4 };
+/// let map = HeightMap::new(&wave, extent, Wrap::Repeat)?.with_roughness(0.3)?;
+/// # Ok::<(), asperity_texture::height_map::MapError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct HeightMap {
     heights: Pyramid,

@@ -1,4 +1,4 @@
-//! What a render tells besides its files: what was refused, lost or clipped, and why a file is silence.
+//! Warnings of a render: what was refused, lost or clipped, and why a file is silence.
 
 use super::Report;
 use asperity::SilentBecause;
@@ -159,7 +159,7 @@ fn first_gap(log: &ContactLog, timeout_s: f64) -> Option<(f64, u64)> {
         let (contact, ends) = match line.event {
             LogEvent::Begin { contact, .. } | LogEvent::Move { contact, .. } => (contact, false),
             LogEvent::End { contact } => (contact, true),
-            LogEvent::Impact { .. } => continue,
+            LogEvent::Impact { .. } | LogEvent::Edit(_) => continue,
         };
         let before_s = if ends { heard.remove(&contact) } else { heard.insert(contact, line.t) };
         gaps.extend(

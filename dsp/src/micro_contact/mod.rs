@@ -82,6 +82,7 @@ pub struct MicroContact {
     step_s: f64,
     leash_m: f64,
     scheme: Scheme,
+    portable: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,7 +111,14 @@ impl MicroContact {
             Integrator::ExactEvent => Scheme::ExactEvent(ExactEvent::new(probe, step_s)),
             Integrator::EnergyConserving => Scheme::EnergyConserving(EnergyConserving::new(probe, step_s)),
         };
-        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme })
+        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme, portable: false })
+    }
+
+    /// Whether products and sums round apart, as on every machine, or are fused where this one can: the last bits of a row
+    /// depend on it.
+    #[must_use]
+    pub fn portable(self, portable: bool) -> Self {
+        Self { portable, ..self }
     }
 
     /// The probe it was designed for.
@@ -220,10 +228,14 @@ impl MicroContact {
         normal_force_n: &[f64],
         out: &mut [ContactSample],
     ) {
-        dispatch::run(self, state, height_m, normal_force_n, out);
+        if self.portable {
+            dispatch::run_portable(self, state, height_m, normal_force_n, out);
+        } else {
+            dispatch::run(self, state, height_m, normal_force_n, out);
+        }
     }
 
-    /// [`Self::run`] without vectors wider than the crate was compiled for: the same bits, slower.
+    /// [`Self::run`] without vectors wider than the crate was compiled for: the same bits where those do not fuse, slower.
     pub fn run_portable(
         &self,
         state: &mut ContactState,

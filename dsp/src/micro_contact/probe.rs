@@ -1,4 +1,4 @@
-//! What touches the surface: a fingertip as two masses, a spring, a damper and a leash.
+//! The probe that touches the surface: a fingertip as two masses, a spring, a damper and a leash.
 
 use crate::DesignError;
 use crate::limits::probe as limits;
@@ -25,6 +25,11 @@ pub const LEASH_M: f64 = 1e-3;
 
 /// The mechanical parameters of one probe (Hasti Fig. 6). All SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Probe {
     /// m_s: skin mass, kg; 1e-6 to 1.
     pub pad_mass_kg: f64,
@@ -70,7 +75,10 @@ impl Probe {
     }
 
     /// Refuses values outside the documented ranges.
-    pub(crate) fn check(&self) -> Result<(), DesignError> {
+    ///
+    /// # Errors
+    /// Names the first field that is outside.
+    pub fn check(&self) -> Result<(), DesignError> {
         limits::PAD_MASS_KG.check("pad_mass_kg", self.pad_mass_kg)?;
         limits::PAD_STIFFNESS_N_M.check("pad_stiffness_n_m", self.pad_stiffness_n_m)?;
         limits::PAD_DAMPING_N_S_M.check("pad_damping_n_s_m", self.pad_damping_n_s_m)?;

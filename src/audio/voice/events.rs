@@ -1,4 +1,4 @@
-//! How a contact takes what the game reports: it lands, appears, goes on.
+//! Contact events at a voice: it lands, appears, goes on.
 
 use super::{PadSample, Phase, Scratch, Shared, Voice};
 use crate::audio::seat::Seat;
@@ -49,6 +49,7 @@ impl Voice {
         self.left_behind = false;
         self.empty_reports = 0;
         self.rising = None;
+        self.role_gain.set(self.role.gain);
         self.landing_m_s = sample.closing_m_s;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
