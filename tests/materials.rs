@@ -84,7 +84,8 @@ fn scene(text: &str) -> Result<Engine, String> {
 #[test]
 fn a_scene_file_sounds_with_a_stock_body_and_a_flat_surface_alone() {
     let text = "[[body]]\nname = \"desk\"\nstock = \"plate\"\nsize_m = 0.6\nmaterial = \"wood\"\n\
-                [[surface]]\nname = \"top\"\nbody = \"desk\"\nwidth_m = 0.6\nheight_m = 0.6\n";
+                [[surface]]\nname = \"top\"\nbody = \"desk\"\nwidth_m = 0.6\nheight_m = 0.6\n\
+                [[actuator]]\nfull_scale = 1e-4\nlimit = false\n[audio]\ngain = 1.0\nlimit = false\n";
     let mut engine = scene(text).unwrap();
     let desk = engine.names.bodies["desk"];
     engine.scene.report(0.0, ContactEvent::Impact(Impact::on(desk))).unwrap();

@@ -73,7 +73,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         })
         .collect();
     let travelled = log.lines.iter().rev().find_map(|line| match &line.event {
-        LogEvent::Move { contact, sample } if fingers.contains(contact) => Some(sample.uv[0] - 0.2),
+        LogEvent::Move { contact, sample, .. } if fingers.contains(contact) => Some(sample.uv[0] - 0.2),
         _ => None,
     });
     assert!(travelled.is_some_and(|u| u * SIDE_M > 0.2), "the finger did not get along: {travelled:?}");

@@ -51,7 +51,8 @@ macro_rules! materials {
     };
 }
 
-// The micro-relief is in units of the engine's default one.
+// The micro-relief is in units of the engine's default one: how rough a finish is, R says; only what was cast against boards or cut from clay
+// is coarser than that.
 materials! {
     STEEL, "steel", "Carbon steel, ground.":
         E 200e9, nu 0.29, rho 7850.0, "[KleinPAT]";
@@ -62,7 +63,7 @@ materials! {
         E 110e9, nu 0.26, rho 7200.0, "[Handbook]";
         alpha 3.0, eta 2e-3, beta 0.0, "assumed, between wrought iron [Cremer] 2–6e-4 and heavily damping grey iron, 1e-2";
         mu 0.7, 0.5, "assumed";
-        R 0.6, relief 1.5, "assumed";
+        R 0.6, relief 1.0, "assumed";
     ALUMINIUM, "aluminium", "Aluminium alloy.":
         E 69e9, nu 0.33, rho 2700.0, "[Handbook]";
         alpha 2.0, eta 3e-4, beta 0.0, "η above the pure metal's 1e-4 [Cremer]; α measured on a vibraphone bar";
@@ -82,7 +83,7 @@ materials! {
         E 70e9, nu 0.22, rho 2500.0, "[Handbook]";
         alpha 1.0, eta 1e-3, beta 0.0, "η [Cremer, recalled] 0.6–2e-3; α [KleinPAT]";
         mu 0.9, 0.7, "assumed";
-        R 0.05, relief 0.25, "assumed";
+        R 0.05, relief 1.0, "assumed";
     CERAMIC, "ceramic", "Glazed stoneware.":
         E 72e9, nu 0.19, rho 2700.0, "[KleinPAT]; 1.75 % below the pitches of a real bowl";
         alpha 0.5, eta 1.1e-3, beta 0.0, "η measured on that bowl, 52 modes; α assumed";
@@ -92,27 +93,27 @@ materials! {
         E 50e9, nu 0.25, rho 2700.0, "[Handbook]";
         alpha 2.0, eta 6e-3, beta 0.0, "η measured on a struck stone; α assumed";
         mu 0.6, 0.5, "assumed";
-        R 0.6, relief 1.5, "assumed";
+        R 0.6, relief 1.0, "assumed";
     CONCRETE, "concrete", "Structural concrete.":
         E 30e9, nu 0.2, rho 2400.0, "[Handbook]";
         alpha 5.0, eta 6e-3, beta 0.0, "η [Cremer, recalled] 4–8e-3; α assumed";
         mu 0.7, 0.6, "assumed";
-        R 0.9, relief 3.0, "assumed";
+        R 0.9, relief 1.5, "assumed";
     BRICK, "brick", "Fired clay brick.":
         E 15e9, nu 0.2, rho 1900.0, "[Handbook]";
         alpha 5.0, eta 0.015, beta 0.0, "η [Cremer, recalled] 1–2e-2; α assumed";
         mu 0.7, 0.6, "assumed";
-        R 0.9, relief 3.0, "assumed";
+        R 0.9, relief 1.5, "assumed";
     WOOD, "wood", "Hardwood along the grain, planed.":
         E 11e9, nu 0.25, rho 750.0, "[KleinPAT]";
         alpha 5.0, eta 8e-3, beta 0.0, "η measured on struck wood, claves and a wood block; oak [Cremer, recalled] 1e-2; α assumed";
         mu 0.6, 0.5, "assumed";
-        R 0.6, relief 1.5, "assumed";
+        R 0.6, relief 1.0, "assumed";
     SOFTWOOD, "softwood", "Spruce or fir along the grain, planed.":
         E 10.8e9, nu 0.37, rho 430.0, "[Handbook]";
         alpha 5.0, eta 0.008, beta 0.0, "η of fir [Cremer, recalled]; α assumed";
         mu 0.6, 0.5, "assumed";
-        R 0.65, relief 1.5, "assumed";
+        R 0.65, relief 1.0, "assumed";
     PLA, "pla", "Printed PLA, as the plates of the Hasti study; the default of bodies.":
         E 3.5e9, nu 0.36, rho 1240.0, "[Handbook]";
         alpha 10.0, eta 0.02, beta 0.0, "measured on three printed bodies, 286–375 Hz";
@@ -127,7 +128,7 @@ materials! {
         E 3.2e9, nu 0.37, rho 1190.0, "[Handbook]";
         alpha 5.0, eta 0.03, beta 0.0, "η [Cremer, recalled] 2–4e-2; α assumed";
         mu 0.8, 0.6, "assumed";
-        R 0.1, relief 0.25, "assumed";
+        R 0.1, relief 1.0, "assumed";
     RUBBER, "rubber", "Soft rubber.":
         E 5e6, nu 0.49, rho 1100.0, "[Handbook]";
         alpha 20.0, eta 0.2, beta 0.0, "assumed";
@@ -137,5 +138,5 @@ materials! {
         E 3e9, nu 0.35, rho 1300.0, "[Handbook]";
         alpha 20.0, eta 0.1, beta 0.0, "assumed";
         mu 0.5, 0.4, "assumed";
-        R 0.3, relief 0.5, "assumed";
+        R 0.3, relief 1.0, "assumed";
 }
