@@ -45,11 +45,10 @@ const ROUNDS: usize = 3;
 /// Levels of the histogram.
 const LEVELS: usize = 256;
 
-/// Heights in texels above the ground of an image of linear brightness, or how large the ground is at the most (of the image), where that is too small
-/// for one or places are brighter than it.
+/// Heights in texels above the ground of an image of linear brightness. Slopes below 0.14 are taken for ground.
 ///
 /// # Errors
-/// The share of the ground.
+/// The share of the image that is ground, where that is too little; 0 where there is none, because places are brighter than it or all is noise.
 pub fn above_flat_ground(image: &Raster) -> Result<Raster, f64> {
     let grid = Grid {
         width: image.width,
@@ -63,7 +62,10 @@ pub fn above_flat_ground(image: &Raster) -> Result<Raster, f64> {
     let texels = image.values.len() as f64;
     let share = count as f64 / texels;
     let is_noise = spread > MOST_SPREAD * deviation(&smooth);
-    if share < LEAST_GROUND || brighter as f64 > MOST_BRIGHTER * texels || is_noise {
+    if brighter as f64 > MOST_BRIGHTER * texels || is_noise {
+        return Err(0.0);
+    }
+    if share < LEAST_GROUND {
         return Err(share);
     }
     let least = facing - SPREADS * spread;

@@ -103,7 +103,8 @@ fn surfaces_without_a_ground_fall_back_and_say_so_and_a_told_method_is_refused()
     let said = |d: &Doubt| matches!(d, Doubt::Fallback(Fallback::FrontalLight(_)));
     assert!(surface.doubts.iter().any(said));
     let told = PhotoOptions { method: Some(Method::FlatGround), ..Default::default() };
-    assert_eq!(surface_from_photo(&rough, &told, |_| {}).unwrap_err().field, "flat ground");
+    let refused = surface_from_photo(&rough, &told, |_| {}).unwrap_err();
+    assert_eq!((refused.field, refused.value), ("flat ground", 0.0));
 }
 
 #[test]
