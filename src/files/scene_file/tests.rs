@@ -1,6 +1,6 @@
 use super::*;
 use crate::Material;
-use crate::model::surface::Excitation;
+use crate::model::excitation::Excitation;
 use asperity_texture::picture::Channel;
 use asperity_texture::sand::Layer;
 use asperity_texture::solid_materials::SolidMaterial;
@@ -61,7 +61,7 @@ limit = false
     assert_eq!((surface.width_m, surface.micro_relief_m), (0.14, Some(2e-6)));
     assert!(matches!(&surface.source, Source::Map { image, relief_m, invert: false }
         if image.path == Path::new("dir/tiles_disp.png") && *relief_m == 0.004));
-    assert_eq!(surface.excitation, Excitation::Both);
+    assert_eq!(surface.excitation, Excitation::BOTH);
     assert_eq!(scene.actuators, [ActuatorEntry::default()]);
 }
 
@@ -262,4 +262,24 @@ limit = false
         }
     });
     assert!(runs > 50, "{runs}");
+}
+
+#[test]
+fn excitation_is_a_word_or_a_list_of_exciters() {
+    let read = |words: &str| {
+        let surface = "[[surface]]\nname = \"s\"\nwidth_m = 0.1\nheight_m = 0.1\nroughness = 0.5\n";
+        let text = format!("{surface}excitation = {words}\n");
+        let file = SceneFile::parse(&text, Path::new("scene.toml")).map_err(|error| error.to_string())?;
+        Ok::<_, String>(file.surfaces[0].excitation)
+    };
+    assert_eq!(read("\"collisions\""), Ok(Excitation::COLLISIONS));
+    assert_eq!(read("[\"force\", \"collisions\"]"), Ok(Excitation::BOTH));
+    assert_eq!(read("[]"), Ok(Excitation::NONE));
+    for wrong in ["\"magic\"", "[\"magic\"]", "3", "[3]"] {
+        let error = read(wrong).unwrap_err();
+        assert!(
+            error.contains("surface 1 \"s\": excitation") && error.contains("collisions, force"),
+            "{error}"
+        );
+    }
 }
