@@ -107,6 +107,7 @@ pub use model::event::{
     Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
     Touching,
 };
+pub use model::excitation::{Excitation, Exciter};
 pub use model::frame::SurfaceFrame;
 pub use model::id::{BodyId, ProbeId, SurfaceId};
 pub use model::material::{Material, MaterialPreset};
@@ -115,8 +116,8 @@ pub use model::probe::{PROBE_PRESETS, probe_by_name};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
 pub use model::stock::Stock;
 pub use model::surface::{
-    DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,
-    Surface, SurfaceError,
+    DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Roughness, Surface,
+    SurfaceError,
 };
 pub use model::uv_triangle::UvTriangle;
 pub use rate::{AtRate, RateError};

@@ -99,7 +99,7 @@ fn the_law_of_sand() {
     ];
     // Grains hit the body one by one: what is heard has onsets of its own, so only what is felt counts.
     let sand = surface(SandSource::synchronous(&design, 1).unwrap());
-    let mut stroke = Stroke::on(sand.excitation(asperity::Excitation::Collisions), 1.0);
+    let mut stroke = Stroke::on(sand.excitation(asperity::Excitation::COLLISIONS), 1.0);
     stroke.slide(0.4);
     for change in changes {
         stroke.scene.change_surface(stroke.surface, change).unwrap();

@@ -106,7 +106,7 @@ fn live_an_event_is_heard_within_one_block_and_one_sample() {
 
 #[test]
 fn one_micro_collision_is_felt_and_heard_at_the_same_sample() {
-    for excitation in [Excitation::Collisions, Excitation::Both] {
+    for excitation in [Excitation::COLLISIONS, Excitation::BOTH] {
         for begin in [1000u64, 1037, 1063, 1064] {
             let actuators = vec![ActuatorSettings {
                 output: Quantity::Acceleration,

@@ -56,10 +56,10 @@ fn a_rough_stroke_is_equally_loud_at_every_rate() {
         speed_m_s: 0.2,
         force_n: 0.05,
         contact_stiffness_n_m: 5e4,
-        excitation: Excitation::Collisions,
+        excitation: Excitation::COLLISIONS,
     };
     let cases = [
-        Case { name: "the same, collisions and force", excitation: Excitation::Both, ..plain },
+        Case { name: "the same, collisions and force", excitation: Excitation::BOTH, ..plain },
         Case {
             name: "stiff contact on a matte plate",
             surface: || plate(0.9).micro_relief_m(2e-6),

@@ -96,7 +96,7 @@ fn a_flat_plate_with_micro_relief_takes_over_without_a_step() {
 fn scraped(before: Material, after: Material) -> Vec<f32> {
     let asperity::Engine { mut scene, renderer, .. } = asperity::Config::default().build().unwrap();
     let body = scene.add_body(asperity::Body::new(common::bar()).of(before)).unwrap();
-    let ribs = grating(2e-3, 2e-4).on(body).excitation(asperity::Excitation::Collisions);
+    let ribs = grating(2e-3, 2e-4).on(body).excitation(asperity::Excitation::COLLISIONS);
     let width_m = 70.0 * 2e-3;
     let surface = scene.add_surface(ribs).unwrap();
     if after != before {

@@ -279,7 +279,7 @@ fn a_body_that_rang_out_is_exactly_silent() {
 fn an_unloaded_finger_stays_on_its_leash() {
     let leash_m = Probe::default().leash_m;
     let log = log(1.5, |t| ([0.1 + 0.1 * t / SIDE_M, 0.5], [0.1, 0.0], if t < 0.3 { 0.5 } else { 0.0 }));
-    let (rows, _) = watch(si_config(), plate(0.9).excitation(Excitation::Both), &log);
+    let (rows, _) = watch(si_config(), plate(0.9).excitation(Excitation::BOTH), &log);
     let furthest = rows
         .iter()
         .map(|row| (row.pad_m - row.height_m).max(row.finger_m - row.height_m))

@@ -21,6 +21,7 @@ use crate::audio::smoothed::Smoothed;
 use crate::link::tap::Tap;
 use crate::model::event::ContactId;
 use crate::model::inner_rate::InnerRate;
+use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::probe::PreparedProbe;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth;
@@ -33,10 +34,6 @@ use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBloc
 use fades::Rising;
 use pressed::Pressed;
 
-/// Samples of impulse a contact holds ahead: a power of two, the longest collision and its kernel.
-fn bus_samples(sample_rate_hz: f64) -> usize {
-    ((LONGEST_COLLISION_S * sample_rate_hz) as usize + 16).next_power_of_two()
-}
 /// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
 const STILL_M: f64 = 1e-12;
 /// Pad acceleration that counts as still, m/s²: −120 dB of what a fingertip just feels.
@@ -136,8 +133,7 @@ pub(crate) struct Voice {
     grains: Rng,
     /// The impulses of the last forces, which are still on their way to the body.
     force_history_n_s: [f64; FORCE_HISTORY],
-    bus: Vec<f64>,
-    bus_busy_until: u64,
+    bus: ImpulseRing,
     /// Sent to the body since the last row that was shown.
     unshown_n_s: f64,
 }
@@ -217,8 +213,7 @@ impl Voice {
             reaction: Reaction::default(),
             grains: Rng::new(slot as u64),
             force_history_n_s: [0.0; FORCE_HISTORY],
-            bus: vec![0.0; bus_samples(shared.sample_rate_hz)],
-            bus_busy_until: 0,
+            bus: ImpulseRing::new(LONGEST_COLLISION_S, shared.sample_rate_hz),
             unshown_n_s: 0.0,
         }
     }
@@ -415,7 +410,7 @@ impl Voice {
             && self.reaction.grain_rate_per_s == 0.0
             && !self.reaction.stirs
             && scratch.out.impulse_n_s[n - 1].abs() < STILL_N_S
-            && self.bus_busy_until <= position + n as u64;
+            && self.bus.is_empty(position + n as u64);
         if self.asleep {
             self.last_felt = if felt.abs() < still { 0.0 } else { felt };
             self.force_history_n_s = [0.0; FORCE_HISTORY];

@@ -8,6 +8,7 @@ pub(crate) mod clock_mode;
 pub(crate) mod config;
 pub(crate) mod error;
 pub(crate) mod event;
+pub(crate) mod excitation;
 pub(crate) mod frame;
 pub(crate) mod id;
 pub(crate) mod inner_rate;

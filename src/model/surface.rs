@@ -2,6 +2,7 @@
 
 use crate::files::contact_log::LogSurface;
 use crate::model::bad_value::{BadValue, within};
+use crate::model::excitation::Excitation;
 use crate::model::frame::SurfaceFrame;
 use crate::model::id::BodyId;
 use crate::model::material::Material;
@@ -17,21 +18,6 @@ use asperity_texture::tiled::Tiled;
 use asperity_texture::wrap::Wrap;
 #[cfg(feature = "image")]
 use std::path::Path;
-
-/// What sliding sends to the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum Excitation {
-    /// Hertz pulses at the micro-collisions only, as the paper does: silent where the pad never lifts
-    /// off, which with measured damping is every smooth grating at 0.5 N.
-    Collisions,
-    /// The alternating part of the contact force only.
-    Force,
-    /// Both.
-    #[default]
-    Both,
-}
 
 /// Where a surface's perceptual roughness R (0–1) comes from.
 #[derive(Debug, Clone)]

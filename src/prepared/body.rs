@@ -3,8 +3,9 @@
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
 use crate::prepared::bursts::Bursts;
+use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
-use asperity_dsp::hertz::{self, HertzPulse};
+use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::modal_bank::{
     self, Awake, Bank, FirstSamples, GroupOptions, GroupState, Input, Kernel, LaneGains, MissingSamples,
     ModeGroup,
@@ -24,11 +25,6 @@ pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
     groups - (groups * mode_level / MODE_LEVELS).min(groups.saturating_sub(1))
 }
 
-/// Samples that a body's buses hold ahead: a power of two, the longest impact and its kernel.
-fn bus_samples(sample_rate_hz: f64) -> usize {
-    ((LONGEST_CONTACT_S * sample_rate_hz) as usize + 16).next_power_of_two()
-}
-
 /// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
 const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
 
@@ -40,8 +36,7 @@ pub(crate) struct BodySlot {
     places: Vec<Place>,
     bursts: Bursts,
     /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
-    early: Vec<f32>,
-    early_busy_until: u64,
+    early: ImpulseRing<f32>,
 }
 
 /// One strike position: what reaches the body there.
@@ -50,8 +45,7 @@ struct Place {
     gains: Vec<LaneGains>,
     /// For each level of modes left out.
     first_samples: [FirstSamples; MODE_LEVELS],
-    bus: Vec<f64>,
-    bus_busy_until: u64,
+    bus: ImpulseRing,
     /// What contacts send during the present stretch.
     contacts_n_s: [f64; MAX_BLOCK],
     touched: bool,
@@ -71,19 +65,19 @@ pub(crate) struct Terms {
 
 impl Place {
     fn new(gains: Vec<LaneGains>, first_samples: [FirstSamples; MODE_LEVELS], sample_rate_hz: f64) -> Self {
-        let bus = vec![0.0; bus_samples(sample_rate_hz)];
+        let bus = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
         let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
-        Self { gains, first_samples, bus, bus_busy_until: 0, contacts_n_s, touched: false, input }
+        Self { gains, first_samples, bus, contacts_n_s, touched: false, input }
     }
 
     /// Gathers the impulses of the next `n` samples, and tells whether there may be any.
     fn gather(&mut self, position: u64, n: usize) -> bool {
         let input = &mut self.input[..n];
         input.fill(0.0);
-        let busy = self.bus_busy_until > position;
+        let busy = !self.bus.is_empty(position);
         // The bus is empty beyond the last impact.
         if busy {
-            hertz::take(&mut self.bus, position, input);
+            self.bus.take(position, input);
         }
         if self.touched {
             for (x, contact) in input.iter_mut().zip(&mut self.contacts_n_s) {
@@ -131,8 +125,8 @@ impl BodySlot {
         let places = places.collect();
         let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
-        let early = vec![0.0; bus_samples(sample_rate_hz)];
-        Ok(Self { groups, states, awake: Awake::default(), places, bursts, early, early_busy_until: 0 })
+        let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
+        Ok(Self { groups, states, awake: Awake::default(), places, bursts, early })
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
@@ -153,11 +147,10 @@ impl BodySlot {
         let end = pulse.end_sample(stamp.sample(), sample_rate_hz);
         let last = self.places.len() - 1;
         let place = &mut self.places[position.min(last)];
-        pulse.deposit(&mut place.bus, stamp.sample(), stamp.fraction(), sample_rate_hz);
-        place.bus_busy_until = place.bus_busy_until.max(end);
+        place.bus.deposit(pulse, stamp.sample(), stamp.fraction(), sample_rate_hz);
         let missing = &place.first_samples[mode_level];
-        missing.deposit(pulse, &mut self.early, stamp.sample(), stamp.fraction(), sample_rate_hz);
-        self.early_busy_until = self.early_busy_until.max(end);
+        let (sample, offset) = (stamp.sample(), stamp.fraction());
+        self.early.write(end, |early| missing.deposit(pulse, early, sample, offset, sample_rate_hz));
         // A burst is noise-like: the whole sample is near enough.
         self.bursts.strike(stamp.sample(), pulse.impulse_n_s);
     }
@@ -176,21 +169,20 @@ impl BodySlot {
         self.states.fill(GroupState::default());
         self.awake = Awake::default();
         for place in &mut self.places {
-            place.bus.fill(0.0);
+            place.bus.clear();
             place.contacts_n_s.fill(0.0);
-            (place.bus_busy_until, place.touched) = (0, false);
+            place.touched = false;
         }
         self.bursts.silence();
-        self.early.fill(0.0);
-        self.early_busy_until = 0;
+        self.early.clear();
     }
 
     /// Whether nothing rings and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.awake.groups() == 0
             && self.bursts.is_silent(position)
-            && self.early_busy_until <= position
-            && self.places.iter().all(|place| !place.touched && place.bus_busy_until <= position)
+            && self.early.is_empty(position)
+            && self.places.iter().all(|place| !place.touched && place.bus.is_empty(position))
     }
 
     /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck it.
@@ -224,12 +216,9 @@ impl BodySlot {
 
     /// Adds what the bank leaves out of the first samples of strikes.
     fn begin_strikes(&mut self, position: u64, out: &mut [f32]) {
-        if self.early_busy_until <= position {
-            return;
-        }
-        let mask = self.early.len() - 1;
-        for (i, y) in out.iter_mut().enumerate() {
-            *y += std::mem::take(&mut self.early[(position as usize).wrapping_add(i) & mask]);
+        if !self.early.is_empty(position) {
+            let mut next = self.early.drain(position);
+            out.iter_mut().for_each(|y| *y += next());
         }
     }
 }

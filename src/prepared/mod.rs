@@ -3,6 +3,7 @@
 
 pub(crate) mod body;
 pub(crate) mod bursts;
+pub(crate) mod impulse_ring;
 pub(crate) mod overlay;
 pub(crate) mod probe;
 pub(crate) mod stiffness;

@@ -138,7 +138,7 @@ fn surface(rng: &mut Rng) -> Result<Surface, String> {
     let map = map.with_roughness(rough).map_err(|e| e.to_string())?;
     let surface = Surface::new(map, width_m, height_m).map_err(|e| e.to_string())?;
     let micro_relief_m = one_of(rng, &[0.0, 2e-6, limits::MAX_MICRO_RELIEF_M]);
-    Ok(surface.micro_relief_m(micro_relief_m).excitation(one_of(rng, &[Excitation::Both, Excitation::Force])))
+    Ok(surface.micro_relief_m(micro_relief_m).excitation(one_of(rng, &[Excitation::BOTH, Excitation::FORCE])))
 }
 
 /// Renders scene `seed`, a tenth of a second of it.

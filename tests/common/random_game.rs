@@ -114,7 +114,7 @@ impl RandomGame {
         let body = self.bodies[which % 2];
         match self.rng.next_u32() % 50 {
             0 => {
-                let surface = plate(0.5).on(body).excitation(Excitation::Both);
+                let surface = plate(0.5).on(body).excitation(Excitation::BOTH);
                 let _ = self.scene.replace_surface(self.surfaces[which], surface);
             }
             1 => {

@@ -81,10 +81,9 @@ impl Voice {
         self.reaction = Reaction::default();
         self.grains = Rng::new(contact.0 ^ position.rotate_left(32));
         self.force_history_n_s = [0.0; FORCE_HISTORY];
-        if self.bus_busy_until > position {
-            self.bus.fill(0.0);
+        if !self.bus.is_empty(position) {
+            self.bus.clear();
         }
-        self.bus_busy_until = 0;
         self.unshown_n_s = 0.0;
     }
 

@@ -4,7 +4,7 @@
 
 use super::{Scratch, Shared, Voice};
 use crate::audio::seat::Seat;
-use crate::model::surface::Excitation;
+use crate::model::excitation::Exciter;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::hertz::{self, FORCE_HISTORY, HertzPulse};
 use asperity_dsp::micro_contact::Onset;
@@ -25,7 +25,7 @@ impl Voice {
         scratch: &mut Scratch,
     ) {
         let Some(slot) = seat.current() else { return };
-        let excitation = slot.surface.excitation;
+        let collides = slot.surface.excitation.has(Exciter::Collisions);
         let rate = shared.sample_rate_hz;
         (scratch.out.collisions, scratch.out.shortened) = (0, 0);
         let grains = self.reaction.grain_rate_per_s > 0.0;
@@ -33,7 +33,7 @@ impl Voice {
             let sample = position + i as u64;
             if let Some(onset) = scratch.pad[i].onset {
                 scratch.out.collisions += 1;
-                if excitation != Excitation::Force {
+                if collides {
                     // An onset is dated within the step that ends at its row.
                     let shortened = self.collide(slot, shared, &onset, sample.saturating_sub(1));
                     scratch.out.shortened += u64::from(shortened);
@@ -54,13 +54,11 @@ impl Voice {
 
     /// Takes the pulses of the coming samples off the bus, which is empty beyond the last pulse.
     pub(super) fn empty_bus(&mut self, position: u64, out: &mut [f64]) {
-        if self.bus_busy_until <= position {
+        if self.bus.is_empty(position) {
             return out.fill(0.0);
         }
-        let mask = self.bus.len() - 1;
-        for (i, y) in out.iter_mut().enumerate() {
-            *y = std::mem::take(&mut self.bus[(position as usize).wrapping_add(i) & mask]);
-        }
+        let mut next = self.bus.drain(position);
+        out.iter_mut().for_each(|y| *y = next());
     }
 
     /// Whether the pulse had to be shortened.
@@ -100,7 +98,6 @@ impl Voice {
     }
 
     pub(super) fn deposit(&mut self, pulse: &HertzPulse, sample: u64, offset: f64, sample_rate_hz: f64) {
-        pulse.deposit(&mut self.bus, sample, offset, sample_rate_hz);
-        self.bus_busy_until = self.bus_busy_until.max(pulse.end_sample(sample, sample_rate_hz));
+        self.bus.deposit(pulse, sample, offset, sample_rate_hz);
     }
 }

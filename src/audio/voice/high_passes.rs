@@ -2,7 +2,7 @@
 
 use super::{Scratch, Shared, Voice};
 use crate::audio::seat::Seat;
-use crate::model::surface::Excitation;
+use crate::model::excitation::Exciter;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::hertz::FORCE_HISTORY;
 
@@ -26,7 +26,7 @@ impl Voice {
         let Some(slot) = seat.current() else { return };
         let high_pass = slot.stroking.force_high_pass;
         // A force that is not to sound counts as 0 N.
-        let sounds = slot.surface.excitation != Excitation::Collisions;
+        let sounds = slot.surface.excitation.has(Exciter::Force);
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
         let rows = scratch.pad[..n].iter();
         let input = rows.map(|row| ([row.pad_m, row.pad_velocity_m_s], row.contact_force_n));

@@ -4,8 +4,8 @@ use super::fields::{Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
 use crate::files::FileError;
+use crate::model::excitation::Excitation;
 use crate::model::frame::SurfaceFrame;
-use crate::model::surface::Excitation;
 use crate::parameters::surface as parameters;
 use asperity_texture::wrap::Wrap;
 use std::path::{Path, PathBuf};
@@ -66,8 +66,6 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
     fields.rename(place);
     let source = source::read(&mut fields, folder)?;
     let wraps = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
-    let excitations =
-        [("collisions", Excitation::Collisions), ("force", Excitation::Force), ("both", Excitation::Both)];
     let surface = SurfaceEntry {
         name,
         written,
@@ -80,12 +78,22 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
         micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
         outer_scale_m: fields.number(&parameters::OUTER_SCALE_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
-        excitation: fields.word("excitation", &excitations)?.unwrap_or_default(),
+        excitation: read_excitation(&mut fields)?,
         frame: read_frame(&mut fields)?,
         friction: fields.number(&parameters::FRICTION)?,
     };
     fields.finish()?;
     Ok(surface)
+}
+
+/// One word for a set of exciters, or a list of them.
+fn read_excitation(fields: &mut Fields) -> Result<Excitation, FileError> {
+    let Some(value) = fields.take("excitation") else { return Ok(Excitation::default()) };
+    let what = format!("{} is refused", shown(&value));
+    value.try_into().map_err(|_| {
+        let right = "must be collisions, force or both, or a list of collisions, force";
+        fields.refuse("excitation", what, right)
+    })
 }
 
 /// `[surface.frame]`; what is missing is the body's origin, its x and its y axis.

@@ -1,6 +1,6 @@
 use super::*;
 use crate::Material;
-use crate::model::surface::Excitation;
+use crate::model::excitation::Excitation;
 use asperity_texture::picture::Channel;
 use asperity_texture::sand::Layer;
 use asperity_texture::solid_materials::SolidMaterial;
@@ -64,6 +64,8 @@ limit = false
     assert_eq!(surface.excitation, Excitation::Both);
     assert_eq!(scene.actuators.len(), 1);
     assert_eq!((scene.actuators[0].full_scale, scene.actuators[0].settings.highpass_hz), (Some(1e-4), 10.0));
+    assert_eq!(surface.excitation, Excitation::BOTH);
+    assert_eq!(scene.actuators, [ActuatorEntry::default()]);
 }
 
 #[test]
@@ -262,4 +264,24 @@ limit = false
         }
     });
     assert!(runs > 50, "{runs}");
+}
+
+#[test]
+fn excitation_is_a_word_or_a_list_of_exciters() {
+    let read = |words: &str| {
+        let surface = "[[surface]]\nname = \"s\"\nwidth_m = 0.1\nheight_m = 0.1\nroughness = 0.5\n";
+        let text = format!("{surface}excitation = {words}\n");
+        let file = SceneFile::parse(&text, Path::new("scene.toml")).map_err(|error| error.to_string())?;
+        Ok::<_, String>(file.surfaces[0].excitation)
+    };
+    assert_eq!(read("\"collisions\""), Ok(Excitation::COLLISIONS));
+    assert_eq!(read("[\"force\", \"collisions\"]"), Ok(Excitation::BOTH));
+    assert_eq!(read("[]"), Ok(Excitation::NONE));
+    for wrong in ["\"magic\"", "[\"magic\"]", "3", "[3]"] {
+        let error = read(wrong).unwrap_err();
+        assert!(
+            error.contains("surface 1 \"s\": excitation") && error.contains("collisions, force"),
+            "{error}"
+        );
+    }
 }
