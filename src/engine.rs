@@ -8,6 +8,7 @@ use crate::link::ring;
 use crate::link::stats::Counters;
 use crate::model::config::Config;
 use crate::model::error::ConfigError;
+use crate::open::levels::Levels;
 use crate::prepared::probe::PreparedProbe;
 use asperity_texture::sand::SandWorker;
 use std::sync::Arc;
@@ -33,6 +34,8 @@ pub struct Engine {
     pub names: Names,
     /// Simulations that have to run on threads of their own, sand for instance; empty unless the engine was built to play live.
     pub workers: Vec<SandWorker>,
+    /// Levels that were written or resolved, where the engine was built from a file; empty otherwise.
+    pub levels: Levels,
 }
 
 impl std::fmt::Debug for Engine {
@@ -58,6 +61,12 @@ impl Config {
         let renderer = Renderer::new(&self, kernel, probe, from_game, to_game, counters.clone())?;
         let clock = Clock::new(self.clock, self.inner_rate_hz());
         let scene = Scene::new(self, clock, to_audio, from_audio, counters);
-        Ok(Engine { scene, renderer, names: Names::default(), workers: Vec::new() })
+        Ok(Engine {
+            scene,
+            renderer,
+            names: Names::default(),
+            workers: Vec::new(),
+            levels: Levels::default(),
+        })
     }
 }

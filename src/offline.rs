@@ -50,6 +50,8 @@ pub struct Render {
     pub why_silent: Vec<SilentBecause>,
     /// Surfaces of sand as they lie after the last contact, settled.
     pub sand: Vec<SandAfter>,
+    /// By how much the peak limiters have turned down at most, dB.
+    pub limiter_db: f64,
     /// Time spent in the renderer alone; zero without [`Options::clock_s`].
     pub processing: Duration,
 }
@@ -232,6 +234,7 @@ impl Take {
             first_refused: self.first_refused,
             why_silent: self.scene.why_silent(),
             sand: sand.map(|(surface, figures, picture)| SandAfter { surface, figures, picture }).collect(),
+            limiter_db: self.renderer.limiter_db(),
             processing: self.processing,
         }
     }

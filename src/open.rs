@@ -2,16 +2,18 @@
 
 mod change;
 mod edit;
+pub mod levels;
 mod maker;
 mod source;
 
 use crate::engine::Engine;
-use crate::files::scene_file::{MakeSource, SceneFile, SurfaceEntry};
+use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
 use crate::{AudioBus, Config, Integrator, Isa, PathMode};
 use asperity_texture::raster::Raster;
 pub use change::Changes;
 pub use edit::{Edits, MakeSurface};
+use levels::Levels;
 use maker::Maker;
 use std::cell::RefCell;
 use std::path::Path;
@@ -80,8 +82,30 @@ impl Engine {
 }
 
 fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileError> {
+    let trial = |levels: &Levels| {
+        let plain = |mut config: Config| {
+            for actuator in &mut config.actuators {
+                (actuator.equalise, actuator.limit, actuator.limit_peaks) = (None, None, false);
+            }
+            config.audio.iter_mut().for_each(|bus| bus.limit = false);
+            config
+        };
+        assemble(file, &Overrides { live: false, ..*overrides }, levels, plain)
+    };
+    let levels = levels::resolve(file, trial)?;
+    let mut engine = assemble(file, overrides, &levels, |config| config)?;
+    engine.levels = levels;
+    Ok(engine)
+}
+
+fn assemble(
+    file: &SceneFile,
+    overrides: &Overrides<'_>,
+    levels: &Levels,
+    change: impl FnOnce(Config) -> Config,
+) -> Result<Engine, FileError> {
     let at = |error: FileError| error.within(file.path.display());
-    let config = config(file, overrides).map_err(at)?;
+    let config = change(config(file, overrides, levels).map_err(at)?);
     let workers = RefCell::default();
     let maker = Maker {
         files: overrides.files,
@@ -110,12 +134,14 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
         let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
-    Ok(Engine { scene, renderer, names, workers: workers.into_inner() })
+    Ok(Engine { scene, renderer, names, workers: workers.into_inner(), levels: Levels::default() })
 }
 
-fn config(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Config, FileError> {
+fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Result<Config, FileError> {
     let default = Config::default();
-    let actuators = file.actuators.iter().map(|entry| maker::actuator(overrides.files, entry, &file.path));
+    let actuators = file.actuators.iter().zip(&levels.full_scale);
+    let actuators =
+        actuators.map(|(entry, full_scale)| maker::actuator(overrides.files, entry, *full_scale, &file.path));
     Ok(Config {
         sample_rate_hz: overrides.sample_rate_hz.or(file.sample_rate_hz).unwrap_or(default.sample_rate_hz),
         seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
@@ -124,11 +150,11 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Config, FileErr
         probe: file.probe,
         kernel: overrides.kernel,
         actuators: actuators.collect::<Result<_, _>>()?,
-        // A sound card clips what exceeds full scale.
         audio: file
             .audio
             .iter()
-            .map(|entry| AudioBus { limit: entry.bus.limit || overrides.live, ..entry.bus })
+            .zip(&levels.gain)
+            .map(|(bus, gain)| bus_of(bus, *gain, file, overrides))
             .collect(),
         max_surfaces: default.max_surfaces.max(file.surfaces.len()),
         max_bodies: default.max_bodies.max(file.bodies.len()),
@@ -136,6 +162,15 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Config, FileErr
         queue_capacity: default.queue_capacity.max(2 * (file.surfaces.len() + file.bodies.len())),
         ..default
     })
+}
+
+/// A bus without a word about a limiter has one where something is known to clip or nobody knows: before a sound card, where a device is
+/// named, behind a level that nobody wrote.
+fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides<'_>) -> AudioBus {
+    let names_device =
+        file.actuators.iter().any(|actuator| actuator.equalise.is_some() || actuator.limit.is_some());
+    let limit = entry.limit.unwrap_or(overrides.live || names_device || entry.gain.is_none());
+    AudioBus { gain, limit: limit || overrides.live }
 }
 
 /// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the heights

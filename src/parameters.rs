@@ -132,6 +132,8 @@ parameters! {
         RELIEF_M: "relief_m", "m", limits::RELIEF_M, "Height of white over black of an image";
         MICRO_RELIEF_M: "micro_relief_m", "m", limits::MICRO_RELIEF_M,
             "Rms of the 1/f^α overlay in the octave around 1 mm; missing: its material's";
+        OUTER_SCALE_M: "outer_scale_m", "m", limits::OUTER_SCALE_M,
+            "Wavelength beyond which the micro-relief is flat; missing: the engine's default";
         ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R; missing: its map's or its material's";
         FRICTION: "friction", "", limits::FRICTION, "Coulomb coefficient of the 3-D force; missing: the source's";
         SCALE: "scale", "", limits::combined::FACTOR, "Factor of the heights", or(1.0);
@@ -155,17 +157,23 @@ parameters! {
             from("chosen: 50 times the pad"), changes(Opened);
         LEASH_M: "leash_m", "m", limits::probe::LEASH_M, "How far the finger may leave the surface",
             or(contact::LEASH_M), from("chosen"), changes(Opened);
+        TIP_RADIUS_M: "tip_radius_m", "m", limits::probe::TIP_RADIUS_M, "Sphere that rides on the surface; 0 = a point",
+            or(0.0), changes(Opened);
+        FORCE_EXPONENT: "force_exponent", "", limits::probe::FORCE_EXPONENT, "n of the contact's stiffness, k ∝ Fⁿ",
+            or(contact::FORCE_EXPONENT), changes(Opened);
     }
     /// A haptic channel.
     mod actuator = "actuator" {
         FULL_SCALE: "full_scale", "m (or m/s²)", limits::output::FULL_SCALE,
-            "What sample value 1.0 stands for; an acceleration has no default", or(1e-4), changes(Opened);
+            "What sample value 1.0 stands for; missing: by the level policy", changes(Opened);
+        LOWPASS_HZ: "lowpass_hz", "Hz", limits::output::LOWPASS_HZ,
+            "Low-pass to what skin feels; missing: 1000 Hz for acceleration, off for displacement", changes(Opened);
         HIGHPASS_HZ: "highpass_hz", "Hz", limits::output::HIGHPASS_HZ,
             "High-pass about the mean surface", or(10.0), changes(Opened);
     }
     /// An audio bus.
     mod audio = "audio" {
-        GAIN: "gain", "", limits::output::AUDIO_GAIN, "Linear gain", or(1.0);
+        GAIN: "gain", "", limits::output::AUDIO_GAIN, "Linear gain; missing: by the level policy";
     }
     /// Sand that gives way.
     mod sand = "sand" {

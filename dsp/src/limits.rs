@@ -77,6 +77,8 @@ pub const UV: Range = Range::new(-MAX_UV, MAX_UV, "finite and within ±1e6");
 pub const MAX_MICRO_RELIEF_M: f64 = 0.01;
 /// Micro-relief of a surface; 0 is none.
 pub const MICRO_RELIEF_M: Range = Range::new(0.0, MAX_MICRO_RELIEF_M, "0 to 0.01 m, 0 = none");
+/// Wavelength beyond which the micro-relief is flat.
+pub const OUTER_SCALE_M: Range = Range::new(1e-5, 1.0, "1e-5 to 1 m");
 /// Side of a surface.
 pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
 /// Each coordinate of a place in a body.
@@ -110,6 +112,10 @@ pub mod probe {
     pub const CONTACT_STIFFNESS_N_M: Range = Range::new(1.0, 1e9, "1 to 1e9 N/m");
     /// Longest gap that the finger's own motion may open.
     pub const LEASH_M: Range = Range::new(1e-6, 0.05, "1e-6 to 0.05 m");
+    /// Radius of the sphere that rides on the surface; 0 is a point.
+    pub const TIP_RADIUS_M: Range = Range::new(0.0, 0.1, "0 to 0.1 m, 0 = a point");
+    /// n of k_m ∝ Fⁿ.
+    pub const FORCE_EXPONENT: Range = Range::new(0.0, 1.0, "0 to 1");
 }
 
 /// What strikes.
@@ -162,6 +168,8 @@ pub mod output {
     pub const HAPTIC_GAIN: Range = Range::new(0.0, 10.0, "0 to 10");
     /// Metres, or m/s², at sample value 1.
     pub const FULL_SCALE: Range = Range::new(1e-12, 1e12, "1e-12 to 1e12 m (or m/s²)");
+    /// Cutoff of an actuator's low-pass; 0 is off.
+    pub const LOWPASS_HZ: Range = Range::new(0.0, 2e4, "0 to 20000 Hz, 0 = off");
     /// High-pass about the mean surface; at low sample rates, below 0.49 of the rate as well.
     pub const HIGHPASS_HZ: Range = Range::new(0.0, 1e3, "0 to 1000 Hz, 0 = off");
     /// How much of its signal a port holds for a late reader.
@@ -277,6 +285,7 @@ mod tests {
             RELIEF_M,
             SPEED_M_S,
             MICRO_RELIEF_M,
+            OUTER_SCALE_M,
             SIDE_M,
             TIME_SCALE,
             PLACE_M,
@@ -289,6 +298,8 @@ mod tests {
             probe::FINGER_MASS_KG,
             probe::CONTACT_STIFFNESS_N_M,
             probe::LEASH_M,
+            probe::TIP_RADIUS_M,
+            probe::FORCE_EXPONENT,
             impact::MASS_KG,
             impact::RADIUS_M,
             impact::RESTITUTION,
@@ -303,6 +314,7 @@ mod tests {
             output::HAPTIC_GAIN,
             output::FULL_SCALE,
             output::HIGHPASS_HZ,
+            output::LOWPASS_HZ,
             output::CONTACT_TIMEOUT_S,
             output::PORT_HOLDS_S,
             output::FORCE_RATE_HZ,

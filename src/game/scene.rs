@@ -65,6 +65,8 @@ pub struct Scene {
     pub(crate) bodies: Places<KnownBody>,
     pub(crate) probes: Places<Probe>,
     pub(crate) open_ports: usize,
+    /// Radii of the tips that surfaces get ready for, m.
+    pub(crate) tips_m: Vec<f64>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
     pub(crate) to_audio: Sender<Message>,
@@ -108,6 +110,7 @@ impl Scene {
             bodies: Places::new(config.max_bodies, "bodies"),
             probes: Places::new(config.max_probes, "probes"),
             open_ports: 0,
+            tips_m: vec![config.probe.tip_radius_m],
             given: HashMap::new(),
             reported: Reported::default(),
             held: Vec::new(),
@@ -224,6 +227,9 @@ impl Scene {
         let message = self.prepared_probe(id, &probe)?;
         self.send(message)?;
         self.probes.set(id.0, probe);
+        if !self.tips_m.contains(&probe.tip_radius_m) {
+            self.tips_m.push(probe.tip_radius_m);
+        }
         self.note(|names| LogEdit::AddProbe { probe: names.probe(id), is: probe });
         Ok(id)
     }
@@ -279,6 +285,9 @@ impl Scene {
         let mut surface = surface.checked()?.tiled();
         let setup = Setup { sample_rate_hz: self.config.inner_rate_hz(), voices: self.config.voices() };
         surface.source.prepare(&setup)?;
+        for radius_m in &self.tips_m {
+            surface.source.prepare_tip(*radius_m);
+        }
         let silent = KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let stroking = self.stroking(body)?;
@@ -286,7 +295,8 @@ impl Scene {
         let period_m = surface.wrap_period_m();
         let trajectory =
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
-        let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
+        let relief = (surface.micro_relief_m, surface.outer_scale_m);
+        let overlay = Overlay::new(period_m, surface.source.band().shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
         let (size_m, frame) = ([surface.width_m, surface.height_m], surface.frame);
         let mut picture = None;

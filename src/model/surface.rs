@@ -46,9 +46,13 @@ pub enum Roughness {
 
 /// R of a surface that has no roughness map: the middle of the scale.
 pub const DEFAULT_ROUGHNESS: f64 = 0.5;
-/// Rms height of the micro-noise in the octave around 1 mm wavelength, m. A choice, not a measurement:
-/// it makes a matte plate (R = 1) buzz at about ten times the vibration threshold at 0.1 m/s.
-pub const DEFAULT_MICRO_RELIEF_M: f64 = 2e-6;
+/// Rms height of the micro-noise in the octave around 1 mm wavelength where R is 1, m. **Measured here**: at R = 0.5 that is 9 µm,
+/// and from 8 µm on the micro-collisions of a fingertip carry the sound of rough strokes; a tool of 30 g is then shaken by 1–2 m/s² at
+/// 120 mm/s and R = 0.5, as published recordings of real materials are (`docs/feel.md`).
+pub const DEFAULT_MICRO_RELIEF_M: f64 = 22e-6;
+/// Wavelength beyond which the micro-noise is flat, m: the roll-off that every finished surface has. **Chosen** within the millimetres to
+/// centimetres of machined and polished ones.
+pub const DEFAULT_OUTER_SCALE_M: f64 = 0.01;
 /// Radius of the asperity that stands for the finger in a micro-collision, m. The true skin would give
 /// contact times of 1–8 ms and dull sounds, so the exciter is a hard bead of the pad's mass instead.
 pub const EXCITER_RADIUS_M: f64 = 1e-3;
@@ -64,6 +68,7 @@ pub struct Surface {
     pub(crate) body: Option<BodyId>,
     pub(crate) roughness: Roughness,
     pub(crate) micro_relief_m: f64,
+    pub(crate) outer_scale_m: f64,
     pub(crate) friction: Option<f64>,
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
@@ -122,6 +127,7 @@ impl Surface {
             body: None,
             roughness: Roughness::FromSource,
             micro_relief_m: DEFAULT_MICRO_RELIEF_M,
+            outer_scale_m: DEFAULT_OUTER_SCALE_M,
             friction: None,
             excitation: Excitation::default(),
             strike_position: 0,
@@ -221,10 +227,18 @@ impl Surface {
         self
     }
 
-    /// Rms height of the 1/f^α overlay in the octave around 1 mm wavelength, m; 0 = none.
+    /// Rms height of the 1/f^α overlay in the octave around 1 mm wavelength where R is 1, m; 0 = none. Elsewhere it is
+    /// 10^(0.75 (R − 1)) times that.
     #[must_use]
     pub fn micro_relief_m(mut self, rms_m: f64) -> Self {
         self.micro_relief_m = rms_m;
+        self
+    }
+
+    /// Wavelength beyond which the overlay is flat, m.
+    #[must_use]
+    pub fn outer_scale_m(mut self, wavelength_m: f64) -> Self {
+        self.outer_scale_m = wavelength_m;
         self
     }
 
@@ -254,6 +268,7 @@ impl Surface {
 
     pub(crate) fn checked(self) -> Result<Self, BadValue> {
         within("micro_relief_m", self.micro_relief_m, limits::MICRO_RELIEF_M)?;
+        within("outer_scale_m", self.outer_scale_m, limits::OUTER_SCALE_M)?;
         let reach_m = self.source.reach_m();
         within("relief_m", reach_m, limits::REACH_M)?;
         within("friction", self.friction.unwrap_or(0.0), limits::FRICTION)?;

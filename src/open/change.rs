@@ -61,9 +61,9 @@ impl Scene {
         changes: &mut Changes,
     ) -> Result<(), FileError> {
         for (index, (old, new)) in before.audio.iter().zip(&after.audio).enumerate() {
-            if old.bus.gain != new.bus.gain {
-                self.set_audio_gain(index, new.bus.gain).map_err(FileError::told)?;
-                changes.done.push(format!("audio {}: gain {}", index + 1, new.bus.gain));
+            if let Some(gain) = new.gain.filter(|gain| old.gain != Some(*gain)) {
+                self.set_audio_gain(index, gain).map_err(FileError::told)?;
+                changes.done.push(format!("audio {}: gain {gain}", index + 1));
             }
         }
         Ok(())
@@ -173,7 +173,8 @@ impl<'a> New<'a> {
 /// What is fixed when an engine is built, and differs.
 fn waiting(before: &SceneFile, after: &SceneFile) -> Vec<String> {
     let buses = |file: &SceneFile| -> Vec<_> {
-        file.audio.iter().map(|entry| (entry.name.clone(), entry.bus.limit)).collect()
+        // A gain that is no longer written is found by the level policy, anew.
+        file.audio.iter().map(|entry| (entry.name.clone(), entry.limit, entry.gain.is_none())).collect()
     };
     let known =
         |(name, probe): &(String, _)| after.probes.iter().any(|new| new.0 == *name && new.1 == *probe);
@@ -183,7 +184,10 @@ fn waiting(before: &SceneFile, after: &SceneFile) -> Vec<String> {
         ("contacts", before.contacts != after.contacts),
         ("probe", before.probe != after.probe || !before.probes.iter().all(known)),
         ("actuator", before.actuators != after.actuators),
-        ("audio: number, names and limits of buses", buses(before) != buses(after)),
+        (
+            "audio: number, names and limits of buses, gains that are not written",
+            buses(before) != buses(after),
+        ),
     ];
     let differing = differs.into_iter().filter(|(_, differs)| *differs);
     differing.map(|(what, _)| format!("{what}: takes effect when the scene is opened again")).collect()

@@ -83,6 +83,9 @@ impl<'a> Maker<'a> {
         if let Some(rms_m) = entry.micro_relief_m {
             surface = surface.micro_relief_m(rms_m);
         }
+        if let Some(outer_scale_m) = entry.outer_scale_m {
+            surface = surface.outer_scale_m(outer_scale_m);
+        }
         if let Some(frame) = entry.frame {
             surface = surface.frame(frame);
         }
@@ -117,10 +120,13 @@ impl<'a> Maker<'a> {
 pub(super) fn actuator(
     files: &dyn Files,
     entry: &ActuatorEntry,
+    full_scale: f64,
     scene: &Path,
 ) -> Result<ActuatorSettings, FileError> {
     let folder = scene.parent().unwrap_or(Path::new(""));
     Ok(ActuatorSettings {
+        full_scale,
+        limit_peaks: entry.limit_peaks.unwrap_or(entry.full_scale.is_none() && entry.limit.is_none()),
         equalise: device(files, "equalise", entry.equalise.as_deref(), folder)?,
         limit: device(files, "limit", entry.limit.as_deref(), folder)?,
         ..entry.settings

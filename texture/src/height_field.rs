@@ -235,6 +235,14 @@ pub trait HeightField: Send + Sync {
         Ok(())
     }
 
+    /// Gets ready to be ridden by a sphere of this radius, m; it may allocate. A source made of others hands this on. One that
+    /// leaves it out is ridden by a point.
+    fn prepare_tip(&mut self, _radius_m: f64) {}
+
+    /// What is sampled from here on is what a sphere of this radius rides on, m; 0 is a point. A radius that was never
+    /// prepared is a point too.
+    fn ride(&mut self, _radius_m: f64) {}
+
     /// How far from zero its heights can be, metres; 0 if the source cannot tell.
     fn reach_m(&self) -> f64 {
         0.0

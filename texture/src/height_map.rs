@@ -19,6 +19,7 @@ use crate::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBloc
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
 use crate::resample::halve;
+use crate::ridden::ridden;
 use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
 
@@ -97,6 +98,9 @@ pub struct HeightMap {
     /// Where it has relief; none = nowhere.
     local: Option<LocalRelief>,
     friction: f64,
+    /// What tips of some radii ride on, and the one that rides now.
+    tips: Vec<(f64, Pyramid)>,
+    tip: Option<usize>,
 }
 
 #[derive(Debug, Clone)]
@@ -135,7 +139,18 @@ impl HeightMap {
             }
         };
         let roughness = Roughness::Constant(0.5);
-        Ok(Self { heights, roughness, extent, wrap, band, reach_m, local, friction: FRICTION })
+        Ok(Self {
+            heights,
+            roughness,
+            extent,
+            wrap,
+            band,
+            reach_m,
+            local,
+            friction: FRICTION,
+            tips: Vec::new(),
+            tip: None,
+        })
     }
 
     /// A plane: every relief comes from the micro-noise.
@@ -339,6 +354,18 @@ impl HeightField for HeightMap {
         self.band
     }
 
+    fn prepare_tip(&mut self, radius_m: f64) {
+        let known = self.tips.iter().any(|(known_m, _)| *known_m == radius_m);
+        let Some(finest) = self.heights.levels.first().filter(|_| radius_m > 0.0 && !known) else { return };
+        let texels_per_metre = finest.texels_per_metre();
+        let map = ridden(&finest.texels(), texels_per_metre.map(f64::recip), self.wrap, radius_m);
+        self.tips.push((radius_m, Pyramid::new(&map, self.extent, self.wrap)));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.tip = self.tips.iter().position(|(known_m, _)| *known_m == radius_m);
+    }
+
     fn reach_m(&self) -> f64 {
         self.reach_m
     }
@@ -367,14 +394,15 @@ impl HeightField for HeightMap {
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let widest_m = widest_m(path.footprint_m);
         let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
+        let heights = self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map);
         if path.slopes {
-            self.heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
+            heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
             let slopes = samples.slope_u.iter().zip(&samples.slope_v);
             for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
                 *gradient = [*u, *v];
             }
         } else {
-            self.heights.sample_block::<false>(path, widest_m, &mut places, &mut samples);
+            heights.sample_block::<false>(path, widest_m, &mut places, &mut samples);
         }
         out.height_m.copy_from_slice(&samples.value[..MAX_BLOCK]);
         match &self.roughness {

@@ -28,6 +28,7 @@ pub mod deband;
 pub mod image_io;
 pub mod picture;
 mod resample;
+pub mod ridden;
 mod spline;
 pub mod stl;
 pub mod wrap;
@@ -43,6 +44,8 @@ pub mod dark_is_deep;
 pub mod distribution;
 #[cfg(feature = "offline")]
 pub mod fft2;
+#[cfg(feature = "offline")]
+pub mod flat_ground;
 #[cfg(feature = "offline")]
 pub mod fractal_dimension;
 #[cfg(feature = "offline")]

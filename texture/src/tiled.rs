@@ -97,6 +97,14 @@ fn share(places: &[Place; 2], copy: [usize; 2]) -> (f64, [f64; 2]) {
 }
 
 impl HeightField for Tiled {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.source.prepare_tip(radius_m);
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.source.ride(radius_m);
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.source.prepare(setup)
     }

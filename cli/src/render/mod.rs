@@ -14,12 +14,14 @@ use asperity::files::scene_file::SceneFile;
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
+use asperity::open::levels::Levels;
 use asperity::{Integrator, Isa, PathMode, SurfaceId};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
 use recorder::Recorder;
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -134,6 +136,12 @@ pub struct Report {
     pub haptic_peak: Vec<f32>,
     /// Events of contacts that nobody began, or whose voice was stolen.
     pub orphaned: u64,
+    /// m or m/s² at sample value 1 of each haptic channel, written or by the level policy.
+    pub full_scale: Vec<f64>,
+    /// Gain of the audio, written or by the level policy; a list where there are several buses.
+    pub gain: Value,
+    /// By how much the peak limiters turned down at most, dB.
+    pub limiter_db: f64,
     /// Contacts faded because nothing was heard of them.
     pub lapsed: u64,
     /// Rate of both WAV files.
@@ -216,6 +224,10 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let built = Engine::from_scene(&file, &overrides)?;
     let names: Vec<(String, SurfaceId)> =
         built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
+    let levels = built.levels.clone();
+    for (actuator, full_scale) in file.actuators.iter_mut().zip(&levels.full_scale) {
+        actuator.full_scale = Some(*full_scale);
+    }
     let (rate_hz, kernel) = (built.renderer.sample_rate_hz(), built.renderer.kernel());
     let duration_s = log.end_s() + file.tail_s;
     check_length(&file, duration_s, rate_hz)?;
@@ -229,7 +241,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     wav::write(&mut outputs, &with_suffix(stem, "audio.wav"), &audio, rate_hz)?;
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
-    let mut report = report(&render, kernel, watching);
+    let mut report = report(&render, kernel, levels, watching);
     report.warnings = unread.iter().map(|place| told::read_past(place)).collect();
     report.warnings.extend(told::warnings(&file, &log, &render, &report));
     for sand in &render.sand {
@@ -396,7 +408,7 @@ fn peak(samples: &[f32]) -> f32 {
     samples.iter().fold(0.0, |peak, sample| sample.abs().max(peak))
 }
 
-fn report(render: &Render, kernel: Isa, watching: Duration) -> Report {
+fn report(render: &Render, kernel: Isa, levels: Levels, watching: Duration) -> Report {
     let stats = &render.stats;
     let processing_s = render.processing.saturating_sub(watching).as_secs_f64().max(1e-9);
     Report {
@@ -411,6 +423,9 @@ fn report(render: &Render, kernel: Isa, watching: Duration) -> Report {
         audio_peak: render.audio.iter().map(|bus| peak(bus)).fold(0.0, f32::max),
         bus_peak: render.audio.iter().map(|bus| peak(bus)).collect(),
         haptic_peak: render.haptic.iter().map(|channel| peak(channel)).collect(),
+        full_scale: levels.full_scale,
+        gain: one_or_all(levels.gain),
+        limiter_db: render.limiter_db,
         orphaned: stats.orphaned,
         lapsed: stats.lapsed,
         sample_rate_hz: render.sample_rate_hz,
@@ -418,6 +433,14 @@ fn report(render: &Render, kernel: Isa, watching: Duration) -> Report {
         sand: BTreeMap::new(),
         files: Vec::new(),
         warnings: Vec::new(),
+    }
+}
+
+/// A number where there is one bus, a list where there are several.
+fn one_or_all(gain: Vec<f64>) -> Value {
+    match gain.as_slice() {
+        [only] => Value::from(*only),
+        all => Value::from(all.to_vec()),
     }
 }
 

@@ -26,7 +26,7 @@ pub fn draw(
             Quantity::Displacement => ("displacement", "m"),
             Quantity::Acceleration => ("acceleration", "m/s²"),
         };
-        HapticChannel { quantity, unit, full_scale: actuator.settings.full_scale, samples }
+        HapticChannel { quantity, unit, full_scale: actuator.full_scale.unwrap_or(1.0), samples }
     });
     let impacts_s = log
         .lines

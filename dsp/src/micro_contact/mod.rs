@@ -47,15 +47,18 @@ mod probe;
 mod quad;
 mod semi_implicit;
 mod state;
+mod stiffening;
 
 pub use choice::{
     Choice, EULER_MAX_PHASE, EXACT_MAX_PHASE, EXACT_MAX_STIFFNESS_N_M, Integrator, SUBSTEP_MAX_PHASE,
 };
 pub use lanes::{EulerLanes, LANES, LaneRow, Lanes};
 pub use probe::{
-    CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG, PAD_STIFFNESS_N_M, Probe,
+    CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, FORCE_EXPONENT, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG,
+    PAD_STIFFNESS_N_M, Probe,
 };
 pub use state::{ContactSample, ContactState, Onset};
+pub use stiffening::RUNGS_AN_OCTAVE;
 
 use crate::DesignError;
 use energy_conserving::EnergyConserving;

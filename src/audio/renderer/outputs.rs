@@ -2,7 +2,7 @@
 
 use super::Renderer;
 use crate::audio::body_seat::BetweenBuses;
-use crate::model::actuator::ActuatorSettings;
+use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
 use crate::model::bus::AudioBus;
 use crate::prepared::body::Terms;
 use asperity_dsp::DesignError;
@@ -10,6 +10,8 @@ use asperity_dsp::actuator::{
     self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
     Quantity,
 };
+use asperity_dsp::butterworth::{self, Butterworth};
+use asperity_dsp::limits::output as limits;
 use asperity_texture::height_field::MAX_BLOCK;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -25,6 +27,8 @@ pub(super) struct HapticChannel {
     design: actuator::Channel,
     pub(super) control: ChannelControl,
     state: ChannelState,
+    /// The same filter twice: fourth order, −6 dB at its cutoff (Linkwitz and Riley).
+    low_pass: Option<(Butterworth, [butterworth::State; 2])>,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
     /// Sum of the contacts, m or m/s².
     pub(super) sum: [f64; MAX_BLOCK],
@@ -84,6 +88,7 @@ impl HapticChannel {
             design: actuator::Channel::new(&options, sample_rate_hz)?,
             control: ChannelControl::default(),
             state: ChannelState::default(),
+            low_pass: low_pass(settings, sample_rate_hz)?,
             limiter: limiter(settings.limit_peaks, sample_rate_hz)?,
             sum: [0.0; MAX_BLOCK],
         })
@@ -91,6 +96,11 @@ impl HapticChannel {
 
     /// The samples of a stretch as long as `out`.
     pub(super) fn run(&mut self, out: &mut [f32]) {
+        if let Some((filter, [first, second])) = &mut self.low_pass {
+            for x in &mut self.sum[..out.len()] {
+                *x = second.tick(filter, first.tick(filter, *x).low).low;
+            }
+        }
         self.state.run(&self.design, &self.control, &self.sum[..out.len()], out);
         if let Some((design, state)) = &mut self.limiter {
             state.run(design, out);
@@ -154,6 +164,15 @@ impl Renderer {
         if self.mix.mastered {
             self.mix.master[..n].iter_mut().for_each(|gain| *gain = self.master.tick(target) as f32);
         }
+    }
+
+    /// By how much the peak limiters of channels and buses have turned down at most, dB; 0 for not at all.
+    #[must_use]
+    pub fn limiter_db(&self) -> f64 {
+        let channels = self.channels.iter().filter_map(|channel| channel.limiter.as_ref());
+        let limiters = channels.chain(self.buses.iter().filter_map(|bus| bus.limiter.as_ref()));
+        let deepest = limiters.map(|(_, state)| state.deepest()).fold(1.0, f32::min);
+        (-20.0 * f64::from(deepest).log10()).max(0.0)
     }
 
     /// Writes what the actuators play of `n` inner samples, from `at` on in the outputs.
@@ -231,6 +250,23 @@ impl Renderer {
             cell.store(bus.meter.peak.to_bits(), Relaxed);
         }
     }
+}
+
+/// The low-pass of a channel, where it has one.
+fn low_pass(
+    settings: &ActuatorSettings,
+    sample_rate_hz: f64,
+) -> Result<Option<(Butterworth, [butterworth::State; 2])>, DesignError> {
+    let usual_hz = if settings.output == Quantity::Acceleration { ACCELERATION_BAND_HZ } else { 0.0 };
+    let cutoff_hz = settings.lowpass_hz.unwrap_or(usual_hz);
+    limits::LOWPASS_HZ.check("lowpass_hz", cutoff_hz)?;
+    // Above a third of the rate there is nothing left to take away.
+    if cutoff_hz == 0.0 || cutoff_hz > 0.33 * sample_rate_hz {
+        return Ok(None);
+    }
+    let named = |error: DesignError| DesignError { field: "lowpass_hz", ..error };
+    let filter = Butterworth::new(cutoff_hz, sample_rate_hz).map_err(named)?;
+    Ok(Some((filter, [butterworth::State::default(); 2])))
 }
 
 /// A limiter to full scale, where one is wanted.

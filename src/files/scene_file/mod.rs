@@ -22,7 +22,7 @@ pub use surface::{RoughnessEntry, SurfaceEntry};
 use crate::files::FileError;
 use crate::files::storage::{Disk, Files};
 use crate::model::actuator::{ActuatorSettings, Quantity};
-use crate::model::bus::{AudioBus, MAX_BUSES};
+use crate::model::bus::MAX_BUSES;
 use crate::model::probe::{PROBE_PRESETS, probe_by_name};
 use crate::parameters;
 use asperity_dsp::micro_contact::Probe;
@@ -65,8 +65,12 @@ pub struct SceneFile {
 /// One haptic channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ActuatorEntry {
-    /// All that needs no other file.
+    /// All that needs no other file and no level of the scene: its `full_scale` and `limit_peaks` do not count.
     pub settings: ActuatorSettings,
+    /// Metres or m/s² at sample value 1; none = by the level policy.
+    pub full_scale: Option<f64>,
+    /// Keeps the channel within ±1, whatever the device; none = where the level is by policy.
+    pub limit_peaks: Option<bool>,
     /// Name or file of the device whose response is inverted; none = no equaliser.
     pub equalise: Option<String>,
     /// Name or file of the device whose excursion and heat are kept within limits; none = no limit.
@@ -78,8 +82,10 @@ pub struct ActuatorEntry {
 pub struct AudioEntry {
     /// Name that bodies use; none for a single bus.
     pub name: Option<String>,
-    /// Its settings.
-    pub bus: AudioBus,
+    /// Linear gain; none = by the level policy.
+    pub gain: Option<f64>,
+    /// Keeps the channel within ±1; none = before a sound card, where a device is named, and where the gain is by policy.
+    pub limit: Option<bool>,
 }
 
 impl SurfaceEntry {
@@ -244,6 +250,8 @@ fn read_probe(mut fields: Fields) -> Result<Probe, FileError> {
         contact_stiffness_n_m: fields
             .number_or(&parameters::probe::CONTACT_STIFFNESS_N_M, preset.contact_stiffness_n_m)?,
         leash_m: fields.number_or(&parameters::probe::LEASH_M, preset.leash_m)?,
+        tip_radius_m: fields.number_or(&parameters::probe::TIP_RADIUS_M, preset.tip_radius_m)?,
+        force_exponent: fields.number_or(&parameters::probe::FORCE_EXPONENT, preset.force_exponent)?,
     };
     fields.finish()?;
     Ok(probe)
@@ -255,24 +263,23 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
     let output = fields.word("output", &words)?.unwrap_or(default.output);
     let equalise = fields.text("equalise")?.filter(|name| name != "none");
     let (limit, limit_peaks) = match fields.take("limit") {
-        None | Some(Value::Boolean(false)) => (None, false),
+        // A device that is named is kept whole unless the scene says otherwise.
+        None => (equalise.clone(), None),
+        Some(Value::Boolean(false)) => (None, Some(false)),
         // The limits of the device that is equalised; without one, those of the file: full scale.
-        Some(Value::Boolean(true)) => (equalise.clone(), equalise.is_none()),
-        Some(Value::String(device)) => (Some(device), false),
+        Some(Value::Boolean(true)) => (equalise.clone(), Some(equalise.is_none())),
+        Some(Value::String(device)) => (Some(device), Some(false)),
         Some(other) => {
             let what = format!("{} is refused", fields::shown(&other));
             return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
         }
     };
-    let full_scale = match fields.number(&parameters::actuator::FULL_SCALE)? {
-        Some(full_scale) => full_scale,
-        None if output == Quantity::Displacement => default.full_scale,
-        None => return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0")),
-    };
+    let full_scale = fields.number(&parameters::actuator::FULL_SCALE)?;
+    let lowpass_hz = fields.number(&parameters::actuator::LOWPASS_HZ)?;
     let highpass_hz = fields.number_or(&parameters::actuator::HIGHPASS_HZ, default.highpass_hz)?;
     fields.finish()?;
-    let settings = ActuatorSettings { output, full_scale, highpass_hz, limit_peaks, ..default };
-    Ok(ActuatorEntry { settings, equalise, limit })
+    let settings = ActuatorSettings { output, lowpass_hz, highpass_hz, ..default };
+    Ok(ActuatorEntry { settings, full_scale, limit_peaks, equalise, limit })
 }
 
 /// `[audio]`, one bus for all, or `[[audio]]`, one table a bus.
@@ -303,14 +310,13 @@ fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
 }
 
 fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
-    let default = AudioBus::default();
-    let bus = AudioBus {
-        gain: fields.number_or(&parameters::audio::GAIN, default.gain)?,
-        limit: fields.flag("limit")?.unwrap_or(default.limit),
+    let audio = AudioEntry {
+        name: fields.text("name")?,
+        gain: fields.number(&parameters::audio::GAIN)?,
+        limit: fields.flag("limit")?,
     };
-    let name = fields.text("name")?;
     fields.finish()?;
-    Ok(AudioEntry { name, bus })
+    Ok(audio)
 }
 
 #[cfg(test)]

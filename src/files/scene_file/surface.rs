@@ -32,6 +32,8 @@ pub struct SurfaceEntry {
     pub height_m: f64,
     /// Level of the 1/f^α overlay, m; none = that of its material, or the engine's default.
     pub micro_relief_m: Option<f64>,
+    /// Wavelength beyond which the overlay is flat, m; none = the engine's default.
+    pub outer_scale_m: Option<f64>,
     /// What lies beyond the edge.
     pub wrap: Wrap,
     /// What sliding sends to the body.
@@ -76,6 +78,7 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
         width_m: fields.needed_number(&parameters::WIDTH_M)?,
         height_m: fields.needed_number(&parameters::HEIGHT_M)?,
         micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
+        outer_scale_m: fields.number(&parameters::OUTER_SCALE_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
         excitation: fields.word("excitation", &excitations)?.unwrap_or_default(),
         frame: read_frame(&mut fields)?,

@@ -106,6 +106,14 @@ impl BrownianSurface {
 }
 
 impl HeightField for BrownianSurface {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.relief.prepare_tip(radius_m);
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.relief.ride(radius_m);
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.relief.prepare(setup)
     }
