@@ -146,7 +146,7 @@ impl Renderer {
         self.buses.len()
     }
 
-    /// The instruction set of the kernels whose last bits depend on it ([`Config::kernel`]).
+    /// The instruction set of the kernels whose last bits depend on it ([`Config::kernel`](field@Config::kernel)).
     #[must_use]
     pub fn kernel(&self) -> Isa {
         self.kernel.isa()

@@ -5,20 +5,21 @@
 //! that recorded it.
 
 mod edit;
+mod error;
 mod keys;
 
-use super::FileError;
 use super::storage::{self, Disk, Files};
 pub use crate::model::event::ContactSample;
 use crate::model::event::{Actuator, ContactEvent, ContactId, Emphasis, Impact, Touching};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 pub use edit::{LogBody, LogEdit, LogSurface};
+pub use error::LogError;
 use keys::Unread;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The `version` that is read and written; a log without one is of this version.
 pub const VERSION: u64 = 1;
@@ -151,81 +152,6 @@ pub struct Names {
     pub bodies: HashMap<String, BodyId>,
     /// Probes by name.
     pub probes: HashMap<String, ProbeId>,
-}
-
-/// Why a log, or a line of it, was refused.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum LogError {
-    /// The file cannot be read.
-    #[error("{}: cannot be read ({source}); give a readable contact log", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// A line is not an event.
-    #[error(
-        "{place}: {message}; must be one JSON object a line with \"t\", \"event\" and the fields of that event"
-    )]
-    Malformed {
-        /// File and line.
-        place: String,
-        /// What is wrong.
-        message: String,
-    },
-    /// A line has a key that its event does not know.
-    #[error("{place}: {key}: unknown key of \"{event}\"; {right}")]
-    UnknownKey {
-        /// File and line.
-        place: String,
-        /// The key.
-        key: String,
-        /// The event that does not know it.
-        event: &'static str,
-        /// The key that was meant, or every key that would be right.
-        right: String,
-    },
-    /// A format that this program does not know.
-    #[error("{place}: version: {version} is unknown; must be {VERSION}, or missing")]
-    Version {
-        /// File and line.
-        place: String,
-        /// What is written.
-        version: String,
-    },
-    /// An edit where only events can be used.
-    #[error("an edit of the scene; must be an event, or replayed by offline::render")]
-    Edit,
-    /// An edit that cannot be made.
-    #[error("t = {t} s: {problem}")]
-    CannotEdit {
-        /// Its time, s.
-        t: f64,
-        /// What is wrong.
-        problem: FileError,
-    },
-    /// Time runs backwards.
-    #[error("{place}: t = {t} s comes after {before} s; events must be in time order, from 0 s on")]
-    TimeBackwards {
-        /// File and line.
-        place: String,
-        /// The offending stamp, s.
-        t: f64,
-        /// The stamp before it, s.
-        before: f64,
-    },
-    /// A name the scene does not know.
-    #[error("{kind} \"{name}\" is unknown; must be one of: {known}")]
-    UnknownName {
-        /// "surface", "body", "probe", "holder" or "striker".
-        kind: &'static str,
-        /// The name.
-        name: String,
-        /// Every name that would be right.
-        known: String,
-    },
 }
 
 /// Latest stamp a log may hold, s: a day.

@@ -1,0 +1,81 @@
+//! Refusals of a log: which line, what is wrong there, what would be right.
+
+use super::VERSION;
+use crate::files::FileError;
+use std::io;
+use std::path::PathBuf;
+
+/// Why a log, or a line of it, was refused.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LogError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read ({source}); give a readable contact log", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A line is not an event.
+    #[error(
+        "{place}: {message}; must be one JSON object a line with \"t\", \"event\" and the fields of that event"
+    )]
+    Malformed {
+        /// File and line.
+        place: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// A line has a key that its event does not know.
+    #[error("{place}: {key}: unknown key of \"{event}\"; {right}")]
+    UnknownKey {
+        /// File and line.
+        place: String,
+        /// The key.
+        key: String,
+        /// The event that does not know it.
+        event: &'static str,
+        /// The key that was meant, or every key that would be right.
+        right: String,
+    },
+    /// A format that this program does not know.
+    #[error("{place}: version: {version} is unknown; must be {VERSION}, or missing")]
+    Version {
+        /// File and line.
+        place: String,
+        /// What is written.
+        version: String,
+    },
+    /// An edit where only events can be used.
+    #[error("an edit of the scene; must be an event, or replayed by offline::render")]
+    Edit,
+    /// An edit that cannot be made.
+    #[error("t = {t} s: {problem}")]
+    CannotEdit {
+        /// Its time, s.
+        t: f64,
+        /// What is wrong.
+        problem: FileError,
+    },
+    /// Time runs backwards.
+    #[error("{place}: t = {t} s comes after {before} s; events must be in time order, from 0 s on")]
+    TimeBackwards {
+        /// File and line.
+        place: String,
+        /// The offending stamp, s.
+        t: f64,
+        /// The stamp before it, s.
+        before: f64,
+    },
+    /// A name the scene does not know.
+    #[error("{kind} \"{name}\" is unknown; must be one of: {known}")]
+    UnknownName {
+        /// "surface", "body", "probe", "holder" or "striker".
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// Every name that would be right.
+        known: String,
+    },
+}
