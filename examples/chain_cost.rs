@@ -1,4 +1,4 @@
-//! What the stages of one contact cost, and how the cost of the whole grows with contacts and modes.
+//! Cost of each stage of one contact, and growth of the whole with contacts and modes.
 //!
 //! `cargo run --release --example chain_cost`. One thread; the quickest tenth, so that a busy machine matters less.
 //! Whole scenes in real time are measured by `asperity headroom` and `cargo bench --bench headroom`.

@@ -1,4 +1,4 @@
-//! From settings to a running engine: designs what is fixed, makes all memory, ties the two halves together.
+//! Assembly of an engine from its settings: designs what is fixed, makes all memory, ties the two halves together.
 
 use crate::audio::renderer::Renderer;
 use crate::files::contact_log::Names;

@@ -42,7 +42,8 @@
 //! | a game loop | [`Config::live`], [`Scene::report`], [`Renderer::render`] |
 //! | a scene file | [`Engine::open`] |
 //! | a recorded contact log | [`offline::render`] |
-//! | displacement and roughness maps | [`Surface::from_maps`] |
+//! | displacement and roughness maps | [`Surface::from_maps`], [`Surface::from_displacement`] |
+//! | nothing recorded yet | [`Body::stock`], [`Material::PRESETS`], [`Surface::flat`] |
 //! | a surface of your own | [`texture::height_field::HeightField`] |
 //! | several bodies at several places | [`Config::audio`], [`Body::on_bus`] |
 //! | a pen, a nail, a shoe sole | [`PROBE_PRESETS`], [`Scene::add_probe`], [`Touching`] |
@@ -93,10 +94,11 @@ pub use model::event::{
     Actuator, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV, Touching,
 };
 pub use model::id::{BodyId, ProbeId, SurfaceId};
-pub use model::material::Material;
+pub use model::material::{Material, MaterialPreset};
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::probe::{PROBE_PRESETS, probe_by_name};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
+pub use model::stock::Stock;
 pub use model::surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,
     Surface, SurfaceError,

@@ -1,12 +1,12 @@
-//! From a scene file to a running engine.
+//! Opening a scene: a scene file becomes a running engine.
 
 mod source;
 
 use crate::engine::Engine;
 use crate::files::FileError;
 use crate::files::scene_file::{
-    ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MakeSource, MaterialEntry, Pixels,
-    ProbeEntry, Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
+    ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MakeSource, Pixels, ProbeEntry,
+    Roughness as RoughnessEntry, SceneFile, Source, SurfaceEntry, Wrap as WrapEntry,
 };
 use crate::model::probe::{PROBE_PRESETS, probe_by_name};
 use crate::{
@@ -70,24 +70,19 @@ fn build(file: &SceneFile, overrides: &Overrides) -> Result<Engine, FileError> {
     }
     for body in &file.bodies {
         let place = |error: FileError| at(error.within(format!("body \"{}\"", body.name)));
-        let mut model = match &body.modes {
-            Some(path) => ModalModel::load(path).map_err(FileError::told)?,
-            None => ModalModel {
-                source: String::new(),
-                impulse_n_s: 1.0,
-                modes: Vec::new(),
-                positions: Vec::new(),
-                residual: None,
-            },
+        let material = body.material.unwrap_or(Body::DEFAULT_MATERIAL);
+        let mut model = match (&body.modes, body.stock) {
+            (Some(path), _) => ModalModel::load(path).map_err(FileError::told)?,
+            (None, Some((shape, size_m))) => {
+                shape.modes(&material, size_m).map_err(|error| place(FileError::told(error)))?
+            }
+            (None, None) => ModalModel::silent(),
         };
         if let Some(gain) = body.residual {
             let residual = model.residual.take();
             model = model.with_residual(residual, gain).map_err(|error| place(FileError::told(error)))?;
         }
-        let mut thing = Body::new(model);
-        if let Some(entry) = &body.material {
-            thing = thing.of(material(entry).map_err(place)?);
-        }
+        let thing = Body::new(model).of(material);
         let named = |name: &String| file.audio.iter().position(|bus| bus.name.as_ref() == Some(name));
         let id = scene.add_body(thing.on_bus(body.bus.as_ref().and_then(named).unwrap_or(0)));
         names.bodies.insert(body.name.clone(), id.map_err(|error| place(FileError::told(error)))?);
@@ -95,9 +90,11 @@ fn build(file: &SceneFile, overrides: &Overrides) -> Result<Engine, FileError> {
     for entry in &file.surfaces {
         let place = |error: FileError| at(error.within(format!("surface \"{}\"", entry.name)));
         let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
+        let stuff =
+            file.bodies.iter().find(|body| Some(&body.name) == entry.body.as_ref()).and_then(|b| b.material);
         let live = overrides.live.then_some(&workers);
         let ground = Ground { own: overrides.own, ..ground(entry, (seed, rate_hz), live) };
-        let surface = surface(entry, body, ground).map_err(place)?;
+        let surface = surface(entry, body, stuff, ground).map_err(place)?;
         let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
@@ -177,18 +174,6 @@ fn device(field: &str, name: Option<&str>, folder: &Path) -> Result<Option<Devic
     Err(FileError::new(at, format!("\"{name}\" is unknown"), right))
 }
 
-fn material(entry: &MaterialEntry) -> Result<Material, FileError> {
-    match entry {
-        MaterialEntry::Constants { young_pa, poisson, density_kg_m3 } => {
-            Ok(Material { young_pa: *young_pa, poisson: *poisson, density_kg_m3: *density_kg_m3 })
-        }
-        MaterialEntry::Preset(name) => Material::by_name(name).ok_or_else(|| {
-            let right = format!("must be one of: {}, or a table of constants", Material::names());
-            FileError::new("material", format!("\"{name}\" is unknown"), right)
-        }),
-    }
-}
-
 /// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the heights
 /// do not belong to places, or the source cannot be made.
 pub fn relief(entry: &SurfaceEntry, seed: Option<u64>, longest: usize) -> Option<Raster> {
@@ -211,11 +196,26 @@ fn ground<'a>(
     Ground { extent, wrap, seed, sample_rate_hz, workers, own: &[] }
 }
 
-fn surface(entry: &SurfaceEntry, body: Option<BodyId>, ground: Ground<'_>) -> Result<Surface, FileError> {
+/// A surface on a body of a material that the scene names has that material's finish where it says nothing else.
+fn surface(
+    entry: &SurfaceEntry,
+    body: Option<BodyId>,
+    material: Option<Material>,
+    ground: Ground<'_>,
+) -> Result<Surface, FileError> {
     let (extent, wrap) = (ground.extent, ground.wrap);
     let source = ground.source(&entry.source)?;
     let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(FileError::told)?;
     let surface = surface.wraps(ground.wrap != Wrap::Clamp);
+    let surface = match (material, &entry.source) {
+        (Some(material), Source::Flat) => surface.of(material),
+        // How rough a pictured surface is, its material does not tell: it may be glazed or sanded.
+        (Some(material), Source::Map { .. } | Source::Lattice(_)) => {
+            surface.of(material).roughness(Roughness::FromSource)
+        }
+        // Other sources bring a finish of their own.
+        _ => surface,
+    };
     let mut surface = match &entry.roughness {
         RoughnessEntry::Number(None) => surface,
         RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),

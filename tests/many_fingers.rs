@@ -1,4 +1,4 @@
-//! Whatever a source is made of, the engine tells it its rate and its contacts: nobody feels nothing because a number was not passed on.
+//! Many fingers: the engine tells every source its rate and its contacts, so that nobody feels nothing because a number was not passed on.
 
 mod common;
 

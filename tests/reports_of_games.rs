@@ -1,4 +1,4 @@
-//! What physics engines and trackers really report: steps without force, hitches, lost reports, slow first
+//! Reports as physics engines and trackers make them: steps without force, hitches, lost reports, slow first
 //! intervals, velocities that are always zero, teleports. None of it may be felt as a blow.
 
 mod common;

@@ -1,4 +1,4 @@
-//! What the engine accepts, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
+//! Accepted ranges, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
 //! `docs/formats.md` prints it.
 //!
 //! What is outside is refused where it enters, by name; what lies inside is rendered as it is.
@@ -132,6 +132,14 @@ pub mod material {
     pub const POISSON: Range = Range::new(0.0, 0.5, "0 to 0.5");
     /// Density.
     pub const DENSITY_KG_M3: Range = Range::new(1.0, 1e5, "1 to 1e5 kg/m³");
+    /// Damping that is the same at every frequency.
+    pub const ALPHA_PER_S: Range = Range::new(0.0, 1e6, "0 to 1e6 1/s");
+    /// Loss factor.
+    pub const ETA: Range = Range::new(0.0, 10.0, "0 to 10");
+    /// Viscous damping.
+    pub const BETA_S: Range = Range::new(0.0, 1.0, "0 to 1 s");
+    /// Longest side of a stock shape.
+    pub const SIZE_M: Range = Range::new(1e-3, 100.0, "1e-3 to 100 m");
     /// Gain of a body's residual.
     pub const RESIDUAL: Range = Range::new(0.0, 1e3, "0 to 1e3 (a gain)");
 }

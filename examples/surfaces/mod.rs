@@ -1,4 +1,4 @@
-//! What the surface examples share: a hand that draws lines, the forces it feels and their plot, pictures.
+//! Support of the surface examples: a hand that draws lines, the forces it feels and their plot, pictures.
 #![allow(dead_code)]
 
 use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};

@@ -1,4 +1,4 @@
-//! How far an analysis goes.
+//! Limits of an analysis.
 
 use crate::refinement::Bounds;
 

@@ -1,4 +1,4 @@
-//! From a recording to modes: the whole way, with the traps of real recordings.
+//! The whole analysis of a strike: a recording becomes modes, past the traps of real recordings.
 //!
 //! mean removed → the best strike chosen ([`crate::onset`]) → analysed from its onset on, as a sum of modes
 //! ([`crate::analysis`]) or, where it is none, from its tail ([`crate::tail_to_attack`]) → what does not ring taken out

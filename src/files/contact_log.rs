@@ -110,13 +110,13 @@ pub struct LogHand {
     pub gain: Option<f64>,
 }
 
-/// A striker's material: a preset's name or its elastic constants.
+/// A striker's material: a preset's name or its constants.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Striker {
     /// One of [`Material::PRESETS`].
     Preset(String),
-    /// Elastic constants.
+    /// Its constants; elastic ones are needed.
     Constants(Material),
 }
 
@@ -382,6 +382,12 @@ impl LogHand {
 
     fn holder(&self, names: &Names) -> Result<Option<BodyId>, LogError> {
         self.holder.as_ref().map(|name| find("holder", name, &names.bodies)).transpose()
+    }
+}
+
+impl From<Material> for Striker {
+    fn from(material: Material) -> Self {
+        material.name().map_or(Self::Constants(material), |name| Self::Preset(name.into()))
     }
 }
 

@@ -1,4 +1,4 @@
-//! What is wrong with a file: one line that names the place, what is wrong there, and what would be right.
+//! A refused file: one line that names the place, what is wrong there, and what would be right.
 
 use std::fmt;
 use std::path::Path;

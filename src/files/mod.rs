@@ -1,4 +1,4 @@
-//! What is read from files and written to them; no other room names their formats.
+//! File formats that the engine reads and writes; no other room names them.
 
 pub mod actuator_profile;
 pub mod contact_log;

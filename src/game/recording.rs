@@ -1,6 +1,6 @@
-//! What a live game reported, kept as a contact log.
+//! Recording of a live game's reports as a contact log.
 
-use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, LogTouching, Names, Striker};
+use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, LogTouching, Names};
 use crate::model::event::{Actuator, ContactEvent};
 use crate::model::id::{BodyId, Place, ProbeId, SurfaceId};
 use std::collections::HashMap;
@@ -45,7 +45,7 @@ impl Recording {
                 speed_m_s: impact.speed_m_s,
                 mass_kg: impact.mass_kg,
                 radius_m: impact.radius_m,
-                striker: Striker::Constants(impact.striker),
+                striker: impact.striker.into(),
                 restitution: impact.restitution,
                 position: impact.position,
                 hand: self.hand(impact.actuator, impact.probe, impact.holder, impact.gain),

@@ -1,4 +1,4 @@
-//! What crosses: messages from the game to the audio half, and what comes home to be freed.
+//! Messages from the game to the audio half, and the dead resources that come home to be freed.
 
 use crate::model::event::ContactEvent;
 use crate::model::id::{BodyId, SurfaceId};

@@ -1,4 +1,4 @@
-//! Which device channel carries which signal, and interleaving.
+//! Channel map: which device channel carries which signal, and interleaving.
 
 use crate::audio::renderer::Renderer;
 use crate::link::ring::Sender;

@@ -1,4 +1,4 @@
-//! What leaves in real time: sound cards, a paced device that nobody hears, and which signal goes to which channel.
+//! Real-time outputs: sound cards, a paced device that nobody hears, and which signal goes to which channel.
 
 pub mod channel_map;
 #[cfg(feature = "device")]

@@ -1,4 +1,4 @@
-//! How game seconds become samples.
+//! Clock modes: how game seconds become samples.
 
 /// How a stamp becomes a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

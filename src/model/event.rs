@@ -1,4 +1,4 @@
-//! What a game or VR physics step reports: contacts that begin, move and end, and impacts.
+//! Contact events, as a game or VR physics step reports them: contacts that begin, move and end, and impacts.
 //!
 //! Events are small `Copy` values in SI units, stamped by the caller in game seconds. The same type
 //! serves a live game, a replayed [contact log](crate::files::contact_log) and every test.

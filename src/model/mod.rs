@@ -1,4 +1,4 @@
-//! What a scene consists of: plain data in SI units, each with its range checked in one place.
+//! The parts of a scene: plain data in SI units, each with its range checked in one place.
 
 pub(crate) mod actuator;
 pub(crate) mod bad_value;
@@ -15,5 +15,6 @@ pub(crate) mod modal_model;
 pub(crate) mod probe;
 pub(crate) mod residual;
 pub(crate) mod stamp;
+pub(crate) mod stock;
 pub(crate) mod surface;
 pub(crate) mod uv_triangle;

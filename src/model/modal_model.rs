@@ -107,6 +107,32 @@ impl ModalModel {
         Ok(model)
     }
 
+    /// A body without modes, which nobody hears.
+    #[must_use]
+    pub fn silent() -> Self {
+        Self {
+            source: String::new(),
+            impulse_n_s: 1.0,
+            modes: Vec::new(),
+            positions: Vec::new(),
+            residual: None,
+        }
+    }
+
+    /// The same model, every answer `gain` times as strong.
+    ///
+    /// # Errors
+    /// When an amplitude leaves ±1e9.
+    pub fn with_gain(mut self, gain: f64) -> Result<Self, ModalModelError> {
+        self.modes.iter_mut().for_each(|mode| mode.amplitude *= gain);
+        self.positions.iter_mut().flatten().for_each(|amplitude| *amplitude *= gain);
+        if let Some(residual) = &mut self.residual {
+            residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
+        }
+        self.check()?;
+        Ok(self)
+    }
+
     /// Reads `NAME.modes.json`.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! What touches: the presets of a scene, each number with its source.
+//! Probe presets, each number with its source.
 
 use asperity_dsp::micro_contact::Probe;
 

@@ -140,6 +140,41 @@ impl Surface {
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
     }
 
+    /// A plane: uv 1 spans `width_m` × `height_m`, and what is felt of it is its finish ([`of`](Self::of)).
+    ///
+    /// ```
+    /// use asperity::{Material, Surface};
+    ///
+    /// let desk = Surface::flat(1.2, 0.6)?.of(Material::WOOD);
+    /// # Ok::<(), asperity::SurfaceError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When a size is not between 1 µm and 1 km.
+    pub fn flat(width_m: f64, height_m: f64) -> Result<Self, SurfaceError> {
+        let extent = Extent { width_m, height_m, relief_m: 0.0 };
+        Ok(Self::from_map(HeightMap::flat(extent, DEFAULT_ROUGHNESS)?)?)
+    }
+
+    /// A surface from a map that is in memory already, with the map's size and edges.
+    ///
+    /// # Errors
+    /// When a size is not between 1 µm and 1 km.
+    pub fn from_map(map: HeightMap) -> Result<Self, BadValue> {
+        let (extent, wraps) = (map.extent(), map.wrap() != Wrap::Clamp);
+        Ok(Self::new(map, extent.width_m, extent.height_m)?.wraps(wraps))
+    }
+
+    /// With the ordinary finish of a material: its roughness everywhere, its micro-relief and its friction. What is said after this counts
+    /// instead: `.of(material).roughness(Roughness::FromSource)` keeps a map's own roughness.
+    #[must_use]
+    pub fn of(mut self, material: Material) -> Self {
+        self.roughness = Roughness::Constant(material.roughness);
+        self.micro_relief_m = material.micro_relief_m;
+        self.friction = Some(material.mu_kinetic);
+        self
+    }
+
     /// Rings this body when it is touched.
     #[must_use]
     pub fn on(mut self, body: BodyId) -> Self {

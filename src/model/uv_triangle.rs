@@ -1,4 +1,4 @@
-//! From where a contact is in space to where it is on a surface: a triangle of a mesh with texture
+//! Texture coordinates of a contact in space: a triangle of a mesh with texture
 //! coordinates.
 //!
 //! Physics engines tell a point and a velocity in space; [`ContactSample`] wants texture coordinates and a

@@ -1,4 +1,4 @@
-//! From what a scene file says about heights to a source the engine samples.
+//! Sources made of a scene file's words: heights that the engine samples.
 
 use super::pixels;
 use crate::files::FileError;

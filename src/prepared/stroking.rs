@@ -1,4 +1,4 @@
-//! What a body makes of the strokes on its surfaces: how long a micro-collision lasts, and which part of the force rings it.
+//! Stroke excitation of a body: how long a micro-collision lasts, and which part of the force rings it.
 
 use crate::model::material::Material;
 use crate::model::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M};

@@ -1,4 +1,4 @@
-//! From a photograph to a surface that can be touched.
+//! Shape from a photograph: a picture becomes a surface that can be touched.
 //!
 //! ```text
 //! photo → camera's noise off → lattice, primitive → symmetric part ─→ heights → displacement

@@ -1,4 +1,4 @@
-//! What a surface is.
+//! Surfaces: sources that are sampled in real time, and offline tools that make them.
 //!
 //! *Real time*: [`height_field`] is the trait through which the engine samples any surface along a
 //! contact path; the other real-time files implement it.

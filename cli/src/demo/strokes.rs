@@ -1,4 +1,4 @@
-//! How a finger moves: contact logs as a tracker and a physics step would report them, at 60 Hz.
+//! Demo strokes: contact logs as a tracker and a physics step would report them, at 60 Hz.
 //!
 //! A stroke leaves and stops with a smooth speed (no step in acceleration), runs at one speed between,
 //! bows a little as it turns about the elbow, trembles by some hundredths of a millimetre at 9 Hz, and

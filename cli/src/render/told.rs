@@ -1,4 +1,4 @@
-//! What a render tells besides its files: what was refused, lost or clipped, and why a file is silence.
+//! Warnings of a render: what was refused, lost or clipped, and why a file is silence.
 
 use super::Report;
 use asperity::SilentBecause;

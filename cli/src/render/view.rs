@@ -1,4 +1,4 @@
-//! From a finished render to the picture of it: units, labels, surfaces from above.
+//! The picture of a finished render: units, labels, surfaces from above.
 
 use super::Report;
 use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};

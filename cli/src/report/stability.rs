@@ -1,4 +1,4 @@
-//! Where the contact model is safe: for every contact stiffness, rate and scheme asked for, what runs in its place, in how many
+//! Stability of the contact model: for every contact stiffness, rate and scheme asked for, what runs in its place, in how many
 //! sub-steps, what it does to the energy of a finger that bounces without damping, and whether it forgets.
 //!
 //! *Energy gain*: an undamped finger lands at 0.1 m/s under 0.5 N and bounces for a second; the largest energy over that at the

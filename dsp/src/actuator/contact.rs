@@ -1,4 +1,4 @@
-//! What one contact sends to its actuator: the pad's motion, without the resting position.
+//! Output of one contact to its actuator: the motion of the pad, high-passed about its resting position.
 
 use crate::DesignError;
 use crate::butterworth::{Butterworth, State, Two};

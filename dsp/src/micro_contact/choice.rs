@@ -1,4 +1,4 @@
-//! Which integrator runs: the wanted one while it is safe, sub-stepped or replaced when it is not.
+//! Choice of integrator: the wanted one while it is safe, sub-stepped or replaced where it is not.
 //!
 //! The rule looks at ω_c·h, the phase (radians) that the pressed pad turns through in one sample.
 //! Semi-implicit Euler stays linearly stable to 2 but gains energy far below that: an undamped

@@ -1,4 +1,4 @@
-//! What touches the surface: a fingertip as two masses, a spring, a damper and a leash.
+//! The probe that touches the surface: a fingertip as two masses, a spring, a damper and a leash.
 
 use crate::DesignError;
 use crate::limits::probe as limits;

@@ -1,4 +1,4 @@
-//! Which instructions the bank runs on, and its entry points.
+//! Instruction sets of the bank, and its entry points.
 #![allow(unsafe_code)]
 
 use super::design::{GRID_SAMPLES, GroupState, ModeGroup};

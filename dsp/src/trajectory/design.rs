@@ -1,4 +1,4 @@
-//! What all paths at one sample rate share: mode, filter, wrapping.
+//! Design shared by all paths at one sample rate: mode, filter, wrapping.
 
 use crate::DesignError;
 use crate::butterworth::Butterworth;

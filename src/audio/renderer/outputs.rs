@@ -1,4 +1,4 @@
-//! What leaves the engine: the haptic channels with their actuator stage, and the audio buses.
+//! Output stage: the haptic channels with their actuators, and the audio buses.
 
 use super::Renderer;
 use crate::model::actuator::ActuatorSettings;

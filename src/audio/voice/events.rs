@@ -1,4 +1,4 @@
-//! How a contact takes what the game reports: it lands, appears, goes on.
+//! Contact events at a voice: it lands, appears, goes on.
 
 use super::{PadSample, Phase, Scratch, Shared, Voice};
 use crate::audio::seat::Seat;

@@ -1,4 +1,4 @@
-//! What a contact sends to the body it touches: Hertz pulses at micro-collisions and among grains, and the
+//! Excitation of the touched body: Hertz pulses at micro-collisions and among grains, and the
 //! alternating contact force (Hasti §III-D; the force is ours, because a pad that never lifts off would be
 //! silent).
 

@@ -1,4 +1,4 @@
-//! How a contact comes and goes without a click.
+//! Fades of a contact that comes or goes, without a click.
 
 use super::{Phase, Scratch, Shared, Voice};
 

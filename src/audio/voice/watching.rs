@@ -1,4 +1,4 @@
-//! What a tap is shown of a contact: rows of the trace and the 3-D force.
+//! The tap of a contact: rows of the trace and the 3-D force.
 
 use super::{PadSample, Scratch, Shared, Voice};
 use crate::audio::seat::Seat;

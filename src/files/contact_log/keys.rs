@@ -1,4 +1,4 @@
-//! Which keys a line may have: a misspelt one would otherwise be no key at all.
+//! Keys of a line of the contact log: a misspelt one would otherwise be no key at all.
 
 use super::LogError;
 use serde::Deserialize;

@@ -19,6 +19,8 @@ pub use surface::{Excitation, Roughness, SurfaceEntry, Wrap};
 
 use crate::files::FileError;
 use crate::model::bus::MAX_BUSES;
+use crate::model::material::Material;
+use crate::model::stock::Stock;
 use asperity_dsp::limits::{self, Range};
 use fields::Fields;
 use std::path::{Path, PathBuf};
@@ -63,30 +65,16 @@ pub struct SceneFile {
 pub struct BodyEntry {
     /// Name that surfaces and impacts use.
     pub name: String,
-    /// Modes file; none = silent.
+    /// Modes file; none = those of `stock`, or silent.
     pub modes: Option<PathBuf>,
+    /// A stock shape and its size, m.
+    pub stock: Option<(Stock, f64)>,
     /// What it is made of; none = the engine's default.
-    pub material: Option<MaterialEntry>,
+    pub material: Option<Material>,
     /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
     pub residual: Option<f64>,
     /// Name of the bus it plays on; none = the first.
     pub bus: Option<String>,
-}
-
-/// A material by name or by constants.
-#[derive(Debug, Clone, PartialEq)]
-pub enum MaterialEntry {
-    /// One of the engine's presets.
-    Preset(String),
-    /// Elastic constants.
-    Constants {
-        /// Young's modulus, Pa.
-        young_pa: f64,
-        /// Poisson ratio.
-        poisson: f64,
-        /// Density, kg/m³.
-        density_kg_m3: f64,
-    },
 }
 
 /// A finger or tool: a preset, and constants that differ from it.
@@ -264,31 +252,73 @@ fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> 
     let name = fields.needed_text("name")?;
     let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
     fields.rename(place);
-    let modes = fields.file("modes", folder)?;
-    let material = match fields.take("material") {
-        None => None,
-        Some(Value::String(preset)) => Some(MaterialEntry::Preset(preset)),
-        Some(Value::Table(table)) => Some(read_material(Fields::new(table, fields.inner("material")))?),
+    let body = BodyEntry {
+        name,
+        modes: fields.file("modes", folder)?,
+        stock: read_stock(&mut fields)?,
+        material: read_material(&mut fields)?,
+        residual: fields.number("residual", limits::material::RESIDUAL)?,
+        bus: fields.text("bus")?,
+    };
+    if body.modes.is_some() && body.stock.is_some() {
+        return Err(fields.refuse("stock", "stands beside modes", "write one of them"));
+    }
+    fields.finish()?;
+    Ok(body)
+}
+
+/// `stock` and the `size_m` that it needs.
+fn read_stock(fields: &mut Fields) -> Result<Option<(Stock, f64)>, FileError> {
+    let shape = fields.word("stock", &Stock::ALL)?;
+    let size_m = fields.number("size_m", limits::material::SIZE_M)?;
+    match (shape, size_m) {
+        (Some(shape), Some(size_m)) => Ok(Some((shape, size_m))),
+        (Some(_), None) => {
+            Err(fields.missing("size_m", "its longest side or its diameter, for instance 0.3"))
+        }
+        (None, Some(_)) => {
+            Err(fields.refuse("size_m", "stands without stock", "write stock = \"bar\", or leave it out"))
+        }
+        (None, None) => Ok(None),
+    }
+}
+
+/// A preset's name, or a table of constants: elastic ones, and what else differs from the default material.
+fn read_material(fields: &mut Fields) -> Result<Option<Material>, FileError> {
+    let table = match fields.take("material") {
+        None => return Ok(None),
+        Some(Value::String(name)) => {
+            let unknown = || {
+                let right = format!("must be one of: {}, or a table of constants", Material::names());
+                fields.refuse("material", format!("\"{name}\" is unknown"), right)
+            };
+            return Material::by_name(&name).map(Some).ok_or_else(unknown);
+        }
+        Some(Value::Table(table)) => table,
         Some(other) => {
             let what = format!("{} is not a material", fields::shown(&other));
             let right = "write a preset's name, or { young_pa = …, poisson = …, density_kg_m3 = … }";
             return Err(fields.refuse("material", what, right));
         }
     };
-    let residual = fields.number("residual", limits::material::RESIDUAL)?;
-    let bus = fields.text("bus")?;
-    fields.finish()?;
-    Ok(BodyEntry { name, modes, material, residual, bus })
-}
-
-fn read_material(mut fields: Fields) -> Result<MaterialEntry, FileError> {
-    let material = MaterialEntry::Constants {
-        young_pa: fields.needed_number("young_pa", limits::material::YOUNG_PA)?,
-        poisson: fields.needed_number("poisson", limits::material::POISSON)?,
-        density_kg_m3: fields.needed_number("density_kg_m3", limits::material::DENSITY_KG_M3)?,
+    use limits::material as range;
+    let mut fields = Fields::new(table, fields.inner("material"));
+    let young_pa = fields.needed_number("young_pa", range::YOUNG_PA)?;
+    let poisson = fields.needed_number("poisson", range::POISSON)?;
+    let other =
+        Material::new(young_pa, poisson, fields.needed_number("density_kg_m3", range::DENSITY_KG_M3)?);
+    let material = Material {
+        alpha_per_s: fields.number_or("alpha_per_s", other.alpha_per_s, range::ALPHA_PER_S)?,
+        eta: fields.number_or("eta", other.eta, range::ETA)?,
+        beta_s: fields.number_or("beta_s", other.beta_s, range::BETA_S)?,
+        mu_static: fields.number_or("mu_static", other.mu_static, limits::FRICTION)?,
+        mu_kinetic: fields.number_or("mu_kinetic", other.mu_kinetic, limits::FRICTION)?,
+        roughness: fields.number_or("roughness", other.roughness, limits::ROUGHNESS)?,
+        micro_relief_m: fields.number_or("micro_relief_m", other.micro_relief_m, limits::MICRO_RELIEF_M)?,
+        ..other
     };
     fields.finish()?;
-    Ok(material)
+    Ok(Some(material))
 }
 
 /// `[probe]`, the only one, or `[[probe]]`, of which the one without a name is the default.

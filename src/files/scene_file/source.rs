@@ -1,4 +1,4 @@
-//! Where a surface's heights come from: one source, or several put together.
+//! The source of a surface's heights, as a scene file writes it: one, or several put together.
 //!
 //! The same keys make a surface's own source and each part of `sum`, `mask` and `crossfade`.
 

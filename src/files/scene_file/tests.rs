@@ -51,7 +51,7 @@ limit = false
     .unwrap();
     assert_eq!(scene.sample_rate_hz, Some(44_100.0));
     assert_eq!(scene.contacts.as_deref(), Some(Path::new("dir/stroke.jsonl")));
-    assert_eq!(scene.bodies[0].material, Some(MaterialEntry::Preset("ceramic".to_owned())));
+    assert_eq!(scene.bodies[0].material, Some(Material::CERAMIC));
     let surface = &scene.surfaces[0];
     assert_eq!((surface.width_m, surface.micro_relief_m), (0.14, Some(2e-6)));
     assert!(matches!(&surface.source, Source::Map { image, relief_m, invert: false }

@@ -1,4 +1,4 @@
-//! What the game reports: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
+//! Reports of the game: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
 
 use super::Scene;
 use crate::link::message::{Felt, Message};

@@ -1,4 +1,4 @@
-//! How sand pushes back, and what its grains do.
+//! The force law of sand, and of its grains.
 //!
 //! ```text
 //! F_r(d) = k_s (e^{k_c d} − 1)   for d > 0, else 0, upwards      d(F) its inverse

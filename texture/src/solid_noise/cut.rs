@@ -1,4 +1,4 @@
-//! Where a surface lies in the block of noise.
+//! The cut of a surface through the block of noise.
 
 /// The plane in which a surface cuts the block of noise: position = origin + u · u_axis + v · v_axis.
 #[derive(Debug, Clone, Copy, PartialEq)]

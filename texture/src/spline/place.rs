@@ -1,4 +1,4 @@
-//! Where positions lie among the texels of a map.
+//! Texel coordinates of positions on a map.
 
 use super::vector::Vector;
 use super::{PAD, REACH};

@@ -1,4 +1,4 @@
-//! From the minima of the feature matrix to a lattice, or to the answer that there is none.
+//! Lattice search among the minima of the feature matrix, which may find none.
 //!
 //! The document cuts the minima with a threshold its user tunes, and no threshold serves all pictures: the best fixed one moves
 //! from 0.3 to 0.85 between clean and noisy patterns. Ours has none:

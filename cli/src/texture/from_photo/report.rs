@@ -1,4 +1,4 @@
-//! What `from-photo` reports: `report.json`, `--json` and the words for people.
+//! The report of `from-photo`: `report.json`, `--json` and the lines for people.
 
 use super::Options;
 use crate::texture::object::SizeMm;
