@@ -95,9 +95,11 @@ pub use model::event::{
 };
 pub use model::id::{BodyId, ProbeId, SurfaceId};
 pub use model::material::{Material, MaterialPreset};
-pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
+pub use model::modal_model::{FORMAT as MODES_FORMAT, MAX_POSITIONS, ModalModel, ModalModelError};
+pub use model::mode_shapes::{ModeShapes, Unit as ShapeUnit};
 pub use model::probe::{PROBE_PRESETS, probe_by_name};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
+pub use model::shapes_file::{load_shapes, parse_shapes};
 pub use model::stock::Stock;
 pub use model::surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,

@@ -4,6 +4,7 @@
 //! to an impulse of `impulse_n_s`; the engine scales linearly, so an impulse J sounds as
 //! y · J / `impulse_n_s` (Hasti §III-D).
 
+use crate::model::mode_shapes::ModeShapes;
 use crate::model::residual::Residual;
 use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
@@ -15,6 +16,8 @@ use std::path::{Path, PathBuf};
 pub const FORMAT: &str = "asperity.modes";
 /// The `version` this crate reads and writes.
 pub const VERSION: u32 = 1;
+/// The version that has shapes beside the modes ([`ModeShapes`]); its modes play as those of version 1 do.
+pub const VERSION_WITH_SHAPES: u32 = 2;
 /// Most modes a body may have.
 pub const MAX_MODES: usize = 65_536;
 
@@ -49,7 +52,7 @@ pub enum ModalModelError {
         source: std::io::Error,
     },
     /// The file is not JSON of this shape.
-    #[error("{}: {message}; must be JSON with format \"asperity.modes\", version 1 and a list \"modes\"", path.display())]
+    #[error("{}: {message}; must be JSON with format \"asperity.modes\", version 1 or 2 and a list \"modes\"", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -81,6 +84,8 @@ struct File {
     positions: Vec<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     residual: Option<Residual>,
+    #[serde(default, skip_serializing)]
+    shapes: Option<ModeShapes>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -136,7 +141,7 @@ impl ModalModel {
     /// Reads `NAME.modes.json`.
     ///
     /// # Errors
-    /// When the file cannot be read, is not a modes file of version 1, or holds a number that no body
+    /// When the file cannot be read, is not a modes file of version 1 or 2, or holds a number that no body
     /// can have.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModalModelError> {
         let path = path.as_ref();
@@ -168,8 +173,11 @@ impl ModalModel {
         if file.format != FORMAT {
             return Err(malformed(format!("format is \"{}\"", file.format)));
         }
-        if file.version != VERSION {
-            return Err(malformed(format!("version is {}", file.version)));
+        match (&file.shapes, file.version) {
+            (None, VERSION | VERSION_WITH_SHAPES) => {}
+            (Some(shapes), VERSION_WITH_SHAPES) => shapes.check(file.modes.len()).map_err(malformed)?,
+            (Some(_), VERSION) => return Err(malformed("shapes stand in version 1; need version 2".into())),
+            _ => return Err(malformed(format!("version is {}", file.version))),
         }
         let modes = file
             .modes
@@ -208,6 +216,7 @@ impl ModalModel {
             modes,
             positions: self.positions.clone(),
             residual: self.residual.clone(),
+            shapes: None,
         };
         serde_json::to_string(&file).unwrap_or_default()
     }
