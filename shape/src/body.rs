@@ -1,6 +1,6 @@
 //! A mesh becomes a body that rings: solved, with its shapes on a triangulation of its surface.
 
-use crate::eigenmodes::{Eigenmodes, Wanted, solve};
+use crate::eigenmodes::{Eigenmodes, MOST_MODES, Wanted, solve};
 use crate::elastic::Elastic;
 use crate::error::ShapeError;
 use crate::filling::Body;
@@ -12,9 +12,10 @@ use crate::vector::{distance, longest_side};
 use crate::volume_mesh::{EDGES, MOST_DEGREES_OF_FREEDOM, VolumeMesh};
 
 /// Unknowns of a mesh that neither walls nor waves want finer.
-const ORDINARY_UNKNOWNS: f64 = 18_000.0;
-/// Spacings to the shortest wave: the highest mode is then right to about 1 %.
-const PER_WAVE: f64 = 8.0;
+const ORDINARY_UNKNOWNS: f64 = 24_000.0;
+/// Spacings to the shortest wave through the body and along a wall: the highest mode is then right to about 1 %.
+const PER_SHEAR_WAVE: f64 = 6.0;
+const PER_BENDING_WAVE: f64 = 11.0;
 /// A body longer than this is likely to be in other units, m.
 const LARGE_M: f64 = 20.0;
 /// A body shorter than this is likely to be in other units, m.
@@ -128,10 +129,22 @@ fn from_surface(
     mut told: Vec<String>,
     progress: &mut dyn FnMut(f64),
 ) -> Result<SolvedBody, ShapeError> {
-    let wave = |hz: f64| material.shortest_wave_m(body.wall_m, hz) / PER_WAVE;
+    let wave = |hz: f64| {
+        let bending_m = material.bending_wave_m(body.wall_m, hz) / PER_BENDING_WAVE;
+        bending_m.min(material.shear_wave_m(hz) / PER_SHEAR_WAVE)
+    };
     let mut spacing_m = body.spacing_m(ORDINARY_UNKNOWNS).min(body.longest_spacing_m());
-    if let Some(hz) = making.wanted.up_to_hz.filter(|_| making.wanted.most > 400) {
+    if let Some(hz) = making.wanted.up_to_hz.filter(|_| making.wanted.most > MOST_MODES) {
         spacing_m = spacing_m.min(wave(hz));
+        let unknowns = body.expected_unknowns(spacing_m);
+        if unknowns > MOST_DEGREES_OF_FREEDOM as f64 && spacing_m < body.longest_spacing_m() {
+            let what = format!(
+                "waves of {hz} Hz want points every {:.2} mm: {unknowns:.0} unknowns",
+                1e3 * spacing_m
+            );
+            let right = format!("at most {MOST_DEGREES_OF_FREEDOM}: lower it, or give --max-modes");
+            return Err(ShapeError::new("--up-to", what, right));
+        }
     }
     let mut repairs = Vec::new();
     let mut volume = body.fill(spacing_m, &mut repairs)?;
@@ -142,8 +155,9 @@ fn from_surface(
         let finest_m = body.spacing_m(most).max(finer_m);
         if finest_m > 1.05 * finer_m {
             told.push(format!(
-                "the mesh allowed has {:.1} spacings to the shortest wave instead of {PER_WAVE}: the highest modes are too high",
-                PER_WAVE * finer_m / finest_m
+                "the mesh allowed has points every {:.2} mm, the highest modes want {:.2} mm: they are too high",
+                1e3 * finest_m,
+                1e3 * finer_m
             ));
         }
         repairs.clear();
@@ -207,7 +221,7 @@ fn tell_size(mesh: &Mesh, told: &mut Vec<String>) {
 
 /// A given mesh is solved as it is; where its longest edge is long against the shortest wave, that is told.
 fn tell_coarse(volume: &VolumeMesh, material: &Elastic, top_hz: f64, told: &mut Vec<String>) {
-    let shear_m = (material.lame_pa().1 / material.density_kg_m3).sqrt() / top_hz;
+    let shear_m = material.shear_wave_m(top_hz);
     let edge = |t: &[u32; 4]| {
         let c = volume.corners(*t);
         EDGES.iter().map(|&[a, b]| distance(c[a], c[b])).fold(0.0, f64::max)

@@ -46,15 +46,17 @@ impl Elastic {
         (self.young_pa / self.density_kg_m3).sqrt()
     }
 
-    /// Length of a bending wave in a plate, λ = 2π (D / (ρ t ω²))^¼ with D = E t³ / 12(1−ν²), m; never longer than the
-    /// shear wave, which is what counts in a thick body.
+    /// Length of a bending wave in a plate, λ = 2π (D / (ρ t ω²))^¼ with D = E t³ / 12(1−ν²), m.
     #[must_use]
-    pub fn shortest_wave_m(&self, thickness_m: f64, frequency_hz: f64) -> f64 {
+    pub fn bending_wave_m(&self, thickness_m: f64, frequency_hz: f64) -> f64 {
         let omega = std::f64::consts::TAU * frequency_hz;
         let rigidity = self.young_pa * thickness_m.powi(3) / (12.0 * (1.0 - self.poisson * self.poisson));
-        let bending = std::f64::consts::TAU
-            * (rigidity / (self.density_kg_m3 * thickness_m * omega * omega)).powf(0.25);
-        let shear = (self.lame_pa().1 / self.density_kg_m3).sqrt() / frequency_hz;
-        bending.min(shear)
+        std::f64::consts::TAU * (rigidity / (self.density_kg_m3 * thickness_m * omega * omega)).powf(0.25)
+    }
+
+    /// Length of a shear wave, √(μ/ρ)/f, m.
+    #[must_use]
+    pub fn shear_wave_m(&self, frequency_hz: f64) -> f64 {
+        (self.lame_pa().1 / self.density_kg_m3).sqrt() / frequency_hz
     }
 }

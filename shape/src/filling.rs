@@ -17,7 +17,7 @@ use crate::volume_mesh::{EDGES, FACES, MOST_DEGREES_OF_FREEDOM, VolumeMesh, sort
 use std::collections::{HashMap, HashSet};
 
 /// Spacing over wall thickness at most: beyond that quadratic elements get stiff in bending.
-const LONGEST_PER_WALL: f64 = 1.5;
+const LONGEST_PER_WALL: f64 = 1.4;
 /// Faces may stray this part of the spacing from the surface.
 const STRAY: f64 = 0.12;
 /// How often points are added.
@@ -119,11 +119,7 @@ impl Body {
             1e3 * self.wall_m,
             1e3 * self.side
         );
-        ShapeError::new(
-            "",
-            what,
-            format!("at most {MOST_DEGREES_OF_FREEDOM}: give thicker walls, or a lower --up-to"),
-        )
+        ShapeError::new("", what, format!("at most {MOST_DEGREES_OF_FREEDOM}: give it thicker walls"))
     }
 
     fn check_volume(&self, mesh: &VolumeMesh) -> Result<(), ShapeError> {

@@ -11,7 +11,9 @@ pub const MOST_TRIANGLES: usize = 4_000_000;
 /// Points nearer than this part of the longest side are one.
 const JOINED: f64 = 1e-6;
 /// Holes whose triangles are more than this part of the whole surface make it an open sheet.
-const LARGEST_HOLES: f64 = 0.12;
+const LARGEST_HOLES: f64 = 0.09;
+/// Single triangles that are missing were lost; they may be this part of the surface (a box has twelve in all).
+const LARGEST_LOST: f64 = 0.3;
 /// A part counts as lying inside another when this much of its area does.
 const NESTED: f64 = 0.9;
 
@@ -170,9 +172,11 @@ impl SurfaceMesh {
     /// When it is an open sheet or encloses nothing.
     pub fn closed(mut self, told: &mut Vec<String>) -> Result<Self, ShapeError> {
         let whole = self.area_m2();
-        let (caps, loops) = self.caps();
-        let missing: f64 = caps.iter().map(|t| length(area_vector(*t))).sum();
-        if missing > LARGEST_HOLES * (whole + missing) {
+        let (caps, lost, loops) = self.caps();
+        let area = |triangles: &[[Vec3; 3]]| triangles.iter().map(|t| length(area_vector(*t))).sum::<f64>();
+        let missing = area(&caps) + area(&lost);
+        let closed = whole + missing;
+        if area(&caps) > LARGEST_HOLES * closed || area(&lost) > LARGEST_LOST * closed {
             let percent = 100.0 * missing / (whole + missing);
             let what = format!("is an open sheet: {percent:.0} % of what would close it is missing");
             return Err(ShapeError::new(
@@ -185,7 +189,7 @@ impl SurfaceMesh {
             let percent = 100.0 * missing / (whole + missing);
             told.push(format!("{loops} holes were closed, {percent:.1} % of the surface"));
         }
-        for [a, b, c] in caps {
+        for [a, b, c] in caps.into_iter().chain(lost) {
             let first = self.points.len() as u32;
             self.points.extend([a, b, c]);
             self.triangles.push([first, first + 1, first + 2]);
@@ -205,8 +209,8 @@ impl SurfaceMesh {
         Ok(rejoined)
     }
 
-    /// Triangles that close the holes, each hole a fan around its middle, and how many holes there are.
-    fn caps(&self) -> (Vec<[Vec3; 3]>, usize) {
+    /// Triangles that close the holes, each hole a fan around its middle; those that were lost singly; how many holes there are.
+    fn caps(&self) -> (Vec<[Vec3; 3]>, Vec<[Vec3; 3]>, usize) {
         // A hole's rim runs against the triangles beside it.
         let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
         let mut rims: Vec<(u32, u32)> = Vec::new();
@@ -218,7 +222,7 @@ impl SurfaceMesh {
             }
         }
         rims.sort_unstable();
-        let (mut caps, mut loops) = (Vec::new(), 0);
+        let (mut caps, mut lost, mut loops) = (Vec::new(), Vec::new(), 0);
         for (start, _) in rims {
             let mut rim = vec![start];
             while let Some(to) = rim.last().and_then(|at| next.get_mut(at)).and_then(Vec::pop) {
@@ -234,13 +238,13 @@ impl SurfaceMesh {
             let places: Vec<Vec3> = rim.iter().map(|&i| self.points[i as usize]).collect();
             let n = places.len();
             if n == 3 {
-                caps.push([places[0], places[1], places[2]]);
+                lost.push([places[0], places[1], places[2]]);
                 continue;
             }
             let middle: Vec3 = std::array::from_fn(|c| places.iter().map(|p| p[c]).sum::<f64>() / n as f64);
             caps.extend((0..n).map(|i| [places[i], places[(i + 1) % n], middle]));
         }
-        (caps, loops)
+        (caps, lost, loops)
     }
 
     /// Outer parts enclose a positive volume; a part inside another that is turned inwards is a cavity and stays.

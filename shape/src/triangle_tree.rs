@@ -26,8 +26,6 @@ struct Node {
 /// Triangles for questions of place.
 pub struct TriangleTree {
     triangles: Vec<[Vec3; 3]>,
-    /// Where each came from.
-    numbers: Vec<usize>,
     nodes: Vec<Node>,
 }
 
@@ -36,8 +34,6 @@ pub struct TriangleTree {
 pub struct SurfacePoint {
     /// Where, m.
     pub point: Vec3,
-    /// The triangle's number.
-    pub triangle: usize,
     /// How far from the place asked for, m.
     pub distance: f64,
 }
@@ -52,11 +48,8 @@ impl TriangleTree {
     /// Sorts triangles into boxes.
     #[must_use]
     pub fn new(triangles: &[[Vec3; 3]]) -> Self {
-        let mut this = Self {
-            triangles: triangles.to_vec(),
-            numbers: (0..triangles.len()).collect(),
-            nodes: Vec::with_capacity(triangles.len() / 2 + 2),
-        };
+        let mut this =
+            Self { triangles: triangles.to_vec(), nodes: Vec::with_capacity(triangles.len() / 2 + 2) };
         if !triangles.is_empty() {
             this.build(0, triangles.len());
         }
@@ -90,11 +83,8 @@ impl TriangleTree {
             let mut order: Vec<usize> = (first..last).collect();
             let key = |i: &usize| mean(self.triangles[*i])[axis];
             order.sort_by(|a, b| key(a).total_cmp(&key(b)));
-            let sorted: Vec<_> = order.iter().map(|&i| (self.triangles[i], self.numbers[i])).collect();
-            for (i, (triangle, number)) in sorted.into_iter().enumerate() {
-                self.triangles[first + i] = triangle;
-                self.numbers[first + i] = number;
-            }
+            let sorted: Vec<_> = order.iter().map(|&i| self.triangles[i]).collect();
+            self.triangles[first..last].copy_from_slice(&sorted);
             let middle = usize::midpoint(first, last);
             let left = self.build(first, middle);
             let right = self.build(middle, last);
@@ -143,7 +133,7 @@ impl TriangleTree {
                     let point = nearest_in_triangle(self.triangles[i], place);
                     let away = distance(point, place);
                     if best.is_none_or(|b| away < b.distance) {
-                        best = Some(SurfacePoint { point, triangle: self.numbers[i], distance: away });
+                        best = Some(SurfacePoint { point, distance: away });
                     }
                 }
             } else {

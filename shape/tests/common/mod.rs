@@ -1,5 +1,9 @@
 //! Volume meshes made here: a block cut into cells of six tetrahedra, and maps of it.
 
+// Each test uses some of them.
+#![allow(dead_code)]
+
+use asperity_shape::surface_mesh::SurfaceMesh;
 use asperity_shape::vector::Vec3;
 use asperity_shape::volume_mesh::VolumeMesh;
 
@@ -39,8 +43,6 @@ pub fn block(sides: Vec3, cells: [usize; 3]) -> VolumeMesh {
     }
     VolumeMesh { points, tets }
 }
-
-use asperity_shape::surface_mesh::SurfaceMesh;
 
 /// The boundary of a volume mesh.
 pub fn surface_of(mesh: &VolumeMesh) -> SurfaceMesh {
