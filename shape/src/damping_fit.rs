@@ -37,7 +37,7 @@ pub fn fit(modes: &[Mode]) -> Option<Damping> {
     let shares = [1.0, 0.3, 0.03, 0.0];
     let starts = (0..64).map(|i| [shares[i / 16], shares[i / 4 % 4], shares[i % 4]]);
     let best = starts
-        .filter(|share| share.iter().any(|s| *s == 1.0))
+        .filter(|share| share.contains(&1.0))
         .map(|share| descend(std::array::from_fn(|i| share[i] * alone[i]), alone, &damped))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let [alpha_per_s, eta, beta_s] = best.1;

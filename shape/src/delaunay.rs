@@ -23,6 +23,12 @@ pub struct Delaunay {
     smallest: f64,
 }
 
+/// What a new point takes out: tetrahedra, and the faces around them with what lies beyond each.
+struct Hole {
+    inside: Vec<u32>,
+    faces: Vec<([u32; 3], u32)>,
+}
+
 fn coord(p: Vec3) -> Coord3D<f64> {
     Coord3D { x: p[0], y: p[1], z: p[2] }
 }
@@ -68,9 +74,7 @@ impl Delaunay {
     /// The tetrahedron that holds a place.
     fn locate(&self, p: Vec3) -> u32 {
         let mut tet = self.last;
-        let mut turn = 0;
-        for _ in 0..4 * self.tets.len() + 16 {
-            turn += 1;
+        for turn in 0..4 * self.tets.len() + 16 {
             let next = (0..4).map(|i| (i + turn) % 4).find_map(|i| {
                 let face = FACES[i].map(|k| self.tets[tet as usize][k]);
                 let beyond = self.orient(face, p) < 0.0;
@@ -99,7 +103,7 @@ impl Delaunay {
     }
 
     /// The tetrahedra to take out, and the faces around them as (corners, what lies beyond).
-    fn hole(&self, start: u32, p: Vec3) -> Option<(Vec<u32>, Vec<([u32; 3], u32)>)> {
+    fn hole(&self, start: u32, p: Vec3) -> Option<Hole> {
         let mut inside = vec![start];
         let mut is_inside: std::collections::HashSet<u32> = [start].into();
         let mut next = 0;
@@ -117,12 +121,11 @@ impl Delaunay {
             let mut faces = Vec::new();
             let mut grown = false;
             for &tet in &inside.clone() {
-                for i in 0..4 {
-                    let beyond = self.across[tet as usize][i];
+                for (corners, &beyond) in FACES.iter().zip(&self.across[tet as usize]) {
                     if beyond != NONE && is_inside.contains(&beyond) {
                         continue;
                     }
-                    let face = FACES[i].map(|k| self.tets[tet as usize][k]);
+                    let face = corners.map(|k| self.tets[tet as usize][k]);
                     if self.orient(face, p) > 0.0 {
                         faces.push((face, beyond));
                     } else if beyond == NONE {
@@ -134,12 +137,12 @@ impl Delaunay {
                 }
             }
             if !grown {
-                return Some((inside, faces));
+                return Some(Hole { inside, faces });
             }
         }
     }
 
-    fn fill(&mut self, (inside, faces): &(Vec<u32>, Vec<([u32; 3], u32)>), number: u32) {
+    fn fill(&mut self, Hole { inside, faces }: &Hole, number: u32) {
         for &tet in inside {
             self.alive[tet as usize] = false;
             self.free.push(tet);

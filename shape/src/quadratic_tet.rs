@@ -66,9 +66,10 @@ pub fn stiffness(corners: [Vec3; 4], material: &Elastic) -> ElementStiffness {
             }
         }
     }
-    for a in 0..NODES {
-        for b in 0..a {
-            k[a][b] = std::array::from_fn(|i| std::array::from_fn(|j| k[b][a][j][i]));
+    let upper = k;
+    for (a, row) in k.iter_mut().enumerate() {
+        for (b, block) in row.iter_mut().enumerate().take(a) {
+            *block = std::array::from_fn(|i| std::array::from_fn(|j| upper[b][a][j][i]));
         }
     }
     k

@@ -74,7 +74,7 @@ fn from_corners(points: Vec<Vec3>) -> Result<SurfaceMesh, ShapeError> {
     if points.is_empty() {
         return Err(ShapeError::new("", "has no triangle", "give the surface of a body"));
     }
-    if points.len() % 3 != 0 {
+    if !points.len().is_multiple_of(3) {
         return Err(ShapeError::new("", "its last triangle has no three corners", "give the whole file"));
     }
     if points.iter().flatten().any(|x| !x.is_finite()) {
