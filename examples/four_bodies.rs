@@ -72,6 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
 
+    std::fs::create_dir_all(&folder)?;
     let path = folder.join("four_bodies.wav");
     write_wav(&path, &[&stereo[0], &stereo[1]], RATE_HZ)?;
     // What a listener is to hear: each strike on its side.

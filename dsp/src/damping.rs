@@ -89,8 +89,8 @@ mod tests {
 
     #[test]
     fn the_decay_is_that_of_a_spring_with_a_complex_stiffness() {
-        // numpy: imaginary part of sqrt(k (1 + i eta) / m) for k / m = (2 pi 1000)^2: 3.141592 (eta 1e-3), 62.82871 (eta 0.02).
-        for (eta, decay_per_s) in [(1e-3, 3.141_592), (0.02, 62.828_71)] {
+        // numpy: imaginary part of sqrt(k (1 + i eta) / m) for k / m = (2 pi 1000)^2: 31.41553 (eta 0.01), 62.82871 (eta 0.02).
+        for (eta, decay_per_s) in [(0.01, 31.415_53), (0.02, 62.828_71)] {
             let d = Damping { alpha_per_s: 0.0, eta, beta_s: 0.0 }.decay_per_s(1000.0);
             assert!((d / decay_per_s - 1.0).abs() < 1e-3, "{d}");
         }

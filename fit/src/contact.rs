@@ -12,10 +12,13 @@
 //! the noise keeps them from modelling it.
 //!
 //! A recurrence of this order cannot follow more modes than half of it, nor what is no sum of modes: what is found here is
-//! a proposal, and [`mod@crate::strike`] asks the fit whether it is true.
+//! a proposal, and `ways` asks the fit whether it is true. The modes of that fit, continued backwards, then tell the end
+//! itself: they are all of the body, so what they leave before it is the push ([`release_samples`]).
 //!
 //! Measured: half-sine forces of 0.3–3 ms on bodies of 6–24 modes end within 0.2 ms of where they do.
 
+use crate::partial::Partial;
+use crate::projection::synthesise;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Longest order; 80 modes at most matter in a tenth of a second.
@@ -27,15 +30,9 @@ const LEARNT_FOR_S: f64 = 0.12;
 /// Smoothing of the squared error.
 const SMOOTHING_S: f64 = 0.0002;
 /// A push is this many times what the learnt stretch leaves at its loudest.
-const EXCESS: f64 = 6.0;
-/// And at least this part of the signal's own power there: 60 dB under it nobody pushes.
-const LEAST_SHARE: f64 = 1e-6;
-/// A contact longer than `SHORT_S` that holds more than this part of the strike's energy is no contact: the
-/// sound is made otherwise (echoes, layers, a soft codec), and without it little would be left.
-const LARGEST_SHARE: f64 = 0.15;
-const SHORT_S: f64 = 0.004;
+const EXCESS: f64 = 10.0;
 /// No striker touches longer; what is not ringing yet by then is the room or the instrument's resonator.
-const LONGEST_S: f64 = 0.005;
+pub const LONGEST_S: f64 = 0.005;
 /// Ridge relative to the mean square, for files without noise.
 const RIDGE: f64 = 1e-10;
 
@@ -48,30 +45,34 @@ pub fn contact_samples(strike: &[f64], rate_hz: f64, noise_variance: f64) -> usi
         let from = (from_s * rate_hz) as usize;
         let smoothing = ((SMOOTHING_S * rate_hz) as usize).max(2);
         let Some(errors) = backward_errors(strike, from, rate_hz, noise_variance) else { return found };
-        let levels: Vec<Level> = (0..errors.len() + 1 - smoothing)
-            .map(|n| {
-                let error = mean_square(&errors[n..n + smoothing]);
-                Level {
-                    error,
-                    share: error / mean_square(&strike[n..(n + 8 * smoothing).min(strike.len())]).max(1e-300),
-                }
-            })
-            .collect();
-        let usual = Level::usual(&levels[from.min(levels.len())..]);
-        let pushed = (0..from.min(levels.len())).rev().find(|&n| {
-            levels[n].error > EXCESS * usual.error
-                && levels[n].share > (EXCESS * usual.share).max(LEAST_SHARE)
-        });
+        let levels = smoothed_squares(&errors, smoothing);
+        let usual = usual(&levels[from.min(levels.len())..]);
+        let pushed = levels[..from.min(levels.len())].iter().rposition(|&error| error > EXCESS * usual);
         found = pushed.map_or(0, |n| n + smoothing);
         // Well clear of the stretch it was learnt from: that stretch rang freely.
         if 2 * found < from {
             break;
         }
     }
-    let energy = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
-    let short = found <= (SHORT_S * rate_hz) as usize;
-    let contact = found.min((LONGEST_S * rate_hz) as usize);
-    if short || energy(&strike[..contact]) <= LARGEST_SHARE * energy(strike) { contact } else { 0 }
+    found.min((LONGEST_S * rate_hz) as usize)
+}
+
+/// Samples from `sound`'s first one to where `partials` (amplitudes at sample `late`), continued backwards, leave more than
+/// noise of `variance`: where the push ends that was over by `late`.
+#[must_use]
+pub fn release_samples(
+    sound: &[f64],
+    late: usize,
+    partials: &[Partial],
+    variance: f64,
+    rate_hz: f64,
+) -> usize {
+    let smoothing = ((SMOOTHING_S * rate_hz) as usize).max(2);
+    let early: Vec<Partial> = partials.iter().map(|p| p.moved(-(late as f64))).collect();
+    let mut left = synthesise(&early, (late + smoothing).min(sound.len()));
+    left.iter_mut().zip(sound).for_each(|(left, x)| *left = x - *left);
+    let pushed = smoothed_squares(&left, smoothing).iter().rposition(|&square| square > EXCESS * variance);
+    pushed.map_or(0, |n| (n + smoothing).min(late))
 }
 
 /// e of the first samples, learnt from `from` on; `None` when there is too little.
@@ -111,27 +112,19 @@ fn moments(x: &[f64], order: usize, rows: usize) -> DMatrix<f64> {
     moments
 }
 
-/// Squared error of the recurrence around a sample, and the same as a share of the signal there.
-#[derive(Clone, Copy)]
-struct Level {
-    error: f64,
-    share: f64,
+/// Means of `count` squares from every sample on.
+fn smoothed_squares(errors: &[f64], count: usize) -> Vec<f64> {
+    errors.windows(count).map(mean_square).collect()
 }
 
-impl Level {
-    /// The 90th percentile of each over the first sixth: what ringing alone leaves at its loudest. Noise
-    /// leaves the same error everywhere; rooms and lossy codecs leave the same share.
-    fn usual(levels: &[Self]) -> Self {
-        let rank = |value: fn(&Self) -> f64| {
-            let mut first: Vec<f64> = levels[..levels.len() / 6].iter().map(value).collect();
-            if first.is_empty() {
-                return f64::INFINITY;
-            }
-            let rank = first.len() * 9 / 10;
-            *first.select_nth_unstable_by(rank, f64::total_cmp).1
-        };
-        Self { error: rank(|l| l.error), share: rank(|l| l.share) }
+/// The 90th percentile over the first sixth: what ringing alone leaves at its loudest.
+fn usual(levels: &[f64]) -> f64 {
+    let mut first = levels[..levels.len() / 6].to_vec();
+    if first.is_empty() {
+        return f64::INFINITY;
     }
+    let rank = first.len() * 9 / 10;
+    *first.select_nth_unstable_by(rank, f64::total_cmp).1
 }
 
 fn mean_square(x: &[f64]) -> f64 {
@@ -141,27 +134,35 @@ fn mean_square(x: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::amplitudes::fit_amplitudes;
     use asperity_dsp::rng::Rng;
     use std::f64::consts::PI;
 
     const RATE_HZ: f64 = 44_100.0;
 
+    /// The modes of a body, without amplitudes.
+    fn bodies(modes: usize, seed: u64) -> Vec<Partial> {
+        let mut rng = Rng::new(seed);
+        let mut drawn = || Partial {
+            omega: 2.0 * PI * 300.0 * 30.0_f64.powf(rng.uniform()) / RATE_HZ,
+            delta: (10.0 + 60.0 * rng.uniform()) / RATE_HZ,
+            c: nalgebra::Complex::new(0.0, 0.0),
+        };
+        (0..modes).map(|_| drawn()).collect()
+    }
+
     /// A body of `modes` modes pushed by a half-sine of `contact_s`; an impulse when that is 0.
     fn struck(modes: usize, contact_s: f64, noise: f64, seed: u64) -> Vec<f64> {
-        let mut rng = Rng::new(seed);
+        let mut rng = Rng::new(seed + 1000);
         let push = ((contact_s * RATE_HZ) as usize).max(1);
         let force: Vec<f64> = (0..push).map(|n| (PI * (n as f64 + 0.5) / push as f64).sin()).collect();
         let mut out: Vec<f64> = (0..22_050).map(|_| noise * rng.normal()).collect();
-        for _ in 0..modes {
-            let omega = 2.0 * PI * 300.0 * 30.0_f64.powf(rng.uniform()) / RATE_HZ;
-            let radius = (-(10.0 + 60.0 * rng.uniform()) / RATE_HZ).exp();
+        for mode in bodies(modes, seed) {
+            let ((sin, cos), radius) = (mode.omega.sin_cos(), (-mode.delta).exp());
             let (mut re, mut im) = (0.0, 0.0);
             for (n, x) in out.iter_mut().enumerate() {
                 let pushed = re + force.get(n).copied().unwrap_or(0.0);
-                (re, im) = (
-                    radius * (pushed * omega.cos() - im * omega.sin()),
-                    radius * (pushed * omega.sin() + im * omega.cos()),
-                );
+                (re, im) = (radius * (pushed * cos - im * sin), radius * (pushed * sin + im * cos));
                 *x += 0.02 * im;
             }
         }
@@ -169,12 +170,18 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_a_push_is_found_to_a_fraction_of_a_millisecond() {
+    fn a_push_is_over_where_the_recurrence_says_and_lasts_until_where_the_modes_say() {
         for (contact_s, noise) in [(3e-4, 0.0), (7e-4, 1e-5), (1e-3, 1e-4), (3e-3, 1e-5)] {
             for (modes, seed) in [(6, 1), (24, 2)] {
-                let samples = contact_samples(&struck(modes, contact_s, noise, seed), RATE_HZ, noise * noise);
-                let off_s = samples as f64 / RATE_HZ - contact_s;
-                assert!(off_s.abs() < 5e-4, "{modes} modes, {contact_s} s: off by {off_s} s");
+                let sound = struck(modes, contact_s, noise, seed);
+                let late = contact_samples(&sound, RATE_HZ, noise * noise);
+                let off_s = late as f64 / RATE_HZ - contact_s;
+                assert!((-1e-4..2.2e-3).contains(&off_s), "{modes} modes, {contact_s} s: off by {off_s} s");
+                let mut after = bodies(modes, seed);
+                fit_amplitudes(&sound[late..], &mut after);
+                let end = release_samples(&sound, late, &after, (noise * noise).max(1e-14), RATE_HZ);
+                let off_s = end as f64 / RATE_HZ - contact_s;
+                assert!(off_s.abs() < 1.5e-4, "{modes} modes, {contact_s} s: really off by {off_s} s");
             }
         }
     }
@@ -183,8 +190,13 @@ mod tests {
     fn what_rings_from_the_first_sample_has_no_contact() {
         for noise in [0.0, 1e-5, 1e-3, 3e-2] {
             for (modes, seed) in [(1, 3), (6, 4), (24, 5)] {
-                let samples = contact_samples(&struck(modes, 0.0, noise, seed), RATE_HZ, noise * noise);
-                assert!(samples <= 14, "{modes} modes, noise {noise}: {samples}");
+                let sound = struck(modes, 0.0, noise, seed);
+                let late = contact_samples(&sound, RATE_HZ, noise * noise);
+                assert!(late <= 60, "{modes} modes, noise {noise}: {late}");
+                let mut after = bodies(modes, seed);
+                fit_amplitudes(&sound[late..], &mut after);
+                let end = release_samples(&sound, late, &after, (noise * noise).max(1e-14), RATE_HZ);
+                assert!(end <= 14, "{modes} modes, noise {noise}: {end}");
             }
         }
         assert_eq!(contact_samples(&[0.5; 30], RATE_HZ, 0.0), 0);

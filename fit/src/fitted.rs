@@ -9,6 +9,7 @@ use crate::partial::Partial;
 use crate::pruning::{Uncertainty, uncertainties};
 use crate::recording::Recording;
 use crate::residual::{Burst, Residual, ratio_db};
+use crate::rumble::take_rumble;
 use crate::struck::{lead, struck};
 use crate::suspicion::{self, energy_spectrum};
 pub use crate::warning::Warning;
@@ -145,6 +146,10 @@ impl Fit {
         let least = strongest * 10.0_f64.powf(0.1 * options.least_level_db);
         partials.retain(|p| p.energy(count) >= least);
         warnings.extend(suspicion::take_what_does_not_ring(&mut partials, count, rate));
+        if !analysis.explained {
+            let left: f64 = analysis.residual.iter().map(|x| x * x).sum();
+            warnings.extend(take_rumble(&mut partials, count, left, rate));
+        }
         warnings.extend(suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
         let mut early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
         // The strike itself, from which times are told now.

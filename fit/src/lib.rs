@@ -12,6 +12,7 @@
 //! | [`onset`] | channel → strikes, and the best of them |
 //! | [`strike`] | strike → modes: the whole way ([`fit`]) |
 //! | [`sum_of_modes`] | segment → may it be a sum of modes in noise |
+//! | `ways` | segment → modes as one of three: a sum of modes, a push and a sum of modes, neither |
 //! | [`contact`] | segment → where the striker may have let go |
 //! | [`ringing`] | segment → is there anything but noise; partials → which stand out of steep noise |
 //! | [`analysis`] | sum of modes → partials: levels, refinement, proof |
@@ -27,6 +28,7 @@
 //! | [`refinement`] | partials → maximum-likelihood partials |
 //! | [`pruning`] | partials → proven partials with standard deviations |
 //! | [`suspicion`], [`warning`] | partials → warnings: hum, no decay, not exponential |
+//! | `rumble` | partials → those from the lowest partial of the body on |
 //! | [`mod@struck`] | partials → what the engine plays |
 //! | [`fitted`] | what comes out |
 //! | [`residual`] | what modes do not explain |
@@ -64,6 +66,7 @@ pub mod recording;
 pub mod refinement;
 pub mod residual;
 pub mod ringing;
+mod rumble;
 pub mod scaling;
 mod sound_file;
 mod sound_format;
@@ -77,6 +80,7 @@ pub mod tail_to_attack;
 pub mod tilt;
 pub mod warning;
 mod wav_file;
+mod ways;
 
 pub use fitted::{Fit, FittedMode, Warning};
 pub use options::FitOptions;

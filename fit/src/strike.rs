@@ -1,57 +1,23 @@
 //! The whole analysis of a strike: a recording becomes modes, past the traps of real recordings.
 //!
-//! mean removed → the best strike chosen ([`crate::onset`]) → analysed from its onset on, as a sum of modes
-//! ([`crate::analysis`]) or, where it is none, from its tail ([`crate::tail_to_attack`]) → what does not ring taken out
+//! mean removed → the best strike chosen ([`crate::onset`]) → analysed from its onset on (`ways`) → what does not ring taken out
 //! and doubts named ([`crate::suspicion`]) → held against the recording as the engine will play it ([`mod@crate::fitted`]).
-//!
-//! *No contact without proof.* While the striker pushes, a body does not ring freely, and modes that are fitted from
-//! the end of the contact on ([`crate::contact`]) are right where those fitted from the onset on are not (1 ms of
-//! half-sine force: 75 dB of resynthesis against 27). But the engine strikes a body at the onset, where such modes are
-//! a guess continued backwards, so the contact is believed only if the fit proves it: from the onset on modes leave
-//! more than noise, from the end of the contact on they do not. A push can pass for modes, too, that are over when it
-//! is; then it is believed if the fit without it needs a quarter fewer modes.
 
-use crate::analysis::{Analysis, analyse, subtract};
-use crate::contact::contact_samples;
 use crate::fitted::{Fit, Warning};
-use crate::limits::Limits;
-use crate::merging::{MERGED_LOSS, merge_resonances};
-use crate::noise_floor::NoiseFloor;
+use crate::limits::LEAST_DECAY_PER_S;
 use crate::onset::{self, Strike};
-use crate::options::{FitOptions, Found, LARGEST_AMPLITUDE};
-use crate::ranking::keep_heard;
+use crate::options::{FitOptions, Found};
 use crate::recording::{FEWEST_SAMPLES, Recording};
-use crate::refinement::{Bounds, refine};
-use crate::sum_of_modes::may_be_sum_of_modes;
-use crate::tail_to_attack::analyse_from_the_tail;
-use std::f64::consts::PI;
+use crate::ways::Sound;
 
 /// Sound shorter than this is warned of, s.
 const SHORT_S: f64 = 0.05;
 /// Longest analysed part, s; recordings above `UNTRIMMED_S` are trimmed where they reach their noise.
 const LONGEST_S: f64 = 40.0;
 const UNTRIMMED_S: f64 = 5.0;
-/// Slowest decay that may be asked for as the fastest, 1/s: T60 = 60 s.
-const LEAST_DECAY_PER_S: f64 = 0.115;
-/// Lowest frequency analysed unless a lower one is asked for, Hz.
-const LOWEST_HZ: f64 = 20.0;
-/// A mode that falls by more nepers than this during the contact is not known at the onset: it is part of
-/// the attack.
-const BACK_NEPERS: f64 = 1.5;
-/// Most modes of a sum, whatever is to be kept of them, and steps of the refit of those kept.
-const MODES_OF_A_SUM: usize = 150;
-const LIMITED_STEPS: usize = 12;
-/// Rounds of merging before.
-const LIMITED_ROUNDS: usize = 6;
-/// Nothing so far below the strongest mode's energy is looked for, dB.
-const FAINTEST_DB: f64 = -90.0;
-/// A mode that falls by this many nepers within the contact is over when that is; of as many modes as this part of them
-/// it may be that they are the push; and this part of them must be saved by a fit without it.
-const OVER_NEPERS: f64 = 1.0;
-const QUARTER: f64 = 0.25;
-
 /// Why a recording cannot be fitted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// An option outside its range.
     #[error("{field}: {value} is refused; {right}")]
@@ -140,10 +106,10 @@ pub fn fit(
     }
     let found = Found { onset: strike.onset, end };
     warn_of_recording(recording, &strike, &found, &mut warnings);
-    let sound = &samples[found.onset..end];
+    let sound = Sound { samples: &samples[found.onset..end], recording, options };
     let (offset, analysis) = match fixed_offset(recording, &found, options) {
-        Some(offset) => (offset, analysed(sound, offset, recording, options, progress)),
-        None => analysed_from_the_onset(sound, recording, options, progress),
+        Some(offset) => (offset, sound.analysed_from(offset, progress)),
+        None => sound.analysed(progress),
     };
     Ok(Fit::assemble(recording, &samples, found, offset, analysis, options, warnings))
 }
@@ -162,87 +128,6 @@ fn chosen(samples: &[f64], recording: &Recording, options: &FitOptions) -> Resul
         }
     };
     Ok(strikes.strike(index))
-}
-
-/// From the onset, or from the end of a contact that is proven; and its samples.
-fn analysed_from_the_onset(
-    sound: &[f64],
-    recording: &Recording,
-    options: &FitOptions,
-    progress: &mut dyn FnMut(f64),
-) -> (usize, Analysis) {
-    let limits = limits(sound, 0, recording, options);
-    let from_the_tail = |progress: &mut dyn FnMut(f64)| (0, analyse_from_the_tail(sound, &limits, progress));
-    if !may_be_sum_of_modes(sound, &limits) {
-        return from_the_tail(progress);
-    }
-    let whole = analysed_as_sum(sound, &limits, progress);
-    if whole.capped && !whole.explained {
-        return from_the_tail(progress);
-    }
-    let contact = contact(sound, recording);
-    let over = whole.partials.iter().filter(|p| p.delta * contact as f64 > OVER_NEPERS).count();
-    let part = |count: usize| QUARTER * count as f64;
-    let modes = whole.partials.len();
-    if whole.explained && (over as f64) < part(modes).max(1.0) {
-        return (0, whole);
-    }
-    if contact > 0 {
-        let ringing = &sound[contact..];
-        let pushed = analysed_as_sum(ringing, &self::limits(ringing, contact, recording, options), progress);
-        let saves = pushed.partials.len() as f64 + part(modes) <= modes as f64;
-        if pushed.explained && (saves || !whole.explained) {
-            return (contact, pushed);
-        }
-    }
-    if whole.explained {
-        return (0, whole);
-    }
-    // Neither is right; the one that leaves less is nearer.
-    let (_, staged) = from_the_tail(progress);
-    let left = |analysis: &Analysis| analysis.residual.iter().map(|x| x * x).sum::<f64>();
-    (0, if left(&whole) < left(&staged) { whole } else { staged })
-}
-
-/// The modes of what follows the first `offset` samples of `sound`, whatever it is.
-fn analysed(
-    sound: &[f64],
-    offset: usize,
-    recording: &Recording,
-    options: &FitOptions,
-    progress: &mut dyn FnMut(f64),
-) -> Analysis {
-    let segment = &sound[offset..];
-    let limits = limits(segment, offset, recording, options);
-    if may_be_sum_of_modes(segment, &limits) {
-        let whole = analysed_as_sum(segment, &limits, progress);
-        if whole.explained {
-            return whole;
-        }
-    }
-    analyse_from_the_tail(segment, &limits, progress)
-}
-
-/// As a sum of modes; of more than may be kept those are kept that are heard best, and refitted.
-fn analysed_as_sum(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
-    let most = limits.max_partials;
-    // A limit is one of what is kept: a sum of modes is recognised by all of them.
-    let all = Limits { max_partials: most.max(MODES_OF_A_SUM), ..*limits };
-    let mut sum = analyse(segment, &all, progress);
-    if sum.explained && sum.partials.len() > most {
-        // What is one resonance takes one place.
-        for _ in 0..LIMITED_ROUNDS {
-            if merge_resonances(segment, &mut sum.partials, &limits.bounds, MERGED_LOSS) == 0 {
-                break;
-            }
-            refine(segment, &mut sum.partials, &limits.bounds, LIMITED_STEPS);
-        }
-        keep_heard(&mut sum.partials, segment.len(), most, limits.rate_hz);
-        refine(segment, &mut sum.partials, &limits.bounds, LIMITED_STEPS);
-        sum.residual = subtract(segment, &sum.partials);
-        sum.capped = true;
-    }
-    sum
 }
 
 /// The samples less the mean of their last quarter (where a strike is no more).
@@ -310,13 +195,6 @@ fn fixed_offset(recording: &Recording, found: &Found, options: &FitOptions) -> O
     Some(if offset + FEWEST_SAMPLES <= found.end - found.onset { offset } else { 0 })
 }
 
-/// Samples until the striker lets go, as far as anything says so.
-fn contact(sound: &[f64], recording: &Recording) -> usize {
-    let noise = NoiseFloor::estimate(sound, recording.sample_rate_hz, recording.quantum.powi(2) / 12.0);
-    let contact = contact_samples(sound, recording.sample_rate_hz, noise.mean_variance());
-    if contact + FEWEST_SAMPLES <= sound.len() { contact } else { 0 }
-}
-
 /// From the onset to the end of the clipping, when it is over soon.
 fn clipped_offset(recording: &Recording, found: &Found) -> Option<usize> {
     let soon = found.onset + (0.1 * recording.sample_rate_hz) as usize;
@@ -324,32 +202,4 @@ fn clipped_offset(recording: &Recording, found: &Found) -> Option<usize> {
     let last = runs.iter().rev().find(|run| run.0 >= found.onset && run.1 < soon.min(found.end))?;
     let offset = last.1 + 2 - found.onset;
     (offset + FEWEST_SAMPLES < found.end - found.onset).then_some(offset)
-}
-
-/// What bounds the analysis of `segment`, which begins `offset` samples after the onset.
-fn limits(segment: &[f64], offset: usize, recording: &Recording, options: &FitOptions) -> Limits {
-    let rate = recording.sample_rate_hz;
-    let peak = segment.iter().fold(0.0_f64, |peak, x| peak.max(x.abs()));
-    // Modes outside the band are found as well, or what they leave would be taken for noise in it.
-    let low = options.band_hz.0.min(LOWEST_HZ);
-    Limits {
-        bounds: Bounds {
-            omega_low: 2.0 * PI * low.max(1.0) / rate,
-            omega_high: 2.0 * PI * 0.49,
-            // An undamped tone is fitted as it is; what is written down must die some day (`suspicion`).
-            delta_low: 1e-3 * LEAST_DECAY_PER_S / rate,
-            delta_high: (options.fastest_decay_per_s / rate).min(BACK_NEPERS / offset.max(1) as f64),
-            amplitude_high: LARGEST_AMPLITUDE * peak,
-            energy_cost: 0.0,
-        },
-        max_partials: options.max_modes,
-        least_energy: 10.0_f64.powf(0.1 * options.least_level_db.min(FAINTEST_DB)),
-        threads: match options.threads {
-            0 => std::thread::available_parallelism().map_or(1, |n| n.get().min(8)),
-            n => n,
-        },
-        rate_hz: rate,
-        // Rounding of the file, and of what rendered it: 120 dB under the peak.
-        least_noise: (recording.quantum.powi(2) / 12.0).max(1e-12 * peak * peak),
-    }
 }

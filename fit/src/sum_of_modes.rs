@@ -8,6 +8,8 @@
 //! |---|---|
 //! | sums of 10–120 modes, 20–60 dB, pushed or struck | 1.8–4.5 |
 //! | recordings | 11–40 |
+//! | sums of 10–60 modes in 0.15–0.4 s | 1.4–6.2 |
+//! | recordings as short | 18–40 |
 //!
 //! The edge follows noise that is steep over frequency, as it is in the quiet end: rumble under four modes had 18 values
 //! over a smooth one. Where nothing rings ([`crate::ringing`]) there is no sum but the empty one, and no other fit either.
@@ -22,10 +24,13 @@ use crate::sub_band::Level;
 
 /// Most values over the edge in the bands of a sum of modes.
 const MOST_VALUES: f64 = 6.0;
+/// The same where the longest level is short: its bands are so wide that a sum of many modes has more in each.
+const MOST_VALUES_SHORT: f64 = 12.0;
+const LONG_DECIMATION: usize = 128;
+/// A longest level shorter than this says nothing.
+const LEAST_DECIMATION: usize = 32;
 /// How many of the strongest bands are looked at.
 const BANDS: usize = 12;
-/// Bands of shorter levels are so wide that a sum of many modes has many values in each.
-const LEAST_DECIMATION: usize = 128;
 
 /// Whether `segment` may be a sum of modes in noise.
 #[must_use]
@@ -38,7 +43,8 @@ pub fn may_be_sum_of_modes(segment: &[f64], limits: &Limits) -> bool {
     if !anything_rings(segment, band, limits.least_noise) {
         return true;
     }
+    let most = if longest.decimation < LONG_DECIMATION { MOST_VALUES_SHORT } else { MOST_VALUES };
     let end = &segment[segment.len() / 2..];
     let noise = NoiseFloor::estimate(segment, limits.rate_hz, limits.least_noise).following(end);
-    Search::thorough(limits, &noise).mean_order(longest, segment, BANDS) <= MOST_VALUES
+    Search::thorough(limits, &noise).mean_order(longest, segment, BANDS) <= most
 }

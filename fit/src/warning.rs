@@ -61,6 +61,13 @@ pub enum Warning {
         /// Frequency of the strongest.
         frequency_hz: f64,
     },
+    /// Faint modes below the lowest partial of the body, left out.
+    Rumble {
+        /// How many.
+        count: usize,
+        /// Frequency of the lowest partial.
+        lowest_hz: f64,
+    },
     /// Strong modes whose decay no exponential describes.
     NotExponential {
         /// How many.
@@ -104,6 +111,7 @@ impl Warning {
             Self::Undamped { .. } => "undamped",
             Self::Steady { .. } => "steady tone",
             Self::Hum { .. } => "hum",
+            Self::Rumble { .. } => "rumble",
             Self::NotExponential { .. } => "not exponential",
             Self::PoorFit { .. } => "poor fit",
             Self::Offset { .. } => "constant offset",
@@ -120,6 +128,7 @@ impl Warning {
             Self::Undamped { count, .. }
             | Self::Steady { count, .. }
             | Self::Hum { count, .. }
+            | Self::Rumble { count, .. }
             | Self::NotExponential { count, .. }
             | Self::Cancelling { count, .. } => *count,
             _ => 1,
@@ -184,7 +193,8 @@ impl fmt::Display for Warning {
             ),
             Self::Steady { count, frequency_hz } => write!(
                 f,
-                "{} not decay, the strongest at {frequency_hz:.1} Hz, left out; switch off what sounds there",
+                "{} not decay, the strongest at {frequency_hz:.1} Hz, left out; switch off what hums \
+                 there, or, if the object itself rings so long, record until it is silent",
                 does(*count, "faint tone")
             ),
             Self::Hum { count, frequency_hz } => write!(
@@ -192,11 +202,17 @@ impl fmt::Display for Warning {
                 "{} of the mains left out, the strongest at {frequency_hz:.1} Hz; look for the loop",
                 counted(*count, "tone")
             ),
+            Self::Rumble { count, lowest_hz } => write!(
+                f,
+                "{} below the lowest partial ({lowest_hz:.1} Hz) left out; a quieter room or a softer support keeps \
+                 them out of the recording",
+                counted(*count, "faint mode")
+            ),
             Self::NotExponential { count, frequency_hz, left_db } => write!(
                 f,
-                "{} of those that ring loudest no exponential decay, worst at {frequency_hz:.1} Hz ({left_db:.0} dB \
-                 of it remain); hold the object more freely, or record in a drier room",
-                if *count == 1 { "1 has".to_owned() } else { format!("{count} have") }
+                "the decay of {} that ring loudest is no exponential, least at {frequency_hz:.1} Hz ({left_db:.0} dB of \
+                 that mode remain); hold the object more freely, or record in a drier room",
+                if *count == 1 { "1 of the modes".to_owned() } else { format!("{count} of the modes") }
             ),
             Self::PoorFit { snr_db } => write!(
                 f,

@@ -45,6 +45,9 @@ impl FileError {
             std::io::ErrorKind::InvalidData => {
                 Self::file(path, "is not UTF-8 text", "save it as UTF-8, or name another file")
             }
+            std::io::ErrorKind::FileTooLarge => {
+                Self::file(path, "is longer than a gigabyte", "name a shorter file")
+            }
             _ => Self::file(path, format!("cannot be read ({error})"), "name a readable file"),
         }
     }

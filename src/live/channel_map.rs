@@ -149,6 +149,12 @@ impl Interleaver {
         self.tee = rings;
     }
 
+    /// Gives the renderer back, for a device at another rate ([`Scene::at_rate`](crate::Scene::at_rate)).
+    #[must_use]
+    pub fn into_renderer(self) -> Renderer {
+        self.renderer
+    }
+
     /// The renderer inside.
     pub fn renderer(&mut self) -> &mut Renderer {
         &mut self.renderer

@@ -5,3 +5,4 @@ pub mod channel_map;
 pub mod device;
 pub mod drift;
 pub mod null_sink;
+pub mod ports;

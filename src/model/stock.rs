@@ -199,7 +199,7 @@ fn bending_root(n: usize) -> f64 {
     let mut x = (n as f64 + 0.5) * PI;
     for _ in 0..4 {
         // cos x = 1 / cosh x, whose right side changes slowly.
-        let side = if n % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
         x = (n as f64 + 0.5) * PI - side * (1.0 / x.cosh()).asin();
     }
     x

@@ -5,5 +5,6 @@ pub(crate) mod body;
 pub(crate) mod bursts;
 pub(crate) mod overlay;
 pub(crate) mod probe;
+pub(crate) mod stiffness;
 pub(crate) mod stroking;
 pub(crate) mod surface;

@@ -101,7 +101,7 @@ impl std::fmt::Display for Doubt {
             ),
             Self::Fallback(reason) => reason.fmt(f),
             Self::GuessedSign => f.write_str(
-                "whether bright is high is a guess; look at overview.png, `--bright-is-deep` turns it over",
+                "which way up the heights are is a guess; look at overview.png, `--bright-is-deep` turns them over",
             ),
             Self::Small => {
                 write!(f, "the picture is below {SMALL_PX} texels: its roughness rests on few waves")

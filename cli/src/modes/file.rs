@@ -92,7 +92,7 @@ impl ModesFile {
         };
         let Damping { alpha_per_s, eta, beta_s } = *damping;
         Ok(Self {
-            format: asperity::MODES_FORMAT,
+            format: asperity::files::modes_file::FORMAT,
             version: 2,
             source: source.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default(),
             impulse_n_s: 1.0,

@@ -7,6 +7,7 @@ use core::f64::consts::PI;
 
 /// Which quantity of the pad is played.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Quantity {
     /// Displacement, m (the paper).
     Displacement,

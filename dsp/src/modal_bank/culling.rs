@@ -18,6 +18,11 @@ use crate::mode::Mode;
 
 /// What counts as inaudible.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Culling {
     /// Modes that start further below the loudest are dropped, dB. Infinite: none.
     pub level_db: f64,

@@ -27,15 +27,12 @@ fn three_constants_are_a_material_in_json_and_a_misspelt_one_is_refused() {
 
 #[test]
 fn numbers_that_no_material_has_are_refused_by_name() {
-    let cases: [(&str, fn(&mut Material)); 4] = [
-        ("young_pa", |m| m.young_pa = f64::NAN),
-        ("eta", |m| m.eta = -1e-3),
-        ("mu_static", |m| m.mu_static = 11.0),
-        ("roughness", |m| m.roughness = 1.5),
-    ];
-    for (field, spoil) in cases {
-        let mut material = Material::STEEL;
-        spoil(&mut material);
+    for (field, material) in [
+        ("young_pa", Material { young_pa: f64::NAN, ..Material::STEEL }),
+        ("eta", Material { eta: -1e-3, ..Material::STEEL }),
+        ("mu_static", Material { mu_static: 11.0, ..Material::STEEL }),
+        ("roughness", Material { roughness: 1.5, ..Material::STEEL }),
+    ] {
         assert_eq!(material.checked().unwrap_err().field, field);
     }
 }

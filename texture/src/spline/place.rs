@@ -183,6 +183,10 @@ impl Axis {
 
     /// Texels per metre.
     #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        self.len as usize
+    }
+
     pub(super) fn texels_per_metre(&self) -> f64 {
         self.texels_per_metre
     }

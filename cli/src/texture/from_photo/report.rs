@@ -108,6 +108,7 @@ impl Report {
                 Method::Integrable(_) => "integrable",
                 Method::TsaiShah(_) => "tsai-shah",
                 Method::DarkIsDeep => "dark-is-deep",
+                Method::FlatGround => "flat-ground",
             },
             sign: sign(surface),
             sign_confidence: surface.sign.confidence,

@@ -1,6 +1,8 @@
 //! The shapes in a modes file of version 2, for those who strike a body anywhere.
 
-use crate::model::modal_model::{ModalModelError, VERSION_WITH_SHAPES};
+use super::modes_file::VERSION_WITH_SHAPES;
+use super::storage::{self, Disk};
+use crate::model::modal_model::ModalModelError;
 use crate::model::mode_shapes::{ModeShapes, Unit};
 use serde::Deserialize;
 use std::path::Path;
@@ -21,7 +23,7 @@ struct File {
 /// When the file cannot be read or its shapes do not fit each other.
 pub fn load_shapes(path: impl AsRef<Path>) -> Result<Option<(ModeShapes, Unit)>, ModalModelError> {
     let path = path.as_ref();
-    let text = std::fs::read_to_string(path)
+    let text = storage::text(&Disk, path)
         .map_err(|source| ModalModelError::Unreadable { path: path.into(), source })?;
     parse_shapes(&text).map_err(|error| match error {
         ModalModelError::Malformed { message, .. } => {
