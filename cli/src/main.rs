@@ -23,6 +23,7 @@ mod error;
 mod fit;
 mod headroom;
 mod measure;
+mod modes;
 mod output;
 mod pixels;
 mod play;
@@ -50,6 +51,7 @@ struct Arguments {
 enum Verb {
     Demo(demo::Options),
     Fit(Box<fit::Options>),
+    Modes(Box<modes::Options>),
     Render(render::Options),
     Play(play::Options),
     /// Make surfaces from pictures and from other surfaces
@@ -63,6 +65,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
         Verb::Fit(options) => fit::run(&options),
+        Verb::Modes(options) => modes::run(&options),
         Verb::Render(options) => render::run(&options),
         Verb::Play(options) => play::run(&options),
         Verb::Texture(verb) => texture::run(verb),

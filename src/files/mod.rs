@@ -6,6 +6,7 @@ pub mod contact_log;
 mod file_error;
 pub mod modes_file;
 pub mod scene_file;
+pub(crate) mod shapes_file;
 pub(crate) mod storage;
 pub mod wav;
 

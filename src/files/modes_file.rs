@@ -2,6 +2,7 @@
 
 use super::storage::{self, Disk, Files};
 use crate::model::modal_model::{ModalModel, ModalModelError};
+use crate::model::mode_shapes::ModeShapes;
 use crate::model::residual::Residual;
 use asperity_dsp::mode::Mode;
 use serde::{Deserialize, Serialize};
@@ -10,8 +11,10 @@ use std::path::Path;
 
 /// The `format` field of a modes file.
 pub const FORMAT: &str = "asperity.modes";
-/// The `version` this crate reads and writes.
+/// The `version` of a file with modes alone, which this crate writes.
 pub const VERSION: u32 = 1;
+/// The version that has shapes beside the modes ([`ModeShapes`]); its modes play as those of version 1 do.
+pub const VERSION_WITH_SHAPES: u32 = 2;
 
 #[derive(Serialize, Deserialize)]
 struct File {
@@ -26,6 +29,8 @@ struct File {
     positions: Vec<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     residual: Option<Residual>,
+    #[serde(default, skip_serializing)]
+    shapes: Option<ModeShapes>,
 }
 
 fn one() -> f64 {
@@ -36,7 +41,7 @@ impl ModalModel {
     /// Reads `NAME.modes.json`.
     ///
     /// # Errors
-    /// When the file cannot be read, is not a modes file of version 1, or holds a number that no body
+    /// When the file cannot be read, is not a modes file of version 1 or 2, or holds a number that no body
     /// can have.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModalModelError> {
         Self::load_from(&Disk, path)
@@ -76,8 +81,11 @@ impl ModalModel {
         if file.format != FORMAT {
             return Err(malformed(format!("format is \"{}\"", file.format)));
         }
-        if file.version != VERSION {
-            return Err(malformed(format!("version is {}", file.version)));
+        match (&file.shapes, file.version) {
+            (None, VERSION | VERSION_WITH_SHAPES) => {}
+            (Some(shapes), VERSION_WITH_SHAPES) => shapes.check(file.modes.len()).map_err(malformed)?,
+            (Some(_), VERSION) => return Err(malformed("shapes stand in version 1; need version 2".into())),
+            _ => return Err(malformed(format!("version is {}", file.version))),
         }
         let File { source, impulse_n_s, modes, positions, residual, .. } = file;
         let model = Self { source, impulse_n_s, modes, positions, residual };
@@ -96,6 +104,7 @@ impl ModalModel {
             modes: self.modes.clone(),
             positions: self.positions.clone(),
             residual: self.residual.clone(),
+            shapes: None,
         };
         serde_json::to_string(&file).unwrap_or_default()
     }

@@ -14,6 +14,7 @@ pub(crate) mod id;
 pub(crate) mod inner_rate;
 pub(crate) mod material;
 pub(crate) mod modal_model;
+pub(crate) mod mode_shapes;
 pub(crate) mod probe;
 pub(crate) mod residual;
 pub(crate) mod stamp;

@@ -54,7 +54,7 @@ pub enum ModalModelError {
         source: std::io::Error,
     },
     /// The file is not JSON of this shape.
-    #[error("{}: {message}; must be JSON with format \"asperity.modes\", version 1 and a list \"modes\"", path.display())]
+    #[error("{}: {message}; must be JSON with format \"asperity.modes\", version 1 or 2 and a list \"modes\"", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,

@@ -24,6 +24,8 @@ pub mod palette {
 pub enum Scale {
     /// Dark to bright with even steps to the eye, readable without colour vision: levels.
     Level,
+    /// Inwards blue, outwards red, from 0.1 to 1 with rest in grey at 0.55; below that there is nothing: white.
+    Swing,
     /// Through the colours of earth: heights under a path.
     Earth,
 }
@@ -39,6 +41,19 @@ const LEVEL: [[u8; 3]; 9] = [
     [254, 194, 135],
     [252, 250, 200],
 ];
+const SWING: [[u8; 3]; 11] = [
+    [255, 255, 255],
+    [16, 60, 140],
+    [46, 104, 186],
+    [110, 158, 214],
+    [170, 198, 226],
+    [206, 214, 222],
+    [222, 212, 206],
+    [232, 184, 164],
+    [226, 132, 104],
+    [204, 74, 56],
+    [150, 20, 34],
+];
 const EARTH: [[u8; 3]; 4] = [[94, 80, 63], [158, 139, 110], [214, 200, 174], [250, 246, 236]];
 
 impl Scale {
@@ -47,6 +62,7 @@ impl Scale {
     pub fn at(self, position: f32) -> [u8; 3] {
         let stops: &[[u8; 3]] = match self {
             Self::Level => &LEVEL,
+            Self::Swing => &SWING,
             Self::Earth => &EARTH,
         };
         let clamped = if position.is_finite() { position.clamp(0.0, 1.0) } else { 0.0 };

@@ -1,0 +1,105 @@
+//! The modes file of a solved body: format version 2, with shapes.
+
+use crate::error::CliError;
+use asperity::{ModeShapes, ShapeUnit};
+use asperity_dsp::damping::Damping;
+use asperity_shape::SolvedBody;
+use serde::Serialize;
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::path::Path;
+
+/// What the file holds.
+#[derive(Serialize)]
+pub struct ModesFile {
+    format: &'static str,
+    version: u32,
+    source: String,
+    impulse_n_s: f64,
+    unit: ShapeUnit,
+    damping: FileDamping,
+    /// The modes as the default place excites them.
+    pub modes: Vec<FileMode>,
+    shapes: ModeShapes,
+}
+
+#[derive(Serialize)]
+struct FileDamping {
+    alpha_per_s: f64,
+    eta: f64,
+    beta_s: f64,
+}
+
+/// One mode.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct FileMode {
+    /// Damped frequency, Hz.
+    pub frequency_hz: f64,
+    /// Decay rate, 1/s.
+    pub decay_per_s: f64,
+    amplitude: f64,
+    phase_rad: f64,
+}
+
+/// Six digits: shapes are good to three.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+impl ModesFile {
+    /// A body with its damping; modes that do not swing any more are left out and told.
+    pub fn new(body: &mut SolvedBody, damping: &Damping, source: &Path) -> Result<Self, CliError> {
+        let field = &body.field;
+        let struck_point = field.lively_point().unwrap_or(0);
+        let mut modes = Vec::new();
+        let mut kept = Vec::new();
+        for (m, hz) in body.frequency_hz.iter().enumerate() {
+            let (omega, decay_per_s) = (TAU * hz, damping.decay_per_s(*hz));
+            if decay_per_s >= omega {
+                continue;
+            }
+            kept.push(m);
+            modes.push(FileMode {
+                frequency_hz: (omega * omega - decay_per_s * decay_per_s).sqrt() / TAU,
+                decay_per_s,
+                amplitude: field.gains[m] * field.along_normal(m, struck_point),
+                // Heard is the velocity, which begins at its peak.
+                phase_rad: FRAC_PI_2,
+            });
+        }
+        if kept.len() < body.frequency_hz.len() {
+            let lost = body.frequency_hz.len() - kept.len();
+            body.told.push(format!("{lost} modes are damped so much that they do not swing; left out"));
+        }
+        if modes.is_empty() {
+            let right = "give a higher --up-to, or a stiffer or less damped material";
+            return Err(CliError::file(source, "has no mode there that rings", right));
+        }
+        let field = &body.field;
+        let shapes = ModeShapes {
+            points_m: field
+                .points
+                .iter()
+                .map(|p| p.map(|x| f64::from(x as f32)))
+                .map(|p| p.map(rounded))
+                .collect(),
+            triangles: field.triangles.clone(),
+            gains: kept.iter().map(|&m| field.gains[m]).collect(),
+            phi_per_sqrt_kg: kept
+                .iter()
+                .map(|&m| field.shapes[m].iter().map(|s| s.map(|x| rounded(x) as f32)).collect())
+                .collect(),
+            struck_point,
+        };
+        let Damping { alpha_per_s, eta, beta_s } = *damping;
+        Ok(Self {
+            format: asperity::files::modes_file::FORMAT,
+            version: 2,
+            source: source.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default(),
+            impulse_n_s: 1.0,
+            unit: ShapeUnit::Relative,
+            damping: FileDamping { alpha_per_s, eta, beta_s },
+            modes,
+            shapes,
+        })
+    }
+}

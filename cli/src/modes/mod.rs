@@ -1,0 +1,106 @@
+//! `asperity modes`: the shape of a body becomes modes that ring wherever it is struck.
+
+mod file;
+mod options;
+mod picture;
+
+use crate::error::CliError;
+use crate::output::{self, Outputs, check_destination};
+use crate::progress::Progress;
+use asperity_shape::Making;
+use file::ModesFile;
+pub use options::Options;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Steps of the progress bar.
+const STEPS: u64 = 200;
+
+/// The object of `--json`.
+#[derive(Debug, Serialize)]
+struct Report {
+    modes: usize,
+    degrees_of_freedom: usize,
+    elements: usize,
+    volume_m3: f64,
+    mass_kg: f64,
+    lowest_hz: f64,
+    highest_hz: f64,
+    seconds: f64,
+    peak_mib: Option<f64>,
+    warnings: Vec<String>,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// When the mesh is no body, an option is out of range, the modes cannot be solved for, or a file cannot be written.
+pub fn run(options: &Options) -> Result<(), CliError> {
+    let started = Instant::now();
+    check_destination(&options.output)?;
+    options.plot.as_deref().map_or(Ok(()), check_destination)?;
+    let wanted = options.wanted()?;
+    let (material, damping) = options.material()?;
+    let mesh = asperity_shape::load(&options.body).map_err(CliError::told)?;
+    let making = Making { material, size_m: options.size, thickness_m: options.thickness, wanted };
+    let mut progress = Progress::new("solving", STEPS);
+    let mut shown = 0;
+    let name = options.body.display().to_string();
+    let mut body = asperity_shape::make(mesh, &making, &mut |done| {
+        let step = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
+        progress.advance(step.saturating_sub(shown));
+        shown = shown.max(step);
+    })
+    .map_err(|error| CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) }))?;
+    drop(progress);
+    let file = ModesFile::new(&mut body, &damping, &options.body)?;
+    let mut outputs = Outputs::new();
+    let text = serde_json::to_string(&file)
+        .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;
+    // What the engine would refuse is no body.
+    asperity::ModalModel::parse(&text).map_err(CliError::told)?;
+    outputs.write(&options.output, text.as_bytes())?;
+    if let Some(path) = &options.plot {
+        let title = options.body.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        outputs.write(path, picture::svg(&title, &body, &damping, &file).as_bytes())?;
+    }
+    outputs.commit()?;
+    let report = Report {
+        modes: file.modes.len(),
+        degrees_of_freedom: body.degrees_of_freedom,
+        elements: body.elements,
+        volume_m3: body.volume_m3,
+        mass_kg: body.mass_kg,
+        lowest_hz: file.modes.first().map_or(0.0, |m| m.frequency_hz),
+        highest_hz: file.modes.last().map_or(0.0, |m| m.frequency_hz),
+        seconds: started.elapsed().as_secs_f64(),
+        peak_mib: peak_mib(),
+        warnings: body.told,
+    };
+    if options.json { output::say_json(&report) } else { say(&report, options) }
+}
+
+fn say(report: &Report, options: &Options) -> Result<(), CliError> {
+    output::say(&format!(
+        "{}: {} modes from {:.1} to {:.1} Hz, {:.1} g, {} unknowns, {:.1} s",
+        options.output.display(),
+        report.modes,
+        report.lowest_hz,
+        report.highest_hz,
+        1e3 * report.mass_kg,
+        report.degrees_of_freedom,
+        report.seconds
+    ));
+    for warning in &report.warnings {
+        output::say(&format!("warning: {warning}"));
+    }
+    Ok(())
+}
+
+/// Most memory the program has held so far, MiB; only where the system tells.
+fn peak_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kib / 1024.0)
+}

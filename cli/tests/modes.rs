@@ -1,0 +1,116 @@
+//! `asperity modes` from the outside: a mesh file in, a modes file of version 2 out, and one line for what is refused.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn asperity(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_asperity")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// A bar 0.1 × 0.02 × 0.01 m.
+const BAR: &str = "v 0 0 0\nv 0.1 0 0\nv 0.1 0.02 0\nv 0 0.02 0\nv 0 0 0.01\nv 0.1 0 0.01\nv 0.1 0.02 0.01\nv 0 0.02 0.01\n\
+    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+#[test]
+fn a_mesh_becomes_a_body_that_the_engine_plays_and_can_be_struck_anywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("bar.obj"), BAR).unwrap();
+    let arguments = [
+        "modes",
+        "bar.obj",
+        "--material",
+        "steel",
+        "--max-modes",
+        "6",
+        "-o",
+        "bar.modes.json",
+        "--plot",
+        "bar.svg",
+        "--json",
+    ];
+    let output = asperity(at, &arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["modes"], 6);
+    assert!((report["volume_m3"].as_f64().unwrap() / 2e-5 - 1.0).abs() < 1e-3);
+    let model = asperity::ModalModel::load(at.join("bar.modes.json")).unwrap();
+    let (shapes, unit) = asperity::load_shapes(at.join("bar.modes.json")).unwrap().unwrap();
+    assert_eq!(unit, asperity::ShapeUnit::Relative);
+    // The first bending mode of a free bar: its shape at the ends is 2/√m out of its plane, less
+    // what turning of its sections takes of the energy (t/L = 0.1: about 4 %), and Timoshenko's frequency is a little below Euler–Bernoulli's 1.028 (t/L²) √(E/ρ).
+    let steel = asperity::Material::STEEL;
+    let euler_hz = 1.028 * 0.01 / 0.01 * (steel.young_pa / steel.density_kg_m3).sqrt();
+    let ratio = model.modes[0].frequency_hz / euler_hz;
+    assert!((0.96..1.0).contains(&ratio), "{ratio}");
+    let mass_kg = report["mass_kg"].as_f64().unwrap();
+    let from_corner = |p: &[f64; 3]| p.iter().map(|x| x * x).sum::<f64>();
+    let nearest = (0..shapes.points_m.len())
+        .min_by(|&a, &b| from_corner(&shapes.points_m[a]).total_cmp(&from_corner(&shapes.points_m[b])));
+    let end = nearest.unwrap();
+    let at_end = f64::from(shapes.phi_per_sqrt_kg[0][end][2]).abs() * mass_kg.sqrt();
+    assert!((0.95..1.0).contains(&(at_end / 2.0)), "{at_end}");
+    assert!(std::fs::read_to_string(at.join("bar.svg")).unwrap().starts_with("<svg"));
+}
+
+#[test]
+fn damping_is_learned_from_a_recorded_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("bar.obj"), BAR).unwrap();
+    let modes: Vec<String> = (1..20)
+        .map(|i| 700.0 * f64::from(i))
+        .map(|hz| {
+            let decay = std::f64::consts::PI * 2e-3 * hz;
+            format!(r#"{{"frequency_hz":{hz},"decay_per_s":{decay},"amplitude":1}}"#)
+        })
+        .collect();
+    let text = format!(r#"{{"format":"asperity.modes","version":1,"modes":[{}]}}"#, modes.join(","));
+    std::fs::write(at.join("hit.modes.json"), text).unwrap();
+    let arguments = [
+        "modes",
+        "bar.obj",
+        "--material",
+        "glass",
+        "--max-modes",
+        "4",
+        "--damping-from",
+        "hit.modes.json",
+        "-o",
+        "o.modes.json",
+    ];
+    let output = asperity(at, &arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for mode in asperity::ModalModel::load(at.join("o.modes.json")).unwrap().modes {
+        let expected = std::f64::consts::PI * 2e-3 * mode.frequency_hz;
+        assert!((mode.decay_per_s / expected - 1.0).abs() < 0.05, "{mode:?}");
+    }
+}
+
+#[test]
+fn what_is_no_body_is_one_line_and_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("bar.obj"), BAR).unwrap();
+    std::fs::write(at.join("sheet.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    std::fs::write(at.join("empty.stl"), "").unwrap();
+    std::fs::write(at.join("cut.msh"), "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0").unwrap();
+    for (arguments, told) in [
+        (vec!["sheet.obj", "--material", "steel"], "--thickness"),
+        (vec!["empty.stl", "--material", "steel"], "empty"),
+        (vec!["cut.msh", "--material", "steel"], "cut short"),
+        (vec!["bar.obj"], "--material"),
+        (vec!["bar.obj", "--young-pa", "1e9", "--poisson", "0.3"], "--density-kg-m3"),
+        (vec!["bar.obj", "--material", "steel", "--poisson", "0.5"], "poisson"),
+        (vec!["bar.obj", "--material", "steel", "--up-to", "1e6"], "--up-to"),
+        (vec!["bar.obj", "--material", "steel", "--size", "0"], "--size"),
+        (vec!["bar.step", "--material", "steel"], "bar.step"),
+    ] {
+        let all: Vec<&str> = ["modes"].into_iter().chain(arguments).chain(["-o", "x.modes.json"]).collect();
+        let output = asperity(at, &all);
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{text}");
+        assert!(text.starts_with("error: ") && text.lines().count() == 1 && text.contains(told), "{text}");
+        assert!(!at.join("x.modes.json").exists());
+    }
+}

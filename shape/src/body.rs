@@ -1,0 +1,239 @@
+//! A mesh becomes a body that rings: solved, with its shapes on a triangulation of its surface.
+
+use crate::eigenmodes::{Eigenmodes, MOST_MODES, Wanted, solve};
+use crate::elastic::Elastic;
+use crate::error::ShapeError;
+use crate::filling::Body;
+use crate::mesh_file::Mesh;
+use crate::surface_field::{SurfaceField, surface_field};
+use crate::surface_mesh::SurfaceMesh;
+use crate::system::System;
+use crate::vector::{distance, longest_side};
+use crate::volume_mesh::{EDGES, MOST_DEGREES_OF_FREEDOM, VolumeMesh};
+
+/// Unknowns of a mesh that neither walls nor waves want finer.
+const ORDINARY_UNKNOWNS: f64 = 24_000.0;
+/// Spacings to the shortest wave through the body and along a wall: the highest mode is then right to about 1 %.
+const PER_SHEAR_WAVE: f64 = 6.0;
+const PER_BENDING_WAVE: f64 = 11.0;
+/// A body longer than this is likely to be in other units, m.
+const LARGE_M: f64 = 20.0;
+/// A body shorter than this is likely to be in other units, m.
+const SMALL_M: f64 = 0.002;
+
+/// How a body is made of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Making {
+    /// What it is made of.
+    pub material: Elastic,
+    /// Longest side it shall have, m; scales about the origin of its frame.
+    pub size_m: Option<f64>,
+    /// Thickness of the sheet that the surface is, m.
+    pub thickness_m: Option<f64>,
+    /// Which modes are wanted.
+    pub wanted: Wanted,
+}
+
+/// A solved body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolvedBody {
+    /// Undamped frequencies, Hz, rising.
+    pub frequency_hz: Vec<f64>,
+    /// Shapes of the modes on the surface.
+    pub field: SurfaceField,
+    /// Unknowns that were solved for.
+    pub degrees_of_freedom: usize,
+    /// Tetrahedra.
+    pub elements: usize,
+    /// Volume, m³.
+    pub volume_m3: f64,
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Repairs and doubts, one line each.
+    pub told: Vec<String>,
+}
+
+impl SolvedBody {
+    /// The same shape `factor` times as large, of another stiffness and density: exact, without a new solve.
+    ///
+    /// f ∝ √(E/ρ)/s, φ ∝ (ρ s³)^−½. Poisson's ratio stays; another one needs a solve.
+    #[must_use]
+    pub fn rescaled(&self, factor: f64, from: &Elastic, to: &Elastic) -> Self {
+        let pitch = (to.bar_speed_m_s() / from.bar_speed_m_s()) / factor;
+        let heavier = to.density_kg_m3 / from.density_kg_m3 * factor.powi(3);
+        let mut body = self.clone();
+        body.frequency_hz.iter_mut().for_each(|f| *f *= pitch);
+        body.field.points.iter_mut().flatten().for_each(|x| *x *= factor);
+        body.field.shapes.iter_mut().flatten().flatten().for_each(|x| *x /= heavier.sqrt());
+        body.field.gains.iter_mut().for_each(|g| *g /= heavier.sqrt());
+        body.volume_m3 *= factor.powi(3);
+        body.mass_kg *= heavier;
+        body
+    }
+}
+
+/// Makes a body of a mesh; `progress` hears the part done, 0 to 1.
+///
+/// # Errors
+/// When the mesh is no body (open, empty, in parts, with walls too thin), a number is out of its range, or the modes cannot be
+/// solved for.
+pub fn make(mesh: Mesh, making: &Making, progress: &mut dyn FnMut(f64)) -> Result<SolvedBody, ShapeError> {
+    let material = making.material.checked()?;
+    let mut told = Vec::new();
+    let mut mesh = mesh;
+    if let Some(size_m) = making.size_m {
+        scale_to(&mut mesh, size_m)?;
+    }
+    tell_size(&mesh, &mut told);
+    match mesh {
+        Mesh::Volume(_) if making.thickness_m.is_some() => Err(ShapeError::new(
+            "--thickness",
+            "the mesh is a solid",
+            "leave it out: only a sheet has a thickness",
+        )),
+        Mesh::Volume(volume) => {
+            let volume = volume.checked(&mut told)?;
+            let modes = solved(&volume, &material, &making.wanted, progress)?;
+            if let Some(top) = modes.1.frequency_hz.last() {
+                tell_coarse(&volume, &material, *top, &mut told);
+            }
+            Ok(finished(&volume, modes, told))
+        }
+        Mesh::Surface(surface) => {
+            let body = Body::new(closed(surface, making.thickness_m, &mut told)?)?;
+            from_surface(&body, &material, making, told, progress)
+        }
+    }
+}
+
+fn closed(
+    surface: SurfaceMesh,
+    thickness_m: Option<f64>,
+    told: &mut Vec<String>,
+) -> Result<SurfaceMesh, ShapeError> {
+    let surface = surface.joined(told)?;
+    let Some(thickness_m) = thickness_m else { return surface.closed(told) };
+    let side = longest_side(&surface.points);
+    if !(thickness_m > 0.0 && thickness_m < 0.5 * side) {
+        let right = format!("must be above 0 and less than half of the longest side, {:.4} m", 0.5 * side);
+        return Err(ShapeError::new("--thickness", format!("{thickness_m} is refused"), right));
+    }
+    surface.thickened(thickness_m).joined(told)?.closed(told)
+}
+
+/// Fills a surface at the spacing that walls and waves want, and once more where the highest mode turns out shorter.
+fn from_surface(
+    body: &Body,
+    material: &Elastic,
+    making: &Making,
+    mut told: Vec<String>,
+    progress: &mut dyn FnMut(f64),
+) -> Result<SolvedBody, ShapeError> {
+    let wave = |hz: f64| {
+        let bending_m = material.bending_wave_m(body.wall_m, hz) / PER_BENDING_WAVE;
+        bending_m.min(material.shear_wave_m(hz) / PER_SHEAR_WAVE)
+    };
+    let mut spacing_m = body.spacing_m(ORDINARY_UNKNOWNS).min(body.longest_spacing_m());
+    if let Some(hz) = making.wanted.up_to_hz.filter(|_| making.wanted.most > MOST_MODES) {
+        spacing_m = spacing_m.min(wave(hz));
+        let unknowns = body.expected_unknowns(spacing_m);
+        if unknowns > MOST_DEGREES_OF_FREEDOM as f64 && spacing_m < body.longest_spacing_m() {
+            let what = format!(
+                "waves of {hz} Hz want points every {:.2} mm: {unknowns:.0} unknowns",
+                1e3 * spacing_m
+            );
+            let right = format!("at most {MOST_DEGREES_OF_FREEDOM}: lower it, or give --max-modes");
+            return Err(ShapeError::new("--up-to", what, right));
+        }
+    }
+    let mut repairs = Vec::new();
+    let mut volume = body.fill(spacing_m, &mut repairs)?;
+    let mut modes = solved(&volume, material, &making.wanted, &mut |done| progress(0.6 * done))?;
+    let finer_m = modes.1.frequency_hz.last().map_or(spacing_m, |top| wave(*top));
+    if finer_m < 0.95 * spacing_m {
+        let most = 0.8 * MOST_DEGREES_OF_FREEDOM as f64;
+        let finest_m = body.spacing_m(most).max(finer_m);
+        if finest_m > 1.05 * finer_m {
+            told.push(format!(
+                "the mesh allowed has points every {:.2} mm, the highest modes want {:.2} mm: they are too high",
+                1e3 * finest_m,
+                1e3 * finer_m
+            ));
+        }
+        repairs.clear();
+        volume = body.fill(finest_m, &mut repairs)?;
+        modes = solved(&volume, material, &making.wanted, &mut |done| progress(0.6 + 0.4 * done))?;
+    }
+    told.append(&mut repairs);
+    Ok(finished(&volume, modes, told))
+}
+
+fn solved(
+    volume: &VolumeMesh,
+    material: &Elastic,
+    wanted: &Wanted,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(System, Eigenmodes), ShapeError> {
+    let system = System::assemble(volume, material);
+    let modes = solve(&system, material, wanted, progress)?;
+    Ok((system, modes))
+}
+
+fn finished(volume: &VolumeMesh, (system, modes): (System, Eigenmodes), told: Vec<String>) -> SolvedBody {
+    SolvedBody {
+        field: surface_field(volume, &system, &modes),
+        degrees_of_freedom: system.unknowns(),
+        elements: volume.tets.len(),
+        volume_m3: volume.volume_m3(),
+        mass_kg: system.mass_kg(),
+        frequency_hz: modes.frequency_hz,
+        told,
+    }
+}
+
+fn scale_to(mesh: &mut Mesh, size_m: f64) -> Result<(), ShapeError> {
+    let points = match mesh {
+        Mesh::Volume(volume) => &mut volume.points,
+        Mesh::Surface(surface) => &mut surface.points,
+    };
+    let side = longest_side(points);
+    if !(size_m > 0.0 && size_m.is_finite()) {
+        return Err(ShapeError::new("--size", format!("{size_m} is refused"), "must be above 0 m"));
+    }
+    if !(side > 0.0 && side.is_finite()) {
+        return Err(ShapeError::new("", "has no size", "its points must be finite and apart"));
+    }
+    points.iter_mut().flatten().for_each(|x| *x *= size_m / side);
+    Ok(())
+}
+
+fn tell_size(mesh: &Mesh, told: &mut Vec<String>) {
+    let side = longest_side(match mesh {
+        Mesh::Volume(volume) => &volume.points,
+        Mesh::Surface(surface) => &surface.points,
+    });
+    if side > LARGE_M || (side > 0.0 && side < SMALL_M) {
+        told.push(format!(
+            "the longest side is {side:.4} m; meshes are in metres, --size scales one in other units"
+        ));
+    }
+}
+
+/// A given mesh is solved as it is; where its longest edge is long against the shortest wave, that is told.
+fn tell_coarse(volume: &VolumeMesh, material: &Elastic, top_hz: f64, told: &mut Vec<String>) {
+    let shear_m = material.shear_wave_m(top_hz);
+    let edge = |t: &[u32; 4]| {
+        let c = volume.corners(*t);
+        EDGES.iter().map(|&[a, b]| distance(c[a], c[b])).fold(0.0, f64::max)
+    };
+    let mut edges: Vec<f64> = volume.tets.iter().map(edge).collect();
+    edges.sort_by(f64::total_cmp);
+    let long = edges[edges.len() / 2];
+    if long > shear_m / 3.0 {
+        told.push(format!(
+            "elements of {:.1} mm are long for waves of {:.1} mm at {top_hz:.0} Hz: the highest modes are too high",
+            1e3 * long,
+            1e3 * shear_m
+        ));
+    }
+}

@@ -1,0 +1,38 @@
+//! Bodies from their shape: a mesh and a material become modes that ring wherever the body is struck.
+//!
+//! ```text
+//! mesh_file ─► surface_mesh (repair) ─► filling (sampling, delaunay, facets) ─► volume_mesh
+//!                                                                                   │
+//! damping_fit        surface_field ◄─ eigenmodes (lanczos, factor) ◄─ system (quadratic_tet)
+//! ```
+//! Offline and in f64; no game links it. Materials are uniform and isotropic: wood, which is neither, comes out of tune. Levels are
+//! relative: nothing here has been compared with a measured sound pressure.
+
+pub mod body;
+pub mod damping_fit;
+mod delaunay;
+pub mod eigenmodes;
+pub mod elastic;
+mod error;
+mod facets;
+mod factor;
+mod feature_lines;
+pub mod filling;
+mod lanczos;
+pub mod mesh_file;
+mod msh;
+mod obj;
+mod quadratic_tet;
+mod sampling;
+mod stl;
+pub mod surface_field;
+pub mod surface_mesh;
+pub mod system;
+mod triangle_tree;
+pub mod vector;
+pub mod volume_mesh;
+
+pub use body::{Making, SolvedBody, make};
+pub use elastic::Elastic;
+pub use error::ShapeError;
+pub use mesh_file::{Mesh, load};

@@ -1,0 +1,324 @@
+//! Gmsh `.msh`, versions 2.2 and 4.1, ASCII and binary (Gmsh reference manual, "MSH file format").
+//!
+//! Tetrahedra make a volume, of ten-node ones the four corners; a file with triangles only is a surface. Node tags may have
+//! gaps and any order.
+
+use crate::error::ShapeError;
+use crate::mesh_file::Mesh;
+use crate::surface_mesh::SurfaceMesh;
+use crate::vector::Vec3;
+use crate::volume_mesh::VolumeMesh;
+use std::collections::HashMap;
+
+/// Most nodes or elements that are read.
+const MOST: usize = 8_000_000;
+
+/// Words of an ASCII file or numbers of a binary one, in order.
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    binary: bool,
+    swapped: bool,
+}
+
+fn wrong(at: &str, what: impl Into<String>) -> ShapeError {
+    ShapeError::new(at, what, "must be a whole Gmsh file of version 2.2 or 4.1")
+}
+
+impl<'a> Reader<'a> {
+    fn line(&mut self) -> Option<&'a str> {
+        let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
+        let end = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
+        self.at += (end + 1).min(rest.len());
+        std::str::from_utf8(&rest[..end]).ok().map(str::trim).or(Some(""))
+    }
+
+    fn word(&mut self, section: &str) -> Result<&'a str, ShapeError> {
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        let skip = rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(rest.len());
+        let rest = &rest[skip..];
+        let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
+        self.at += skip + end;
+        match std::str::from_utf8(&rest[..end]) {
+            Ok(word) if !word.is_empty() => Ok(word),
+            _ => Err(wrong(section, "is cut short")),
+        }
+    }
+
+    fn take<const N: usize>(&mut self, section: &str) -> Result<[u8; N], ShapeError> {
+        let part = self.bytes.get(self.at..self.at + N).ok_or_else(|| wrong(section, "is cut short"))?;
+        self.at += N;
+        let mut bytes: [u8; N] = part.try_into().map_err(|_| wrong(section, "is cut short"))?;
+        if self.swapped {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    fn float(&mut self, section: &str) -> Result<f64, ShapeError> {
+        if self.binary {
+            return Ok(f64::from_ne_bytes(self.take(section)?));
+        }
+        let word = self.word(section)?;
+        word.parse().map_err(|_| wrong(section, format!("`{word}` is no number")))
+    }
+
+    fn parsed(&mut self, section: &str) -> Result<i64, ShapeError> {
+        let word = self.word(section)?;
+        word.parse().map_err(|_| wrong(section, format!("`{word}` is no whole number")))
+    }
+
+    /// A number that binary files keep in four bytes.
+    fn int(&mut self, section: &str) -> Result<i64, ShapeError> {
+        if self.binary {
+            Ok(i64::from(i32::from_ne_bytes(self.take(section)?)))
+        } else {
+            self.parsed(section)
+        }
+    }
+
+    /// A number that binary files keep in eight bytes.
+    fn size(&mut self, section: &str) -> Result<i64, ShapeError> {
+        if self.binary { Ok(i64::from_ne_bytes(self.take(section)?)) } else { self.parsed(section) }
+    }
+
+    fn count(&mut self, section: &str, eight: bool) -> Result<usize, ShapeError> {
+        let n = if eight { self.size(section)? } else { self.int(section)? };
+        usize::try_from(n)
+            .ok()
+            .filter(|&n| n <= MOST)
+            .ok_or_else(|| wrong(section, format!("tells of {n} entries, of which at most {MOST} are read")))
+    }
+}
+
+/// What the sections hold.
+#[derive(Default)]
+struct Found {
+    points: Vec<Vec3>,
+    numbers: HashMap<i64, u32>,
+    tets: Vec<[i64; 4]>,
+    triangles: Vec<[i64; 3]>,
+    others: Option<i64>,
+}
+
+/// Nodes of an element type of Gmsh.
+fn nodes_of(kind: i64) -> Option<usize> {
+    const NODES: [usize; 31] = [
+        2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20,
+        35, 56,
+    ];
+    usize::try_from(kind - 1).ok().and_then(|i| NODES.get(i)).copied()
+}
+
+/// Reads a `.msh` file.
+///
+/// # Errors
+/// When it is cut short, of another version, holds solids other than tetrahedra, or names nodes that are not there.
+pub fn parse(bytes: &[u8]) -> Result<Mesh, ShapeError> {
+    let mut reader = Reader { bytes, at: 0, binary: false, swapped: false };
+    let mut version = None;
+    let mut found = Found::default();
+    while let Some(line) = reader.line() {
+        match line {
+            "$MeshFormat" => version = Some(format(&mut reader)?),
+            "$Nodes" => match version {
+                Some(4) => nodes_4(&mut reader, &mut found)?,
+                Some(_) => nodes_2(&mut reader, &mut found)?,
+                None => return Err(wrong("$Nodes", "comes before $MeshFormat")),
+            },
+            "$Elements" => {
+                if version == Some(4) {
+                    elements_4(&mut reader, &mut found)?;
+                } else {
+                    elements_2(&mut reader, &mut found)?;
+                }
+            }
+            _ => continue,
+        }
+        let end = format!("$End{}", &line[1..]);
+        while let Some(next) = reader.line() {
+            if next == end {
+                break;
+            }
+            if !next.is_empty() {
+                return Err(wrong(line, format!("does not end with {end}")));
+            }
+        }
+    }
+    if version.is_none() {
+        return Err(wrong("", "has no $MeshFormat"));
+    }
+    assemble(found)
+}
+
+fn format(reader: &mut Reader<'_>) -> Result<u32, ShapeError> {
+    let section = "$MeshFormat";
+    let line = reader.line().unwrap_or_default();
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let [version, kind, size] = words[..] else { return Err(wrong(section, "is cut short")) };
+    if size != "8" {
+        return Err(wrong(section, format!("has numbers of {size} bytes")));
+    }
+    reader.binary = kind == "1";
+    if reader.binary {
+        let one: [u8; 4] = reader.take(section)?;
+        reader.swapped = match i32::from_ne_bytes(one) {
+            1 => false,
+            _ if i32::from_ne_bytes(one).swap_bytes() == 1 => true,
+            _ => return Err(wrong(section, "has no byte order")),
+        };
+    }
+    match version {
+        "2.2" | "2.1" | "2" | "2.0" => Ok(2),
+        "4.1" => Ok(4),
+        _ => Err(wrong(section, format!("is of version {version}"))),
+    }
+}
+
+fn point(reader: &mut Reader<'_>, found: &mut Found, tag: i64) -> Result<(), ShapeError> {
+    let point = [reader.float("$Nodes")?, reader.float("$Nodes")?, reader.float("$Nodes")?];
+    if point.iter().any(|x| !x.is_finite()) {
+        let what = format!("node {tag} has a coordinate that is not a number");
+        return Err(ShapeError::new("$Nodes", what, "must be finite metres"));
+    }
+    if found.numbers.insert(tag, found.points.len() as u32).is_some() {
+        return Err(wrong("$Nodes", format!("node {tag} is there twice")));
+    }
+    found.points.push(point);
+    Ok(())
+}
+
+fn nodes_2(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError> {
+    // The count is a line of text even in binary files.
+    let line = reader.line().unwrap_or_default();
+    let count: usize = line
+        .parse()
+        .ok()
+        .filter(|&n| n <= MOST)
+        .ok_or_else(|| wrong("$Nodes", format!("`{line}` is no count")))?;
+    for _ in 0..count {
+        let tag = reader.int("$Nodes")?;
+        point(reader, found, tag)?;
+    }
+    Ok(())
+}
+
+fn nodes_4(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError> {
+    let section = "$Nodes";
+    let blocks = reader.count(section, true)?;
+    for _ in 0..3 {
+        reader.size(section)?;
+    }
+    for _ in 0..blocks {
+        let dimension = reader.int(section)?;
+        reader.int(section)?;
+        let parametric = reader.int(section)? != 0;
+        let count = reader.count(section, true)?;
+        let tags = (0..count).map(|_| reader.size(section)).collect::<Result<Vec<i64>, _>>()?;
+        for tag in tags {
+            point(reader, found, tag)?;
+            for _ in 0..if parametric { dimension } else { 0 } {
+                reader.float(section)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn element(found: &mut Found, kind: i64, nodes: &[i64]) {
+    match (kind, nodes) {
+        (4 | 11 | 29, &[a, b, c, d, ..]) => found.tets.push([a, b, c, d]),
+        (2 | 9, &[a, b, c, ..]) => found.triangles.push([a, b, c]),
+        (3 | 10 | 16, &[a, b, c, d, ..]) => found.triangles.extend([[a, b, c], [a, c, d]]),
+        // Points and lines carry no volume.
+        (1 | 8 | 15, _) => {}
+        _ => found.others = Some(kind),
+    }
+}
+
+fn elements_2(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError> {
+    let section = "$Elements";
+    let line = reader.line().unwrap_or_default();
+    let count: usize = line
+        .parse()
+        .ok()
+        .filter(|&n| n <= MOST)
+        .ok_or_else(|| wrong(section, format!("`{line}` is no count")))?;
+    let unknown = |kind: i64| wrong(section, format!("element type {kind} is unknown"));
+    let mut left = count;
+    while left > 0 {
+        let (kind, group, tags) = if reader.binary {
+            (reader.int(section)?, reader.count(section, false)?.min(left), reader.count(section, false)?)
+        } else {
+            reader.int(section)?;
+            (reader.int(section)?, 1, reader.count(section, false)?)
+        };
+        let nodes = nodes_of(kind).ok_or_else(|| unknown(kind))?;
+        if group == 0 {
+            return Err(wrong(section, "has an empty group"));
+        }
+        for _ in 0..group {
+            if reader.binary {
+                reader.int(section)?;
+            }
+            for _ in 0..tags {
+                reader.int(section)?;
+            }
+            let nodes = (0..nodes).map(|_| reader.int(section)).collect::<Result<Vec<i64>, _>>()?;
+            element(found, kind, &nodes);
+        }
+        left -= group;
+    }
+    Ok(())
+}
+
+fn elements_4(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError> {
+    let section = "$Elements";
+    let blocks = reader.count(section, true)?;
+    for _ in 0..3 {
+        reader.size(section)?;
+    }
+    for _ in 0..blocks {
+        reader.int(section)?;
+        reader.int(section)?;
+        let kind = reader.int(section)?;
+        let count = reader.count(section, true)?;
+        let nodes =
+            nodes_of(kind).ok_or_else(|| wrong(section, format!("element type {kind} is unknown")))?;
+        for _ in 0..count {
+            reader.size(section)?;
+            let nodes = (0..nodes).map(|_| reader.size(section)).collect::<Result<Vec<i64>, _>>()?;
+            element(found, kind, &nodes);
+        }
+    }
+    Ok(())
+}
+
+fn assemble(found: Found) -> Result<Mesh, ShapeError> {
+    let Found { points, numbers, tets, triangles, others } = found;
+    if let Some(kind) = others {
+        let what = format!("holds solids of element type {kind}");
+        return Err(ShapeError::new("$Elements", what, "must be 4-node tetrahedra (type 4)"));
+    }
+    let number = |tag: i64| {
+        numbers
+            .get(&tag)
+            .copied()
+            .ok_or_else(|| wrong("$Elements", format!("names node {tag}, which is not there")))
+    };
+    if tets.is_empty() {
+        if triangles.is_empty() {
+            return Err(ShapeError::new("", "has no tetrahedron and no triangle", "give a body"));
+        }
+        let triangles = triangles
+            .into_iter()
+            .map(|[a, b, c]| Ok([number(a)?, number(b)?, number(c)?]))
+            .collect::<Result<_, ShapeError>>()?;
+        return Ok(Mesh::Surface(SurfaceMesh { points, triangles }));
+    }
+    let tets = tets
+        .into_iter()
+        .map(|[a, b, c, d]| Ok([number(a)?, number(b)?, number(c)?, number(d)?]))
+        .collect::<Result<_, ShapeError>>()?;
+    Ok(Mesh::Volume(VolumeMesh { points, tets }))
+}

@@ -1,0 +1,68 @@
+//! Vectors of three components: the few operations that meshes need.
+
+/// A point or direction, m.
+pub type Vec3 = [f64; 3];
+
+/// a − b.
+#[must_use]
+pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// a + s b.
+#[must_use]
+pub fn add_scaled(a: Vec3, s: f64, b: Vec3) -> Vec3 {
+    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
+}
+
+/// a · b.
+#[must_use]
+pub fn dot(a: Vec3, b: Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// a × b.
+#[must_use]
+pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// |a|.
+#[must_use]
+pub fn length(a: Vec3) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// |a − b|.
+#[must_use]
+pub fn distance(a: Vec3, b: Vec3) -> f64 {
+    length(sub(a, b))
+}
+
+/// a / |a|; zero stays zero.
+#[must_use]
+pub fn unit(a: Vec3) -> Vec3 {
+    let l = length(a);
+    if l > 0.0 { [a[0] / l, a[1] / l, a[2] / l] } else { [0.0; 3] }
+}
+
+/// The mean of some points.
+#[must_use]
+pub fn mean<const N: usize>(points: [Vec3; N]) -> Vec3 {
+    std::array::from_fn(|c| points.iter().map(|p| p[c]).sum::<f64>() / N as f64)
+}
+
+/// The least and greatest corner of the box around some points; none for no point.
+#[must_use]
+pub fn bounds(points: &[Vec3]) -> Option<(Vec3, Vec3)> {
+    let first = *points.first()?;
+    Some(points.iter().fold((first, first), |(low, high), p| {
+        (std::array::from_fn(|c| low[c].min(p[c])), std::array::from_fn(|c| high[c].max(p[c])))
+    }))
+}
+
+/// The longest side of the box around some points, m; 0 for no point.
+#[must_use]
+pub fn longest_side(points: &[Vec3]) -> f64 {
+    bounds(points).map_or(0.0, |(low, high)| (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max))
+}
