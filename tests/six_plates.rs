@@ -59,7 +59,7 @@ fn surface(plate: &str) -> Surface {
     let roughness = |x: f64, _: f64| if plate.contains("matte") { halves(x) } else { PLASTIC };
     let rough = HeightMap::new(&raster(128, &roughness), extent, Wrap::Clamp).unwrap();
     let surface = Surface::new(map, SIDE_M, SIDE_M).unwrap().roughness(Roughness::Map(Box::new(rough)));
-    surface.excitation(Excitation::Both)
+    surface.excitation(Excitation::BOTH)
 }
 
 /// Strokes across the plate, one along each axis, and where the hand is at a sample.
