@@ -1,7 +1,7 @@
 //! Modes of vibration of a free body: frequencies and mass-normalised motions, none missed.
 //!
 //! Lanczos finds them from below; the inertia of K − ω²M above the last one counts how many there must be
-//! ([`crate::factor`]), and the residual ‖Kφ − ω²Mφ‖ / ‖Kφ‖ of each is checked.
+//! (`factor`), and the residual ‖Kφ − ω²Mφ‖ / ‖Kφ‖ of each is checked.
 
 use crate::elastic::Elastic;
 use crate::error::ShapeError;
