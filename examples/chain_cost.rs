@@ -1,4 +1,4 @@
-//! What the stages of one contact cost, and how the cost of the whole grows with contacts and modes.
+//! Cost of each stage of one contact, and growth of the whole with contacts and modes.
 //!
 //! `cargo run --release --example chain_cost`. One thread; the quickest tenth, so that a busy machine matters less.
 //! Whole scenes in real time are measured by `asperity headroom` and `cargo bench --bench headroom`.
@@ -8,7 +8,7 @@ mod scenes;
 
 use asperity::Config;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
-use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
 use asperity_dsp::micro_contact::{ContactSample, Integrator, MicroContact, Probe};
 use asperity_dsp::trajectory::{PathEvent, PathMode, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock};
@@ -85,11 +85,15 @@ fn stages() {
     let mut height_m = out.height_m;
     show(
         "noise below the map",
-        alone_ns(|| noise.add(&noise_path, &out.roughness, 2e-6, longest_m, &mut height_m)),
+        alone_ns(|| {
+            noise.add(&noise_path, &out.roughness, &OctaveWeights::pinned(2e-6, longest_m), &mut height_m)
+        }),
     );
     show(
         "noise, 12 octaves",
-        alone_ns(|| noise.add(&noise_path, &out.roughness, 2e-6, f64::INFINITY, &mut height_m)),
+        alone_ns(|| {
+            noise.add(&noise_path, &out.roughness, &OctaveWeights::pinned(2e-6, f64::INFINITY), &mut height_m)
+        }),
     );
     let force_n = [0.5; FRAMES];
     let mut rows = [ContactSample::default(); FRAMES];

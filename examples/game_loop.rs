@@ -2,18 +2,21 @@
 //!
 //! ```sh
 //! cargo run --release --example game_loop                      # silent, on any machine
+//! cargo run --release --example game_loop -- FOLDER            # the same, and FOLDER/game_loop.wav to listen to
 //! cargo run --release --example game_loop --features device    # through the sound card
 //! ```
 //!
 //! A finger circles over a grooved plate for three seconds, lifts off, and a steel ball hits the plate.
 
+use asperity::offline::{self, Options};
 use asperity::texture::height_map::HeightMap;
 use asperity::texture::raster::Raster;
 use asperity::{
-    Actuator, AudioBus, BodyId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Extent, Impact,
-    Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
+    Actuator, AudioBus, Body, BodyId, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine,
+    Extent, Impact, Material, ModalModel, Mode, Scene, Surface, SurfaceId, Wrap,
 };
 use std::error::Error;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Side of the plate, m.
@@ -22,15 +25,10 @@ const SIDE_M: f64 = 0.14;
 const STEP: Duration = Duration::from_micros(16_667);
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // 1. Build the engine. LIVE ties game time to the audio clock; ask the device for its rate first.
-    let audio = AudioBus { limit: true, ..AudioBus::default() }; // a sound card clips at ±1
-    let config =
-        Config { clock: ClockMode::LIVE, sample_rate_hz: rate_hz(), audio: vec![audio], ..Config::default() };
-    let asperity::Engine { mut scene, renderer, .. } = config.build()?;
-
-    // 2. Say what can be touched, and what rings when it is.
-    let tile = scene.add_body(asperity::Body::new(tile()?).of(Material::CERAMIC))?;
-    let plate = scene.add_surface(grooves()?.on(tile))?; // or Surface::from_maps("disp.png", "rough.png", …)
+    // 1. LIVE ties game time to the audio clock; ask the device for its rate first.
+    let Engine { mut scene, renderer, names, .. } = setup(ClockMode::LIVE)?;
+    let (tile, plate) = (names.bodies["tile"], names.surfaces["plate"]);
+    scene.start_recording(&names);
 
     // 3. Hand the audio half to the sound card.
     let output = start(renderer)?;
@@ -62,7 +60,29 @@ fn main() -> Result<(), Box<dyn Error>> {
         100.0 * stats.load
     );
     stop(output);
+
+    // 6. What was recorded sounds the same offline.
+    if let Some(folder) = std::env::args().nth(1).map(PathBuf::from) {
+        let log = scene.stop_recording();
+        let Engine { scene, renderer, names, .. } = setup(ClockMode::Exact)?;
+        let take = offline::render(scene, renderer, &log, &names, &Options::default())?;
+        std::fs::create_dir_all(&folder)?;
+        take.write_audio_wav(folder.join("game_loop.wav"))?;
+        println!("{}", folder.join("game_loop.wav").display());
+    }
     Ok(())
+}
+
+/// 2. Build the engine; say what can be touched, and what rings when it is.
+fn setup(clock: ClockMode) -> Result<Engine, Box<dyn Error>> {
+    let audio = AudioBus { limit: true, ..AudioBus::default() }; // a sound card clips at ±1
+    let config = Config { clock, sample_rate_hz: rate_hz(), audio: vec![audio], ..Config::default() };
+    let mut engine = config.build()?;
+    let tile = engine.scene.add_body(Body::new(tile()?).of(Material::CERAMIC))?; // or Body::stock(…)
+    let plate = engine.scene.add_surface(grooves()?.on(tile))?; // or Surface::from_maps("disp.png", "rough.png", …)
+    engine.names.bodies.insert("tile".into(), tile);
+    engine.names.surfaces.insert("plate".into(), plate);
+    Ok(engine)
 }
 
 /// A finger as the game knows it; your physics engine's contact goes here.
@@ -77,12 +97,9 @@ impl Finger {
         // A circle of 3 cm, once a second.
         let (radius_m, turn) = (0.03, std::f64::consts::TAU * time_s);
         let speed_m_s = radius_m * std::f64::consts::TAU;
-        let sample = ContactSample {
-            uv: [0.5 + radius_m * turn.cos() / SIDE_M, 0.5 + radius_m * turn.sin() / SIDE_M],
-            velocity_m_s: Some([-speed_m_s * turn.sin(), speed_m_s * turn.cos()]),
-            normal_force_n: 0.6,
-            closing_m_s: 0.03,
-        };
+        let uv = [0.5 + radius_m * turn.cos() / SIDE_M, 0.5 + radius_m * turn.sin() / SIDE_M];
+        let velocity_m_s = [-speed_m_s * turn.sin(), speed_m_s * turn.cos()];
+        let sample = ContactSample::new(uv, 0.6).sliding(velocity_m_s).landing(0.03);
         let event = match (self.touching, touches) {
             (false, true) => ContactEvent::begin(id, plate, Actuator(0), sample),
             (true, true) => ContactEvent::moved(id, sample),
@@ -103,17 +120,7 @@ fn report(scene: &mut Scene, time_s: f64, event: ContactEvent) -> Result<(), Box
 }
 
 fn steel_ball_on(body: BodyId) -> ContactEvent {
-    ContactEvent::Impact(Impact {
-        body,
-        other: None,
-        speed_m_s: 0.8,
-        mass_kg: 0.01,
-        radius_m: 0.005,
-        striker: Material::STEEL,
-        restitution: 0.8,
-        position: 0,
-        ..Impact::on(body)
-    })
+    ContactEvent::Impact(Impact::on(body).by(Material::STEEL, 0.01, 0.005).at_speed(0.8).rebounding(0.8))
 }
 
 /// A tile of four modes; `ModalModel::load("tile.modes.json")` reads what `asperity fit` wrote.
@@ -136,7 +143,7 @@ fn grooves() -> Result<Surface, Box<dyn Error>> {
     let values = (0..4 * width).map(|i| height(i % width)).collect();
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1e-5 };
     let map = HeightMap::new(&Raster { width, height: 4, values }, extent, Wrap::Repeat)?;
-    Ok(Surface::new(map, SIDE_M, SIDE_M)?)
+    Ok(Surface::from_map(map)?)
 }
 
 #[cfg(feature = "device")]

@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let asperity::Engine { mut scene, renderer, .. } = config.build()?;
         let board = scene.add_body(surfaces::board()?)?;
-        let noise = SolidNoise::new(parameters, 1, RATE_HZ)?;
+        let noise = SolidNoise::new(parameters, 1)?;
         let spacing_m = PICTURE.1 / PICTURE.0 as f64;
         let height_m = |x: usize, y: usize| {
             let at = SolidCut::SLANTED.at([x as f64 * spacing_m, y as f64 * spacing_m]);

@@ -1,4 +1,4 @@
-//! How surely the seven materials are told apart, on strokes and pieces that nothing was chosen by.
+//! Recognition of the seven materials, on strokes and pieces that nothing was chosen by.
 //!
 //! ```sh
 //! cargo run --release --example seven_materials_blind

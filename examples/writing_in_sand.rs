@@ -68,10 +68,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         cells: CELLS,
         depth_m: 0.03,
         tool: Tool::Sphere { radius_m: 0.006 },
-        contacts: 96,
         ..SandDesign::default()
     };
-    let sand = Surface::new(SandSource::synchronous(&design, 1, RATE_HZ)?, SIDE_M, SIDE_M)?;
+    let sand = Surface::new(SandSource::synchronous(&design, 1)?, SIDE_M, SIDE_M)?;
     let surface = scene.add_surface(sand.wraps(false).on(board))?;
     let names = Names { surfaces: HashMap::from([("sand".to_owned(), surface)]), ..Names::default() };
     let mut forces = Forces::new(RATE_HZ);

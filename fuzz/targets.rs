@@ -1,4 +1,4 @@
-//! What must survive any bytes: reading them, and using whatever they are taken for. A target panics when
+//! Fuzz targets, which must survive any bytes: reading them, and using whatever they are taken for. A target panics when
 //! it finds a fault.
 #![allow(dead_code)]
 

@@ -1,4 +1,4 @@
-//! From settings to a running engine: designs what is fixed, makes all memory, ties the two halves together.
+//! Assembly of an engine from its settings: designs what is fixed, makes all memory, ties the two halves together.
 
 use crate::audio::renderer::Renderer;
 use crate::files::contact_log::Names;
@@ -8,6 +8,7 @@ use crate::link::ring;
 use crate::link::stats::Counters;
 use crate::model::config::Config;
 use crate::model::error::ConfigError;
+use crate::open::levels::Levels;
 use crate::prepared::probe::PreparedProbe;
 use asperity_texture::sand::SandWorker;
 use std::sync::Arc;
@@ -33,6 +34,14 @@ pub struct Engine {
     pub names: Names,
     /// Simulations that have to run on threads of their own, sand for instance; empty unless the engine was built to play live.
     pub workers: Vec<SandWorker>,
+    /// Levels that were written or resolved, where the engine was built from a file; empty otherwise.
+    pub levels: Levels,
+}
+
+impl std::fmt::Debug for Engine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Engine").field("names", &self.names).finish_non_exhaustive()
+    }
 }
 
 impl Config {
@@ -42,14 +51,22 @@ impl Config {
     /// When a setting is outside its range; the message names the field.
     pub fn build(self) -> Result<Engine, ConfigError> {
         self.check()?;
-        let probe = PreparedProbe::new(&self.probe, &self.probe, self.integrator, self.inner_rate_hz())?;
+        let kernel = self.kernel()?;
+        let probe =
+            PreparedProbe::new(&self.probe, &self.probe, self.integrator, self.inner_rate_hz(), kernel)?;
         let counters = Arc::new(Counters::new(self.audio.len()));
         let (to_audio, from_game) = ring::channel(self.queue_capacity);
-        // Every resource that can be alive, and as many that are being replaced.
-        let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies));
-        let renderer = Renderer::new(&self, probe, from_game, to_game, counters.clone())?;
+        // Every resource that can be alive, and as many that are being replaced, and every port.
+        let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies) + self.max_ports);
+        let renderer = Renderer::new(&self, kernel, probe, from_game, to_game, counters.clone())?;
         let clock = Clock::new(self.clock, self.inner_rate_hz());
         let scene = Scene::new(self, clock, to_audio, from_audio, counters);
-        Ok(Engine { scene, renderer, names: Names::default(), workers: Vec::new() })
+        Ok(Engine {
+            scene,
+            renderer,
+            names: Names::default(),
+            workers: Vec::new(),
+            levels: Levels::default(),
+        })
     }
 }

@@ -42,13 +42,25 @@
 //! | a game loop | [`Config::live`], [`Scene::report`], [`Renderer::render`] |
 //! | a scene file | [`Engine::open`] |
 //! | a recorded contact log | [`offline::render`] |
-//! | displacement and roughness maps | [`Surface::from_maps`] |
+//! | displacement and roughness maps | [`Surface::from_maps`], [`Surface::from_displacement`] |
+//! | nothing recorded yet | [`Body::stock`], [`Material::PRESETS`], [`Surface::flat`] |
 //! | a surface of your own | [`texture::height_field::HeightField`] |
 //! | several bodies at several places | [`Config::audio`], [`Body::on_bus`] |
 //! | a pen, a nail, a shoe sole | [`PROBE_PRESETS`], [`Scene::add_probe`], [`Touching`] |
-//! | collisions of a physics engine | [`Impact::from_impulse`] |
+//! | collisions of a physics engine | [`Impact::from_impulse`]; the crate `asperity-rapier` |
 //! | a sound card | [`live`] |
 //! | silence | [`Scene::why_silent`] |
+//!
+//! # Crates
+//!
+//! | crate | holds |
+//! |---|---|
+//! | [`dsp`] | kernels: what happens to one sample |
+//! | [`texture`] | surfaces: sources sampled in real time, tools behind a feature |
+//! | `asperity` | scenes, events, the two halves, files, offline renders, sound cards |
+//! | `asperity-fit` | a recorded hit becomes modes |
+//! | `asperity-rapier` | contacts of a physics engine as events |
+//! | `asperity-cli` | the program |
 //!
 //! # Features
 //!
@@ -72,16 +84,18 @@ pub mod live;
 mod model;
 pub mod offline;
 pub mod open;
+pub mod parameters;
 mod prepared;
+mod rate;
 
 pub use asperity_dsp::limits;
 pub use audio::renderer::Renderer;
-pub use audio::tap::{ContactBlock, NoTap, Tap};
 pub use engine::Engine;
 pub use files::actuator_profile::{ActuatorPreset, PresetError};
 pub use game::scene::Scene;
 pub use game::silence::SilentBecause;
 pub use link::stats::Stats;
+pub use link::tap::{ContactBlock, NoTap, Tap};
 pub use model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
 pub use model::bad_value::BadValue;
 pub use model::body::Body;
@@ -90,21 +104,30 @@ pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
 pub use model::error::{AddError, ConfigError, Refusal, ReportError};
 pub use model::event::{
-    Actuator, ContactEvent, ContactId, ContactSample, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV, Touching,
+    Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, MAX_FORCE_N, MAX_SPEED_M_S, MAX_UV,
+    Touching,
 };
+pub use model::frame::SurfaceFrame;
 pub use model::id::{BodyId, ProbeId, SurfaceId};
-pub use model::material::Material;
+pub use model::material::{Material, MaterialPreset};
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::probe::{PROBE_PRESETS, probe_by_name};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
+pub use model::stock::Stock;
 pub use model::surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Excitation, Roughness,
     Surface, SurfaceError,
 };
 pub use model::uv_triangle::UvTriangle;
+pub use rate::{AtRate, RateError};
 
+/// Kernels: what happens to one sample.
+pub use asperity_dsp as dsp;
+pub use asperity_dsp::DesignError;
+/// What [`ContactBlock::contact_samples`] holds: the pad at one sample.
+pub use asperity_dsp::micro_contact::ContactSample as PadSample;
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
-pub use asperity_dsp::modal_bank::Culling;
+pub use asperity_dsp::modal_bank::{Culling, Isa};
 pub use asperity_dsp::mode::Mode;
 pub use asperity_dsp::trajectory::PathMode;
 /// Sources of surfaces, and maps.

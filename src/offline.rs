@@ -1,15 +1,16 @@
 //! Rendering a contact log without a device: the same two halves, the same events, to memory or WAV.
 
 use crate::audio::renderer::Renderer;
-use crate::audio::tap::{NoTap, Tap};
-use crate::files::contact_log::{ContactLog, LogError, Names};
+use crate::files::contact_log::{ContactLog, LogError, LogEvent, LogLine, Names};
 use crate::files::wav::write_wav;
 use crate::game::scene::Scene;
 use crate::game::silence::SilentBecause;
 use crate::link::stats::Stats;
+use crate::link::tap::{NoTap, Tap};
 use crate::model::error::ReportError;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
+use crate::open::Edits;
 use asperity_texture::sand::{SandFigures, SandPicture};
 use std::borrow::Cow;
 use std::path::Path;
@@ -49,6 +50,8 @@ pub struct Render {
     pub why_silent: Vec<SilentBecause>,
     /// Surfaces of sand as they lie after the last contact, settled.
     pub sand: Vec<SandAfter>,
+    /// By how much the peak limiters have turned down at most, dB.
+    pub limiter_db: f64,
     /// Time spent in the renderer alone; zero without [`Options::clock_s`].
     pub processing: Duration,
 }
@@ -64,7 +67,24 @@ pub struct SandAfter {
     pub picture: SandPicture,
 }
 
-/// Renders a log. Events with bad numbers are left out and counted in
+/// Renders a log.
+///
+/// ```
+/// use asperity::files::contact_log::ContactLog;
+/// use asperity::offline::{self, Options};
+/// use asperity::{Body, Config, Engine, Material, Stock};
+///
+/// let Engine { mut scene, renderer, mut names, .. } = Config::default().build()?;
+/// names.bodies.insert("bell".into(), scene.add_body(Body::stock(Stock::Bowl, Material::BRASS, 0.1)?)?);
+/// let log = r#"{"t":0.1,"event":"impact","body":"bell","speed_m_s":0.8,"mass_kg":0.01,"radius_m":0.005,"striker":"wood"}"#;
+/// let log = ContactLog::parse(log, "bell.jsonl")?;
+/// let take = offline::render(scene, renderer, &log, &names, &Options::default())?;
+/// // A tenth of a second before the blow, a second to ring out.
+/// assert!(take.stats.impacts == 1 && take.audio[0].len() >= 48_510);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Events with bad numbers are left out and counted in
 /// [`Stats::refused`](crate::Stats::refused); the first is told in [`Render::first_refused`].
 ///
 /// # Errors
@@ -91,20 +111,47 @@ pub fn render_tapped<T: Tap>(
     options: &Options,
     tap: &mut T,
 ) -> Result<Render, LogError> {
+    render_edited(scene, renderer, log, names, options, &mut Edits::default(), tap)
+}
+
+/// [`render_tapped`] of a recording that holds edits of the scene, made with what `edits` has. Without, they are made from the disk,
+/// and of nobody's own sources and surfaces.
+///
+/// # Errors
+/// As [`render`], and when an edit cannot be made.
+pub fn render_edited<T: Tap>(
+    scene: Scene,
+    renderer: Renderer,
+    log: &ContactLog,
+    names: &Names,
+    options: &Options,
+    edits: &mut Edits<'_>,
+    tap: &mut T,
+) -> Result<Render, LogError> {
     let (rate, inner_rate) = (renderer.sample_rate_hz(), renderer.inner_rate_hz());
     let every = (inner_rate / rate).round() as u64;
     let frames = ((log.end_s() + options.tail_s.max(0.0)) * rate).ceil() as usize;
-    let events = log
-        .lines
-        .iter()
-        .map(|line| Ok((line.t, line.event.resolve(names)?)))
-        .collect::<Result<Vec<_>, LogError>>()?;
+    // What is misnamed is told before anything is rendered, unless an edit may bring it.
+    if !log.lines.iter().any(|line| matches!(line.event, LogEvent::Edit(_))) {
+        log.lines.iter().try_for_each(|line| line.event.resolve(names).map(drop))?;
+    }
+    let mut names = names.clone();
     let mut take = Take::new(scene, renderer, frames, options);
-    for (time_s, event) in events {
-        take.make_room(Stamp::at(time_s * inner_rate).sample() / every, tap);
+    for LogLine { t, event } in &log.lines {
+        let sample = Stamp::at(t * inner_rate).sample() / every;
+        if let LogEvent::Edit(edit) = event {
+            // It was made at this sample, behind what was reported before.
+            take.render_to(sample.min(take.end), tap);
+            edits
+                .make(edit, &mut take.scene, &mut names)
+                .map_err(|problem| LogError::CannotEdit { t: *t, problem })?;
+            continue;
+        }
+        let event = event.resolve(&names)?;
+        take.make_room(sample, tap);
         // Refusals are counted by the scene; the rest of the log still renders.
-        if let Err(refused) = take.scene.report(time_s, event) {
-            take.first_refused.get_or_insert((time_s, refused));
+        if let Err(refused) = take.scene.report(*t, event) {
+            take.first_refused.get_or_insert((*t, refused));
         }
     }
     take.render_to(take.end, tap);
@@ -187,6 +234,7 @@ impl Take {
             first_refused: self.first_refused,
             why_silent: self.scene.why_silent(),
             sand: sand.map(|(surface, figures, picture)| SandAfter { surface, figures, picture }).collect(),
+            limiter_db: self.renderer.limiter_db(),
             processing: self.processing,
         }
     }

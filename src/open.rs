@@ -1,29 +1,28 @@
 //! From a scene file to a running engine.
 
+mod change;
+mod edit;
+pub mod levels;
+mod maker;
 mod source;
 
 use crate::engine::Engine;
-use crate::files::FileError;
-use crate::files::scene_file::{
-    ActuatorEntry, ActuatorOutput, Excitation as ExcitationEntry, MakeSource, MaterialEntry, Pixels,
-    ProbeEntry, Roughness as RoughnessEntry, SceneFile, SurfaceEntry, Wrap as WrapEntry,
-};
-use crate::model::probe::{PROBE_PRESETS, probe_by_name};
-use crate::{
-    ActuatorPreset, ActuatorSettings, AudioBus, Body, BodyId, Config, DeviceProfile, Excitation, Extent,
-    Integrator, Material, ModalModel, PathMode, Probe, Quantity, Roughness, Surface, Wrap,
-};
-use asperity_texture::height_map::HeightMap;
-use asperity_texture::image_io::{self, Channel};
+use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
+use crate::files::{Disk, FileError, Files};
+use crate::{AudioBus, Config, Integrator, Isa, PathMode};
 use asperity_texture::raster::Raster;
-use asperity_texture::sand::SandWorker;
-use source::Ground;
+pub use change::Changes;
+pub use edit::{Edits, MakeSurface};
+use levels::Levels;
+use maker::Maker;
 use std::cell::RefCell;
 use std::path::Path;
 
-/// What the command line may set, whatever the scene file says.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Overrides {
+/// How a scene is opened, and what may be set whatever the scene file says.
+#[derive(Clone, Copy)]
+pub struct Overrides<'a> {
+    /// Where the files lie that the scene names; the disk unless told otherwise.
+    pub files: &'a dyn Files,
     /// Rate of the outputs, Hz.
     pub sample_rate_hz: Option<f64>,
     /// Seed of every random number.
@@ -32,10 +31,27 @@ pub struct Overrides {
     pub integrator: Option<Integrator>,
     /// How sparse positions become a path.
     pub path: Option<PathMode>,
+    /// Instruction set of the kernels whose last bits depend on it.
+    pub kernel: Option<Isa>,
     /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are limited.
     pub live: bool,
     /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names them.
-    pub own: &'static [(&'static str, MakeSource)],
+    pub own: &'a [(&'a str, MakeSource)],
+}
+
+impl Default for Overrides<'_> {
+    fn default() -> Self {
+        Self {
+            files: &Disk,
+            sample_rate_hz: None,
+            seed: None,
+            integrator: None,
+            path: None,
+            kernel: None,
+            live: false,
+            own: &[],
+        }
+    }
 }
 
 impl Engine {
@@ -44,81 +60,101 @@ impl Engine {
     /// # Errors
     /// When a file cannot be used or a number is refused; the message names file and field.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, FileError> {
-        Self::from_scene(&SceneFile::load(path.as_ref())?, &Overrides::default())
+        Self::open_from(&Disk, path)
+    }
+
+    /// [`open`](Self::open), from wherever the files lie: memory, or an engine's archive.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_from(files: &dyn Files, path: impl AsRef<Path>) -> Result<Self, FileError> {
+        let file = SceneFile::load_from(files, path.as_ref())?;
+        Self::from_scene(&file, &Overrides { files, ..Overrides::default() })
     }
 
     /// Loads every file that a scene names and builds the engine.
     ///
     /// # Errors
     /// When a file cannot be used or the engine refuses a number; the message names file and field.
-    pub fn from_scene(file: &SceneFile, overrides: &Overrides) -> Result<Self, FileError> {
+    pub fn from_scene(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Self, FileError> {
         build(file, overrides)
     }
 }
 
-fn build(file: &SceneFile, overrides: &Overrides) -> Result<Engine, FileError> {
+fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileError> {
+    let trial = |levels: &Levels| {
+        let plain = |mut config: Config| {
+            for actuator in &mut config.actuators {
+                (actuator.equalise, actuator.limit, actuator.limit_peaks) = (None, None, false);
+            }
+            config.audio.iter_mut().for_each(|bus| bus.limit = false);
+            config
+        };
+        assemble(file, &Overrides { live: false, ..*overrides }, levels, plain)
+    };
+    let levels = levels::resolve(file, trial)?;
+    let mut engine = assemble(file, overrides, &levels, |config| config)?;
+    engine.levels = levels;
+    Ok(engine)
+}
+
+fn assemble(
+    file: &SceneFile,
+    overrides: &Overrides<'_>,
+    levels: &Levels,
+    change: impl FnOnce(Config) -> Config,
+) -> Result<Engine, FileError> {
     let at = |error: FileError| error.within(file.path.display());
-    let config = config(file, overrides).map_err(at)?;
-    let (seed, rate_hz) = (config.seed, config.inner_rate_hz());
+    let config = change(config(file, overrides, levels).map_err(at)?);
+    let workers = RefCell::default();
+    let maker = Maker {
+        files: overrides.files,
+        own: overrides.own,
+        seed: config.seed,
+        workers: overrides.live.then_some(&workers),
+    };
     let Engine { mut scene, renderer, mut names, .. } =
         config.build().map_err(|error| at(FileError::told(error)))?;
-    let workers = RefCell::default();
-    for (name, entry) in &file.probes {
+    for (name, probe) in &file.probes {
         let place = |error: FileError| at(error.within(format!("probe \"{name}\"")));
-        let id = probe(entry).and_then(|probe| scene.add_probe(probe).map_err(FileError::told));
-        names.probes.insert(name.clone(), id.map_err(place)?);
+        let id = scene.add_probe(*probe).map_err(|error| place(FileError::told(error)))?;
+        names.probes.insert(name.clone(), id);
     }
-    for body in &file.bodies {
-        let place = |error: FileError| at(error.within(format!("body \"{}\"", body.name)));
-        let mut model = match &body.modes {
-            Some(path) => ModalModel::load(path).map_err(FileError::told)?,
-            None => ModalModel {
-                source: String::new(),
-                impulse_n_s: 1.0,
-                modes: Vec::new(),
-                positions: Vec::new(),
-                residual: None,
-            },
-        };
-        if let Some(gain) = body.residual {
-            let residual = model.residual.take();
-            model = model.with_residual(residual, gain).map_err(|error| place(FileError::told(error)))?;
-        }
-        let mut thing = Body::new(model);
-        if let Some(entry) = &body.material {
-            thing = thing.of(material(entry).map_err(place)?);
-        }
-        let named = |name: &String| file.audio.iter().position(|bus| bus.name.as_ref() == Some(name));
-        let id = scene.add_body(thing.on_bus(body.bus.as_ref().and_then(named).unwrap_or(0)));
-        names.bodies.insert(body.name.clone(), id.map_err(|error| place(FileError::told(error)))?);
+    for entry in &file.bodies {
+        let place = |error: FileError| at(error.within(format!("body \"{}\"", entry.name)));
+        let body = maker.body(entry, &file.audio).map_err(place)?;
+        let id = scene.add_body(body).map_err(|error| place(FileError::told(error)))?;
+        names.bodies.insert(entry.name.clone(), id);
     }
     for entry in &file.surfaces {
         let place = |error: FileError| at(error.within(format!("surface \"{}\"", entry.name)));
-        let body = entry.body.as_ref().and_then(|name| names.bodies.get(name)).copied();
-        let live = overrides.live.then_some(&workers);
-        let ground = Ground { own: overrides.own, ..ground(entry, (seed, rate_hz), live) };
-        let surface = surface(entry, body, ground).map_err(place)?;
+        let body = file.bodies.iter().find(|body| Some(&body.name) == entry.body.as_ref());
+        let material = body.and_then(|body| body.material);
+        let surface = maker.surface(entry, material, &names).map_err(place)?;
         let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
-    Ok(Engine { scene, renderer, names, workers: workers.into_inner() })
+    Ok(Engine { scene, renderer, names, workers: workers.into_inner(), levels: Levels::default() })
 }
 
-fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, FileError> {
+fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Result<Config, FileError> {
     let default = Config::default();
-    let folder = file.path.parent().unwrap_or(Path::new(""));
+    let actuators = file.actuators.iter().zip(&levels.full_scale);
+    let actuators =
+        actuators.map(|(entry, full_scale)| maker::actuator(overrides.files, entry, *full_scale, &file.path));
     Ok(Config {
         sample_rate_hz: overrides.sample_rate_hz.or(file.sample_rate_hz).unwrap_or(default.sample_rate_hz),
         seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
         path: overrides.path.unwrap_or(default.path),
         integrator: overrides.integrator.unwrap_or(default.integrator),
-        probe: probe(&file.probe).map_err(|error| error.within("probe"))?,
-        actuators: file.actuators.iter().map(|entry| actuator(entry, folder)).collect::<Result<_, _>>()?,
-        // A sound card clips what exceeds full scale.
+        probe: file.probe,
+        kernel: overrides.kernel,
+        actuators: actuators.collect::<Result<_, _>>()?,
         audio: file
             .audio
             .iter()
-            .map(|bus| AudioBus { gain: bus.gain, limit: bus.limit || overrides.live })
+            .zip(&levels.gain)
+            .map(|(bus, gain)| bus_of(bus, *gain, file, overrides))
             .collect(),
         max_surfaces: default.max_surfaces.max(file.surfaces.len()),
         max_bodies: default.max_bodies.max(file.bodies.len()),
@@ -128,133 +164,19 @@ fn config(file: &SceneFile, overrides: &Overrides) -> Result<Config, FileError> 
     })
 }
 
-fn probe(entry: &ProbeEntry) -> Result<Probe, FileError> {
-    let preset = match entry.preset.as_deref() {
-        None => Probe::default(),
-        Some(name) => probe_by_name(name).ok_or_else(|| {
-            let known = PROBE_PRESETS.map(|(name, _)| format!("\"{name}\"")).join(", ");
-            let right = format!("must be one of {known}, or write the fields");
-            FileError::new("preset", format!("\"{name}\" is unknown"), right)
-        })?,
-    };
-    Ok(Probe {
-        pad_mass_kg: entry.pad_mass_kg.unwrap_or(preset.pad_mass_kg),
-        pad_stiffness_n_m: entry.pad_stiffness_n_m.unwrap_or(preset.pad_stiffness_n_m),
-        pad_damping_n_s_m: entry.pad_damping_n_s_m.unwrap_or(preset.pad_damping_n_s_m),
-        finger_mass_kg: entry.finger_mass_kg.unwrap_or(preset.finger_mass_kg),
-        contact_stiffness_n_m: entry.contact_stiffness_n_m.unwrap_or(preset.contact_stiffness_n_m),
-        leash_m: entry.leash_m.unwrap_or(preset.leash_m),
-    })
-}
-
-fn actuator(entry: &ActuatorEntry, folder: &Path) -> Result<ActuatorSettings, FileError> {
-    Ok(ActuatorSettings {
-        output: match entry.output {
-            ActuatorOutput::Displacement => Quantity::Displacement,
-            ActuatorOutput::Acceleration => Quantity::Acceleration,
-        },
-        full_scale: entry.full_scale,
-        highpass_hz: entry.highpass_hz,
-        equalise: device("equalise", entry.equalise.as_deref(), folder)?,
-        limit: device("limit", entry.limit.as_deref(), folder)?,
-        limit_peaks: entry.limit_peaks,
-        ..ActuatorSettings::default()
-    })
-}
-
-/// A shipped profile by name, or a profile's file, relative to the scene's.
-fn device(field: &str, name: Option<&str>, folder: &Path) -> Result<Option<DeviceProfile>, FileError> {
-    let Some(name) = name else { return Ok(None) };
-    if let Some(preset) = ActuatorPreset::by_name(name) {
-        return Ok(Some(preset.profile));
-    }
-    let at = format!("actuator: {field}");
-    if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
-        let preset = ActuatorPreset::load(folder.join(name));
-        return preset.map(|preset| Some(preset.profile)).map_err(|error| FileError::told(error).within(at));
-    }
-    let right = format!("must be none, a profile's file (NAME.toml) or one of: {}", ActuatorPreset::names());
-    Err(FileError::new(at, format!("\"{name}\" is unknown"), right))
-}
-
-fn material(entry: &MaterialEntry) -> Result<Material, FileError> {
-    match entry {
-        MaterialEntry::Constants { young_pa, poisson, density_kg_m3 } => {
-            Ok(Material { young_pa: *young_pa, poisson: *poisson, density_kg_m3: *density_kg_m3 })
-        }
-        MaterialEntry::Preset(name) => Material::by_name(name).ok_or_else(|| {
-            let right = format!("must be one of: {}, or a table of constants", Material::names());
-            FileError::new("material", format!("\"{name}\" is unknown"), right)
-        }),
-    }
+/// A bus without a word about a limiter has one where something is known to clip or nobody knows: before a sound card, where a device is
+/// named, behind a level that nobody wrote.
+fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides<'_>) -> AudioBus {
+    let names_device =
+        file.actuators.iter().any(|actuator| actuator.equalise.is_some() || actuator.limit.is_some());
+    let limit = entry.limit.unwrap_or(overrides.live || names_device || entry.gain.is_none());
+    AudioBus { gain, limit: limit || overrides.live }
 }
 
 /// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the heights
 /// do not belong to places, or the source cannot be made.
 pub fn relief(entry: &SurfaceEntry, seed: Option<u64>, longest: usize) -> Option<Raster> {
-    let default = Config::default();
-    let ground = ground(entry, (seed.unwrap_or(default.seed), default.sample_rate_hz), None);
-    ground.relief(&entry.source, longest)
-}
-
-fn ground<'a>(
-    entry: &SurfaceEntry,
-    (seed, sample_rate_hz): (u64, f64),
-    workers: Option<&'a RefCell<Vec<SandWorker>>>,
-) -> Ground<'a> {
-    let wrap = match entry.wrap {
-        WrapEntry::Repeat => Wrap::Repeat,
-        WrapEntry::Clamp => Wrap::Clamp,
-        WrapEntry::Mirror => Wrap::Mirror,
-    };
-    let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
-    Ground { extent, wrap, seed, sample_rate_hz, workers, own: &[] }
-}
-
-fn surface(entry: &SurfaceEntry, body: Option<BodyId>, ground: Ground<'_>) -> Result<Surface, FileError> {
-    let (extent, wrap) = (ground.extent, ground.wrap);
-    let source = ground.source(&entry.source)?;
-    let surface = Surface::from_source(source, extent.width_m, extent.height_m).map_err(FileError::told)?;
-    let surface = surface.wraps(ground.wrap != Wrap::Clamp);
-    let mut surface = match &entry.roughness {
-        RoughnessEntry::Number(None) => surface,
-        RoughnessEntry::Number(Some(r)) => surface.roughness(Roughness::Constant(*r)),
-        RoughnessEntry::Map { image, gloss } => {
-            let raster = pixels(image)?.raster;
-            let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
-            let map = HeightMap::new(&raster, extent, wrap)
-                .map_err(|error| FileError::told(error).within(image.path.display()))?;
-            surface.roughness(Roughness::Map(Box::new(map)))
-        }
-    };
-    if let Some(rms_m) = entry.micro_relief_m {
-        surface = surface.micro_relief_m(rms_m);
-    }
-    if let Some(friction) = entry.friction {
-        surface = surface.friction(friction);
-    }
-    surface = surface.at_strike_position(entry.strike_position);
-    if let Some(excitation) = entry.excitation {
-        surface = surface.excitation(match excitation {
-            ExcitationEntry::Collisions => Excitation::Collisions,
-            ExcitationEntry::Force => Excitation::Force,
-            ExcitationEntry::Both => Excitation::Both,
-        });
-    }
-    Ok(match body {
-        Some(body) => surface.on(body),
-        None => surface,
-    })
-}
-
-/// One channel of an image file.
-pub fn pixels(image: &Pixels) -> Result<image_io::ChannelImage, FileError> {
-    let channel = match image.channel {
-        Some('r') => Channel::R,
-        Some('g') => Channel::G,
-        Some('b') => Channel::B,
-        Some('a') => Channel::A,
-        _ => Channel::Luma,
-    };
-    image_io::load_channel(&image.path, channel).map_err(FileError::told)
+    let seed = seed.unwrap_or(Config::default().seed);
+    let maker = Maker { files: &Disk, own: &[], seed, workers: None };
+    maker.ground(entry).relief(&entry.source, longest)
 }

@@ -20,10 +20,8 @@ use asperity::texture::wrap::Wrap;
 use common::SIDE_M;
 use sliding::{Stroke, assert_no_step};
 
-const RATE_HZ: f64 = 44_100.0;
-
 fn solid(material: SolidMaterial) -> Box<dyn HeightField> {
-    Box::new(SolidNoise::new(material.parameters(), 3, RATE_HZ).unwrap())
+    Box::new(SolidNoise::new(material.parameters(), 3).unwrap())
 }
 
 fn surface(source: impl HeightField + 'static) -> Surface {
@@ -64,35 +62,33 @@ fn every_parameter_of_solid_noise() {
         with(|p| (p.limit_n, p.cap_n, p.viscosity_n_s_m, p.friction) = (0.5, 3.0, 5.0, 0.9)),
         start,
     ];
-    changed("solid noise", surface(SolidNoise::new(start, 3, RATE_HZ).unwrap()), &changes);
+    changed("solid noise", surface(SolidNoise::new(start, 3).unwrap()), &changes);
     let materials = [SolidMaterial::Pebbles, SolidMaterial::Gravel, SolidMaterial::Wood, SolidMaterial::Sand];
     let changes = materials.map(|m| m.parameters());
-    changed("materials", surface(SolidNoise::new(start, 3, RATE_HZ).unwrap()), &changes);
+    changed("materials", surface(SolidNoise::new(start, 3).unwrap()), &changes);
 }
 
 #[test]
 fn scale_crossfade_band_split_and_a_part_of_a_sum_within_a_mask() {
-    let scale = Scale::new(solid(SolidMaterial::Gravel), 1.0, RATE_HZ).unwrap();
+    let scale = Scale::new(solid(SolidMaterial::Gravel), 1.0).unwrap();
     changed("scale", surface(scale), &[0.0, 3.0, -1.0, 0.2].map(ScaleTo));
-    let fade = Crossfade::new(solid(SolidMaterial::Pebbles), solid(SolidMaterial::Gravel), RATE_HZ).unwrap();
+    let fade = Crossfade::new(solid(SolidMaterial::Pebbles), solid(SolidMaterial::Gravel));
     changed("crossfade", surface(fade), &[1.0, 0.3, 0.0].map(CrossfadeTo));
-    let split =
-        BandSplit::new(solid(SolidMaterial::Gravel), solid(SolidMaterial::Sand), 2e-3, RATE_HZ).unwrap();
+    let split = BandSplit::new(solid(SolidMaterial::Gravel), solid(SolidMaterial::Sand), 2e-3).unwrap();
     let weights = [[0.0, 1.0], [2.0, 0.0], [1.0, 1.0]].map(BandWeights);
     changed("band split", surface(split), &weights);
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1.0 };
     let half = Raster::from_fn(8, 8, |x, _| 0.5 + 0.4 * (x as f64 * std::f64::consts::FRAC_PI_4).sin());
     let mask = Box::new(HeightMap::new(&half, extent, Wrap::Repeat).unwrap());
     let sum = Box::new(Sum::new(vec![solid(SolidMaterial::Granite), solid(SolidMaterial::RoughGlass)]));
-    let scaled = Box::new(Scale::new(sum, 1.0, RATE_HZ).unwrap());
+    let scaled = Box::new(Scale::new(sum, 1.0).unwrap());
     let masked = Mask::new(mask, scaled, solid(SolidMaterial::Pebbles));
     changed("scaled sum in a mask", surface(masked), &[4.0, 0.0, 1.0].map(ScaleTo));
 }
 
 #[test]
 fn the_law_of_sand() {
-    let design =
-        SandDesign { width_m: SIDE_M, height_m: SIDE_M, cells: 280, contacts: 96, ..SandDesign::default() };
+    let design = SandDesign { width_m: SIDE_M, height_m: SIDE_M, cells: 280, ..SandDesign::default() };
     let law = design.law;
     let layers = [Some(Layer { from_m: 1e-4, hardness: 5.0 }), None, None, None];
     let changes = [
@@ -102,7 +98,7 @@ fn the_law_of_sand() {
         law,
     ];
     // Grains hit the body one by one: what is heard has onsets of its own, so only what is felt counts.
-    let sand = surface(SandSource::synchronous(&design, 1, RATE_HZ).unwrap());
+    let sand = surface(SandSource::synchronous(&design, 1).unwrap());
     let mut stroke = Stroke::on(sand.excitation(asperity::Excitation::Collisions), 1.0);
     stroke.slide(0.4);
     for change in changes {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::files::contact_log::{LogEvent, LogSample};
+use asperity::files::contact_log::LogEvent;
 use asperity::{
     Actuator, ActuatorSettings, AudioBus, Body, BodyId, Config, ContactBlock, ContactEvent, ContactId,
     ContactSample, Engine, Impact, Material, NoTap, PROBE_PRESETS, Probe, ProbeId, Refusal, Renderer, Scene,
@@ -43,19 +43,15 @@ fn render<T: Tap>(renderer: &mut Renderer, frames: usize, block: usize, tap: &mu
     all
 }
 
-fn sample_of(sample: LogSample) -> ContactSample {
-    sample.into()
-}
-
 /// A stroke whose begin says what it says.
 fn report(scene: &mut Scene, touching: Touching, contact: u64) {
     for line in stroke(SIDE_M, 0.1, 0.6, 0.3).lines {
         let event = match line.event {
-            LogEvent::Begin { sample, .. } => {
-                ContactEvent::begin_with(ContactId(contact), touching, sample_of(sample))
+            LogEvent::Begin { sample, .. } => ContactEvent::begin_with(ContactId(contact), touching, sample),
+            LogEvent::Move { sample, .. } => ContactEvent::moved(ContactId(contact), sample),
+            LogEvent::End { .. } | LogEvent::Impact { .. } | LogEvent::Edit(_) => {
+                ContactEvent::end(ContactId(contact))
             }
-            LogEvent::Move { sample, .. } => ContactEvent::moved(ContactId(contact), sample_of(sample)),
-            LogEvent::End { .. } | LogEvent::Impact { .. } => ContactEvent::end(ContactId(contact)),
         };
         scene.report(line.t, event).unwrap();
     }
@@ -84,10 +80,8 @@ fn each_of_several_probes_in_one_scene_feels_what_it_feels_alone_to_the_bit() {
             let contact = ContactId(1 + index as u64);
             let touching = Touching::on(surface).felt_by(Actuator(index as u16)).with(probe);
             let event = match line.event.clone() {
-                LogEvent::Begin { sample, .. } => {
-                    ContactEvent::begin_with(contact, touching, sample_of(sample))
-                }
-                LogEvent::Move { sample, .. } => ContactEvent::moved(contact, sample_of(sample)),
+                LogEvent::Begin { sample, .. } => ContactEvent::begin_with(contact, touching, sample),
+                LogEvent::Move { sample, .. } => ContactEvent::moved(contact, sample),
                 _ => ContactEvent::end(contact),
             };
             scene.report(line.t, event).unwrap();

@@ -34,7 +34,7 @@ fn difference_db(make: &dyn Fn() -> Surface, speed_m_s: f64, force_n: f64) -> [f
 }
 
 fn solid(material: SolidMaterial) -> Surface {
-    Surface::new(SolidNoise::new(material.parameters(), 5, 44_100.0).unwrap(), SIDE_M, SIDE_M).unwrap()
+    Surface::new(SolidNoise::new(material.parameters(), 5).unwrap(), SIDE_M, SIDE_M).unwrap()
 }
 
 #[test]

@@ -5,7 +5,7 @@ mod common;
 #[path = "common/steps.rs"]
 mod steps;
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{ModalModel, Mode};
 use common::{SIDE_M, grating, peak, rms, si_config, stroke};
@@ -37,7 +37,7 @@ fn flickering(gap_s: f64, closing_m_s: f64, uv_off: f64) -> ContactLog {
     let off_s = lines[at].t;
     let LogEvent::Move { sample, .. } = lines[at].event.clone() else { panic!("a stroke moves") };
     let u = sample.uv[0] + uv_off + 0.1 * gap_s / SIDE_M;
-    let landed = LogSample { uv: [u, sample.uv[1]], closing_m_s, ..sample };
+    let landed = ContactSample { uv: [u, sample.uv[1]], closing_m_s, ..sample };
     let lift_off = LogLine { t: off_s, event: LogEvent::End { contact: 1 } };
     let landing = LogLine { t: off_s + gap_s, event: LogEvent::begin(1, "s", 0, landed) };
     lines.splice(at..=at, [lift_off, landing]);

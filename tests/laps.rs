@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;
 use asperity::{ContactBlock, Extent, Surface, Tap, Wrap};
 use asperity_texture::combine::Sum;
@@ -37,7 +37,7 @@ impl Tap for Rows {
 
 /// Three laps along u, with the texture coordinate as `wrap` reports it.
 fn laps(u_per_tile: f64, wrap: impl Fn(f64) -> f64) -> ContactLog {
-    let sample = |t: f64| LogSample {
+    let sample = |t: f64| ContactSample {
         uv: [wrap(0.05 + u_per_tile * SPEED_M_S * t / SIDE_M), 0.31],
         velocity_m_s: Some([SPEED_M_S, 0.0]),
         normal_force_n: 0.6,
@@ -47,7 +47,7 @@ fn laps(u_per_tile: f64, wrap: impl Fn(f64) -> f64) -> ContactLog {
     let mut lines = vec![LogLine { t: 0.0, event: begin }];
     for step in 1..275 {
         let t = f64::from(step) / 60.0;
-        lines.push(LogLine { t, event: LogEvent::Move { contact: 1, sample: sample(t) } });
+        lines.push(LogLine { t, event: LogEvent::moved(1, sample(t)) });
     }
     ContactLog { lines }
 }
@@ -65,7 +65,7 @@ fn surface(source: impl asperity_texture::height_field::HeightField + 'static) -
 }
 
 fn solid(material: SolidMaterial) -> SolidNoise {
-    SolidNoise::new(material.parameters(), 5, 44_100.0).unwrap()
+    SolidNoise::new(material.parameters(), 5).unwrap()
 }
 
 fn map(wrap: Wrap) -> HeightMap {
@@ -186,7 +186,6 @@ fn at_the_edge_of_a_clamped_map_and_of_sand_a_jump_is_a_jump_and_no_blow() {
             SandSource::synchronous(
                 &SandDesign { width_m: SIDE_M, height_m: SIDE_M, cells: 128, ..SandDesign::default() },
                 1,
-                44_100.0,
             )
             .unwrap(),
         )

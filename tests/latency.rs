@@ -1,4 +1,4 @@
-//! From event to sample: at most one block and one sample in the engine; haptics and audio together.
+//! Latency from event to sample: at most one block and one sample in the engine; haptics and audio together.
 
 mod common;
 

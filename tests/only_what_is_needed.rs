@@ -1,4 +1,4 @@
-//! What is left out because nobody would miss it, and what leaving it out costs.
+//! Left-out work that nobody would miss, and the price of leaving it out.
 
 mod common;
 

@@ -1,9 +1,9 @@
-//! What physics engines and trackers really report: steps without force, hitches, lost reports, slow first
+//! Reports as physics engines and trackers make them: steps without force, hitches, lost reports, slow first
 //! intervals, velocities that are always zero, teleports. None of it may be felt as a blow.
 
 mod common;
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::{Options, Render};
 use asperity::{ContactBlock, Extent, Surface, Tap, Wrap};
 use asperity_dsp::rng::Rng;
@@ -61,22 +61,18 @@ fn hills() -> Surface {
 }
 
 /// Reports of one finger at 60 Hz for 2 s: `change` may alter a report or drop it.
-fn reports(mut change: impl FnMut(usize, f64, &mut LogSample) -> bool) -> ContactLog {
+fn reports(mut change: impl FnMut(usize, f64, &mut ContactSample) -> bool) -> ContactLog {
     let mut lines = Vec::new();
     for step in 0..120 {
         let t = step as f64 / 60.0;
-        let mut sample = LogSample {
+        let mut sample = ContactSample {
             uv: [0.1 + SPEED_M_S * t / SIDE_M, 0.525],
             velocity_m_s: Some([SPEED_M_S, 0.0]),
             normal_force_n: FORCE_N,
             closing_m_s: 0.0,
         };
         let stays = change(step, t, &mut sample);
-        let event = if step == 0 {
-            LogEvent::begin(1, "s", 0, sample)
-        } else {
-            LogEvent::Move { contact: 1, sample }
-        };
+        let event = if step == 0 { LogEvent::begin(1, "s", 0, sample) } else { LogEvent::moved(1, sample) };
         if stays {
             lines.push(LogLine { t, event });
         }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::{Options, Render};
 use asperity::texture::sand::{SandDesign, SandLaw, SandSource};
 use asperity::{ContactBlock, Surface, Tap};
@@ -20,7 +20,6 @@ fn bed() -> SandDesign {
         cells: 256,
         depth_m: DEPTH_M,
         talus_deg: 80.0,
-        contacts: 96,
         ..SandDesign::default()
     }
 }
@@ -46,7 +45,7 @@ impl Hand {
         let sample = |step: usize| {
             let t = step as f64 / self.reports_hz;
             let moves = t < self.drags_s;
-            LogSample {
+            ContactSample {
                 uv: [0.303 + self.drags_m_s * t.min(self.drags_s) / SIDE_M, 0.517],
                 velocity_m_s: Some([if moves { self.drags_m_s } else { 0.0 }, 0.0]),
                 normal_force_n: self.normal_force_n,
@@ -56,8 +55,7 @@ impl Hand {
         let at = |step: usize| self.begins_s + step as f64 / self.reports_hz;
         let begin = LogEvent::begin(1, "s", 0, sample(0));
         let mut lines = vec![LogLine { t: self.begins_s, event: begin }];
-        let moved =
-            |step: usize| LogLine { t: at(step), event: LogEvent::Move { contact: 1, sample: sample(step) } };
+        let moved = |step: usize| LogLine { t: at(step), event: LogEvent::moved(1, sample(step)) };
         lines.extend((1..=steps).map(moved));
         lines.push(LogLine { t: at(steps), event: LogEvent::End { contact: 1 } });
         ContactLog { lines }
@@ -84,7 +82,7 @@ impl Tap for Felt {
 }
 
 fn touch(design: &SandDesign, hand: &Hand) -> (Render, Felt) {
-    let sand = SandSource::synchronous(design, 1, RATE_HZ).unwrap();
+    let sand = SandSource::synchronous(design, 1).unwrap();
     let surface = Surface::new(sand, SIDE_M, SIDE_M).unwrap().wraps(false);
     let mut felt = Felt::default();
     let options = Options { tail_s: 0.1, ..Options::default() };
@@ -189,12 +187,13 @@ fn a_finger_at_rest_in_sand_sleeps_until_another_finger_moves_the_sand_under_it(
     let mut log = Hand::rests(2.0, 0.0, 1.0).log();
     let by = Hand { begins_s: 0.4, drags_m_s: 0.2, drags_s: 0.2, rests_s: 0.1, ..Hand::rests(2.0, 0.0, 0.0) };
     let beside = by.log().lines.into_iter().map(|line| {
-        let aside = |sample: LogSample| LogSample { uv: [sample.uv[0] - 0.2, sample.uv[1] + 0.06], ..sample };
+        let aside =
+            |sample: ContactSample| ContactSample { uv: [sample.uv[0] - 0.2, sample.uv[1] + 0.06], ..sample };
         let event = match line.event {
             LogEvent::Begin { touching, sample, .. } => {
                 LogEvent::Begin { contact: 2, touching, sample: aside(sample) }
             }
-            LogEvent::Move { sample, .. } => LogEvent::Move { contact: 2, sample: aside(sample) },
+            LogEvent::Move { sample, .. } => LogEvent::moved(2, aside(sample)),
             _ => LogEvent::End { contact: 2 },
         };
         LogLine { event, ..line }
@@ -202,7 +201,7 @@ fn a_finger_at_rest_in_sand_sleeps_until_another_finger_moves_the_sand_under_it(
     log.lines.extend(beside);
     log.lines.sort_by(|a, b| a.t.total_cmp(&b.t));
     let sand = || {
-        let source = SandSource::synchronous(&bed(), 1, RATE_HZ).unwrap();
+        let source = SandSource::synchronous(&bed(), 1).unwrap();
         Surface::new(source, SIDE_M, SIDE_M).unwrap().wraps(false)
     };
     let run = |block_frames| {

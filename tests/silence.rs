@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::files::contact_log::{LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;
 use common::{SIDE_M, grating, peak, plate, render, si_config, stroke};
 
@@ -52,11 +52,11 @@ fn begin_and_end_are_no_rougher_than_the_stroke_itself() {
 fn lifting_off_is_not_felt_as_a_thump() {
     let mut log = stroke(SIDE_M, 0.02, 1.3, 0.6);
     log.lines.pop();
-    let LogEvent::Move { contact, sample } = log.lines[20].event else { panic!("a move") };
+    let LogEvent::Move { contact, sample, .. } = log.lines[20].event else { panic!("a move") };
     for (step, normal_force_n) in [1.1, 0.9, 0.5, 0.05].into_iter().enumerate() {
         let t = 0.6 + 0.008 * step as f64;
         let uv = [0.1 + 0.02 * t / SIDE_M, sample.uv[1]];
-        let event = LogEvent::Move { contact, sample: LogSample { uv, normal_force_n, ..sample } };
+        let event = LogEvent::moved(contact, ContactSample { uv, normal_force_n, ..sample });
         log.lines.push(LogLine { t, event });
     }
     log.lines.push(LogLine { t: 0.632, event: LogEvent::End { contact } });

@@ -1,4 +1,4 @@
-//! What an impact sounds like, sample by sample, against the modes; its level at every rate.
+//! Impacts, sample by sample, against the modes; their level at every rate.
 
 use asperity::{Config, ContactEvent, Impact, Integrator, Material, ModalModel, Mode};
 use std::f64::consts::PI;

@@ -15,7 +15,7 @@
 
 mod common;
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{
     Config, ContactBlock, Excitation, Extent, Integrator, Material, ModalModel, Mode, PathMode, Probe,
@@ -69,12 +69,12 @@ fn watch(config: Config, surface: Surface, log: &ContactLog) -> (Vec<Row>, Rende
 fn log(seconds: f64, at: impl Fn(f64) -> ([f64; 2], [f64; 2], f64)) -> ContactLog {
     let sample = |t: f64| {
         let (uv, velocity_m_s, normal_force_n) = at(t);
-        LogSample { uv, velocity_m_s: Some(velocity_m_s), normal_force_n, closing_m_s: 0.0 }
+        ContactSample { uv, velocity_m_s: Some(velocity_m_s), normal_force_n, closing_m_s: 0.0 }
     };
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "s", 0, sample(0.0)) }];
     for step in 1..(seconds * 60.0) as usize {
         let t = step as f64 / 60.0;
-        lines.push(LogLine { t, event: LogEvent::Move { contact: 1, sample: sample(t) } });
+        lines.push(LogLine { t, event: LogEvent::moved(1, sample(t)) });
     }
     lines.push(LogLine { t: seconds, event: LogEvent::End { contact: 1 } });
     ContactLog { lines }

@@ -15,6 +15,12 @@ impl From<FileError> for CliError {
 }
 
 impl CliError {
+    /// What it says, without the word that begins the program's last line.
+    #[cfg(any(feature = "device", test))]
+    pub fn without_prefix(&self) -> &FileError {
+        &self.0
+    }
+
     /// An error at a file, a field or an option.
     pub fn new(at: impl fmt::Display, what: impl fmt::Display, right: impl fmt::Display) -> Self {
         Self(FileError::new(at, what, right))

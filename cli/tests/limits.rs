@@ -15,12 +15,13 @@ enum Place {
     Actuator,
     Audio,
     Material,
+    Stock,
     Sand,
     Solid,
     Brownian,
 }
 
-const ALL: [(Place, &str, Range); 38] = [
+const ALL: [(Place, &str, Range); 42] = [
     (Place::Top, "sample_rate_hz", output::SAMPLE_RATE_HZ),
     (Place::Surface, "width_m", limits::SIDE_M),
     (Place::Surface, "relief_m", limits::RELIEF_M),
@@ -40,6 +41,10 @@ const ALL: [(Place, &str, Range); 38] = [
     (Place::Material, "young_pa", material::YOUNG_PA),
     (Place::Material, "poisson", material::POISSON),
     (Place::Material, "density_kg_m3", material::DENSITY_KG_M3),
+    (Place::Material, "alpha_per_s", material::ALPHA_PER_S),
+    (Place::Material, "eta", material::ETA),
+    (Place::Material, "beta_s", material::BETA_S),
+    (Place::Stock, "size_m", material::SIZE_M),
     (Place::Sand, "depth_m", sand::DEPTH_M),
     (Place::Sand, "talus_deg", sand::TALUS_DEG),
     (Place::Sand, "stiffness_n", sand::STIFFNESS_N),
@@ -80,6 +85,7 @@ fn scene_with(place: Place, key: &str, value: f64) -> String {
                 rest.iter().filter(|(other, _)| *other != key).map(|(k, v)| format!("{k} = {v}")).collect();
             TOML.replace("material = \"steel\"", &format!("material = {{ {line}, {} }}", rest.join(", ")))
         }
+        (Place::Stock, _) => TOML.replace("modes = \"bar.modes.json\"", &format!("stock = \"bar\"\n{line}")),
         (Place::Sand, _) => source("sand", ""),
         (Place::Solid, _) => source("solid", ", preset = \"gravel\""),
         (Place::Brownian, "hurst") => source("brownian", ", rms_m = 1e-4"),

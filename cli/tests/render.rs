@@ -121,6 +121,31 @@ fn forces_come_once_a_millisecond_and_press_out_of_the_surface() {
 }
 
 #[test]
+fn forces_come_at_the_rate_that_is_asked_for_and_mean_the_same() {
+    let scene = Scene::new();
+    let rows = |options: &[&str]| -> Vec<Vec<f64>> {
+        scene.report(options);
+        let table = fs::read_to_string(scene.path("out.force.csv")).unwrap();
+        table.lines().skip(1).map(|line| line.split(',').map(|n| n.parse().unwrap()).collect()).collect()
+    };
+    let (thousand, five) = (rows(&["--force"]), rows(&["--force", "--force-rate", "5000"]));
+    assert!((five.len() as f64 / thousand.len() as f64 - 5.0).abs() < 0.05);
+    assert!(five.windows(2).all(|pair| (pair[1][0] - pair[0][0] - 2e-4).abs() < 1e-9));
+    let mean =
+        |rows: &[Vec<f64>], axis: usize| rows.iter().map(|row| row[axis]).sum::<f64>() / rows.len() as f64;
+    for axis in 2..5 {
+        let (a, b) = (mean(&thousand[100..400], axis), mean(&five[500..2000], axis));
+        assert!((a - b).abs() < 0.002, "axis {axis}: {a} and {b} N");
+    }
+    for (rate, right) in [("0", "1 to 20000 Hz"), ("x", "not a number")] {
+        let (status, _, error) = told(&scene.render(&["--force", "--force-rate", rate]));
+        assert!(status == 2 && error.contains("--force-rate") && error.contains(right), "{error}");
+    }
+    let output = scene.render(&["--rate", "8000", "--force", "--force-rate", "9000"]);
+    assert_refused(&output, &["--force-rate", "8000"]);
+}
+
+#[test]
 fn blocks_of_any_size_and_repeated_runs_give_the_same_bytes() {
     let scene = Scene::new();
     scene.write("stroke.jsonl", stroke(1, 0.2) + &impact(0.21));

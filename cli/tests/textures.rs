@@ -1,26 +1,19 @@
-//! The texture verbs from outside: what they print and write, that their results go on into a render, and what they
-//! say to inputs that are wrong, damaged or absurd.
+//! The texture verbs from outside: what they print and write, and that their results go on into a render.
 
+#[path = "support/maps.rs"]
+mod maps;
 mod support;
 #[path = "../../texture/tests/surfaces/mod.rs"]
 mod surfaces;
 
-use asperity_texture::image_io::{Channel, load_channel, save_gray16};
+use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::metamer::{Feel, MetamerOptions};
 use asperity_texture::raster::Raster;
+use maps::with_maps;
 use serde_json::Value;
 use std::path::Path;
 use support::{Scene, TOML, asperity, assert_refused, stroke, told};
 use surfaces::{fractal, grid, ground, ridges, wood};
-
-/// A folder with these maps in it.
-fn with_maps(maps: &[(&str, Raster)]) -> Scene {
-    let scene = Scene::new();
-    for (name, map) in maps {
-        save_gray16(scene.path(name), map).unwrap();
-    }
-    scene
-}
 
 /// Runs a verb with `--json`, which must succeed.
 fn report(scene: &Scene, arguments: &[&str]) -> Value {
@@ -290,109 +283,6 @@ fn a_photograph_is_a_rendered_stroke_in_two_commands() {
         peaks.push(told["haptic_peak"][0].as_f64().unwrap());
     }
     assert!(peaks[0] < peaks[1] && peaks[1] < peaks[2] && peaks[0] == peaks[3], "{peaks:?}");
-}
-
-/// A PNG that promises 100 000 × 100 000 texels.
-fn bomb() -> Vec<u8> {
-    let mut header = b"IHDR".to_vec();
-    header.extend([0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0, 8, 2, 0, 0, 0]);
-    let checksum = header.iter().fold(!0_u32, |crc, byte| {
-        (0..8).fold(
-            crc ^ u32::from(*byte),
-            |crc, _| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 },
-        )
-    });
-    let mut file = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
-    file.extend(header);
-    file.extend((!checksum).to_be_bytes());
-    file
-}
-
-#[test]
-fn pictures_that_are_none_are_refused_by_name_and_leave_nothing() {
-    let scene = with_maps(&[("good.png", ground(64)), ("tiny.png", ground(64).clone())]);
-    save_gray16(scene.path("tiny.png"), &Raster::constant(3, 2, 0.4)).unwrap();
-    let whole = std::fs::read(scene.path("good.png")).unwrap();
-    scene.write("cut.png", &whole[..whole.len() / 2]);
-    scene.write("text.png", "this is no picture");
-    scene.write("empty.png", "");
-    scene.write("bomb.png", bomb());
-    std::fs::create_dir(scene.path("folder.png")).unwrap();
-    for bad in ["missing.png", "cut.png", "text.png", "empty.png", "bomb.png", "folder.png", "tiny.png"] {
-        for arguments in [
-            &["texture", "metamer", bad, "good.png", "-o", "out.png"][..],
-            &["texture", "metamer", "good.png", bad, "-o", "out.png"],
-            &["texture", "from-normals", bad, "-o", "out.png"],
-            &["texture", "from-photo", bad, "-o", "out"],
-            &["texture", "analyze", bad],
-        ] {
-            // Six texels are too few for every verb, each in its own words.
-            assert_refused(&asperity(scene.folder.path(), arguments), &[bad]);
-            assert!(!scene.path("out.png").exists() && !scene.path("out/scene.toml").exists());
-        }
-        if bad != "tiny.png" {
-            assert_refused(&asperity(scene.folder.path(), &["texture", "compare", "good.png", bad]), &[bad]);
-        }
-    }
-    assert_refused(
-        &asperity(
-            scene.folder.path(),
-            &["texture", "metamer", "good.png", "good.png", "-o", "no/such/folder.png"],
-        ),
-        &["folder"],
-    );
-}
-
-#[test]
-fn options_that_make_no_sense_are_refused() {
-    let scene = with_maps(&[("a.png", ground(64))]);
-    let run = |arguments: &[&str]| {
-        let mut all = vec!["texture"];
-        all.extend(arguments);
-        asperity(scene.folder.path(), &all)
-    };
-    for usage in [
-        &["metamer", "a.png", "a.png", "-o", "o.png", "--iterations", "0"][..],
-        &["metamer", "a.png", "a.png", "-o", "o.png", "--mm-per-px", "0.1"],
-        &["metamer", "a.png", "a.png", "-o", "o.png", "--mm-per-px", "nan", "--reference-mm-per-px", "1"],
-        &["metamer", "a.png", "a.png"],
-        &["compare", "a.png"],
-        &["compare", "a.png", "a.png", "--strokes", "3"],
-        &["compare", "a.png", "a.png", "--relief-m", "-1"],
-        &["from-normals", "a.png", "-o", "o.png", "--green", "sideways"],
-        &["from-normals", "a.png", "-o", "o.png", "--width-m", "inf"],
-        &["from-normals", "a.png", "-o", "o.png", "--width-m", "0.04", "--width-mm", "50"],
-        &["from-photo", "a.png", "-o", "o", "--light", "0,0,-1"],
-        &["from-photo", "a.png", "-o", "o", "--light", "1,2"],
-        &["from-photo", "a.png", "-o", "o", "--exaggerate", "0"],
-        &["from-photo", "a.png", "-o", "o", "--width-m", "0.04", "--width-mm", "50"],
-    ] {
-        let (status, out, err) = told(&run(usage));
-        assert_eq!((status, out.as_str()), (2, ""), "{usage:?}: {err}");
-    }
-    for (bad, field) in [
-        (&["metamer", "a.png", "a.png", "-o", "o.png", "--bands", "9"][..], "bands"),
-        (&["metamer", "a.png", "a.png", "-o", "o.png", "--bands", "0"], "bands"),
-        (&["metamer", "a.png", "a.png", "-o", "o.png", "--orientations", "99"], "orientations"),
-        (
-            &[
-                "metamer",
-                "a.png",
-                "a.png",
-                "-o",
-                "o.png",
-                "--mm-per-px",
-                "1000",
-                "--reference-mm-per-px",
-                "1",
-            ],
-            "scale",
-        ),
-        (&["from-photo", "a.png", "-o", "o", "--relief-m", "1e9"], "relief_m"),
-    ] {
-        assert_refused(&run(bad), &[field]);
-    }
-    assert!(!scene.path("o.png").exists());
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn assert_heights(name: &str, rows: &[Row], oracle: impl Fn(&Row) -> f64) {
 
 /// Height of solid noise by its definition, octave by octave.
 fn solid(parameters: SolidNoiseParameters, seed: u64) -> impl Fn([f64; 2]) -> f64 {
-    let noise = SolidNoise::new(parameters, seed, RATE_HZ).unwrap();
+    let noise = SolidNoise::new(parameters, seed).unwrap();
     move |at| parameters.amplitude_m * noise.definition(&parameters, SolidCut::SLANTED.at(at))
 }
 
@@ -194,7 +194,7 @@ fn a_sum_a_scale_a_mask_and_a_crossfade() {
 /// Plays a straight stroke of the trace into sand made by the library, touch by touch.
 fn sand_again(design: &SandDesign, rows: &[Row]) -> Vec<f64> {
     let velocity_m_s = STRAIGHT_M_S;
-    let mut sand = SandSource::synchronous(design, SEED, RATE_HZ).unwrap();
+    let mut sand = SandSource::synchronous(design, SEED).unwrap();
     let mut out = SurfaceBlock::default();
     let mut heights = Vec::new();
     for (k, block) in rows.chunks(MAX_BLOCK).enumerate() {
@@ -236,7 +236,6 @@ fn sand_that_gives_way() {
         height_m: EXTENT_M[1],
         cells: 200,
         depth_m: 0.02,
-        contacts: 96,
         ..SandDesign::default()
     };
     let again = sand_again(&design, &rows);

@@ -9,7 +9,7 @@
 #[path = "../tests/profiles/mod.rs"]
 mod profiles;
 
-use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath, OctaveWeights};
 use asperity_dsp::hertz::{Elastic, HertzContact, HertzPulse};
 use asperity_dsp::micro_contact::{ContactSample, Integrator, LANES, LaneRow, Lanes, MicroContact, Probe};
 use profiles::{Force, Profile, Shape};
@@ -89,8 +89,7 @@ fn noise() {
                 noise.add(
                     &NoisePath { position_m, footprint_m },
                     &roughness,
-                    2e-6,
-                    black_box(f64::INFINITY),
+                    &OctaveWeights::pinned(2e-6, black_box(f64::INFINITY)),
                     out,
                 );
             }

@@ -22,6 +22,16 @@ use crate::pair::Pair;
 use core::f64::consts::{PI, SQRT_2};
 
 /// Coefficients of one filter; shared by every channel and contact at the same rate.
+///
+/// ```
+/// use asperity_dsp::butterworth::{Butterworth, State};
+///
+/// let filter = Butterworth::new(30.0, 44_100.0)?;
+/// let mut state = State::settled_at(0.0);
+/// let after_a_second = (0..44_100).map(|_| state.tick(&filter, 1.0)).last().unwrap();
+/// assert!((after_a_second.low - 1.0).abs() < 1e-9 && after_a_second.high.abs() < 1e-9);
+/// # Ok::<(), asperity_dsp::DesignError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Butterworth {
     a1: f64,

@@ -1,7 +1,7 @@
 //! Micro-relief: spatial 1/f^α noise whose exponent follows the roughness map.
 //!
 //! ```text
-//! h(p) = rms · L(R) · Σᵢ r^(i − 4) · Wᵢ · n(Qᵢ p / aᵢ + oᵢ)       α = 2.5 − 1.5 R,  r = 2^((1 − α)/2)
+//! h(p) = L(R) · Σᵢ r^(i − 4) · wᵢ(R) · Wᵢ · n(Qᵢ p / aᵢ + oᵢ)     α = 2.5 − 1.5 R,  r = 2^((1 − α)/2)
 //! aᵢ = 16.384 mm / 2^i, i = 0 … 11                              PSD of h along a line ∝ f^(−α)
 //! ```
 //!
@@ -10,8 +10,9 @@
 //! | n | [`crate::gradient_noise_2d`] | one octave, cell length aᵢ |
 //! | Qᵢ, oᵢ | three rotations 30° apart, seeded offsets | so that no direction follows the lattice |
 //! | R | `roughness` | per sample: it changes gains, never positions |
-//! | L(R) | `level` | makes the rms in the octave of wavelengths about 1 mm equal `rms` for every R |
-//! | Wᵢ | `footprint_weight`, `tail_boost` and `longest_wavelength_m` | below |
+//! | L(R) | `level` | makes the rms in the octave of wavelengths about 1 mm equal 1 for every R |
+//! | wᵢ(R) | [`OctaveWeights`] | how rough the surface is, its outer scale, the tip that rides on it |
+//! | Wᵢ | `footprint_weight`, `tail_boost` | below |
 //!
 //! Source: Hasti §III-C (1/f^α overlay, α = 2.5 − 1.5 R). **What we changed.** The paper filters a
 //! temporal noise and divides by the speed. This noise is a function of the place: the same place
@@ -40,10 +41,13 @@ mod lanes;
 mod simd;
 #[cfg(test)]
 mod tests;
+mod weights;
 
 use crate::gradient_noise_2d::PEAK_WAVELENGTH_CELLS;
 use crate::rng::Rng;
 use cells::Offset;
+
+pub use weights::{OctaveWeights, Relief, growth};
 
 /// Number of octaves.
 pub const OCTAVES: usize = 12;
@@ -153,21 +157,15 @@ impl FractalNoise {
     }
 
     /// Adds the relief along a path to `height_m`. `roughness` (0–1, clamped) and `height_m` are as long
-    /// as the path; `rms_at_1mm_m` is the rms of the relief in the octave of wavelengths about 1 mm;
-    /// octaves longer than `longest_wavelength_m` fade out (∞: none).
+    /// as the path; `weights` say how strong each octave is at each roughness.
     pub fn add(
         &self,
         path: &NoisePath<'_>,
         roughness: &[f64],
-        rms_at_1mm_m: f64,
-        longest_wavelength_m: f64,
+        weights: &OctaveWeights,
         height_m: &mut [f64],
     ) {
-        let mut band = [0.0; OCTAVES];
-        for (weight, octave) in band.iter_mut().zip(&self.octaves) {
-            *weight = band_weight(f64::from(octave.cell_m), longest_wavelength_m) * rms_at_1mm_m as f32;
-        }
-        simd::add(self, path, roughness, &band, height_m);
+        simd::add(self, path, roughness, weights, height_m);
     }
 }
 

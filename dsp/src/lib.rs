@@ -16,6 +16,7 @@
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
 //! | [`mobility`] | force pulses → what the hand feels of an impact |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
+//! | [`damping`] | a material → the decays of its modes |
 //! | [`actuator`] | pad motion → haptic samples |
 //! | [`limits`] | what all of them accept |
 //! | [`rng`] | seeded numbers for all of them |
@@ -27,6 +28,7 @@ extern crate std;
 
 pub mod actuator;
 pub mod butterworth;
+pub mod damping;
 mod error;
 pub mod fractal_noise;
 pub mod gradient_noise_2d;

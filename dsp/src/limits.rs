@@ -1,4 +1,4 @@
-//! What the engine accepts, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
+//! Accepted ranges, in one list: kernels, the engine's own checks and the reader of scene files quote it, and
 //! `docs/formats.md` prints it.
 //!
 //! What is outside is refused where it enters, by name; what lies inside is rendered as it is.
@@ -77,14 +77,22 @@ pub const UV: Range = Range::new(-MAX_UV, MAX_UV, "finite and within ±1e6");
 pub const MAX_MICRO_RELIEF_M: f64 = 0.01;
 /// Micro-relief of a surface; 0 is none.
 pub const MICRO_RELIEF_M: Range = Range::new(0.0, MAX_MICRO_RELIEF_M, "0 to 0.01 m, 0 = none");
+/// Wavelength beyond which the micro-relief is flat.
+pub const OUTER_SCALE_M: Range = Range::new(1e-5, 1.0, "1e-5 to 1 m");
 /// Side of a surface.
 pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
+/// Each coordinate of a place in a body.
+pub const PLACE_M: Range = Range::new(-1e3, 1e3, "-1000 to 1000 m");
+/// Length of a direction, of which only the direction counts.
+pub const AXIS: Range = Range::new(1e-6, 1e6, "1e-6 to 1e6 long");
 /// Roughness of a surface.
 pub const ROUGHNESS: Range = Range::new(0.0, 1.0, "0 to 1");
 /// Friction coefficient.
 pub const FRICTION: Range = Range::new(0.0, 10.0, "0 to 10");
 /// Game time of a report with an exact clock, s.
 pub const TIME_S: Range = Range::new(0.0, 1e9, "finite, 0 to 1e9 s");
+/// Game seconds a second of audio.
+pub const TIME_SCALE: Range = Range::new(0.01, 100.0, "0.01 to 100");
 /// Game time of a report with a live clock, s.
 pub const LIVE_TIME_S: Range = Range::new(-1e9, 1e9, "finite, within ±1e9 s");
 
@@ -104,6 +112,10 @@ pub mod probe {
     pub const CONTACT_STIFFNESS_N_M: Range = Range::new(1.0, 1e9, "1 to 1e9 N/m");
     /// Longest gap that the finger's own motion may open.
     pub const LEASH_M: Range = Range::new(1e-6, 0.05, "1e-6 to 0.05 m");
+    /// Radius of the sphere that rides on the surface; 0 is a point.
+    pub const TIP_RADIUS_M: Range = Range::new(0.0, 0.1, "0 to 0.1 m, 0 = a point");
+    /// n of k_m ∝ Fⁿ.
+    pub const FORCE_EXPONENT: Range = Range::new(0.0, 1.0, "0 to 1");
 }
 
 /// What strikes.
@@ -132,6 +144,14 @@ pub mod material {
     pub const POISSON: Range = Range::new(0.0, 0.5, "0 to 0.5");
     /// Density.
     pub const DENSITY_KG_M3: Range = Range::new(1.0, 1e5, "1 to 1e5 kg/m³");
+    /// Damping that is the same at every frequency.
+    pub const ALPHA_PER_S: Range = Range::new(0.0, 1e6, "0 to 1e6 1/s");
+    /// Loss factor.
+    pub const ETA: Range = Range::new(0.0, 10.0, "0 to 10");
+    /// Viscous damping.
+    pub const BETA_S: Range = Range::new(0.0, 1.0, "0 to 1 s");
+    /// Longest side of a stock shape.
+    pub const SIZE_M: Range = Range::new(1e-3, 100.0, "1e-3 to 100 m");
     /// Gain of a body's residual.
     pub const RESIDUAL: Range = Range::new(0.0, 1e3, "0 to 1e3 (a gain)");
 }
@@ -148,8 +168,14 @@ pub mod output {
     pub const HAPTIC_GAIN: Range = Range::new(0.0, 10.0, "0 to 10");
     /// Metres, or m/s², at sample value 1.
     pub const FULL_SCALE: Range = Range::new(1e-12, 1e12, "1e-12 to 1e12 m (or m/s²)");
+    /// Cutoff of an actuator's low-pass; 0 is off.
+    pub const LOWPASS_HZ: Range = Range::new(0.0, 2e4, "0 to 20000 Hz, 0 = off");
     /// High-pass about the mean surface; at low sample rates, below 0.49 of the rate as well.
     pub const HIGHPASS_HZ: Range = Range::new(0.0, 1e3, "0 to 1000 Hz, 0 = off");
+    /// How much of its signal a port holds for a late reader.
+    pub const PORT_HOLDS_S: Range = Range::new(1e-3, 60.0, "1e-3 to 60 s");
+    /// Rows a second of a force port.
+    pub const FORCE_RATE_HZ: Range = Range::new(1.0, 2e4, "1 to 20000 Hz");
     /// How long a contact goes on without a report.
     pub const CONTACT_TIMEOUT_S: Range = Range::new(0.01, 3600.0, "0.01 to 3600 s");
 }
@@ -187,8 +213,6 @@ pub mod sand {
     pub const CELLS: Range = Range::new(4.0, 4096.0, "4 to 4096 cells");
     /// Width of a cell.
     pub const CELL_M: Range = Range::new(1e-6, 0.1, "1e-6 to 0.1 m");
-    /// Contacts at once.
-    pub const CONTACTS: Range = Range::new(1.0, 1024.0, "1 to 1024");
 }
 
 /// Solid noise.
@@ -261,7 +285,11 @@ mod tests {
             RELIEF_M,
             SPEED_M_S,
             MICRO_RELIEF_M,
+            OUTER_SCALE_M,
             SIDE_M,
+            TIME_SCALE,
+            PLACE_M,
+            AXIS,
             ROUGHNESS,
             FRICTION,
             probe::PAD_MASS_KG,
@@ -270,6 +298,8 @@ mod tests {
             probe::FINGER_MASS_KG,
             probe::CONTACT_STIFFNESS_N_M,
             probe::LEASH_M,
+            probe::TIP_RADIUS_M,
+            probe::FORCE_EXPONENT,
             impact::MASS_KG,
             impact::RADIUS_M,
             impact::RESTITUTION,
@@ -284,7 +314,10 @@ mod tests {
             output::HAPTIC_GAIN,
             output::FULL_SCALE,
             output::HIGHPASS_HZ,
+            output::LOWPASS_HZ,
             output::CONTACT_TIMEOUT_S,
+            output::PORT_HOLDS_S,
+            output::FORCE_RATE_HZ,
             sand::DEPTH_M,
             sand::SIDE_M,
             sand::TALUS_DEG,
@@ -298,7 +331,6 @@ mod tests {
             sand::TOOL_TEXEL_M,
             sand::CELLS,
             sand::CELL_M,
-            sand::CONTACTS,
             solid::MAGNITUDE,
             solid::OCTAVES,
             solid::FREQUENCY,

@@ -2,7 +2,7 @@
 
 mod spectrum;
 
-use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath, OctaveWeights};
 use asperity_dsp::rng::Rng;
 use spectrum::power;
 
@@ -21,7 +21,12 @@ fn relief(noise: &FractalNoise, positions: &[[f64; 2]], footprint_m: f64, roughn
     let mut height = vec![0.0; positions.len()];
     let footprints = vec![footprint_m; positions.len()];
     let path = NoisePath { position_m: positions, footprint_m: &footprints };
-    noise.add(&path, &vec![roughness; positions.len()], 1.0, f64::INFINITY, &mut height);
+    noise.add(
+        &path,
+        &vec![roughness; positions.len()],
+        &OctaveWeights::pinned(1.0, f64::INFINITY),
+        &mut height,
+    );
     height
 }
 
@@ -213,7 +218,12 @@ fn blocks_and_instruction_sets_do_not_change_a_bit() {
     let whole = |kernel| {
         let mut height = vec![1e-5; 3000];
         let path = NoisePath { position_m: &position_m, footprint_m: &footprint_m };
-        FractalNoise::with_kernel(7, kernel).add(&path, &roughness, 2e-6, 3e-3, &mut height);
+        FractalNoise::with_kernel(7, kernel).add(
+            &path,
+            &roughness,
+            &OctaveWeights::pinned(2e-6, 3e-3),
+            &mut height,
+        );
         height
     };
     let portable = whole(Kernel::Portable);
@@ -232,7 +242,7 @@ fn blocks_and_instruction_sets_do_not_change_a_bit() {
     while n < height.len() {
         let end = (n + 1 + rng.next_u32() as usize % 70).min(height.len());
         let path = NoisePath { position_m: &position_m[n..end], footprint_m: &footprint_m[n..end] };
-        noise.add(&path, &roughness[n..end], 2e-6, 3e-3, &mut height[n..end]);
+        noise.add(&path, &roughness[n..end], &OctaveWeights::pinned(2e-6, 3e-3), &mut height[n..end]);
         n = end;
     }
     assert!(height == portable, "blocks differ");
@@ -262,7 +272,12 @@ fn cells_kept_from_sample_to_sample_do_not_change_a_bit() {
                     position_m: &position_m[range.clone()],
                     footprint_m: &footprint_m[range.clone()],
                 };
-                noise.add(&path, &roughness[range.clone()], 2e-6, f64::INFINITY, &mut height[range]);
+                noise.add(
+                    &path,
+                    &roughness[range.clone()],
+                    &OctaveWeights::pinned(2e-6, f64::INFINITY),
+                    &mut height[range],
+                );
             }
             height
         };
@@ -285,7 +300,7 @@ fn octaves_longer_than_the_sources_own_band_are_left_to_the_source() {
     let spectrum = |longest_m: f64| {
         let mut height = vec![0.0; positions.len()];
         let path = NoisePath { position_m: &positions, footprint_m: &footprints };
-        noise.add(&path, &vec![0.0; positions.len()], 1.0, longest_m, &mut height);
+        noise.add(&path, &vec![0.0; positions.len()], &OctaveWeights::pinned(1.0, longest_m), &mut height);
         power(&height)
     };
     let (all, fine) = (spectrum(f64::INFINITY), spectrum(0.3e-3));

@@ -3,7 +3,7 @@
 //! What the recordings do not hold is assumed, and says so: the size of a screen pixel, what force
 //! full pen pressure means, and how fast a pen lands.
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Striker};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Striker};
 
 /// Full pressure of a pen, N. Assumed: tablets saturate at 3–5 N, recordings of writing peak near half.
 pub const FULL_PRESSURE_N: f64 = 2.0;
@@ -79,14 +79,14 @@ pub fn strokes(samples: &[PenSample], surface: &str, size_m: [f64; 2], velocity:
         if now.pressure <= 0.0 {
             continue;
         }
-        let mut sample = LogSample {
+        let mut sample = ContactSample {
             uv: [now.position_m[0] / size_m[0], now.position_m[1] / size_m[1]],
             velocity_m_s: last.filter(|_| velocity).map(|before| speed(&before, now)),
             normal_force_n: now.pressure * FULL_PRESSURE_N,
             closing_m_s: 0.0,
         };
         let event = if last.is_some() {
-            LogEvent::Move { contact, sample }
+            LogEvent::moved(contact, sample)
         } else {
             contact += 1;
             sample.closing_m_s = LANDING_M_S;

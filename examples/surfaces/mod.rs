@@ -1,7 +1,7 @@
-//! What the surface examples share: a hand that draws lines, the forces it feels and their plot, pictures.
+//! Support of the surface examples: a hand that draws lines, the forces it feels and their plot, pictures.
 #![allow(dead_code)]
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::{ContactBlock, ModalModel, Mode, Tap};
 use std::error::Error;
 use std::fmt::Write as _;
@@ -60,7 +60,7 @@ impl Hand {
         for step in 0..=steps {
             let t = step as f64 / 60.0;
             let (before, after) = (place(t - 0.004), place(t + 0.004));
-            let sample = LogSample {
+            let sample = ContactSample {
                 uv: place(t),
                 velocity_m_s: Some([0, 1].map(|a| (after[a] - before[a]) * self.side_m / 0.008)),
                 normal_force_n: self.normal_force_n,
@@ -69,7 +69,7 @@ impl Hand {
             let event = match step {
                 0 => LogEvent::begin(contact, self.surface, 0, sample),
                 _ if step == steps => LogEvent::End { contact },
-                _ => LogEvent::Move { contact, sample },
+                _ => LogEvent::moved(contact, sample),
             };
             log.lines.push(LogLine { t: start_s + t, event });
         }

@@ -1,4 +1,4 @@
-//! What a fit finds in noise of any colour: `colours DRAWS SEED SECONDS [RATE_HZ] [BITS] [COLOUR…] [-s] [-v]`
+//! Fits of noise of any colour: `colours DRAWS SEED SECONDS [RATE_HZ] [BITS] [COLOUR…] [-s] [-v]`
 //!
 //! Every colour of `asperity_measure::coloured_noise`, in which nothing rings; with `-s`, four modes struck a quarter of a second
 //! after the start, 20 dB louder; with `-v` the modes that were invented.

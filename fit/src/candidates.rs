@@ -1,4 +1,4 @@
-//! What may be a mode: poles of the bands of one level whose gates open.
+//! Mode candidates: poles of the bands of one level whose gates open.
 //!
 //! Bands and the poles in them are independent of each other and shared among the threads allowed.
 

@@ -1,4 +1,4 @@
-//! Where the striker lets go: from there on a recording is a free decay, before it is not.
+//! Striker release: from there on a recording is a free decay.
 //!
 //! A sum of p damped sinusoids obeys a linear recurrence of order 2p in either direction. Learnt from a
 //! stretch some milliseconds after the onset and run *backwards*,

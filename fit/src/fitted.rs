@@ -1,4 +1,4 @@
-//! What a fit returns: modes with their standard deviations, and what can be said about the rest.
+//! The result of a fit: modes with their standard deviations, and figures of the rest.
 //!
 //! Everything that is said of the modes is said of the *struck body*: of what the engine plays when the modes file is
 //! struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t + φ) from the onset on and nothing else.

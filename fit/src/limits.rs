@@ -1,4 +1,4 @@
-//! How far an analysis goes.
+//! Limits of an analysis.
 
 use crate::options::{FitOptions, LARGEST_AMPLITUDE};
 use crate::recording::Recording;

@@ -1,4 +1,4 @@
-//! How many exponentials a band holds: a gate, then the edge of the noise.
+//! Model order of a band, the number of its exponentials: a gate, then the edge of the noise.
 //!
 //! *Gate.* A band is looked at only if a periodogram (over the full, half, quarter or eighth window,
 //! for modes that die early) peaks in its central half above what q samples of noise reach,

@@ -1,4 +1,4 @@
-//! Where the strikes are: their first samples, and where the next strike or the noise ends each.
+//! Onset detection: the first samples of the strikes, and where the next strike or the noise ends each.
 //!
 //! The envelope is the rms over 1 ms. A *strike* is a place where it rises to twice what it reached in
 //! the 80 ms before, to 5 % of the recording's peak and well over the background; beats of close modes rise as far, but

@@ -1,4 +1,4 @@
-//! What a fit may find and how, and what it found of the recording.
+//! Options of a fit, and its summary of the recording.
 
 /// Largest amplitude of a mode, in peaks of the recording.
 pub(crate) const LARGEST_AMPLITUDE: f64 = 8.0;

@@ -1,4 +1,4 @@
-//! Which modes the data prove: a Wald test with the covariance of *all* parameters.
+//! Pruning of modes that the data do not prove: a Wald test with the covariance of *all* parameters.
 //!
 //! ```text
 //! W_k = c_kᵀ (σ_k² [ (JᵀJ)⁻¹ ]_cc,k )⁻¹ c_k        kept when  W_k ≥ 2 ln(5 N / P_fa)

@@ -1,4 +1,4 @@
-//! Which partials are kept when there are more than places: those that are heard.
+//! Ranking of partials by loudness, for when there are more than places.
 //!
 //! Energy alone prefers the attack. A partial counts by the larger of two shares: of all energy, and of all energy after
 //! a tenth of a second, where the attack is over and what rings is heard alone.

@@ -30,6 +30,7 @@ pub enum ChannelChoice {
 
 /// Why a file is no recording.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RecordingError {
     /// The file cannot be opened or read.
     #[error("{path}: {source}; a sound file that can be read is needed", path = path.display())]

@@ -1,4 +1,4 @@
-//! What modes do not explain: the attack's click, the room, the noise.
+//! Residual of a fit, the part that no mode explains: the attack's click, the room, the noise.
 //!
 //! Summarised so that a body can carry a short residual excitation: the level of the attack in octave
 //! bands, one value every 5 ms over the first tenth of a second.

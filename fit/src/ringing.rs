@@ -1,4 +1,4 @@
-//! What rings, and what is noise that goes on as it began.
+//! Ringing against stationary noise: a decaying partial is told from noise that goes on as it began.
 //!
 //! Modes fitted to steep noise (rumble, wind, 1/f²) take the loudest part of it with them: the noise measured in
 //! what they leave is then too low, and they pass every test against it. So the recording itself is held against

@@ -1,4 +1,4 @@
-//! What a sound file says of itself, and why bytes are no sound.
+//! Sound format: the container and codec a file declares, and the reason why bytes are no sound.
 
 /// Most channels of a file.
 pub(crate) const MOST_CHANNELS: usize = 64;

@@ -1,4 +1,4 @@
-//! From a recording to modes: the whole way, with the traps of real recordings.
+//! The whole analysis of a strike: a recording becomes modes, past the traps of real recordings.
 //!
 //! mean removed → the best strike chosen ([`crate::onset`]) → analysed from its onset on (`ways`) → what does not ring taken out
 //! and doubts named ([`crate::suspicion`]) → held against the recording as the engine will play it ([`mod@crate::fitted`]).
@@ -17,6 +17,7 @@ const LONGEST_S: f64 = 40.0;
 const UNTRIMMED_S: f64 = 5.0;
 /// Why a recording cannot be fitted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
     /// An option outside its range.
     #[error("{field}: {value} is refused; {right}")]

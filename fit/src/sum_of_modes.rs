@@ -1,4 +1,4 @@
-//! Whether a segment is a sum of modes in noise, told before anything is fitted.
+//! Damped-sinusoid test: whether a segment is a sum of modes in noise, before anything is fitted.
 //!
 //! Noise and a mode leave the singular values of a band's Hankel matrix apart: one value a mode stands over the noise's
 //! edge ([`crate::model_order`]). What a real recording has besides (a room, beats, decays that are no exponentials,

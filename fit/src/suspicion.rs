@@ -1,4 +1,4 @@
-//! What in a list of modes is not a ringing body: hum, tones that do not decay, decays that are no
+//! Suspicious modes, which no ringing body has: hum, tones that do not decay, decays that are no
 //! exponential, pairs that cancel.
 
 use crate::noise_floor::NoiseFloor;

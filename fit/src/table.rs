@@ -18,6 +18,7 @@ use std::fmt::Write;
 
 /// Why a table was refused.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum TableError {
     /// A column is missing.
     #[error("modal table: no column for the {what}; one of {names} is needed")]

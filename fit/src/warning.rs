@@ -1,4 +1,4 @@
-//! What a user should know of a recording or of its modes, and what can be done about it.
+//! Warnings about a recording or its modes, each with what can be done about it.
 
 use std::fmt;
 

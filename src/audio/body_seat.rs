@@ -1,5 +1,6 @@
 //! A body's place on the audio half, where one body can follow another while both ring.
 
+use crate::audio::smoothed::Smoothed;
 use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::BodyId;
@@ -8,7 +9,6 @@ use crate::prepared::body::{BodySlot, Terms};
 use asperity_dsp::hertz::HertzPulse;
 
 /// A body's place on the audio half. A replaced or removed body rings on without input and fades.
-#[derive(Default)]
 pub(crate) struct BodySeat {
     current: Option<Box<BodySlot>>,
     /// The name of what is here.
@@ -16,6 +16,11 @@ pub(crate) struct BodySeat {
     bus: usize,
     /// The bus it comes from, and how many samples of the way are left.
     moving: Option<(usize, u32)>,
+    /// Linear gain, and the way there.
+    gain: f64,
+    smoothed: Smoothed,
+    /// How many samples are left of being damped.
+    damped: Option<u32>,
     leaving: [Option<Leaving>; LEAVING],
 }
 
@@ -35,6 +40,11 @@ pub(crate) struct BetweenBuses {
 }
 
 impl BetweenBuses {
+    /// On one bus alone.
+    pub(crate) fn one(bus: usize) -> Self {
+        Self { from: bus, to: bus, left: 0 }
+    }
+
     /// Share of the new bus at sample `i` of the stretch.
     pub(crate) fn weight(&self, i: usize) -> f32 {
         let left = self.left.saturating_sub(i as u32 + 1);
@@ -45,10 +55,25 @@ impl BetweenBuses {
 struct Leaving {
     body: Box<BodySlot>,
     bus: usize,
+    gain: f32,
     left: u32,
 }
 
 impl BodySeat {
+    /// An empty place.
+    pub(crate) fn new(sample_rate_hz: f64) -> Self {
+        Self {
+            current: None,
+            id: None,
+            bus: 0,
+            moving: None,
+            gain: 1.0,
+            smoothed: Smoothed::new(sample_rate_hz),
+            damped: None,
+            leaving: Default::default(),
+        }
+    }
+
     /// Whether the body can be replaced now.
     pub(crate) fn can_change(&self) -> bool {
         self.leaving.iter().any(Option::is_none)
@@ -60,13 +85,15 @@ impl BodySeat {
     }
 
     /// Puts a body here; the one before it rings out.
-    pub(crate) fn set(&mut self, id: BodyId, body: Box<BodySlot>, bus: usize) {
+    pub(crate) fn set(&mut self, id: BodyId, body: Box<BodySlot>, bus: usize, gain: f64) {
         self.remove();
         if self.id == Some(id) {
             self.play_on(bus);
         } else {
             (self.id, self.bus, self.moving) = (Some(id), bus, None);
+            self.smoothed.set(gain);
         }
+        (self.gain, self.damped) = (gain, None);
         self.current = Some(body);
     }
 
@@ -83,6 +110,43 @@ impl BodySeat {
         }
     }
 
+    /// Louder or softer from now on.
+    pub(crate) fn set_gain(&mut self, gain: f64) {
+        self.gain = gain;
+    }
+
+    /// What rings fades as if a hand were laid on it.
+    pub(crate) fn damp(&mut self) {
+        self.damped = self.damped.or(self.current.is_some().then_some(LEAVING_SAMPLES));
+        self.leaving
+            .iter_mut()
+            .flatten()
+            .for_each(|leaving| leaving.left = leaving.left.min(LEAVING_SAMPLES));
+    }
+
+    /// Whether the body sounds as it is: at a gain of 1, and not being damped.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.damped.is_none() && self.gain == 1.0 && self.smoothed.settled_at(1.0)
+    }
+
+    /// Applies the gain to the next samples of the body.
+    pub(crate) fn scale(&mut self, sound: &mut [f32]) {
+        for x in sound.iter_mut() {
+            let mut gain = self.smoothed.tick(self.gain) as f32;
+            if let Some(left) = &mut self.damped {
+                *left = left.saturating_sub(1);
+                gain *= *left as f32 / LEAVING_SAMPLES as f32;
+            }
+            *x *= gain;
+        }
+        if self.damped == Some(0) {
+            self.damped = None;
+            if let Some(body) = &mut self.current {
+                body.silence();
+            }
+        }
+    }
+
     /// The two buses that share the next `n` samples, while it changes from one to the other.
     pub(crate) fn moves_between(&mut self, n: usize) -> Option<BetweenBuses> {
         let (from, left) = self.moving?;
@@ -94,7 +158,8 @@ impl BodySeat {
     /// Lets the body ring out.
     pub(crate) fn remove(&mut self) {
         if let Some(place) = self.leaving.iter_mut().find(|place| place.is_none()) {
-            *place = self.current.take().map(|body| Leaving { body, bus: self.bus, left: LEAVING_SAMPLES });
+            let (bus, gain, left) = (self.bus, self.gain as f32, self.damped.unwrap_or(LEAVING_SAMPLES));
+            *place = self.current.take().map(|body| Leaving { body, bus, gain, left });
         }
     }
 
@@ -137,7 +202,7 @@ impl BodySeat {
             leaving.body.render(terms, tail);
             for x in tail.iter_mut() {
                 leaving.left = leaving.left.saturating_sub(1);
-                *x *= leaving.left as f32 / LEAVING_SAMPLES as f32;
+                *x *= leaving.gain * (leaving.left as f32 / LEAVING_SAMPLES as f32);
             }
             add(leaving.bus, tail);
         }
@@ -147,10 +212,10 @@ impl BodySeat {
     pub(crate) fn tidy(&mut self, position: u64, home: &mut Sender<Dead>) {
         for place in &mut self.leaving {
             let gone = place.as_ref().is_some_and(|l| l.left == 0 || l.body.is_silent(position));
-            if let Some(Leaving { body, bus, left }) = gone.then(|| place.take()).flatten()
+            if let Some(Leaving { body, bus, gain, left }) = gone.then(|| place.take()).flatten()
                 && let Err(Dead::Body(body)) = home.send(Dead::Body(body))
             {
-                *place = Some(Leaving { body, bus, left });
+                *place = Some(Leaving { body, bus, gain, left });
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Which of many places are in use, in order, so that the empty ones cost nothing.
+//! The set of occupied places, in order, so that the empty ones cost nothing.
 
 /// Ascending numbers of the places in use. All memory is made at the start.
 pub(crate) struct Occupied(Vec<usize>);

@@ -5,18 +5,21 @@
 //! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
 
 mod contacts;
+mod hand_over;
 mod outputs;
 
 use crate::audio::blows::Blows;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::governor::Governor;
 use crate::audio::occupied::Occupied;
+use crate::audio::outlets::Outlets;
 use crate::audio::seat::{Change, Seat};
-use crate::audio::tap::{NoTap, Tap};
+use crate::audio::smoothed::Smoothed;
 use crate::audio::voice::{Phase, Scratch, Shared, Voice};
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
+use crate::link::tap::{NoTap, Tap};
 use crate::model::config::Config;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
@@ -27,7 +30,7 @@ use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_dsp::modal_bank::Kernel;
+use asperity_dsp::modal_bank::{Isa, Kernel};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::sand::{SandFigures, SandPicture, SandSource};
@@ -55,6 +58,7 @@ pub struct Renderer {
     channels: Vec<HapticChannel>,
     buses: Vec<Bus>,
     blows: Blows,
+    outlets: Outlets,
     kernel: Kernel,
     governor: Governor,
     /// Groups of modes left out in the present stretch.
@@ -62,6 +66,10 @@ pub struct Renderer {
     from_game: Receiver<Message>,
     to_game: Sender<Dead>,
     counters: Arc<Counters>,
+    muted: bool,
+    paused: bool,
+    /// On its way to silence or back.
+    master: Smoothed,
     scratch: Box<Scratch>,
     mix: Box<Mix>,
 }
@@ -69,6 +77,7 @@ pub struct Renderer {
 impl Renderer {
     pub(crate) fn new(
         config: &Config,
+        kernel: Kernel,
         probe: PreparedProbe,
         from_game: Receiver<Message>,
         to_game: Sender<Dead>,
@@ -101,7 +110,7 @@ impl Renderer {
             bodies_used: Occupied::new(config.max_bodies),
             silent: Vec::with_capacity(config.max_contacts),
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
-            bodies: (0..config.max_bodies).map(|_| BodySeat::default()).collect(),
+            bodies: (0..config.max_bodies).map(|_| BodySeat::new(rate)).collect(),
             channels: config
                 .actuators
                 .iter()
@@ -109,12 +118,16 @@ impl Renderer {
                 .collect::<Result<_, _>>()?,
             buses: config.audio.iter().map(|bus| Bus::new(bus, rate)).collect::<Result<_, _>>()?,
             blows: Blows::new(rate),
-            kernel: Kernel::detect(),
+            outlets: Outlets::new(config.max_ports, config.actuators.len()),
+            kernel,
             governor: Governor::new(config.shed_load, rate),
             groups_shed: 0,
             from_game,
             to_game,
             counters,
+            muted: false,
+            paused: false,
+            master: Smoothed::new(rate),
             scratch: Scratch::new(),
             mix: Mix::new(),
             shared,
@@ -131,6 +144,12 @@ impl Renderer {
     #[must_use]
     pub fn audio_buses(&self) -> usize {
         self.buses.len()
+    }
+
+    /// The instruction set of the kernels whose last bits depend on it ([`Config::kernel`]).
+    #[must_use]
+    pub fn kernel(&self) -> Isa {
+        self.kernel.isa()
     }
 
     /// Rate of every output, Hz.
@@ -178,6 +197,20 @@ impl Renderer {
     /// Renders the next samples: one slice a channel, all equally long (if they are not, the shortest
     /// counts and the rest is silent). Haptic channel i goes into haptic slice i, audio bus i into audio slice i, both in the order of
     /// the config.
+    ///
+    /// ```
+    /// use asperity::{ActuatorSettings, AudioBus, Config, Engine};
+    ///
+    /// let config = Config {
+    ///     actuators: vec![ActuatorSettings::default(); 3],
+    ///     audio: vec![AudioBus::default(); 2],
+    ///     ..Config::default()
+    /// };
+    /// let Engine { mut renderer, .. } = config.build()?;
+    /// let (mut haptic, mut audio) = ([[0.0f32; 128]; 3], [[0.0f32; 128]; 2]);
+    /// renderer.render(&mut haptic.each_mut().map(|c| &mut c[..]), &mut audio.each_mut().map(|c| &mut c[..]));
+    /// # Ok::<(), asperity::ConfigError>(())
+    /// ```
     pub fn render(&mut self, haptic: &mut [&mut [f32]], audio: &mut [&mut [f32]]) {
         self.render_tapped(haptic, audio, &mut NoTap);
     }
@@ -203,6 +236,9 @@ impl Renderer {
             self.apply_due();
             let n = self.stretch(frames - done);
             self.render_contacts(n, tap);
+            let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
+            self.outlets.shown(shown / self.shared.inner.every as u64);
+            self.render_master(n);
             self.render_haptics(done, n, haptic);
             self.render_bodies(done, n, audio);
             done += n;
@@ -308,15 +344,29 @@ impl Renderer {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);
             }
-            Message::SetBody { id, body, bus, stroking } => {
-                self.bodies[id.index()].set(id, body, bus);
+            Message::SetBody { id, body, bus, gain, stroking } => {
+                self.bodies[id.index()].set(id, body, bus, gain);
                 self.bodies_used.insert(id.index());
                 for seat in self.seats_used.iter() {
                     self.seats[seat].body_changed(id, &stroking);
                 }
             }
             Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
+            Message::SetBodyGain { slot, gain } => self.bodies[slot].set_gain(gain),
+            Message::Mute(muted) => self.muted = muted,
+            Message::Pause(paused) => {
+                self.paused = paused;
+                if paused {
+                    self.silence_all();
+                }
+            }
+            Message::FadeAll => {
+                self.end_all();
+                self.bodies_used.iter().for_each(|body| self.bodies[body].damp());
+            }
             Message::RemoveBody { slot } => self.bodies[slot].remove(),
+            Message::AddOutlet(outlet) => self.outlets.add(outlet),
+            Message::SetAudioGain { bus, gain } => self.buses[bus].set_gain(gain),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
         }
     }
@@ -361,6 +411,7 @@ impl Renderer {
         for channel in &mut self.channels {
             channel.sum[..n].fill(0.0);
         }
+        let tap = &mut self.outlets.beside(tap);
         let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
         for voice in self.voices_used.iter() {
             let voice = &mut self.voices[voice];
@@ -406,6 +457,7 @@ impl Renderer {
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
     fn tidy(&mut self) {
         self.show_levels();
+        self.outlets.tidy(&mut self.to_game);
         self.voices_used.retain(|voice| self.voices[voice].phase != Phase::Free);
         for at in 0..self.voices_used.len() {
             let index = self.voices_used.at(at);

@@ -37,6 +37,8 @@ pub(crate) struct Noise<'a> {
     pub(crate) field: &'a FractalNoise,
     /// As the path's, or wider where octaves are left out.
     pub(crate) footprint_m: &'a [f64],
+    /// Radius of the sphere that rides there, m; 0 is a point.
+    pub(crate) tip_radius_m: f64,
 }
 
 /// What setting a surface means for the contacts on it.
@@ -87,6 +89,12 @@ impl Seat {
     /// The name of what is here.
     pub(crate) fn id(&self) -> Option<SurfaceId> {
         self.id
+    }
+
+    /// Takes away what is here, or comes here, under its name; nothing if it was removed.
+    pub(crate) fn take(&mut self) -> Option<(SurfaceId, Box<SurfaceSlot>)> {
+        let surface = self.waiting.take().or(self.current.take()).filter(|_| !self.removed)?;
+        Some((self.id?, surface))
     }
 
     /// No contact may begin here any more.
@@ -217,6 +225,7 @@ impl SurfaceSlot {
         out.friction[..n].fill(FRICTION);
         out.roughness[..n].fill(DEFAULT_ROUGHNESS);
         out.compliance_m_n[..n].fill(0.0);
+        surface.source.ride(noise.tip_radius_m);
         surface.source.sample(path, out);
         match &mut surface.roughness {
             Roughness::FromSource => {}
@@ -236,11 +245,11 @@ impl SurfaceSlot {
             if self.overlay.minds_relief() {
                 surface.source.add_local_power(path.position_m, &mut local_power_m2[..n]);
             }
+            self.overlay.tune(noise.tip_radius_m);
             self.overlay.add(
                 noise.field,
                 &NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m },
                 &out.roughness[..n],
-                surface.micro_relief_m,
                 &local_power_m2[..n],
                 &mut out.height_m[..n],
             );

@@ -7,6 +7,7 @@ mod excitation;
 mod fades;
 mod high_passes;
 mod landing;
+mod pressed;
 mod role;
 mod scratch;
 mod watching;
@@ -16,7 +17,8 @@ use excitation::LONGEST_COLLISION_S;
 pub(crate) use role::Role;
 
 use crate::audio::seat::{Noise, Seat};
-use crate::audio::tap::Tap;
+use crate::audio::smoothed::Smoothed;
+use crate::link::tap::Tap;
 use crate::model::event::ContactId;
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::probe::PreparedProbe;
@@ -24,11 +26,12 @@ use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::{FORCE_HISTORY, OnsetMerge};
-use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState};
+use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, MicroContact};
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use fades::Rising;
+use pressed::Pressed;
 
 /// Samples of impulse a contact holds ahead: a power of two, the longest collision and its kernel.
 fn bus_samples(sample_rate_hz: f64) -> usize {
@@ -113,10 +116,15 @@ pub(crate) struct Voice {
     rising: Option<Rising>,
     /// Gain of the last sample.
     gain: f64,
+    /// On its way to the role's gain.
+    role_gain: Smoothed,
     trajectory: Trajectory,
     last_point: PathPoint,
     last_row: PadSample,
     last_felt: f64,
+    /// The contact model, as stiff as what presses makes it.
+    contact_model: Box<MicroContact>,
+    pressed: Pressed,
     pad: ContactState,
     /// The row that waits, where rows have to.
     late_row: PadSample,
@@ -193,10 +201,13 @@ impl Voice {
             landing_m_s: 0.0,
             rising: None,
             gain: 0.0,
+            role_gain: Smoothed::new(shared.sample_rate_hz),
             trajectory: Trajectory::begin(&shared.idle_path, &IDLE),
             last_point: PathPoint::default(),
             last_row: PadSample::default(),
             last_felt: 0.0,
+            contact_model: Box::new(shared.own_probe.micro_contact),
+            pressed: Pressed::default(),
             pad: shared.own_probe.micro_contact.at_rest(0.0, 0.0),
             late_row: PadSample::default(),
             resets_told: 0,
@@ -258,6 +269,9 @@ impl Voice {
         if self.asleep {
             self.rest(n, scratch);
         } else {
+            if at_grid {
+                self.stiffen(seat, shared, self.last_point.normal_force_n);
+            }
             self.follow_path(seat, n, scratch);
             self.profile(seat, shared, position, n, tap.is_watching(), scratch);
             self.touch(shared, n, scratch);
@@ -271,7 +285,7 @@ impl Voice {
         }
         self.last_point = scratch.points[n - 1];
         if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
-            self.fall_asleep_when_still(output, shared, position, n, scratch);
+            self.fall_asleep_when_still(output, position, n, scratch);
         }
     }
 
@@ -318,7 +332,9 @@ impl Voice {
             contact: self.slot,
             slopes: watched,
         };
-        let noise = Noise { field: &shared.noise, footprint_m: &scratch.noise_footprint_m[..n] };
+        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
+        let noise =
+            Noise { field: &shared.noise, footprint_m: &scratch.noise_footprint_m[..n], tip_radius_m };
         seat.sample(&path, &noise, &mut scratch.surface, &mut scratch.rough);
         // A surface that gives way lies lower by as much as the force presses it in.
         let surface = &mut scratch.surface;
@@ -346,7 +362,7 @@ impl Voice {
 
     fn touch(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
         let probe = shared.probe(self.role.probe);
-        probe.micro_contact.run(
+        self.contact_model.run(
             &mut self.pad,
             &scratch.surface.height_m[..n],
             &scratch.force_n[..n],
@@ -380,14 +396,7 @@ impl Voice {
         (scratch.out.collisions, scratch.out.shortened, scratch.out.resets) = (0, 0, 0);
     }
 
-    fn fall_asleep_when_still(
-        &mut self,
-        output: &ContactOutput,
-        shared: &Shared,
-        position: u64,
-        n: usize,
-        scratch: &Scratch,
-    ) {
+    fn fall_asleep_when_still(&mut self, output: &ContactOutput, position: u64, n: usize, scratch: &Scratch) {
         let row = PadSample { onset: None, ..scratch.pad[n - 1] };
         self.last_row = row;
         if self.asleep {
@@ -402,11 +411,7 @@ impl Voice {
         let feels_still = felt.abs() < still || (felt - row.pad_m).abs() < still;
         self.asleep = feels_still
             && self.trajectory.is_still()
-            && shared.probe(self.role.probe).micro_contact.is_settled(
-                &self.pad,
-                row.height_m,
-                row.normal_force_n,
-            )
+            && self.contact_model.is_settled(&self.pad, row.height_m, row.normal_force_n)
             && self.reaction.grain_rate_per_s == 0.0
             && !self.reaction.stirs
             && scratch.out.impulse_n_s[n - 1].abs() < STILL_N_S

@@ -13,8 +13,8 @@
 //! resonance_hz = "data sheet"
 //! ```
 
+use super::storage::{self, Disk, Files};
 use crate::model::actuator::DeviceProfile;
-use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -31,6 +31,7 @@ pub struct ActuatorPreset {
 
 /// Why a profile was refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PresetError {
     /// The file cannot be read.
     #[error(
@@ -59,22 +60,6 @@ pub enum PresetError {
         /// Which number, and what would be right.
         problem: asperity_dsp::DesignError,
     },
-}
-
-/// The file as it is written.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Written {
-    label: String,
-    resonance_hz: f64,
-    quality: f64,
-    felt_at_resonance_m: f64,
-    excursion_m: f64,
-    band_hz: [f64; 2],
-    rated_drive: f64,
-    thermal_time_s: f64,
-    #[serde(default)]
-    source: BTreeMap<String, String>,
 }
 
 /// The profiles that ship with the engine, by name.
@@ -107,8 +92,16 @@ impl ActuatorPreset {
     /// # Errors
     /// When it cannot be read or is no profile; the message names the file.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, PresetError> {
+        Self::load_from(&Disk, path)
+    }
+
+    /// [`load`](Self::load), from wherever the files lie.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: impl AsRef<Path>) -> Result<Self, PresetError> {
         let place = path.as_ref().display().to_string();
-        match std::fs::read_to_string(path) {
+        match storage::text(files, path.as_ref()) {
             Ok(text) => Self::parse(&text, &place),
             Err(source) => Err(PresetError::Unreadable { place, source }),
         }
@@ -119,23 +112,19 @@ impl ActuatorPreset {
     /// # Errors
     /// When it is no profile.
     pub fn parse(text: &str, place: &str) -> Result<Self, PresetError> {
-        let written: Written = toml::from_str(text).map_err(|error| PresetError::Malformed {
-            place: place.into(),
-            message: error.message().to_owned(),
-        })?;
-        let profile = DeviceProfile {
-            resonance_hz: written.resonance_hz,
-            quality: written.quality,
-            felt_at_resonance_m: written.felt_at_resonance_m,
-            excursion_m: written.excursion_m,
-            band_hz: written.band_hz,
-            rated_drive: written.rated_drive,
-            thermal_time_s: written.thermal_time_s,
-        };
+        let malformed =
+            |message: &str| PresetError::Malformed { place: place.into(), message: message.to_owned() };
+        let mut table: toml::Table =
+            text.parse().map_err(|error: toml::de::Error| malformed(error.message()))?;
+        let label = table.remove("label").ok_or_else(|| malformed("missing field `label`"))?;
+        let label = label.as_str().ok_or_else(|| malformed("label is no text"))?.to_owned();
+        let source = table.remove("source").map_or(Ok(BTreeMap::new()), toml::Value::try_into);
+        let source = source.map_err(|error| malformed(error.message()))?;
+        let profile: DeviceProfile = table.try_into().map_err(|error| malformed(error.message()))?;
         profile
             .check(CHECK_RATE_HZ)
             .map_err(|problem| PresetError::Impossible { place: place.into(), problem })?;
-        Ok(Self { label: written.label, profile, source: written.source })
+        Ok(Self { label, profile, source })
     }
 }
 

@@ -4,16 +4,24 @@
 //! running [`Scene`](crate::Scene). Replaying a log offline gives the same samples as the live engine
 //! that recorded it.
 
+mod edit;
 mod keys;
 
-use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Impact, Touching};
+use super::FileError;
+use super::storage::{self, Disk, Files};
+pub use crate::model::event::ContactSample;
+use crate::model::event::{Actuator, ContactEvent, ContactId, Emphasis, Impact, Touching};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
+pub use edit::{LogBody, LogEdit, LogSurface};
 use keys::Unread;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+/// The `version` that is read and written; a log without one is of this version.
+pub const VERSION: u64 = 1;
 
 /// One line of a log.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,7 +46,7 @@ pub enum LogEvent {
         touching: LogTouching,
         /// Where and how.
         #[serde(flatten)]
-        sample: LogSample,
+        sample: ContactSample,
     },
     /// A contact goes on.
     Move {
@@ -46,7 +54,10 @@ pub enum LogEvent {
         contact: u64,
         /// Where and how.
         #[serde(flatten)]
-        sample: LogSample,
+        sample: ContactSample,
+        /// How loud and how important from now on.
+        #[serde(flatten)]
+        emphasis: Emphasis,
     },
     /// A contact lifts off.
     End {
@@ -78,6 +89,9 @@ pub enum LogEvent {
         #[serde(flatten)]
         hand: LogHand,
     },
+    /// The scene was edited.
+    #[serde(untagged)]
+    Edit(LogEdit),
 }
 
 /// What touches what, and who feels it.
@@ -110,29 +124,14 @@ pub struct LogHand {
     pub gain: Option<f64>,
 }
 
-/// A striker's material: a preset's name or its elastic constants.
+/// A striker's material: a preset's name or its constants.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Striker {
     /// One of [`Material::PRESETS`].
     Preset(String),
-    /// Elastic constants.
+    /// Its constants; elastic ones are needed.
     Constants(Material),
-}
-
-/// Where and how a contact touches.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct LogSample {
-    /// Texture coordinates.
-    pub uv: [f64; 2],
-    /// Tangential velocity, m/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity_m_s: Option<[f64; 2]>,
-    /// Normal force, N.
-    pub normal_force_n: f64,
-    /// Approach speed at landing, m/s.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub closing_m_s: f64,
 }
 
 fn is_first(position: &usize) -> bool {
@@ -141,33 +140,6 @@ fn is_first(position: &usize) -> bool {
 
 fn loss_free() -> f64 {
     1.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
-impl From<LogSample> for ContactSample {
-    fn from(s: LogSample) -> Self {
-        Self {
-            uv: s.uv,
-            velocity_m_s: s.velocity_m_s,
-            normal_force_n: s.normal_force_n,
-            closing_m_s: s.closing_m_s,
-        }
-    }
-}
-
-impl From<ContactSample> for LogSample {
-    fn from(s: ContactSample) -> Self {
-        Self {
-            uv: s.uv,
-            velocity_m_s: s.velocity_m_s,
-            normal_force_n: s.normal_force_n,
-            closing_m_s: s.closing_m_s,
-        }
-    }
 }
 
 /// Which id of a running scene a name stands for.
@@ -183,6 +155,7 @@ pub struct Names {
 
 /// Why a log, or a line of it, was refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum LogError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({source}); give a readable contact log", path.display())]
@@ -213,6 +186,25 @@ pub enum LogError {
         event: &'static str,
         /// The key that was meant, or every key that would be right.
         right: String,
+    },
+    /// A format that this program does not know.
+    #[error("{place}: version: {version} is unknown; must be {VERSION}, or missing")]
+    Version {
+        /// File and line.
+        place: String,
+        /// What is written.
+        version: String,
+    },
+    /// An edit where only events can be used.
+    #[error("an edit of the scene; must be an event, or replayed by offline::render")]
+    Edit,
+    /// An edit that cannot be made.
+    #[error("t = {t} s: {problem}")]
+    CannotEdit {
+        /// Its time, s.
+        t: f64,
+        /// What is wrong.
+        problem: FileError,
     },
     /// Time runs backwards.
     #[error("{place}: t = {t} s comes after {before} s; events must be in time order, from 0 s on")]
@@ -253,8 +245,16 @@ impl ContactLog {
     /// When it cannot be read, a line is not an event or has a key that its event does not know, or time
     /// runs backwards.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, LogError> {
+        Self::load_from(&Disk, path)
+    }
+
+    /// [`load`](Self::load), from wherever the files lie.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: impl AsRef<Path>) -> Result<Self, LogError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path)
+        let text = storage::text(files, path)
             .map_err(|source| LogError::Unreadable { path: path.into(), source })?;
         Self::parse(&text, &path.display().to_string())
     }
@@ -277,7 +277,9 @@ impl ContactLog {
         let mut before = 0.0;
         for (index, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
             let place = || format!("{name}:{}", index + 1);
-            keys::check(text, place, &mut unread)?;
+            if !keys::check(text, place, &mut unread)? {
+                continue;
+            }
             let line: LogLine = serde_json::from_str(text)
                 .map_err(|error| LogError::Malformed { place: place(), message: error.to_string() })?;
             if line.t.is_nan() || line.t < before {
@@ -298,11 +300,7 @@ impl ContactLog {
     /// # Errors
     /// When `out` does.
     pub fn write(&self, mut out: impl Write) -> io::Result<()> {
-        for line in &self.lines {
-            serde_json::to_writer(&mut out, line)?;
-            out.write_all(b"\n")?;
-        }
-        Ok(())
+        self.lines.iter().enumerate().try_for_each(|(index, line)| line.write(index == 0, &mut out))
     }
 
     /// Time of the last event, s; 0 for an empty log.
@@ -312,16 +310,40 @@ impl ContactLog {
     }
 }
 
+impl LogLine {
+    /// Writes the line; the first of a log says the version.
+    pub(crate) fn write(&self, is_first: bool, mut out: impl Write) -> io::Result<()> {
+        #[derive(Serialize)]
+        struct First<'a> {
+            version: u64,
+            #[serde(flatten)]
+            line: &'a LogLine,
+        }
+        if is_first {
+            serde_json::to_writer(&mut out, &First { version: VERSION, line: self })?;
+        } else {
+            serde_json::to_writer(&mut out, self)?;
+        }
+        out.write_all(b"\n")
+    }
+}
+
 impl LogEvent {
     /// The engine's own probe lands on a surface, felt by a haptic channel.
     #[must_use]
-    pub fn begin(contact: u64, surface: impl Into<String>, actuator: u16, sample: LogSample) -> Self {
+    pub fn begin(contact: u64, surface: impl Into<String>, actuator: u16, sample: ContactSample) -> Self {
         let hand = LogHand { actuator: Some(actuator), ..LogHand::default() };
         Self::Begin {
             contact,
             touching: LogTouching { surface: surface.into(), importance: None, hand },
             sample,
         }
+    }
+
+    /// A contact goes on.
+    #[must_use]
+    pub fn moved(contact: u64, sample: ContactSample) -> Self {
+        Self::Move { contact, sample, emphasis: Emphasis::default() }
     }
 
     /// The event for a scene whose ids `names` gives.
@@ -333,9 +355,11 @@ impl LogEvent {
             Self::Begin { contact, touching, sample } => ContactEvent::Begin {
                 contact: ContactId(*contact),
                 touching: touching.resolve(names)?,
-                sample: (*sample).into(),
+                sample: *sample,
             },
-            Self::Move { contact, sample } => ContactEvent::moved(ContactId(*contact), (*sample).into()),
+            Self::Move { contact, sample, emphasis } => {
+                ContactEvent::moved_with(ContactId(*contact), *sample, *emphasis)
+            }
             Self::End { contact } => ContactEvent::end(ContactId(*contact)),
             Self::Impact {
                 body,
@@ -361,6 +385,7 @@ impl LogEvent {
                 probe: hand.probe(names)?,
                 gain: hand.gain.unwrap_or(1.0),
             }),
+            Self::Edit(_) => return Err(LogError::Edit),
         })
     }
 }
@@ -382,6 +407,12 @@ impl LogHand {
 
     fn holder(&self, names: &Names) -> Result<Option<BodyId>, LogError> {
         self.holder.as_ref().map(|name| find("holder", name, &names.bodies)).transpose()
+    }
+}
+
+impl From<Material> for Striker {
+    fn from(material: Material) -> Self {
+        material.name().map_or(Self::Constants(material), |name| Self::Preset(name.into()))
     }
 }
 

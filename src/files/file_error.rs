@@ -1,4 +1,4 @@
-//! What is wrong with a file: one line that names the place, what is wrong there, and what would be right.
+//! A refused file: one line that names the place, what is wrong there, and what would be right.
 
 use std::fmt;
 use std::path::Path;
@@ -44,6 +44,9 @@ impl FileError {
             std::io::ErrorKind::IsADirectory => Self::file(path, "is a folder", "name a file"),
             std::io::ErrorKind::InvalidData => {
                 Self::file(path, "is not UTF-8 text", "save it as UTF-8, or name another file")
+            }
+            std::io::ErrorKind::FileTooLarge => {
+                Self::file(path, "is longer than a gigabyte", "name a shorter file")
             }
             _ => Self::file(path, format!("cannot be read ({error})"), "name a readable file"),
         }

@@ -1,9 +1,13 @@
-//! What is read from files and written to them; no other room names their formats.
+//! File formats that the engine reads and writes; no other room names them.
 
 pub mod actuator_profile;
+mod config_file;
 pub mod contact_log;
 mod file_error;
+pub mod modes_file;
 pub mod scene_file;
+pub(crate) mod storage;
 pub mod wav;
 
 pub use file_error::FileError;
+pub use storage::{Disk, Files, Memory};

@@ -35,18 +35,33 @@ pub(crate) struct Clock {
 
 #[derive(Debug, Clone)]
 enum Mapping {
-    /// Sample of game time 0; none = the next stamp holds at the next sample.
-    Exact(Option<f64>),
+    /// Sample of game time 0, none = the next stamp holds at the next sample; game seconds a second of audio.
+    Exact(Option<f64>, f64),
     Live(Live),
 }
 
 impl Clock {
     pub(crate) fn new(mode: ClockMode, sample_rate_hz: f64) -> Self {
         let mapping = match mode {
-            ClockMode::Exact => Mapping::Exact(Some(0.0)),
+            ClockMode::Exact => Mapping::Exact(Some(0.0), 1.0),
             ClockMode::Live { max_lead_s } => Mapping::Live(Live::new(max_lead_s, sample_rate_hz)),
         };
         Self { sample_rate_hz, mapping, last: Stamp::default() }
+    }
+
+    /// The same times at another rate; a live clock ties itself anew.
+    pub(crate) fn at_rate(&mut self, sample_rate_hz: f64) {
+        let ratio = sample_rate_hz / self.sample_rate_hz;
+        match &mut self.mapping {
+            Mapping::Exact(zero, _) => *zero = zero.map(|zero| zero * ratio),
+            Mapping::Live(live) => live.at_rate(sample_rate_hz),
+        }
+        (self.sample_rate_hz, self.last) = (sample_rate_hz, Stamp::at(self.last.samples() * ratio));
+    }
+
+    /// The newest stamp.
+    pub(crate) fn last(&self) -> Stamp {
+        self.last
     }
 
     /// Whether game time may run backwards.
@@ -57,15 +72,25 @@ impl Clock {
     /// Game seconds a second of audio: 1 unless a live game runs in slow motion or fast.
     pub(crate) fn pace(&self) -> f64 {
         match &self.mapping {
-            Mapping::Exact(_) => 1.0,
+            Mapping::Exact(_, pace) => *pace,
             Mapping::Live(live) => live.pace(),
+        }
+    }
+
+    /// From game time `since_s` on, the game runs at another pace; a live clock finds out by itself.
+    pub(crate) fn set_pace(&mut self, pace: f64, since_s: f64) {
+        if let Mapping::Exact(zero, old) = &mut self.mapping {
+            // The moment at which the pace changes stays where it is.
+            let samples = since_s * self.sample_rate_hz;
+            *zero = zero.map(|zero| zero + samples / *old - samples / pace);
+            *old = pace;
         }
     }
 
     /// From now on: the next stamp holds at the next sample, `position`.
     pub(crate) fn reset(&mut self, position: u64) {
         match &mut self.mapping {
-            Mapping::Exact(zero) => *zero = None,
+            Mapping::Exact(zero, _) => *zero = None,
             Mapping::Live(live) => live.untie(),
         }
         self.last = Stamp::whole(position);
@@ -74,9 +99,9 @@ impl Clock {
     /// Where a game time lies, never before an earlier one; `position` is the next sample that the
     /// audio half will render.
     pub(crate) fn stamp(&mut self, time_s: f64, position: u64) -> Stamped {
-        let target = time_s * self.sample_rate_hz;
+        let target = time_s / self.pace() * self.sample_rate_hz;
         let Followed { sample, jumped, repaced } = match &mut self.mapping {
-            Mapping::Exact(zero) => {
+            Mapping::Exact(zero, _) => {
                 let zero = *zero.get_or_insert(position as f64 - target);
                 Followed { sample: target + zero, jumped: false, repaced: false }
             }

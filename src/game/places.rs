@@ -46,6 +46,14 @@ impl<T> Places<T> {
         slot.occupant.as_ref()
     }
 
+    /// All occupants, with their names.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (Place, &T)> {
+        self.slots.iter().enumerate().filter_map(|(index, slot)| {
+            let name = Place { index: index as u32, generation: slot.generation };
+            slot.occupant.as_ref().map(|occupant| (name, occupant))
+        })
+    }
+
     /// Empties a place; its name is never given again.
     pub(crate) fn remove(&mut self, name: Place) {
         if let Some(slot) = self.slot(name).filter(|slot| slot.occupant.is_some()) {

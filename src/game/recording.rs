@@ -1,26 +1,103 @@
-//! What a live game reported, kept as a contact log.
+//! Recording of a live game's reports as a contact log.
 
-use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, LogTouching, Names, Striker};
+use crate::files::contact_log::{ContactLog, LogEdit, LogEvent, LogHand, LogLine, LogTouching, Names};
 use crate::model::event::{Actuator, ContactEvent};
 use crate::model::id::{BodyId, Place, ProbeId, SurfaceId};
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
+use std::io::{self, BufWriter, Write};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
 
 /// A recording in progress.
 pub(crate) struct Recording {
     surfaces: HashMap<SurfaceId, String>,
     bodies: HashMap<BodyId, String>,
     probes: HashMap<ProbeId, String>,
-    lines: Vec<LogLine>,
+    /// What the audio half may not have come to yet: a [`reset`](Self::reset) drops it.
+    waiting: VecDeque<LogLine>,
+    kept: Kept,
+}
+
+/// Where a recording goes.
+enum Kept {
+    Memory(Vec<LogLine>),
+    /// A thread that writes, so that no tick of the game waits for a disk.
+    Stream {
+        lines: Sender<LogLine>,
+        writer: JoinHandle<io::Result<u64>>,
+    },
+}
+
+/// How long lines may wait in the writer's buffer while the game reports nothing.
+const FLUSHED_AFTER: Duration = Duration::from_millis(500);
+
+/// Writes lines as they come, until the recording ends; tells how many there were.
+fn write_all(lines: &Receiver<LogLine>, out: impl Write) -> io::Result<u64> {
+    let (mut out, mut written) = (BufWriter::new(out), 0);
+    loop {
+        match lines.recv_timeout(FLUSHED_AFTER) {
+            Ok(line) => {
+                line.write(written == 0, &mut out)?;
+                written += 1;
+            }
+            Err(RecvTimeoutError::Timeout) => out.flush()?,
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    out.flush()?;
+    Ok(written)
 }
 
 impl Recording {
+    /// Into memory.
     pub(crate) fn new(names: &Names) -> Self {
+        Self::into(names, Kept::Memory(Vec::new()))
+    }
+
+    /// Into a file, or whatever else takes bytes.
+    pub(crate) fn stream(names: &Names, out: impl Write + Send + 'static) -> io::Result<Self> {
+        let (lines, written) = channel();
+        let thread = std::thread::Builder::new().name("asperity recording".into());
+        let writer = thread.spawn(move || write_all(&written, out))?;
+        Ok(Self::into(names, Kept::Stream { lines, writer }))
+    }
+
+    fn into(names: &Names, kept: Kept) -> Self {
         Self {
             surfaces: names.surfaces.iter().map(|(name, id)| (*id, name.clone())).collect(),
             bodies: names.bodies.iter().map(|(name, id)| (*id, name.clone())).collect(),
             probes: names.probes.iter().map(|(name, id)| (*id, name.clone())).collect(),
-            lines: Vec::new(),
+            waiting: VecDeque::new(),
+            kept,
         }
+    }
+
+    /// Keeps what lies before `time_s` for good.
+    pub(crate) fn settle(&mut self, time_s: f64) {
+        while self.waiting.front().is_some_and(|line| line.t < time_s) {
+            let line = self.waiting.pop_front();
+            line.into_iter().for_each(|line| self.keep(line));
+        }
+    }
+
+    fn keep(&mut self, line: LogLine) {
+        match &mut self.kept {
+            Kept::Memory(lines) => lines.push(line),
+            // A writer that has failed says so in the end.
+            Kept::Stream { lines, .. } => drop(lines.send(line)),
+        }
+    }
+
+    /// What is reported for after `time_s` never happens; edits that waited behind it happen now.
+    pub(crate) fn reset(&mut self, time_s: f64) {
+        self.waiting.retain(|line| line.t <= time_s || matches!(line.event, LogEvent::Edit(_)));
+        self.waiting.iter_mut().for_each(|line| line.t = line.t.min(time_s));
+    }
+
+    /// Notes an edit that the engine makes at `time_s`.
+    pub(crate) fn note_edit(&mut self, time_s: f64, edit: LogEdit) {
+        self.waiting.push_back(LogLine { t: time_s, event: LogEvent::Edit(edit) });
     }
 
     /// Notes an event that the engine applies at `time_s`.
@@ -33,10 +110,10 @@ impl Recording {
                     importance: unless_one(touching.importance),
                     hand: self.hand(touching.actuator, touching.probe, touching.holder, touching.gain),
                 },
-                sample: sample.into(),
+                sample,
             },
-            ContactEvent::Moved { contact, sample } => {
-                LogEvent::Move { contact: contact.0, sample: sample.into() }
+            ContactEvent::Moved { contact, sample, emphasis } => {
+                LogEvent::Move { contact: contact.0, sample, emphasis }
             }
             ContactEvent::End { contact } => LogEvent::End { contact: contact.0 },
             ContactEvent::Impact(impact) => LogEvent::Impact {
@@ -45,17 +122,26 @@ impl Recording {
                 speed_m_s: impact.speed_m_s,
                 mass_kg: impact.mass_kg,
                 radius_m: impact.radius_m,
-                striker: Striker::Constants(impact.striker),
+                striker: impact.striker.into(),
                 restitution: impact.restitution,
                 position: impact.position,
                 hand: self.hand(impact.actuator, impact.probe, impact.holder, impact.gain),
             },
         };
-        self.lines.push(LogLine { t: time_s, event });
+        self.waiting.push_back(LogLine { t: time_s, event });
     }
 
-    pub(crate) fn into_log(self) -> ContactLog {
-        ContactLog { lines: self.lines }
+    /// Ends the recording: what is in memory, or how many lines were written.
+    pub(crate) fn end(mut self) -> (ContactLog, io::Result<u64>) {
+        self.settle(f64::INFINITY);
+        match self.kept {
+            Kept::Memory(lines) => (ContactLog { lines }, Ok(0)),
+            Kept::Stream { lines, writer } => {
+                drop(lines);
+                let died = || Err(io::Error::other("the thread that writes has died"));
+                (ContactLog::default(), writer.join().unwrap_or_else(|_| died()))
+            }
+        }
     }
 
     fn hand(
@@ -73,15 +159,15 @@ impl Recording {
         }
     }
 
-    fn probe(&self, id: ProbeId) -> String {
+    pub(crate) fn probe(&self, id: ProbeId) -> String {
         self.probes.get(&id).cloned().unwrap_or_else(|| numbered("probe", id.0))
     }
 
-    fn surface(&self, id: SurfaceId) -> String {
+    pub(crate) fn surface(&self, id: SurfaceId) -> String {
         self.surfaces.get(&id).cloned().unwrap_or_else(|| numbered("surface", id.0))
     }
 
-    fn body(&self, id: BodyId) -> String {
+    pub(crate) fn body(&self, id: BodyId) -> String {
         self.bodies.get(&id).cloned().unwrap_or_else(|| numbered("body", id.0))
     }
 }

@@ -2,9 +2,12 @@
 //!
 //! Every call returns at once. Nothing here waits for the audio thread.
 
+mod ports;
+mod quiet;
+mod recorded;
 mod reports;
 
-use crate::files::contact_log::{ContactLog, Names};
+use crate::files::contact_log::LogEdit;
 use crate::game::clock::Clock;
 use crate::game::places::Places;
 use crate::game::recording::Recording;
@@ -17,6 +20,7 @@ use crate::model::body::Body;
 use crate::model::config::Config;
 use crate::model::error::AddError;
 use crate::model::event::{Actuator, ContactEvent, ContactId};
+use crate::model::frame::SurfaceFrame;
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
@@ -28,41 +32,67 @@ use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::micro_contact::Probe;
+use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_dsp::{DesignError, limits};
 use asperity_texture::height_field::Setup;
+use asperity_texture::moving_picture::MovingPicture;
 use std::any::Any;
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
 /// The game half of an engine.
+///
+/// ```
+/// use asperity::{Config, ContactEvent, ContactId, ContactSample, Engine, Surface, Touching};
+///
+/// let Engine { mut scene, .. } = Config::live(48_000.0).build()?;
+/// let desk = scene.add_surface(Surface::flat(1.2, 0.6)?)?;
+/// let sample = ContactSample::new([0.5, 0.5], 0.4).sliding([0.1, 0.0]);
+/// scene.report(0.0, ContactEvent::begin_with(ContactId(1), Touching::on(desk), sample))?;
+/// // What is wrong is said by name, and the event is handed back.
+/// let heavy = ContactSample { normal_force_n: f64::NAN, ..sample };
+/// let refused = scene.report(0.02, ContactEvent::moved(ContactId(1), heavy)).unwrap_err();
+/// assert!(refused.to_string().starts_with("normal_force_n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Scene {
-    config: Config,
-    clock: Clock,
+    pub(crate) config: Config,
+    pub(crate) clock: Clock,
     last_time_s: f64,
-    surfaces: Places<KnownSurface>,
-    bodies: Places<KnownBody>,
-    probes: Places<()>,
+    pub(crate) surfaces: Places<KnownSurface>,
+    pub(crate) bodies: Places<KnownBody>,
+    pub(crate) probes: Places<Probe>,
+    pub(crate) open_ports: usize,
+    /// Radii of the tips that surfaces get ready for, m.
+    pub(crate) tips_m: Vec<f64>,
     /// The newest move of each contact that did not fit into the queue.
     held: Vec<(Stamp, ContactId, ContactEvent)>,
-    to_audio: Sender<Message>,
-    from_audio: Receiver<Dead>,
-    counters: Arc<Counters>,
+    pub(crate) to_audio: Sender<Message>,
+    pub(crate) from_audio: Receiver<Dead>,
+    pub(crate) counters: Arc<Counters>,
     recording: Option<Recording>,
+    /// Bodies as they were given, for another rate.
+    pub(crate) given: HashMap<BodyId, Body>,
     /// For [`Scene::why_silent`].
     reported: Reported,
 }
 
 /// What the game half remembers of a surface.
-#[derive(Clone, Copy)]
-struct KnownSurface {
+#[derive(Clone)]
+pub(crate) struct KnownSurface {
     /// Whether contacts on it ring something.
     rings: bool,
+    /// How it looks, if it changes.
+    picture: Option<Arc<MovingPicture>>,
+    size_m: [f64; 2],
+    frame: Option<SurfaceFrame>,
 }
 
 /// What the game half remembers of a body.
 #[derive(Clone, Copy)]
-struct KnownBody {
+pub(crate) struct KnownBody {
     material: Material,
     lowest_mode_hz: f64,
 }
@@ -79,6 +109,9 @@ impl Scene {
             surfaces: Places::new(config.max_surfaces, "surfaces"),
             bodies: Places::new(config.max_bodies, "bodies"),
             probes: Places::new(config.max_probes, "probes"),
+            open_ports: 0,
+            tips_m: vec![config.probe.tip_radius_m],
+            given: HashMap::new(),
             reported: Reported::default(),
             held: Vec::new(),
             config,
@@ -103,8 +136,10 @@ impl Scene {
     /// When every place is taken, the modes cannot be rendered at this rate, the material is impossible, or there is no such bus.
     pub fn add_body(&mut self, body: impl Into<Body>) -> Result<BodyId, AddError> {
         self.collect();
-        let id = BodyId(self.bodies.free()?);
-        self.set_body(id, &body.into())?;
+        let (id, body) = (BodyId(self.bodies.free()?), body.into());
+        self.set_body(id, &body)?;
+        self.given.insert(id, body.clone());
+        self.note(|names| LogEdit::AddBody { body: names.body(id), is: (&body).into() });
         Ok(id)
     }
 
@@ -116,7 +151,11 @@ impl Scene {
     pub fn replace_body(&mut self, id: BodyId, body: impl Into<Body>) -> Result<(), AddError> {
         self.collect();
         self.known_body(id)?;
-        self.set_body(id, &body.into())
+        let body = body.into();
+        self.set_body(id, &body)?;
+        self.given.insert(id, body.clone());
+        self.note(|names| LogEdit::ReplaceBody { body: names.body(id), is: (&body).into() });
+        Ok(())
     }
 
     /// Lets a body sound on another bus from now on, without a click.
@@ -126,7 +165,12 @@ impl Scene {
     pub fn set_body_bus(&mut self, id: BodyId, bus: usize) -> Result<(), AddError> {
         self.known_body(id)?;
         self.checked_bus(bus)?;
-        self.send(Message::SetBodyBus { slot: id.index(), bus })
+        self.send(Message::SetBodyBus { slot: id.index(), bus })?;
+        if let Some(given) = self.given.get_mut(&id) {
+            given.bus = bus;
+        }
+        self.note(|names| LogEdit::BodyBus { body: names.body(id), bus });
+        Ok(())
     }
 
     fn checked_bus(&self, bus: usize) -> Result<usize, AddError> {
@@ -135,7 +179,16 @@ impl Scene {
     }
 
     fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {
+        let (message, known) = self.prepared_body(id, body)?;
+        self.send(message)?;
+        self.bodies.set(id.0, known);
+        Ok(())
+    }
+
+    /// A body as the audio half takes it.
+    pub(crate) fn prepared_body(&self, id: BodyId, body: &Body) -> Result<(Message, KnownBody), AddError> {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
+        let gain = within("gain", body.gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
         let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate, inner)?);
@@ -143,9 +196,7 @@ impl Scene {
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let known = KnownBody { material, lowest_mode_hz };
         let stroking = self.stroking(known)?;
-        self.send(Message::SetBody { id, body, bus, stroking })?;
-        self.bodies.set(id.0, known);
-        Ok(())
+        Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
     }
 
     /// How strokes excite a body.
@@ -162,6 +213,8 @@ impl Scene {
         self.known_body(body)?;
         self.send(Message::RemoveBody { slot: body.index() })?;
         self.bodies.remove(body.0);
+        self.given.remove(&body);
+        self.note(|names| LogEdit::RemoveBody { body: names.body(body) });
         Ok(())
     }
 
@@ -171,11 +224,23 @@ impl Scene {
     /// When every place is taken, a number is outside its range, or the queue is full.
     pub fn add_probe(&mut self, probe: Probe) -> Result<ProbeId, AddError> {
         let id = ProbeId(self.probes.free()?);
-        let Config { probe: own, integrator, .. } = &self.config;
-        let probe = PreparedProbe::new(&probe, own, *integrator, self.config.inner_rate_hz())?;
-        self.send(Message::AddProbe { index: id.index(), probe: Box::new(probe) })?;
-        self.probes.set(id.0, ());
+        let message = self.prepared_probe(id, &probe)?;
+        self.send(message)?;
+        self.probes.set(id.0, probe);
+        if !self.tips_m.contains(&probe.tip_radius_m) {
+            self.tips_m.push(probe.tip_radius_m);
+        }
+        self.note(|names| LogEdit::AddProbe { probe: names.probe(id), is: probe });
         Ok(id)
+    }
+
+    /// A probe as the audio half takes it.
+    pub(crate) fn prepared_probe(&self, id: ProbeId, probe: &Probe) -> Result<Message, AddError> {
+        let Config { probe: own, integrator, .. } = &self.config;
+        // An engine that was built has its kernel.
+        let kernel = self.config.kernel().unwrap_or(Kernel::PORTABLE);
+        let probe = PreparedProbe::new(probe, own, *integrator, self.config.inner_rate_hz(), kernel)?;
+        Ok(Message::AddProbe { index: id.index(), probe: Box::new(probe) })
     }
 
     /// Adds a surface.
@@ -185,7 +250,9 @@ impl Scene {
     pub fn add_surface(&mut self, surface: Surface) -> Result<SurfaceId, AddError> {
         self.collect();
         let id = SurfaceId(self.surfaces.free()?);
+        let is = self.described(&surface);
         self.set_surface(id, surface)?;
+        self.note(|names| LogEdit::AddSurface { surface: names.surface(id), is });
         Ok(id)
     }
 
@@ -196,13 +263,31 @@ impl Scene {
     pub fn replace_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
         self.collect();
         self.known_surface(id)?;
-        self.set_surface(id, surface)
+        let is = self.described(&surface);
+        self.set_surface(id, surface)?;
+        self.note(|names| LogEdit::ReplaceSurface { surface: names.surface(id), is });
+        Ok(())
     }
 
     fn set_surface(&mut self, id: SurfaceId, surface: Surface) -> Result<(), AddError> {
+        let (message, known) = self.prepared_surface(id, surface)?;
+        self.send(message)?;
+        self.surfaces.set(id.0, known);
+        Ok(())
+    }
+
+    /// A surface as the audio half takes it.
+    pub(crate) fn prepared_surface(
+        &self,
+        id: SurfaceId,
+        surface: Surface,
+    ) -> Result<(Message, KnownSurface), AddError> {
         let mut surface = surface.checked()?.tiled();
         let setup = Setup { sample_rate_hz: self.config.inner_rate_hz(), voices: self.config.voices() };
         surface.source.prepare(&setup)?;
+        for radius_m in &self.tips_m {
+            surface.source.prepare_tip(*radius_m);
+        }
         let silent = KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
         let stroking = self.stroking(body)?;
@@ -210,12 +295,14 @@ impl Scene {
         let period_m = surface.wrap_period_m();
         let trajectory =
             TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
-        let overlay = Overlay::new(period_m, surface.source.band().shortest_m);
+        let relief = (surface.micro_relief_m, surface.outer_scale_m);
+        let overlay = Overlay::new(period_m, surface.source.band().shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
+        let (size_m, frame) = ([surface.width_m, surface.height_m], surface.frame);
+        let mut picture = None;
+        surface.source.visit(&mut |part| picture = picture.take().or(part.downcast_ref().cloned()));
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
-        self.send(Message::SetSurface { id, surface })?;
-        self.surfaces.set(id.0, KnownSurface { rings });
-        Ok(())
+        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, size_m, frame }))
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
@@ -227,7 +314,22 @@ impl Scene {
     /// When the surface is not in this scene or the queue is full.
     pub fn change_surface(&mut self, id: SurfaceId, change: impl Any + Send + Sync) -> Result<(), AddError> {
         self.known_surface(id)?;
-        self.send(Message::ChangeSurface { slot: id.index(), change: Box::new(change) })
+        self.send(Message::ChangeSurface { slot: id.index(), change: Box::new(change) })?;
+        self.note(|names| LogEdit::ChangeSurface { surface: names.surface(id) });
+        Ok(())
+    }
+
+    /// Texture coordinates of a point in the body of a surface that has a [frame](Surface::frame), m; none for one that has none.
+    ///
+    /// # Errors
+    /// When the surface is not in this scene.
+    pub fn uv_at(
+        &self,
+        id: SurfaceId,
+        point_m: impl Into<mint::Vector3<f64>>,
+    ) -> Result<Option<[f64; 2]>, AddError> {
+        let known = self.known_surface(id)?;
+        Ok(known.frame.map(|frame| frame.uv(point_m, known.size_m)))
     }
 
     /// Takes a surface away; contacts on it fade.
@@ -238,6 +340,7 @@ impl Scene {
         self.known_surface(id)?;
         self.send(Message::RemoveSurface { slot: id.index() })?;
         self.surfaces.remove(id.0);
+        self.note(|names| LogEdit::RemoveSurface { surface: names.surface(id) });
         Ok(())
     }
 
@@ -251,29 +354,37 @@ impl Scene {
             return Err(AddError::Unknown("actuator"));
         }
         let gain = within("gain", gain, limits::output::HAPTIC_GAIN)?;
-        self.send(Message::SetHapticGain { channel, gain })
+        self.send(Message::SetHapticGain { channel, gain })?;
+        self.note(|_| LogEdit::HapticGain { actuator: actuator.0, gain });
+        Ok(())
+    }
+
+    /// Sets the gain of one audio bus, linear; it is reached within a few milliseconds.
+    ///
+    /// # Errors
+    /// When there is no such bus, the gain is not in 0–1e6, or the queue is full.
+    pub fn set_audio_gain(&mut self, bus: usize, gain: f64) -> Result<(), AddError> {
+        self.checked_bus(bus)?;
+        let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
+        self.send(Message::SetAudioGain { bus, gain })?;
+        self.config.audio[bus].gain = gain;
+        self.note(|_| LogEdit::AudioGain { bus, gain });
+        Ok(())
     }
 
     fn send(&mut self, message: Message) -> Result<(), AddError> {
         self.to_audio.send(message).map_err(|_| AddError::QueueFull)
     }
 
-    /// Records from now on what is reported, with the time at which the engine applies it, so that
-    /// [`offline::render`](crate::offline::render) gives the same samples. Ids that `names` does not
-    /// name are recorded by number. Recording allocates on the game thread as it grows.
-    pub fn start_recording(&mut self, names: &Names) {
-        self.recording = Some(Recording::new(names));
-    }
-
-    /// Ends the recording and hands it over; empty if there was none.
-    pub fn stop_recording(&mut self) -> ContactLog {
-        self.recording.take().map(Recording::into_log).unwrap_or_default()
-    }
-
-    /// Frees surfaces and bodies that the audio half no longer needs; `add_…` and `replace_…` do it
+    /// Frees surfaces, bodies and ports that the audio half no longer needs; `add_…` and `replace_…` do it
     /// too. Returns how many were freed.
     pub fn collect(&mut self) -> usize {
-        std::iter::from_fn(|| self.from_audio.receive()).count()
+        let mut freed = 0;
+        while let Some(dead) = self.from_audio.receive() {
+            self.open_ports -= usize::from(matches!(dead, Dead::Outlet(_)));
+            freed += 1;
+        }
+        freed
     }
 
     /// Whether another move might be held back because the audio half lags behind.
@@ -283,6 +394,14 @@ impl Scene {
 
     /// What speaks against anything being heard or felt, the likeliest reason first; empty when nothing
     /// does. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
+    ///
+    /// ```
+    /// use asperity::{Config, Engine};
+    ///
+    /// let Engine { scene, .. } = Config::default().build()?;
+    /// assert!(scene.why_silent()[0].to_string().contains("Renderer::render"));
+    /// # Ok::<(), asperity::ConfigError>(())
+    /// ```
     #[must_use]
     pub fn why_silent(&self) -> Vec<SilentBecause> {
         self.reported.why_silent(&self.stats(), &self.config)
@@ -301,6 +420,7 @@ impl Scene {
         self.counters.resets_asked.fetch_add(1, Relaxed);
         Counters::add(&self.counters.superseded, self.held.len() as u64);
         self.held.clear();
+        self.forget_what_waits();
         self.clock.reset(self.counters.position.load(Relaxed));
         self.last_time_s = f64::NEG_INFINITY;
         Ok(())
@@ -313,8 +433,8 @@ impl Scene {
         Stats { position: stats.position / InnerRate::samples(self.config.sample_rate_hz) as u64, ..stats }
     }
 
-    fn known_surface(&self, id: SurfaceId) -> Result<KnownSurface, AddError> {
-        self.surfaces.get(id.0).copied().ok_or(AddError::Unknown("surface"))
+    fn known_surface(&self, id: SurfaceId) -> Result<&KnownSurface, AddError> {
+        self.surfaces.get(id.0).ok_or(AddError::Unknown("surface"))
     }
 
     fn known_body(&self, id: BodyId) -> Result<KnownBody, AddError> {

@@ -1,5 +1,6 @@
-//! What crosses: messages from the game to the audio half, and what comes home to be freed.
+//! Messages from the game to the audio half, and the dead resources that come home to be freed.
 
+use crate::link::outlet::Outlet;
 use crate::model::event::ContactEvent;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::stamp::Stamp;
@@ -34,12 +35,24 @@ pub(crate) enum Message {
     ChangeSurface { slot: usize, change: Box<dyn Any + Send + Sync> },
     /// A slot falls empty; contacts on it fade.
     RemoveSurface { slot: usize },
-    /// A body for a new or used place, the bus it plays on, and how strokes on its surfaces excite it from now on.
-    SetBody { id: BodyId, body: Box<BodySlot>, bus: usize, stroking: Stroking },
+    /// A body for a new or used place, the bus it plays on, its gain, and how strokes on its surfaces excite it from now on.
+    SetBody { id: BodyId, body: Box<BodySlot>, bus: usize, gain: f64, stroking: Stroking },
     /// A body sounds on another bus from now on.
     SetBodyBus { slot: usize, bus: usize },
+    /// A body is louder or softer from now on.
+    SetBodyGain { slot: usize, gain: f64 },
+    /// Everything that leaves fades to nothing, or comes back.
+    Mute(bool),
+    /// The same, and contacts wait for their next report.
+    Pause(bool),
+    /// Every contact ends, and everything that rings is damped.
+    FadeAll,
+    /// Gain of an audio bus, reached within a few milliseconds.
+    SetAudioGain { bus: usize, gain: f64 },
     /// A slot falls empty; the body rings out unheard from now on.
     RemoveBody { slot: usize },
+    /// The audio half's end of a port that was opened.
+    AddOutlet(Box<dyn Outlet>),
     /// Per-user haptic gain of one channel, 0 = mute; reached within a few milliseconds.
     SetHapticGain { channel: usize, gain: f64 },
 }
@@ -56,6 +69,9 @@ pub(crate) struct Felt {
 pub(crate) enum Dead {
     Surface(Box<SurfaceSlot>),
     Body(Box<BodySlot>),
+    /// A port that nobody reads any more.
+    #[expect(dead_code, reason = "it is freed with the message and never looked at")]
+    Outlet(Box<dyn Outlet>),
     #[expect(dead_code, reason = "it is freed with the message and never looked at")]
     Change(Box<dyn Any + Send + Sync>),
 }

@@ -1,4 +1,4 @@
-//! What the audio half did, readable from the game thread at any moment.
+//! Statistics of both halves, readable from the game thread at any moment.
 
 use crate::model::bus::BusLevels;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};

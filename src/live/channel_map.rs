@@ -1,4 +1,4 @@
-//! Which device channel carries which signal, and interleaving.
+//! Channel map: which device channel carries which signal, and interleaving.
 
 use crate::audio::renderer::Renderer;
 use crate::link::ring::Sender;
@@ -147,6 +147,12 @@ impl Interleaver {
     #[cfg(feature = "device")]
     pub(crate) fn tee_haptics(&mut self, rings: Vec<Sender<f32>>) {
         self.tee = rings;
+    }
+
+    /// Gives the renderer back, for a device at another rate ([`Scene::at_rate`](crate::Scene::at_rate)).
+    #[must_use]
+    pub fn into_renderer(self) -> Renderer {
+        self.renderer
     }
 
     /// The renderer inside.

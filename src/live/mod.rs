@@ -1,7 +1,8 @@
-//! What leaves in real time: sound cards, a paced device that nobody hears, and which signal goes to which channel.
+//! Real-time outputs: sound cards, a paced device that nobody hears, and which signal goes to which channel.
 
 pub mod channel_map;
 #[cfg(feature = "device")]
 pub mod device;
 pub mod drift;
 pub mod null_sink;
+pub mod ports;

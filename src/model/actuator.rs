@@ -2,8 +2,23 @@
 
 pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
 
+/// Upper end of an acceleration channel's band, Hz: above it neither skin feels (Bolanowski and others 1988) nor voice coils follow, and a rough
+/// plate would spend 26 dB of head room there.
+pub const ACCELERATION_BAND_HZ: f64 = 1000.0;
+
 /// One haptic channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// ```
+/// use asperity::{ActuatorPreset, ActuatorSettings, Config};
+///
+/// // A voice coil in a controller: its response inverted, its excursion kept within limits.
+/// let device = ActuatorPreset::by_name("vr-controller").unwrap().profile;
+/// let channel = ActuatorSettings { equalise: Some(device), limit: Some(device), ..ActuatorSettings::default() };
+/// let config = Config { actuators: vec![channel; 2], ..Config::default() };
+/// assert!(config.build().is_ok());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct ActuatorSettings {
     /// What the channel plays: the pad's displacement (the paper) or its acceleration.
     pub output: Quantity,
@@ -12,6 +27,9 @@ pub struct ActuatorSettings {
     /// Cutoff of the high-pass that turns pad positions into movement about the mean surface, Hz;
     /// 0 = off.
     pub highpass_hz: f64,
+    /// Cutoff of the low-pass (fourth order, −6 dB there) that keeps to what skin feels and actuators take, Hz; 0 = off; none =
+    /// [`ACCELERATION_BAND_HZ`] for acceleration, off for displacement.
+    pub lowpass_hz: Option<f64>,
     /// Time from silence to full level after the start, s.
     pub soft_start_s: f64,
     /// Device whose frequency response is inverted.
@@ -28,6 +46,7 @@ impl Default for ActuatorSettings {
             output: Quantity::Displacement,
             full_scale: 1e-4,
             highpass_hz: 10.0,
+            lowpass_hz: None,
             soft_start_s: 0.0,
             equalise: None,
             limit: None,

@@ -20,6 +20,7 @@ pub struct Body {
     pub(crate) model: ModalModel,
     pub(crate) material: Material,
     pub(crate) bus: usize,
+    pub(crate) gain: f64,
 }
 
 impl Body {
@@ -29,7 +30,7 @@ impl Body {
     /// A body of PLA on bus 0.
     #[must_use]
     pub fn new(model: ModalModel) -> Self {
-        Self { model, material: Self::DEFAULT_MATERIAL, bus: 0 }
+        Self { model, material: Self::DEFAULT_MATERIAL, bus: 0, gain: 1.0 }
     }
 
     /// Of another material, which decides how long impacts on it last.
@@ -43,6 +44,16 @@ impl Body {
     #[must_use]
     pub fn on_bus(mut self, bus: usize) -> Self {
         self.bus = bus;
+        self
+    }
+}
+
+impl Body {
+    /// Louder or softer than its modes say, linear, 0–1000; changed while it sounds by
+    /// [`Scene::set_body_gain`](crate::Scene::set_body_gain).
+    #[must_use]
+    pub fn gain(mut self, gain: f64) -> Self {
+        self.gain = gain;
         self
     }
 }

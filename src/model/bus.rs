@@ -4,7 +4,16 @@
 pub const MAX_BUSES: usize = 64;
 
 /// Settings of an audio bus.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// ```
+/// use asperity::{AudioBus, Config};
+///
+/// // Eight places around a listener, each kept within ±1.
+/// let config = Config { audio: vec![AudioBus { gain: 0.5, limit: true }; 8], ..Config::default() };
+/// assert!(config.build().is_ok());
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct AudioBus {
     /// Linear gain, 0–1e6.
     pub gain: f64,

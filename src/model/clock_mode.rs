@@ -1,7 +1,8 @@
-//! How game seconds become samples.
+//! Clock modes: how game seconds become samples.
 
 /// How a stamp becomes a sample.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum ClockMode {
     /// Sample = t · rate: offline renders and replays. A game whose time runs ahead of the audio waits for the
     /// audio to get there, and one that pauses is late from then on: see [`Scene::reset`](crate::Scene::reset).

@@ -3,20 +3,34 @@
 use crate::model::actuator::ActuatorSettings;
 use crate::model::bus::{AudioBus, MAX_BUSES};
 use crate::model::clock_mode::ClockMode;
+use crate::model::error::ConfigError;
 use crate::model::inner_rate::InnerRate;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::output as limits;
 use asperity_dsp::micro_contact::{Integrator, Probe};
-use asperity_dsp::modal_bank::Culling;
+use asperity_dsp::modal_bank::{Culling, Isa, Kernel};
 use asperity_dsp::trajectory::PathMode;
+use serde::{Deserialize, Serialize};
 
 /// How an engine is built. `Config::default()` is one finger, one actuator, 44.1 kHz, rendered offline;
 /// [`Config::live`] is the same for a game that runs now.
-#[derive(Debug, Clone)]
+///
+/// As text it is a table with these fields, of which any may be missing, and no others ([`Config::parse`]).
+///
+/// ```
+/// use asperity::Config;
+///
+/// let many = Config { max_contacts: 128, seed: 7, ..Config::live(48_000.0) };
+/// assert!(many.build().is_ok());
+/// let wrong = Config { sample_rate_hz: 10.0, ..Config::default() };
+/// assert!(wrong.build().unwrap_err().to_string().contains("8000 to 384000 Hz"));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct Config {
-    /// Rate of every output, Hz; 8–384 kHz.
+    /// Rate of every output, Hz; 8–384 kHz, default 44.1 kHz.
     pub sample_rate_hz: f64,
-    /// Seed of the micro-noise: the same seed feels the same at the same place.
+    /// Seed of the micro-noise: the same seed feels the same at the same place. Default 1.
     pub seed: u64,
     /// How sparse contact positions become a path.
     pub path: PathMode,
@@ -26,31 +40,37 @@ pub struct Config {
     pub integrator: Integrator,
     /// The engine's own probe, for contacts that name no other: the fingertip unless told otherwise.
     pub probe: Probe,
-    /// Haptic channels, in order.
+    /// Haptic channels, in order; by default one of 0.1 mm at full scale, without limiter.
     pub actuators: Vec<ActuatorSettings>,
-    /// Audio buses, in order; a body plays on one of them, the first unless told otherwise.
+    /// Audio buses, in order; a body plays on one of them, the first unless told otherwise. By default one with gain 1, without limiter.
     pub audio: Vec<AudioBus>,
-    /// Most contacts that sound at once; more steal the least important.
+    /// Most contacts that sound at once, 1–4096, default 64; more steal the least important: force times speed times importance.
     pub max_contacts: usize,
-    /// Most probes, the engine's own not counted.
+    /// Most probes, the engine's own not counted; 1–4096, default 64.
     pub max_probes: usize,
-    /// Most surfaces at once.
+    /// Most ports that can be open at once; 1–4096, default 16.
+    pub max_ports: usize,
+    /// Most surfaces at once; 1–65,536, default 256.
     pub max_surfaces: usize,
-    /// Most bodies at once.
+    /// Most bodies at once; 1–65,536, default 256.
     pub max_bodies: usize,
-    /// Events that may wait between the threads.
+    /// Events that may wait between the threads; 1–16,777,216, default 4096.
     pub queue_capacity: usize,
-    /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick.
+    /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick. 0.01–3600 s, default 0.25 s.
     pub contact_timeout_s: f64,
     /// How game time becomes samples: exactly, as an offline render wants it, unless told otherwise. A game that
     /// runs now begins with [`Config::live`].
     pub clock: ClockMode,
     /// Modes that are left out when a body is added, because nobody can hear them; `None` keeps all. The
     /// default costs −100 dB of error or less; [`Culling::default`] goes further, as far as the ear does.
+    #[serde(with = "culling_or_none")]
     pub culling: Option<Culling>,
     /// Whether the audio half leaves out the least audible work while blocks run late, as told by
     /// [`Renderer::report_load`](crate::Renderer::report_load). Where nobody reports a load, nothing is ever left out.
     pub shed_load: bool,
+    /// Instruction set of the kernels whose last bits depend on it, the modal bank and the contact model: [`Isa::Portable`] gives the
+    /// same bits on every processor. `None`: the fastest that this processor has.
+    pub kernel: Option<Isa>,
 }
 
 impl Default for Config {
@@ -66,6 +86,7 @@ impl Default for Config {
             audio: vec![AudioBus::default()],
             max_contacts: 64,
             max_probes: 64,
+            max_ports: 16,
             max_surfaces: 256,
             max_bodies: 256,
             queue_capacity: 4096,
@@ -73,6 +94,7 @@ impl Default for Config {
             clock: ClockMode::default(),
             culling: Some(Culling::NEGLIGIBLE),
             shed_load: true,
+            kernel: None,
         }
     }
 }
@@ -100,9 +122,28 @@ impl Config {
         self.max_contacts + self.max_contacts.div_ceil(2).max(8)
     }
 
-    pub(crate) fn check(&self) -> Result<(), DesignError> {
+    /// The kernel that runs.
+    ///
+    /// # Errors
+    /// When this processor does not have the one that is asked for.
+    pub(crate) fn kernel(&self) -> Result<Kernel, ConfigError> {
+        let Some(isa) = self.kernel else { return Ok(Kernel::detect()) };
+        Kernel::find(isa).ok_or(ConfigError::Kernel { isa: isa.name() })
+    }
+
+    pub(crate) fn check(&self) -> Result<(), ConfigError> {
+        self.kernel()?;
+        Ok(self.check_numbers()?)
+    }
+
+    fn check_numbers(&self) -> Result<(), DesignError> {
         limits::SAMPLE_RATE_HZ.check("sample_rate_hz", self.sample_rate_hz)?;
         limits::CONTACT_TIMEOUT_S.check("contact_timeout_s", self.contact_timeout_s)?;
+        self.probe.check()?;
+        for actuator in &self.actuators {
+            limits::FULL_SCALE.check("full_scale", actuator.full_scale)?;
+            limits::HIGHPASS_HZ.check("highpass_hz", actuator.highpass_hz)?;
+        }
         for bus in &self.audio {
             limits::AUDIO_GAIN.check("audio.gain", bus.gain)?;
         }
@@ -121,8 +162,61 @@ impl Config {
         count("audio", self.audio.len(), MAX_BUSES, "1–64 buses")?;
         count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;
         count("max_probes", self.max_probes, 4096, "1–4096 probes")?;
+        count("max_ports", self.max_ports, 4096, "1–4096 ports")?;
         count("max_surfaces", self.max_surfaces, 65_536, "1–65536 surfaces")?;
         count("max_bodies", self.max_bodies, 65_536, "1–65536 bodies")?;
         count("queue_capacity", self.queue_capacity, 1 << 24, "1–16777216 events")
+    }
+}
+
+/// A table, or the word "none", because text formats have no empty value.
+mod culling_or_none {
+    use super::Culling;
+    use serde::de::value::MapAccessDeserializer;
+    use serde::de::{Error, MapAccess, Visitor};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use std::fmt;
+
+    #[expect(clippy::ref_option, reason = "serde hands out a reference to the field")]
+    pub(super) fn serialize<S: Serializer>(
+        culling: &Option<Culling>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        match culling {
+            Some(culling) => culling.serialize(serializer),
+            None => serializer.serialize_str("none"),
+        }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Culling>, D::Error> {
+        deserializer.deserialize_any(TableOrNone)
+    }
+
+    struct TableOrNone;
+
+    impl<'de> Visitor<'de> for TableOrNone {
+        type Value = Option<Culling>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("\"none\", or a table with level_db, masking and loudest_db_spl")
+        }
+
+        fn visit_str<E: Error>(self, word: &str) -> Result<Self::Value, E> {
+            if word == "none" {
+                Ok(None)
+            } else {
+                Err(E::invalid_value(serde::de::Unexpected::Str(word), &self))
+            }
+        }
+
+        fn visit_unit<E: Error>(self) -> Result<Self::Value, E> {
+            Ok(None)
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+            Culling::deserialize(MapAccessDeserializer::new(map)).map(Some)
+        }
     }
 }

@@ -3,13 +3,27 @@
 use crate::model::bad_value::BadValue;
 use crate::model::event::ContactEvent;
 use asperity_dsp::DesignError;
+use asperity_dsp::modal_bank::{Isa, Kernel};
 
 /// Why an engine cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConfigError {
     /// A setting is outside its range.
     #[error(transparent)]
     Design(#[from] DesignError),
+    /// An instruction set that this processor lacks.
+    #[error("kernel: \"{isa}\" is not in this processor; must be one of: {}", known_kernels())]
+    Kernel {
+        /// The instruction set asked for.
+        isa: &'static str,
+    },
+}
+
+/// The instruction sets of this processor, separated by commas.
+fn known_kernels() -> String {
+    let here = Isa::ALL.into_iter().filter(|isa| Kernel::find(*isa).is_some());
+    here.map(Isa::name).collect::<Vec<_>>().join(", ")
 }
 
 /// Why an event was not taken. The event is handed back.
@@ -24,6 +38,7 @@ pub struct ReportError {
 
 /// The reasons to refuse an event.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The audio half is not keeping up or not running; try again, or let the event go.
     #[error("the event queue is full; report less often, or render more often")]
@@ -60,11 +75,12 @@ pub enum Refusal {
 
 /// Why a surface or body was not added.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AddError {
     /// Every place is taken.
     #[error("{kind}: all {capacity} places are taken; remove one or raise max_{kind} in the config")]
     Full {
-        /// "surfaces" or "bodies".
+        /// "surfaces", "bodies", "probes" or "ports".
         kind: &'static str,
         /// How many places there are.
         capacity: usize,
@@ -86,6 +102,9 @@ pub enum AddError {
         /// How many buses there are.
         buses: usize,
     },
+    /// The surface never changes, so that there is nothing to be shown.
+    #[error("surface: its source never changes, so that there is no moving picture of it; only sand has one")]
+    NeverChanges,
     /// What it refers to is not in this scene.
     #[error("{0}: is not in this scene; add it first")]
     Unknown(&'static str),

@@ -1,4 +1,4 @@
-//! What a game or VR physics step reports: contacts that begin, move and end, and impacts.
+//! Contact events, as a game or VR physics step reports them: contacts that begin, move and end, and impacts.
 //!
 //! Events are small `Copy` values in SI units, stamped by the caller in game seconds. The same type
 //! serves a live game, a replayed [contact log](crate::files::contact_log) and every test.
@@ -28,21 +28,46 @@ pub struct ContactId(pub u64);
 pub struct Actuator(pub u16);
 
 /// Where and how a contact touches at one instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// ```
+/// use asperity::ContactSample;
+///
+/// let sample = ContactSample::new([0.3, 0.5], 0.6).sliding([0.1, 0.0]);
+/// assert_eq!(sample.closing_m_s, 0.0);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactSample {
     /// Texture coordinates of the contact point; 1 spans the surface's width and height. They may
     /// wrap or run on beyond 0–1.
     pub uv: [f64; 2],
     /// Tangential velocity along the surface's u and v axes, m/s; estimated from `uv` when missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_m_s: Option<[f64; 2]>,
     /// Force pressing the finger onto the surface, N. Physics engines report small negative values
     /// around lift-off; they count as 0.
     pub normal_force_n: f64,
     /// Approach speed at landing, m/s; used by [`ContactEvent::begin`] only.
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub closing_m_s: f64,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 /// What touches what, and who feels it: fixed for as long as the contact lasts.
+///
+/// ```
+/// use asperity::{Actuator, Config, Engine, Surface, Touching, probe_by_name};
+///
+/// let Engine { mut scene, .. } = Config::default().build()?;
+/// let slate = scene.add_surface(Surface::flat(0.3, 0.2)?)?;
+/// let stylus = scene.add_probe(probe_by_name("stylus").unwrap())?;
+/// // A stylus in a hand that feels it; `held_by` names the body that rings with it.
+/// let writing = Touching::on(slate).with(stylus).felt_by(Actuator(0)).importance(2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Touching {
@@ -105,6 +130,16 @@ impl Touching {
 }
 
 /// A rigid striker hits a body.
+///
+/// ```
+/// use asperity::{BodyId, Impact, Material};
+///
+/// # let bell = BodyId::from_bits(1);
+/// // 20 g of wood with a tip of 8 mm, at 1.5 m/s.
+/// let mallet = Impact::on(bell).by(Material::WOOD, 0.02, 0.008).at_speed(1.5);
+/// // Or what a physics engine tells: 0.03 N·s at 1.5 m/s, half of the speed is left.
+/// let tumbling = Impact::from_impulse(bell, 0.03, 1.5, 0.5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact {
     /// The body that rings.
@@ -134,7 +169,44 @@ pub struct Impact {
     pub gain: f64,
 }
 
+/// How loud and how important a contact is from now on; none = as it was.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Emphasis {
+    /// Linear gain of what is felt and heard of it, 0–1000; reached within some milliseconds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<f64>,
+    /// Factor of its priority when contacts have to be left out, 0–1e6.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub importance: Option<f64>,
+}
+
+impl Emphasis {
+    /// What an earlier report said, where this one says nothing.
+    pub(crate) fn or(self, earlier: Self) -> Self {
+        Self { gain: self.gain.or(earlier.gain), importance: self.importance.or(earlier.importance) }
+    }
+
+    /// # Errors
+    /// When a factor is outside its range.
+    pub fn checked(self) -> Result<Self, BadValue> {
+        within("gain", self.gain.unwrap_or(1.0), limits::impact::GAIN)?;
+        within("importance", self.importance.unwrap_or(1.0), limits::impact::IMPORTANCE)?;
+        Ok(self)
+    }
+}
+
 /// One report of the physics step.
+///
+/// ```
+/// use asperity::{Actuator, ContactEvent, ContactId, ContactSample, SurfaceId};
+///
+/// # let plate = SurfaceId::from_bits(1);
+/// let finger = ContactId(1);
+/// let sample = ContactSample::new([0.2, 0.5], 0.6).sliding([0.1, 0.0]);
+/// let touch = ContactEvent::begin(finger, plate, Actuator(0), sample.landing(0.05));
+/// let slide = ContactEvent::moved(finger, sample);
+/// let lift = ContactEvent::end(finger);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactEvent {
     /// A contact lands on a surface.
@@ -152,6 +224,8 @@ pub enum ContactEvent {
         contact: ContactId,
         /// Where and how.
         sample: ContactSample,
+        /// How loud and how important.
+        emphasis: Emphasis,
     },
     /// A contact lifts off.
     End {
@@ -175,10 +249,16 @@ impl ContactEvent {
         Self::Begin { contact, touching, sample }
     }
 
-    /// A contact goes on.
+    /// A contact goes on: `move` in contact logs, which is no name in Rust.
     #[must_use]
     pub fn moved(contact: ContactId, sample: ContactSample) -> Self {
-        Self::Moved { contact, sample }
+        Self::moved_with(contact, sample, Emphasis::default())
+    }
+
+    /// A contact goes on, louder or softer, or of another importance.
+    #[must_use]
+    pub fn moved_with(contact: ContactId, sample: ContactSample, emphasis: Emphasis) -> Self {
+        Self::Moved { contact, sample, emphasis }
     }
 
     /// The same in a second of audio during which `pace` seconds of the game go by: in slow motion a contact
@@ -198,6 +278,26 @@ impl ContactEvent {
 }
 
 impl ContactSample {
+    /// At texture coordinates `uv`, pressed with `normal_force_n`; its velocity is estimated from where it goes.
+    #[must_use]
+    pub fn new(uv: [f64; 2], normal_force_n: f64) -> Self {
+        Self { uv, normal_force_n, ..Self::default() }
+    }
+
+    /// Sliding with this velocity along u and v, m/s.
+    #[must_use]
+    pub fn sliding(mut self, velocity_m_s: [f64; 2]) -> Self {
+        self.velocity_m_s = Some(velocity_m_s);
+        self
+    }
+
+    /// Landing with this speed, m/s.
+    #[must_use]
+    pub fn landing(mut self, closing_m_s: f64) -> Self {
+        self.closing_m_s = closing_m_s;
+        self
+    }
+
     /// The same sample with a negative force set to 0.
     ///
     /// # Errors
@@ -242,6 +342,34 @@ impl Impact {
     pub fn from_impulse(body: BodyId, impulse_n_s: f64, speed_m_s: f64, restitution: f64) -> Self {
         let mass_kg = impulse_n_s / (speed_m_s.max(1e-6) * (1.0 + restitution));
         Self { speed_m_s, mass_kg, restitution, ..Self::on(body) }
+    }
+
+    /// By a striker of this material, effective mass (kg) and radius where it strikes (m).
+    #[must_use]
+    pub fn by(mut self, striker: Material, mass_kg: f64, radius_m: f64) -> Self {
+        (self.striker, self.mass_kg, self.radius_m) = (striker, mass_kg, radius_m);
+        self
+    }
+
+    /// At this approach speed, m/s.
+    #[must_use]
+    pub fn at_speed(mut self, speed_m_s: f64) -> Self {
+        self.speed_m_s = speed_m_s;
+        self
+    }
+
+    /// Leaving with this share of the approach speed, 0–1.
+    #[must_use]
+    pub fn rebounding(mut self, restitution: f64) -> Self {
+        self.restitution = restitution;
+        self
+    }
+
+    /// Felt by a haptic channel.
+    #[must_use]
+    pub fn felt_by(mut self, actuator: Actuator) -> Self {
+        self.actuator = Some(actuator);
+        self
     }
 
     /// # Errors

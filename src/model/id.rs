@@ -27,6 +27,16 @@ macro_rules! ids {
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub struct $name(pub(crate) Place);
 
+        impl std::fmt::Display for $name {
+            /// Its place, and from the second occupant on which one it is: `3`, `3.2`.
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                match self.0 {
+                    Place { index, generation: 0 | 1 } => write!(f, "{index}"),
+                    Place { index, generation } => write!(f, "{index}.{generation}"),
+                }
+            }
+        }
+
         impl $name {
             /// As a number that another language or a file can hold; never 0.
             #[must_use]
@@ -66,5 +76,7 @@ mod tests {
         let id = BodyId(Place { index: 7, generation: u32::MAX });
         assert_eq!((BodyId::from_bits(id.to_bits()), id.index()), (id, 7));
         assert_eq!(id.to_bits(), 0xffff_ffff_0000_0007);
+        assert_eq!(id.to_string(), "7.4294967295");
+        assert_eq!(SurfaceId(Place { index: 3, generation: 1 }).to_string(), "3");
     }
 }

@@ -41,6 +41,36 @@ impl InnerRate {
         sample % self.every as u64 == self.at as u64
     }
 
+    /// Copies what leaves of the inner samples from `position` on to the beginning of `out`; tells the index of the first among all
+    /// that leave, and how many there are.
+    pub(crate) fn leaving(&self, position: u64, inner: &[f32], out: &mut [f32]) -> (u64, usize) {
+        let every = self.every as u64;
+        let first = (position + every - 1 - self.at as u64) / every;
+        let skipped = (first * every + self.at as u64 - position) as usize;
+        let leaving = inner.iter().skip(skipped).step_by(self.every);
+        (first, out.iter_mut().zip(leaving).map(|(to, x)| *to = *x).count())
+    }
+
+    /// The same of the means; `mean` is what the first of them has come to already, and then the last.
+    pub(crate) fn leaving_means(
+        &self,
+        position: u64,
+        inner: &[f32],
+        mean: &mut f32,
+        out: &mut [f32],
+    ) -> (u64, usize) {
+        let (every, share) = (self.every as u64, 1.0 / self.every as f32);
+        let mut count = 0;
+        for (sample, x) in (position..).zip(inner) {
+            *mean += share * x;
+            if (sample + 1).is_multiple_of(every) {
+                out[count] = std::mem::take(mean);
+                count += 1;
+            }
+        }
+        (position / every, count)
+    }
+
     /// Writes to `out` what leaves of the inner samples from `at` on.
     pub(crate) fn pick(&self, at: usize, inner: &[f32], out: &mut [f32]) {
         if self.every == 1 {
@@ -81,10 +111,22 @@ mod tests {
             let rate = InnerRate::new(rate_hz, latency);
             let all = |cuts: &[usize]| {
                 let (mut picked, mut means) = (vec![0.0; 60 / rate.every], vec![0.0; 60 / rate.every]);
+                let (mut shown, mut shown_means, mut mean) = (Vec::new(), Vec::new(), 0.0);
+                let mut show = |position: usize, block: &[f32]| {
+                    let mut out = [0.0; 64];
+                    let (first, count) = rate.leaving(position as u64, block, &mut out);
+                    assert_eq!(first as usize, shown.len());
+                    shown.extend_from_slice(&out[..count]);
+                    let (first, count) = rate.leaving_means(position as u64, block, &mut mean, &mut out);
+                    assert_eq!(first as usize, shown_means.len());
+                    shown_means.extend_from_slice(&out[..count]);
+                };
                 for ends in cuts.windows(2) {
+                    show(ends[0], &inner[ends[0]..ends[1]]);
                     rate.pick(ends[0], &inner[ends[0]..ends[1]], &mut picked);
                     rate.average(ends[0], &inner[ends[0]..ends[1]], &mut means);
                 }
+                assert_eq!((&shown, &shown_means), (&picked, &means));
                 (picked, means)
             };
             assert_eq!(all(&[0, 60]), all(&[0, 1, 5, 6, 17, 18, 31, 59, 60]));

@@ -1,103 +1,166 @@
-//! Elastic constants of what touches and what is touched.
+//! Materials: what a thing is made of, in one table for the whole project.
 //!
-//! They set how long a Hertz contact lasts and so how bright an impact sounds (Hasti §III-D names
-//! Young's modulus, Poisson ratio, mass and radius as its inputs). The presets are rounded
-//! room-temperature handbook values; real pieces differ by tens of per cent, which moves a contact
-//! time (∝ E^−0.4) by a few per cent.
+//! ```text
+//! impact   E, ν          contact time ∝ E^−0.4 (Hasti §III-D)
+//! modes    E, ν, ρ       frequency ∝ √(E/ρ) / size
+//! ringing  α, η, β       d(ω) = (α + η ω + β ω²) / 2
+//! touch    μ, R, relief  friction and micro-relief of its ordinary finish
+//! ```
+//! The presets are room-temperature values of ordinary pieces, each number with its source in [`Material::PRESETS`]; real pieces differ by tens
+//! of per cent in stiffness and by a factor of two in damping.
+
+mod presets;
 
 use crate::model::bad_value::{BadValue, within};
-use asperity_dsp::limits::material as limits;
+use asperity_dsp::damping::Damping;
+use asperity_dsp::limits::{self, material as range};
 
-/// Elastic constants of one material.
+/// What a thing is made of.
+///
+/// ```
+/// use asperity::Material;
+///
+/// let glass = Material::by_name("glass").unwrap();
+/// assert!(glass.damping().t60_s(2000.0) > 5.0 * Material::WOOD.damping().t60_s(2000.0));
+/// // A material of one's own: what is not given is that of the default material.
+/// let oak = Material { eta: 0.01, ..Material::new(12e9, 0.35, 720.0) };
+/// assert!(oak.checked().is_ok());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
-    /// Young's modulus, Pa.
+    /// Young's modulus, Pa; 1e3–1e13.
     pub young_pa: f64,
     /// Poisson ratio, 0–0.5.
     pub poisson: f64,
-    /// Density, kg/m³.
+    /// Density, kg/m³; 1–1e5.
     pub density_kg_m3: f64,
+    /// Damping α: the same at every frequency, 1/s; 0–1e6.
+    #[serde(default = "default::alpha_per_s")]
+    pub alpha_per_s: f64,
+    /// Damping η: the loss factor; 0–10.
+    #[serde(default = "default::eta")]
+    pub eta: f64,
+    /// Damping β: viscous, s; 0–1.
+    #[serde(default = "default::beta_s")]
+    pub beta_s: f64,
+    /// Coulomb friction of dry skin that sticks to it, 0–10.
+    #[serde(default = "default::mu_static")]
+    pub mu_static: f64,
+    /// Coulomb friction of dry skin that slides on it, 0–10.
+    #[serde(default = "default::mu_kinetic")]
+    pub mu_kinetic: f64,
+    /// Perceptual roughness R of its ordinary finish, 0–1.
+    #[serde(default = "default::roughness")]
+    pub roughness: f64,
+    /// Micro-relief of its ordinary finish, as a surface's `micro_relief_m`, m; 0–0.01.
+    #[serde(default = "default::micro_relief_m")]
+    pub micro_relief_m: f64,
 }
 
-const fn material(young_pa: f64, poisson: f64, density_kg_m3: f64) -> Material {
-    Material { young_pa, poisson, density_kg_m3 }
+/// One row of the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct MaterialPreset {
+    /// Its name in scene files, contact logs and on the command line.
+    pub name: &'static str,
+    /// What it stands for.
+    pub what: &'static str,
+    /// Its numbers.
+    pub material: Material,
+    /// Where E, ν and ρ come from.
+    pub elastic_source: &'static str,
+    /// Where α, η and β come from.
+    pub damping_source: &'static str,
+    /// Where the friction coefficients come from.
+    pub friction_source: &'static str,
+    /// Where roughness and micro-relief come from.
+    pub finish_source: &'static str,
+}
+
+/// What a material has that is given by its elastic constants only.
+mod default {
+    use super::Material;
+
+    const MATERIAL: Material = Material::PLA;
+
+    pub(super) fn alpha_per_s() -> f64 {
+        MATERIAL.alpha_per_s
+    }
+    pub(super) fn eta() -> f64 {
+        MATERIAL.eta
+    }
+    pub(super) fn beta_s() -> f64 {
+        MATERIAL.beta_s
+    }
+    pub(super) fn mu_static() -> f64 {
+        MATERIAL.mu_static
+    }
+    pub(super) fn mu_kinetic() -> f64 {
+        MATERIAL.mu_kinetic
+    }
+    pub(super) fn roughness() -> f64 {
+        MATERIAL.roughness
+    }
+    pub(super) fn micro_relief_m() -> f64 {
+        MATERIAL.micro_relief_m
+    }
 }
 
 impl Material {
-    /// Carbon steel.
-    pub const STEEL: Self = material(205e9, 0.29, 7850.0);
-    /// Aluminium alloy.
-    pub const ALUMINIUM: Self = material(69e9, 0.33, 2700.0);
-    /// Brass.
-    pub const BRASS: Self = material(105e9, 0.34, 8500.0);
-    /// Soda-lime glass.
-    pub const GLASS: Self = material(70e9, 0.22, 2500.0);
-    /// Glazed stoneware.
-    pub const CERAMIC: Self = material(70e9, 0.24, 2400.0);
-    /// Granite.
-    pub const STONE: Self = material(50e9, 0.25, 2700.0);
-    /// Structural concrete.
-    pub const CONCRETE: Self = material(30e9, 0.2, 2400.0);
-    /// Hardwood along the grain.
-    pub const WOOD: Self = material(11e9, 0.35, 700.0);
-    /// Printed PLA, the plates of the Hasti study.
-    pub const PLA: Self = material(3.5e9, 0.36, 1240.0);
-    /// Polycarbonate.
-    pub const PLASTIC: Self = material(2.4e9, 0.37, 1200.0);
-    /// Soft rubber.
-    pub const RUBBER: Self = material(5e6, 0.49, 1100.0);
-    /// Fingernail (keratin).
-    pub const NAIL: Self = material(3e9, 0.35, 1300.0);
-
-    /// Every preset with its name, as scene files and contact logs spell it.
-    pub const PRESETS: [(&'static str, Self); 12] = [
-        ("steel", Self::STEEL),
-        ("aluminium", Self::ALUMINIUM),
-        ("brass", Self::BRASS),
-        ("glass", Self::GLASS),
-        ("ceramic", Self::CERAMIC),
-        ("stone", Self::STONE),
-        ("concrete", Self::CONCRETE),
-        ("wood", Self::WOOD),
-        ("pla", Self::PLA),
-        ("plastic", Self::PLASTIC),
-        ("rubber", Self::RUBBER),
-        ("nail", Self::NAIL),
-    ];
+    /// A material by its elastic constants: Young's modulus (Pa), Poisson ratio, density (kg/m³). Damping, friction and finish are those of
+    /// [`PLA`](Self::PLA), the default material of bodies.
+    #[must_use]
+    pub const fn new(young_pa: f64, poisson: f64, density_kg_m3: f64) -> Self {
+        Self { young_pa, poisson, density_kg_m3, ..Self::PLA }
+    }
 
     /// The preset of that name.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
-        Self::PRESETS.iter().find(|(known, _)| *known == name).map(|(_, material)| *material)
+        Self::PRESETS.iter().find(|preset| preset.name == name).map(|preset| preset.material)
     }
 
-    /// The names of [`PRESETS`](Self::PRESETS), for messages: `steel, aluminium, …`.
+    /// The name of the preset that this is.
+    #[must_use]
+    pub fn name(&self) -> Option<&'static str> {
+        Self::PRESETS.iter().find(|preset| preset.material == *self).map(|preset| preset.name)
+    }
+
+    /// The names of [`PRESETS`](Self::PRESETS), for messages: `steel, iron, …`.
     #[must_use]
     pub fn names() -> String {
-        Self::PRESETS.map(|(name, _)| name).join(", ")
+        Self::PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// How its modes decay.
+    #[must_use]
+    pub const fn damping(&self) -> Damping {
+        Damping { alpha_per_s: self.alpha_per_s, eta: self.eta, beta_s: self.beta_s }
+    }
+
+    /// Speed of longitudinal waves in a thin rod of it, √(E/ρ), m/s.
+    #[must_use]
+    pub fn rod_speed_m_s(&self) -> f64 {
+        (self.young_pa / self.density_kg_m3).sqrt()
     }
 
     /// # Errors
-    /// When a constant is not finite or no solid has it.
+    /// When a number is not finite or no solid has it.
     pub fn checked(self) -> Result<Self, BadValue> {
-        within("young_pa", self.young_pa, limits::YOUNG_PA)?;
-        within("poisson", self.poisson, limits::POISSON)?;
-        within("density_kg_m3", self.density_kg_m3, limits::DENSITY_KG_M3)?;
+        within("young_pa", self.young_pa, range::YOUNG_PA)?;
+        within("poisson", self.poisson, range::POISSON)?;
+        within("density_kg_m3", self.density_kg_m3, range::DENSITY_KG_M3)?;
+        within("alpha_per_s", self.alpha_per_s, range::ALPHA_PER_S)?;
+        within("eta", self.eta, range::ETA)?;
+        within("beta_s", self.beta_s, range::BETA_S)?;
+        within("mu_static", self.mu_static, limits::FRICTION)?;
+        within("mu_kinetic", self.mu_kinetic, limits::FRICTION)?;
+        within("roughness", self.roughness, limits::ROUGHNESS)?;
+        within("micro_relief_m", self.micro_relief_m, limits::MICRO_RELIEF_M)?;
         Ok(self)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_preset_is_found_by_its_name_and_is_a_solid() {
-        for (name, preset) in Material::PRESETS {
-            assert_eq!(Material::by_name(name), Some(preset));
-            assert!(preset.checked().is_ok());
-        }
-        assert_eq!(Material::by_name("unobtainium"), None);
-    }
-}
+mod tests;

@@ -1,4 +1,4 @@
-//! What a scene consists of: plain data in SI units, each with its range checked in one place.
+//! The parts of a scene: plain data in SI units, each with its range checked in one place.
 
 pub(crate) mod actuator;
 pub(crate) mod bad_value;
@@ -8,6 +8,7 @@ pub(crate) mod clock_mode;
 pub(crate) mod config;
 pub(crate) mod error;
 pub(crate) mod event;
+pub(crate) mod frame;
 pub(crate) mod id;
 pub(crate) mod inner_rate;
 pub(crate) mod material;
@@ -15,5 +16,6 @@ pub(crate) mod modal_model;
 pub(crate) mod probe;
 pub(crate) mod residual;
 pub(crate) mod stamp;
+pub(crate) mod stock;
 pub(crate) mod surface;
 pub(crate) mod uv_triangle;

@@ -1,4 +1,4 @@
-//! The modes of a body and the file they come in, `NAME.modes.json`.
+//! The modes of a body.
 //!
 //! y(t) = Σ amplitude · e^(−decay_per_s · t) · sin(2π · frequency_hz · t + phase_rad) is the response
 //! to an impulse of `impulse_n_s`; the engine scales linearly, so an impulse J sounds as
@@ -7,18 +7,22 @@
 use crate::model::residual::Residual;
 use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
-use serde::{Deserialize, Serialize};
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// The `format` field of a modes file.
-pub const FORMAT: &str = "asperity.modes";
-/// The `version` this crate reads and writes.
-pub const VERSION: u32 = 1;
 /// Most modes a body may have.
 pub const MAX_MODES: usize = 65_536;
 
 /// Validated modes of one body.
+///
+/// ```
+/// use asperity::{ModalModel, Mode};
+///
+/// // What a strike of 0.01 N·s was answered with.
+/// let mode = Mode { frequency_hz: 812.0, decay_per_s: 12.0, amplitude: 0.3, phase_rad: 0.0 };
+/// let tile = ModalModel::new(vec![mode], 0.01)?;
+/// assert_eq!(ModalModel::parse(&tile.to_json())?, tile);
+/// # Ok::<(), asperity::ModalModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalModel {
     /// What was recorded or where the modes come from; free text.
@@ -39,6 +43,7 @@ pub const MAX_POSITIONS: usize = modal_bank::MAX_INPUTS;
 
 /// Why a modes file was refused.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModalModelError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({source}); give a readable modes file", path.display())]
@@ -68,122 +73,41 @@ pub enum ModalModelError {
     },
 }
 
-#[derive(Serialize, Deserialize)]
-struct File {
-    format: String,
-    version: u32,
-    #[serde(default)]
-    source: String,
-    #[serde(default = "one")]
-    impulse_n_s: f64,
-    modes: Vec<FileMode>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    positions: Vec<Vec<f64>>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    residual: Option<Residual>,
-}
-
-#[derive(Serialize, Deserialize)]
-struct FileMode {
-    frequency_hz: f64,
-    decay_per_s: f64,
-    amplitude: f64,
-    #[serde(default)]
-    phase_rad: f64,
-}
-
-fn one() -> f64 {
-    1.0
-}
-
 impl ModalModel {
     /// A model from modes that are the answer to an impulse of `impulse_n_s`.
     ///
     /// # Errors
     /// When a mode grows, has no frequency, or a number is not finite.
     pub fn new(modes: Vec<Mode>, impulse_n_s: f64) -> Result<Self, ModalModelError> {
-        let model = Self { source: String::new(), impulse_n_s, modes, positions: Vec::new(), residual: None };
+        let model = Self { impulse_n_s, modes, ..Self::silent() };
         model.check()?;
         Ok(model)
     }
 
-    /// Reads `NAME.modes.json`.
-    ///
-    /// # Errors
-    /// When the file cannot be read, is not a modes file of version 1, or holds a number that no body
-    /// can have.
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, ModalModelError> {
-        let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|source| match source.kind() {
-            ErrorKind::InvalidData => {
-                let remedy = "is no text; `asperity fit` makes a modes file of a recording";
-                ModalModelError::Malformed { path: path.into(), message: remedy.into() }
-            }
-            _ => ModalModelError::Unreadable { path: path.into(), source },
-        })?;
-        Self::parse(&text).map_err(|error| match error {
-            ModalModelError::Malformed { message, .. } => {
-                ModalModelError::Malformed { path: path.into(), message }
-            }
-            ModalModelError::BadValue { field, value, expected } => {
-                ModalModelError::BadValue { field: format!("{}: {field}", path.display()), value, expected }
-            }
-            other => other,
-        })
-    }
-
-    /// Reads the text of a modes file.
-    ///
-    /// # Errors
-    /// As [`load`](Self::load).
-    pub fn parse(text: &str) -> Result<Self, ModalModelError> {
-        let malformed = |message: String| ModalModelError::Malformed { path: "modes".into(), message };
-        let file: File = serde_json::from_str(text).map_err(|error| malformed(error.to_string()))?;
-        if file.format != FORMAT {
-            return Err(malformed(format!("format is \"{}\"", file.format)));
-        }
-        if file.version != VERSION {
-            return Err(malformed(format!("version is {}", file.version)));
-        }
-        let modes = file
-            .modes
-            .iter()
-            .map(|m| Mode {
-                frequency_hz: m.frequency_hz,
-                decay_per_s: m.decay_per_s,
-                amplitude: m.amplitude,
-                phase_rad: m.phase_rad,
-            })
-            .collect();
-        let File { source, impulse_n_s, positions, residual, .. } = file;
-        let model = Self { source, impulse_n_s, modes, positions, residual };
-        model.check()?;
-        Ok(model)
-    }
-
-    /// The text of the modes file; numbers round-trip.
+    /// No mode at all: for a body that is never heard, or not yet.
     #[must_use]
-    pub fn to_json(&self) -> String {
-        let modes: Vec<_> = self
-            .modes
-            .iter()
-            .map(|m| FileMode {
-                frequency_hz: m.frequency_hz,
-                decay_per_s: m.decay_per_s,
-                amplitude: m.amplitude,
-                phase_rad: m.phase_rad,
-            })
-            .collect();
-        let file = File {
-            format: FORMAT.into(),
-            version: VERSION,
-            source: self.source.clone(),
-            impulse_n_s: self.impulse_n_s,
-            modes,
-            positions: self.positions.clone(),
-            residual: self.residual.clone(),
-        };
-        serde_json::to_string(&file).unwrap_or_default()
+    pub fn silent() -> Self {
+        Self {
+            source: String::new(),
+            impulse_n_s: 1.0,
+            modes: Vec::new(),
+            positions: Vec::new(),
+            residual: None,
+        }
+    }
+
+    /// The same model, every answer `gain` times as strong.
+    ///
+    /// # Errors
+    /// When an amplitude leaves ±1e9.
+    pub fn with_gain(mut self, gain: f64) -> Result<Self, ModalModelError> {
+        self.modes.iter_mut().for_each(|mode| mode.amplitude *= gain);
+        self.positions.iter_mut().flatten().for_each(|amplitude| *amplitude *= gain);
+        if let Some(residual) = &mut self.residual {
+            residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
+        }
+        self.check()?;
+        Ok(self)
     }
 
     /// The same model with more strike positions: one amplitude for every mode in each list.
@@ -266,7 +190,7 @@ impl ModalModel {
         })
     }
 
-    fn check(&self) -> Result<(), ModalModelError> {
+    pub(crate) fn check(&self) -> Result<(), ModalModelError> {
         let refuse =
             |field: String, value: f64, expected| ModalModelError::BadValue { field, value, expected };
         let in_range = |value: f64, low: f64, high: f64| value >= low && value <= high;
@@ -310,45 +234,5 @@ impl ModalModel {
             }
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const TILE: &str = r#"{"format":"asperity.modes","version":1,"source":"tile.wav","impulse_n_s":0.01,
-        "modes":[{"frequency_hz":812.4,"decay_per_s":14.2,"amplitude":0.31,"phase_rad":0.1}]}"#;
-
-    #[test]
-    fn a_modes_file_survives_the_round_trip_to_the_last_bit() {
-        let model = ModalModel::parse(TILE).unwrap();
-        assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
-        assert_eq!(model.modes[0].frequency_hz, 812.4);
-    }
-
-    #[test]
-    fn a_missing_impulse_means_one_newton_second() {
-        let text = TILE.replace(r#""impulse_n_s":0.01,"#, "");
-        assert_eq!(ModalModel::parse(&text).unwrap().impulse_n_s, 1.0);
-    }
-
-    #[test]
-    fn unit_modes_are_scaled_by_the_recorded_strike() {
-        let model = ModalModel::parse(TILE).unwrap();
-        let (unit, _) = model.unit_modes().next().unwrap();
-        assert!((unit.amplitude - 31.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn growing_modes_and_other_formats_are_refused_with_the_place() {
-        let growing = TILE.replace("14.2", "-14.2");
-        let message = ModalModel::parse(&growing).unwrap_err().to_string();
-        assert!(message.contains("modes[0].decay_per_s"), "{message}");
-        let other = TILE.replace("asperity.modes", "something");
-        assert!(ModalModel::parse(&other).unwrap_err().to_string().contains("something"));
-        let future = TILE.replace("\"version\":1", "\"version\":7");
-        assert!(ModalModel::parse(&future).unwrap_err().to_string().contains("version is 7"));
-        assert!(ModalModel::parse("{").is_err());
     }
 }

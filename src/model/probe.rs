@@ -1,4 +1,4 @@
-//! What touches: the presets of a scene, each number with its source.
+//! Probe presets, each number with its source.
 
 use asperity_dsp::micro_contact::Probe;
 
@@ -21,12 +21,14 @@ pub const PROBE_PRESETS: [(&str, Probe); 5] = [
             finger_mass_kg: asperity_dsp::micro_contact::FINGER_MASS_KG,
             contact_stiffness_n_m: asperity_dsp::micro_contact::CONTACT_STIFFNESS_N_M,
             leash_m: asperity_dsp::micro_contact::LEASH_M,
+            tip_radius_m: 0.0,
+            force_exponent: asperity_dsp::micro_contact::FORCE_EXPONENT,
         },
     ),
-    ("fingernail", held(0.5e-3, 5e3, 5.0, 20e-3, 1e6)),
-    ("stylus", held(40e-3, 1e3, 25.0, 0.3, 8e3)),
-    ("sole", held(50e-3, 2.5e5, 100.0, 5.0, 2.5e5)),
-    ("rigid", held(20e-3, 1e4, 20.0, 0.5, 1e6)),
+    ("fingernail", held(0.5e-3, 5e3, 5.0, 20e-3, 1e6, (0.3e-3, 1.0 / 3.0))),
+    ("stylus", held(30e-3, 1e3, 39.0, 0.3, 6.5e3, (1.6e-3, 0.25))),
+    ("sole", held(50e-3, 2.5e5, 100.0, 5.0, 2.5e5, (20e-3, 1.0 / 3.0))),
+    ("rigid", held(20e-3, 1e4, 20.0, 0.5, 1e6, (1e-3, 1.0 / 3.0))),
 ];
 
 const fn held(
@@ -35,6 +37,7 @@ const fn held(
     pad_damping_n_s_m: f64,
     finger_mass_kg: f64,
     contact_stiffness_n_m: f64,
+    (tip_radius_m, force_exponent): (f64, f64),
 ) -> Probe {
     let leash_m = asperity_dsp::micro_contact::LEASH_M;
     Probe {
@@ -44,10 +47,17 @@ const fn held(
         finger_mass_kg,
         contact_stiffness_n_m,
         leash_m,
+        tip_radius_m,
+        force_exponent,
     }
 }
 
 /// The preset of that name.
+///
+/// ```
+/// let sole = asperity::probe_by_name("sole").unwrap();
+/// assert!(sole.finger_mass_kg > 1.0 && asperity::probe_by_name("broom").is_none());
+/// ```
 #[must_use]
 pub fn probe_by_name(name: &str) -> Option<Probe> {
     PROBE_PRESETS.iter().find(|(known, _)| *known == name).map(|(_, probe)| *probe)

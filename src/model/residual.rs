@@ -1,4 +1,4 @@
-//! What a recorded strike has besides its modes: the striker's click, the first rush of a thousand modes.
+//! Residual burst of a recorded strike: the striker's click, the first rush of a thousand modes.
 //!
 //! A body may carry a *residual*, a short burst of samples that belongs to a strike of the model's
 //! `impulse_n_s` as its modes do. Every impact plays it once from the sample in which the contact begins,

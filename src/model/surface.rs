@@ -1,18 +1,27 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
+use crate::files::contact_log::LogSurface;
 use crate::model::bad_value::{BadValue, within};
+use crate::model::frame::SurfaceFrame;
 use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
 use asperity_texture::height_field::{Beyond, HeightField};
 use asperity_texture::height_map::{Extent, HeightMap, MapError};
-use asperity_texture::image_io::{self, Channel, ImageError};
+#[cfg(feature = "image")]
+use asperity_texture::image_io;
+#[cfg(feature = "image")]
+use asperity_texture::picture::Channel;
+use asperity_texture::picture::ImageError;
 use asperity_texture::tiled::Tiled;
 use asperity_texture::wrap::Wrap;
+#[cfg(feature = "image")]
 use std::path::Path;
 
 /// What sliding sends to the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Excitation {
     /// Hertz pulses at the micro-collisions only, as the paper does: silent where the pad never lifts
     /// off, which with measured damping is every smooth grating at 0.5 N.
@@ -37,9 +46,13 @@ pub enum Roughness {
 
 /// R of a surface that has no roughness map: the middle of the scale.
 pub const DEFAULT_ROUGHNESS: f64 = 0.5;
-/// Rms height of the micro-noise in the octave around 1 mm wavelength, m. A choice, not a measurement:
-/// it makes a matte plate (R = 1) buzz at about ten times the vibration threshold at 0.1 m/s.
-pub const DEFAULT_MICRO_RELIEF_M: f64 = 2e-6;
+/// Rms height of the micro-noise in the octave around 1 mm wavelength where R is 1, m. **Measured here**: at R = 0.5 that is 9 µm,
+/// and from 8 µm on the micro-collisions of a fingertip carry the sound of rough strokes; a tool of 30 g is then shaken by 1–2 m/s² at
+/// 120 mm/s and R = 0.5, as published recordings of real materials are (`docs/feel.md`).
+pub const DEFAULT_MICRO_RELIEF_M: f64 = 22e-6;
+/// Wavelength beyond which the micro-noise is flat, m: the roll-off that every finished surface has. **Chosen** within the millimetres to
+/// centimetres of machined and polished ones.
+pub const DEFAULT_OUTER_SCALE_M: f64 = 0.01;
 /// Radius of the asperity that stands for the finger in a micro-collision, m. The true skin would give
 /// contact times of 1–8 ms and dull sounds, so the exciter is a hard bead of the pad's mass instead.
 pub const EXCITER_RADIUS_M: f64 = 1e-3;
@@ -55,9 +68,13 @@ pub struct Surface {
     pub(crate) body: Option<BodyId>,
     pub(crate) roughness: Roughness,
     pub(crate) micro_relief_m: f64,
+    pub(crate) outer_scale_m: f64,
     pub(crate) friction: Option<f64>,
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
+    pub(crate) frame: Option<SurfaceFrame>,
+    /// What a scene file says of it, if it comes from one.
+    pub(crate) described: Option<Box<LogSurface>>,
 }
 
 impl std::fmt::Debug for Surface {
@@ -73,6 +90,7 @@ impl std::fmt::Debug for Surface {
 
 /// Why a surface cannot be made.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SurfaceError {
     /// A map cannot be used.
     #[error(transparent)]
@@ -109,9 +127,12 @@ impl Surface {
             body: None,
             roughness: Roughness::FromSource,
             micro_relief_m: DEFAULT_MICRO_RELIEF_M,
+            outer_scale_m: DEFAULT_OUTER_SCALE_M,
             friction: None,
             excitation: Excitation::default(),
             strike_position: 0,
+            frame: None,
+            described: None,
         })
     }
 
@@ -119,6 +140,7 @@ impl Surface {
     ///
     /// # Errors
     /// When a map cannot be read or the extent is impossible; the message names the file.
+    #[cfg(feature = "image")]
     pub fn from_maps(
         displacement: impl AsRef<Path>,
         roughness: impl AsRef<Path>,
@@ -134,10 +156,46 @@ impl Surface {
     ///
     /// # Errors
     /// As [`from_maps`](Self::from_maps).
+    #[cfg(feature = "image")]
     pub fn from_displacement(displacement: impl AsRef<Path>, extent: Extent) -> Result<Self, SurfaceError> {
         let heights = image_io::load_channel(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
         let map = HeightMap::new(&heights, extent, Wrap::Repeat)?;
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
+    }
+
+    /// A plane: uv 1 spans `width_m` × `height_m`, and what is felt of it is its finish ([`of`](Self::of)).
+    ///
+    /// ```
+    /// use asperity::{Material, Surface};
+    ///
+    /// let desk = Surface::flat(1.2, 0.6)?.of(Material::WOOD);
+    /// # Ok::<(), asperity::SurfaceError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When a size is not between 1 µm and 1 km.
+    pub fn flat(width_m: f64, height_m: f64) -> Result<Self, SurfaceError> {
+        let extent = Extent { width_m, height_m, relief_m: 0.0 };
+        Ok(Self::from_map(HeightMap::flat(extent, DEFAULT_ROUGHNESS)?)?)
+    }
+
+    /// A surface from a map that is in memory already, with the map's size and edges.
+    ///
+    /// # Errors
+    /// When a size is not between 1 µm and 1 km.
+    pub fn from_map(map: HeightMap) -> Result<Self, BadValue> {
+        let (extent, wraps) = (map.extent(), map.wrap() != Wrap::Clamp);
+        Ok(Self::new(map, extent.width_m, extent.height_m)?.wraps(wraps))
+    }
+
+    /// With the ordinary finish of a material: its roughness everywhere, its micro-relief and its friction. What is said after this counts
+    /// instead: `.of(material).roughness(Roughness::FromSource)` keeps a map's own roughness.
+    #[must_use]
+    pub fn of(mut self, material: Material) -> Self {
+        self.roughness = Roughness::Constant(material.roughness);
+        self.micro_relief_m = material.micro_relief_m;
+        self.friction = Some(material.mu_kinetic);
+        self
     }
 
     /// Rings this body when it is touched.
@@ -155,6 +213,13 @@ impl Surface {
         self
     }
 
+    /// Where it lies in its body.
+    #[must_use]
+    pub fn frame(mut self, frame: SurfaceFrame) -> Self {
+        self.frame = Some(frame);
+        self
+    }
+
     /// Sets where R comes from.
     #[must_use]
     pub fn roughness(mut self, roughness: Roughness) -> Self {
@@ -162,10 +227,18 @@ impl Surface {
         self
     }
 
-    /// Rms height of the 1/f^α overlay in the octave around 1 mm wavelength, m; 0 = none.
+    /// Rms height of the 1/f^α overlay in the octave around 1 mm wavelength where R is 1, m; 0 = none. Elsewhere it is
+    /// 10^(0.75 (R − 1)) times that.
     #[must_use]
     pub fn micro_relief_m(mut self, rms_m: f64) -> Self {
         self.micro_relief_m = rms_m;
+        self
+    }
+
+    /// Wavelength beyond which the overlay is flat, m.
+    #[must_use]
+    pub fn outer_scale_m(mut self, wavelength_m: f64) -> Self {
+        self.outer_scale_m = wavelength_m;
         self
     }
 
@@ -195,6 +268,7 @@ impl Surface {
 
     pub(crate) fn checked(self) -> Result<Self, BadValue> {
         within("micro_relief_m", self.micro_relief_m, limits::MICRO_RELIEF_M)?;
+        within("outer_scale_m", self.outer_scale_m, limits::OUTER_SCALE_M)?;
         let reach_m = self.source.reach_m();
         within("relief_m", reach_m, limits::REACH_M)?;
         within("friction", self.friction.unwrap_or(0.0), limits::FRICTION)?;

@@ -1,4 +1,4 @@
-//! From where a contact is in space to where it is on a surface: a triangle of a mesh with texture
+//! Texture coordinates of a contact in space: a triangle of a mesh with texture
 //! coordinates.
 //!
 //! Physics engines tell a point and a velocity in space; [`ContactSample`] wants texture coordinates and a
@@ -21,6 +21,15 @@ const FLAT: f64 = 1e-24;
 
 /// A triangle in metres, in the space in which the physics engine tells its contacts, with a texture
 /// coordinate at each corner.
+///
+/// ```
+/// use asperity::UvTriangle;
+///
+/// let corners_m = [[0.0, 0.0, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.2]];
+/// let triangle = UvTriangle::new(corners_m, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).unwrap();
+/// let sample = triangle.sample([0.05, 0.0, 0.1], [0.0, 0.0, 0.3], 0.6);
+/// assert_eq!((sample.uv, sample.velocity_m_s), ([0.25, 0.5], Some([0.0, 0.3])));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UvTriangle {
     corner_m: DVec3,

@@ -171,6 +171,20 @@ impl BodySlot {
         }
     }
 
+    /// Forgets all that rings and all that is on its way.
+    pub(crate) fn silence(&mut self) {
+        self.states.fill(GroupState::default());
+        self.awake = Awake::default();
+        for place in &mut self.places {
+            place.bus.fill(0.0);
+            place.contacts_n_s.fill(0.0);
+            (place.bus_busy_until, place.touched) = (0, false);
+        }
+        self.bursts.silence();
+        self.early.fill(0.0);
+        self.early_busy_until = 0;
+    }
+
     /// Whether nothing rings and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.awake.groups() == 0

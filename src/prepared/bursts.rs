@@ -41,6 +41,11 @@ impl Bursts {
     }
 
     /// Whether nothing sounds from `position` on.
+    pub(crate) fn silence(&mut self) {
+        self.playing = [Playing::default(); AT_ONCE];
+    }
+
+    /// Whether none plays or will.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.playing.iter().all(|playing| playing.end <= position)
     }

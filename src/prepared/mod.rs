@@ -1,9 +1,10 @@
-//! What the game half designs and the audio half owns: everything that a body or a surface needs to sound, in memory made
+//! Prepared resources, designed by the game half and owned by the audio half: everything that a body or a surface needs to sound, in memory made
 //! beforehand.
 
 pub(crate) mod body;
 pub(crate) mod bursts;
 pub(crate) mod overlay;
 pub(crate) mod probe;
+pub(crate) mod stiffness;
 pub(crate) mod stroking;
 pub(crate) mod surface;

@@ -13,7 +13,7 @@
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
 //! power: sine and cosine, because the two are unrelated.
 
-use asperity_dsp::fractal_noise::{FractalNoise, LONGEST_CELL_M, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, LONGEST_CELL_M, NoisePath, OctaveWeights, Relief, growth};
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::tiled::{Place, TileAxis};
 use std::f64::consts::FRAC_PI_2;
@@ -24,6 +24,27 @@ pub(crate) struct Overlay {
     axes: [TileAxis; 2],
     /// The noise is added only below this wavelength, m.
     longest_m: f64,
+    rms_m: f64,
+    outer_scale_m: f64,
+    /// For tips that have ridden here, and which rides now.
+    tips: [Tip; TIPS],
+    now: usize,
+    /// Where the next tip's weights go.
+    next: usize,
+}
+
+/// Tips whose weights are kept; one more takes the place of the oldest, and its weights are worked out when it comes back.
+const TIPS: usize = 4;
+/// Roughness whose relief tells how much room the noise needs: the middle of the scale.
+const ORDINARY: f64 = 0.5;
+
+/// What the octaves weigh for one tip.
+#[derive(Debug, Clone, Copy)]
+struct Tip {
+    radius_m: f64,
+    /// Below the source's own band, and everywhere.
+    below: OctaveWeights,
+    all: OctaveWeights,
 }
 
 /// The four copies of a tile that can meet in its corner: how many tiles back along u and v.
@@ -31,8 +52,35 @@ const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 impl Overlay {
     /// The overlay of a surface that is the same after `period_m`, ∞ for never.
-    pub(crate) fn new(period_m: [f64; 2], longest_m: f64) -> Self {
-        Self { axes: period_m.map(|length_m| TileAxis::new(length_m, LONGEST_CELL_M)), longest_m }
+    pub(crate) fn new(period_m: [f64; 2], longest_m: f64, (rms_m, outer_scale_m): (f64, f64)) -> Self {
+        let axes = period_m.map(|length_m| TileAxis::new(length_m, LONGEST_CELL_M));
+        let nobody = OctaveWeights::pinned(0.0, f64::INFINITY);
+        let tips = [Tip { radius_m: f64::NAN, below: nobody, all: nobody }; TIPS];
+        let mut overlay = Self { axes, longest_m, rms_m, outer_scale_m, tips, now: 0, next: 0 };
+        overlay.tune(0.0);
+        overlay
+    }
+
+    /// What is added from here on is what a sphere of this radius rides on, m; 0 is a point.
+    pub(crate) fn tune(&mut self, radius_m: f64) {
+        if self.tips[self.now].radius_m == radius_m {
+            return;
+        }
+        if let Some(known) = self.tips.iter().position(|tip| tip.radius_m == radius_m) {
+            self.now = known;
+            return;
+        }
+        let weights = |longest_wavelength_m| {
+            OctaveWeights::new(&Relief {
+                rms_at_1mm_m: self.rms_m,
+                outer_scale_m: self.outer_scale_m,
+                tip_radius_m: radius_m,
+                longest_wavelength_m,
+            })
+        };
+        self.tips[self.next] = Tip { radius_m, below: weights(self.longest_m), all: weights(f64::INFINITY) };
+        self.now = self.next;
+        self.next = (self.next + 1) % TIPS;
     }
 
     /// Adds the relief along a path to `height_m`; all slices are equally long, at most [`MAX_BLOCK`].
@@ -42,21 +90,22 @@ impl Overlay {
         field: &FractalNoise,
         path: &NoisePath<'_>,
         roughness: &[f64],
-        rms_m: f64,
         local_power_m2: &[f64],
         height_m: &mut [f64],
     ) {
-        let all = |power_m2: &f64| room(*power_m2, rms_m);
+        let ordinary_m = self.rms_m * growth(ORDINARY);
+        let all = |power_m2: &f64| room(*power_m2, ordinary_m);
+        let Tip { below, all: whole, .. } = &self.tips[self.now];
         if self.longest_m.is_infinite() || local_power_m2.iter().all(|power| all(power) == 1.0) {
-            return self.add_below(field, path, roughness, (rms_m, f64::INFINITY), height_m);
+            return self.add_below(field, path, roughness, whole, height_m);
         }
         if local_power_m2.iter().all(|power| all(power) == 0.0) {
-            return self.add_below(field, path, roughness, (rms_m, self.longest_m), height_m);
+            return self.add_below(field, path, roughness, below, height_m);
         }
         let (mut below_m, mut all_m) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
         let n = height_m.len().min(MAX_BLOCK);
-        self.add_below(field, path, roughness, (rms_m, self.longest_m), &mut below_m[..n]);
-        self.add_below(field, path, roughness, (rms_m, f64::INFINITY), &mut all_m[..n]);
+        self.add_below(field, path, roughness, below, &mut below_m[..n]);
+        self.add_below(field, path, roughness, whole, &mut all_m[..n]);
         for (i, height_m) in height_m.iter_mut().enumerate() {
             let share = all(&local_power_m2[i]);
             *height_m += (1.0 - share) * below_m[i] + share * all_m[i];
@@ -68,13 +117,13 @@ impl Overlay {
         self.longest_m.is_finite()
     }
 
-    /// Adds the tile's noise below a wavelength.
+    /// Adds the tile's noise, weighed.
     fn add_below(
         &self,
         field: &FractalNoise,
         path: &NoisePath<'_>,
         roughness: &[f64],
-        (rms_m, longest_m): (f64, f64),
+        weights: &OctaveWeights,
         height_m: &mut [f64],
     ) {
         let n = height_m.len().min(MAX_BLOCK);
@@ -90,7 +139,7 @@ impl Overlay {
         }
         if meets == [false; 2] {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            return field.add(&path, roughness, rms_m, longest_m, height_m);
+            return field.add(&path, roughness, weights, height_m);
         }
         for copy in COPIES.into_iter().filter(|copy| (0..2).all(|axis| copy[axis] == 0 || meets[axis])) {
             for (position_m, places) in position_m[..n].iter_mut().zip(&places) {
@@ -101,7 +150,7 @@ impl Overlay {
             }
             let mut part_m = [0.0; MAX_BLOCK];
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            field.add(&path, roughness, rms_m, longest_m, &mut part_m[..n]);
+            field.add(&path, roughness, weights, &mut part_m[..n]);
             for ((height_m, part_m), places) in height_m.iter_mut().zip(&part_m).zip(&places) {
                 *height_m += gain(places, copy) * part_m;
             }

@@ -1,7 +1,8 @@
-//! What a body makes of the strokes on its surfaces: how long a micro-collision lasts, and which part of the force rings it.
+//! Stroke excitation of a body: how long a micro-collision lasts, and which part of the force rings it.
 
 use crate::model::material::Material;
 use crate::model::surface::{EXCITER_MATERIAL, EXCITER_RADIUS_M};
+use crate::prepared::stiffness::Ground;
 use asperity_dsp::DesignError;
 use asperity_dsp::butterworth::Butterworth;
 use asperity_dsp::hertz::{Elastic, HertzContact};
@@ -19,6 +20,8 @@ const FORCE_HIGH_PASS_HZ: (f64, f64) = (20.0, 500.0);
 pub(crate) struct Stroking {
     /// The exciter of a micro-collision against the body's material.
     pub(crate) hertz: HertzContact,
+    /// What a probe presses on.
+    pub(crate) ground: Ground,
     /// Keeps the part of the contact force that the body answers.
     pub(crate) force_high_pass: Butterworth,
 }
@@ -36,6 +39,7 @@ impl Stroking {
         let (exciter, body) = (elastic(EXCITER_MATERIAL), elastic(material));
         Ok(Self {
             hertz: HertzContact::new(&exciter, &body, EXCITER_RADIUS_M, pad_mass_kg)?,
+            ground: Ground::of(material),
             force_high_pass: Butterworth::new(cutoff_hz, sample_rate_hz)?,
         })
     }

@@ -7,7 +7,7 @@
 
 use crate::common::{render, si_config};
 use asperity::Surface;
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;
 use asperity::texture::solid_materials::SolidMaterial;
 use asperity::texture::solid_noise::SolidNoise;
@@ -23,7 +23,7 @@ fn random_stroke(rng: &mut Rng) -> ContactLog {
     let angle = std::f64::consts::TAU * rng.uniform();
     let (start, velocity) =
         ([rng.uniform(), rng.uniform()], [speed_m_s * angle.cos(), speed_m_s * angle.sin()]);
-    let sample = |t: f64| LogSample {
+    let sample = |t: f64| ContactSample {
         uv: [start[0] + velocity[0] * t / SIDE_M, start[1] + velocity[1] * t / SIDE_M],
         velocity_m_s: Some(velocity),
         normal_force_n,
@@ -33,7 +33,7 @@ fn random_stroke(rng: &mut Rng) -> ContactLog {
     let mut lines = vec![LogLine { t: 0.0, event: begin }];
     for step in 1..90 {
         let t = f64::from(step) / 60.0;
-        lines.push(LogLine { t, event: LogEvent::Move { contact: 1, sample: sample(t) } });
+        lines.push(LogLine { t, event: LogEvent::moved(1, sample(t)) });
     }
     lines.push(LogLine { t: 1.5, event: LogEvent::End { contact: 1 } });
     ContactLog { lines }
@@ -41,7 +41,7 @@ fn random_stroke(rng: &mut Rng) -> ContactLog {
 
 /// What is felt of one stroke over a piece of the material.
 pub fn features(material: SolidMaterial, piece: u64, rng: &mut Rng) -> Vec<f64> {
-    let source = SolidNoise::new(material.parameters(), piece, 44_100.0).unwrap();
+    let source = SolidNoise::new(material.parameters(), piece).unwrap();
     let surface = Surface::new(source, SIDE_M, SIDE_M).unwrap().wraps(false).micro_relief_m(0.0);
     let take =
         render(si_config(), surface, &random_stroke(rng), &Options { tail_s: 0.0, ..Options::default() });

@@ -1,7 +1,7 @@
 //! Scenes and strokes that several tests share.
 #![allow(dead_code)]
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{ActuatorSettings, Config, Excitation, Extent, ModalModel, Mode, Surface, Tap, Wrap};
 use asperity_texture::height_map::HeightMap;
@@ -62,7 +62,7 @@ pub fn stroke_of(
     normal_force_n: f64,
     seconds: f64,
 ) -> ContactLog {
-    let sample = |t: f64| LogSample {
+    let sample = |t: f64| ContactSample {
         uv: [0.1 + speed_m_s * t / width_m, 0.525],
         velocity_m_s: Some([speed_m_s, 0.0]),
         normal_force_n,
@@ -72,7 +72,7 @@ pub fn stroke_of(
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(contact, "s", 0, sample(0.0)) }];
     for step in 1..steps {
         let t = step as f64 / 60.0;
-        lines.push(LogLine { t, event: LogEvent::Move { contact, sample: sample(t) } });
+        lines.push(LogLine { t, event: LogEvent::moved(contact, sample(t)) });
     }
     lines.push(LogLine { t: seconds, event: LogEvent::End { contact } });
     ContactLog { lines }

@@ -152,6 +152,9 @@ pub fn outcome(seed: u64) -> Outcome {
         finger_mass_kg: end_of(rng, limits::probe::FINGER_MASS_KG),
         contact_stiffness_n_m: end_of(rng, limits::probe::CONTACT_STIFFNESS_N_M),
         leash_m: end_of(rng, limits::probe::LEASH_M),
+        // The stiffness is drawn over its whole range; the figure of a landing is that of a fixed one.
+        tip_radius_m: 0.0,
+        force_exponent: 0.0,
     };
     let probe = if rng.next_u32().is_multiple_of(2) { Probe::default() } else { probe };
     let integrator =

@@ -3,9 +3,10 @@
 //! real-time sanitizer.
 
 use crate::common::{bar, grating, plate};
+use asperity::live::ports::{Feed, Force, ForcePort, Pcm, PcmPort};
 use asperity::{
-    Actuator, AudioBus, BodyId, Config, ContactEvent, ContactId, ContactSample, Excitation, Impact, Material,
-    ModalModel, ProbeId, Renderer, Residual, Scene, SurfaceId, Touching, probe_by_name,
+    Actuator, AudioBus, BodyId, Config, ContactEvent, ContactId, ContactSample, Emphasis, Excitation, Impact,
+    Material, ModalModel, ProbeId, Renderer, Residual, Scene, SurfaceId, Touching, probe_by_name,
 };
 use asperity_dsp::rng::Rng;
 
@@ -21,6 +22,8 @@ pub struct RandomGame {
     surfaces: [SurfaceId; 3],
     bodies: [BodyId; 2],
     probes: [ProbeId; 2],
+    /// Ports that nobody reads, opened and closed again.
+    ports: (Option<PcmPort>, Option<ForcePort>),
     pub rng: Rng,
     /// How far it has come.
     pub time_s: f64,
@@ -39,7 +42,10 @@ impl RandomGame {
             scene.add_surface(plate(0.0)).unwrap(),
         ];
         let probes = ["stylus", "rigid"].map(|name| scene.add_probe(probe_by_name(name).unwrap()).unwrap());
-        (Self { scene, surfaces, bodies, probes, rng: Rng::new(seed), time_s: 0.0 }, renderer)
+        (
+            Self { scene, surfaces, bodies, probes, ports: (None, None), rng: Rng::new(seed), time_s: 0.0 },
+            renderer,
+        )
     }
 
     /// Mostly 0–1, and now and then what no game should report.
@@ -81,6 +87,10 @@ impl RandomGame {
                     probe: Some(self.probes[0]),
                     ..Impact::on(self.bodies[0])
                 }),
+                4 => {
+                    let emphasis = Emphasis { gain: Some(self.number()), importance: Some(self.number()) };
+                    ContactEvent::moved_with(contact, sample, emphasis)
+                }
                 _ => ContactEvent::moved(contact, sample),
             };
             // Refusals are part of the game.
@@ -130,6 +140,19 @@ impl RandomGame {
                     self.bodies[which % 2] = id;
                 }
             }
+            5 => {
+                let pcm = Pcm { from: Feed::Haptic(Actuator(0)), holds_s: 0.01 };
+                self.ports = (self.scene.open_port(pcm).ok(), None);
+            }
+            7 => {
+                let gain = 2.0 * self.rng.uniform();
+                let _ = self.scene.set_body_gain(body, gain);
+                let _ = self.scene.set_muted(gain < 0.2);
+            }
+            8 if self.rng.next_u32().is_multiple_of(20) => {
+                let _ = self.scene.fade_all();
+            }
+            6 => self.ports.1 = self.scene.open_port(Force { rate_hz: 1000.0, holds_s: 0.01 }).ok(),
             _ => {}
         }
     }

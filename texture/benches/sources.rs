@@ -19,13 +19,12 @@ use asperity_texture::wrap::Wrap;
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 
-const RATE_HZ: f64 = 44_100.0;
 const BLOCKS: u64 = 256;
 
 fn sources() -> Vec<(String, Box<dyn HeightField>)> {
     let mut all: Vec<(String, Box<dyn HeightField>)> = Vec::new();
     for material in SolidMaterial::SEVEN {
-        let noise = SolidNoise::new(material.parameters(), 1, RATE_HZ).expect("a preset");
+        let noise = SolidNoise::new(material.parameters(), 1).expect("a preset");
         all.push((format!("solid, {}", material.name()), Box::new(noise)));
     }
     let design = BrownianDesign { size: 256, ..BrownianDesign::new(0.5, 1e-4, 1) };
@@ -34,12 +33,12 @@ fn sources() -> Vec<(String, Box<dyn HeightField>)> {
     let map = HeightMap::new(&relief, square, Wrap::Repeat).expect("a map");
     all.push(("Brownian surface".to_owned(), Box::new(map)));
     let path = design.path().expect("a path");
-    let graph = BrownianPath::new(&path, 4e-4, Some(Rendering::Lateral), 4).expect("a graph");
+    let graph = BrownianPath::new(&path, 4e-4, Some(Rendering::Lateral)).expect("a graph");
     all.push(("Brownian graph".to_owned(), Box::new(graph)));
     let cell = Raster::from_fn(64, 64, |x, y| 1e-5 * (x * y % 7) as f64);
     let lattice = Lattice::new(&cell, [0.01, 0.0], [0.003, 0.01]).expect("a lattice");
     all.push(("lattice".to_owned(), Box::new(lattice)));
-    let sand = SandSource::synchronous(&SandDesign::default(), 1, RATE_HZ).expect("sand");
+    let sand = SandSource::synchronous(&SandDesign::default(), 1).expect("sand");
     all.push(("sand".to_owned(), Box::new(sand)));
     all
 }

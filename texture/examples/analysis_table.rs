@@ -239,6 +239,10 @@ fn controls() {
         show(&format!("grains {radius}"), (0..24).map(|seed| patterns::grains(256, radius, seed)).collect());
     }
     let stripes = |noise| (0..24).map(|s| patterns::stripes(256, 17.3, 0.4 * s as f64, noise, s)).collect();
+    for (length, share) in [(8.0, 0.02), (8.0, 0.1), (16.0, 0.02), (16.0, 0.1), (16.0, 0.25), (30.0, 0.05)] {
+        let waves = |seed| patterns::ring_of_waves(256, length, share, seed);
+        show(&format!("ring {length} ±{share}"), (0..24).map(waves).collect());
+    }
     show("stripes", stripes(0.0));
     show("noisy stripes", stripes(0.5));
     show("white noise", (0..24).map(|seed| patterns::stripes(256, 1e9, 0.0, 1.0, seed)).collect());

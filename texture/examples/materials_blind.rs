@@ -1,4 +1,4 @@
-//! How surely the seven materials are told apart by heights and by forces, on strokes and pieces that
+//! Recognition of the seven materials by heights and by forces, on strokes and pieces that
 //! nothing was chosen by.
 //!
 //! The judge is the one of the test `seven_materials`, unchanged. Eight sets of seeds, written down before

@@ -1,4 +1,4 @@
-//! What metamers of maps reach: `cargo run --release -p asperity-texture --features offline --example metamer_table --
+//! A table of metamers of maps: `cargo run --release -p asperity-texture --features offline --example metamer_table --
 //! ORIGINAL REFERENCE [ORIGINAL REFERENCE …]` prints a row a pair, distances as in `asperity texture metamer`.
 
 use asperity_texture::image_io::{Channel, load_channel};

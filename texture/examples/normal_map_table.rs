@@ -1,6 +1,7 @@
 //! Prints how well heights come out of normal maps, as they are and as people have them, against the displacement maps of the same sets.
 //! `cargo run --release -p asperity-texture --features offline --example normal_map_table -- FOLDER…`, folders of files named
-//! `…NormalGL.…` (or `…NormalDX.…`) and `…Displacement.…`.
+//! `…NormalGL.…` (or `…NormalDX.…`) and `…Displacement.…`. `--write DIR` also writes every row's red, green, blue and true heights, raw
+//! 32-bit floats one after the other, for `tests/independent/integrators.py`, which says what other integrators reach on the same input.
 //!
 //! The scale of a displacement map is not known: power is told of heights that are scaled to it.
 
@@ -19,7 +20,13 @@ fn main() {
     println!(
         "set, variant                                  r    power in thirds of the spectrum       derivative        tiles      s"
     );
-    for folder in std::env::args().skip(1) {
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let inputs = arguments.iter().position(|a| a == "--write").map(|at| {
+        arguments.remove(at);
+        PathBuf::from(arguments.remove(at))
+    });
+    let inputs = inputs.as_deref();
+    for folder in arguments {
         let mut files: Vec<PathBuf> = std::fs::read_dir(&folder)
             .expect("a folder")
             .map(|entry| entry.expect("a file").path())
@@ -35,13 +42,19 @@ fn main() {
                 name.starts_with(&other.replace("Displacement", kind)) && other.contains("Displacement")
             });
             if let Some(truth) = truth {
-                set(&name, file, truth);
+                set(&name, file, truth, inputs);
             }
         }
     }
 }
 
-fn set(name: &str, normals: &Path, displacement: &Path) {
+fn set(name: &str, normals: &Path, displacement: &Path, inputs: Option<&Path>) {
+    let row = |name: &str, variant: &str, map: &[Raster; 3], truth: &Raster| {
+        if let Some(folder) = inputs {
+            write_inputs(folder, name, variant, map, truth);
+        }
+        row(name, variant, map, truth);
+    };
     let map = [Channel::R, Channel::G, Channel::B].map(|c| load_channel(normals, c).expect("a map").raster);
     let truth = load_channel(displacement, Channel::Luma).expect("a map").raster;
     row(name, "whole", &map, &truth);
@@ -85,4 +98,13 @@ fn row(name: &str, variant: &str, map: &[Raster; 3], truth: &Raster) {
         if found.derivative_is_certain { "" } else { "?" },
         found.tileable
     );
+}
+
+fn write_inputs(folder: &Path, name: &str, variant: &str, map: &[Raster; 3], truth: &Raster) {
+    let rasters = map.iter().chain([truth]);
+    let bytes: Vec<u8> = rasters.flat_map(|r| &r.values).flat_map(|&v| (v as f32).to_le_bytes()).collect();
+    let file = format!("{name}__{variant}__{}x{}.f32", truth.width, truth.height)
+        .replace(", ", "_")
+        .replace(' ', "_");
+    std::fs::write(folder.join(file), bytes).expect("a folder to write to");
 }

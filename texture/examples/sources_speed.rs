@@ -10,8 +10,6 @@ use asperity_texture::solid_noise::SolidNoise;
 use std::hint::black_box;
 use std::time::Instant;
 
-const RATE: f64 = 44_100.0;
-
 /// Best of many blocks, ns a sample.
 fn block_ns(source: &mut dyn HeightField) -> f64 {
     let mut out = SurfaceBlock::default();
@@ -38,7 +36,7 @@ fn block_ns(source: &mut dyn HeightField) -> f64 {
 
 fn main() {
     for material in SolidMaterial::SEVEN {
-        if let Ok(mut source) = SolidNoise::new(material.parameters(), 1, RATE) {
+        if let Ok(mut source) = SolidNoise::new(material.parameters(), 1) {
             println!("solid {:12} {:6.1} ns a sample", material.name(), block_ns(&mut source));
         }
     }
@@ -46,7 +44,7 @@ fn main() {
     if let Ok(mut source) = Lattice::new(&cell, [0.01, 0.0], [0.003, 0.01]) {
         println!("lattice            {:6.1} ns a sample", block_ns(&mut source));
     }
-    if let Ok(mut source) = SandSource::synchronous(&SandDesign::default(), 1, RATE) {
+    if let Ok(mut source) = SandSource::synchronous(&SandDesign::default(), 1) {
         println!("sand               {:6.1} ns a sample", block_ns(&mut source));
     }
     let design = SandDesign { width_m: 1.0, height_m: 1.0, cells: 1000, ..SandDesign::default() };

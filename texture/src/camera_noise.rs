@@ -1,4 +1,4 @@
-//! What a camera adds to a picture: noise, estimated and taken off its spectrum.
+//! Camera noise: estimated and taken off a picture's spectrum.
 //!
 //! ```text
 //! X'(k) = X(k) √max(0, 1 − N/P(r) · (1 + 3/√n))       r = |k|

@@ -13,11 +13,18 @@
 //! space; the weights' change in time is not a slope. A contact's change messages and touches reach
 //! every part; forces add up by the same weights as heights.
 
+mod band_split;
+mod mixture;
+
+pub use band_split::{BandSplit, BandWeights};
+pub(crate) use mixture::add;
+
 use crate::fade::Fade;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use asperity_dsp::{DesignError, limits};
+use mixture::mix;
 use std::any::Any;
 
 /// A surface of any kind.
@@ -38,6 +45,14 @@ impl Sum {
 }
 
 impl HeightField for Sum {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.sources.iter_mut().for_each(|source| source.prepare_tip(radius_m));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.sources.iter_mut().for_each(|source| source.ride(radius_m));
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
     }
@@ -107,10 +122,9 @@ impl Scale {
     /// The source times `factor`.
     ///
     /// # Errors
-    /// When the factor is not within ±1e3 or the sample rate not above 0 Hz.
-    pub fn new(source: Source, factor: f64, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let factor = check_factor(factor)?;
-        Ok(Self { source, factor: Fade::new(factor, sample_rate_hz)? })
+    /// When the factor is not within ±1e3.
+    pub fn new(source: Source, factor: f64) -> Result<Self, DesignError> {
+        Ok(Self { source, factor: Fade::new(check_factor(factor)?) })
     }
 }
 
@@ -119,8 +133,16 @@ fn check_factor(factor: f64) -> Result<f64, DesignError> {
 }
 
 impl HeightField for Scale {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.source.prepare_tip(radius_m);
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.source.ride(radius_m);
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.factor.prepare(setup.sample_rate_hz)?;
+        self.factor.prepare(setup.sample_rate_hz);
         self.source.prepare(setup)
     }
 
@@ -192,6 +214,14 @@ impl Mask {
 }
 
 impl HeightField for Mask {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        [&mut self.inside, &mut self.outside].into_iter().for_each(|source| source.prepare_tip(radius_m));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        [&mut self.inside, &mut self.outside].into_iter().for_each(|source| source.ride(radius_m));
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.mask.prepare(setup)?;
         self.inside.prepare(setup)?;
@@ -272,23 +302,42 @@ pub struct CrossfadeTo(pub f64);
 pub struct Crossfade {
     sources: [Source; 2],
     position: Fade<f64>,
+    /// When it moves to the second source by itself, s.
+    at_s: Option<f64>,
     other: SurfaceBlock,
 }
 
 impl Crossfade {
     /// All of `first`; [`CrossfadeTo`] moves towards `second`.
-    ///
-    /// # Errors
-    /// When the sample rate is not above 0 Hz.
-    pub fn new(first: Source, second: Source, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let position = Fade::new(0.0, sample_rate_hz)?;
-        Ok(Self { sources: [first, second], position, other: SurfaceBlock::default() })
+    #[must_use]
+    pub fn new(first: Source, second: Source) -> Self {
+        let (position, other) = (Fade::new(0.0), SurfaceBlock::default());
+        Self { sources: [first, second], position, at_s: None, other }
+    }
+
+    /// Moves to all of the second source by itself, once the engine has rendered so many seconds.
+    #[must_use]
+    pub fn at_s(self, at_s: f64) -> Self {
+        Self { at_s: Some(at_s), ..self }
     }
 }
 
 impl HeightField for Crossfade {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.sources.iter_mut().for_each(|source| source.prepare_tip(radius_m));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.sources.iter_mut().for_each(|source| source.ride(radius_m));
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.position.prepare(setup.sample_rate_hz)?;
+        self.position.prepare(setup.sample_rate_hz);
+        if let Some(at_s) = self.at_s {
+            self.position = Fade::new(0.0);
+            self.position.prepare(setup.sample_rate_hz);
+            self.position.set(1.0, (at_s * setup.sample_rate_hz).round() as u64);
+        }
         self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
     }
 
@@ -333,6 +382,7 @@ impl HeightField for Crossfade {
         if let Some(CrossfadeTo(position)) = change.downcast_ref() {
             let accepted = (0.0..=1.0).contains(position);
             if accepted {
+                self.at_s = None;
                 self.position.set(*position, sample);
             }
             return accepted;
@@ -342,152 +392,5 @@ impl HeightField for Crossfade {
 
     fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
         self.sources.iter_mut().for_each(|source| source.visit(see));
-    }
-}
-
-/// Changes the weights of a [`BandSplit`]: below and above its wavelength.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BandWeights(pub [f64; 2]);
-
-/// The long wavelengths of one source and the short wavelengths of another.
-pub struct BandSplit {
-    coarse: Source,
-    fine: Source,
-    wavelength_m: f64,
-    weights: Fade<[f64; 2]>,
-    low: SurfaceBlock,
-    all: SurfaceBlock,
-}
-
-impl BandSplit {
-    /// `coarse` above `wavelength_m` plus `fine` below it. What a source has above a wavelength is
-    /// what it gives to a footprint of half that wavelength; the source's own anti-aliasing is the
-    /// filter, about an octave wide.
-    ///
-    /// # Errors
-    /// When the wavelength is not within 1e-6 to 1 m, or the sample rate not above 0 Hz.
-    pub fn new(
-        coarse: Source,
-        fine: Source,
-        wavelength_m: f64,
-        sample_rate_hz: f64,
-    ) -> Result<Self, DesignError> {
-        let range = |w: f64| (1e-6..=1.0).contains(&w);
-        DesignError::check("wavelength_m", wavelength_m, "1e-6 to 1 m", range)?;
-        let weights = Fade::new([1.0; 2], sample_rate_hz)?;
-        let (low, all) = (SurfaceBlock::default(), SurfaceBlock::default());
-        Ok(Self { coarse, fine, wavelength_m, weights, low, all })
-    }
-
-    fn weights_at(&self, sample: u64) -> [f64; 2] {
-        let mut sum = [0.0; 2];
-        for (w, values) in self.weights.weights(sample).iter().zip(self.weights.values()) {
-            if *w != 0.0 {
-                sum = [sum[0] + w * values[0], sum[1] + w * values[1]];
-            }
-        }
-        sum
-    }
-}
-
-impl HeightField for BandSplit {
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.weights.prepare(setup.sample_rate_hz)?;
-        self.coarse.prepare(setup)?;
-        self.fine.prepare(setup)
-    }
-
-    fn band(&self) -> WavelengthBand {
-        let (coarse, fine) = (self.coarse.band(), self.fine.band());
-        WavelengthBand {
-            shortest_m: coarse.shortest_m.max(self.wavelength_m).min(fine.shortest_m),
-            longest_m: coarse.longest_m.max(fine.longest_m.min(self.wavelength_m)),
-        }
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.coarse.reach_m() + 2.0 * self.fine.reach_m()
-    }
-
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
-        self.coarse.beyond(tile_m).max(self.fine.beyond(tile_m))
-    }
-
-    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        let n = path.len().min(MAX_BLOCK);
-        let mut blunt = [0.5 * self.wavelength_m; MAX_BLOCK];
-        for (blunt, &footprint) in blunt.iter_mut().zip(path.footprint_m) {
-            *blunt = blunt.max(footprint);
-        }
-        let blunt = PathBlock { footprint_m: &blunt[..n], ..*path };
-        self.coarse.sample(&blunt, out);
-        self.fine.sample(&blunt, &mut self.low);
-        self.fine.sample(path, &mut self.all);
-        for i in 0..n {
-            let [low, high] = self.weights_at(path.first_sample + i as u64);
-            out.height_m[i] = low * out.height_m[i] + high * (self.all.height_m[i] - self.low.height_m[i]);
-            for a in 0..2 {
-                out.gradient[i][a] =
-                    low * out.gradient[i][a] + high * (self.all.gradient[i][a] - self.low.gradient[i][a]);
-            }
-        }
-    }
-
-    fn land(&mut self, touch: &Touch) {
-        self.coarse.land(touch);
-        self.fine.land(touch);
-    }
-
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        let [low, high] = self.weights_at(touch.sample);
-        add(add(Reaction::default(), self.coarse.react(touch), low), self.fine.react(touch), high)
-    }
-
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
-        if let Some(BandWeights(weights)) = change.downcast_ref() {
-            let accepted = weights.iter().all(|&w| check_factor(w).is_ok());
-            if accepted {
-                self.weights.set(*weights, sample);
-            }
-            return accepted;
-        }
-        let coarse = self.coarse.change(change, sample);
-        self.fine.change(change, sample) | coarse
-    }
-
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        self.coarse.visit(see);
-        self.fine.visit(see);
-    }
-}
-
-/// Moves sample `i` of `out` towards `other` by a weight.
-fn mix(out: &mut SurfaceBlock, other: &SurfaceBlock, i: usize, w: f64) {
-    // Not a + w (b − a): that does not reach b exactly.
-    let lerp = |a: &mut f64, b: f64| {
-        if w == 1.0 {
-            *a = b;
-        } else if w != 0.0 {
-            *a = (1.0 - w) * *a + w * b;
-        }
-    };
-    lerp(&mut out.height_m[i], other.height_m[i]);
-    lerp(&mut out.gradient[i][0], other.gradient[i][0]);
-    lerp(&mut out.gradient[i][1], other.gradient[i][1]);
-    lerp(&mut out.roughness[i], other.roughness[i]);
-    lerp(&mut out.friction[i], other.friction[i]);
-    lerp(&mut out.compliance_m_n[i], other.compliance_m_n[i]);
-}
-
-/// Adds a weighted reaction; grains keep their total momentum a second.
-pub(crate) fn add(sum: Reaction, part: Reaction, weight: f64) -> Reaction {
-    let weighted_rate = weight.abs() * part.grain_rate_per_s;
-    let rate = sum.grain_rate_per_s + weighted_rate;
-    let momentum = sum.grain_rate_per_s * sum.grain_impulse_n_s + weighted_rate * part.grain_impulse_n_s;
-    Reaction {
-        force_n: core::array::from_fn(|a| sum.force_n[a] + weight * part.force_n[a]),
-        grain_rate_per_s: rate,
-        grain_impulse_n_s: if rate > 0.0 { momentum / rate } else { 0.0 },
-        stirs: sum.stirs || part.stirs,
     }
 }

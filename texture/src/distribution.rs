@@ -1,4 +1,4 @@
-//! How numbers are spread, counted in bins: the histograms of [`crate::histogram`] without sorting, for tools that match
+//! Distributions of numbers, counted in bins: the histograms of [`crate::histogram`] without sorting, for tools that match
 //! millions of numbers many times.
 //!
 //! ```text

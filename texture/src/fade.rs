@@ -9,10 +9,14 @@
 //! The mix at a sample is a function of the sample's absolute index and of the changes made before it,
 //! whatever blocks are asked for and by how many contacts.
 
-use asperity_dsp::DesignError;
+use crate::height_field::Setup;
 
 /// Length of a fade, seconds: at 22.05 kHz the steepest step is still −63 dB. Ours.
 pub const FADE_S: f64 = 0.1;
+
+fn fade_samples(sample_rate_hz: f64) -> u64 {
+    (FADE_S * sample_rate_hz).ceil().max(1.0) as u64
+}
 
 /// A value, the value it is becoming, and the one it will become after that.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,23 +28,15 @@ pub struct Fade<T: Copy> {
 }
 
 impl<T: Copy> Fade<T> {
-    /// A settled value.
-    ///
-    /// # Errors
-    /// When the sample rate is not above 0 Hz.
-    pub fn new(value: T, sample_rate_hz: f64) -> Result<Self, DesignError> {
-        let rate = DesignError::check("sample_rate_hz", sample_rate_hz, "above 0 Hz", |r| r > 0.0)?;
-        let length = (FADE_S * rate).ceil().max(1.0) as u64;
-        Ok(Self { values: [value; 3], start: u64::MAX, next_start: u64::MAX, length })
+    /// A settled value, for the rate of [`Setup::default`] until [`prepare`](Self::prepare) tells another.
+    pub fn new(value: T) -> Self {
+        let length = fade_samples(Setup::default().sample_rate_hz);
+        Self { values: [value; 3], start: u64::MAX, next_start: u64::MAX, length }
     }
 
-    /// Takes the rate of an engine; for a value that is not changing.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn prepare(&mut self, sample_rate_hz: f64) -> Result<(), DesignError> {
-        self.length = Self::new(self.values[0], sample_rate_hz)?.length;
-        Ok(())
+    /// Takes the rate of an engine; a change that is under way has arrived.
+    pub fn prepare(&mut self, sample_rate_hz: f64) {
+        *self = Self { length: fade_samples(sample_rate_hz), ..Self::new(self.target()) };
     }
 
     /// Begins to change to `value` at an absolute sample (or when the running fade ends).
@@ -117,7 +113,8 @@ mod tests {
     #[test]
     fn a_change_arrives_after_the_fade_and_never_steps() {
         for rate_hz in [22_050.0, 44_100.0, 192_000.0] {
-            let mut fade = Fade::new(0.0, rate_hz).unwrap();
+            let mut fade = Fade::new(0.0);
+            fade.prepare(rate_hz);
             fade.set(1.0, 1000);
             let length = (FADE_S * rate_hz) as u64;
             assert_eq!(fade.at(1000), 0.0);
@@ -129,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_change_during_a_fade_waits_and_only_the_last_one_counts() {
-        let mut fade = Fade::new(0.0, 44_100.0).unwrap();
+        let mut fade = Fade::new(0.0);
         fade.set(1.0, 0);
         fade.set(5.0, 100);
         fade.set(2.0, 200);

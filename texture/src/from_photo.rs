@@ -1,4 +1,4 @@
-//! From a photograph to a surface that can be touched.
+//! Shape from a photograph: a picture becomes a surface that can be touched.
 //!
 //! ```text
 //! photo → camera's noise off → lattice, primitive → symmetric part ─→ heights → displacement
@@ -101,7 +101,7 @@ impl std::fmt::Display for Doubt {
             ),
             Self::Fallback(reason) => reason.fmt(f),
             Self::GuessedSign => f.write_str(
-                "whether bright is high is a guess; look at overview.png, `--bright-is-deep` turns it over",
+                "which way up the heights are is a guess; look at overview.png, `--bright-is-deep` turns them over",
             ),
             Self::Small => {
                 write!(f, "the picture is below {SMALL_PX} texels: its roughness rests on few waves")

@@ -167,9 +167,18 @@ pub struct Setup {
     pub voices: usize,
 }
 
+impl Default for Setup {
+    /// What every source is made for until an engine takes it: 44.1 kHz and the 96 voices of a default engine.
+    fn default() -> Self {
+        Self { sample_rate_hz: 44_100.0, voices: 96 }
+    }
+}
+
 /// A surface that can be sampled in real time.
 ///
-/// A source of one's own is these two methods; what changes while it is touched goes through a handle of its own (an atomic, a ring):
+/// A source of one's own is these two methods; what changes while it is touched goes through a handle of its own (an atomic, a ring). Positions
+/// are metres from uv (0, 0) and run on beyond the surface; where texture coordinates wrap, heights must be the same again after the surface's
+/// width and height, or [`beyond`](Self::beyond) says that they are not:
 ///
 /// ```
 /// use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
@@ -187,6 +196,9 @@ pub struct Setup {
 ///
 ///     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
 ///         out.clear(path.len());
+///         // A cleared surface is as smooth as can be and without friction; this one is a little rough.
+///         out.roughness[..path.len()].fill(0.4);
+///         out.friction[..path.len()].fill(0.5);
 ///         for (i, [u_m, _]) in path.position_m.iter().enumerate() {
 ///             let turn = std::f64::consts::TAU / self.wavelength_m;
 ///             out.height_m[i] = self.amplitude_m * (turn * u_m).sin();
@@ -213,14 +225,23 @@ pub trait HeightField: Send + Sync {
     /// The wavelengths this source represents.
     fn band(&self) -> WavelengthBand;
 
-    /// Gets ready for an engine, before it is sampled; it may allocate. A source made of others hands this on. What keeps
-    /// time or remembers its contacts must take both from here.
+    /// Gets ready for an engine, before it is sampled, and again when that engine's rate changes; it may allocate. A source made of
+    /// others hands this on. What keeps time or remembers its contacts must take both from here: no contact touches, and
+    /// samples are counted anew.
     ///
     /// # Errors
     /// When the source cannot serve such an engine; the message names the field.
     fn prepare(&mut self, _setup: &Setup) -> Result<(), DesignError> {
         Ok(())
     }
+
+    /// Gets ready to be ridden by a sphere of this radius, m; it may allocate. A source made of others hands this on. One that
+    /// leaves it out is ridden by a point.
+    fn prepare_tip(&mut self, _radius_m: f64) {}
+
+    /// What is sampled from here on is what a sphere of this radius rides on, m; 0 is a point. A radius that was never
+    /// prepared is a point too.
+    fn ride(&mut self, _radius_m: f64) {}
 
     /// How far from zero its heights can be, metres; 0 if the source cannot tell.
     fn reach_m(&self) -> f64 {

@@ -19,6 +19,7 @@ use crate::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBloc
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
 use crate::resample::halve;
+use crate::ridden::ridden;
 use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
 
@@ -73,6 +74,18 @@ pub enum MapError {
 }
 
 /// A surface made of maps.
+///
+/// ```
+/// use asperity_texture::height_map::{Extent, HeightMap};
+/// use asperity_texture::raster::Raster;
+/// use asperity_texture::wrap::Wrap;
+///
+/// // Waves of 5 mm, 0.1 mm high, on 4 cm.
+/// let wave = Raster::from_fn(128, 4, |x, _| 0.5 + 0.5 * (std::f64::consts::TAU * x as f64 / 16.0).sin());
+/// let extent = Extent { width_m: 0.04, height_m: 0.04, relief_m: 1e-4 };
+/// let map = HeightMap::new(&wave, extent, Wrap::Repeat)?.with_roughness(0.3)?;
+/// # Ok::<(), asperity_texture::height_map::MapError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct HeightMap {
     heights: Pyramid,
@@ -85,6 +98,9 @@ pub struct HeightMap {
     /// Where it has relief; none = nowhere.
     local: Option<LocalRelief>,
     friction: f64,
+    /// What tips of some radii ride on, and the one that rides now.
+    tips: Vec<(f64, Pyramid)>,
+    tip: Option<usize>,
 }
 
 #[derive(Debug, Clone)]
@@ -123,7 +139,18 @@ impl HeightMap {
             }
         };
         let roughness = Roughness::Constant(0.5);
-        Ok(Self { heights, roughness, extent, wrap, band, reach_m, local, friction: FRICTION })
+        Ok(Self {
+            heights,
+            roughness,
+            extent,
+            wrap,
+            band,
+            reach_m,
+            local,
+            friction: FRICTION,
+            tips: Vec::new(),
+            tip: None,
+        })
     }
 
     /// A plane: every relief comes from the micro-noise.
@@ -327,6 +354,18 @@ impl HeightField for HeightMap {
         self.band
     }
 
+    fn prepare_tip(&mut self, radius_m: f64) {
+        let known = self.tips.iter().any(|(known_m, _)| *known_m == radius_m);
+        let Some(finest) = self.heights.levels.first().filter(|_| radius_m > 0.0 && !known) else { return };
+        let texels_per_metre = finest.texels_per_metre();
+        let map = ridden(&finest.texels(), texels_per_metre.map(f64::recip), self.wrap, radius_m);
+        self.tips.push((radius_m, Pyramid::new(&map, self.extent, self.wrap)));
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.tip = self.tips.iter().position(|(known_m, _)| *known_m == radius_m);
+    }
+
     fn reach_m(&self) -> f64 {
         self.reach_m
     }
@@ -355,14 +394,15 @@ impl HeightField for HeightMap {
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let widest_m = widest_m(path.footprint_m);
         let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
+        let heights = self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map);
         if path.slopes {
-            self.heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
+            heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
             let slopes = samples.slope_u.iter().zip(&samples.slope_v);
             for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
                 *gradient = [*u, *v];
             }
         } else {
-            self.heights.sample_block::<false>(path, widest_m, &mut places, &mut samples);
+            heights.sample_block::<false>(path, widest_m, &mut places, &mut samples);
         }
         out.height_m.copy_from_slice(&samples.value[..MAX_BLOCK]);
         match &self.roughness {

@@ -5,118 +5,23 @@
 //! have any shape, 16 bits stay 16 bits, a picture that EXIF calls turned is turned back, of a moving GIF the first frame counts. A header is believed only within [`MAX_SIDE`] and
 //! [`MAX_TEXELS`], before any pixel is decoded.
 
-use crate::deband::deband;
+#[cfg(test)]
+mod tests;
+
 #[cfg(feature = "offline")]
 use crate::fractal_dimension::ColourSums;
+use crate::picture::Samples;
+pub use crate::picture::{
+    Channel, ChannelImage, ImageError, MAX_FILE_BYTES, MAX_SIDE, MAX_TEXELS, Picture, Problem,
+};
 use crate::raster::Raster;
-use crate::wrap::Wrap;
+#[cfg(feature = "offline")]
+use image::ColorType;
 use image::metadata::Orientation;
-use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 use std::fs::{self, File};
-use std::io::{BufReader, BufWriter, Write};
+use std::io::{BufRead, BufReader, BufWriter, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
-
-/// Most texels a side may have.
-pub const MAX_SIDE: u32 = 32_768;
-/// Most texels an image may have: 8192 × 8192. Half a gigabyte as a [`Raster`].
-pub const MAX_TEXELS: u64 = 1 << 26;
-/// Most bytes a file may have.
-pub const MAX_FILE_BYTES: u64 = 1 << 30;
-
-/// Which numbers of a pixel are the map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Channel {
-    /// Grey, or 0.2126 R + 0.7152 G + 0.0722 B of the stored numbers (Rec. 709).
-    #[default]
-    Luma,
-    /// Red; grey in a grey image.
-    R,
-    /// Green; grey in a grey image.
-    G,
-    /// Blue; grey in a grey image.
-    B,
-    /// Alpha: where packed textures keep the height.
-    A,
-}
-
-/// One channel of a file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ChannelImage {
-    /// Values 0–1 (black to white); EXR values as they are.
-    pub raster: Raster,
-    /// Distance between two neighbouring levels of the file, in the raster's units; 0 for floating
-    /// point. Measured, so that 8-bit data in a 16-bit file is known for what it is.
-    pub step: f64,
-}
-
-impl ChannelImage {
-    /// The raster without the terraces of coarse quantisation ([`crate::deband`]).
-    #[must_use]
-    pub fn debanded(&self, wrap: Wrap) -> Raster {
-        deband(&self.raster, self.step, wrap)
-    }
-}
-
-/// Why a map could not be read or written: which file, what is wrong, what would be right.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {problem}", .file.display())]
-pub struct ImageError {
-    /// The file.
-    pub file: PathBuf,
-    /// What is wrong with it.
-    pub problem: Problem,
-}
-
-/// What is wrong with a file.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum Problem {
-    /// The system could not open, read or write it.
-    #[error("{0}; a readable file (or a writable folder for output) is needed")]
-    Io(std::io::Error),
-    /// Its first bytes are of no picture format we read.
-    #[error("not a picture this program reads; PNG, JPEG, PGM, GIF{} are read", if cfg!(feature = "exr") { " and EXR" } else { " (and EXR with the feature `exr`)" })]
-    UnknownFormat,
-    /// The picture is cut off or contradicts itself.
-    #[error("damaged or cut off ({0}); a complete file is needed")]
-    Damaged(String),
-    /// The format allows it, we do not read it.
-    #[error("not supported ({0}); 8 or 16 bits a channel, grey or colour, are read")]
-    Unsupported(String),
-    /// Larger than we are willing to decode.
-    #[error(
-        "{width} × {height} texels are too many; at most {MAX_SIDE} a side and {MAX_TEXELS} in all are read"
-    )]
-    TooLarge {
-        /// Texels in a row, as the header claims.
-        width: u32,
-        /// Rows, as the header claims.
-        height: u32,
-    },
-    /// Decoding would take more memory than we grant.
-    #[error(
-        "asks for more memory than is granted; at most {MAX_SIDE} texels a side and {MAX_TEXELS} in all are read"
-    )]
-    TooMuchMemory,
-    /// The file itself is too long.
-    #[error("{0} bytes are too many; at most {MAX_FILE_BYTES} are read")]
-    TooLong(u64),
-    /// The channel asked for is not in the picture.
-    #[error("has no alpha channel; choose `luma`, `r`, `g` or `b`, or a picture with alpha")]
-    NoAlpha,
-    /// A value is not a number.
-    #[error("the value at column {x}, row {y} is not finite; only finite values make a map")]
-    NotFinite {
-        /// Column.
-        x: usize,
-        /// Row.
-        y: usize,
-    },
-    /// There is nothing in it.
-    #[error("has no texels; at least 1 × 1 is needed")]
-    Empty,
-}
 
 /// Reads one channel of a picture.
 ///
@@ -135,9 +40,21 @@ pub fn load_channel(path: impl AsRef<Path>, channel: Channel) -> Result<ChannelI
 #[cfg(feature = "offline")]
 pub fn load_photograph(path: impl AsRef<Path>) -> Result<(ChannelImage, f64), ImageError> {
     let path = path.as_ref();
-    decode(path, Channel::Luma)
-        .and_then(|image| Ok((extract(&image, Channel::Luma)?, colour_of(&image))))
+    open(path)
+        .and_then(|file| decode(file, Channel::Luma))
+        .and_then(|image| {
+            let colour = colour_of(&image);
+            Ok((picture(image)?.channel(Channel::Luma)?, colour))
+        })
         .map_err(|problem| ImageError { file: path.to_path_buf(), problem })
+}
+
+/// Reads one channel of a picture from the bytes of its file.
+///
+/// # Errors
+/// As [`load_channel`].
+pub fn read_channel(bytes: &[u8], channel: Channel) -> Result<ChannelImage, Problem> {
+    picture(decode(Cursor::new(bytes), channel)?)?.channel(channel)
 }
 
 /// Writes values 0–1 (clamped) as a 16-bit grey PNG. The file appears under its name complete or not
@@ -151,11 +68,10 @@ pub fn save_gray16(path: impl AsRef<Path>, raster: &Raster) -> Result<(), ImageE
 }
 
 fn load(path: &Path, channel: Channel) -> Result<ChannelImage, Problem> {
-    extract(&decode(path, channel)?, channel)
+    picture(decode(open(path)?, channel)?)?.channel(channel)
 }
 
-/// The picture of a file that has this channel, turned as EXIF says.
-fn decode(path: &Path, channel: Channel) -> Result<DynamicImage, Problem> {
+fn open(path: &Path) -> Result<BufReader<File>, Problem> {
     let file = File::open(path).map_err(Problem::Io)?;
     let metadata = file.metadata().map_err(Problem::Io)?;
     if metadata.is_dir() {
@@ -164,7 +80,12 @@ fn decode(path: &Path, channel: Channel) -> Result<DynamicImage, Problem> {
     if metadata.len() > MAX_FILE_BYTES {
         return Err(Problem::TooLong(metadata.len()));
     }
-    let mut reader = ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(Problem::Io)?;
+    Ok(BufReader::new(file))
+}
+
+/// The picture of a file that has this channel, turned as EXIF says.
+fn decode(file: impl BufRead + Seek, channel: Channel) -> Result<DynamicImage, Problem> {
+    let mut reader = ImageReader::new(file).with_guessed_format().map_err(Problem::Io)?;
     match reader.format() {
         Some(format) if format.reading_enabled() => {}
         _ => return Err(Problem::UnknownFormat),
@@ -231,80 +152,21 @@ fn one_line(error: &impl std::fmt::Display) -> String {
     words.join(" ").trim_end_matches('.').to_string()
 }
 
-/// One channel of a decoded picture, as 0–1.
-fn extract(image: &DynamicImage, channel: Channel) -> Result<ChannelImage, Problem> {
-    let (width, height) = (image.width() as usize, image.height() as usize);
-    let shape = [width * height, usize::from(image.color().channel_count())];
-    let pick = |pixel: &[f64]| channel_of(pixel, channel);
-    let (values, step) = match image.color() {
-        ColorType::L8 | ColorType::La8 | ColorType::Rgb8 | ColorType::Rgba8 => {
-            integers(image.as_bytes().iter().map(|&b| u16::from(b)), shape, 255, channel)
-        }
-        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16 => {
-            let pairs = image.as_bytes().chunks_exact(2).map(|b| u16::from_ne_bytes([b[0], b[1]]));
-            integers(pairs, shape, 65_535, channel)
-        }
-        _ => {
-            let rgba = image.to_rgba32f();
-            let values = rgba.pixels().map(|p| pick(&p.0.map(f64::from))).collect();
-            (values, 0.0)
-        }
+/// The decoded pixels, as they are stored.
+fn picture(image: DynamicImage) -> Result<Picture, Problem> {
+    let (width, height) = (image.width(), image.height());
+    let samples = match image {
+        DynamicImage::ImageLuma8(pixels) => Samples::U8(pixels.into_raw()),
+        DynamicImage::ImageLumaA8(pixels) => Samples::U8(pixels.into_raw()),
+        DynamicImage::ImageRgb8(pixels) => Samples::U8(pixels.into_raw()),
+        DynamicImage::ImageRgba8(pixels) => Samples::U8(pixels.into_raw()),
+        DynamicImage::ImageLuma16(pixels) => Samples::U16(pixels.into_raw()),
+        DynamicImage::ImageLumaA16(pixels) => Samples::U16(pixels.into_raw()),
+        DynamicImage::ImageRgb16(pixels) => Samples::U16(pixels.into_raw()),
+        DynamicImage::ImageRgba16(pixels) => Samples::U16(pixels.into_raw()),
+        other => Samples::F32(other.into_rgba32f().into_raw()),
     };
-    let raster = Raster { width, height, values };
-    if let Some(at) = raster.values.iter().position(|v| !v.is_finite()) {
-        return Err(Problem::NotFinite { x: at % width, y: at / width });
-    }
-    Ok(ChannelImage { raster, step })
-}
-
-/// The channel of integer pixels as 0–1, and the distance of its levels: the greatest number of which
-/// every level is a multiple.
-fn integers(
-    samples: impl Iterator<Item = u16>,
-    [texels, channels]: [usize; 2],
-    white: u16,
-    channel: Channel,
-) -> (Vec<f64>, f64) {
-    let mut pixel = [0.0; 4];
-    let mut filled = 0;
-    let mut common = 0;
-    let mut values = Vec::with_capacity(texels);
-    for sample in samples {
-        pixel[filled] = f64::from(sample);
-        filled += 1;
-        if filled == channels {
-            filled = 0;
-            let value = channel_of(&pixel[..channels], channel);
-            if common != 1 {
-                common = greatest_common_divisor(common, value.round() as u16);
-            }
-            values.push(value / f64::from(white));
-        }
-    }
-    (values, f64::from(common) / f64::from(white))
-}
-
-fn greatest_common_divisor(mut a: u16, mut b: u16) -> u16 {
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
-}
-
-fn channel_of(pixel: &[f64], channel: Channel) -> f64 {
-    let is_grey = pixel.len() < 3;
-    match channel {
-        Channel::A => pixel[pixel.len() - 1],
-        Channel::Luma if !is_grey => luma(pixel[0], pixel[1], pixel[2]),
-        Channel::G if !is_grey => pixel[1],
-        Channel::B if !is_grey => pixel[2],
-        _ => pixel[0],
-    }
-}
-
-/// Weighted so that a grey pixel keeps its number exactly.
-fn luma(r: f64, g: f64, b: f64) -> f64 {
-    g + 0.2126 * (r - g) + 0.0722 * (b - g)
+    Picture::new(width, height, samples)
 }
 
 fn save(path: &Path, raster: &Raster) -> Result<(), Problem> {
@@ -340,67 +202,4 @@ fn beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(format!(".{}.part", std::process::id()));
     path.with_file_name(name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use image::{ExtendedColorType, GrayImage, ImageEncoder};
-
-    /// Darker to the right, a bright first row.
-    fn shaded() -> GrayImage {
-        GrayImage::from_fn(32, 16, |x, y| image::Luma([if y == 0 { 250 } else { 200 - 6 * x as u8 }]))
-    }
-
-    #[test]
-    fn a_telephone_picture_is_turned_as_its_exif_says() {
-        let folder = tempfile::tempdir().unwrap();
-        let plain = folder.path().join("plain.jpg");
-        let turned = folder.path().join("turned.jpg");
-        for (path, orientation) in [(&plain, 1_u8), (&turned, 6)] {
-            // TIFF, little endian, one entry: tag 0x0112, type 3 (short), count 1.
-            let mut exif = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0".to_vec();
-            exif.extend([orientation, 0, 0, 0, 0, 0, 0, 0]);
-            let mut file = BufWriter::new(File::create(path).unwrap());
-            let mut encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut file, 95);
-            encoder.set_exif_metadata(exif).unwrap();
-            encoder.encode(shaded().as_raw(), 32, 16, ExtendedColorType::L8).unwrap();
-        }
-        let (plain, turned) = (
-            load_channel(plain, Channel::Luma).unwrap().raster,
-            load_channel(turned, Channel::Luma).unwrap().raster,
-        );
-        assert_eq!((turned.width, turned.height), (plain.height, plain.width));
-        // Tag 6: a quarter turn clockwise; the first row becomes the last column.
-        for (x, y) in [(0, 0), (5, 3), (31, 15)] {
-            assert_eq!(turned.at(15 - y, x), plain.at(x, y));
-        }
-    }
-
-    #[test]
-    fn a_gif_is_read() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("picture.gif");
-        shaded().save(&path).unwrap_or_else(|_| DynamicImage::from(shaded()).to_rgb8().save(&path).unwrap());
-        let picture = load_channel(&path, Channel::Luma).unwrap().raster;
-        assert!((picture.at(4, 4) - 176.0 / 255.0).abs() < 0.03, "{}", picture.at(4, 4));
-    }
-
-    #[cfg(feature = "offline")]
-    #[test]
-    fn a_photographs_colour_is_known_at_8_and_16_bits_and_grey_has_none() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("picture.png");
-        let colour = |image: DynamicImage| {
-            image.save(&path).unwrap();
-            let (picture, colour) = load_photograph(&path).unwrap();
-            assert_eq!(picture, load_channel(&path, Channel::Luma).unwrap());
-            colour
-        };
-        assert_eq!(colour(DynamicImage::from(shaded())), 0.0);
-        let red = image::RgbImage::from_fn(16, 16, |x, y| image::Rgb([(x * 9) as u8, (y * 5) as u8, 40]));
-        let narrow = colour(DynamicImage::from(red.clone()));
-        let wide = colour(DynamicImage::from(DynamicImage::from(red).to_rgb16()));
-        assert!(narrow > 0.5 && (wide / narrow - 1.0).abs() < 1e-6, "{narrow} {wide}");
-    }
 }

@@ -1,4 +1,4 @@
-//! What a surface is.
+//! Surfaces: sources that are sampled in real time, and offline tools that make them.
 //!
 //! *Real time*: [`height_field`] is the trait through which the engine samples any surface along a
 //! contact path; the other real-time files implement it.
@@ -14,6 +14,7 @@ pub mod height_field;
 pub mod height_map;
 pub mod lattice;
 mod local_relief;
+pub mod moving_picture;
 pub mod raster;
 pub mod sand;
 pub mod solid_materials;
@@ -25,7 +26,9 @@ pub mod triplanar;
 pub mod deband;
 #[cfg(feature = "image")]
 pub mod image_io;
+pub mod picture;
 mod resample;
+pub mod ridden;
 mod spline;
 pub mod stl;
 pub mod wrap;
@@ -41,6 +44,8 @@ pub mod dark_is_deep;
 pub mod distribution;
 #[cfg(feature = "offline")]
 pub mod fft2;
+#[cfg(feature = "offline")]
+pub mod flat_ground;
 #[cfg(feature = "offline")]
 pub mod fractal_dimension;
 #[cfg(feature = "offline")]

@@ -1,4 +1,4 @@
-//! Where the light of a photograph comes from, and whether it comes from anywhere.
+//! Light direction of a photograph, and whether there is one.
 //!
 //! On gentle slopes a light at tilt τ makes the image the derivative of the heights along τ, so that its
 //! power at direction θ goes as cos²(θ − τ), **in every octave of wavelengths alike**, whatever the

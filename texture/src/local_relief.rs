@@ -1,4 +1,4 @@
-//! How much relief a map really has about a place, at the scales of the micro-relief.
+//! Local relief power: how much relief a map has about a place, at the scales of the micro-relief.
 //!
 //! ```text
 //! P(cell) = Σ over lags s   mean over the cell of  max over u, v of  ((h(−2s) − 4h(−s) + 6h − 4h(s) + h(2s)) / 16)²

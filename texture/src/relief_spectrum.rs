@@ -1,4 +1,4 @@
-//! How rough a relief is, from the spectrum of profiles across it: exponent, roughness and micro-relief.
+//! Relief spectrum, from profiles across a surface: exponent, roughness and micro-relief.
 //!
 //! ```text
 //! P(f) = A f^(−α) e^(−(2πσf)²)        least squares over ln P in thirds of an octave

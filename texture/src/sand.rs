@@ -31,7 +31,7 @@ pub mod tool;
 pub mod worker;
 
 pub use grid::{SandGrid, SandPicture};
-pub use law::{Layer, SandLaw};
+pub use law::{Layer, MAX_LAYERS, SandLaw};
 pub use simulation::{SandDesign, SandFigures, SandSimulation};
 pub use source::SandSource;
 pub use tool::Tool;

@@ -10,7 +10,7 @@
 //! | I | the image: linear brightness over that of a texel facing the light, see [`expose`] |
 //! | z | [`Shape::height_px`], texels |
 //!
-//! Three ways to z, [`Method`]:
+//! Four ways to z, [`Method`]:
 //!
 //! *Integrable* (default for directed light). Each step moves p, q along the gradient of R until R would be
 //! I, `(p, q) += (I − R) ∇R / (|∇R|² + μ)`, and projects them onto the slopes of a surface
@@ -27,15 +27,13 @@
 //! *Dark is deep* (default for diffuse or frontal light): a wave of brightness is a wave of height, as steep as it has
 //! contrast, [`dark_is_deep`](mod@crate::dark_is_deep).
 //!
-//! Light from the viewer's direction (less than [`LEAST_SLANT_RAD`]) tells how steep a place is, 1/√(1 + |∇z|²), but not
-//! which way. The literature integrates that as an eikonal equation from every summit and pit (E. Rouy and A. Tourin, SIAM J.
-//! Numer. Anal. 29, 1992; R. Kimmel and A. M. Bruckstein, IJCV 16, 1995) and needs their heights and kinds told, an albedo that is even
-//! and no noise: a slope of 0.1 darkens by half a percent, the camera's noise is as much. Photographs have none of it, so no
-//! solver for it is here; dark is deep is used, and said.
+//! *Flat ground* (default for frontal light where there is a ground): light from the viewer's direction (less than [`LEAST_SLANT_RAD`]) tells
+//! how steep a place is and not which way, [`crate::flat_ground`]. Without a ground, dark is deep is used, and said.
 
 use crate::borders::{Borders, SplitBorders};
 use crate::dark_is_deep::dark_is_deep;
 use crate::fft2::{Fft2, angular_frequency};
+use crate::flat_ground::above_flat_ground;
 use crate::gradient_field::{Derivative, Projection, Slopes};
 use crate::light::{Light, estimate_light};
 use crate::raster::Raster;
@@ -64,6 +62,8 @@ pub enum Method {
     TsaiShah(usize),
     /// Brightness is height.
     DarkIsDeep,
+    /// What stands out of a flat ground under frontal light.
+    FlatGround,
 }
 
 /// The surface of a photograph.
@@ -73,10 +73,10 @@ pub struct Shape {
     pub height_px: Raster,
     /// How they were found.
     pub method: Method,
-    /// The light that was used; `None` for [`Method::DarkIsDeep`].
+    /// The light that was used; `None` for [`Method::DarkIsDeep`], from the viewer for [`Method::FlatGround`].
     pub light: Option<Light>,
     /// What the surface, lit by that light, does not explain of the image: root mean square error over
-    /// the image's standard deviation. `None` for [`Method::DarkIsDeep`].
+    /// the image's standard deviation. `None` but for [`Method::Integrable`].
     pub unexplained: Option<f64>,
 }
 
@@ -100,11 +100,11 @@ pub fn shape_from_shading(
 }
 
 /// Heights by one method. The image is linear brightness in any unit; `light` does not matter to
-/// [`Method::DarkIsDeep`].
+/// [`Method::DarkIsDeep`] and [`Method::FlatGround`].
 ///
 /// # Errors
-/// When the image is smaller than 8 × 8 or holds numbers that are not finite, or the integrable solver is to use light from the
-/// viewer's direction.
+/// When the image is smaller than 8 × 8 or holds numbers that are not finite, the integrable solver is to use light from the
+/// viewer's direction, or there is no flat ground.
 pub fn shape_by(
     method: Method,
     image: &Raster,
@@ -118,6 +118,7 @@ pub fn shape_by(
     }
     let (height_px, unexplained) = match method {
         Method::DarkIsDeep => (dark_is_deep(image), None),
+        Method::FlatGround => (on_flat_ground(image)?, None),
         Method::TsaiShah(steps) => (tsai_shah(&expose(image, light), light, steps), None),
         Method::Integrable(steps) => {
             let (height_px, unexplained) = integrable(&expose(image, light), light, steps, progress);
@@ -125,8 +126,17 @@ pub fn shape_by(
         }
     };
     let mean = height_px.mean();
-    let light = (method != Method::DarkIsDeep).then_some(light);
+    let light = match method {
+        Method::DarkIsDeep => None,
+        Method::FlatGround => Some(Light::OVERHEAD),
+        _ => Some(light),
+    };
     Ok(Shape { height_px: height_px.map(|z| z - mean), method, light, unexplained })
+}
+
+fn on_flat_ground(image: &Raster) -> Result<Raster, DesignError> {
+    let expected = "at least 0.1 of the image, connected, and nothing brighter than it: without a flat ground frontal light tells no heights";
+    above_flat_ground(image).map_err(|share| DesignError { field: "flat ground", value: share, expected })
 }
 
 fn check(image: &Raster) -> Result<(), DesignError> {

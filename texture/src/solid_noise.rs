@@ -64,18 +64,14 @@ impl SolidNoise {
     /// A surface cut at a slant.
     ///
     /// # Errors
-    /// When a parameter is out of its range or the sample rate is not above 0 Hz.
-    pub fn new(
-        parameters: SolidNoiseParameters,
-        seed: u64,
-        sample_rate_hz: f64,
-    ) -> Result<Self, DesignError> {
+    /// When a parameter is out of its range.
+    pub fn new(parameters: SolidNoiseParameters, seed: u64) -> Result<Self, DesignError> {
         parameters.check()?;
         let lattice = |module: u64, octave: usize| {
             GradientNoise3d::new(seed.wrapping_add(module << 32).wrapping_add(octave as u64))
         };
         Ok(Self {
-            parameters: Fade::new(parameters, sample_rate_hz)?,
+            parameters: Fade::new(parameters),
             lattices: [core::array::from_fn(|i| lattice(0, i)), core::array::from_fn(|i| lattice(1, i))],
             cut: SolidCut::SLANTED,
         })
@@ -251,7 +247,8 @@ fn resolved(footprint_cells: f64) -> f64 {
 
 impl HeightField for SolidNoise {
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.parameters.prepare(setup.sample_rate_hz)
+        self.parameters.prepare(setup.sample_rate_hz);
+        Ok(())
     }
 
     fn band(&self) -> WavelengthBand {

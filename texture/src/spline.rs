@@ -61,6 +61,21 @@ impl Spline {
         self.axes.map(|axis| axis.texels_per_metre())
     }
 
+    /// The values at the texels, to the rounding of the coefficients.
+    pub fn texels(&self) -> Raster {
+        let [width, height] = self.axes.map(|axis| axis.len());
+        let at = |x: usize, y: usize| {
+            let weights = [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0];
+            let row = |dy: usize| {
+                let first = (y + PAD - 1 + dy) * self.stride + x + PAD - 1;
+                let near = &self.coefficients[first..first + 3];
+                near.iter().zip(weights).map(|(c, w)| w * f64::from(*c)).sum::<f64>()
+            };
+            (0..3).zip(weights).map(|(dy, w)| w * row(dy)).sum()
+        };
+        Raster::from_fn(width, height, at)
+    }
+
     /// The value, and the slope if `SLOPES`, at each of up to [`MAX_BLOCK`](crate::height_field::MAX_BLOCK) positions; (0, 0)
     /// is the top left corner of the map. The bits are those of each position alone. `places` are found on the way,
     /// unless a map of the same grid has done so for the same positions.

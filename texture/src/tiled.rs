@@ -97,6 +97,14 @@ fn share(places: &[Place; 2], copy: [usize; 2]) -> (f64, [f64; 2]) {
 }
 
 impl HeightField for Tiled {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.source.prepare_tip(radius_m);
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.source.ride(radius_m);
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.source.prepare(setup)
     }
@@ -223,7 +231,7 @@ mod tests {
     fn a_material_that_never_repeats_is_the_same_after_a_tile_and_has_no_seam() {
         let tile_m = [0.1, 0.07];
         for material in SolidMaterial::SEVEN {
-            let noise = || SolidNoise::new(material.parameters(), 3, 44_100.0).unwrap();
+            let noise = || SolidNoise::new(material.parameters(), 3).unwrap();
             let mut tiled = Tiled::new(Box::new(noise()), tile_m);
             // Obliquely over both seams in steps of 2 µm.
             let line = |offset: [f64; 2]| -> Vec<[f64; 2]> {

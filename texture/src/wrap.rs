@@ -1,4 +1,4 @@
-//! What lies beyond the edge of a map.
+//! Edge modes of a map: what lies beyond its border.
 
 /// How a map goes on beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]

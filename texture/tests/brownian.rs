@@ -237,7 +237,7 @@ fn all_four_renderings_fall_strictly_as_h_grows_at_any_rate() {
                 let forces = [44_100.0, 192_000.0].map(|rate| {
                     if graph {
                         let path = design.path().unwrap();
-                        rms_force(&mut BrownianPath::new(&path, spacing, Some(rendering), 4).unwrap(), rate)
+                        rms_force(&mut BrownianPath::new(&path, spacing, Some(rendering)).unwrap(), rate)
                     } else {
                         let relief = design.surface().unwrap();
                         let force = BrownianForce::surface(rendering, span(&relief.values)).unwrap();
@@ -261,7 +261,7 @@ fn all_four_renderings_fall_strictly_as_h_grows_at_any_rate() {
 #[test]
 fn a_graph_is_read_by_distance_whatever_the_direction_and_the_blocks() {
     let heights = BrownianDesign { size: 257, ..BrownianDesign::new(0.5, 1e-4, 4) }.path().unwrap();
-    let made = || BrownianPath::new(&heights, 5e-4, Some(Rendering::Lateral), 2).unwrap();
+    let made = || BrownianPath::new(&heights, 5e-4, Some(Rendering::Lateral)).unwrap();
     let mut stroke = Stroke::new([0.0; 2], [0.1, 0.0], 44_100.0, 4000);
     stroke.first_sample = 1;
     let along_u = stroke.heights(&mut made(), &[64]);

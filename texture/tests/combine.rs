@@ -14,7 +14,7 @@ use common::{Stroke, bits, rms};
 const RATE: f64 = 44_100.0;
 
 fn solid(material: SolidMaterial) -> Source {
-    Box::new(SolidNoise::new(material.parameters(), 11, RATE).unwrap())
+    Box::new(SolidNoise::new(material.parameters(), 11).unwrap())
 }
 
 fn flat(height_m: f64) -> Source {
@@ -71,7 +71,7 @@ fn heights_and_slopes(mut source: Source) -> Vec<[f64; 3]> {
 #[test]
 fn a_crossfade_goes_from_one_source_to_the_other_without_a_step_above_minus_60_db() {
     let fade = || {
-        let mut fade = Crossfade::new(flat(0.0), flat(1e-3), RATE).unwrap();
+        let mut fade = Crossfade::new(flat(0.0), flat(1e-3));
         assert!(fade.change(&CrossfadeTo(1.0), 700));
         assert!(!fade.change(&CrossfadeTo(2.0), 700));
         fade
@@ -83,8 +83,7 @@ fn a_crossfade_goes_from_one_source_to_the_other_without_a_step_above_minus_60_d
 
     // Before and after it is exactly one of the two; any split into blocks gives the same bits.
     let made = || {
-        let mut fade =
-            Crossfade::new(solid(SolidMaterial::Wood), solid(SolidMaterial::Gravel), RATE).unwrap();
+        let mut fade = Crossfade::new(solid(SolidMaterial::Wood), solid(SolidMaterial::Gravel));
         assert!(fade.change(&CrossfadeTo(1.0), 701));
         fade
     };
@@ -96,7 +95,7 @@ fn a_crossfade_goes_from_one_source_to_the_other_without_a_step_above_minus_60_d
 
 #[test]
 fn a_scale_multiplies_and_changes_without_a_step() {
-    let mut scale = Scale::new(flat(1e-3), 2.0, RATE).unwrap();
+    let mut scale = Scale::new(flat(1e-3), 2.0).unwrap();
     assert!(scale.change(&ScaleTo(0.5), 100));
     assert!(!scale.change(&ScaleTo(f64::NAN), 100));
     let line = heights(scale);
@@ -104,7 +103,7 @@ fn a_scale_multiplies_and_changes_without_a_step() {
     let step = line.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
     assert!(20.0 * (step / 2e-3).log10() < -60.0);
     // Other messages reach the source inside.
-    let mut scale = Scale::new(solid(SolidMaterial::Sand), 1.0, RATE).unwrap();
+    let mut scale = Scale::new(solid(SolidMaterial::Sand), 1.0).unwrap();
     assert!(scale.change(&SolidMaterial::Wood.parameters(), 0));
     assert!(!scale.change(&CrossfadeTo(0.5), 0));
 }
@@ -138,7 +137,7 @@ fn a_mask_chooses_by_place_and_its_slope_is_the_slope_of_what_it_gives() {
 #[test]
 fn a_band_split_of_one_source_with_itself_gives_it_back() {
     let same = || solid(SolidMaterial::Gravel);
-    let split = BandSplit::new(same(), same(), 3e-3, RATE).unwrap();
+    let split = BandSplit::new(same(), same(), 3e-3).unwrap();
     let whole = heights_and_slopes(same());
     for (a, b) in heights_and_slopes(Box::new(split)).iter().zip(&whole) {
         assert!((a[0] - b[0]).abs() < 1e-15 && (a[1] - b[1]).abs() < 1e-12);
@@ -154,10 +153,10 @@ fn a_band_split_takes_long_waves_from_one_source_and_short_ones_from_the_other()
         Box::new(Lattice::new(&cell, [metres, 0.0], [0.0, 0.01]).unwrap())
     };
     // 40 mm waves and 1 mm waves, split at 5 mm: swapped, hardly anything is left.
-    let right = heights(BandSplit::new(wave(64, 0.04), wave(16, 0.001), 0.005, RATE).unwrap());
-    let wrong = heights(BandSplit::new(wave(16, 0.001), wave(64, 0.04), 0.005, RATE).unwrap());
+    let right = heights(BandSplit::new(wave(64, 0.04), wave(16, 0.001), 0.005).unwrap());
+    let wrong = heights(BandSplit::new(wave(16, 0.001), wave(64, 0.04), 0.005).unwrap());
     assert!(rms(&right) > 8e-5 && rms(&wrong) < 1.5e-5, "{} {}", rms(&right), rms(&wrong));
-    let mut split = BandSplit::new(flat(1e-3), flat(0.0), 0.005, RATE).unwrap();
+    let mut split = BandSplit::new(flat(1e-3), flat(0.0), 0.005).unwrap();
     assert!(split.change(&BandWeights([0.25, 1.0]), 0));
     let line = heights(split);
     assert!((line[8999] - 2.5e-4).abs() < 1e-15);

@@ -41,6 +41,21 @@ fn frames_of_any_period_show_it() {
     assert!(share >= 0.99, "{share}: {wrong:#?}");
 }
 
+/// 9 texels of ground and 38.7 of square: lines fit lines at 11.2, which divides no period, and no coarser lattice of that was the true one.
+#[test]
+fn a_gap_that_divides_no_period_makes_no_lattice() {
+    let case = Framed {
+        size: 256,
+        period: 47.665_784_591_808_915,
+        gap: 0.188_631_645_031_273_4,
+        outline: 2.177_147_757_261_991_5,
+        rounded: false,
+        noise: 0.0,
+    };
+    let lattice = find_lattice(&case.picture(0));
+    assert!(lattice.is_some_and(|l| is_lattice([l.t1_px, l.t2_px], case.truth())), "{lattice:?}");
+}
+
 #[test]
 fn the_reliefs_of_the_thesis_show_their_lattices_as_heights_and_lit() {
     let (share, wrong) = found(thesis_pictures().into_iter().filter(|(name, ..)| !name.contains("400")));

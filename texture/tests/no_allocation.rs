@@ -45,8 +45,6 @@ mod counting {
     static ALLOCATOR: Counting = Counting;
 }
 
-const RATE: f64 = 44_100.0;
-
 /// Heap operations while a source is read, touched and changed for a second.
 fn heap_operations(source: &mut Source, change: &dyn Any) -> u64 {
     let position = [[0.0, 0.0]; MAX_BLOCK].map(|_: [f64; 2]| [0.01, 0.02]);
@@ -85,7 +83,7 @@ fn heap_operations(source: &mut Source, change: &dyn Any) -> u64 {
 }
 
 fn solid(material: SolidMaterial) -> Source {
-    Box::new(SolidNoise::new(material.parameters(), 1, RATE).unwrap())
+    Box::new(SolidNoise::new(material.parameters(), 1).unwrap())
 }
 
 fn lattice() -> Source {
@@ -101,10 +99,10 @@ fn no_source_allocates_while_it_is_read_touched_and_changed() {
         ("solid noise", solid(SolidMaterial::Gravel), Box::new(wood)),
         ("lattice", lattice(), Box::new(wood)),
         ("sum", Box::new(Sum::new(vec![two().0, two().1])), Box::new(wood)),
-        ("scale", Box::new(Scale::new(lattice(), 0.5, RATE).unwrap()), Box::new(ScaleTo(0.7))),
+        ("scale", Box::new(Scale::new(lattice(), 0.5).unwrap()), Box::new(ScaleTo(0.7))),
         ("mask", Box::new(Mask::new(lattice(), two().0, two().1)), Box::new(wood)),
-        ("crossfade", Box::new(Crossfade::new(two().0, two().1, RATE).unwrap()), Box::new(CrossfadeTo(0.3))),
-        ("band split", Box::new(BandSplit::new(two().0, two().1, 1e-3, RATE).unwrap()), Box::new(wood)),
+        ("crossfade", Box::new(Crossfade::new(two().0, two().1)), Box::new(CrossfadeTo(0.3))),
+        ("band split", Box::new(BandSplit::new(two().0, two().1, 1e-3).unwrap()), Box::new(wood)),
     ];
     for (name, mut source, change) in cases {
         assert_eq!(heap_operations(&mut source, &*change), 0, "{name}");
@@ -113,8 +111,8 @@ fn no_source_allocates_while_it_is_read_touched_and_changed() {
 
 #[test]
 fn sand_does_not_allocate_in_the_audio_half_while_its_simulation_runs_elsewhere() {
-    let design = SandDesign { cells: 200, contacts: 2, ..SandDesign::default() };
-    let (sand, worker) = SandSource::threaded(&design, 1, RATE).unwrap();
+    let design = SandDesign { cells: 200, ..SandDesign::default() };
+    let (sand, worker) = SandSource::threaded(&design, 1).unwrap();
     let thread = worker.spawn();
     let mut sand: Source = Box::new(sand);
     let law = asperity_texture::sand::SandLaw::default();
@@ -131,6 +129,6 @@ fn a_brownian_path_does_not_allocate_while_it_is_read() {
     use asperity_texture::brownian::BrownianDesign;
     use asperity_texture::brownian::rendering::{BrownianPath, Rendering};
     let heights = BrownianDesign::new(0.5, 1e-4, 1).path().unwrap();
-    let mut path: Source = Box::new(BrownianPath::new(&heights, 5e-4, Some(Rendering::Lateral), 4).unwrap());
+    let mut path: Source = Box::new(BrownianPath::new(&heights, 5e-4, Some(Rendering::Lateral)).unwrap());
     assert_eq!(heap_operations(&mut path, &ScaleTo(1.0)), 0);
 }

@@ -1,4 +1,4 @@
-//! What no method can read from an 8-bit normal map: pairs of surfaces that have one and the same map. Whoever makes a
+//! Limits of 8-bit normal maps: pairs of surfaces that have one and the same map. Whoever makes a
 //! surface of that map errs by half of what the two differ by, in one case of the two, whatever he does.
 
 #![cfg(feature = "offline")]

@@ -9,7 +9,7 @@ use common::{bits, rms};
 const RATE: f64 = 44_100.0;
 
 fn design() -> SandDesign {
-    SandDesign { width_m: 0.2, height_m: 0.1, cells: 400, contacts: 2, ..SandDesign::default() }
+    SandDesign { width_m: 0.2, height_m: 0.1, cells: 400, ..SandDesign::default() }
 }
 
 /// A stroke as the engine makes it: a touch every 64 samples of the absolute grid, blocks of any
@@ -62,7 +62,7 @@ fn play(
 #[test]
 fn synchronous_sand_renders_the_same_bits_in_any_split_and_keeps_its_volume() {
     let run = |lengths: &[usize]| {
-        let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+        let mut sand = SandSource::synchronous(&design(), 1).unwrap();
         let heights = play(&mut sand, 1000, 60_000, lengths, 2.0, |_| ());
         (bits(&heights), sand.finish().unwrap())
     };
@@ -77,10 +77,10 @@ fn synchronous_sand_renders_the_same_bits_in_any_split_and_keeps_its_volume() {
 
 #[test]
 fn fresh_flat_sand_is_flat_but_for_its_grains_and_has_no_saw_at_the_frame_rate() {
-    let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+    let mut sand = SandSource::synchronous(&design(), 1).unwrap();
     let heights = play(&mut sand, 0, 60_000, &[64], 1.0, |_| ());
     // Grains alone, from a source that is never pressed.
-    let mut still = SandSource::synchronous(&design(), 1, RATE).unwrap();
+    let mut still = SandSource::synchronous(&design(), 1).unwrap();
     let grains = play(&mut still, 0, 60_000, &[64], 0.0, |_| ());
     let rest: Vec<f64> = heights.iter().zip(&grains).map(|(a, b)| a - b).collect();
     let depth = SandLaw::default().depth_m(1.0);
@@ -107,7 +107,7 @@ fn fresh_flat_sand_is_flat_but_for_its_grains_and_has_no_saw_at_the_frame_rate()
 
 #[test]
 fn an_old_groove_is_felt_by_a_stroke_across_it() {
-    let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+    let mut sand = SandSource::synchronous(&design(), 1).unwrap();
     // A trench across the stroke at u = 0.07 m, 2 mm deep.
     sand.shape(|x, _| 0.05 - 0.002 * (-((x as f64 * 0.0005 - 0.07) / 0.003).powi(2)).exp());
     let heights = play(&mut sand, 0, 44_100, &[64], 0.3, |_| ());
@@ -123,7 +123,7 @@ fn an_old_groove_is_felt_by_a_stroke_across_it() {
 fn a_finger_that_was_lifted_is_put_down_again_and_not_dragged_across() {
     // Two taps of the same voice, 0.1 m apart, with half a second between them or hardly any.
     for gap in [22_016, 64] {
-        let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+        let mut sand = SandSource::synchronous(&design(), 1).unwrap();
         let tap = |sand: &mut SandSource, first: u64, u: f64| {
             for k in 0..40 {
                 sand.react(&Touch {
@@ -148,7 +148,7 @@ fn a_finger_that_was_lifted_is_put_down_again_and_not_dragged_across() {
 #[test]
 fn a_touch_is_answered_by_drag_and_by_grains_in_proportion_to_what_is_displaced() {
     let answers = |force: f64| {
-        let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+        let mut sand = SandSource::synchronous(&design(), 1).unwrap();
         let mut last = Reaction::default();
         play(&mut sand, 0, 22_050, &[64], force, |r| last = *r);
         last
@@ -164,7 +164,7 @@ fn a_touch_is_answered_by_drag_and_by_grains_in_proportion_to_what_is_displaced(
 
 #[test]
 fn the_audio_half_goes_on_while_the_simulation_is_stuck_for_good() {
-    let (mut sand, worker) = SandSource::threaded(&design(), 1, RATE).unwrap();
+    let (mut sand, worker) = SandSource::threaded(&design(), 1).unwrap();
     // The worker never runs: poses fill their ring and are dropped, the surface stays what it was.
     let heights = play(&mut sand, 0, 300_000, &[64], 2.0, |_| ());
     assert!(heights.iter().all(|h| h.is_finite() && h.abs() < 1e-3));
@@ -176,7 +176,7 @@ fn the_audio_half_goes_on_while_the_simulation_is_stuck_for_good() {
 
 #[test]
 fn the_simulation_catches_up_after_a_pause_and_its_patches_circulate_for_ever() {
-    let (mut sand, mut worker) = SandSource::threaded(&design(), 1, RATE).unwrap();
+    let (mut sand, mut worker) = SandSource::threaded(&design(), 1).unwrap();
     let mut touches = 0;
     for round in 0..40 {
         play(&mut sand, round * 70_400, 70_400, &[64], 2.0, |_| {
@@ -194,7 +194,7 @@ fn the_simulation_catches_up_after_a_pause_and_its_patches_circulate_for_ever() 
 
 #[test]
 fn a_simulation_on_its_own_thread_moves_sand_and_gives_it_back() {
-    let (mut sand, worker) = SandSource::threaded(&design(), 1, RATE).unwrap();
+    let (mut sand, worker) = SandSource::threaded(&design(), 1).unwrap();
     let thread = worker.spawn();
     for round in 0..30 {
         play(&mut sand, round * 6400, 6400, &[64], 2.0, |_| ());
@@ -209,7 +209,7 @@ fn a_simulation_on_its_own_thread_moves_sand_and_gives_it_back() {
 
 #[test]
 fn the_force_of_another_law_comes_without_a_step() {
-    let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+    let mut sand = SandSource::synchronous(&design(), 1).unwrap();
     let mut forces = Vec::new();
     let touch = |sample| Touch {
         contact: 0,
@@ -231,7 +231,7 @@ fn the_force_of_another_law_comes_without_a_step() {
 
 #[test]
 fn another_law_is_taken_at_run_time_and_an_impossible_one_is_not() {
-    let mut sand = SandSource::synchronous(&design(), 1, RATE).unwrap();
+    let mut sand = SandSource::synchronous(&design(), 1).unwrap();
     let wet = SandLaw { wetness: 1.0, ..SandLaw::default() };
     assert!(sand.change(&wet, 0));
     assert!(!sand.change(&SandLaw { drag_s_per_m: -1.0, ..wet }, 0));

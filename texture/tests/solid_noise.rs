@@ -3,7 +3,7 @@
 mod common;
 
 use asperity_dsp::rng::Rng;
-use asperity_texture::height_field::{HeightField, Touch};
+use asperity_texture::height_field::{HeightField, Setup, Touch};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::{ForceDirection, SolidCut, SolidNoise};
 use common::{Stroke, bits, rms};
@@ -11,7 +11,7 @@ use common::{Stroke, bits, rms};
 const RATE: f64 = 44_100.0;
 
 fn made(material: SolidMaterial) -> SolidNoise {
-    SolidNoise::new(material.parameters(), 7, RATE).unwrap()
+    SolidNoise::new(material.parameters(), 7).unwrap()
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn the_force_stays_under_its_cap_and_follows_its_direction_and_the_medium_drags(
     let mut parameters = SolidMaterial::Pebbles.parameters();
     parameters.limit_n = 1.0;
     parameters.direction = ForceDirection::Tangent;
-    let source = SolidNoise::new(parameters, 1, RATE).unwrap();
+    let source = SolidNoise::new(parameters, 1).unwrap();
     let velocity = [0.06, -0.08];
     let drag = parameters.viscosity_n_s_m;
     let (mut highest, mut capped) = (0.0_f64, 0);
@@ -126,7 +126,7 @@ fn the_seven_presets_stay_within_the_cap_without_clipping_much() {
     for material in SolidMaterial::SEVEN {
         let mut p = material.parameters();
         p.viscosity_n_s_m = 0.0;
-        let source = SolidNoise::new(p, 3, RATE).unwrap();
+        let source = SolidNoise::new(p, 3).unwrap();
         let force: Vec<f64> = (0..20_000)
             .map(|n| source.force_n([f64::from(n) * 3.1e-5, 0.1], [0.0; 2], 0.5, 0.0, 0)[0])
             .collect();
@@ -150,7 +150,8 @@ fn no_change_of_parameters_makes_a_step_above_minus_60_db() {
             for place in 0..30 {
                 let at = [0.0007 * f64::from(place), 0.011];
                 let stroke = Stroke::new(at, [0.0; 2], rate, (0.2 * rate) as usize);
-                let mut source = SolidNoise::new(from.parameters(), 7, rate).unwrap();
+                let mut source = SolidNoise::new(from.parameters(), 7).unwrap();
+                source.prepare(&Setup { sample_rate_hz: rate, voices: 1 }).unwrap();
                 assert!(source.change(&change, 500));
                 let heights = stroke.heights(&mut source, &[64]);
                 let step = heights.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
@@ -201,11 +202,10 @@ fn impossible_parameters_are_refused_by_name_and_change_nothing() {
     ] {
         let mut parameters = before;
         spoil(&mut parameters);
-        assert_eq!(SolidNoise::new(parameters, 1, RATE).unwrap_err().field, field);
+        assert_eq!(SolidNoise::new(parameters, 1).unwrap_err().field, field);
         assert!(!source.change(&parameters, 10));
         assert_eq!(source.parameters(), before);
     }
-    assert_eq!(SolidNoise::new(before, 1, 0.0).unwrap_err().field, "sample_rate_hz");
 }
 
 #[test]

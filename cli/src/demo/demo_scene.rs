@@ -1,4 +1,4 @@
-//! What a scene of the demo consists of.
+//! A scene of the demo: its files, and the words beside them.
 
 use asperity::files::contact_log::ContactLog;
 

@@ -92,8 +92,10 @@ fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
         seed: None,
         integrator: None,
         path: None,
+        kernel: None,
         trace: false,
         force: false,
+        force_rate: 1000.0,
         plot: true,
         json: false,
     })

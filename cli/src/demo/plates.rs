@@ -16,8 +16,8 @@ const ROUGHNESS_PX: usize = 256;
 /// R of the glossy half and of the matte half.
 const SHINY: f64 = 0.1;
 const MATTE: f64 = 0.9;
-/// R of the plates with relief, smooth plastic.
-const PLASTIC: f64 = 0.35;
+/// R of the plates with relief: printed plastic, whose layers are felt.
+const PLASTIC: f64 = 0.6;
 
 /// A plate: names, what to notice, and its two maps as functions of the place in metres.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +41,7 @@ pub const PLATES: [Plate; 6] = [
         title: "Matte, then shiny",
         notice: "No relief at all, only the roughness map: the first half hisses and tingles, the second half is \
                  calm. On the way back the order is reversed.",
-        full_scale_m: 5e-5,
+        full_scale_m: 2.5e-4,
         height_m: |_, _| 0.0,
         roughness: |x, _| if x < SIDE_M / 2.0 { MATTE } else { SHINY },
     },
@@ -49,7 +49,7 @@ pub const PLATES: [Plate; 6] = [
         name: "shiny-matte",
         title: "Shiny, then matte",
         notice: "The mirror image: only where the finger is tells the two apart.",
-        full_scale_m: 5e-5,
+        full_scale_m: 2.5e-4,
         height_m: |_, _| 0.0,
         roughness: |x, _| if x < SIDE_M / 2.0 { SHINY } else { MATTE },
     },

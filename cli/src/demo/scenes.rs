@@ -74,7 +74,7 @@ fn plate_scene(plate: &Plate) -> DemoScene {
 }
 
 /// One gain for all six plates, so that their loudness can be compared.
-const PLATE_GAIN: f64 = 20.0;
+const PLATE_GAIN: f64 = 5.0;
 
 /// Modes of a free round plastic plate: its first bending modes, ω ∝ λ², heavily damped.
 ///

@@ -1,11 +1,11 @@
-//! How a finger moves: contact logs as a tracker and a physics step would report them, at 60 Hz.
+//! Demo strokes: contact logs as a tracker and a physics step would report them, at 60 Hz.
 //!
 //! A stroke leaves and stops with a smooth speed (no step in acceleration), runs at one speed between,
 //! bows a little as it turns about the elbow, trembles by some hundredths of a millimetre at 9 Hz, and
 //! presses with a force that wanders by a few percent. Speeds and forces are those of people exploring
 //! textures: 80–200 mm/s, 0.5–0.6 N (Smith 2002; Greenspon 2019).
 
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use std::f64::consts::PI;
 
 /// Events a second.
@@ -68,7 +68,7 @@ impl Finger<'_> {
         let tremor = TREMOR_M * (2.0 * PI * TREMOR_HZ * since).sin();
         let wander =
             1.0 + 0.04 * (2.0 * PI * 1.7 * since).sin() + 0.02 * (2.0 * PI * 4.1 * since + 1.0).sin();
-        let sample = LogSample {
+        let sample = ContactSample {
             uv: [rounded(place[0] / self.extent_m[0]), rounded((place[1] + tremor) / self.extent_m[1])],
             velocity_m_s: Some(velocity.map(rounded)),
             normal_force_n: rounded(self.normal_force_n * wander * pressing(since)),
@@ -78,7 +78,7 @@ impl Finger<'_> {
             let surface = self.surface.to_owned();
             LogEvent::begin(self.contact, surface, self.actuator, sample)
         } else {
-            LogEvent::Move { contact: self.contact, sample }
+            LogEvent::moved(self.contact, sample)
         }
     }
 }

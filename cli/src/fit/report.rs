@@ -1,4 +1,4 @@
-//! What a fit came to, for programs and for people.
+//! The report of a fit, as JSON for programs and as lines for people.
 
 use super::Options;
 use crate::error::CliError;

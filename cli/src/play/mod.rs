@@ -4,6 +4,8 @@
 
 #[cfg(feature = "device")]
 mod session;
+#[cfg(any(feature = "device", test))]
+mod watch;
 
 use crate::error::CliError;
 use clap::Args;
@@ -33,6 +35,9 @@ pub struct Options {
     /// Frames a callback to ask for; the device may decide otherwise
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(16..=8192))]
     pub block: Option<u32>,
+    /// Apply what changes in SCENE.toml while it plays
+    #[arg(long)]
+    pub watch: bool,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,

@@ -2,12 +2,13 @@
 //! so that what is heard is what `render` writes.
 
 use super::Options;
+use super::watch::Watch;
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
 use crate::render::{load_log, told};
 use asperity::Engine;
-use asperity::files::contact_log::{ContactLog, LogError};
+use asperity::files::contact_log::{ContactLog, LogError, Names};
 use asperity::files::scene_file::SceneFile;
 use asperity::live::channel_map::ChannelMap;
 use asperity::live::device::{self, DeviceOptions, DeviceReport};
@@ -100,9 +101,10 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         Err(error) if named => return Err(CliError::told(error)),
         Err(_) => None,
     };
-    let built =
-        Engine::from_scene(&file, &Overrides { sample_rate_hz: rate, live: true, ..Overrides::default() })?;
-    let summary = play(built, &log, &file, &device_options)?;
+    let overrides = Overrides { sample_rate_hz: rate, live: true, ..Overrides::default() };
+    let built = Engine::from_scene(&file, &overrides)?;
+    let watch = options.watch.then(|| Watch::new(file.clone(), overrides));
+    let summary = play(built, &log, &file, &device_options, watch)?;
     if options.json { output::say_json(&summary) } else { print(&summary) }
 }
 
@@ -124,9 +126,10 @@ fn play(
     log: &ContactLog,
     file: &SceneFile,
     options: &DeviceOptions,
+    watch: Option<Watch<'_>>,
 ) -> Result<Summary, CliError> {
     let Engine { mut scene, renderer, names, workers, .. } = built;
-    let sand: Vec<_> = workers.into_iter().map(SandWorker::spawn).collect();
+    let mut sand: Vec<_> = workers.into_iter().map(SandWorker::spawn).collect();
     let rate_hz = renderer.sample_rate_hz();
     let latency_samples = renderer.latency_samples();
     let events = log
@@ -142,8 +145,9 @@ fn play(
     if let Some(why) = player.silent_because() {
         eprintln!("warning: playing silently: {why}");
     }
-    let end = ((log.end_s() + file.tail_s) * rate_hz).ceil() as u64 + latency_samples as u64;
-    let outcome = follow(&mut scene, &mut feed, end, &interrupted);
+    let mut live = Live { names, watch, ends_s: log.end_s(), tail_s: file.tail_s, latency_samples };
+    let outcome = follow(&mut scene, &mut feed, &mut live, &interrupted);
+    sand.extend(live.watch.into_iter().flat_map(|watch| watch.sand));
     let heard_on = player.silent_because().is_none().then(|| player.device().to_owned());
     let (stats, why_silent) = (scene.stats(), scene.why_silent());
     let report = player.stop();
@@ -182,17 +186,44 @@ impl Feed<'_> {
     }
 }
 
+/// What may change while it plays.
+struct Live<'a> {
+    names: Names,
+    watch: Option<Watch<'a>>,
+    /// Time of the last event, s.
+    ends_s: f64,
+    tail_s: f64,
+    latency_samples: usize,
+}
+
+impl Live<'_> {
+    /// One past the last sample to play.
+    fn end(&self, rate_hz: f64) -> u64 {
+        ((self.ends_s + self.tail_s) * rate_hz).ceil() as u64 + self.latency_samples as u64
+    }
+
+    /// Applies what has changed in the scene file.
+    fn look(&mut self, scene: &mut Scene) {
+        let Some(watch) = &mut self.watch else { return };
+        for line in watch.look(scene, &mut self.names) {
+            eprintln!("{line}");
+        }
+        self.tail_s = watch.file.tail_s;
+    }
+}
+
 /// Feeds the engine until everything is played, the user has had enough, or the device stays away.
 fn follow(
     scene: &mut Scene,
     feed: &mut Feed<'_>,
-    end: u64,
+    live: &mut Live<'_>,
     interrupted: &AtomicBool,
 ) -> Result<(), CliError> {
-    let mut progress = Progress::new("playing", end);
+    let mut progress = Progress::new("playing", live.end(feed.rate_hz));
     let (mut position, mut moved) = (scene.stats().position, Instant::now());
-    while position < end && !interrupted.load(Relaxed) {
+    while position < live.end(feed.rate_hz) && !interrupted.load(Relaxed) {
         feed.send(scene);
+        live.look(scene);
         std::thread::sleep(STEP);
         let now = scene.stats().position;
         progress.advance(now - position);

@@ -14,12 +14,14 @@ use asperity::files::scene_file::SceneFile;
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
-use asperity::{Integrator, PathMode, SurfaceId};
+use asperity::open::levels::Levels;
+use asperity::{Integrator, Isa, PathMode, SurfaceId};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
 use recorder::Recorder;
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -54,18 +56,30 @@ pub struct Options {
     /// How sparse positions become a path
     #[arg(long, value_name = "NAME", value_parser = paths())]
     pub path: Option<PathMode>,
+    /// Instruction set of the kernels whose last bits depend on it: portable gives the same files on every processor
+    #[arg(long, value_name = "NAME", value_parser = kernels())]
+    pub kernel: Option<Isa>,
     /// Write STEM.trace.csv, one row a sample and contact
     #[arg(long)]
     pub trace: bool,
-    /// Write STEM.force.csv, the 3-D force once a millisecond
+    /// Write STEM.force.csv, the 3-D force, one row a millisecond and contact
     #[arg(long)]
     pub force: bool,
+    /// Rows a second of STEM.force.csv, up to the sample rate
+    #[arg(long, value_name = "HZ", default_value_t = 1000.0, requires = "force", value_parser = force_rate)]
+    pub force_rate: f64,
     /// Write STEM.svg, a picture of what happened
     #[arg(long)]
     pub plot: bool,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+fn force_rate(text: &str) -> Result<f64, String> {
+    let rate: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    let range = limits::FORCE_RATE_HZ;
+    if range.holds(rate) { Ok(rate) } else { Err(format!("must be {}", range.words)) }
 }
 
 fn sample_rate(text: &str) -> Result<f64, String> {
@@ -80,6 +94,11 @@ fn sample_rate(text: &str) -> Result<f64, String> {
 fn integrators() -> impl TypedValueParser<Value = Integrator> {
     PossibleValuesParser::new(Integrator::ALL.map(Integrator::name))
         .map(|name| Integrator::from_name(&name).unwrap_or_default())
+}
+
+fn kernels() -> impl TypedValueParser<Value = Isa> {
+    PossibleValuesParser::new(Isa::ALL.map(Isa::name))
+        .map(|name| Isa::from_name(&name).unwrap_or(Isa::Portable))
 }
 
 fn paths() -> impl TypedValueParser<Value = PathMode> {
@@ -117,10 +136,18 @@ pub struct Report {
     pub haptic_peak: Vec<f32>,
     /// Events of contacts that nobody began, or whose voice was stolen.
     pub orphaned: u64,
+    /// m or m/s² at sample value 1 of each haptic channel, written or by the level policy.
+    pub full_scale: Vec<f64>,
+    /// Gain of the audio, written or by the level policy; a list where there are several buses.
+    pub gain: Value,
+    /// By how much the peak limiters turned down at most, dB.
+    pub limiter_db: f64,
     /// Contacts faded because nothing was heard of them.
     pub lapsed: u64,
     /// Rate of both WAV files.
     pub sample_rate_hz: f64,
+    /// Instruction set of the kernels whose last bits depend on it.
+    pub kernel: Isa,
     /// Surfaces of sand as they lie afterwards, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub sand: BTreeMap<String, SandReport>,
@@ -191,12 +218,17 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         seed: options.seed,
         integrator: options.integrator,
         path: options.path,
+        kernel: options.kernel,
         ..Overrides::default()
     };
     let built = Engine::from_scene(&file, &overrides)?;
     let names: Vec<(String, SurfaceId)> =
         built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
-    let rate_hz = built.renderer.sample_rate_hz();
+    let levels = built.levels.clone();
+    for (actuator, full_scale) in file.actuators.iter_mut().zip(&levels.full_scale) {
+        actuator.full_scale = Some(*full_scale);
+    }
+    let (rate_hz, kernel) = (built.renderer.sample_rate_hz(), built.renderer.kernel());
     let duration_s = log.end_s() + file.tail_s;
     check_length(&file, duration_s, rate_hz)?;
 
@@ -209,7 +241,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     wav::write(&mut outputs, &with_suffix(stem, "audio.wav"), &audio, rate_hz)?;
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
-    let mut report = report(&render, watching);
+    let mut report = report(&render, kernel, levels, watching);
     report.warnings = unread.iter().map(|place| told::read_past(place)).collect();
     report.warnings.extend(told::warnings(&file, &log, &render, &report));
     for sand in &render.sand {
@@ -263,7 +295,7 @@ fn check_actuators(log: &ContactLog, path: &Path, channels: usize) -> Result<(),
         let hand = match &line.event {
             LogEvent::Begin { touching, .. } => &touching.hand,
             LogEvent::Impact { hand, .. } => hand,
-            LogEvent::Move { .. } | LogEvent::End { .. } => continue,
+            LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => continue,
         };
         if let Some(actuator) = hand.actuator.filter(|actuator| usize::from(*actuator) >= channels) {
             let what = format!("actuator {actuator} at t = {} s is not in the scene", line.t);
@@ -297,8 +329,14 @@ fn start_recorder(
         recorder.trace(outputs.create(&path)?).map_err(|error| CliError::write(&path, &error))?;
     }
     if options.force {
+        if options.force_rate > rate_hz {
+            let what = format!("{} Hz is above the sample rate", options.force_rate);
+            return Err(CliError::new("--force-rate", what, format!("must be at most {rate_hz} Hz")));
+        }
         let path = with_suffix(&options.output, "force.csv");
-        recorder.force(outputs.create(&path)?).map_err(|error| CliError::write(&path, &error))?;
+        recorder
+            .force(outputs.create(&path)?, options.force_rate)
+            .map_err(|error| CliError::write(&path, &error))?;
     }
     if options.plot {
         recorder.curves();
@@ -370,7 +408,7 @@ fn peak(samples: &[f32]) -> f32 {
     samples.iter().fold(0.0, |peak, sample| sample.abs().max(peak))
 }
 
-fn report(render: &Render, watching: Duration) -> Report {
+fn report(render: &Render, kernel: Isa, levels: Levels, watching: Duration) -> Report {
     let stats = &render.stats;
     let processing_s = render.processing.saturating_sub(watching).as_secs_f64().max(1e-9);
     Report {
@@ -385,12 +423,24 @@ fn report(render: &Render, watching: Duration) -> Report {
         audio_peak: render.audio.iter().map(|bus| peak(bus)).fold(0.0, f32::max),
         bus_peak: render.audio.iter().map(|bus| peak(bus)).collect(),
         haptic_peak: render.haptic.iter().map(|channel| peak(channel)).collect(),
+        full_scale: levels.full_scale,
+        gain: one_or_all(levels.gain),
+        limiter_db: render.limiter_db,
         orphaned: stats.orphaned,
         lapsed: stats.lapsed,
         sample_rate_hz: render.sample_rate_hz,
+        kernel,
         sand: BTreeMap::new(),
         files: Vec::new(),
         warnings: Vec::new(),
+    }
+}
+
+/// A number where there is one bus, a list where there are several.
+fn one_or_all(gain: Vec<f64>) -> Value {
+    match gain.as_slice() {
+        [only] => Value::from(*only),
+        all => Value::from(all.to_vec()),
     }
 }
 

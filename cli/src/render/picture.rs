@@ -6,7 +6,7 @@
 use crate::plot::{
     Axis, Figure, Layer, Panel, Picture, Series, SpectrogramOptions, colour, palette, spectrogram,
 };
-use asperity::files::scene_file::Wrap;
+use asperity::Wrap;
 use asperity_texture::raster::Raster;
 
 /// Contacts drawn one by one; more would cover each other.

@@ -3,6 +3,7 @@
 use super::picture::{ContactCurve, DRAWN_CONTACTS};
 use crate::csv::CsvWriter;
 use crate::progress::Progress;
+use asperity::live::ports::{ForceMeans, Of};
 use asperity::{ContactBlock, ContactId, Tap};
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -13,8 +14,6 @@ const TRACE_HEADER: &str =
     "time_s,contact,u,v,height_m,normal_force_n,pad_m,pad_velocity_m_s,finger_m,contact_force_n,impulse_n_s";
 /// Columns of `STEM.force.csv`.
 const FORCE_HEADER: &str = "time_s,contact,x_n,y_n,z_n";
-/// Rows a second of `STEM.force.csv`.
-const FORCE_RATE_HZ: f64 = 1_000.0;
 /// The picture keeps the strongest impulse of so many a second and contact.
 const IMPULSE_RATE_HZ: f64 = 2_000.0;
 
@@ -56,9 +55,10 @@ impl Recorder {
         Ok(())
     }
 
-    /// Writes the forces.
-    pub fn force(&mut self, file: BufWriter<File>) -> io::Result<()> {
-        self.force = Some(Force { table: CsvWriter::new(file, FORCE_HEADER)?, open: Vec::new() });
+    /// Writes the forces, `rate_hz` rows a second and contact.
+    pub fn force(&mut self, file: BufWriter<File>, rate_hz: f64) -> io::Result<()> {
+        let means = ForceMeans::new(rate_hz, self.sample_rate_hz, 64);
+        self.force = Some(Force { table: CsvWriter::new(file, FORCE_HEADER)?, rate_hz, means });
         Ok(())
     }
 
@@ -93,7 +93,7 @@ impl Recorder {
             trace.add(block, self.sample_rate_hz)?;
         }
         if let Some(force) = &mut self.force {
-            force.add(block, self.sample_rate_hz)?;
+            force.add(block)?;
         }
         Ok(())
     }
@@ -181,52 +181,34 @@ impl Trace {
     }
 }
 
-/// Means over a millisecond, one contact each.
+/// The rows of `STEM.force.csv`: means over a tick, one contact each.
 struct Force {
     table: Table,
-    open: Vec<OpenRow>,
-}
-
-struct OpenRow {
-    contact: u64,
-    millisecond: u64,
-    count: f64,
-    sum_n: [f64; 3],
+    rate_hz: f64,
+    means: ForceMeans,
 }
 
 impl Force {
-    fn add(&mut self, block: &ContactBlock<'_>, rate_hz: f64) -> io::Result<()> {
-        let millisecond = |sample: u64| (sample as f64 * FORCE_RATE_HZ / rate_hz + 1e-9) as u64;
-        self.close(millisecond(block.first_sample))?;
-        for (index, force_n) in block.force_n.iter().enumerate() {
-            let at = millisecond(block.first_sample + index as u64);
-            let contact = block.contact.0;
-            match self.open.iter_mut().find(|row| row.contact == contact && row.millisecond == at) {
-                Some(row) => {
-                    row.count += 1.0;
-                    row.sum_n = std::array::from_fn(|axis| row.sum_n[axis] + force_n[axis]);
-                }
-                None => self.open.push(OpenRow { contact, millisecond: at, count: 1.0, sum_n: *force_n }),
-            }
-        }
+    fn add(&mut self, block: &ContactBlock<'_>) -> io::Result<()> {
+        self.close(block.first_sample)?;
+        self.means.add(block);
         Ok(())
     }
 
-    /// Writes the rows of every millisecond that lies before the stretch now being told.
+    /// Writes the rows of every tick that lies before the stretch now being told.
     fn close(&mut self, before: u64) -> io::Result<()> {
-        if !self.open.iter().any(|row| row.millisecond < before) {
-            return Ok(());
-        }
-        self.open.sort_by_key(|row| (row.millisecond, row.contact));
-        let done = self.open.iter().take_while(|row| row.millisecond < before).count();
-        for row in self.open.drain(..done) {
-            self.table.number(row.millisecond as f64 / FORCE_RATE_HZ).whole(row.contact);
-            for sum_n in row.sum_n {
-                self.table.number(sum_n / row.count);
+        let Self { table, rate_hz, means } = self;
+        let mut written = Ok(());
+        means.close(before, |row| {
+            if let (Of::Contact(contact), Ok(())) = (row.of, &written) {
+                table.number(row.tick as f64 / *rate_hz).whole(contact.0);
+                for force_n in row.force_n {
+                    table.number(force_n);
+                }
+                written = table.end_row();
             }
-            self.table.end_row()?;
-        }
-        Ok(())
+        });
+        written
     }
 }
 

@@ -1,4 +1,4 @@
-//! What a render tells besides its files: what was refused, lost or clipped, and why a file is silence.
+//! Warnings of a render: what was refused, lost or clipped, and why a file is silence.
 
 use super::Report;
 use asperity::SilentBecause;
@@ -17,6 +17,7 @@ pub fn warnings(file: &SceneFile, log: &ContactLog, render: &Render, report: &Re
     let lost = render.why_silent.iter().filter(|reason| reason.count() > 0);
     let mut told: Vec<String> = lost.map(|reason| in_words(reason, log, render)).collect();
     told.extend(clipped(report));
+    told.extend(turned_down(report));
     told.extend(silence(file, log, render, report));
     told
 }
@@ -43,6 +44,20 @@ fn clipped(report: &Report) -> Vec<String> {
     told
 }
 
+/// A limiter that works as hard as that is heard and felt.
+const HARD_DB: f64 = 6.0;
+
+fn turned_down(report: &Report) -> Option<String> {
+    let by_db = report.limiter_db;
+    (by_db > HARD_DB).then(|| {
+        format!(
+            "a limiter turned down by up to {by_db:.1} dB: lower gain under [audio] or raise full_scale of the [[actuator]] (in use: \
+             gain {}, full_scale {:?})",
+            report.gain, report.full_scale
+        )
+    })
+}
+
 fn silence(file: &SceneFile, log: &ContactLog, render: &Render, report: &Report) -> Vec<String> {
     let mut told = Vec::new();
     let because = |but: &[SilentBecause], otherwise: &str| {
@@ -59,7 +74,7 @@ fn silence(file: &SceneFile, log: &ContactLog, render: &Render, report: &Report)
         ));
     }
     let mut channels = report.haptic_peak.iter().zip(&file.actuators);
-    if channels.all(|(peak, actuator)| f64::from(*peak) * actuator.full_scale < UNFELT) {
+    if channels.all(|(peak, actuator)| f64::from(*peak) * actuator.full_scale.unwrap_or(1.0) < UNFELT) {
         let begins = log.lines.iter().any(|line| matches!(line.event, LogEvent::Begin { .. }));
         let sounds_only = [SilentBecause::AudioGainZero, SilentBecause::NothingRings];
         let why = if begins {
@@ -141,7 +156,7 @@ fn first_gap(log: &ContactLog, timeout_s: f64) -> Option<(f64, u64)> {
         let (contact, ends) = match line.event {
             LogEvent::Begin { contact, .. } | LogEvent::Move { contact, .. } => (contact, false),
             LogEvent::End { contact } => (contact, true),
-            LogEvent::Impact { .. } => continue,
+            LogEvent::Impact { .. } | LogEvent::Edit(_) => continue,
         };
         let before_s = if ends { heard.remove(&contact) } else { heard.insert(contact, line.t) };
         gaps.extend(

@@ -1,13 +1,14 @@
-//! From a finished render to the picture of it: units, labels, surfaces from above.
+//! The picture of a finished render: units, labels, surfaces from above.
 
 use super::Report;
 use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};
 use crate::plot;
-use asperity::SurfaceId;
 use asperity::files::contact_log::{ContactLog, LogEvent};
-use asperity::files::scene_file::{ActuatorOutput, SceneFile, Source, Wrap};
+use asperity::files::scene_file::{SceneFile, Source};
 use asperity::offline::Render;
 use asperity::open;
+use asperity::{Quantity, SurfaceId, Wrap};
+use asperity_texture::image_io::load_channel;
 use asperity_texture::raster::Raster;
 use std::path::Path;
 
@@ -21,11 +22,11 @@ pub fn draw(
     names: &[(String, SurfaceId)],
 ) -> String {
     let haptic = file.actuators.iter().zip(&render.haptic).map(|(actuator, samples)| {
-        let (quantity, unit) = match actuator.output {
-            ActuatorOutput::Displacement => ("displacement", "m"),
-            ActuatorOutput::Acceleration => ("acceleration", "m/s²"),
+        let (quantity, unit) = match actuator.settings.output {
+            Quantity::Displacement => ("displacement", "m"),
+            Quantity::Acceleration => ("acceleration", "m/s²"),
         };
-        HapticChannel { quantity, unit, full_scale: actuator.full_scale, samples }
+        HapticChannel { quantity, unit, full_scale: actuator.full_scale.unwrap_or(1.0), samples }
     });
     let impacts_s = log
         .lines
@@ -68,7 +69,7 @@ fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> 
             let (title, heights) = match (&surface.source, sand) {
                 (_, Some(sand)) => ("the sand afterwards", sand.picture.raster.clone()),
                 (Source::Map { image, invert, .. }, _) => {
-                    let raster = open::pixels(image).ok()?.raster;
+                    let raster = load_channel(&image.path, image.channel).ok()?.raster;
                     let upright = if *invert { raster.map(|height| 1.0 - height) } else { raster };
                     ("from above", upright)
                 }

@@ -1,4 +1,4 @@
-//! How heights are read between the texels of a map.
+//! Map filters compared: the error of reading heights between the texels of a map.
 
 use super::{BLOCK, Row, SAMPLE_RATE_HZ, refused};
 use crate::error::CliError;

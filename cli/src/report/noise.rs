@@ -3,7 +3,7 @@
 use super::{BLOCK, Row, SAMPLE_RATE_HZ};
 use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
-use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath, OctaveWeights};
 
 const SECONDS: f64 = 0.25;
 const RMS_AT_1_MM_M: f64 = 2e-6;
@@ -15,7 +15,12 @@ fn heights(noise: &FractalNoise, position_m: &[[f64; 2]], footprint_m: f64) -> V
     let mut heights = vec![0.0; position_m.len()];
     for (places, out) in position_m.chunks(BLOCK).zip(heights.chunks_mut(BLOCK)) {
         let path = NoisePath { position_m: places, footprint_m: &footprints[..places.len()] };
-        noise.add(&path, &roughness[..places.len()], RMS_AT_1_MM_M, f64::INFINITY, out);
+        noise.add(
+            &path,
+            &roughness[..places.len()],
+            &OctaveWeights::pinned(RMS_AT_1_MM_M, f64::INFINITY),
+            out,
+        );
     }
     heights
 }

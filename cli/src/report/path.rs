@@ -1,4 +1,4 @@
-//! How sparse positions become a path.
+//! Path modes compared: sparse positions made into a path.
 
 use super::{BLOCK, Row, SAMPLE_RATE_HZ, refused};
 use crate::error::CliError;

@@ -1,4 +1,4 @@
-//! Where the contact model is safe: for every contact stiffness, rate and scheme asked for, what runs in its place, in how many
+//! Stability of the contact model: for every contact stiffness, rate and scheme asked for, what runs in its place, in how many
 //! sub-steps, what it does to the energy of a finger that bounces without damping, and whether it forgets.
 //!
 //! *Energy gain*: an undamped finger lands at 0.1 m/s under 0.5 N and bounces for a second; the largest energy over that at the
@@ -11,7 +11,7 @@
 use super::refused;
 use crate::error::CliError;
 use asperity::{Integrator, Probe};
-use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
 use asperity_dsp::micro_contact::{ContactSample, ContactState, MicroContact};
 use serde::Serialize;
 
@@ -116,7 +116,12 @@ fn ground(sample_rate_hz: f64, moved_m: f64) -> Vec<f64> {
     let mut height_m: Vec<f64> = (0..count).map(|n| wave(along(n))).collect();
     let footprint_m = vec![SPEED_M_S / sample_rate_hz.min(44_100.0); count];
     let path = NoisePath { position_m: &position_m, footprint_m: &footprint_m };
-    FractalNoise::new(1).add(&path, &vec![ROUGHNESS; count], MICRO_RELIEF_M, f64::INFINITY, &mut height_m);
+    FractalNoise::new(1).add(
+        &path,
+        &vec![ROUGHNESS; count],
+        &OctaveWeights::pinned(MICRO_RELIEF_M, f64::INFINITY),
+        &mut height_m,
+    );
     height_m
 }
 

@@ -16,7 +16,7 @@
 //! than the observers were.
 
 use crate::error::CliError;
-use asperity::files::contact_log::{ContactLog, LogEvent, LogLine, LogSample, Names};
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
 use asperity::offline::{self, Options};
 use asperity::{ActuatorSettings, Config, Extent, Roughness, Surface, Wrap};
 use asperity_dsp::rng::Rng;
@@ -117,7 +117,7 @@ fn random_strokes(size_m: [f64; 2], count: usize, seed: u64) -> ContactLog {
         let steps = ((LANDING_S + STROKE_S) * EVENTS_HZ) as usize;
         for step in 0..steps {
             let t = step as f64 / EVENTS_HZ;
-            let sample = LogSample {
+            let sample = ContactSample {
                 uv: [0, 1].map(|axis| from[axis] + velocity[axis] * t / size_m[axis]),
                 velocity_m_s: Some(velocity),
                 normal_force_n,
@@ -126,7 +126,7 @@ fn random_strokes(size_m: [f64; 2], count: usize, seed: u64) -> ContactLog {
             let event = if step == 0 {
                 LogEvent::begin(contact, "s", 0, sample)
             } else {
-                LogEvent::Move { contact, sample }
+                LogEvent::moved(contact, sample)
             };
             lines.push(LogLine { t: start_s + t, event });
         }

@@ -83,6 +83,8 @@ pub enum MethodName {
     TsaiShah,
     /// Bright is high: for light from everywhere.
     DarkIsDeep,
+    /// Relief on a flat ground, lit from the viewer's direction.
+    FlatGround,
 }
 
 fn light(text: &str) -> Result<Light, String> {
@@ -107,6 +109,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
             MethodName::Integrable => Method::Integrable(STEPS),
             MethodName::TsaiShah => Method::TsaiShah(TSAI_SHAH_STEPS),
             MethodName::DarkIsDeep => Method::DarkIsDeep,
+            MethodName::FlatGround => Method::FlatGround,
         }),
         bright_is_deep: options.bright_is_deep,
         texel_m,
@@ -284,6 +287,8 @@ mod tests {
             path: None,
             trace: false,
             force: false,
+            force_rate: 1000.0,
+            kernel: None,
             plot: false,
             json: false,
         };

@@ -9,9 +9,6 @@ use asperity_texture::solid_noise::{SolidCut, SolidNoise};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Fades of parameters need a rate; a picture has none.
-const ANY_RATE_HZ: f64 = 44_100.0;
-
 /// Make a 16-bit picture of a solid-noise material: sandpaper, granite, rough glass, wood, sand, gravel, pebbles
 #[derive(Debug, Args)]
 pub struct Options {
@@ -50,7 +47,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         )
     })?;
     let parameters = material.parameters();
-    let noise = SolidNoise::new(parameters, options.seed, ANY_RATE_HZ).map_err(CliError::told)?;
+    let noise = SolidNoise::new(parameters, options.seed).map_err(CliError::told)?;
     let size = options.size as usize;
     let metres_per_px = options.width_m / size as f64;
     let heights_m = Raster::from_fn(size, size, |x, y| {

@@ -1,4 +1,4 @@
-//! What the black-box tests share: running the program, and small scenes to run it on.
+//! Support of the black-box tests: running the program, and small scenes to run it on.
 #![allow(dead_code)]
 
 pub mod oracle;

@@ -1,4 +1,4 @@
-//! What one contact sends to its actuator: the pad's motion, without the resting position.
+//! Output of one contact to its actuator: the motion of the pad, high-passed about its resting position.
 
 use crate::DesignError;
 use crate::butterworth::{Butterworth, State, Two};
@@ -7,6 +7,7 @@ use core::f64::consts::PI;
 
 /// Which quantity of the pad is played.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Quantity {
     /// Displacement, m (the paper).
     Displacement,

@@ -14,6 +14,7 @@ use core::f64::consts::PI;
 /// An actuator as its data sheet or a measurement describes it. "Felt" means at the skin: the motion of
 /// the mass times its share of the total mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct DeviceProfile {
     /// f₀, Hz.
     pub resonance_hz: f64,

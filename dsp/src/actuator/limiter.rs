@@ -175,13 +175,15 @@ pub struct PeakLimiter {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeakLimiterState {
     gain: f32,
+    /// The lowest that it was.
+    deepest: f32,
     /// Samples for which the gain still holds.
     held: u32,
 }
 
 impl Default for PeakLimiterState {
     fn default() -> Self {
-        Self { gain: 1.0, held: 0 }
+        Self { gain: 1.0, deepest: 1.0, held: 0 }
     }
 }
 
@@ -226,7 +228,14 @@ impl PeakLimiterState {
         }
         if self.gain * peak > design.ceiling {
             self.gain = (design.ceiling / peak).max(DEEPEST_GAIN);
+            self.deepest = self.deepest.min(self.gain);
         }
+    }
+
+    /// The lowest gain that was at work so far.
+    #[must_use]
+    pub const fn deepest(&self) -> f32 {
+        self.deepest
     }
 
     /// The gain at work.

@@ -1,4 +1,4 @@
-//! Where samples are on the lattices, in fixed point: 32 bits of index and 32 of fraction.
+//! Lattice coordinates of samples in fixed point: 32 bits of index and 32 of fraction.
 
 use crate::gradient_noise_2d::Corners;
 use crate::vector::Vector;

@@ -17,7 +17,7 @@ const TAIL_BOOST: [f32; 4] = [0.092_212_5, 0.124_280_17, -0.010_080_097, 0.167_8
 
 /// Σ cₖ xᵏ
 #[inline(always)]
-fn polynomial<const N: usize, V: Vector<N>>(v: V, x: V::Single, c: &[f32]) -> V::Single {
+pub(super) fn polynomial<const N: usize, V: Vector<N>>(v: V, x: V::Single, c: &[f32]) -> V::Single {
     let mut terms = c.iter().rev();
     let mut sum = v.splat(terms.next().copied().unwrap_or(0.0));
     for c in terms {
@@ -28,7 +28,7 @@ fn polynomial<const N: usize, V: Vector<N>>(v: V, x: V::Single, c: &[f32]) -> V:
 
 /// The nearest number within 0–1, and 0 for a NaN.
 #[inline(always)]
-fn within_0_1<const N: usize, V: Vector<N>>(v: V, x: V::Single) -> V::Single {
+pub(super) fn within_0_1<const N: usize, V: Vector<N>>(v: V, x: V::Single) -> V::Single {
     v.min(v.max(x, v.splat(0.0)), v.splat(1.0))
 }
 

@@ -1,8 +1,10 @@
 //! The noise of N samples side by side.
 
 use super::cells::{Bounds, Cells, LastCell, cells};
-use super::gains::{Gains, footprint_weight, gains};
-use super::{FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, Octave, ROTATION_RAD, ROTATIONS};
+use super::gains::{Gains, footprint_weight, gains, polynomial, within_0_1};
+use super::{
+    FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, Octave, OctaveWeights, ROTATION_RAD, ROTATIONS,
+};
 use crate::gradient_noise_2d::{Corners, corners, gradient_noise};
 use crate::vector::Vector;
 
@@ -22,6 +24,23 @@ const WHOLE: f32 = 4.001;
 struct Lattice<W> {
     cells: [Cells<W>; 2],
     bounds: Bounds,
+}
+
+/// What the roughness of N samples says, kept until it is another.
+#[derive(Clone, Copy)]
+struct Rough<F> {
+    roughness: F,
+    gains: Gains<F>,
+    /// Weights of the octaves.
+    weights: [F; OCTAVES],
+}
+
+impl<F: Copy> Rough<F> {
+    #[inline(always)]
+    fn new<const N: usize, V: Vector<N, Single = F>>(v: V, weights: &OctaveWeights, roughness: F) -> Self {
+        let within = within_0_1(v, roughness);
+        Self { roughness, gains: gains(v, roughness), weights: weights.of.map(|c| polynomial(v, within, &c)) }
+    }
 }
 
 /// N samples of a path in the form the octaves need.
@@ -44,7 +63,8 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         position_m: &[[f64; 2]; N],
         footprint_m: &[f64; N],
         roughness: &[f64; N],
-        last_gains: &mut (V::Single, Gains<V::Single>),
+        weights: &OctaveWeights,
+        rough: &mut Rough<V::Single>,
     ) -> Self {
         let [x, y] = v.load_points(position_m);
         let (x, y) = (within_reach(v, x), within_reach(v, y));
@@ -60,15 +80,15 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         let footprint = v.max(v.load(footprint_m), v.splat(0.0));
         let (shortest_footprint_m, longest_footprint_m) = v.extremes(footprint);
         let roughness = v.load(roughness);
-        if !v.equal(roughness, last_gains.0) {
-            *last_gains = (roughness, gains(v, roughness));
+        if !v.equal(roughness, rough.roughness) {
+            *rough = Rough::new(v, weights, roughness);
         }
         let slow = slow_octaves(noise, way_m(position_m));
         Self {
             v,
             lattices,
             slow,
-            gains: last_gains.1,
+            gains: rough.gains,
             samples_per_metre: v.div(v.splat(1.0), v.add(footprint, v.splat(f32::MIN_POSITIVE))),
             shortest_footprint_m,
             longest_footprint_m,
@@ -80,7 +100,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
     fn sum(
         &self,
         noise: &FractalNoise,
-        band: &[f32; OCTAVES],
+        weights: &[V::Single; OCTAVES],
         coarsest: usize,
         last: &mut [LastCell<V::Word>; OCTAVES],
     ) -> V::Single {
@@ -105,7 +125,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
                 weight = footprint_weight(v, v.mul(v.splat(cell_m), self.samples_per_metre));
             }
             if !gone {
-                let mut scale = v.splat(band[i]);
+                let mut scale = weights[i];
                 if !(whole && all_finer) {
                     let boost = v.add(one, v.mul(self.gains.tail_boost, v.sub(one, finer)));
                     scale = v.mul(scale, v.mul(weight, boost));
@@ -124,7 +144,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         while i > coarsest {
             i -= 1;
             let value = self.slow_octave(noise, i, &mut last[i]);
-            sum = v.add(sum, v.mul(v.mul(gain, v.splat(band[i])), value));
+            sum = v.add(sum, v.mul(v.mul(gain, weights[i]), value));
             gain = v.mul(gain, self.gains.coarser);
         }
         sum
@@ -202,21 +222,20 @@ pub(super) fn add<const N: usize, V: Vector<N>>(
     noise: &FractalNoise,
     path: &NoisePath<'_>,
     roughness: &[f64],
-    band: &[f32; OCTAVES],
+    weights: &OctaveWeights,
     height_m: &mut [f64],
 ) {
     let (positions, positions_left) = path.position_m.as_chunks::<N>();
     let (footprints, footprints_left) = path.footprint_m.as_chunks::<N>();
     let (roughness, roughness_left) = roughness.as_chunks::<N>();
     let (heights, heights_left) = height_m.as_chunks_mut::<N>();
-    let coarsest = band.iter().position(|band| *band != 0.0).unwrap_or(OCTAVES);
+    let coarsest = (0..OCTAVES).find(|octave| weights.counts(*octave)).unwrap_or(OCTAVES);
     let mut last = [LastCell::none(v); OCTAVES];
-    let nothing = v.splat(f32::NAN);
-    let mut last_gains = (nothing, Gains { finest: nothing, coarser: nothing, tail_boost: nothing });
+    let mut rough = Rough::new(v, weights, v.splat(f32::NAN));
     let inputs = positions.iter().zip(footprints).zip(roughness);
     for (((position, footprint), roughness), height) in inputs.zip(heights) {
-        let lanes = Lanes::new(v, noise, position, footprint, roughness, &mut last_gains);
-        v.add_to(lanes.sum(noise, band, coarsest, &mut last), height);
+        let lanes = Lanes::new(v, noise, position, footprint, roughness, weights, &mut rough);
+        v.add_to(lanes.sum(noise, &rough.weights, coarsest, &mut last), height);
     }
     if heights_left.is_empty() {
         return;
@@ -227,10 +246,11 @@ pub(super) fn add<const N: usize, V: Vector<N>>(
         &padded(positions_left, [0.0; 2]),
         &padded(footprints_left, 0.0),
         &padded(roughness_left, 0.0),
-        &mut last_gains,
+        weights,
+        &mut rough,
     );
     let mut out = padded(heights_left, 0.0);
-    v.add_to(lanes.sum(noise, band, coarsest, &mut last), &mut out);
+    v.add_to(lanes.sum(noise, &rough.weights, coarsest, &mut last), &mut out);
     for (height, out) in heights_left.iter_mut().zip(out) {
         *height = out;
     }

@@ -3,7 +3,7 @@
 //! Fused multiply-adds are not used, because they would change the bits.
 #![allow(unsafe_code)]
 
-use super::{FractalNoise, Kernel, NoisePath, OCTAVES, lanes};
+use super::{FractalNoise, Kernel, NoisePath, OctaveWeights, lanes};
 use crate::vector::Portable;
 #[cfg(target_arch = "x86_64")]
 use crate::vector::{Avx2, Avx512};
@@ -32,11 +32,11 @@ fn add_avx2(
     noise: &FractalNoise,
     path: &NoisePath<'_>,
     roughness: &[f64],
-    band: &[f32; OCTAVES],
+    weights: &OctaveWeights,
     height_m: &mut [f64],
 ) {
     // SAFETY: this function is called only where the processor has the instruction set.
-    lanes::add(unsafe { Avx2::new() }, noise, path, roughness, band, height_m);
+    lanes::add(unsafe { Avx2::new() }, noise, path, roughness, weights, height_m);
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -45,11 +45,11 @@ fn add_avx512(
     noise: &FractalNoise,
     path: &NoisePath<'_>,
     roughness: &[f64],
-    band: &[f32; OCTAVES],
+    weights: &OctaveWeights,
     height_m: &mut [f64],
 ) {
     // SAFETY: as above.
-    lanes::add(unsafe { Avx512::new() }, noise, path, roughness, band, height_m);
+    lanes::add(unsafe { Avx512::new() }, noise, path, roughness, weights, height_m);
 }
 
 /// Adds the noise on the field's instruction set.
@@ -57,16 +57,16 @@ pub fn add(
     noise: &FractalNoise,
     path: &NoisePath<'_>,
     roughness: &[f64],
-    band: &[f32; OCTAVES],
+    weights: &OctaveWeights,
     height_m: &mut [f64],
 ) {
     match noise.kernel {
         #[cfg(target_arch = "x86_64")]
         // SAFETY: `FractalNoise::with_kernel` stores a kernel only if `is_available` found its features.
-        Kernel::Avx512 => unsafe { add_avx512(noise, path, roughness, band, height_m) },
+        Kernel::Avx512 => unsafe { add_avx512(noise, path, roughness, weights, height_m) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: as above.
-        Kernel::Avx2 => unsafe { add_avx2(noise, path, roughness, band, height_m) },
-        _ => lanes::add::<8, _>(Portable, noise, path, roughness, band, height_m),
+        Kernel::Avx2 => unsafe { add_avx2(noise, path, roughness, weights, height_m) },
+        _ => lanes::add::<8, _>(Portable, noise, path, roughness, weights, height_m),
     }
 }

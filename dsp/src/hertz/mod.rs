@@ -66,6 +66,16 @@ impl Elastic {
 }
 
 /// A sphere (or two) about to touch: everything of a Hertz contact but the speed.
+///
+/// ```
+/// use asperity_dsp::hertz::{Elastic, HertzContact};
+///
+/// let steel = Elastic { young_pa: 200e9, poisson: 0.29 };
+/// let ball = HertzContact::new(&steel, &steel, 0.005, 0.004)?;
+/// // 30 µs at 1 m/s, and shorter the faster it strikes.
+/// assert!((ball.contact_time_s(1.0) - 30e-6).abs() < 10e-6 && ball.contact_time_s(4.0) < ball.contact_time_s(1.0));
+/// # Ok::<(), asperity_dsp::DesignError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HertzContact {
     effective_modulus_pa: f64,

@@ -1,4 +1,4 @@
-//! Which integrator runs: the wanted one while it is safe, sub-stepped or replaced when it is not.
+//! Choice of integrator: the wanted one while it is safe, sub-stepped or replaced where it is not.
 //!
 //! The rule looks at ω_c·h, the phase (radians) that the pressed pad turns through in one sample.
 //! Semi-implicit Euler stays linearly stable to 2 but gains energy far below that: an undamped
@@ -23,10 +23,12 @@ const MAX_SUBSTEPS: usize = 16;
 
 /// How the equations of motion are integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Integrator {
     /// The paper's scheme with the damper centred in time: 4× less error at the same cost.
     SemiImplicitEuler,
     /// The paper's scheme read literally: the damper sees the old velocities.
+    #[cfg_attr(feature = "serde", serde(rename = "semi-implicit-euler-explicit"))]
     SemiImplicitEulerExplicitDamper,
     /// Exact maps of both regimes, located events, cubic profile; one sample of latency.
     #[default]

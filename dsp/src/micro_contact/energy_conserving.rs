@@ -47,6 +47,13 @@ impl EnergyConserving {
         Self { free, half_stiffness_n_m, pressed_stiffness_n_m, ratio, rate_hz: 1.0 / step_s }
     }
 
+    /// The same probe on another contact.
+    pub fn set_stiffness(&mut self, contact_stiffness_n_m: f64) {
+        self.half_stiffness_n_m = 0.5 * contact_stiffness_n_m;
+        self.ratio = self.free.push[0] * self.half_stiffness_n_m;
+        self.pressed_stiffness_n_m = self.half_stiffness_n_m / (1.0 + self.ratio);
+    }
+
     /// Runs one clean block; row n describes input n.
     #[inline(always)]
     pub fn run<Q: Quad>(

@@ -65,6 +65,16 @@ impl ExactEvent {
         }
     }
 
+    /// The scheme between two that differ in the contact's stiffness.
+    pub fn become_between(&mut self, softer: &Self, harder: &Self, share: f64) {
+        self.regimes[0] = softer.regimes[0];
+        self.regimes[1].become_between(&softer.regimes[1], &harder.regimes[1], share);
+        (self.coarsest, self.finest) = (harder.coarsest, harder.finest);
+        (self.step_s, self.mass_rate) = (softer.step_s, softer.mass_rate);
+        self.stiffness_per_mass =
+            softer.stiffness_per_mass + share * (harder.stiffness_per_mass - softer.stiffness_per_mass);
+    }
+
     /// Runs one clean block; row n describes input n − 1.
     #[inline(always)]
     pub fn run<Q: Quad>(

@@ -88,6 +88,22 @@ impl Regime {
     }
 }
 
+impl Regime {
+    /// The mean of two regimes, weighed.
+    pub fn become_between(&mut self, a: &Self, b: &Self, share: f64) {
+        for (own, (a, b)) in self.maps.iter_mut().zip(a.maps.iter().zip(&b.maps)) {
+            for (own, (a, b)) in own.columns.iter_mut().zip(a.columns.iter().zip(&b.columns)) {
+                for (own, (a, b)) in own.iter_mut().zip(a.iter().zip(b)) {
+                    *own = a + share * (b - a);
+                }
+            }
+        }
+        for (own, (a, b)) in self.push.iter_mut().zip(a.push.iter().zip(&b.push)) {
+            *own = a + share * (b - a);
+        }
+    }
+}
+
 /// The flow's generator a sample, in displacements a sample and accelerations a sample².
 fn generator(probe: &Probe, contact_stiffness_n_m: f64, step_s: f64) -> Matrix {
     let Probe { pad_mass_kg, finger_mass_kg, .. } = *probe;

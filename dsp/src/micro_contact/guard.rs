@@ -1,4 +1,4 @@
-//! What may enter a kernel, and what brings a lost contact back.
+//! Input guard of the contact model: bad numbers are held out, and a lost contact is brought back.
 //!
 //! | seen | done | counted |
 //! |---|---|---|

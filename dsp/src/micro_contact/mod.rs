@@ -47,15 +47,18 @@ mod probe;
 mod quad;
 mod semi_implicit;
 mod state;
+mod stiffening;
 
 pub use choice::{
     Choice, EULER_MAX_PHASE, EXACT_MAX_PHASE, EXACT_MAX_STIFFNESS_N_M, Integrator, SUBSTEP_MAX_PHASE,
 };
 pub use lanes::{EulerLanes, LANES, LaneRow, Lanes};
 pub use probe::{
-    CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG, PAD_STIFFNESS_N_M, Probe,
+    CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, FORCE_EXPONENT, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG,
+    PAD_STIFFNESS_N_M, Probe,
 };
 pub use state::{ContactSample, ContactState, Onset};
+pub use stiffening::RUNGS_AN_OCTAVE;
 
 use crate::DesignError;
 use energy_conserving::EnergyConserving;
@@ -79,6 +82,7 @@ pub struct MicroContact {
     step_s: f64,
     leash_m: f64,
     scheme: Scheme,
+    portable: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,7 +111,14 @@ impl MicroContact {
             Integrator::ExactEvent => Scheme::ExactEvent(ExactEvent::new(probe, step_s)),
             Integrator::EnergyConserving => Scheme::EnergyConserving(EnergyConserving::new(probe, step_s)),
         };
-        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme })
+        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme, portable: false })
+    }
+
+    /// Whether products and sums round apart, as on every machine, or are fused where this one can: the last bits of a row
+    /// depend on it.
+    #[must_use]
+    pub fn portable(self, portable: bool) -> Self {
+        Self { portable, ..self }
     }
 
     /// The probe it was designed for.
@@ -217,10 +228,14 @@ impl MicroContact {
         normal_force_n: &[f64],
         out: &mut [ContactSample],
     ) {
-        dispatch::run(self, state, height_m, normal_force_n, out);
+        if self.portable {
+            dispatch::run_portable(self, state, height_m, normal_force_n, out);
+        } else {
+            dispatch::run(self, state, height_m, normal_force_n, out);
+        }
     }
 
-    /// [`Self::run`] without vectors wider than the crate was compiled for: the same bits, slower.
+    /// [`Self::run`] without vectors wider than the crate was compiled for: the same bits where those do not fuse, slower.
     pub fn run_portable(
         &self,
         state: &mut ContactState,

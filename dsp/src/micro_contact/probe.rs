@@ -1,4 +1,4 @@
-//! What touches the surface: a fingertip as two masses, a spring, a damper and a leash.
+//! The probe that touches the surface: a fingertip as two masses, a spring, a damper and a leash.
 
 use crate::DesignError;
 use crate::limits::probe as limits;
@@ -13,15 +13,23 @@ pub const PAD_STIFFNESS_N_M: f64 = 1000.0;
 pub const PAD_DAMPING_N_S_M: f64 = 2.0;
 /// Mass of the finger behind the pad, kg. **Assumed**: only the order of magnitude is known.
 pub const FINGER_MASS_KG: f64 = 20e-3;
-/// Stiffness of skin on surface, N/m. **Design choice**: 50 times the pad, so that the skin follows
-/// the profile to 2.9 kHz.
-pub const CONTACT_STIFFNESS_N_M: f64 = 5e4;
+/// Stiffness of skin on surface at 1 N, N/m. **Measured here**: above it the contact is chaotic on rough ground, below it micro-collisions are
+/// silent (with 8–16 µm of micro-relief, 0.05–0.2 m/s; `docs/feel.md` has the map). The same as F/u of a rough contact
+/// (B. Persson 2007: u about 0.4 rms) on 12 µm.
+pub const CONTACT_STIFFNESS_N_M: f64 = 2e5;
+/// n of k_m ∝ Fⁿ: Hertz, a sphere on a plane.
+pub const FORCE_EXPONENT: f64 = 1.0 / 3.0;
 /// Longest gap between skin and surface that the finger's own motion may open, m. **Design choice**:
 /// an unloaded finger drifts 88 mm away in one second without it.
 pub const LEASH_M: f64 = 1e-3;
 
 /// The mechanical parameters of one probe (Hasti Fig. 6). All SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Probe {
     /// m_s: skin mass, kg; 1e-6 to 1.
     pub pad_mass_kg: f64,
@@ -35,6 +43,11 @@ pub struct Probe {
     pub contact_stiffness_n_m: f64,
     /// Separation beyond which upward motion stops, m; 1e-6 to 0.05.
     pub leash_m: f64,
+    /// Radius of the sphere that rides on the surface, m; 0 (a point) to 0.1. The contact model does not see it: it is for whoever
+    /// makes the heights.
+    pub tip_radius_m: f64,
+    /// n of k_m ∝ Fⁿ, F the pressing force in newtons; 0 (always `contact_stiffness_n_m`) to 1.
+    pub force_exponent: f64,
 }
 
 impl Default for Probe {
@@ -47,6 +60,8 @@ impl Default for Probe {
             finger_mass_kg: FINGER_MASS_KG,
             contact_stiffness_n_m: CONTACT_STIFFNESS_N_M,
             leash_m: LEASH_M,
+            tip_radius_m: 0.0,
+            force_exponent: FORCE_EXPONENT,
         }
     }
 }
@@ -60,12 +75,17 @@ impl Probe {
     }
 
     /// Refuses values outside the documented ranges.
-    pub(crate) fn check(&self) -> Result<(), DesignError> {
+    ///
+    /// # Errors
+    /// Names the first field that is outside.
+    pub fn check(&self) -> Result<(), DesignError> {
         limits::PAD_MASS_KG.check("pad_mass_kg", self.pad_mass_kg)?;
         limits::PAD_STIFFNESS_N_M.check("pad_stiffness_n_m", self.pad_stiffness_n_m)?;
         limits::PAD_DAMPING_N_S_M.check("pad_damping_n_s_m", self.pad_damping_n_s_m)?;
         limits::FINGER_MASS_KG.check("finger_mass_kg", self.finger_mass_kg)?;
         limits::CONTACT_STIFFNESS_N_M.check("contact_stiffness_n_m", self.contact_stiffness_n_m)?;
-        limits::LEASH_M.check("leash_m", self.leash_m).map(|_| ())
+        limits::LEASH_M.check("leash_m", self.leash_m)?;
+        limits::TIP_RADIUS_M.check("tip_radius_m", self.tip_radius_m)?;
+        limits::FORCE_EXPONENT.check("force_exponent", self.force_exponent).map(|_| ())
     }
 }

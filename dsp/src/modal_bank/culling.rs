@@ -1,4 +1,4 @@
-//! Which modes of a body need not be computed because nobody can hear them, whatever the distance.
+//! Culling of inaudible modes: those that nobody can hear need not be computed, whatever the distance.
 //!
 //! A mode goes when it starts more than `level_db` below the loudest, or when a louder mode that lasts at
 //! least as long masks it all the time. Masking follows the tonal model of ISO/IEC 11172-3, annex D.1
@@ -18,6 +18,11 @@ use crate::mode::Mode;
 
 /// What counts as inaudible.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields, default)
+)]
 pub struct Culling {
     /// Modes that start further below the loudest are dropped, dB. Infinite: none.
     pub level_db: f64,

@@ -1,4 +1,4 @@
-//! From modes to the coefficients of one group of 16 lanes; fallible, in `f64`, once.
+//! Coefficient design for one group of 16 modes; fallible, in `f64`, once.
 
 use super::LANES;
 use crate::DesignError;

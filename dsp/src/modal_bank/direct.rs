@@ -1,4 +1,4 @@
-//! What inputs send past the states: to the outputs of their own sample and of the later ones of its turn.
+//! Direct feed-through: the share of an input that reaches the outputs of its own turn without passing the states.
 //!
 //! The same for all modes together, so it costs nothing a mode: the states of a turn's beginning do not know yet what is
 //! heard in it, and h₀…h₃, summed over the modes, are all that is missing.

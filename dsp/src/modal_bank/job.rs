@@ -1,4 +1,4 @@
-//! What a bank is asked to do: groups, states and inputs, and the pieces this is cut into.
+//! A job of the bank: groups, states and inputs, and the pieces they are cut into.
 
 use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup, TURN};
 

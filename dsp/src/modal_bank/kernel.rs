@@ -1,4 +1,4 @@
-//! Which instructions the bank runs on, and its entry points.
+//! Instruction sets of the bank, and its entry points.
 #![allow(unsafe_code)]
 
 use super::design::{GRID_SAMPLES, GroupState, ModeGroup};
@@ -9,6 +9,7 @@ use super::walk::walk;
 
 /// An instruction set the bank has code for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "lowercase"))]
 pub enum Isa {
     /// Plain Rust at the baseline of the build target; multiplication and addition round apart.
     Portable,
@@ -18,6 +19,28 @@ pub enum Isa {
     Avx2,
     /// x86-64 with AVX-512F.
     Avx512,
+}
+
+impl Isa {
+    /// Every instruction set.
+    pub const ALL: [Self; 4] = [Self::Portable, Self::Neon, Self::Avx2, Self::Avx512];
+
+    /// Its name on the command line, in settings and in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Portable => "portable",
+            Self::Neon => "neon",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+
+    /// The instruction set of that name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|isa| isa.name() == name)
+    }
 }
 
 /// Permission to run one instruction set; exists only for sets this processor has.

@@ -1,4 +1,4 @@
-//! From the sums over the modes to the samples of a turn.
+//! Output sums of a turn: sums over the modes become samples.
 
 use super::LANES;
 use super::design::TURN;

@@ -1,4 +1,4 @@
-//! What all paths at one sample rate share: mode, filter, wrapping.
+//! Design shared by all paths at one sample rate: mode, filter, wrapping.
 
 use crate::DesignError;
 use crate::butterworth::Butterworth;
@@ -9,6 +9,7 @@ pub const HERMITE_DELAY_S: f64 = 1.25 / 60.0;
 
 /// How positions between events are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum PathMode {
     /// Dead reckoning with the reported velocity.
     #[default]

@@ -1,4 +1,4 @@
-//! From sparse contact events to one position, velocity and normal force a sample: the path stage.
+//! The path stage: sparse contact events become one position, velocity and normal force a sample.
 //!
 //! ```text
 //! input(t)  = p₀ + v₀ (t − t₀)                 t − t₀ ≤ 1.5 T        (extrapolate)

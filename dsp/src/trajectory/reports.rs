@@ -1,4 +1,4 @@
-//! What a report does to a path: it goes on, makes up what a silence cost, or starts elsewhere.
+//! Reports taken by a path: it goes on, makes up what a silence cost, or starts elsewhere.
 
 use super::catch_up::{Distance, Speeds};
 use super::{PathMode, STILL_DISTANCE_M, Trajectory, TrajectoryDesign, or_rest};

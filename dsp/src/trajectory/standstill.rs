@@ -1,4 +1,4 @@
-//! Whether a reported velocity of zero is believed.
+//! Standstill detection: whether a reported velocity of zero is believed.
 //!
 //! Some games fill in a velocity of zero because they have none. A finger that is said to rest and is found
 //! elsewhere, report after report, does not rest: from then on its velocity is estimated from its places,

@@ -1,26 +1,21 @@
-//! A rapier3d world that is heard and felt: a ball is dropped, a box slides, a finger is dragged over a
-//! triangle mesh with texture coordinates. What the game reports is recorded, rendered again offline, and
-//! must give the same samples.
+//! A rapier3d world that is heard and felt through `asperity-rapier`: a ball is dropped, a box slides, two balls meet, a finger is dragged over
+//! a triangle mesh with texture coordinates. What the game reports is recorded, rendered again offline, and must give the same samples.
 //!
 //! ```sh
 //! cargo run --release -p asperity-rapier-contacts [FOLDER]
 //! ```
 //! writes `rapier.audio.wav`, `rapier.haptic.wav` and `rapier.jsonl` into FOLDER (default: the current one).
 
-mod adapter;
 mod mesh;
 
-use adapter::{Ground, Touch, Toucher};
 use asperity::files::contact_log::{LogEvent, Names};
 use asperity::offline::{self, Options};
-use asperity::texture::height_map::HeightMap;
 use asperity::{
-    Actuator, ActuatorSettings, AudioBus, ClockMode, Config, Extent, Material, ModalModel, Mode, Renderer,
-    Scene, Surface,
+    Actuator, ActuatorSettings, AudioBus, Body, ClockMode, Config, Material, Renderer, Scene, Stock, Surface,
 };
+use asperity_rapier::{Adapter, Mapping, Thing};
 use mesh::UvMesh;
 use rapier3d::prelude::*;
-use std::collections::HashMap;
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -30,6 +25,12 @@ const SIDE_M: f64 = 0.4;
 const BLOCK: usize = 128;
 const RATE_HZ: f64 = 48_000.0;
 const SECONDS: f64 = 3.0;
+/// What rings.
+const BODIES: [(&str, Stock, f64, Material); 3] = [
+    ("slab", Stock::Plate, SIDE_M, Material::CERAMIC),
+    ("box", Stock::Block, 0.04, Material::WOOD),
+    ("ball", Stock::Disc, 0.05, Material::BRASS),
+];
 /// What the finger presses with, its weight included, N.
 const FINGER_N: f32 = 1.0;
 const FINGER_KG: f32 = 0.02;
@@ -37,9 +38,9 @@ const FINGER_KG: f32 = 0.02;
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).map_or_else(PathBuf::new, PathBuf::from);
     std::fs::create_dir_all(&folder)?;
-    let (mut scene, mut renderer, names) = engine(ClockMode::LIVE)?;
+    let (mut scene, mut renderer, names, adapter) = engine(ClockMode::LIVE)?;
     scene.start_recording(&names);
-    let live = play(&mut scene, &mut renderer, &names)?;
+    let live = play((&mut scene, &mut renderer), adapter, &names)?;
     let stats = scene.stats();
     println!(
         "live: {} events, {} impacts, {} micro-collisions, {} refused, {} late",
@@ -50,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let log = scene.stop_recording();
     log.write(&mut std::fs::File::create(folder.join("rapier.jsonl"))?)?;
     let latency = renderer.latency_samples();
-    let (scene, renderer, names) = engine(ClockMode::Exact)?;
+    let (scene, renderer, names, _) = engine(ClockMode::Exact)?;
     let options = Options { block_frames: 1000, tail_s: 1.0, ..Options::default() };
     let take = offline::render(scene, renderer, &log, &names, &options)?;
     let frames = take.audio[0].len().min(live.audio.len() - latency);
@@ -61,18 +62,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (live, offline) in live.haptic.iter().zip(&take.haptic) {
         assert!(live[latency..latency + frames] == offline[..frames], "live and offline haptics differ");
     }
-    assert!(stats.impacts >= 2 && stats.refused == 0 && stats.micro_collisions > 0);
+    assert!(stats.impacts >= 6 && stats.refused == 0 && stats.micro_collisions > 0);
+    // The finger is the contact that channel 0 feels and nothing holds; it begins at u = 0.2.
+    let fingers: Vec<u64> = log
+        .lines
+        .iter()
+        .filter_map(|line| match &line.event {
+            LogEvent::Begin { contact, touching, .. } if touching.hand.actuator == Some(0) => Some(*contact),
+            _ => None,
+        })
+        .collect();
     let travelled = log.lines.iter().rev().find_map(|line| match &line.event {
-        LogEvent::Move { contact: 3, sample } => Some(sample.uv[0] - 0.2),
+        LogEvent::Move { contact, sample } if fingers.contains(contact) => Some(sample.uv[0] - 0.2),
         _ => None,
     });
     assert!(travelled.is_some_and(|u| u * SIDE_M > 0.2), "the finger did not get along: {travelled:?}");
     take.write_audio_wav(folder.join("rapier.audio.wav"))?;
     take.write_haptic_wav(folder.join("rapier.haptic.wav"))?;
-    println!(
-        "offline: {frames} samples a channel, equal to the last bit; {:.0}x real time",
-        take.real_time_factor()
-    );
+    println!("offline: {frames} samples a channel, equal to the last bit");
     Ok(())
 }
 
@@ -81,54 +88,61 @@ struct Heard {
     haptic: [Vec<f32>; 2],
 }
 
-fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names), Box<dyn Error>> {
+fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names, Adapter), Box<dyn Error>> {
     let actuators = vec![ActuatorSettings::default(); 2];
     // A dropped ball is fifty times louder than a finger; a sound card clips at ±1.
     let audio = vec![AudioBus { gain: 0.1, limit: true }];
     let config = Config { clock, sample_rate_hz: RATE_HZ, actuators, audio, ..Config::default() };
     let asperity::Engine { mut scene, renderer, .. } = config.build()?;
-    let mode =
-        |frequency_hz, decay_per_s, amplitude| Mode { frequency_hz, decay_per_s, amplitude, phase_rad: 0.0 };
-    let modes = vec![mode(412.0, 9.0, 0.3), mode(1133.0, 14.0, 0.25), mode(2219.0, 22.0, 0.2)];
-    let slab = scene.add_body(asperity::Body::new(ModalModel::new(modes, 0.01)?).of(Material::CERAMIC))?;
-    let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1.0 };
-    let surface = Surface::new(HeightMap::flat(extent, 0.8)?, SIDE_M, SIDE_M)?;
-    let surface = scene.add_surface(surface.on(slab).wraps(false))?;
-    let names = Names {
-        surfaces: HashMap::from([("slab".to_owned(), surface)]),
-        bodies: HashMap::from([("slab".to_owned(), slab)]),
-        ..Default::default()
-    };
-    Ok((scene, renderer, names))
+    let mut names = Names::default();
+    for (name, shape, size_m, material) in BODIES {
+        names.bodies.insert(name.to_owned(), scene.add_body(Body::stock(shape, material, size_m)?)?);
+    }
+    let slab = Surface::flat(SIDE_M, SIDE_M)?.of(Material::CERAMIC).on(names.bodies["slab"]).wraps(false);
+    names.surfaces.insert("slab".to_owned(), scene.add_surface(slab)?);
+    let adapter = Adapter::new(&mut scene)?;
+    names.probes.insert("rigid".to_owned(), adapter.rigid_probe());
+    Ok((scene, renderer, names, adapter))
 }
 
 /// The game: physics at 60 Hz, and between the steps the blocks that a device would ask for.
-fn play(scene: &mut Scene, renderer: &mut Renderer, names: &Names) -> Result<Heard, Box<dyn Error>> {
+fn play(
+    (scene, renderer): (&mut Scene, &mut Renderer),
+    mut adapter: Adapter,
+    names: &Names,
+) -> Result<Heard, Box<dyn Error>> {
     let mesh = UvMesh::rippled(SIDE_M as f32, 0.0005, 16);
     let mut world = PhysicsWorld::default();
     // By default the contact point stands still while the finger moves.
     world.integration_parameters.contact_recycling = false;
     let step_s = f64::from(world.integration_parameters.dt);
-    let collider = ColliderBuilder::trimesh(mesh.vertices.clone(), mesh.indices.clone())?.friction(0.4);
-    let (_, collider) = world.insert(RigidBodyBuilder::fixed(), collider);
-    let ground = Ground { collider, mesh, surface: names.surfaces["slab"], body: names.bodies["slab"] };
-    let mut touchers = [ball(&mut world), sliding_box(&mut world), finger(&mut world)];
-    let finger = touchers[2].body;
+    let slab = ColliderBuilder::trimesh(mesh.vertices, mesh.indices)?.friction(0.4);
+    let (_, slab) = world.insert(RigidBodyBuilder::fixed(), slab);
+    let ground = Thing::of(Material::CERAMIC).ringing(names.bodies["slab"]);
+    adapter.insert(slab, ground.with_surface(names.surfaces["slab"], Mapping::Mesh(mesh.uv)));
+    let (_, dropped) = ball(&mut world, -0.1, 0.16);
+    adapter.insert(dropped, Thing::of(Material::STEEL));
+    for height_m in [0.05, 0.25] {
+        let (_, brass) = ball(&mut world, 0.1, height_m);
+        adapter.insert(brass, Thing::of(Material::BRASS).ringing(names.bodies["ball"]));
+    }
+    // The hand that pushed the box feels it.
+    let (_, sliding) = sliding_box(&mut world);
+    let wood = Thing::of(Material::WOOD).ringing(names.bodies["box"]).felt_by(Actuator(1));
+    adapter.insert(sliding, wood);
+    let (finger, tip) = finger(&mut world);
+    adapter.insert(tip, Thing::of(Material::NAIL).felt_by(Actuator(0)));
 
     let mut heard = Heard { audio: Vec::new(), haptic: [Vec::new(), Vec::new()] };
     for step in 0..(SECONDS / step_s) as u64 {
         // The hand drags the finger; physics finds how hard it presses.
         let along = Vector::new(0.08, world.bodies[finger].linvel().y, 0.0);
         world.bodies[finger].set_linvel(along, true);
-        for toucher in &mut touchers {
-            toucher.before_step(&world);
-        }
+        adapter.before_step(&(&world).into());
         world.step();
         let time_s = step as f64 * step_s;
-        for toucher in &mut touchers {
-            if let Some(event) = toucher.after_step(&world, &ground, time_s) {
-                scene.report(time_s, event)?;
-            }
+        for event in adapter.after_step(&(&world).into()) {
+            scene.report(time_s, event)?;
         }
         let next_step = ((step + 1) as f64 * step_s * RATE_HZ) as usize;
         while heard.audio.len() + BLOCK <= next_step {
@@ -148,31 +162,31 @@ impl Heard {
     }
 }
 
-/// Dropped from 15 cm; it bounces.
-fn ball(world: &mut PhysicsWorld) -> Toucher {
-    let handles = world.insert(
-        RigidBodyBuilder::dynamic().translation(Vector::new(-0.1, 0.16, 0.1)),
+type Handles = (RigidBodyHandle, ColliderHandle);
+
+/// Dropped from a height; it bounces.
+fn ball(world: &mut PhysicsWorld, x_m: f32, height_m: f32) -> Handles {
+    world.insert(
+        RigidBodyBuilder::dynamic().translation(Vector::new(x_m, height_m, 0.1)),
         ColliderBuilder::ball(0.01)
             .density(7800.0)
             .restitution(0.7)
             .restitution_combine_rule(CoefficientCombineRule::Max),
-    );
-    Toucher::new(1, handles, Touch::Strikes { radius_m: 0.01, material: Material::STEEL })
+    )
 }
 
-/// Slides until friction stops it; the hand that pushed it feels it.
-fn sliding_box(world: &mut PhysicsWorld) -> Toucher {
-    let handles = world.insert(
+/// Slides until friction stops it.
+fn sliding_box(world: &mut PhysicsWorld) -> Handles {
+    world.insert(
         RigidBodyBuilder::dynamic()
             .translation(Vector::new(-0.12, 0.0212, -0.1))
             .linvel(Vector::new(0.9, 0.0, 0.0)),
         ColliderBuilder::cuboid(0.02, 0.02, 0.02).density(600.0).friction(0.4),
-    );
-    Toucher::new(2, handles, Touch::Slides { actuator: Actuator(1) })
+    )
 }
 
 /// A fingertip that presses with 1 N.
-fn finger(world: &mut PhysicsWorld) -> Toucher {
+fn finger(world: &mut PhysicsWorld) -> Handles {
     let handles = world.insert(
         RigidBodyBuilder::dynamic()
             .translation(Vector::new(-0.12, 0.0092, 0.0))
@@ -186,5 +200,5 @@ fn finger(world: &mut PhysicsWorld) -> Toucher {
     );
     let push_n = FINGER_N - FINGER_KG * 9.81;
     world.bodies[handles.0].add_force(Vector::new(0.0, -push_n, 0.0), true);
-    Toucher::new(3, handles, Touch::Slides { actuator: Actuator(0) })
+    handles
 }

@@ -1,12 +1,8 @@
-//! A triangle mesh with texture coordinates: from a point near it to the triangle it lies on.
+//! A rippled slab: a triangle mesh with texture coordinates, as a renderer and a physics engine share it.
 
-use asperity::UvTriangle;
-use rapier3d::parry::query::PointQueryWithLocation;
-use rapier3d::parry::shape::TriMesh;
 use rapier3d::prelude::*;
 
-/// What the renderer's mesh and the collider share: vertex i of one is vertex i of the other. Keep it so:
-/// rapier's flags that merge vertices renumber them, and those that delete triangles move the rest.
+/// Vertices, triangles, and a texture coordinate for each vertex.
 pub struct UvMesh {
     pub vertices: Vec<Vector>,
     pub indices: Vec<[u32; 3]>,
@@ -33,16 +29,5 @@ impl UvMesh {
             }
         }
         mesh
-    }
-
-    /// The triangle that a point near the mesh lies on. It comes from the projection: clustered contacts of
-    /// several triangles carry no single sub-shape index.
-    pub fn triangle_at(&self, shape: &TriMesh, local: Vector) -> Option<UvTriangle> {
-        let (_, (triangle, _)) = shape.project_local_point_and_get_location(local, false);
-        let corners = *self.indices.get(triangle as usize)?;
-        UvTriangle::new(
-            corners.map(|corner| self.vertices[corner as usize]),
-            corners.map(|corner| self.uv[corner as usize]),
-        )
     }
 }

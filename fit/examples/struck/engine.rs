@@ -8,7 +8,7 @@ const IMPULSE_N_S: f64 = 0.01;
 /// Fast and blunt, and both as hard as the engine allows: a contact of a tenth of a microsecond, a pure impulse.
 const SPEED_M_S: f64 = 100.0;
 const RADIUS_M: f64 = 10.0;
-const HARD: Material = Material { young_pa: 1e13, poisson: 0.3, density_kg_m3: 7850.0 };
+const HARD: Material = Material::new(1e13, 0.3, 7850.0);
 
 /// What the renderer plays when `modes` are struck once, from `before_s` before the strike on, `count` samples and
 /// twice `before_s` more.

@@ -1,4 +1,4 @@
-//! What a fitted body sounds like beside its recording, as the engine plays it: `struck [--program ASPERITY] FILE…`
+//! Fitted bodies beside their recordings, as the engine plays them: `struck [--program ASPERITY] FILE…`
 //!
 //! Every file is fitted, the modes are struck once in the engine by an impulse of the model's own size, and what the
 //! renderer gives is held against the recording from the onset on (time zero within ±1 ms). With `--program` the fit is

@@ -3,7 +3,7 @@
 use super::Renderer;
 use crate::audio::voice::{EMPTY_FORCE_N, Phase, Role, Voice};
 use crate::link::stats::Counters;
-use crate::model::event::{ContactEvent, ContactId, ContactSample};
+use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis};
 use crate::model::stamp::Stamp;
 use asperity_dsp::trajectory::Trajectory;
 
@@ -16,6 +16,13 @@ pub(super) struct SilentContact {
     stolen: bool,
 }
 
+impl SilentContact {
+    /// A contact whose voice goes away.
+    pub(super) fn of(voice: &Voice) -> Self {
+        Self { contact: voice.contact, surface: voice.surface, role: voice.role, stolen: false }
+    }
+}
+
 impl Renderer {
     pub(super) fn apply_event(&mut self, event: &ContactEvent, stamp: Stamp) {
         match *event {
@@ -26,7 +33,10 @@ impl Renderer {
                     self.land(contact, surface, role, &sample, stamp);
                 }
             }
-            ContactEvent::Moved { contact, sample } => self.moved(contact, &sample, stamp),
+            ContactEvent::Moved { contact, sample, emphasis } => {
+                self.emphasise(contact, emphasis);
+                self.moved(contact, &sample, stamp);
+            }
             ContactEvent::End { contact } => {
                 if !self.end(contact) {
                     Counters::add(&self.counters.orphaned, 1);
@@ -113,6 +123,15 @@ impl Renderer {
             &mut self.scratch,
         );
         Some(index)
+    }
+
+    /// Another gain or importance from now on, of a contact that sounds or waits.
+    fn emphasise(&mut self, contact: ContactId, emphasis: Emphasis) {
+        if let Some(index) = sounding(&self.voices, contact) {
+            self.voices[index].role.emphasise(emphasis);
+        } else if let Some(silent) = self.silent.iter_mut().find(|silent| silent.contact == contact) {
+            silent.role.emphasise(emphasis);
+        }
     }
 
     fn moved(&mut self, contact: ContactId, sample: &ContactSample, stamp: Stamp) {
@@ -228,6 +247,22 @@ impl Renderer {
             self.silent.remove(0);
         }
         self.silent.push(silent);
+    }
+
+    /// Every contact waits for its next report.
+    pub(super) fn silence_all(&mut self) {
+        for at in 0..self.voices_used.len() {
+            let voice = self.voices_used.at(at);
+            if self.voices[voice].phase == Phase::Sounding {
+                self.silence(voice, false);
+            }
+        }
+    }
+
+    /// Every contact ends.
+    pub(super) fn end_all(&mut self) {
+        self.voices.iter_mut().for_each(|voice| voice.fade(&self.shared));
+        self.silent.clear();
     }
 
     pub(super) fn fade_contacts_on(&mut self, slot: usize) {

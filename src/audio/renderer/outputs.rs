@@ -1,7 +1,8 @@
-//! What leaves the engine: the haptic channels with their actuator stage, and the audio buses.
+//! Output stage: the haptic channels with their actuators, and the audio buses.
 
 use super::Renderer;
-use crate::model::actuator::ActuatorSettings;
+use crate::audio::body_seat::BetweenBuses;
+use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
 use crate::model::bus::AudioBus;
 use crate::prepared::body::Terms;
 use asperity_dsp::DesignError;
@@ -9,8 +10,13 @@ use asperity_dsp::actuator::{
     self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
     Quantity,
 };
+use asperity_dsp::butterworth::{self, Butterworth};
+use asperity_dsp::limits::output as limits;
 use asperity_texture::height_field::MAX_BLOCK;
 use std::sync::atomic::Ordering::Relaxed;
+
+/// How many samples a bus takes from one gain to another.
+const MOVING_SAMPLES: u32 = 1024;
 
 /// Where limiters hold the peaks: full scale.
 const CEILING: f64 = 1.0;
@@ -21,6 +27,8 @@ pub(super) struct HapticChannel {
     design: actuator::Channel,
     pub(super) control: ChannelControl,
     state: ChannelState,
+    /// The same filter twice: fourth order, −6 dB at its cutoff (Linkwitz and Riley).
+    low_pass: Option<(Butterworth, [butterworth::State; 2])>,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
     /// Sum of the contacts, m or m/s².
     pub(super) sum: [f64; MAX_BLOCK],
@@ -29,6 +37,8 @@ pub(super) struct HapticChannel {
 /// An audio bus: the sound of the bodies that play on it.
 pub(super) struct Bus {
     gain: f32,
+    /// The gain it comes from, and how many samples of the way are left.
+    moving: Option<(f32, u32)>,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
     meter: Meter,
     /// Sum of the bodies.
@@ -78,6 +88,7 @@ impl HapticChannel {
             design: actuator::Channel::new(&options, sample_rate_hz)?,
             control: ChannelControl::default(),
             state: ChannelState::default(),
+            low_pass: low_pass(settings, sample_rate_hz)?,
             limiter: limiter(settings.limit_peaks, sample_rate_hz)?,
             sum: [0.0; MAX_BLOCK],
         })
@@ -85,6 +96,11 @@ impl HapticChannel {
 
     /// The samples of a stretch as long as `out`.
     pub(super) fn run(&mut self, out: &mut [f32]) {
+        if let Some((filter, [first, second])) = &mut self.low_pass {
+            for x in &mut self.sum[..out.len()] {
+                *x = second.tick(filter, first.tick(filter, *x).low).low;
+            }
+        }
         self.state.run(&self.design, &self.control, &self.sum[..out.len()], out);
         if let Some((design, state)) = &mut self.limiter {
             state.run(design, out);
@@ -96,20 +112,44 @@ impl Bus {
     pub(super) fn new(settings: &AudioBus, sample_rate_hz: f64) -> Result<Self, DesignError> {
         Ok(Self {
             gain: settings.gain as f32,
+            moving: None,
             limiter: limiter(settings.limit, sample_rate_hz)?,
             meter: Meter::new(sample_rate_hz),
             sum: [0.0; MAX_BLOCK],
         })
     }
 
+    /// Goes to another gain.
+    pub(super) fn set_gain(&mut self, gain: f64) {
+        let now = self.moving.map_or(self.gain, |(from, left)| self.between(from, left));
+        self.moving = Some((now, MOVING_SAMPLES));
+        self.gain = gain as f32;
+    }
+
+    /// The gain while so many samples of the way are left.
+    fn between(&self, from: f32, left: u32) -> f32 {
+        self.gain + (from - self.gain) * (left as f32 / MOVING_SAMPLES as f32)
+    }
+
     /// What leaves of the present stretch of `n` samples.
-    fn finish(&mut self, n: usize) -> &[f32] {
+    fn finish(&mut self, n: usize, master: Option<&[f32]>) -> &[f32] {
+        // The samples of the way from one gain to another come first.
+        let mut done = 0;
+        while let Some((from, left)) = self.moving.filter(|_| done < n) {
+            let left = left - 1;
+            self.sum[done] *= self.between(from, left);
+            self.moving = (left > 0).then_some((from, left));
+            done += 1;
+        }
         let sum = &mut self.sum[..n];
-        for x in sum.iter_mut() {
+        for x in &mut sum[done..] {
             *x *= self.gain;
         }
         if let Some((design, state)) = &mut self.limiter {
             state.run(design, sum);
+        }
+        if let Some(master) = master {
+            sum.iter_mut().zip(master).for_each(|(x, gain)| *x *= gain);
         }
         self.meter.watch(sum);
         sum
@@ -117,16 +157,44 @@ impl Bus {
 }
 
 impl Renderer {
+    /// The gain of all that leaves, where it is not 1.
+    pub(super) fn render_master(&mut self, n: usize) {
+        let target = if self.muted || self.paused { 0.0 } else { 1.0 };
+        self.mix.mastered = target != 1.0 || !self.master.settled_at(1.0);
+        if self.mix.mastered {
+            self.mix.master[..n].iter_mut().for_each(|gain| *gain = self.master.tick(target) as f32);
+        }
+    }
+
+    /// By how much the peak limiters of channels and buses have turned down at most, dB; 0 for not at all.
+    #[must_use]
+    pub fn limiter_db(&self) -> f64 {
+        let channels = self.channels.iter().filter_map(|channel| channel.limiter.as_ref());
+        let limiters = channels.chain(self.buses.iter().filter_map(|bus| bus.limiter.as_ref()));
+        let deepest = limiters.map(|(_, state)| state.deepest()).fold(1.0, f32::min);
+        (-20.0 * f64::from(deepest).log10()).max(0.0)
+    }
+
     /// Writes what the actuators play of `n` inner samples, from `at` on in the outputs.
     pub(super) fn render_haptics(&mut self, at: usize, n: usize, haptic: &mut [&mut [f32]]) {
         let inner = self.shared.inner;
         for (index, channel) in self.channels.iter_mut().enumerate() {
             let block = &mut self.mix.haptic[..n];
             channel.run(block);
+            if self.mix.mastered {
+                block.iter_mut().zip(&self.mix.master).for_each(|(x, gain)| *x *= gain);
+            }
+            let averages = channel.output.quantity() == Quantity::Acceleration && inner.every > 1;
+            if averages {
+                self.outlets.haptic_means(index, inner, self.position, block);
+            } else {
+                self.outlets.haptic(index, inner, self.position, block);
+            }
             if let Some(out) = haptic.get_mut(index) {
-                match channel.output.quantity() {
-                    Quantity::Acceleration if inner.every > 1 => inner.average(at, block, out),
-                    _ => inner.pick(at, block, out),
+                if averages {
+                    inner.average(at, block, out);
+                } else {
+                    inner.pick(at, block, out);
                 }
             }
         }
@@ -142,10 +210,14 @@ impl Renderer {
         let mut shed = 0;
         for body in self.bodies_used.iter() {
             let body = &mut self.bodies[body];
-            if let Some(share) = body.moves_between(n) {
+            let between = body.moves_between(n);
+            if between.is_some() || !body.is_plain() {
                 let sound = &mut self.mix.body[..n];
                 sound.fill(0.0);
                 shed += body.render(terms, sound);
+                body.scale(sound);
+                let here = BetweenBuses::one(body.bus());
+                let share = between.unwrap_or(here);
                 for (i, x) in sound.iter().enumerate() {
                     let weight = share.weight(i);
                     self.buses[share.from].sum[i] += (1.0 - weight) * x;
@@ -162,7 +234,9 @@ impl Renderer {
         }
         self.groups_shed = shed;
         for (index, bus) in self.buses.iter_mut().enumerate() {
-            let sound = bus.finish(n);
+            let master = self.mix.mastered.then_some(&self.mix.master[..n]);
+            let sound = bus.finish(n, master);
+            self.outlets.bus(index, self.shared.inner, self.position, sound);
             if let Some(out) = audio.get_mut(index) {
                 self.shared.inner.pick(at, sound, out);
             }
@@ -176,6 +250,23 @@ impl Renderer {
             cell.store(bus.meter.peak.to_bits(), Relaxed);
         }
     }
+}
+
+/// The low-pass of a channel, where it has one.
+fn low_pass(
+    settings: &ActuatorSettings,
+    sample_rate_hz: f64,
+) -> Result<Option<(Butterworth, [butterworth::State; 2])>, DesignError> {
+    let usual_hz = if settings.output == Quantity::Acceleration { ACCELERATION_BAND_HZ } else { 0.0 };
+    let cutoff_hz = settings.lowpass_hz.unwrap_or(usual_hz);
+    limits::LOWPASS_HZ.check("lowpass_hz", cutoff_hz)?;
+    // Above a third of the rate there is nothing left to take away.
+    if cutoff_hz == 0.0 || cutoff_hz > 0.33 * sample_rate_hz {
+        return Ok(None);
+    }
+    let named = |error: DesignError| DesignError { field: "lowpass_hz", ..error };
+    let filter = Butterworth::new(cutoff_hz, sample_rate_hz).map_err(named)?;
+    Ok(Some((filter, [butterworth::State::default(); 2])))
 }
 
 /// A limiter to full scale, where one is wanted.
@@ -192,10 +283,18 @@ pub(super) struct Mix {
     /// One body, while it moves from bus to bus.
     pub(super) body: [f32; MAX_BLOCK],
     pub(super) haptic: [f32; MAX_BLOCK],
+    /// Gain of all that leaves, and whether it is another than 1.
+    master: [f32; MAX_BLOCK],
+    mastered: bool,
 }
 
 impl Mix {
     pub(super) fn new() -> Box<Self> {
-        Box::new(Self { body: [0.0; MAX_BLOCK], haptic: [0.0; MAX_BLOCK] })
+        Box::new(Self {
+            body: [0.0; MAX_BLOCK],
+            haptic: [0.0; MAX_BLOCK],
+            master: [1.0; MAX_BLOCK],
+            mastered: false,
+        })
     }
 }

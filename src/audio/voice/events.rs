@@ -1,4 +1,4 @@
-//! How a contact takes what the game reports: it lands, appears, goes on.
+//! Contact events at a voice: it lands, appears, goes on.
 
 use super::{PadSample, Phase, Scratch, Shared, Voice};
 use crate::audio::seat::Seat;
@@ -49,6 +49,7 @@ impl Voice {
         self.left_behind = false;
         self.empty_reports = 0;
         self.rising = None;
+        self.role_gain.set(self.role.gain);
         self.landing_m_s = sample.closing_m_s;
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
@@ -59,13 +60,13 @@ impl Voice {
         seat.land(&self.touch_at(position));
         let force_n = event.normal_force_n;
         let lands = sample.closing_m_s > 0.0;
+        self.begin_pressed(seat, shared, force_n);
         if lands {
             self.profile(seat, shared, position, 1, false, scratch);
             let height_m = scratch.surface.height_m[0];
             // It touches at the stamp; without delay it would one sample before the voice's first.
             let later = 1.0 + stamp.fraction();
-            let probe = shared.probe(self.role.probe);
-            self.pad = probe.micro_contact.landing_later(height_m, force_n, sample.closing_m_s, later);
+            self.pad = self.contact_model.landing_later(height_m, force_n, sample.closing_m_s, later);
             let pad_velocity_m_s = -sample.closing_m_s;
             self.late_row = PadSample { height_m, pad_m: height_m, pad_velocity_m_s, ..PadSample::default() };
             self.feel = ContactOutputState::begin(output, height_m, -sample.closing_m_s);
@@ -104,7 +105,7 @@ impl Voice {
         // Finger and pad rise as the ground does on the whole: set off from rest they would still swing when they are heard.
         let rise_m_s =
             (heights_m[MAX_BLOCK - 1] - heights_m[0]) * shared.sample_rate_hz / (MAX_BLOCK - 1) as f64;
-        let micro_contact = &shared.probe(self.role.probe).micro_contact;
+        let micro_contact = &self.contact_model;
         self.pad = micro_contact.riding(heights_m[0], forces_n[0], rise_m_s);
         micro_contact.run(&mut self.pad, heights_m, forces_n, &mut scratch.pad);
         self.late_row = PadSample { onset: None, ..scratch.pad[MAX_BLOCK - 1] };

@@ -1,4 +1,4 @@
-//! What a contact sends to the body it touches: Hertz pulses at micro-collisions and among grains, and the
+//! Excitation of the touched body: Hertz pulses at micro-collisions and among grains, and the
 //! alternating contact force (Hasti §III-D; the force is ours, because a pad that never lifts off would be
 //! silent).
 
@@ -48,6 +48,7 @@ impl Voice {
         forces_n_s[..FORCE_HISTORY].copy_from_slice(&self.force_history_n_s);
         hertz::spread_force(&forces_n_s[..FORCE_HISTORY + n], &mut scratch.out.impulse_n_s[..n]);
         self.force_history_n_s.copy_from_slice(&forces_n_s[n..n + FORCE_HISTORY]);
+        self.sound_as_pressed(position, n, scratch);
         scratch.out.excites = true;
     }
 

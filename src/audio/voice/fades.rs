@@ -1,4 +1,4 @@
-//! How a contact comes and goes without a click.
+//! Fades of a contact that comes or goes, without a click.
 
 use super::{Phase, Scratch, Shared, Voice};
 
@@ -50,8 +50,8 @@ impl Voice {
     /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
     /// its own beginning), out for one that ended, lapsed or was stolen.
     pub(super) fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        if self.role.gain != 1.0 {
-            (0..n).for_each(|i| scratch.out.scale(i, self.role.gain));
+        if self.role.gain != 1.0 || !self.role_gain.settled_at(1.0) {
+            (0..n).for_each(|i| scratch.out.scale(i, self.role_gain.tick(self.role.gain)));
         }
         if self.fade_in_left == 0 && self.rising.is_none() && self.phase == Phase::Sounding {
             self.gain = 1.0;

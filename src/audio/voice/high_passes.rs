@@ -1,4 +1,4 @@
-//! What of a contact is felt and what of its force sounds: both without their means.
+//! AC coupling: high-pass the pad motion (felt) and the contact force (heard).
 
 use super::{Scratch, Shared, Voice};
 use crate::audio::seat::Seat;

@@ -1,9 +1,9 @@
 //! The part a contact plays: what touches, who feels it, what is held.
 
-use crate::model::event::Touching;
+use crate::model::event::{Emphasis, Touching};
 use crate::model::id::{BodyId, ProbeId};
 
-/// What touches, who feels it and what is held: fixed while a contact lasts.
+/// What touches, who feels it and what is held, fixed while a contact lasts; how loud and how important it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Role {
     /// Haptic channel; none = heard only.
@@ -14,6 +14,14 @@ pub(crate) struct Role {
     pub(crate) holder: Option<BodyId>,
     pub(crate) gain: f64,
     pub(crate) importance: f64,
+}
+
+impl Role {
+    /// Another gain or importance.
+    pub(crate) fn emphasise(&mut self, emphasis: Emphasis) {
+        self.gain = emphasis.gain.unwrap_or(self.gain);
+        self.importance = emphasis.importance.unwrap_or(self.importance);
+    }
 }
 
 impl Default for Role {

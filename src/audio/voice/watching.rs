@@ -1,8 +1,9 @@
-//! What a tap is shown of a contact: rows of the trace and the 3-D force.
+//! The tap of a contact: rows of the trace and the 3-D force.
 
 use super::{PadSample, Scratch, Shared, Voice};
 use crate::audio::seat::Seat;
-use crate::audio::tap::{ContactBlock, Tap};
+use crate::link::tap::{ContactBlock, Tap};
+use crate::model::event::Actuator;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::Reaction;
 
@@ -51,6 +52,7 @@ impl Voice {
         tap.contact(&ContactBlock {
             first_sample,
             contact: self.contact,
+            actuator: self.role.actuator.map(|channel| Actuator(channel as u16)),
             position_m: &scratch.position_m[..count],
             uv: &scratch.uv[..count],
             velocity_m_s: &scratch.velocity_m_s[..count],

@@ -1,6 +1,6 @@
-//! Which keys a line may have: a misspelt one would otherwise be no key at all.
+//! Keys of a line of the contact log: a misspelt one would otherwise be no key at all.
 
-use super::LogError;
+use super::{LogError, VERSION};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::BTreeMap;
@@ -15,7 +15,14 @@ struct Keys {
     read_past: &'static [&'static str],
 }
 
-const EVENTS: [Keys; 4] = [
+const BODY: &[&str] = &["body", "modes", "material", "bus", "gain"];
+const SURFACE: &[&str] = &["surface", "is", "folder", "material"];
+
+const fn edit(event: &'static str, read: &'static [&'static str]) -> Keys {
+    Keys { event, read, read_past: &[] }
+}
+
+const EVENTS: &[Keys] = &[
     Keys {
         event: "begin",
         read: &[
@@ -35,8 +42,8 @@ const EVENTS: [Keys; 4] = [
     },
     Keys {
         event: "move",
-        read: &["contact", "uv", "velocity_m_s", "normal_force_n", "closing_m_s"],
-        read_past: &["actuator", "at_m", "depth_m", "gain", "importance", "direction"],
+        read: &["contact", "gain", "importance", "uv", "velocity_m_s", "normal_force_n", "closing_m_s"],
+        read_past: &["actuator", "at_m", "depth_m", "direction"],
     },
     Keys { event: "end", read: &["contact"], read_past: &[] },
     Keys {
@@ -57,6 +64,21 @@ const EVENTS: [Keys; 4] = [
         ],
         read_past: &["at_m", "direction"],
     },
+    edit("add_body", BODY),
+    edit("replace_body", BODY),
+    edit("remove_body", &["body"]),
+    edit("body_bus", &["body", "bus"]),
+    edit("body_gain", &["body", "gain"]),
+    edit("mute", &["muted"]),
+    edit("pause", &["paused"]),
+    edit("fade_all", &[]),
+    edit("add_probe", &["probe", "is"]),
+    edit("add_surface", SURFACE),
+    edit("replace_surface", SURFACE),
+    edit("remove_surface", &["surface"]),
+    edit("change_surface", &["surface"]),
+    edit("haptic_gain", &["actuator", "gain"]),
+    edit("audio_gain", &["bus", "gain"]),
 ];
 
 /// Keys that were read past, each where it was met first.
@@ -68,14 +90,23 @@ pub(super) struct Unread {
 
 #[derive(Deserialize)]
 struct Kind {
-    event: String,
+    #[serde(default)]
+    event: Option<String>,
+    #[serde(default)]
+    version: Option<serde_json::Value>,
 }
 
-/// Refuses a key that the line's event does not know. What is no event at all is told when it is read.
-pub(super) fn check(text: &str, place: impl Fn() -> String, unread: &mut Unread) -> Result<(), LogError> {
-    let Ok(Kind { event }) = serde_json::from_str(text) else { return Ok(()) };
-    let Some(known) = EVENTS.iter().find(|known| known.event == event) else { return Ok(()) };
-    let Ok(line) = serde_json::from_str::<BTreeMap<String, IgnoredAny>>(text) else { return Ok(()) };
+/// Refuses a version that is not ours and a key that the line's event does not know; tells whether the line is an event, not a
+/// version alone. What is no event at all is told when it is read.
+pub(super) fn check(text: &str, place: impl Fn() -> String, unread: &mut Unread) -> Result<bool, LogError> {
+    let Ok(Kind { event, version }) = serde_json::from_str(text) else { return Ok(true) };
+    let says_version = version.is_some();
+    if let Some(version) = version.filter(|version| version.as_u64() != Some(VERSION)) {
+        return Err(LogError::Version { place: place(), version: version.to_string() });
+    }
+    let Some(event) = event else { return Ok(!says_version) };
+    let Some(known) = EVENTS.iter().find(|known| known.event == event) else { return Ok(true) };
+    let Ok(line) = serde_json::from_str::<BTreeMap<String, IgnoredAny>>(text) else { return Ok(true) };
     for key in line.into_keys() {
         if OF_ANY.contains(&key.as_str()) || known.read.contains(&key.as_str()) {
             continue;
@@ -89,7 +120,7 @@ pub(super) fn check(text: &str, place: impl Fn() -> String, unread: &mut Unread)
             unread.keys.push(key);
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 impl Keys {

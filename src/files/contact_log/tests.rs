@@ -104,3 +104,19 @@ fn broken_lines_are_refused_with_their_place() {
         assert!(message.starts_with("log:1: "), "{message}");
     }
 }
+
+#[test]
+fn a_log_says_its_version_and_one_of_another_is_refused() {
+    let log = ContactLog::parse(LOG, "log").unwrap();
+    let mut text = Vec::new();
+    log.write(&mut text).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    assert!(text.starts_with("{\"version\":1,\"t\":0.0,\"event\":\"begin\""), "{text}");
+    assert_eq!(text.matches("version").count(), 1);
+    for future in [text.replace("\"version\":1", "\"version\":2"), format!("{{\"version\":2}}\n{LOG}")] {
+        let message = ContactLog::parse(&future, "log").unwrap_err().to_string();
+        assert_eq!(message, "log:1: version: 2 is unknown; must be 1, or missing");
+    }
+    assert_eq!(ContactLog::parse(&format!("{{\"version\":1}}\n{LOG}"), "log").unwrap(), log);
+    assert!(ContactLog::parse("{\"version\":\"1\"}", "log").is_err());
+}

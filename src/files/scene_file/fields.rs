@@ -1,6 +1,7 @@
 //! Reads a TOML table key by key, so that every refusal can name the place, the value and the remedy.
 
 use crate::files::FileError;
+use crate::parameters::Parameter;
 use asperity_dsp::limits::Range;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -63,25 +64,31 @@ impl Fields {
         self.refuse(key, format!("{} is not {right}", shown(value)), format!("write {right}"))
     }
 
-    /// A number.
-    pub fn number(&mut self, key: &'static str, allowed: Range) -> Result<Option<f64>, FileError> {
-        let Some(value) = self.take(key) else { return Ok(None) };
-        let number = as_number(&value).ok_or_else(|| self.wrong_kind(key, &value, "a number"))?;
-        if allowed.holds(number) {
+    /// A number of the list of parameters.
+    pub fn number(&mut self, of: &Parameter) -> Result<Option<f64>, FileError> {
+        let Some(value) = self.take(of.key) else { return Ok(None) };
+        let number = as_number(&value).ok_or_else(|| self.wrong_kind(of.key, &value, "a number"))?;
+        if of.range.holds(number) {
             Ok(Some(number))
         } else {
-            Err(self.refuse(key, format!("{} is refused", shown(&value)), right(allowed)))
+            Err(self.refuse(of.key, format!("{} is refused", shown(&value)), right(of.range)))
         }
     }
 
     /// A number that must be there.
-    pub fn needed_number(&mut self, key: &'static str, allowed: Range) -> Result<f64, FileError> {
-        self.number(key, allowed)?.ok_or_else(|| self.missing(key, "a number"))
+    pub fn needed_number(&mut self, of: &Parameter) -> Result<f64, FileError> {
+        self.number(of)?.ok_or_else(|| self.missing(of.key, "a number"))
     }
 
     /// A number, or the default.
-    pub fn number_or(&mut self, key: &'static str, default: f64, allowed: Range) -> Result<f64, FileError> {
-        Ok(self.number(key, allowed)?.unwrap_or(default))
+    pub fn number_or(&mut self, of: &Parameter, default: f64) -> Result<f64, FileError> {
+        Ok(self.number(of)?.unwrap_or(default))
+    }
+
+    /// A whole number of the list of parameters.
+    pub fn count(&mut self, of: &Parameter) -> Result<Option<usize>, FileError> {
+        let whole = self.whole(of.key, of.range.low as u64, of.range.high as u64)?;
+        Ok(whole.map(|whole| whole as usize))
     }
 
     /// A whole number.
@@ -155,6 +162,15 @@ impl Fields {
         }
     }
 
+    /// A vector.
+    pub fn vector(&mut self, key: &'static str) -> Result<Option<[f64; 3]>, FileError> {
+        let Some(value) = self.take(key) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> =
+            value.as_array().and_then(|items| items.iter().map(as_number).collect());
+        let vector = numbers.and_then(|numbers| numbers.try_into().ok());
+        vector.map(Some).ok_or_else(|| self.wrong_kind(key, &value, "three numbers, [x, y, z]"))
+    }
+
     /// A table.
     pub fn table(&mut self, key: &'static str) -> Result<Option<Self>, FileError> {
         match self.take(key) {
@@ -189,6 +205,11 @@ impl Fields {
     /// An error for a key that must be there.
     pub fn missing(&self, key: &str, right: &str) -> FileError {
         self.refuse(key, "is missing", format!("write {key} = {right}"))
+    }
+
+    /// The table as it is, before anything is taken out.
+    pub fn written(&self) -> Table {
+        self.table.clone()
     }
 
     /// Every key that was not asked for, for somebody else to read.

@@ -4,6 +4,7 @@
 //! file. Nothing here opens an image or knows the engine; [`Engine::from_scene`](crate::Engine::from_scene) turns a
 //! [`SceneFile`] into engine calls.
 
+mod body;
 mod fields;
 mod own;
 mod pixels;
@@ -11,25 +12,28 @@ mod sand;
 mod source;
 mod surface;
 
+pub use body::BodyEntry;
 pub use own::{MakeSource, OwnSource};
 pub use pixels::Pixels;
-pub use sand::{Sand, Tool};
-pub use source::{Brownian, BrownianForce, Direction, Lattice, SolidNoise, Source};
-pub use surface::{Excitation, Roughness, SurfaceEntry, Wrap};
+pub use sand::{Sand, ToolPicture};
+pub use source::{Brownian, BrownianForce, Lattice, Source};
+pub use surface::{RoughnessEntry, SurfaceEntry};
 
 use crate::files::FileError;
+use crate::files::storage::{Disk, Files};
+use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::bus::MAX_BUSES;
-use asperity_dsp::limits::{self, Range};
+use crate::model::probe::{PROBE_PRESETS, probe_by_name};
+use crate::parameters;
+use asperity_dsp::micro_contact::Probe;
 use fields::Fields;
 use std::path::{Path, PathBuf};
 use toml::Value;
 
 /// Scene files larger than this are refused; a scene is a page, not a database.
-const MAX_BYTES: u64 = 16 << 20;
+const MAX_BYTES: usize = 16 << 20;
 /// Default ring-out after the last event, seconds.
 const TAIL_S: f64 = 1.0;
-/// Longest ring-out, s.
-const LONGEST_TAIL_S: Range = Range::new(0.0, 600.0, "0 to 600 s");
 
 /// A whole scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,113 +53,46 @@ pub struct SceneFile {
     /// Things that are touched.
     pub surfaces: Vec<SurfaceEntry>,
     /// What touches unless a contact says otherwise.
-    pub probe: ProbeEntry,
+    pub probe: Probe,
     /// Further probes, by name.
-    pub probes: Vec<(String, ProbeEntry)>,
+    pub probes: Vec<(String, Probe)>,
     /// Haptic channels, in order.
     pub actuators: Vec<ActuatorEntry>,
     /// Audio buses, in channel order.
     pub audio: Vec<AudioEntry>,
 }
 
-/// A body: what an impact on it sounds like.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BodyEntry {
-    /// Name that surfaces and impacts use.
-    pub name: String,
-    /// Modes file; none = silent.
-    pub modes: Option<PathBuf>,
-    /// What it is made of; none = the engine's default.
-    pub material: Option<MaterialEntry>,
-    /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
-    pub residual: Option<f64>,
-    /// Name of the bus it plays on; none = the first.
-    pub bus: Option<String>,
-}
-
-/// A material by name or by constants.
-#[derive(Debug, Clone, PartialEq)]
-pub enum MaterialEntry {
-    /// One of the engine's presets.
-    Preset(String),
-    /// Elastic constants.
-    Constants {
-        /// Young's modulus, Pa.
-        young_pa: f64,
-        /// Poisson ratio.
-        poisson: f64,
-        /// Density, kg/m³.
-        density_kg_m3: f64,
-    },
-}
-
-/// A finger or tool: a preset, and constants that differ from it.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ProbeEntry {
-    /// Name of a preset; none = the engine's default.
-    pub preset: Option<String>,
-    /// Mass of the moving pad, kg.
-    pub pad_mass_kg: Option<f64>,
-    /// Stiffness between pad and finger, N/m.
-    pub pad_stiffness_n_m: Option<f64>,
-    /// Damping between pad and finger, N·s/m.
-    pub pad_damping_n_s_m: Option<f64>,
-    /// Mass of the finger, kg.
-    pub finger_mass_kg: Option<f64>,
-    /// Stiffness of pad against surface, N/m.
-    pub contact_stiffness_n_m: Option<f64>,
-    /// How far the finger may leave the surface, m.
-    pub leash_m: Option<f64>,
-}
-
 /// One haptic channel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ActuatorEntry {
-    /// What the channel carries.
-    pub output: ActuatorOutput,
-    /// Metres or m/s² at sample value 1.
-    pub full_scale: f64,
-    /// Cutoff of the high-pass about the mean surface, Hz; 0 = off.
-    pub highpass_hz: f64,
-    /// Name of a device profile whose response is inverted; none = no equaliser.
+    /// All that needs no other file and no level of the scene: its `full_scale` and `limit_peaks` do not count.
+    pub settings: ActuatorSettings,
+    /// Metres or m/s² at sample value 1; none = by the level policy.
+    pub full_scale: Option<f64>,
+    /// Keeps the channel within ±1, whatever the device; none = where the level is by policy.
+    pub limit_peaks: Option<bool>,
+    /// Name or file of the device whose response is inverted; none = no equaliser.
     pub equalise: Option<String>,
-    /// Name of the device profile whose excursion and heat are kept within limits; none = no limit.
+    /// Name or file of the device whose excursion and heat are kept within limits; none = no limit.
     pub limit: Option<String>,
-    /// Keeps the channel within ±1, whatever the device.
-    pub limit_peaks: bool,
-}
-
-impl Default for ActuatorEntry {
-    fn default() -> Self {
-        Self {
-            output: ActuatorOutput::Displacement,
-            full_scale: 1e-4,
-            highpass_hz: 10.0,
-            equalise: None,
-            limit: None,
-            limit_peaks: false,
-        }
-    }
-}
-
-/// What a haptic channel carries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ActuatorOutput {
-    /// Displacement of the pad, m.
-    Displacement,
-    /// Acceleration of the pad, m/s².
-    Acceleration,
 }
 
 /// An audio bus.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct AudioEntry {
     /// Name that bodies use; none for a single bus.
     pub name: Option<String>,
-    /// Linear gain.
-    pub gain: f64,
-    /// Keeps the channel within ±1.
-    pub limit: bool,
+    /// Linear gain; none = by the level policy.
+    pub gain: Option<f64>,
+    /// Keeps the channel within ±1; none = before a sound card, where a device is named, and where the gain is by policy.
+    pub limit: Option<bool>,
+}
+
+impl SurfaceEntry {
+    /// Reads one table of `[[surface]]` by itself.
+    pub(crate) fn read(table: toml::Table, folder: &Path) -> Result<Self, FileError> {
+        surface::read(Fields::new(table, "surface"), folder)
+    }
 }
 
 impl SceneFile {
@@ -164,13 +101,23 @@ impl SceneFile {
     /// # Errors
     /// When the file is missing, is not TOML, or a key is unknown, missing or out of its range.
     pub fn load(path: &Path) -> Result<Self, FileError> {
-        let size = std::fs::metadata(path).map_err(|error| FileError::read(path, &error))?.len();
-        if size > MAX_BYTES {
+        Self::load_from(&Disk, path)
+    }
+
+    /// [`load`](Self::load), from wherever the files lie.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, FileError> {
+        let bytes = files.read(path).map_err(|error| FileError::read(path, &error))?;
+        if bytes.len() > MAX_BYTES {
             let right = format!("a scene file has at most {} MB", MAX_BYTES >> 20);
-            return Err(FileError::file(path, format!("is {} MB long", size >> 20), right));
+            return Err(FileError::file(path, format!("is {} MB long", bytes.len() >> 20), right));
         }
-        let text = std::fs::read_to_string(path).map_err(|error| FileError::read(path, &error))?;
-        Self::parse(&text, path)
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Self::parse(text, path),
+            Err(_) => Err(FileError::read(path, &std::io::ErrorKind::InvalidData.into())),
+        }
     }
 
     /// Checks the text of a scene file that lies at `path`.
@@ -191,7 +138,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut bodies = Vec::new();
     for fields in top.tables("body")? {
-        bodies.push(read_body(fields, folder)?);
+        bodies.push(body::read(fields, folder)?);
     }
     let mut surfaces = Vec::new();
     for fields in top.tables("surface")? {
@@ -209,10 +156,10 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let audio = read_buses(&mut top)?;
     let scene = SceneFile {
         path: path.to_owned(),
-        sample_rate_hz: top.number("sample_rate_hz", limits::output::SAMPLE_RATE_HZ)?,
+        sample_rate_hz: top.number(&parameters::scene::SAMPLE_RATE_HZ)?,
         seed: top.whole("seed", 0, u64::MAX)?,
         contacts: top.file("contacts", folder)?,
-        tail_s: top.number_or("tail_s", TAIL_S, LONGEST_TAIL_S)?,
+        tail_s: top.number_or(&parameters::scene::TAIL_S, TAIL_S)?,
         bodies,
         surfaces,
         probe,
@@ -260,44 +207,13 @@ fn check_names(scene: &SceneFile) -> Result<(), FileError> {
     Ok(())
 }
 
-fn read_body(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> {
-    let name = fields.needed_text("name")?;
-    let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
-    fields.rename(place);
-    let modes = fields.file("modes", folder)?;
-    let material = match fields.take("material") {
-        None => None,
-        Some(Value::String(preset)) => Some(MaterialEntry::Preset(preset)),
-        Some(Value::Table(table)) => Some(read_material(Fields::new(table, fields.inner("material")))?),
-        Some(other) => {
-            let what = format!("{} is not a material", fields::shown(&other));
-            let right = "write a preset's name, or { young_pa = …, poisson = …, density_kg_m3 = … }";
-            return Err(fields.refuse("material", what, right));
-        }
-    };
-    let residual = fields.number("residual", limits::material::RESIDUAL)?;
-    let bus = fields.text("bus")?;
-    fields.finish()?;
-    Ok(BodyEntry { name, modes, material, residual, bus })
-}
-
-fn read_material(mut fields: Fields) -> Result<MaterialEntry, FileError> {
-    let material = MaterialEntry::Constants {
-        young_pa: fields.needed_number("young_pa", limits::material::YOUNG_PA)?,
-        poisson: fields.needed_number("poisson", limits::material::POISSON)?,
-        density_kg_m3: fields.needed_number("density_kg_m3", limits::material::DENSITY_KG_M3)?,
-    };
-    fields.finish()?;
-    Ok(material)
-}
-
 /// `[probe]`, the only one, or `[[probe]]`, of which the one without a name is the default.
-fn read_probes(top: &mut Fields) -> Result<(ProbeEntry, Vec<(String, ProbeEntry)>), FileError> {
+fn read_probes(top: &mut Fields) -> Result<(Probe, Vec<(String, Probe)>), FileError> {
     if !top.is_list("probe") {
         let only = top.table("probe")?.map(read_probe).transpose()?;
         return Ok((only.unwrap_or_default(), Vec::new()));
     }
-    let (mut default, mut named) = (None, Vec::<(String, ProbeEntry)>::new());
+    let (mut default, mut named) = (None, Vec::<(String, Probe)>::new());
     for mut fields in top.tables("probe")? {
         match fields.text("name")? {
             None if default.is_some() => {
@@ -314,60 +230,63 @@ fn read_probes(top: &mut Fields) -> Result<(ProbeEntry, Vec<(String, ProbeEntry)
     Ok((default.unwrap_or_default(), named))
 }
 
-fn read_probe(mut fields: Fields) -> Result<ProbeEntry, FileError> {
-    let probe = ProbeEntry {
-        preset: fields.text("preset")?,
-        pad_mass_kg: fields.number("pad_mass_kg", limits::probe::PAD_MASS_KG)?,
-        pad_stiffness_n_m: fields.number("pad_stiffness_n_m", limits::probe::PAD_STIFFNESS_N_M)?,
-        pad_damping_n_s_m: fields.number("pad_damping_n_s_m", limits::probe::PAD_DAMPING_N_S_M)?,
-        finger_mass_kg: fields.number("finger_mass_kg", limits::probe::FINGER_MASS_KG)?,
+/// A preset, and what differs from it.
+fn read_probe(mut fields: Fields) -> Result<Probe, FileError> {
+    let preset = match fields.text("preset")? {
+        None => Probe::default(),
+        Some(name) => probe_by_name(&name).ok_or_else(|| {
+            let known = PROBE_PRESETS.map(|(name, _)| format!("\"{name}\"")).join(", ");
+            let right = format!("must be one of {known}, or write the fields");
+            fields.refuse("preset", format!("\"{name}\" is unknown"), right)
+        })?,
+    };
+    let probe = Probe {
+        pad_mass_kg: fields.number_or(&parameters::probe::PAD_MASS_KG, preset.pad_mass_kg)?,
+        pad_stiffness_n_m: fields
+            .number_or(&parameters::probe::PAD_STIFFNESS_N_M, preset.pad_stiffness_n_m)?,
+        pad_damping_n_s_m: fields
+            .number_or(&parameters::probe::PAD_DAMPING_N_S_M, preset.pad_damping_n_s_m)?,
+        finger_mass_kg: fields.number_or(&parameters::probe::FINGER_MASS_KG, preset.finger_mass_kg)?,
         contact_stiffness_n_m: fields
-            .number("contact_stiffness_n_m", limits::probe::CONTACT_STIFFNESS_N_M)?,
-        leash_m: fields.number("leash_m", limits::probe::LEASH_M)?,
+            .number_or(&parameters::probe::CONTACT_STIFFNESS_N_M, preset.contact_stiffness_n_m)?,
+        leash_m: fields.number_or(&parameters::probe::LEASH_M, preset.leash_m)?,
+        tip_radius_m: fields.number_or(&parameters::probe::TIP_RADIUS_M, preset.tip_radius_m)?,
+        force_exponent: fields.number_or(&parameters::probe::FORCE_EXPONENT, preset.force_exponent)?,
     };
     fields.finish()?;
     Ok(probe)
 }
 
 fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
-    let words =
-        [("displacement", ActuatorOutput::Displacement), ("acceleration", ActuatorOutput::Acceleration)];
-    let default = ActuatorEntry::default();
+    let words = [("displacement", Quantity::Displacement), ("acceleration", Quantity::Acceleration)];
+    let default = ActuatorSettings::default();
     let output = fields.word("output", &words)?.unwrap_or(default.output);
     let equalise = fields.text("equalise")?.filter(|name| name != "none");
     let (limit, limit_peaks) = match fields.take("limit") {
-        None | Some(Value::Boolean(false)) => (None, false),
+        // A device that is named is kept whole unless the scene says otherwise.
+        None => (equalise.clone(), None),
+        Some(Value::Boolean(false)) => (None, Some(false)),
         // The limits of the device that is equalised; without one, those of the file: full scale.
-        Some(Value::Boolean(true)) => (equalise.clone(), equalise.is_none()),
-        Some(Value::String(device)) => (Some(device), false),
+        Some(Value::Boolean(true)) => (equalise.clone(), Some(equalise.is_none())),
+        Some(Value::String(device)) => (Some(device), Some(false)),
         Some(other) => {
             let what = format!("{} is refused", fields::shown(&other));
             return Err(fields.refuse("limit", what, "must be true, false or a device's name"));
         }
     };
-    let actuator = ActuatorEntry {
-        output,
-        full_scale: match fields.number("full_scale", limits::output::FULL_SCALE)? {
-            Some(full_scale) => full_scale,
-            None if output == ActuatorOutput::Displacement => default.full_scale,
-            None => {
-                return Err(fields.missing("full_scale", "the m/s² at sample value 1.0, for instance 100.0"));
-            }
-        },
-        highpass_hz: fields.number_or("highpass_hz", default.highpass_hz, limits::output::HIGHPASS_HZ)?,
-        equalise,
-        limit,
-        limit_peaks,
-    };
+    let full_scale = fields.number(&parameters::actuator::FULL_SCALE)?;
+    let lowpass_hz = fields.number(&parameters::actuator::LOWPASS_HZ)?;
+    let highpass_hz = fields.number_or(&parameters::actuator::HIGHPASS_HZ, default.highpass_hz)?;
     fields.finish()?;
-    Ok(actuator)
+    let settings = ActuatorSettings { output, lowpass_hz, highpass_hz, ..default };
+    Ok(ActuatorEntry { settings, full_scale, limit_peaks, equalise, limit })
 }
 
 /// `[audio]`, one bus for all, or `[[audio]]`, one table a bus.
 fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
     if !top.is_list("audio") {
         let only = top.table("audio")?.map(read_audio).transpose()?;
-        return Ok(vec![only.unwrap_or(AudioEntry { name: None, gain: 1.0, limit: false })]);
+        return Ok(vec![only.unwrap_or_default()]);
     }
     let buses = top.tables("audio")?.into_iter().map(read_audio).collect::<Result<Vec<_>, _>>()?;
     for (index, bus) in buses.iter().enumerate() {
@@ -393,8 +312,8 @@ fn read_buses(top: &mut Fields) -> Result<Vec<AudioEntry>, FileError> {
 fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
     let audio = AudioEntry {
         name: fields.text("name")?,
-        gain: fields.number_or("gain", 1.0, limits::output::AUDIO_GAIN)?,
-        limit: fields.flag("limit")?.unwrap_or(false),
+        gain: fields.number(&parameters::audio::GAIN)?,
+        limit: fields.flag("limit")?,
     };
     fields.finish()?;
     Ok(audio)

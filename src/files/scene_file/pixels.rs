@@ -2,6 +2,7 @@
 
 use super::fields::Fields;
 use crate::files::FileError;
+use asperity_texture::picture::Channel;
 use std::path::PathBuf;
 
 /// A channel of an image file.
@@ -9,11 +10,12 @@ use std::path::PathBuf;
 pub struct Pixels {
     /// Image file.
     pub path: PathBuf,
-    /// `r`, `g`, `b`, `a` or `luma`; none = what the image suggests.
-    pub channel: Option<char>,
+    /// Which numbers of its pixels.
+    pub channel: Channel,
 }
 
 /// `r`, `g`, `b`, `a` or `luma`.
-pub fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Option<char>, FileError> {
-    fields.word(key, &[("r", 'r'), ("g", 'g'), ("b", 'b'), ("a", 'a'), ("luma", 'l')])
+pub fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Channel, FileError> {
+    use Channel::{A, B, G, Luma, R};
+    Ok(fields.word(key, &[("r", R), ("g", G), ("b", B), ("a", A), ("luma", Luma)])?.unwrap_or_default())
 }

@@ -1,4 +1,4 @@
-//! Where a surface's heights come from: one source, or several put together.
+//! The source of a surface's heights, as a scene file writes it: one, or several put together.
 //!
 //! The same keys make a surface's own source and each part of `sum`, `mask` and `crossfade`.
 
@@ -7,12 +7,13 @@ use super::own::{self, OwnSource};
 use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
 use crate::files::FileError;
-use asperity_dsp::limits::{self, Range};
+use crate::parameters::{self, solid};
+use asperity_dsp::limits;
+use asperity_texture::picture::Channel;
+use asperity_texture::solid_materials::SolidMaterial;
+use asperity_texture::solid_noise::{ForceDirection, SolidNoiseParameters};
 use std::path::Path;
 use toml::Value;
-
-/// When a crossfade begins.
-const AT_S: Range = Range::new(0.0, 1e6, "0 to 1e6 s");
 
 /// Where heights come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,8 +29,13 @@ pub enum Source {
         /// Black is high.
         invert: bool,
     },
-    /// One of the seven solid-noise materials.
-    Solid(Box<SolidNoise>),
+    /// Solid noise.
+    Solid {
+        /// Those of the preset, and what was written.
+        parameters: Box<SolidNoiseParameters>,
+        /// Seed; none = the scene's.
+        seed: Option<u64>,
+    },
     /// An exact fractional Brownian relief.
     Brownian(Brownian),
     /// A primitive cell repeated along two translations.
@@ -60,50 +66,6 @@ pub enum Source {
         /// When the change begins, s.
         at_s: f64,
     },
-}
-
-/// Solid noise under the finger: a preset, and what differs from it.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct SolidNoise {
-    /// Name of the preset.
-    pub preset: String,
-    /// Seed; none = the scene's.
-    pub seed: Option<u64>,
-    /// M of the first module.
-    pub magnitude: Option<f64>,
-    /// N of the first module.
-    pub octaves: Option<u64>,
-    /// f of the first module, cells per unit of length.
-    pub frequency: Option<f64>,
-    /// Lacunarity of the first module.
-    pub lacunarity: Option<f64>,
-    /// Persistence of the first module.
-    pub persistence: Option<f64>,
-    /// T, 1/m.
-    pub texture_factor_per_m: Option<f64>,
-    /// A, m per unit of magnitude.
-    pub amplitude_m: Option<f64>,
-    /// L, N per unit of magnitude.
-    pub limit_n: Option<f64>,
-    /// Largest texture force, N.
-    pub cap_n: Option<f64>,
-    /// b, N·s/m.
-    pub viscosity_n_s_m: Option<f64>,
-    /// Direction of the texture force.
-    pub direction: Option<Direction>,
-    /// Whether the texture force is multiplied by the normal force.
-    pub proportional: Option<bool>,
-}
-
-/// Direction of a texture force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// Along u.
-    X,
-    /// Out of the surface.
-    Normal,
-    /// Along the motion.
-    Tangent,
 }
 
 /// Brownian relief.
@@ -152,7 +114,7 @@ const SOURCES: [&str; 9] =
     ["displacement", "solid", "brownian", "lattice", "sand", "sum", "mask", "crossfade", "own"];
 
 /// Reads the source of a surface or of a part of one; other keys stay.
-pub fn read(fields: &mut Fields, folder: &Path) -> Result<Source, FileError> {
+pub(crate) fn read(fields: &mut Fields, folder: &Path) -> Result<Source, FileError> {
     let given: Vec<&'static str> = SOURCES.into_iter().filter(|key| fields.has(key)).collect();
     if let [first, second, ..] = given[..] {
         let right = format!("write one of {}, or put them into sum", SOURCES.join(", "));
@@ -161,8 +123,8 @@ pub fn read(fields: &mut Fields, folder: &Path) -> Result<Source, FileError> {
     // `channel`, `invert` and `relief_m` speak of images; beside another source they say nothing.
     let channel = read_channel(fields, "channel")?;
     let invert = fields.flag("invert")?.unwrap_or(false);
-    let relief_m = fields.number("relief_m", limits::RELIEF_M)?;
-    let scale = fields.number("scale", limits::combined::FACTOR)?;
+    let relief_m = fields.number(&parameters::surface::RELIEF_M)?;
+    let scale = fields.number(&parameters::surface::SCALE)?;
     let needed_relief = |fields: &Fields| {
         relief_m.ok_or_else(|| fields.missing("relief_m", "the height of white over black in m"))
     };
@@ -222,7 +184,7 @@ fn read_mask(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
 fn read_crossfade(mut table: Fields, folder: &Path) -> Result<Source, FileError> {
     let from = Box::new(read_part(needed_table(&mut table, "from")?, folder)?);
     let to = Box::new(read_part(needed_table(&mut table, "to")?, folder)?);
-    let at_s = table.needed_number("at_s", AT_S)?;
+    let at_s = table.needed_number(&parameters::crossfade::AT_S)?;
     table.finish()?;
     Ok(Source::Crossfade { from, to, at_s })
 }
@@ -230,35 +192,51 @@ fn read_crossfade(mut table: Fields, folder: &Path) -> Result<Source, FileError>
 /// The name of a preset, or a table of one and what differs from it.
 fn read_solid(fields: &mut Fields) -> Result<Source, FileError> {
     let right = "write the name of a material, or { preset = \"NAME\", … }";
-    let mut table = match fields.take("solid") {
-        Some(Value::Table(table)) => Fields::new(table, fields.inner("solid")),
+    match fields.take("solid") {
+        Some(Value::Table(table)) => read_solid_table(Fields::new(table, fields.inner("solid"))),
         Some(Value::String(preset)) if !preset.is_empty() => {
-            return Ok(Source::Solid(Box::new(SolidNoise { preset, ..SolidNoise::default() })));
+            let parameters = Box::new(solid_preset(fields, "solid", &preset)?);
+            Ok(Source::Solid { parameters, seed: None })
         }
-        Some(value) => {
-            return Err(fields.refuse("solid", format!("{} is no material", shown(&value)), right));
-        }
-        None => return Err(fields.missing("solid", "the name of a material")),
-    };
-    let directions = [("x", Direction::X), ("normal", Direction::Normal), ("tangent", Direction::Tangent)];
-    let solid = SolidNoise {
-        preset: table.needed_text("preset")?,
-        seed: table.whole("seed", 0, u64::MAX)?,
-        magnitude: table.number("magnitude", limits::solid::MAGNITUDE)?,
-        octaves: table.whole("octaves", 1, 16)?,
-        frequency: table.number("frequency", limits::solid::FREQUENCY)?,
-        lacunarity: table.number("lacunarity", limits::solid::LACUNARITY)?,
-        persistence: table.number("persistence", limits::solid::PERSISTENCE)?,
-        texture_factor_per_m: table.number("texture_factor_per_m", limits::solid::TEXTURE_FACTOR_PER_M)?,
-        amplitude_m: table.number("amplitude_m", limits::solid::AMPLITUDE_M)?,
-        limit_n: table.number("limit_n", limits::solid::LIMIT_N)?,
-        cap_n: table.number("cap_n", limits::solid::CAP_N)?,
-        viscosity_n_s_m: table.number("viscosity_n_s_m", limits::solid::VISCOSITY_N_S_M)?,
-        direction: table.word("direction", &directions)?,
-        proportional: table.flag("proportional")?,
-    };
+        Some(value) => Err(fields.refuse("solid", format!("{} is no material", shown(&value)), right)),
+        None => Err(fields.missing("solid", "the name of a material")),
+    }
+}
+
+fn solid_preset(fields: &Fields, key: &str, name: &str) -> Result<SolidNoiseParameters, FileError> {
+    let material = SolidMaterial::from_name(name).ok_or_else(|| {
+        let known = SolidMaterial::SEVEN.map(SolidMaterial::name).join(", ");
+        fields.refuse(key, format!("\"{name}\" is unknown"), format!("must be one of: {known}"))
+    })?;
+    Ok(material.parameters())
+}
+
+fn read_solid_table(mut table: Fields) -> Result<Source, FileError> {
+    let directions =
+        [("x", ForceDirection::X), ("normal", ForceDirection::Normal), ("tangent", ForceDirection::Tangent)];
+    let preset = table.needed_text("preset")?;
+    let mut parameters = solid_preset(&table, "preset", &preset)?;
+    let seed = table.whole("seed", 0, u64::MAX)?;
+    let [first, _] = &mut parameters.modules;
+    first.octaves = table.count(&solid::OCTAVES)?.unwrap_or(first.octaves);
+    for (to, of) in [
+        (&mut first.magnitude, &solid::MAGNITUDE),
+        (&mut first.frequency, &solid::FREQUENCY),
+        (&mut first.lacunarity, &solid::LACUNARITY),
+        (&mut first.persistence, &solid::PERSISTENCE),
+        (&mut parameters.texture_factor_per_m, &solid::TEXTURE_FACTOR_PER_M),
+        (&mut parameters.amplitude_m, &solid::AMPLITUDE_M),
+        (&mut parameters.limit_n, &solid::LIMIT_N),
+        (&mut parameters.cap_n, &solid::CAP_N),
+        (&mut parameters.viscosity_n_s_m, &solid::VISCOSITY_N_S_M),
+    ] {
+        *to = table.number_or(of, *to)?;
+    }
+    parameters.direction = table.word("direction", &directions)?.unwrap_or(parameters.direction);
+    let proportional = table.flag("proportional")?;
+    parameters.proportional_to_contact = proportional.unwrap_or(parameters.proportional_to_contact);
     table.finish()?;
-    Ok(Source::Solid(Box::new(solid)))
+    Ok(Source::Solid { parameters: Box::new(parameters), seed })
 }
 
 fn read_brownian(mut table: Fields) -> Result<Source, FileError> {
@@ -266,8 +244,8 @@ fn read_brownian(mut table: Fields) -> Result<Source, FileError> {
     let graph = table.flag("graph")?.unwrap_or(false);
     let most = if graph { 1 << 22 } else { 4096 };
     let brownian = Brownian {
-        hurst: table.needed_number("hurst", limits::brownian::HURST)?,
-        rms_m: table.needed_number("rms_m", limits::brownian::RMS_M)?,
+        hurst: table.needed_number(&parameters::brownian::HURST)?,
+        rms_m: table.needed_number(&parameters::brownian::RMS_M)?,
         seed: table.whole("seed", 0, u64::MAX)?,
         cells: table.whole("cells", 16, most)?,
         graph,
@@ -280,7 +258,7 @@ fn read_brownian(mut table: Fields) -> Result<Source, FileError> {
 fn read_lattice(
     mut table: Fields,
     folder: &Path,
-    channel: Option<char>,
+    channel: Channel,
     relief_m: f64,
     invert: bool,
 ) -> Result<Source, FileError> {

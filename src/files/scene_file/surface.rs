@@ -4,15 +4,20 @@ use super::fields::{Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
 use crate::files::FileError;
-use asperity_dsp::limits;
-use std::path::Path;
-use toml::Value;
+use crate::model::frame::SurfaceFrame;
+use crate::model::surface::Excitation;
+use crate::parameters::surface as parameters;
+use asperity_texture::wrap::Wrap;
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
 
 /// One surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceEntry {
     /// Name that the contact log uses.
     pub name: String,
+    /// The table as it is written, and what its paths are relative to.
+    pub(crate) written: (Table, PathBuf),
     /// Body that rings when the surface is touched; none = silent.
     pub body: Option<String>,
     /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is its own amplitudes.
@@ -20,24 +25,28 @@ pub struct SurfaceEntry {
     /// Where its heights come from.
     pub source: Source,
     /// Perceptual roughness R.
-    pub roughness: Roughness,
+    pub roughness: RoughnessEntry,
     /// What uv 1 spans along u, m.
     pub width_m: f64,
     /// What uv 1 spans along v, m.
     pub height_m: f64,
-    /// Level of the 1/f^α overlay; none = the engine's default.
+    /// Level of the 1/f^α overlay, m; none = that of its material, or the engine's default.
     pub micro_relief_m: Option<f64>,
+    /// Wavelength beyond which the overlay is flat, m; none = the engine's default.
+    pub outer_scale_m: Option<f64>,
     /// What lies beyond the edge.
     pub wrap: Wrap,
-    /// What sliding sends to the body; none = the engine's default.
-    pub excitation: Option<Excitation>,
-    /// Coulomb friction coefficient, for the 3-D force; none = the engine's default.
+    /// What sliding sends to the body.
+    pub excitation: Excitation,
+    /// Where it lies in its body.
+    pub frame: Option<SurfaceFrame>,
+    /// Coulomb friction coefficient, for the 3-D force; none = the source's.
     pub friction: Option<f64>,
 }
 
 /// Where R comes from.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Roughness {
+pub enum RoughnessEntry {
     /// The same everywhere; none = the engine's default.
     Number(Option<f64>),
     /// A map of R, or of gloss 1 − R.
@@ -49,31 +58,9 @@ pub enum Roughness {
     },
 }
 
-/// What lies beyond the edge of a map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Wrap {
-    /// The map again.
-    #[default]
-    Repeat,
-    /// Its edge for ever.
-    Clamp,
-    /// The map, mirrored.
-    Mirror,
-}
-
-/// What sliding sends to the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Excitation {
-    /// Hertz pulses of micro-collisions, as the paper.
-    Collisions,
-    /// The alternating part of the contact force.
-    Force,
-    /// Both.
-    Both,
-}
-
 /// Reads one `[[surface]]`.
-pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError> {
+pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError> {
+    let written = (fields.written(), folder.to_owned());
     let name = fields.needed_text("name")?;
     let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
     fields.rename(place);
@@ -83,23 +70,37 @@ pub fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, FileError
         [("collisions", Excitation::Collisions), ("force", Excitation::Force), ("both", Excitation::Both)];
     let surface = SurfaceEntry {
         name,
+        written,
         body: fields.text("body")?,
-        // The engine takes 16 positions.
-        strike_position: fields.whole("strike_position", 0, 15)?.unwrap_or(0) as usize,
+        strike_position: fields.count(&parameters::STRIKE_POSITION)?.unwrap_or(0),
         source,
         roughness: read_roughness(&mut fields, folder)?,
-        width_m: fields.needed_number("width_m", limits::SIDE_M)?,
-        height_m: fields.needed_number("height_m", limits::SIDE_M)?,
-        micro_relief_m: fields.number("micro_relief_m", limits::MICRO_RELIEF_M)?,
+        width_m: fields.needed_number(&parameters::WIDTH_M)?,
+        height_m: fields.needed_number(&parameters::HEIGHT_M)?,
+        micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
+        outer_scale_m: fields.number(&parameters::OUTER_SCALE_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
-        excitation: fields.word("excitation", &excitations)?,
-        friction: fields.number("friction", limits::FRICTION)?,
+        excitation: fields.word("excitation", &excitations)?.unwrap_or_default(),
+        frame: read_frame(&mut fields)?,
+        friction: fields.number(&parameters::FRICTION)?,
     };
     fields.finish()?;
     Ok(surface)
 }
 
-fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<Roughness, FileError> {
+/// `[surface.frame]`; what is missing is the body's origin, its x and its y axis.
+fn read_frame(fields: &mut Fields) -> Result<Option<SurfaceFrame>, FileError> {
+    let Some(mut fields) = fields.table("frame")? else { return Ok(None) };
+    let origin_m = fields.vector("origin_m")?.unwrap_or_default();
+    let u_axis = fields.vector("u_axis")?.unwrap_or([1.0, 0.0, 0.0]);
+    let v_axis = fields.vector("v_axis")?.unwrap_or([0.0, 1.0, 0.0]);
+    let place = fields.inner("");
+    fields.finish()?;
+    let told = |error| FileError::told(error).within(place.trim_end_matches([':', ' ', '.']));
+    SurfaceFrame::new(origin_m, u_axis, v_axis).map(Some).map_err(told)
+}
+
+fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<RoughnessEntry, FileError> {
     if fields.has("roughness") && fields.has("gloss") {
         return Err(fields.refuse(
             "gloss",
@@ -111,19 +112,20 @@ fn read_roughness(fields: &mut Fields, folder: &Path) -> Result<Roughness, FileE
     let (value, gloss, key) = match (fields.take("roughness"), fields.take("gloss")) {
         (Some(value), _) => (value, false, "roughness"),
         (None, Some(value)) => (value, true, "gloss"),
-        (None, None) => return Ok(Roughness::Number(None)),
+        (None, None) => return Ok(RoughnessEntry::Number(None)),
     };
     match value {
         Value::String(name) => {
-            Ok(Roughness::Map { image: Pixels { path: folder.join(name), channel }, gloss })
+            Ok(RoughnessEntry::Map { image: Pixels { path: folder.join(name), channel }, gloss })
         }
         value => {
-            let number =
-                as_number(&value).filter(|number| (0.0..=1.0).contains(number)).ok_or_else(|| {
-                    let right = format!("must be {}, or name an image", limits::ROUGHNESS.words);
+            let number = as_number(&value)
+                .filter(|number| parameters::ROUGHNESS.range.holds(*number))
+                .ok_or_else(|| {
+                    let right = format!("must be {}, or name an image", parameters::ROUGHNESS.range.words);
                     fields.refuse(key, format!("{} is refused", shown(&value)), right)
                 })?;
-            Ok(Roughness::Number(Some(if gloss { 1.0 - number } else { number })))
+            Ok(RoughnessEntry::Number(Some(if gloss { 1.0 - number } else { number })))
         }
     }
 }

@@ -1,4 +1,9 @@
 use super::*;
+use crate::Material;
+use crate::model::surface::Excitation;
+use asperity_texture::picture::Channel;
+use asperity_texture::sand::Layer;
+use asperity_texture::solid_materials::SolidMaterial;
 
 #[path = "../../../fuzz/mutation.rs"]
 mod mutation;
@@ -51,12 +56,12 @@ limit = false
     .unwrap();
     assert_eq!(scene.sample_rate_hz, Some(44_100.0));
     assert_eq!(scene.contacts.as_deref(), Some(Path::new("dir/stroke.jsonl")));
-    assert_eq!(scene.bodies[0].material, Some(MaterialEntry::Preset("ceramic".to_owned())));
+    assert_eq!(scene.bodies[0].material, Some(Material::CERAMIC));
     let surface = &scene.surfaces[0];
     assert_eq!((surface.width_m, surface.micro_relief_m), (0.14, Some(2e-6)));
     assert!(matches!(&surface.source, Source::Map { image, relief_m, invert: false }
         if image.path == Path::new("dir/tiles_disp.png") && *relief_m == 0.004));
-    assert_eq!(surface.excitation, Some(Excitation::Both));
+    assert_eq!(surface.excitation, Excitation::Both);
     assert_eq!(scene.actuators, [ActuatorEntry::default()]);
 }
 
@@ -73,7 +78,8 @@ fn a_surface_may_lie_on_another_strike_position_of_its_body() {
 fn every_source_of_the_interface_is_read() {
     let source = |line: &str| parse(&format!("{SURFACE}{line}")).unwrap().surfaces[0].source.clone();
     assert_eq!(source(""), Source::Flat);
-    assert!(matches!(source("solid = \"gravel\""), Source::Solid(solid) if solid.preset == "gravel"));
+    let gravel = Box::new(SolidMaterial::Gravel.parameters());
+    assert_eq!(source("solid = \"gravel\""), Source::Solid { parameters: gravel, seed: None });
     assert!(matches!(
         source("brownian = { hurst = 0.5, rms_m = 1e-4 }"),
         Source::Brownian(Brownian { hurst: 0.5, graph: false, force: None, .. })
@@ -95,7 +101,7 @@ fn sources_are_put_together_from_tables_like_a_surfaces_own() {
     ) else {
         panic!("not a sum")
     };
-    assert!(matches!(&parts[0], Source::Scale(solid, 0.5) if matches!(**solid, Source::Solid(_))));
+    assert!(matches!(&parts[0], Source::Scale(solid, 0.5) if matches!(**solid, Source::Solid { .. })));
     assert!(matches!(&parts[1], Source::Map { image, .. } if image.path == Path::new("dir/d.png")));
     assert_eq!(parts[2], Source::Flat);
     let Source::Scale(mask, -1.0) = source(
@@ -105,20 +111,21 @@ fn sources_are_put_together_from_tables_like_a_surfaces_own() {
         panic!("not scaled")
     };
     let Source::Mask { image, outside, .. } = *mask else { panic!("not a mask") };
-    assert_eq!((image.path.as_path(), image.channel), (Path::new("dir/m.png"), Some('g')));
+    assert_eq!((image.path.as_path(), image.channel), (Path::new("dir/m.png"), Channel::G));
     let graph = Brownian { hurst: 0.2, rms_m: 1e-5, seed: None, cells: None, graph: true, force: None };
     assert_eq!(*outside, Source::Brownian(Brownian { force: Some(BrownianForce::Lateral), ..graph }));
     let fade = "crossfade = { from = { solid = { preset = \"wood\", octaves = 3 } }, to = {}, at_s = 0.25 }";
     let Source::Crossfade { from, at_s: 0.25, .. } = source(fade) else { panic!("not a crossfade") };
-    assert!(matches!(*from, Source::Solid(solid) if solid.octaves == Some(3)));
+    assert!(matches!(*from, Source::Solid { parameters, .. } if parameters.modules[0].octaves == 3));
     let Source::Sand(sand) = source(
         "sand = { layers = [{ from_m = 0.002, hardness = 4 }, { from_m = 0.01, hardness = 0.5 }], \
          tool = { map = \"bar.png\", width_m = 0.02, relief_m = 0.01 } }",
     ) else {
         panic!("not sand")
     };
-    assert_eq!(sand.layers, [(0.002, 4.0), (0.01, 0.5)]);
-    assert!(matches!(sand.tool, Tool::Map { width_m: 0.02, .. }));
+    let layers = [(0.002, 4.0), (0.01, 0.5)].map(|(from_m, hardness)| Some(Layer { from_m, hardness }));
+    assert_eq!(sand.design.law.layers, [layers[0], layers[1], None, None]);
+    assert_eq!(sand.tool.map(|tool| tool.width_m), Some(0.02));
 }
 
 #[test]
@@ -144,10 +151,10 @@ fn parts_of_a_source_are_refused_by_their_own_place() {
 #[test]
 fn roughness_is_a_number_a_map_or_gloss() {
     let roughness = |line: &str| parse(&format!("{SURFACE}{line}")).unwrap().surfaces[0].roughness.clone();
-    assert_eq!(roughness("roughness = 0.25"), Roughness::Number(Some(0.25)));
-    assert_eq!(roughness("gloss = 1"), Roughness::Number(Some(0.0)));
-    assert!(matches!(roughness("gloss = \"g.png\""), Roughness::Map { gloss: true, .. }));
-    assert_eq!(roughness(""), Roughness::Number(None));
+    assert_eq!(roughness("roughness = 0.25"), RoughnessEntry::Number(Some(0.25)));
+    assert_eq!(roughness("gloss = 1"), RoughnessEntry::Number(Some(0.0)));
+    assert!(matches!(roughness("gloss = \"g.png\""), RoughnessEntry::Map { gloss: true, .. }));
+    assert_eq!(roughness(""), RoughnessEntry::Number(None));
 }
 
 #[test]

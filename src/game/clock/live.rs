@@ -91,6 +91,12 @@ impl Live {
         Self { sample_rate_hz, max_lead: max_lead_s * sample_rate_hz, pace: 1.0, tied: None }
     }
 
+    /// The same window at another rate, to be tied anew.
+    pub fn at_rate(&mut self, sample_rate_hz: f64) {
+        let max_lead_s = self.max_lead / self.sample_rate_hz;
+        *self = Self { pace: self.pace, ..Self::new(max_lead_s, sample_rate_hz) };
+    }
+
     /// Forgets the tie; the next stamp holds at the next sample.
     pub fn untie(&mut self) {
         self.tied = None;

@@ -1,4 +1,4 @@
-//! What the game reports: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
+//! Reports of the game: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
 
 use super::Scene;
 use crate::link::message::{Felt, Message};
@@ -6,7 +6,7 @@ use crate::link::stats::Counters;
 use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::error::{Refusal, ReportError};
-use crate::model::event::{Actuator, ContactEvent, ContactId, Impact};
+use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact};
 use crate::model::id::{BodyId, ProbeId};
 use crate::model::stamp::Stamp;
 use crate::prepared::body::LONGEST_CONTACT_S;
@@ -52,6 +52,7 @@ impl Scene {
         self.send_stamped(stamp, event)?;
         self.reported.accept(&event, stamp, self.rings(&event));
         if let Some(recording) = &mut self.recording {
+            recording.settle(position as f64 / self.config.inner_rate_hz());
             recording.note(stamp.samples() / self.config.inner_rate_hz(), &event);
         }
         Ok(())
@@ -75,7 +76,9 @@ impl Scene {
 
     fn send_stamped(&mut self, stamp: Stamp, event: ContactEvent) -> Result<(), Refusal> {
         match event {
-            ContactEvent::Moved { contact, .. } => self.send_move(stamp, contact, event),
+            ContactEvent::Moved { contact, sample, emphasis } => {
+                self.send_move(stamp, contact, sample, emphasis)
+            }
             ContactEvent::Begin { contact, .. } | ContactEvent::End { contact } => {
                 let before = self.held.len();
                 self.held.retain(|(_, held, _)| *held != contact);
@@ -108,8 +111,8 @@ impl Scene {
                 within("importance", touching.importance, limits::impact::IMPORTANCE)?;
                 ContactEvent::Begin { contact, touching, sample: sample.checked()? }
             }
-            ContactEvent::Moved { contact, sample } => {
-                ContactEvent::Moved { contact, sample: sample.checked()? }
+            ContactEvent::Moved { contact, sample, emphasis } => {
+                ContactEvent::moved_with(contact, sample.checked()?, emphasis.checked()?)
             }
             ContactEvent::End { .. } => event,
             ContactEvent::Impact(impact) => {
@@ -142,13 +145,22 @@ impl Scene {
         }
     }
 
-    fn send_move(&mut self, stamp: Stamp, contact: ContactId, event: ContactEvent) -> Result<(), Refusal> {
+    fn send_move(
+        &mut self,
+        stamp: Stamp,
+        contact: ContactId,
+        sample: ContactSample,
+        emphasis: Emphasis,
+    ) -> Result<(), Refusal> {
+        let event = ContactEvent::moved_with(contact, sample, emphasis);
         // The last quarter of the queue is kept for landings, lift-offs and impacts.
         if self.to_audio.free() > self.to_audio.capacity() / 4 {
             return self.send_event(Message::Event { stamp, event });
         }
-        if let Some(held) = self.held.iter_mut().find(|(_, held, _)| *held == contact) {
-            *held = (stamp, contact, event);
+        if let Some((at, _, held)) = self.held.iter_mut().find(|(_, held, _)| *held == contact) {
+            // A place gives way to the next one; a gain that was asked for does not.
+            let earlier = if let ContactEvent::Moved { emphasis, .. } = held { *emphasis } else { emphasis };
+            (*at, *held) = (stamp, ContactEvent::moved_with(contact, sample, emphasis.or(earlier)));
             Counters::add(&self.counters.superseded, 1);
         } else if self.held.len() < 4 * self.config.max_contacts {
             self.held.push((stamp, contact, event));

@@ -106,6 +106,14 @@ impl BrownianSurface {
 }
 
 impl HeightField for BrownianSurface {
+    fn prepare_tip(&mut self, radius_m: f64) {
+        self.relief.prepare_tip(radius_m);
+    }
+
+    fn ride(&mut self, radius_m: f64) {
+        self.relief.ride(radius_m);
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.relief.prepare(setup)
     }
@@ -175,17 +183,11 @@ pub struct BrownianPath {
 }
 
 impl BrownianPath {
-    /// A periodic graph of heights (m) `spacing_m` apart, for contacts numbered below `contacts`; it
-    /// answers with a force if one is given.
+    /// A periodic graph of heights (m) `spacing_m` apart; it answers with a force if one is given.
     ///
     /// # Errors
     /// When there are fewer than 4 heights, one is not finite or the spacing is not above 0.
-    pub fn new(
-        heights_m: &[f64],
-        spacing_m: f64,
-        rendering: Option<Rendering>,
-        contacts: usize,
-    ) -> Result<Self, DesignError> {
+    pub fn new(heights_m: &[f64], spacing_m: f64, rendering: Option<Rendering>) -> Result<Self, DesignError> {
         DesignError::check("heights_m", heights_m.len() as f64, "4 or more", |n| n >= 4.0)?;
         for &h in heights_m {
             DesignError::check("heights_m", h, "finite", |_| true)?;
@@ -200,7 +202,7 @@ impl BrownianPath {
             coefficients,
             spacing_m: spacing,
             force: rendering.map(|rendering| BrownianForce::graph(rendering, span)).transpose()?,
-            contacts: vec![Travelled::default(); contacts.max(1)],
+            contacts: vec![Travelled::default(); Setup::default().voices],
         })
     }
 
@@ -231,7 +233,7 @@ impl BrownianPath {
 
 impl HeightField for BrownianPath {
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.contacts = vec![Travelled::default(); setup.voices.max(self.contacts.len())];
+        self.contacts = vec![Travelled::default(); setup.voices.max(1)];
         Ok(())
     }
 

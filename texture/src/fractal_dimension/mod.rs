@@ -40,6 +40,7 @@ pub const SMALLEST_SIDE: usize = 64;
 
 /// Why a picture has no fractal dimension.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DimensionError {
     /// Too few texels for the estimators' scales.
     #[error(

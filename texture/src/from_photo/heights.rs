@@ -23,7 +23,7 @@ const MOST_UNEXPLAINED: f64 = 0.7;
 /// Why heights were not found as the light seemed to allow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fallback {
-    /// The told light comes from the viewer's direction; its slant, radians.
+    /// The told light comes from the viewer's direction, and there is no flat ground; its slant, radians.
     FrontalLight(f64),
     /// A light was found, but the relief it gives is this large over the shorter side.
     Implausible(f64),
@@ -36,7 +36,7 @@ impl std::fmt::Display for Fallback {
         match self {
             Self::FrontalLight(slant) => write!(
                 f,
-                "the light is {:.0}° from the viewer's direction: shading tells no direction below {:.0}°, heights are by dark is deep",
+                "the light is {:.0}° from the viewer's direction, where shading tells no direction (below {:.0}°), and the picture shows no flat ground to begin from: heights are by dark is deep",
                 slant.to_degrees(),
                 LEAST_SLANT_RAD.to_degrees()
             ),
@@ -71,6 +71,10 @@ pub(super) fn heights_of(
 ) -> Result<Found, DesignError> {
     let mut found = match (options.method, options.light) {
         (Some(Method::DarkIsDeep), _) => by_brightness(picture, whole, None)?,
+        (Some(Method::FlatGround), _) => {
+            let linear = picture.map(linear_light);
+            above_the_ground(shape_by(Method::FlatGround, &linear, Light::OVERHEAD, |_| {})?)
+        }
         (Some(method), told) => {
             let linear = picture.map(linear_light);
             let estimated = if told.is_none() { estimate_light(&linear) } else { None };
@@ -78,7 +82,10 @@ pub(super) fn heights_of(
             by_shading(&linear, method, light, told.is_some(), estimated.is_some(), progress)?
         }
         (None, Some(told)) if told.slant_rad() < LEAST_SLANT_RAD => {
-            by_brightness(picture, whole, Some(Fallback::FrontalLight(told.slant_rad())))?
+            match shape_by(Method::FlatGround, &picture.map(linear_light), told, |_| {}) {
+                Ok(shape) => above_the_ground(shape),
+                Err(_) => by_brightness(picture, whole, Some(Fallback::FrontalLight(told.slant_rad())))?,
+            }
         }
         (None, Some(told)) => {
             let linear = picture.map(linear_light);
@@ -118,6 +125,11 @@ fn by_what_is_found(
 fn by_brightness(picture: &Raster, whole: &Raster, fallback: Option<Fallback>) -> Result<Found, DesignError> {
     let shape = shape_by(Method::DarkIsDeep, &contrast(picture), Light::OVERHEAD, |_| {})?;
     Ok(Found { shape, sign: Sign::of_brightness(whole), light_was_found: false, fallback })
+}
+
+/// Whether relief stands out of its ground or is sunk into it, frontal light cannot say: out of it is custom.
+fn above_the_ground(shape: Shape) -> Found {
+    Found { shape, sign: Sign::of_found_light(), light_was_found: false, fallback: None }
 }
 
 fn by_shading(

@@ -1,4 +1,4 @@
-//! What is known about a photograph, and the size of its heights.
+//! Options of `from_photo`: what is known about a photograph, and the size of its heights.
 
 use crate::light::Light;
 use crate::raster::Raster;

@@ -1,4 +1,4 @@
-//! Whether bright is high: what a picture says about it, and how sure that is.
+//! Sign of the relief: whether bright is high, and how sure a picture makes of it.
 //!
 //! Brightness alone does not tell hills from hollows. Occlusion and cast shadows give a few places much less light than the
 //! rest, but nothing gives a few places much more of it, so a tail towards dark speaks for dark is deep; a tail

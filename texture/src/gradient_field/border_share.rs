@@ -1,4 +1,4 @@
-//! What the borders of differences of texels hold.
+//! Border terms of finite differences: their share of a field that does not tile.
 //!
 //! At the border a central difference
 //! of a mirrored image is half the difference to the only neighbour (mirrored beyond the last texel), or none (mirrored at the last

@@ -1,4 +1,4 @@
-//! What turns in a field of slopes, which no surface has, and which derivative may have made it.
+//! Curl of a slope field: tests integrability and identifies the derivative stencil.
 //!
 //! Only with the derivative that made the slopes is D_y P = D_x Q. What is left across D, |D_y P − D_x Q|²/|D|², is then the noise of
 //! the slopes, with any other derivative more. By how much more, in units of the noise, is the logarithm of the likelihood ratio

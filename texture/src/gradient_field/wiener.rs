@@ -1,4 +1,4 @@
-//! How much of what a field of slopes shows at a frequency is the surface's.
+//! Wiener weights of a slope field: the surface's share of what is seen at a frequency.
 //!
 //! ```text
 //! Z(k) = (D_x* P + D_y* Q) / (|D|² + N / S(k))        N / S = the noise of one slope over the surface's power

@@ -1,4 +1,4 @@
-//! How much of an arrangement is found in a surface: correlations of sub-bands, at no shift.
+//! Arrangement of a surface: correlations of sub-bands with another one's, at no shift.
 //!
 //! ```text
 //! r = mean over λ, μ of  Σ_k Ψ² Re(A B*) / √(Σ_k Ψ² |A|² · Σ_k Ψ² |B|²)

@@ -1,4 +1,4 @@
-//! What a finger feels of a reference, and surfaces that are given it.
+//! Tactile statistics of a reference, and surfaces that are given them.
 
 use super::arrangement::correlation;
 use super::bands::{Parts, Scratch};

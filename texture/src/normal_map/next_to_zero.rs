@@ -1,4 +1,4 @@
-//! What the two steps next to 0 stand for in a channel that has no number for 0.
+//! Unbiased values for the two codes around zero of an 8-bit channel, which has no code for 0 itself.
 //!
 //! A step k of a channel stands for all components between two halves; their mean is the middle if the components are spread evenly. Next to 0
 //! they are not where a map has flat places: those all come out at one step, or one of two, and would tilt. With n₀ texels at

@@ -1,4 +1,4 @@
-//! Whether a normal map tiles, by two questions at each seam: do the slopes go on, and do the heights?
+//! Tiling test of a normal map, by two questions at each seam: do the slopes go on, and do the heights?
 //!
 //! ```text
 //! t = (A − N)/(F − N)        j = (mean (z_first − z_last − step)²)/(2 var z)        open: t' + j > 1.3 at either seam

@@ -1,4 +1,4 @@
-//! How sand pushes back, and what its grains do.
+//! The force law of sand, and of its grains.
 //!
 //! ```text
 //! F_r(d) = k_s (e^{k_c d} − 1)   for d > 0, else 0, upwards      d(F) its inverse
@@ -66,18 +66,21 @@ pub struct SandLaw {
 
 impl Default for SandLaw {
     fn default() -> Self {
-        Self {
-            stiffness_n: STIFFNESS_N,
-            exponent_per_m: EXPONENT_PER_M,
-            drag_s_per_m: DRAG_S_PER_M,
-            wetness: 0.0,
-            layers: [None; MAX_LAYERS],
-            grain_m: GRAIN_M,
-        }
+        Self::DEFAULT
     }
 }
 
 impl SandLaw {
+    /// Dry sand without layers.
+    pub const DEFAULT: Self = Self {
+        stiffness_n: STIFFNESS_N,
+        exponent_per_m: EXPONENT_PER_M,
+        drag_s_per_m: DRAG_S_PER_M,
+        wetness: 0.0,
+        layers: [None; MAX_LAYERS],
+        grain_m: GRAIN_M,
+    };
+
     /// Refuses what has no force.
     ///
     /// # Errors

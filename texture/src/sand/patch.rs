@@ -1,4 +1,4 @@
-//! What the audio half sees of the sand: 64 × 64 heights around a contact.
+//! A patch of sand for the audio half: 64 × 64 heights around a contact.
 //!
 //! Read with a cubic B-spline that smooths instead of interpolating: heights, slopes and curvatures
 //! are continuous, and what is finer than a cell is the grains' business.

@@ -12,8 +12,11 @@ use super::erosion::Erosion;
 use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
 use super::tool::{Press, Tool};
+use crate::height_field::Setup;
+use crate::moving_picture::MovingPicture;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
+use std::sync::Arc;
 
 /// Frames a second.
 pub const FRAMES_PER_S: f64 = 60.0;
@@ -41,8 +44,6 @@ pub struct SandDesign {
     pub law: SandLaw,
     /// What every contact drags.
     pub tool: Tool,
-    /// Contacts are numbered below this. An engine makes more room by itself; sand that is simulated elsewhere has to have enough.
-    pub contacts: usize,
 }
 
 impl Default for SandDesign {
@@ -56,7 +57,6 @@ impl Default for SandDesign {
             talus_deg: 30.0,
             law: SandLaw::default(),
             tool: Tool::Sphere { radius_m: 0.005 },
-            contacts: 128,
         }
     }
 }
@@ -118,6 +118,8 @@ pub struct SandSimulation {
     volume_before_units: i64,
     /// Deepest that a tool stood below the untouched bed, metres.
     print_m: f64,
+    /// For whoever draws the sand.
+    moving_picture: Arc<MovingPicture>,
 }
 
 impl SandSimulation {
@@ -130,37 +132,38 @@ impl SandSimulation {
         design.tool.check()?;
         limits::SIDE_M.check("width_m", design.width_m)?;
         limits::SIDE_M.check("height_m", design.height_m)?;
-        limits::CONTACTS.check("contacts", design.contacts as f64)?;
         let cells = design.cells.max(1);
         let cell_m = design.width_m / cells as f64;
         let rows = (design.height_m / cell_m).round().min(1e6) as usize;
         let grid = SandGrid::flat(design.cells, rows, cell_m, design.depth_m)?;
+        let (columns, rows) = (grid.columns(), grid.rows());
         let reach = design.tool.reach_m() / cell_m;
         DesignError::check("tool_radius_m", reach, "at most 256 cells", |r| r <= 256.0)?;
         // A tool that fits into a cell would leave no groove.
         let narrow = "so many that a cell is no wider than the tool";
         DesignError::check("cells", cells as f64, narrow, |_| 2.0 * reach >= 1.0)?;
         let erosion = Erosion::new(&grid, design.law.talus_deg(design.talus_deg))?;
-        let presses = vec![Press::new(&design.tool, &grid); design.contacts];
-        let track = Track { level_m: design.depth_m, ..Track::default() };
         let walls = Vec::with_capacity(4 * grid.columns().min(1024));
         let volume_before_units = grid.volume_units();
-        Ok(Self {
+        let mut sand = Self {
             grid,
             erosion,
             law: design.law,
             dry_talus_deg: design.talus_deg,
             tool: design.tool.clone(),
             depth_m: design.depth_m,
-            tracks: vec![track; design.contacts],
-            presses,
+            tracks: Vec::new(),
+            presses: Vec::new(),
             walls,
             volume_before_units,
             print_m: 0.0,
-        })
+            moving_picture: MovingPicture::new(columns, rows, cell_m),
+        };
+        sand.make_room(Setup::default().voices);
+        Ok(sand)
     }
 
-    /// Makes room for contacts numbered below `contacts`, if there is less.
+    /// Makes room for contacts numbered below `contacts`, if there is less; there is room for those of [`Setup::default`].
     pub fn make_room(&mut self, contacts: usize) {
         if contacts > self.tracks.len() {
             let track = Track { level_m: self.depth_m, ..Track::default() };
@@ -239,6 +242,14 @@ impl SandSimulation {
             cells += self.erosion.pass(&mut self.grid);
         }
         self.lower_walls();
+        let grid = &self.grid;
+        self.moving_picture.write(|column, row| grid.height_m(column, row) as f32);
+    }
+
+    /// The sand as it moves, written once a frame.
+    #[must_use]
+    pub fn moving_picture(&self) -> &Arc<MovingPicture> {
+        &self.moving_picture
     }
 
     /// Lifts all tools and lets the sand slide until nothing moves.

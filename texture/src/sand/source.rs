@@ -25,16 +25,18 @@ use super::grid::SandPicture;
 use super::law::SandLaw;
 use super::patch::Patch;
 use super::simulation::{FRAMES_PER_S, Pose, SandDesign, SandFigures, SandSimulation};
-use super::worker::SandWorker;
+use super::worker::{Far, NewEnds, SandWorker};
 use crate::exclusive::Exclusive;
 use crate::fade::Fade;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
+use crate::moving_picture::MovingPicture;
 use crate::solid_materials::{FRICTION, SolidMaterial};
 use crate::solid_noise::SolidNoise;
 use asperity_dsp::DesignError;
 use std::any::Any;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Patches in circulation for every contact, besides the one it landed on: one that fades out, one that fades in, one that waits,
 /// one under way.
@@ -44,11 +46,47 @@ const PATCHES_A_CONTACT: usize = 4;
 enum Link {
     Here(Box<SandSimulation>),
     Elsewhere {
-        poses: Exclusive<rtrb::Producer<Pose>>,
-        laws: Exclusive<rtrb::Producer<SandLaw>>,
-        patches: Exclusive<rtrb::Consumer<Box<Patch>>>,
-        back: Exclusive<rtrb::Producer<Box<Patch>>>,
+        near: Near,
+        /// Where the worker finds the other ends of new rings.
+        line: NewEnds,
     },
+}
+
+/// The audio half's ends of the rings.
+struct Near {
+    poses: Exclusive<rtrb::Producer<Pose>>,
+    laws: Exclusive<rtrb::Producer<SandLaw>>,
+    patches: Exclusive<rtrb::Consumer<Box<Patch>>>,
+    back: Exclusive<rtrb::Producer<Box<Patch>>>,
+}
+
+/// Patches in circulation for so many contacts.
+fn circulating(contacts: usize) -> usize {
+    contacts * PATCHES_A_CONTACT + 2
+}
+
+/// New rings for so many contacts: the worker's ends and the audio half's.
+fn rings(contacts: usize) -> (Far, Near) {
+    let count = circulating(contacts);
+    let (poses, poses_out) = rtrb::RingBuffer::new(contacts * 64);
+    let (laws, laws_out) = rtrb::RingBuffer::new(4);
+    let (patches_in, patches_out) = rtrb::RingBuffer::new(count);
+    let (back, back_out) = rtrb::RingBuffer::new(count);
+    let far = Far {
+        touched: vec![false; contacts],
+        poses: poses_out,
+        laws: laws_out,
+        patches: patches_in,
+        back: back_out,
+        spare: patches(count),
+    };
+    let near = Near {
+        poses: Exclusive::new(poses),
+        laws: Exclusive::new(laws),
+        patches: Exclusive::new(patches_out),
+        back: Exclusive::new(back),
+    };
+    (far, near)
 }
 
 /// What one contact reads.
@@ -88,11 +126,13 @@ pub struct SandSource {
     law: Fade<SandLaw>,
     grains: SolidNoise,
     grain_relief: SurfaceBlock,
+    sample_rate_hz: f64,
     frame_samples: u64,
     next_frame: u64,
     longest_m: f64,
     /// Depth of the untouched bed, metres.
     depth_m: f64,
+    moving_picture: Arc<MovingPicture>,
 }
 
 impl SandSource {
@@ -100,72 +140,75 @@ impl SandSource {
     ///
     /// # Errors
     /// Names the field that is out of its range.
-    pub fn synchronous(design: &SandDesign, seed: u64, sample_rate_hz: f64) -> Result<Self, DesignError> {
+    pub fn synchronous(design: &SandDesign, seed: u64) -> Result<Self, DesignError> {
         let simulation = SandSimulation::new(design)?;
-        let spare = patches(design.contacts * PATCHES_A_CONTACT);
-        Self::new(Link::Here(Box::new(simulation)), spare, design, seed, sample_rate_hz)
+        let picture = simulation.moving_picture().clone();
+        Self::new(Link::Here(Box::new(simulation)), picture, design, seed)
     }
 
     /// Sand that is simulated elsewhere: the surface, and the worker to be run on another thread.
     ///
     /// # Errors
     /// Names the field that is out of its range.
-    pub fn threaded(
-        design: &SandDesign,
-        seed: u64,
-        sample_rate_hz: f64,
-    ) -> Result<(Self, SandWorker), DesignError> {
+    pub fn threaded(design: &SandDesign, seed: u64) -> Result<(Self, SandWorker), DesignError> {
         let simulation = SandSimulation::new(design)?;
-        let count = design.contacts * PATCHES_A_CONTACT + 2;
-        let (poses, poses_out) = rtrb::RingBuffer::new(design.contacts * 64);
-        let (laws, laws_out) = rtrb::RingBuffer::new(4);
-        let (patches_in, patches_out) = rtrb::RingBuffer::new(count);
-        let (back, back_out) = rtrb::RingBuffer::new(count);
-        let worker = SandWorker {
-            touched: vec![false; design.contacts],
-            simulation,
-            poses: poses_out,
-            laws: laws_out,
-            patches: patches_in,
-            back: back_out,
-            spare: patches(count),
-            frames: 0,
-        };
-        let link = Link::Elsewhere {
-            poses: Exclusive::new(poses),
-            laws: Exclusive::new(laws),
-            patches: Exclusive::new(patches_out),
-            back: Exclusive::new(back),
-        };
-        let spare = Vec::with_capacity(count);
-        Ok((Self::new(link, spare, design, seed, sample_rate_hz)?, worker))
+        let picture = simulation.moving_picture().clone();
+        let (far, near) = rings(simulation.contacts());
+        let line = Arc::new(Mutex::new(None));
+        let worker = SandWorker { simulation, far, line: line.clone(), frames: 0 };
+        Ok((Self::new(Link::Elsewhere { near, line }, picture, design, seed)?, worker))
     }
 
     fn new(
         link: Link,
-        spare: Vec<Box<Patch>>,
+        moving_picture: Arc<MovingPicture>,
         design: &SandDesign,
         seed: u64,
-        sample_rate_hz: f64,
     ) -> Result<Self, DesignError> {
         // Grains fill the wavelengths below two cells.
         let mut grains = SolidMaterial::Sand.parameters();
         let cell_m = design.width_m / design.cells as f64;
         grains.texture_factor_per_m =
             grains.texture_factor_per_m.max(1.0 / (cell_m * grains.modules[0].frequency)).min(1e6);
-        Ok(Self {
+        let mut sand = Self {
             link,
-            slots: (0..design.contacts).map(|_| Slot::new()).collect(),
+            moving_picture,
+            slots: Vec::new(),
             depth_m: design.depth_m,
             overview: Box::new(Patch::flat()),
-            spare,
-            law: Fade::new(design.law, sample_rate_hz)?,
-            grains: SolidNoise::new(grains, seed, sample_rate_hz)?,
+            spare: Vec::new(),
+            law: Fade::new(design.law),
+            grains: SolidNoise::new(grains, seed)?,
             grain_relief: SurfaceBlock::default(),
-            frame_samples: frame_samples(sample_rate_hz),
+            sample_rate_hz: Setup::default().sample_rate_hz,
+            frame_samples: 1,
             next_frame: 0,
             longest_m: design.width_m.max(design.height_m),
-        })
+        };
+        sand.get_ready(&Setup::default());
+        Ok(sand)
+    }
+
+    /// Room for so many contacts that touch nothing yet, and the frames of a rate.
+    fn get_ready(&mut self, setup: &Setup) {
+        self.slots = (0..setup.voices).map(|_| Slot::new()).collect();
+        let frame_samples = frame_samples(setup.sample_rate_hz);
+        let next_frame = (self.next_frame as f64 * setup.sample_rate_hz / self.sample_rate_hz) as u64;
+        self.next_frame = next_frame / frame_samples * frame_samples;
+        (self.frame_samples, self.sample_rate_hz) = (frame_samples, setup.sample_rate_hz);
+        match &mut self.link {
+            Link::Here(simulation) => {
+                simulation.make_room(setup.voices);
+                self.spare = patches(setup.voices * PATCHES_A_CONTACT);
+            }
+            Link::Elsewhere { near, line } => {
+                let far;
+                (far, *near) = rings(setup.voices);
+                self.spare = Vec::with_capacity(circulating(setup.voices));
+                // Never locked by the audio half. A worker that died with it is no reader either.
+                *line.lock().unwrap_or_else(PoisonError::into_inner) = Some(far);
+            }
+        }
     }
 
     /// The simulation, when it runs inside the source.
@@ -228,7 +271,7 @@ impl SandSource {
                     }
                 }
             }
-            Link::Elsewhere { poses, patches, back, .. } => {
+            Link::Elsewhere { near: Near { poses, patches, back, .. }, .. } => {
                 let (poses, patches, back) = (poses.get_mut(), patches.get_mut(), back.get_mut());
                 // A full ring: the simulation is late and will hear the next pose.
                 if poses.push(pose).is_ok() {
@@ -317,26 +360,9 @@ fn patches(count: usize) -> Vec<Box<Patch>> {
 
 impl HeightField for SandSource {
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.law.prepare(setup.sample_rate_hz)?;
-        self.grains.prepare(setup)?;
-        self.frame_samples = frame_samples(setup.sample_rate_hz);
-        let missing = setup.voices.saturating_sub(self.slots.len());
-        match &mut self.link {
-            Link::Here(simulation) => {
-                simulation.make_room(setup.voices);
-                self.slots.extend((0..missing).map(|_| Slot::new()));
-                self.spare.extend(patches(missing * PATCHES_A_CONTACT));
-                // What comes back finds room without allocating.
-                self.spare.reserve(self.slots.len() * PATCHES_A_CONTACT);
-                Ok(())
-            }
-            Link::Elsewhere { .. } if missing > 0 => {
-                let contacts = self.slots.len() as f64;
-                let expected = "at least the engine's voices, max_contacts and half as many again";
-                DesignError::check("contacts", contacts, expected, |_| false).map(|_| ())
-            }
-            Link::Elsewhere { .. } => Ok(()),
-        }
+        self.law.prepare(setup.sample_rate_hz);
+        self.get_ready(setup);
+        self.grains.prepare(setup)
     }
 
     fn band(&self) -> WavelengthBand {
@@ -430,12 +456,13 @@ impl HeightField for SandSource {
         match &mut self.link {
             Link::Here(simulation) => simulation.set_law(*law),
             // A full ring: five changes within a frame, of which the simulation misses one.
-            Link::Elsewhere { laws, .. } => drop(laws.get_mut().push(*law)),
+            Link::Elsewhere { near, .. } => drop(near.laws.get_mut().push(*law)),
         }
         true
     }
 
     fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
+        see(&mut self.moving_picture);
         see(self);
     }
 }

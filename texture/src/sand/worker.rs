@@ -3,41 +3,56 @@
 use super::law::SandLaw;
 use super::patch::Patch;
 use super::simulation::{FRAMES_PER_S, Pose, SandSimulation};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Takes poses and sends patches; [`SandWorker::frame`] is to be called 60 times a second.
-pub struct SandWorker {
-    pub(super) simulation: SandSimulation,
+/// The worker's ends of the rings.
+pub(super) struct Far {
     pub(super) poses: rtrb::Consumer<Pose>,
     pub(super) laws: rtrb::Consumer<SandLaw>,
     pub(super) patches: rtrb::Producer<Box<Patch>>,
     pub(super) back: rtrb::Consumer<Box<Patch>>,
     pub(super) spare: Vec<Box<Patch>>,
+    /// One a contact.
     pub(super) touched: Vec<bool>,
+}
+
+/// Where the game thread leaves the ends of new rings, when an engine takes the surface.
+pub(super) type NewEnds = Arc<Mutex<Option<Far>>>;
+
+/// Takes poses and sends patches; [`SandWorker::frame`] is to be called 60 times a second.
+pub struct SandWorker {
+    pub(super) simulation: SandSimulation,
+    pub(super) far: Far,
+    pub(super) line: NewEnds,
     pub(super) frames: u64,
 }
 
 impl SandWorker {
     /// Takes the poses, runs a frame, sends patches.
     pub fn frame(&mut self) {
-        self.touched.fill(false);
-        while let Ok(law) = self.laws.pop() {
+        if let Some(far) = self.line.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            self.simulation.make_room(far.touched.len());
+            self.far = far;
+        }
+        let far = &mut self.far;
+        far.touched.fill(false);
+        while let Ok(law) = far.laws.pop() {
             self.simulation.set_law(law);
         }
-        while let Ok(pose) = self.poses.pop() {
-            if let Some(touched) = self.touched.get_mut(pose.contact) {
+        while let Ok(pose) = far.poses.pop() {
+            if let Some(touched) = far.touched.get_mut(pose.contact) {
                 *touched = true;
             }
             self.simulation.tell(pose);
         }
-        while let Ok(patch) = self.back.pop() {
-            self.spare.push(patch);
+        while let Ok(patch) = far.back.pop() {
+            far.spare.push(patch);
         }
         self.simulation.frame();
-        for contact in 0..self.touched.len() {
-            if self.touched[contact] {
+        for contact in 0..self.far.touched.len() {
+            if self.far.touched[contact] {
                 self.send(|simulation, patch| simulation.write_patch(contact, patch));
             }
         }
@@ -49,10 +64,10 @@ impl SandWorker {
 
     /// Sends a patch, or none when all are under way.
     fn send(&mut self, write: impl FnOnce(&SandSimulation, &mut Patch)) {
-        if let Some(mut patch) = self.spare.pop() {
+        if let Some(mut patch) = self.far.spare.pop() {
             write(&self.simulation, &mut patch);
-            if let Err(rtrb::PushError::Full(patch)) = self.patches.push(patch) {
-                self.spare.push(patch);
+            if let Err(rtrb::PushError::Full(patch)) = self.far.patches.push(patch) {
+                self.far.spare.push(patch);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Where a surface lies in the block of noise.
+//! The cut of a surface through the block of noise.
 
 /// The plane in which a surface cuts the block of noise: position = origin + u · u_axis + v · v_axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +22,18 @@ impl SolidCut {
         u_axis: [0.718_111_705_228_247_4, 0.512_666_414_149_871_2, 0.470_625_888_171_158],
         v_axis: [-0.680_225_349_253_427_1, 0.659_917_333_115_655_6, 0.319_065_177_803_187_8],
     };
+
+    /// The cut of a plane of a body into the block that the body is made of: the block lies in the body as [`Self::SLANTED`] lies in it, so
+    /// that faces along the body's axes do not meet the lattice along its own, and every face of a body is cut from the same block.
+    ///
+    /// `u_axis` and `v_axis` are unit vectors at a right angle.
+    #[must_use]
+    pub fn of_body(origin_m: [f64; 3], u_axis: [f64; 3], v_axis: [f64; 3]) -> Self {
+        let Self { u_axis: x, v_axis: y, .. } = Self::SLANTED;
+        let z = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
+        let turned = |v: [f64; 3]| core::array::from_fn(|a| v[0] * x[a] + v[1] * y[a] + v[2] * z[a]);
+        Self { origin_m: turned(origin_m), u_axis: turned(u_axis), v_axis: turned(v_axis) }
+    }
 
     /// The point of the block under a point of the surface, metres.
     #[inline]

@@ -1,4 +1,4 @@
-//! What a solid-noise surface is made of, with its ranges.
+//! Parameters of a solid-noise surface, with their ranges.
 
 use crate::height_field::WavelengthBand;
 use asperity_dsp::{DesignError, limits};

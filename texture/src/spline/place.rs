@@ -1,4 +1,4 @@
-//! Where positions lie among the texels of a map.
+//! Texel coordinates of positions on a map.
 
 use super::vector::Vector;
 use super::{PAD, REACH};
@@ -183,6 +183,10 @@ impl Axis {
 
     /// Texels per metre.
     #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        self.len as usize
+    }
+
     pub(super) fn texels_per_metre(&self) -> f64 {
         self.texels_per_metre
     }

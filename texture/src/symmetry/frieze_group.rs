@@ -1,4 +1,4 @@
-//! Which of the seven frieze groups a strip has.
+//! Frieze group of a strip: one of seven.
 //!
 //! A strip repeats along x. What else can carry it onto itself: a mirror across (x → c − x), a mirror along (y → d − y), a glide
 //! (y → d − y, x → x + ½), a half turn (both). Each is tried at every c and d; it is a symmetry if strip and image agree.

@@ -47,6 +47,9 @@ pub(super) fn coarser_lattices() -> Vec<(f64, f64, f64)> {
 /// between texels costs as much.
 const UNEVEN_LIMIT: f64 = 0.02;
 
+/// Nodes of two lattices nearer to each other than this are one node, texels.
+const SHARED_PX: f64 = 1.5;
+
 /// Standard errors from which the difference is no chance.
 pub(super) const CLEARLY_UNEVEN: f64 = 6.0;
 
@@ -83,6 +86,7 @@ pub(super) fn for_each_node(
 struct Node {
     m: f64,
     n: f64,
+    shift: [f64; 2],
     depth: f64,
     weight: f64,
 }
@@ -93,48 +97,67 @@ pub(super) struct Nodes(Vec<Node>);
 impl Nodes {
     pub fn new(fit: &Fit, basis: [[f64; 2]; 2]) -> Self {
         let mut all = Vec::new();
-        for_each_node(fit, basis, [0.0; 2], |m, n, depth, weight| all.push(Node { m, n, depth, weight }));
+        for_each_node(fit, basis, [0.0; 2], |m, n, depth, weight| {
+            all.push(Node { m, n, shift: combine(basis[0], basis[1], m, n), depth, weight });
+        });
         Self(all)
     }
 
     /// By how many standard errors the nodes outside a coarser lattice fit worse than those on it, beside what the distance
     /// does; 0 when the difference is too small to matter.
     pub fn unevenness(&self, (k, i, j): (f64, f64, f64)) -> f64 {
-        // Weighted least squares of depth = p + q·distance² + r·outside.
-        let (mut squares, mut products, mut energy, mut weights) = ([[0.0; 3]; 3], [0.0; 3], 0.0, 0.0);
-        for node in &self.0 {
-            let outside = if (i * node.m + j * node.n).rem_euclid(k) == 0.0 { 0.0 } else { 1.0 };
-            // The weight is 1/(1 + distance²).
-            let row = [1.0, 1.0 / node.weight - 1.0, outside];
-            for r in 0..3 {
-                for c in 0..3 {
-                    squares[r][c] += node.weight * row[r] * row[c];
-                }
-                products[r] += node.weight * row[r] * node.depth;
-            }
-            energy += node.weight * node.depth * node.depth;
-            weights += node.weight;
-        }
-        let count = self.0.len() as f64;
-        let all = determinant(squares);
-        if count < 8.0 || all <= 1e-9 * squares[0][0] * squares[1][1] * squares[2][2] {
-            return 0.0;
-        }
-        let solution = [0, 1, 2].map(|column| {
-            let mut replaced = squares;
-            for r in 0..3 {
-                replaced[r][column] = products[r];
-            }
-            determinant(replaced) / all
-        });
-        let explained: f64 = (0..3).map(|r| solution[r] * products[r]).sum();
-        // Per node: the residual's variance times the third diagonal element of the inverse.
-        let variance = (energy - explained).max(0.0) / weights * count / (count - 3.0);
-        let minor = squares[0][0] * squares[1][1] - squares[0][1] * squares[1][0];
-        let error = (variance * weights / count * minor / all).sqrt();
-        let missing = -solution[2];
-        if missing < UNEVEN_LIMIT * solution[0] { 0.0 } else { missing / error.max(f64::MIN_POSITIVE) }
+        let is_outside = |node: &Node| (i * node.m + j * node.n).rem_euclid(k) != 0.0;
+        missing(self.0.iter().map(|node| (*node, is_outside(node))))
     }
+
+    /// By how many standard errors these nodes fit worse than those of another lattice, nodes of both left out; likewise.
+    pub fn worse_than(&self, other: &Self) -> f64 {
+        let is_shared = |node: &&Node| {
+            let beside = |o: &Node| length(combine(o.shift, node.shift, 1.0, -1.0)) < SHARED_PX;
+            other.0.iter().any(beside)
+        };
+        let own = self.0.iter().filter(|node| !is_shared(node)).map(|node| (*node, true));
+        missing(other.0.iter().map(|node| (*node, false)).chain(own))
+    }
+}
+
+/// By how many standard errors the nodes that are outside fit worse than the others, beside what the distance does; 0 when the
+/// difference is too small to matter, or they are too few to tell.
+fn missing(nodes: impl Iterator<Item = (Node, bool)>) -> f64 {
+    // Weighted least squares of depth = p + q·distance² + r·outside.
+    let (mut squares, mut products, mut energy, mut weights) = ([[0.0; 3]; 3], [0.0; 3], 0.0, 0.0);
+    let mut count = 0.0;
+    for (node, outside) in nodes {
+        // The weight is 1/(1 + distance²).
+        let row = [1.0, 1.0 / node.weight - 1.0, f64::from(u8::from(outside))];
+        for r in 0..3 {
+            for c in 0..3 {
+                squares[r][c] += node.weight * row[r] * row[c];
+            }
+            products[r] += node.weight * row[r] * node.depth;
+        }
+        energy += node.weight * node.depth * node.depth;
+        weights += node.weight;
+        count += 1.0;
+    }
+    let all = determinant(squares);
+    if count < 8.0 || all <= 1e-9 * squares[0][0] * squares[1][1] * squares[2][2] {
+        return 0.0;
+    }
+    let solution = [0, 1, 2].map(|column| {
+        let mut replaced = squares;
+        for r in 0..3 {
+            replaced[r][column] = products[r];
+        }
+        determinant(replaced) / all
+    });
+    let explained: f64 = (0..3).map(|r| solution[r] * products[r]).sum();
+    // Per node: the residual's variance times the third diagonal element of the inverse.
+    let variance = (energy - explained).max(0.0) / weights * count / (count - 3.0);
+    let minor = squares[0][0] * squares[1][1] - squares[0][1] * squares[1][0];
+    let error = (variance * weights / count * minor / all).sqrt();
+    let missing = -solution[2];
+    if missing < UNEVEN_LIMIT * solution[0] { 0.0 } else { missing / error.max(f64::MIN_POSITIVE) }
 }
 
 fn determinant(m: [[f64; 3]; 3]) -> f64 {

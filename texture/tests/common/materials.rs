@@ -118,7 +118,7 @@ pub fn identified(
     let strokes = question.strokes;
     let mut rng = Rng::new(question.strokes_seed);
     let mut felt = |piece: u64| -> Vec<Vec<Vec<f64>>> {
-        let made = parameters.iter().map(|p| SolidNoise::new(*p, piece, RATE).unwrap());
+        let made = parameters.iter().map(|p| SolidNoise::new(*p, piece).unwrap());
         made.map(|mut m| (0..strokes).map(|_| features(&haptic(&mut m, &mut rng))).collect()).collect()
     };
     let (known, asked) = (felt(question.known_piece), felt(question.asked_piece));

@@ -202,3 +202,18 @@ pub fn stripes(size: usize, period: f64, turn: f64, noise: f64, seed: u64) -> Ra
         (TAU * (x as f64 * turn.cos() + y as f64 * turn.sin()) / period).cos() + noise * rng.normal()
     })
 }
+
+/// Waves of any direction whose lengths are nearly one, within this share of it: every place looks alike and nothing repeats.
+pub fn ring_of_waves(size: usize, length: f64, share: f64, seed: u64) -> Raster {
+    let mut rng = Rng::new(seed);
+    let waves: Vec<[f64; 3]> = (0..120)
+        .map(|_| {
+            let k = TAU / length * (1.0 + share * (2.0 * rng.uniform() - 1.0));
+            let turn = TAU * rng.uniform();
+            [k * turn.cos(), k * turn.sin(), TAU * rng.uniform()]
+        })
+        .collect();
+    Raster::from_fn(size, size, |x, y| {
+        waves.iter().map(|w| (w[0] * x as f64 + w[1] * y as f64 + w[2]).cos()).sum::<f64>()
+    })
+}

@@ -1,4 +1,4 @@
-//! What a person looks at first: picture, parts and heights side by side.
+//! The overview picture of a photograph: picture, parts and heights side by side.
 
 use asperity_texture::from_photo::PhotoSurface;
 use asperity_texture::light::Light;

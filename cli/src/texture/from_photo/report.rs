@@ -1,4 +1,4 @@
-//! What `from-photo` reports: `report.json`, `--json` and the words for people.
+//! The report of `from-photo`: `report.json`, `--json` and the lines for people.
 
 use super::Options;
 use crate::texture::object::SizeMm;
@@ -108,6 +108,7 @@ impl Report {
                 Method::Integrable(_) => "integrable",
                 Method::TsaiShah(_) => "tsai-shah",
                 Method::DarkIsDeep => "dark-is-deep",
+                Method::FlatGround => "flat-ground",
             },
             sign: sign(surface),
             sign_confidence: surface.sign.confidence,

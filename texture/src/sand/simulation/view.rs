@@ -1,4 +1,4 @@
-//! What the audio half is shown of the sand.
+//! Views of the sand that are shown to the audio half.
 //!
 //! The patch around a contact shows the sand *without* the print of its own tool: the print is
 //! filled up to the level around it, because it moves along with the tool and is not what the tool meets

@@ -2,7 +2,8 @@
 //!
 //! A tap runs on the audio half. One that is used live must not allocate, lock or wait.
 
-use crate::model::event::ContactId;
+use crate::model::event::{Actuator, ContactId};
+use asperity_dsp::micro_contact::ContactSample as PadSample;
 
 /// One contact during up to [`MAX_BLOCK`](asperity_texture::height_field::MAX_BLOCK) consecutive
 /// samples; all slices are equally long and describe the same instants.
@@ -12,6 +13,8 @@ pub struct ContactBlock<'a> {
     pub first_sample: u64,
     /// The contact.
     pub contact: ContactId,
+    /// Who feels it; none = it is heard only.
+    pub actuator: Option<Actuator>,
     /// Smoothed path on the surface, metres.
     pub position_m: &'a [[f64; 2]],
     /// Texture coordinates of the path.
@@ -19,7 +22,7 @@ pub struct ContactBlock<'a> {
     /// Tangential velocity, m/s.
     pub velocity_m_s: &'a [[f64; 2]],
     /// The micro-contact model, sample by sample.
-    pub contact_samples: &'a [asperity_dsp::micro_contact::ContactSample],
+    pub contact_samples: &'a [PadSample],
     /// Momentum sent to the body at each sample, N·s.
     pub impulse_n_s: &'a [f64],
     /// 3-D force on the finger, N: along u, v and out of the surface.
@@ -27,6 +30,19 @@ pub struct ContactBlock<'a> {
 }
 
 /// Receives what contacts do.
+///
+/// ```
+/// use asperity::{ContactBlock, Tap};
+///
+/// /// The hardest press so far.
+/// struct Hardest(f64);
+///
+/// impl Tap for Hardest {
+///     fn contact(&mut self, block: &ContactBlock<'_>) {
+///         self.0 = block.force_n.iter().fold(self.0, |most, [_, _, out]| most.max(*out));
+///     }
+/// }
+/// ```
 pub trait Tap {
     /// Whether blocks are to be shown at all; a tap that says no costs nothing.
     fn is_watching(&self) -> bool {

@@ -1,0 +1,157 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # The map of this crate
+//!
+//! | file | holds |
+//! |---|---|
+//! | `view` | the parts of a physics world, whoever owns them |
+//! | `thing` | what a collider is to asperity |
+//! | `solved` | a pair's contact as the solver left it |
+//! | `pair` | one pair over time: lands, slides, rolls, rests, leaves |
+
+mod pair;
+mod solved;
+mod thing;
+mod view;
+
+pub use thing::{EDGE_RADIUS_M, Mapping, Thing};
+pub use view::View;
+
+use asperity::{AddError, ContactEvent, ContactId, ProbeId, Scene, probe_by_name};
+use pair::{Pair, Step};
+use rapier3d::prelude::*;
+use solved::Solved;
+use std::collections::{BTreeMap, HashMap};
+use view::Motion;
+
+/// Ids of the adapter's contacts begin here, so that a game's own stay free below.
+pub const FIRST_CONTACT: u64 = 1 << 32;
+
+/// What a pair does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// It touches, and its place of contact stands still.
+    Rests,
+    /// It slides.
+    Scrapes,
+    /// Its place of contact moves, and what is there does not slide.
+    Rolls,
+}
+
+/// A pair that touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Touch {
+    /// Its colliders, in rapier's order.
+    pub colliders: [ColliderHandle; 2],
+    /// What it does.
+    pub kind: Kind,
+    /// The contact that is reported; none while it rests, or where nothing can be scraped.
+    pub contact: Option<ContactId>,
+    /// Speed at which the place of contact moves over the surface, m/s.
+    pub path_m_s: f32,
+    /// Speed at which the two slide on each other there, m/s.
+    pub slip_m_s: f32,
+    /// Force between them, mean of the step, N.
+    pub force_n: f32,
+}
+
+/// All pairs of a physics world, as contact events.
+#[derive(Debug)]
+pub struct Adapter {
+    things: HashMap<ColliderHandle, Thing>,
+    /// In order, so that the same world gives the same events.
+    pairs: BTreeMap<[(u32, u32); 2], Pair>,
+    before: HashMap<RigidBodyHandle, Motion>,
+    rigid: ProbeId,
+    next_contact: u64,
+}
+
+impl Adapter {
+    /// An adapter whose things touch as the scene's new probe `rigid`.
+    ///
+    /// # Errors
+    /// When the scene has no place for another probe.
+    pub fn new(scene: &mut Scene) -> Result<Self, AddError> {
+        let rigid = scene.add_probe(probe_by_name("rigid").unwrap_or_default())?;
+        Ok(Self {
+            things: HashMap::new(),
+            pairs: BTreeMap::new(),
+            before: HashMap::new(),
+            rigid,
+            next_contact: FIRST_CONTACT,
+        })
+    }
+
+    /// The probe that things touch with unless told otherwise; its name in a recording is the game's choice.
+    #[must_use]
+    pub fn rigid_probe(&self) -> ProbeId {
+        self.rigid
+    }
+
+    /// Says what a collider is; colliders of which nothing is said are not heard. A new thing for a known collider counts from its next
+    /// contact on.
+    pub fn insert(&mut self, collider: ColliderHandle, thing: Thing) {
+        self.things.insert(collider, thing);
+    }
+
+    /// Forgets a collider; its contacts end with the next step.
+    pub fn remove(&mut self, collider: ColliderHandle) {
+        self.things.remove(&collider);
+    }
+
+    /// To be called right before the physics step: keeps how everything moves, because after it a landing is a rebound.
+    pub fn before_step(&mut self, view: &View<'_>) {
+        self.before.clear();
+        for (handle, body) in view.bodies.iter() {
+            self.before.insert(handle, Motion::of(body));
+        }
+    }
+
+    /// To be called right after the physics step: what happened in it, to be reported at its game time.
+    pub fn after_step(&mut self, view: &View<'_>) -> Vec<ContactEvent> {
+        let mut events = Vec::new();
+        self.pairs.values_mut().for_each(|pair| pair.seen = false);
+        for contact in view.narrow_phase.contact_pairs() {
+            let colliders = [contact.collider1, contact.collider2];
+            let [Some(first), Some(second)] = colliders.map(|collider| self.things.get(&collider)) else {
+                continue;
+            };
+            let [Some(a), Some(b)] = colliders.map(|collider| view.colliders.get(collider)) else { continue };
+            let before = [a, b].map(|collider| {
+                collider.parent().and_then(|body| self.before.get(&body)).copied().unwrap_or_default()
+            });
+            let step = Step {
+                view,
+                colliders,
+                things: [first, second],
+                before,
+                solved: Solved::of(contact, view),
+                rigid: self.rigid,
+            };
+            let key = colliders.map(ColliderHandle::into_raw_parts);
+            let pair = self.pairs.entry(key).or_default();
+            pair.seen = true;
+            pair.advance(&step, &mut self.next_contact, &mut events);
+        }
+        for pair in self.pairs.values_mut().filter(|pair| !pair.seen) {
+            pair.leave(&mut events);
+        }
+        self.pairs.retain(|_, pair| pair.seen);
+        events
+    }
+
+    /// Every pair that touched in the last step.
+    pub fn touches(&self) -> impl Iterator<Item = Touch> + '_ {
+        self.pairs.values().filter_map(|pair| pair.touch)
+    }
+
+    /// Ends every contact, for a level that is left: what is returned is to be reported.
+    pub fn end_all(&mut self) -> Vec<ContactEvent> {
+        let mut events = Vec::new();
+        self.pairs.values_mut().for_each(|pair| pair.leave(&mut events));
+        self.pairs.clear();
+        events
+    }
+}

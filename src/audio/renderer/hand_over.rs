@@ -1,0 +1,86 @@
+//! Hand-over between two renderers of one scene, on the game thread: what the old one holds that cannot be made again.
+
+use super::Renderer;
+use super::contacts::SilentContact;
+use crate::audio::voice::Phase;
+use crate::link::message::Message;
+use crate::link::stats::Counters;
+use crate::model::id::SurfaceId;
+use crate::model::stamp::Stamp;
+use crate::prepared::surface::SurfaceSlot;
+use asperity_dsp::actuator::ChannelControl;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// What one renderer leaves to the next.
+pub(crate) struct HandedOver {
+    pub(crate) surfaces: Vec<(SurfaceId, Box<SurfaceSlot>)>,
+    /// Contacts that touch: they come back with their next move.
+    contacts: Vec<SilentContact>,
+    /// Events that wait for their time.
+    waiting: Vec<Message>,
+    haptic: Vec<ChannelControl>,
+    muted: bool,
+    paused: bool,
+    /// Samples rendered, at the old rate inside.
+    position: u64,
+    rate_hz: f64,
+    resets: u64,
+}
+
+impl Renderer {
+    /// Takes everything out that the next renderer needs.
+    pub(crate) fn hand_over(mut self) -> HandedOver {
+        let mut waiting = Vec::new();
+        while let Some(message) = self.from_game.receive() {
+            match message {
+                Message::Event { .. } | Message::Strike { .. } => waiting.push(message),
+                edit => self.apply(edit),
+            }
+        }
+        let sounding = |voice: &&crate::audio::voice::Voice| voice.phase == Phase::Sounding;
+        let touching = self.voices.iter().filter(sounding).map(SilentContact::of);
+        let contacts = self.silent.iter().copied().chain(touching).collect();
+        HandedOver {
+            contacts,
+            surfaces: self.seats.iter_mut().filter_map(crate::audio::seat::Seat::take).collect(),
+            waiting,
+            haptic: self.channels.iter().map(|channel| channel.control).collect(),
+            muted: self.muted,
+            paused: self.paused,
+            position: self.position,
+            rate_hz: self.shared.sample_rate_hz,
+            resets: self.resets,
+        }
+    }
+
+    /// Goes on where another renderer has stopped: at the same second, with the same contacts.
+    pub(crate) fn take_over(&mut self, old: HandedOver) -> Vec<Message> {
+        let every = self.shared.inner.every as u64;
+        let ratio = self.shared.sample_rate_hz / old.rate_hz;
+        self.position = (old.position as f64 * ratio / every as f64).round() as u64 * every;
+        self.counters.position.store(self.position, Relaxed);
+        self.resets = old.resets;
+        (self.muted, self.paused) = (old.muted, old.paused);
+        self.silent.extend(old.contacts.into_iter().take(self.max_contacts));
+        for (channel, control) in self.channels.iter_mut().zip(old.haptic) {
+            channel.control = control;
+        }
+        Counters::add(&self.counters.clock_jumps, 1);
+        let at_rate = |stamp: Stamp| Stamp::at(stamp.samples() * ratio);
+        old.waiting
+            .into_iter()
+            .map(|message| match message {
+                Message::Event { stamp, event } => Message::Event { stamp: at_rate(stamp), event },
+                Message::Strike { stamp, body, position, other, holder, felt, pulse } => {
+                    Message::Strike { stamp: at_rate(stamp), body, position, other, holder, felt, pulse }
+                }
+                other => other,
+            })
+            .collect()
+    }
+
+    /// Puts a resource in its place before anything is rendered.
+    pub(crate) fn install(&mut self, resource: Message) {
+        self.apply(resource);
+    }
+}

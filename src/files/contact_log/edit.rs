@@ -1,0 +1,170 @@
+//! Edits of a scene as lines of a log: what a game added, replaced, removed or set while it recorded.
+//!
+//! ```json
+//! {"t":0.5,"event":"replace_body","body":"tile","modes":{"format":"asperity.modes",…},"material":{…},"bus":0}
+//! {"t":0.8,"event":"replace_surface","surface":"plate","is":{"name":"plate","solid":"granite",…},"folder":"scenes"}
+//! {"t":0.9,"event":"audio_gain","bus":0,"gain":0.5}
+//! ```
+//! A body and a probe are held whole. A surface is held as its table of the scene file (`is`, with paths relative to `folder`); one that
+//! the game's own code has made cannot be written down, and whoever replays the log makes it under the same name.
+
+use crate::model::body::Body;
+use crate::model::material::Material;
+use crate::model::modal_model::ModalModel;
+use asperity_dsp::micro_contact::Probe;
+use serde::{Deserialize, Serialize};
+
+/// An edit, with names instead of ids.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub enum LogEdit {
+    /// A body comes.
+    AddBody {
+        /// Its name.
+        body: String,
+        /// What it is.
+        #[serde(flatten)]
+        is: LogBody,
+    },
+    /// A body becomes another.
+    ReplaceBody {
+        /// Its name.
+        body: String,
+        /// What it is from now on.
+        #[serde(flatten)]
+        is: LogBody,
+    },
+    /// A body sounds on another bus.
+    BodyBus {
+        /// Its name.
+        body: String,
+        /// Index of the bus.
+        bus: usize,
+    },
+    /// A body is louder or softer.
+    BodyGain {
+        /// Its name.
+        body: String,
+        /// Linear gain.
+        gain: f64,
+    },
+    /// All that leaves fades, or comes back.
+    Mute {
+        /// Whether it fades.
+        muted: bool,
+    },
+    /// The game stands still, or goes on.
+    Pause {
+        /// Whether it stands still.
+        paused: bool,
+    },
+    /// Every contact ends, and what rings is damped.
+    FadeAll,
+    /// A body goes.
+    RemoveBody {
+        /// Its name.
+        body: String,
+    },
+    /// A probe comes.
+    AddProbe {
+        /// Its name.
+        probe: String,
+        /// Its numbers.
+        is: Probe,
+    },
+    /// A surface comes.
+    AddSurface {
+        /// Its name.
+        surface: String,
+        /// What it is.
+        #[serde(flatten)]
+        is: LogSurface,
+    },
+    /// A surface becomes another.
+    ReplaceSurface {
+        /// Its name.
+        surface: String,
+        /// What it is from now on.
+        #[serde(flatten)]
+        is: LogSurface,
+    },
+    /// A surface goes.
+    RemoveSurface {
+        /// Its name.
+        surface: String,
+    },
+    /// Parameters of a surface's source change; which and how only the game knows.
+    ChangeSurface {
+        /// Its name.
+        surface: String,
+    },
+    /// The user's gain of a haptic channel.
+    HapticGain {
+        /// Index of the channel.
+        actuator: u16,
+        /// Linear gain.
+        gain: f64,
+    },
+    /// The gain of an audio bus.
+    AudioGain {
+        /// Index of the bus.
+        bus: usize,
+        /// Linear gain.
+        gain: f64,
+    },
+}
+
+/// A body, whole.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LogBody {
+    /// Its modes, as in a modes file.
+    pub modes: serde_json::Value,
+    /// What it is made of.
+    pub material: Material,
+    /// Index of the bus it plays on.
+    pub bus: usize,
+    /// Linear gain; missing: 1.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub gain: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
+fn is_one(gain: &f64) -> bool {
+    *gain == 1.0
+}
+
+/// A surface, if it can be written down.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct LogSurface {
+    /// Its table of the scene file; none = the game's own code made it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub is: Option<toml::Table>,
+    /// What paths in it are relative to.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub folder: Option<String>,
+    /// What its body is made of, if the scene says so: surfaces take their finish from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<Material>,
+}
+
+impl From<&Body> for LogBody {
+    fn from(body: &Body) -> Self {
+        let modes = serde_json::from_str(&body.model.to_json()).unwrap_or_default();
+        Self { modes, material: body.material, bus: body.bus, gain: body.gain }
+    }
+}
+
+impl LogBody {
+    /// The body.
+    ///
+    /// # Errors
+    /// When the modes are none.
+    pub(crate) fn body(&self) -> Result<Body, crate::model::modal_model::ModalModelError> {
+        let body = Body::new(ModalModel::parse(&self.modes.to_string())?);
+        Ok(Body { material: self.material, bus: self.bus, gain: self.gain, ..body })
+    }
+}

@@ -1,0 +1,142 @@
+//! Modes files, `NAME.modes.json`: the modes of one body, where they come from, and what its strike had besides.
+
+use super::storage::{self, Disk, Files};
+use crate::model::modal_model::{ModalModel, ModalModelError};
+use crate::model::residual::Residual;
+use asperity_dsp::mode::Mode;
+use serde::{Deserialize, Serialize};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// The `format` field of a modes file.
+pub const FORMAT: &str = "asperity.modes";
+/// The `version` this crate reads and writes.
+pub const VERSION: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+struct File {
+    format: String,
+    version: u32,
+    #[serde(default)]
+    source: String,
+    #[serde(default = "one")]
+    impulse_n_s: f64,
+    modes: Vec<Mode>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    positions: Vec<Vec<f64>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    residual: Option<Residual>,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+impl ModalModel {
+    /// Reads `NAME.modes.json`.
+    ///
+    /// # Errors
+    /// When the file cannot be read, is not a modes file of version 1, or holds a number that no body
+    /// can have.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, ModalModelError> {
+        Self::load_from(&Disk, path)
+    }
+
+    /// [`load`](Self::load), from wherever the files lie.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: impl AsRef<Path>) -> Result<Self, ModalModelError> {
+        let path = path.as_ref();
+        let text = storage::text(files, path).map_err(|source| match source.kind() {
+            ErrorKind::InvalidData => {
+                let remedy = "is no text; `asperity fit` makes a modes file of a recording";
+                ModalModelError::Malformed { path: path.into(), message: remedy.into() }
+            }
+            _ => ModalModelError::Unreadable { path: path.into(), source },
+        })?;
+        Self::parse(&text).map_err(|error| match error {
+            ModalModelError::Malformed { message, .. } => {
+                ModalModelError::Malformed { path: path.into(), message }
+            }
+            ModalModelError::BadValue { field, value, expected } => {
+                ModalModelError::BadValue { field: format!("{}: {field}", path.display()), value, expected }
+            }
+            other => other,
+        })
+    }
+
+    /// Reads the text of a modes file.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn parse(text: &str) -> Result<Self, ModalModelError> {
+        let malformed = |message: String| ModalModelError::Malformed { path: "modes".into(), message };
+        let file: File = serde_json::from_str(text).map_err(|error| malformed(error.to_string()))?;
+        if file.format != FORMAT {
+            return Err(malformed(format!("format is \"{}\"", file.format)));
+        }
+        if file.version != VERSION {
+            return Err(malformed(format!("version is {}", file.version)));
+        }
+        let File { source, impulse_n_s, modes, positions, residual, .. } = file;
+        let model = Self { source, impulse_n_s, modes, positions, residual };
+        model.check()?;
+        Ok(model)
+    }
+
+    /// The text of the modes file; numbers round-trip.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        let file = File {
+            format: FORMAT.into(),
+            version: VERSION,
+            source: self.source.clone(),
+            impulse_n_s: self.impulse_n_s,
+            modes: self.modes.clone(),
+            positions: self.positions.clone(),
+            residual: self.residual.clone(),
+        };
+        serde_json::to_string(&file).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TILE: &str = r#"{"format":"asperity.modes","version":1,"source":"tile.wav","impulse_n_s":0.01,
+        "modes":[{"frequency_hz":812.4,"decay_per_s":14.2,"amplitude":0.31,"phase_rad":0.1}]}"#;
+
+    #[test]
+    fn a_modes_file_survives_the_round_trip_to_the_last_bit() {
+        let model = ModalModel::parse(TILE).unwrap();
+        assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
+        assert_eq!(model.modes[0].frequency_hz, 812.4);
+    }
+
+    #[test]
+    fn a_missing_impulse_means_one_newton_second() {
+        let text = TILE.replace(r#""impulse_n_s":0.01,"#, "");
+        assert_eq!(ModalModel::parse(&text).unwrap().impulse_n_s, 1.0);
+    }
+
+    #[test]
+    fn unit_modes_are_scaled_by_the_recorded_strike() {
+        let model = ModalModel::parse(TILE).unwrap();
+        let (unit, _) = model.unit_modes().next().unwrap();
+        assert!((unit.amplitude - 31.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn growing_modes_and_other_formats_are_refused_with_the_place() {
+        let growing = TILE.replace("14.2", "-14.2");
+        let message = ModalModel::parse(&growing).unwrap_err().to_string();
+        assert!(message.contains("modes[0].decay_per_s"), "{message}");
+        let other = TILE.replace("asperity.modes", "something");
+        assert!(ModalModel::parse(&other).unwrap_err().to_string().contains("something"));
+        let future = TILE.replace("\"version\":1", "\"version\":7");
+        assert!(ModalModel::parse(&future).unwrap_err().to_string().contains("version is 7"));
+        assert!(ModalModel::parse("{").is_err());
+    }
+}

@@ -1,0 +1,99 @@
+//! `[[body]]`: what rings, what it is made of, and where its sound leaves.
+
+use super::fields::{self, Fields};
+use crate::files::FileError;
+use crate::model::material::Material;
+use crate::model::stock::Stock;
+use crate::parameters;
+use std::path::{Path, PathBuf};
+use toml::Value;
+
+/// A body: what an impact on it sounds like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyEntry {
+    /// Name that surfaces and impacts use.
+    pub name: String,
+    /// Modes file; none = those of `stock`, or silent.
+    pub modes: Option<PathBuf>,
+    /// A stock shape and its size, m.
+    pub stock: Option<(Stock, f64)>,
+    /// What it is made of; none = the engine's default.
+    pub material: Option<Material>,
+    /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
+    pub residual: Option<f64>,
+    /// Name of the bus it plays on; none = the first.
+    pub bus: Option<String>,
+}
+
+/// Reads one `[[body]]`.
+pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileError> {
+    let name = fields.needed_text("name")?;
+    let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
+    fields.rename(place);
+    let body = BodyEntry {
+        name,
+        modes: fields.file("modes", folder)?,
+        stock: read_stock(&mut fields)?,
+        material: read_material(&mut fields)?,
+        residual: fields.number(&parameters::body::RESIDUAL)?,
+        bus: fields.text("bus")?,
+    };
+    if body.modes.is_some() && body.stock.is_some() {
+        return Err(fields.refuse("stock", "stands beside modes", "write one of them"));
+    }
+    fields.finish()?;
+    Ok(body)
+}
+
+/// `stock` and the `size_m` that it needs.
+fn read_stock(fields: &mut Fields) -> Result<Option<(Stock, f64)>, FileError> {
+    let shape = fields.word("stock", &Stock::ALL)?;
+    let size_m = fields.number(&parameters::body::SIZE_M)?;
+    match (shape, size_m) {
+        (Some(shape), Some(size_m)) => Ok(Some((shape, size_m))),
+        (Some(_), None) => {
+            Err(fields.missing("size_m", "its longest side or its diameter, for instance 0.3"))
+        }
+        (None, Some(_)) => {
+            Err(fields.refuse("size_m", "stands without stock", "write stock = \"bar\", or leave it out"))
+        }
+        (None, None) => Ok(None),
+    }
+}
+
+/// A preset's name, or a table of constants: elastic ones, and what else differs from the default material.
+fn read_material(fields: &mut Fields) -> Result<Option<Material>, FileError> {
+    let table = match fields.take("material") {
+        None => return Ok(None),
+        Some(Value::String(name)) => {
+            let unknown = || {
+                let right = format!("must be one of: {}, or a table of constants", Material::names());
+                fields.refuse("material", format!("\"{name}\" is unknown"), right)
+            };
+            return Material::by_name(&name).map(Some).ok_or_else(unknown);
+        }
+        Some(Value::Table(table)) => table,
+        Some(other) => {
+            let what = format!("{} is not a material", fields::shown(&other));
+            let right = "write a preset's name, or { young_pa = …, poisson = …, density_kg_m3 = … }";
+            return Err(fields.refuse("material", what, right));
+        }
+    };
+    use parameters::material as of;
+    let mut fields = Fields::new(table, fields.inner("material"));
+    let young_pa = fields.needed_number(&of::YOUNG_PA)?;
+    let poisson = fields.needed_number(&of::POISSON)?;
+    let other = Material::new(young_pa, poisson, fields.needed_number(&of::DENSITY_KG_M3)?);
+    let material = Material {
+        alpha_per_s: fields.number_or(&of::ALPHA_PER_S, other.alpha_per_s)?,
+        eta: fields.number_or(&of::ETA, other.eta)?,
+        beta_s: fields.number_or(&of::BETA_S, other.beta_s)?,
+        mu_static: fields.number_or(&of::MU_STATIC, other.mu_static)?,
+        mu_kinetic: fields.number_or(&of::MU_KINETIC, other.mu_kinetic)?,
+        roughness: fields.number_or(&of::ROUGHNESS, other.roughness)?,
+        micro_relief_m: fields.number_or(&of::MICRO_RELIEF_M, other.micro_relief_m)?,
+        ..other
+    };
+    fields.finish()?;
+    Ok(Some(material))
+}

@@ -1,0 +1,85 @@
+//! Quiet: gains, mute, pause, slow motion, and an end to everything.
+
+use super::Scene;
+use crate::files::contact_log::LogEdit;
+use crate::link::message::Message;
+use crate::model::bad_value::within;
+use crate::model::error::AddError;
+use crate::model::id::BodyId;
+use asperity_dsp::limits;
+
+impl Scene {
+    /// A body is louder or softer from now on, linear, without a step.
+    ///
+    /// # Errors
+    /// When the body is not in this scene, the gain is not in 0–1000, or the queue is full.
+    pub fn set_body_gain(&mut self, id: BodyId, gain: f64) -> Result<(), AddError> {
+        self.known_body(id)?;
+        let gain = within("gain", gain, limits::impact::GAIN)?;
+        self.send(Message::SetBodyGain { slot: id.index(), gain })?;
+        if let Some(given) = self.given.get_mut(&id) {
+            given.gain = gain;
+        }
+        self.note(|names| LogEdit::BodyGain { body: names.body(id), gain });
+        Ok(())
+    }
+
+    /// All that is felt and heard fades within 20 ms, or comes back; everything goes on meanwhile.
+    ///
+    /// # Errors
+    /// When the queue is full.
+    pub fn set_muted(&mut self, muted: bool) -> Result<(), AddError> {
+        self.send(Message::Mute(muted))?;
+        self.note(|_| LogEdit::Mute { muted });
+        Ok(())
+    }
+
+    /// The game stands still: all that is felt and heard fades within 20 ms, bodies ring out unheard, and contacts wait, however long,
+    /// without lapsing.
+    ///
+    /// # Errors
+    /// When the queue is full.
+    pub fn pause(&mut self) -> Result<(), AddError> {
+        self.set_paused(true)
+    }
+
+    /// The game goes on: a contact comes back where its next report says. With an exact clock the next report holds at the sample that
+    /// is rendered next, as after a [`reset`](Self::reset).
+    ///
+    /// # Errors
+    /// When the queue is full.
+    pub fn resume(&mut self) -> Result<(), AddError> {
+        self.set_paused(false)?;
+        self.reset()
+    }
+
+    /// Every contact ends, and whatever rings is damped within a tenth of a second: for a cut, a menu, the end of a level. What is
+    /// reported afterwards begins anew; moves of contacts that have ended so are counted as orphaned.
+    ///
+    /// # Errors
+    /// When the queue is full.
+    pub fn fade_all(&mut self) -> Result<(), AddError> {
+        self.held.clear();
+        self.send(Message::FadeAll)?;
+        self.note(|_| LogEdit::FadeAll);
+        Ok(())
+    }
+
+    /// Stands still or goes on; the clock stays as it is.
+    pub(crate) fn set_paused(&mut self, paused: bool) -> Result<(), AddError> {
+        self.send(Message::Pause(paused))?;
+        self.note(|_| LogEdit::Pause { paused });
+        Ok(())
+    }
+
+    /// Slow motion or fast: so many game seconds a second of audio, from the last report on. It is for the exact clock; a live one finds
+    /// the pace by itself. Contacts move slower by as much; forces and blows stay what they are.
+    ///
+    /// # Errors
+    /// When the scale is not in 0.01–100.
+    pub fn set_time_scale(&mut self, scale: f64) -> Result<(), AddError> {
+        let scale = within("time_scale", scale, limits::TIME_SCALE)?;
+        self.clock.set_pace(scale, self.last_time_s.max(0.0));
+        Ok(())
+    }
+}

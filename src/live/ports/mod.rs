@@ -1,0 +1,33 @@
+//! Ports: what a running engine hands to other threads than the sound card's, opened and closed while it runs.
+//!
+//! | kind | gives | for |
+//! |---|---|---|
+//! | [`Pcm`] | the samples of a haptic channel or an audio bus | a controller, a recorder, a level meter |
+//! | [`Force`] | the 3-D force, contact by contact and summed for each hand | a force-feedback device |
+//! | [`Picture`] | the heights of a surface that changes | whoever draws it |
+//!
+//! [`Scene::open_port`](crate::Scene::open_port) gives the reading end, which may go to any one thread and be read at any pace: nothing
+//! waits for it, and whoever comes late loses the oldest and is told how much. Dropping it closes the port. A kind is one file: what is
+//! wanted as plain data, the end on the audio half ([`Outlet`]), the reading end.
+//!
+//! ```
+//! use asperity::live::ports::{Feed, Pcm};
+//! use asperity::{Actuator, Config, Engine};
+//!
+//! let Engine { mut scene, mut renderer, .. } = Config::live(48_000.0).build()?;
+//! let mut port = scene.open_port(Pcm { from: Feed::Haptic(Actuator(0)), holds_s: 0.1 })?;
+//! let (mut haptic, mut audio) = ([0.0; 64], [0.0; 64]);
+//! renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+//! let mut felt = [0.0; 256];
+//! assert_eq!((port.read(&mut felt), port.lost()), (64, 0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod force;
+mod pcm;
+mod picture;
+
+pub use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
+pub use force::{Force, ForceMeans, ForcePort, ForceRow, Of};
+pub use pcm::{Feed, Pcm, PcmPort};
+pub use picture::{Picture, PicturePort};

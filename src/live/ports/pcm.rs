@@ -1,0 +1,122 @@
+//! PCM port: the samples of a haptic channel or an audio bus, exactly as they leave the engine.
+
+use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
+use crate::link::overwriting::{Reader, Writer, ring};
+use crate::model::bad_value::within;
+use crate::model::error::AddError;
+use crate::model::event::Actuator;
+use asperity_dsp::limits;
+
+/// Which signal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Feed {
+    /// What drives an actuator.
+    Haptic(Actuator),
+    /// What a bus sounds like.
+    Bus(usize),
+}
+
+/// A port of samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pcm {
+    /// Which signal.
+    pub from: Feed,
+    /// How much a late reader still finds, s; 1 ms to 60 s.
+    pub holds_s: f64,
+}
+
+/// Reads samples.
+pub struct PcmPort {
+    words: Reader,
+    sample_rate_hz: f64,
+    read: u64,
+    /// Words on their way out of the ring.
+    chunk: [u32; 256],
+}
+
+struct PcmOutlet {
+    words: Writer,
+    from: Feed,
+}
+
+impl PortKind for Pcm {
+    type Port = PcmPort;
+
+    fn open(self, setup: &PortSetup<'_>) -> Result<Opened<PcmPort>, AddError> {
+        within("holds_s", self.holds_s, limits::output::PORT_HOLDS_S)?;
+        match self.from {
+            Feed::Haptic(Actuator(channel)) if usize::from(channel) >= setup.haptic_channels => {
+                return Err(AddError::Unknown("actuator"));
+            }
+            Feed::Bus(bus) if bus >= setup.audio_buses => {
+                return Err(AddError::UnknownBus { bus, buses: setup.audio_buses });
+            }
+            Feed::Haptic(_) | Feed::Bus(_) => {}
+        }
+        let (writer, reader) = ring((self.holds_s * setup.sample_rate_hz).ceil() as usize, 1);
+        let port = PcmPort { words: reader, sample_rate_hz: setup.sample_rate_hz, read: 0, chunk: [0; 256] };
+        Ok(Opened { outlet: Some(Box::new(PcmOutlet { words: writer, from: self.from })), port })
+    }
+}
+
+impl Outlet for PcmOutlet {
+    fn haptic(&mut self, channel: usize, _first: u64, samples: &[f32]) {
+        if self.from == Feed::Haptic(Actuator(channel as u16)) {
+            self.words.write(samples.iter().map(|x| x.to_bits()));
+        }
+    }
+
+    fn bus(&mut self, bus: usize, _first: u64, samples: &[f32]) {
+        if self.from == Feed::Bus(bus) {
+            self.words.write(samples.iter().map(|x| x.to_bits()));
+        }
+    }
+
+    fn is_closed(&self) -> bool {
+        self.words.is_closed()
+    }
+}
+
+impl PcmPort {
+    /// Copies the oldest samples that are left into `out`; tells how many. What lies behind them in `out` stays as it was.
+    pub fn read(&mut self, out: &mut [f32]) -> usize {
+        let mut count = 0;
+        while count < out.len() {
+            let most = (out.len() - count).min(self.chunk.len());
+            let got = self.words.read(&mut self.chunk[..most]);
+            if got == 0 {
+                break;
+            }
+            for (x, bits) in out[count..].iter_mut().zip(&self.chunk[..got]) {
+                *x = f32::from_bits(*bits);
+            }
+            count += got;
+        }
+        self.read += count as u64;
+        count
+    }
+
+    /// Rate of the samples, Hz.
+    #[must_use]
+    pub fn sample_rate_hz(&self) -> f64 {
+        self.sample_rate_hz
+    }
+
+    /// Samples that wait to be read.
+    #[must_use]
+    pub fn waiting(&self) -> u64 {
+        self.words.waiting()
+    }
+
+    /// Samples that were overwritten before they were read.
+    #[must_use]
+    pub fn lost(&self) -> u64 {
+        self.words.lost()
+    }
+
+    /// How many samples since the port was opened lie before the next one to be read: those read and those lost.
+    #[must_use]
+    pub fn position(&self) -> u64 {
+        self.read + self.words.lost()
+    }
+}

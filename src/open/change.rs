@@ -1,0 +1,194 @@
+//! A changed scene file, applied to the scene that sounds.
+//!
+//! Everything new is made before anything is changed, so that a broken map leaves the old scene as it was.
+
+use super::Overrides;
+use super::maker::Maker;
+use crate::files::FileError;
+use crate::files::contact_log::Names;
+use crate::files::scene_file::{BodyEntry, SceneFile, SurfaceEntry};
+use crate::{Body, Scene, Surface};
+use asperity_texture::sand::SandWorker;
+use std::cell::RefCell;
+
+/// What became of a changed scene file.
+#[derive(Default)]
+#[non_exhaustive]
+pub struct Changes {
+    /// What has changed, in words: `surface "tiles": changed`.
+    pub done: Vec<String>,
+    /// What has not, with when it will.
+    pub waiting: Vec<String>,
+    /// Simulations of new sand, to be run on threads of their own as those of [`Engine::workers`](crate::Engine::workers).
+    pub workers: Vec<SandWorker>,
+}
+
+impl Scene {
+    /// Makes of the scene that was opened as `before` the one that `after` says, while it sounds: bodies and surfaces that differ, are new or gone,
+    /// new probes, gains of buses. What is fixed when an engine is built is told in [`Changes::waiting`]. `overrides` are those that the
+    /// scene was opened with.
+    ///
+    /// # Errors
+    /// When a file cannot be used or a number is refused, nothing has changed. When the queue is full, apply it again after a block.
+    pub fn apply(
+        &mut self,
+        names: &mut Names,
+        before: &SceneFile,
+        after: &SceneFile,
+        overrides: &Overrides<'_>,
+    ) -> Result<Changes, FileError> {
+        let workers = RefCell::default();
+        let maker = Maker {
+            files: overrides.files,
+            own: overrides.own,
+            seed: self.config().seed,
+            workers: overrides.live.then_some(&workers),
+        };
+        let at = |error: FileError| error.within(after.path.display());
+        let new = New::make(&maker, before, after).map_err(at)?;
+        let mut changes = Changes { waiting: waiting(before, after), ..Changes::default() };
+        new.put(self, names, &mut changes).map_err(at)?;
+        self.apply_buses(before, after, &mut changes).map_err(at)?;
+        self.remove_what_is_gone(names, before, after, &mut changes).map_err(at)?;
+        changes.workers = workers.into_inner();
+        Ok(changes)
+    }
+
+    fn apply_buses(
+        &mut self,
+        before: &SceneFile,
+        after: &SceneFile,
+        changes: &mut Changes,
+    ) -> Result<(), FileError> {
+        for (index, (old, new)) in before.audio.iter().zip(&after.audio).enumerate() {
+            if let Some(gain) = new.gain.filter(|gain| old.gain != Some(*gain)) {
+                self.set_audio_gain(index, gain).map_err(FileError::told)?;
+                changes.done.push(format!("audio {}: gain {gain}", index + 1));
+            }
+        }
+        Ok(())
+    }
+
+    fn remove_what_is_gone(
+        &mut self,
+        names: &mut Names,
+        before: &SceneFile,
+        after: &SceneFile,
+        changes: &mut Changes,
+    ) -> Result<(), FileError> {
+        for SurfaceEntry { name, .. } in &before.surfaces {
+            if after.surfaces.iter().all(|entry| entry.name != *name)
+                && let Some(id) = names.surfaces.get(name)
+            {
+                self.remove_surface(*id).map_err(FileError::told)?;
+                names.surfaces.remove(name);
+                changes.done.push(format!("surface \"{name}\": removed"));
+            }
+        }
+        for BodyEntry { name, .. } in &before.bodies {
+            if after.bodies.iter().all(|entry| entry.name != *name)
+                && let Some(id) = names.bodies.get(name)
+            {
+                self.remove_body(*id).map_err(FileError::told)?;
+                names.bodies.remove(name);
+                changes.done.push(format!("body \"{name}\": removed"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What differs, made and not yet in the scene.
+struct New<'a> {
+    probes: Vec<&'a (String, crate::Probe)>,
+    bodies: Vec<(&'a BodyEntry, Body)>,
+    surfaces: Vec<(&'a SurfaceEntry, Surface)>,
+}
+
+impl<'a> New<'a> {
+    fn make(maker: &Maker<'_>, before: &SceneFile, after: &'a SceneFile) -> Result<Self, FileError> {
+        let mut bodies = Vec::new();
+        for entry in after.bodies.iter().filter(|entry| !before.bodies.contains(entry)) {
+            // Buses are those that the engine was built with.
+            let body = maker.body(entry, &before.audio);
+            bodies.push((entry, body.map_err(|error| error.within(format!("body \"{}\"", entry.name)))?));
+        }
+        let body_of = |file: &'a SceneFile, entry: &SurfaceEntry| {
+            file.bodies.iter().find(|body| Some(&body.name) == entry.body.as_ref())
+        };
+        let mut surfaces = Vec::new();
+        for entry in &after.surfaces {
+            let material = body_of(after, entry).and_then(|body| body.material);
+            let old = before.surfaces.iter().find(|old| *old == entry);
+            let old_body = before.bodies.iter().find(|body| Some(&body.name) == entry.body.as_ref());
+            if old.is_some()
+                && old_body.map(|body| body.material) == body_of(after, entry).map(|body| body.material)
+            {
+                continue;
+            }
+            let surface = maker.surface(entry, material, &Names::default());
+            let place = |error: FileError| error.within(format!("surface \"{}\"", entry.name));
+            surfaces.push((entry, surface.map_err(place)?));
+        }
+        let known = |name: &String| before.probes.iter().any(|(old, _)| old == name);
+        let probes = after.probes.iter().filter(|(name, _)| !known(name)).collect();
+        Ok(Self { probes, bodies, surfaces })
+    }
+
+    fn put(self, scene: &mut Scene, names: &mut Names, changes: &mut Changes) -> Result<(), FileError> {
+        for (name, probe) in self.probes {
+            let id = scene.add_probe(*probe).map_err(FileError::told)?;
+            names.probes.insert(name.clone(), id);
+            changes.done.push(format!("probe \"{name}\": added"));
+        }
+        for (BodyEntry { name, .. }, body) in self.bodies {
+            let word = match names.bodies.get(name) {
+                Some(id) => scene.replace_body(*id, body).map(|()| "changed"),
+                None => scene.add_body(body).map(|id| {
+                    names.bodies.insert(name.clone(), id);
+                    "added"
+                }),
+            };
+            let word = word.map_err(|error| FileError::told(error).within(format!("body \"{name}\"")))?;
+            changes.done.push(format!("body \"{name}\": {word}"));
+        }
+        for (SurfaceEntry { name, body, .. }, mut surface) in self.surfaces {
+            if let Some(body) = body.as_ref().and_then(|body| names.bodies.get(body)) {
+                surface = surface.on(*body);
+            }
+            let word = match names.surfaces.get(name) {
+                Some(id) => scene.replace_surface(*id, surface).map(|()| "changed"),
+                None => scene.add_surface(surface).map(|id| {
+                    names.surfaces.insert(name.clone(), id);
+                    "added"
+                }),
+            };
+            let word = word.map_err(|error| FileError::told(error).within(format!("surface \"{name}\"")))?;
+            changes.done.push(format!("surface \"{name}\": {word}"));
+        }
+        Ok(())
+    }
+}
+
+/// What is fixed when an engine is built, and differs.
+fn waiting(before: &SceneFile, after: &SceneFile) -> Vec<String> {
+    let buses = |file: &SceneFile| -> Vec<_> {
+        // A gain that is no longer written is found by the level policy, anew.
+        file.audio.iter().map(|entry| (entry.name.clone(), entry.limit, entry.gain.is_none())).collect()
+    };
+    let known =
+        |(name, probe): &(String, _)| after.probes.iter().any(|new| new.0 == *name && new.1 == *probe);
+    let differs = [
+        ("sample_rate_hz", before.sample_rate_hz != after.sample_rate_hz),
+        ("seed", before.seed != after.seed),
+        ("contacts", before.contacts != after.contacts),
+        ("probe", before.probe != after.probe || !before.probes.iter().all(known)),
+        ("actuator", before.actuators != after.actuators),
+        (
+            "audio: number, names and limits of buses, gains that are not written",
+            buses(before) != buses(after),
+        ),
+    ];
+    let differing = differs.into_iter().filter(|(_, differs)| *differs);
+    differing.map(|(what, _)| format!("{what}: takes effect when the scene is opened again")).collect()
+}

@@ -1,0 +1,225 @@
+//! The level policy: what `full_scale` and `gain` are where a scene does not say.
+//!
+//! One reference stroke, 0.1 m/s at 1 N, is rendered over every surface of the scene with every probe, before anything else; the loudest and
+//! the strongest of them land on the reference levels below. So levels follow from relief, probe, material and modes, whatever they are, and
+//! within a scene surfaces and probes keep their differences. From there a stroke grows as it does: faster and harder is stronger.
+//!
+//! | | reference level | head room to full scale |
+//! |---|---|---|
+//! | haptic channel | −26 dBFS rms ([`HAPTIC_REFERENCE`]) | strokes four times as fast and five times as hard, with peaks of four times their rms |
+//! | audio bus | −32 dBFS rms ([`AUDIO_REFERENCE`]) | the same for sound, whose peaks are higher |
+//!
+//! A bus that no stroke reaches follows a reference strike: 10 g of steel at 0.5 m/s peak at −12 dBFS. Sand is left out, because the
+//! stroke would leave its print; a scene of nothing else has [`FALLBACK_FULL_SCALE_M`] and a gain of 1. Where a level was
+//! resolved a peak limiter stands behind it, unless the scene says `limit = false`.
+
+use crate::engine::Engine;
+use crate::files::FileError;
+use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Striker};
+use crate::files::scene_file::{SceneFile, Source};
+use crate::model::actuator::Quantity;
+use crate::model::event::ContactSample;
+use crate::offline::{self, Options, Render};
+
+/// Speed of the reference stroke, m/s.
+pub const REFERENCE_SPEED_M_S: f64 = 0.1;
+/// What presses in the reference stroke, N.
+pub const REFERENCE_FORCE_N: f64 = 1.0;
+/// Rms of a haptic channel under the reference stroke, full scale 1: −26 dB.
+pub const HAPTIC_REFERENCE: f64 = 0.050_118_723_362_727_22;
+/// Rms of an audio bus under the reference stroke, full scale 1: −32 dB.
+pub const AUDIO_REFERENCE: f64 = 0.025_118_864_315_095_8;
+/// Peak of a reference strike, full scale 1: −12 dB.
+pub const STRIKE_REFERENCE: f64 = 0.251_188_643_150_958;
+/// Displacement at full scale where nothing says better, m.
+pub const FALLBACK_FULL_SCALE_M: f64 = 1e-4;
+/// Acceleration at full scale where nothing says better, m/s².
+pub const FALLBACK_FULL_SCALE_M_S2: f64 = 50.0;
+
+/// How long each stroke lasts, s, and from when on it is measured.
+const STROKE_S: f64 = 0.4;
+const SETTLED_S: f64 = 0.1;
+/// Between two strokes, s.
+const PAUSE_S: f64 = 0.1;
+/// What is weaker is silence: rms in m, m/s² or the modes' own units.
+const SILENT: f64 = 1e-10;
+/// Where a stroke begins, uv.
+const FROM: [f64; 2] = [0.31, 0.37];
+
+/// What was resolved: one number a channel or bus, whoever gave it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Levels {
+    /// m or m/s² at sample value 1.0 of each actuator.
+    pub full_scale: Vec<f64>,
+    /// Linear gain of each bus.
+    pub gain: Vec<f64>,
+}
+
+impl Levels {
+    /// What the scene says; NaN where it does not.
+    fn written(file: &SceneFile) -> Self {
+        Self {
+            full_scale: file.actuators.iter().map(|entry| entry.full_scale.unwrap_or(f64::NAN)).collect(),
+            gain: file.audio.iter().map(|entry| entry.gain.unwrap_or(f64::NAN)).collect(),
+        }
+    }
+
+    fn is_whole(&self) -> bool {
+        self.full_scale.iter().chain(&self.gain).all(|level| level.is_finite())
+    }
+}
+
+/// The levels of a scene; `assemble` builds it with levels of 1 and nothing behind them.
+pub(super) fn resolve(
+    file: &SceneFile,
+    assemble: impl FnOnce(&Levels) -> Result<Engine, FileError>,
+) -> Result<Levels, FileError> {
+    let mut levels = Levels::written(file);
+    if levels.is_whole() {
+        return Ok(levels);
+    }
+    let plain = Levels { full_scale: vec![1.0; levels.full_scale.len()], gain: vec![1.0; levels.gain.len()] };
+    let trials = Trials::of(file);
+    let Engine { scene, renderer, names, .. } = assemble(&plain)?;
+    let options = Options { tail_s: 0.3, ..Options::default() };
+    let render = offline::render(scene, renderer, &trials.log, &names, &options).map_err(FileError::told)?;
+    for (channel, level) in levels.full_scale.iter_mut().enumerate().filter(|(_, level)| level.is_nan()) {
+        let kind = file.actuators[channel].settings.output;
+        let strongest = trials.strongest(&render, |stroke| {
+            (file.actuators[stroke.actuator].settings.output == kind)
+                .then(|| &render.haptic[stroke.actuator][..])
+        });
+        *level = match kind {
+            _ if strongest > SILENT => strongest / HAPTIC_REFERENCE,
+            Quantity::Displacement => FALLBACK_FULL_SCALE_M,
+            Quantity::Acceleration => FALLBACK_FULL_SCALE_M_S2,
+        };
+    }
+    for (bus, level) in levels.gain.iter_mut().enumerate().filter(|(_, level)| level.is_nan()) {
+        let loudest = trials.strongest(&render, |_| Some(&render.audio[bus][..]));
+        let struck = trials.struck(&render, &render.audio[bus]);
+        *level = match (loudest > SILENT, struck > SILENT) {
+            (true, _) => AUDIO_REFERENCE / loudest,
+            (_, true) => STRIKE_REFERENCE / struck,
+            _ => 1.0,
+        };
+    }
+    Ok(levels)
+}
+
+/// A reference stroke among the trials.
+struct Trial {
+    actuator: usize,
+    start_s: f64,
+}
+
+/// Everything that is tried, as a log.
+struct Trials {
+    log: ContactLog,
+    strokes: Vec<Trial>,
+    /// When the first strike comes.
+    strikes_s: f64,
+}
+
+impl Trials {
+    fn of(file: &SceneFile) -> Self {
+        let mut trials = Self { log: ContactLog { lines: Vec::new() }, strokes: Vec::new(), strikes_s: 0.0 };
+        let probes = std::iter::once(None).chain(file.probes.iter().map(|(name, _)| Some(name.as_str())));
+        let probes: Vec<Option<&str>> = probes.collect();
+        let mut at_s = 0.0;
+        for (surface, entry) in file.surfaces.iter().enumerate() {
+            if matches!(entry.source, Source::Sand(_)) {
+                continue;
+            }
+            for probe in &probes {
+                for actuator in kinds(file) {
+                    for axis in 0..2 {
+                        trials.stroke(file, (surface, *probe, actuator), axis, at_s);
+                        at_s += STROKE_S + PAUSE_S;
+                    }
+                }
+            }
+        }
+        trials.strikes_s = at_s;
+        for body in &file.bodies {
+            let striker = Striker::Preset("steel".to_owned());
+            trials.log.lines.push(LogLine { t: at_s, event: strike(&body.name, striker) });
+            at_s += PAUSE_S;
+        }
+        trials
+    }
+
+    fn stroke(
+        &mut self,
+        file: &SceneFile,
+        (surface, probe, actuator): (usize, Option<&str>, usize),
+        axis: usize,
+        start_s: f64,
+    ) {
+        let entry = &file.surfaces[surface];
+        let size_m = [entry.width_m, entry.height_m];
+        let contact = self.strokes.len() as u64;
+        let sample = |t: f64| {
+            let mut uv = FROM;
+            uv[axis] += REFERENCE_SPEED_M_S * t / size_m[axis];
+            let mut velocity_m_s = [0.0; 2];
+            velocity_m_s[axis] = REFERENCE_SPEED_M_S;
+            let velocity_m_s = Some(velocity_m_s);
+            ContactSample { uv, velocity_m_s, normal_force_n: REFERENCE_FORCE_N, closing_m_s: 0.0 }
+        };
+        let mut begin = LogEvent::begin(contact, &entry.name, actuator as u16, sample(0.0));
+        if let LogEvent::Begin { touching, .. } = &mut begin {
+            touching.hand.probe = probe.map(str::to_owned);
+        }
+        self.log.lines.push(LogLine { t: start_s, event: begin });
+        let steps = (STROKE_S * 60.0) as usize;
+        for step in 1..steps {
+            let t = step as f64 / 60.0;
+            self.log.lines.push(LogLine { t: start_s + t, event: LogEvent::moved(contact, sample(t)) });
+        }
+        self.log.lines.push(LogLine { t: start_s + STROKE_S, event: LogEvent::End { contact } });
+        self.strokes.push(Trial { actuator, start_s });
+    }
+
+    /// Greatest rms of what two strokes across each other give.
+    fn strongest<'a>(&self, render: &Render, of: impl Fn(&Trial) -> Option<&'a [f32]>) -> f64 {
+        let power = |trial: &Trial| {
+            let samples = of(trial)?;
+            let range = [SETTLED_S, STROKE_S].map(|s| ((trial.start_s + s) * render.sample_rate_hz) as usize);
+            let part = samples.get(range[0]..range[1])?;
+            Some(part.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / part.len().max(1) as f64)
+        };
+        let pairs = self.strokes.chunks(2).filter_map(|pair| {
+            let powers: Vec<f64> = pair.iter().filter_map(power).collect();
+            (!powers.is_empty()).then(|| powers.iter().sum::<f64>() / powers.len() as f64)
+        });
+        pairs.fold(0.0, f64::max).sqrt()
+    }
+
+    /// Peak of what the strikes give.
+    fn struck(&self, render: &Render, samples: &[f32]) -> f64 {
+        let from = (self.strikes_s * render.sample_rate_hz) as usize;
+        samples.get(from..).unwrap_or(&[]).iter().fold(0.0, |peak, x| peak.max(f64::from(x.abs())))
+    }
+}
+
+/// The first actuator of each kind of output.
+fn kinds(file: &SceneFile) -> Vec<usize> {
+    let first = |kind| file.actuators.iter().position(|entry| entry.settings.output == kind);
+    [Quantity::Displacement, Quantity::Acceleration].into_iter().filter_map(first).collect()
+}
+
+/// The reference strike on a body.
+fn strike(body: &str, striker: Striker) -> LogEvent {
+    LogEvent::Impact {
+        body: body.to_owned(),
+        other: None,
+        speed_m_s: 0.5,
+        mass_kg: 0.01,
+        radius_m: 0.005,
+        striker,
+        restitution: 1.0,
+        position: 0,
+        hand: LogHand::default(),
+    }
+}

@@ -1,0 +1,154 @@
+//! From what a scene file says of bodies, surfaces and actuators to what the engine takes.
+
+use super::source::Ground;
+use crate::files::contact_log::{LogSurface, Names};
+use crate::files::scene_file::{
+    ActuatorEntry, AudioEntry, BodyEntry, MakeSource, RoughnessEntry, Source, SurfaceEntry,
+};
+use crate::files::{FileError, Files, storage};
+use crate::{
+    ActuatorPreset, ActuatorSettings, Body, DeviceProfile, Extent, Material, ModalModel, Roughness, Surface,
+    Wrap,
+};
+use asperity_texture::height_map::HeightMap;
+use asperity_texture::sand::SandWorker;
+use std::cell::RefCell;
+use std::path::Path;
+
+/// What every thing of a scene is made with.
+#[derive(Clone, Copy)]
+pub(crate) struct Maker<'a> {
+    pub files: &'a dyn Files,
+    /// Makers of sources that the engine does not know.
+    pub own: &'a [(&'a str, MakeSource)],
+    /// For sources that name none.
+    pub seed: u64,
+    /// Where the workers of sand go that is simulated elsewhere; none = it is simulated within the source.
+    pub workers: Option<&'a RefCell<Vec<SandWorker>>>,
+}
+
+impl<'a> Maker<'a> {
+    /// A body, on the bus that it names.
+    pub fn body(&self, entry: &BodyEntry, audio: &[AudioEntry]) -> Result<Body, FileError> {
+        let material = entry.material.unwrap_or(Body::DEFAULT_MATERIAL);
+        let mut model = match (&entry.modes, entry.stock) {
+            (Some(path), _) => ModalModel::load_from(self.files, path).map_err(FileError::told)?,
+            (None, Some((shape, size_m))) => shape.modes(&material, size_m).map_err(FileError::told)?,
+            (None, None) => ModalModel::silent(),
+        };
+        if let Some(gain) = entry.residual {
+            let residual = model.residual.take();
+            model = model.with_residual(residual, gain).map_err(FileError::told)?;
+        }
+        let bus =
+            entry.bus.as_ref().and_then(|name| audio.iter().position(|bus| bus.name.as_ref() == Some(name)));
+        Ok(Body::new(model).of(material).on_bus(bus.unwrap_or(0)))
+    }
+
+    /// What all sources of a surface share.
+    pub fn ground(&self, entry: &SurfaceEntry) -> Ground<'a> {
+        let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
+        Ground { maker: *self, extent, wrap: entry.wrap, frame: entry.frame }
+    }
+
+    /// A surface, on the body that it names. On one of a `material` that the scene names it has that material's finish where it says
+    /// nothing else.
+    pub fn surface(
+        &self,
+        entry: &SurfaceEntry,
+        material: Option<Material>,
+        names: &Names,
+    ) -> Result<Surface, FileError> {
+        let ground = self.ground(entry);
+        let source = ground.source(&entry.source)?;
+        let surface = Surface::from_source(source, entry.width_m, entry.height_m).map_err(FileError::told)?;
+        let surface = match (material, &entry.source) {
+            (Some(material), Source::Flat) => surface.of(material),
+            // How rough a pictured surface is, its material does not tell: it may be glazed or sanded.
+            (Some(material), Source::Map { .. } | Source::Lattice(_)) => {
+                surface.of(material).roughness(Roughness::FromSource)
+            }
+            // Other sources bring a finish of their own.
+            _ => surface,
+        };
+        // A solid in a body is cut from a block that goes on: another uv is another place.
+        let in_block = entry.frame.is_some() && matches!(entry.source, Source::Solid { .. });
+        let mut surface = surface
+            .wraps(entry.wrap != Wrap::Clamp && !in_block)
+            .at_strike_position(entry.strike_position)
+            .excitation(entry.excitation);
+        if let Some(roughness) = self.roughness(entry, ground.extent)? {
+            surface = surface.roughness(roughness);
+        }
+        if let Some(rms_m) = entry.micro_relief_m {
+            surface = surface.micro_relief_m(rms_m);
+        }
+        if let Some(outer_scale_m) = entry.outer_scale_m {
+            surface = surface.outer_scale_m(outer_scale_m);
+        }
+        if let Some(frame) = entry.frame {
+            surface = surface.frame(frame);
+        }
+        if let Some(friction) = entry.friction {
+            surface = surface.friction(friction);
+        }
+        let (table, folder) = &entry.written;
+        let folder = Some(folder.display().to_string()).filter(|folder| !folder.is_empty());
+        surface.described = Some(Box::new(LogSurface { is: Some(table.clone()), folder, material }));
+        let body = entry.body.as_ref().and_then(|name| names.bodies.get(name));
+        Ok(match body {
+            Some(body) => surface.on(*body),
+            None => surface,
+        })
+    }
+
+    fn roughness(&self, entry: &SurfaceEntry, extent: Extent) -> Result<Option<Roughness>, FileError> {
+        Ok(match &entry.roughness {
+            RoughnessEntry::Number(r) => r.map(Roughness::Constant),
+            RoughnessEntry::Map { image, gloss } => {
+                let raster = storage::channel(self.files, image)?.raster;
+                let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
+                let map = HeightMap::new(&raster, extent, entry.wrap)
+                    .map_err(|error| FileError::told(error).within(image.path.display()))?;
+                Some(Roughness::Map(Box::new(map)))
+            }
+        })
+    }
+}
+
+/// An actuator of the scene that lies at `scene`.
+pub(super) fn actuator(
+    files: &dyn Files,
+    entry: &ActuatorEntry,
+    full_scale: f64,
+    scene: &Path,
+) -> Result<ActuatorSettings, FileError> {
+    let folder = scene.parent().unwrap_or(Path::new(""));
+    Ok(ActuatorSettings {
+        full_scale,
+        limit_peaks: entry.limit_peaks.unwrap_or(entry.full_scale.is_none() && entry.limit.is_none()),
+        equalise: device(files, "equalise", entry.equalise.as_deref(), folder)?,
+        limit: device(files, "limit", entry.limit.as_deref(), folder)?,
+        ..entry.settings
+    })
+}
+
+/// A shipped profile by name, or a profile's file, relative to the scene's.
+fn device(
+    files: &dyn Files,
+    field: &str,
+    name: Option<&str>,
+    folder: &Path,
+) -> Result<Option<DeviceProfile>, FileError> {
+    let Some(name) = name else { return Ok(None) };
+    if let Some(preset) = ActuatorPreset::by_name(name) {
+        return Ok(Some(preset.profile));
+    }
+    let at = format!("actuator: {field}");
+    if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
+        let preset = ActuatorPreset::load_from(files, folder.join(name));
+        return preset.map(|preset| Some(preset.profile)).map_err(|error| FileError::told(error).within(at));
+    }
+    let right = format!("must be none, a profile's file (NAME.toml) or one of: {}", ActuatorPreset::names());
+    Err(FileError::new(at, format!("\"{name}\" is unknown"), right))
+}

@@ -1,0 +1,240 @@
+//! Parameters: every number that a scene file or a contact log may hold, with its unit, range, default and source.
+//!
+//! One list for everybody: the reader of scene files takes its ranges from here, `docs/formats.md` its tables, an inspector its sliders.
+//! The ranges themselves are those of [`limits`], which the kernels check.
+
+use asperity_dsp::limits::{self, Range};
+use asperity_dsp::micro_contact as contact;
+use asperity_texture::sand::SandLaw;
+
+/// When a new value is heard and felt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Changes {
+    /// While it sounds, without a step.
+    Sounding,
+    /// While it sounds; what it belongs to begins anew.
+    Anew,
+    /// When the scene is opened.
+    Opened,
+    /// With every event.
+    Event,
+}
+
+/// A number that a file may hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Parameter {
+    /// The table it stands in, `""` for the top of a scene file, `event` for a line of a contact log.
+    pub table: &'static str,
+    /// Its key.
+    pub key: &'static str,
+    /// Its unit, empty for a plain number.
+    pub unit: &'static str,
+    /// What is accepted.
+    pub range: Range,
+    /// Whether it is a whole number.
+    pub whole: bool,
+    /// What counts where it is not written; none where it must be, or where something else decides.
+    pub default: Option<f64>,
+    /// When a new value is heard and felt.
+    pub changes: Changes,
+    /// What it is.
+    pub meaning: &'static str,
+    /// Where its default comes from; empty where there is none, or it says nothing.
+    pub source: &'static str,
+}
+
+impl Parameter {
+    const fn new(
+        table: &'static str,
+        key: &'static str,
+        unit: &'static str,
+        range: Range,
+        meaning: &'static str,
+    ) -> Self {
+        let (whole, default, changes, source) = (false, None, Changes::Sounding, "");
+        Self { table, key, unit, range, whole, default, changes, meaning, source }
+    }
+
+    const fn whole(self) -> Self {
+        Self { whole: true, ..self }
+    }
+
+    const fn or(self, default: f64) -> Self {
+        Self { default: Some(default), ..self }
+    }
+
+    const fn from(self, source: &'static str) -> Self {
+        Self { source, ..self }
+    }
+
+    const fn changes(self, changes: Changes) -> Self {
+        Self { changes, ..self }
+    }
+}
+
+/// The parameter of that key in that table.
+#[must_use]
+pub fn find(table: &str, key: &str) -> Option<&'static Parameter> {
+    ALL.iter().copied().find(|parameter| parameter.table == table && parameter.key == key)
+}
+
+/// Declares the parameters of one table each, and the list of all.
+macro_rules! parameters {
+    ($($(#[doc = $doc:literal])+ mod $module:ident = $table:literal {
+        $($name:ident: $key:literal, $unit:literal, $range:expr, $meaning:literal $(, $method:ident($($value:expr)?))*;)+
+    })+) => {
+        $($(#[doc = $doc])+ pub mod $module {
+            #[allow(unused_imports, reason = "not every table needs all")]
+            use super::{Changes::{Anew, Event, Opened}, *};
+            $(#[doc = $meaning]
+            pub const $name: Parameter =
+                Parameter::new($table, $key, $unit, $range, $meaning)$(.$method($($value)?))*;)+
+        })+
+
+        /// All of them, table by table.
+        pub const ALL: &[&Parameter] = &[$($(&$module::$name,)+)+];
+    };
+}
+
+const LAW: SandLaw = SandLaw::DEFAULT;
+
+parameters! {
+    /// The top of a scene file.
+    mod scene = "" {
+        SAMPLE_RATE_HZ: "sample_rate_hz", "Hz", limits::output::SAMPLE_RATE_HZ,
+            "Rate of the outputs; a sound card's own wins", or(44_100.0), changes(Opened);
+        TAIL_S: "tail_s", "s", Range::new(0.0, 600.0, "0 to 600 s"), "Ring-out after the last event", or(1.0);
+    }
+    /// A body.
+    mod body = "body" {
+        RESIDUAL: "residual", "", limits::material::RESIDUAL,
+            "Gain of the residual that the modes file may carry; 0 = not played", or(1.0);
+        SIZE_M: "size_m", "m", limits::material::SIZE_M, "Longest side or diameter of a stock body";
+    }
+    /// What a body is made of.
+    mod material = "material" {
+        YOUNG_PA: "young_pa", "Pa", limits::material::YOUNG_PA, "Young's modulus";
+        POISSON: "poisson", "", limits::material::POISSON, "Poisson ratio";
+        DENSITY_KG_M3: "density_kg_m3", "kg/m³", limits::material::DENSITY_KG_M3, "Density";
+        ALPHA_PER_S: "alpha_per_s", "1/s", limits::material::ALPHA_PER_S, "α of the damping d = (α + ηω + βω²)/2";
+        ETA: "eta", "", limits::material::ETA, "η of the same";
+        BETA_S: "beta_s", "s", limits::material::BETA_S, "β of the same";
+        MU_STATIC: "mu_static", "", limits::FRICTION, "Coefficient of static friction";
+        MU_KINETIC: "mu_kinetic", "", limits::FRICTION, "Coefficient of kinetic friction";
+        ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R of its surfaces";
+        MICRO_RELIEF_M: "micro_relief_m", "m", limits::MICRO_RELIEF_M, "Micro-relief of its surfaces";
+    }
+    /// A surface.
+    mod surface = "surface" {
+        WIDTH_M: "width_m", "m", limits::SIDE_M, "What uv 1 spans along u", changes(Anew);
+        HEIGHT_M: "height_m", "m", limits::SIDE_M, "What uv 1 spans along v", changes(Anew);
+        RELIEF_M: "relief_m", "m", limits::RELIEF_M, "Height of white over black of an image";
+        MICRO_RELIEF_M: "micro_relief_m", "m", limits::MICRO_RELIEF_M,
+            "Rms of the 1/f^α overlay in the octave around 1 mm; missing: its material's";
+        OUTER_SCALE_M: "outer_scale_m", "m", limits::OUTER_SCALE_M,
+            "Wavelength beyond which the micro-relief is flat; missing: the engine's default";
+        ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R; missing: its map's or its material's";
+        FRICTION: "friction", "", limits::FRICTION, "Coulomb coefficient of the 3-D force; missing: the source's";
+        SCALE: "scale", "", limits::combined::FACTOR, "Factor of the heights", or(1.0);
+        STRIKE_POSITION: "strike_position", "", Range::new(0.0, 15.0, "0 to 15"),
+            "Which of the body's strike positions contacts here excite", whole(), or(0.0);
+    }
+    /// What touches.
+    mod probe = "probe" {
+        PAD_MASS_KG: "pad_mass_kg", "kg", limits::probe::PAD_MASS_KG, "Mass of the skin that moves with the surface",
+            or(contact::PAD_MASS_KG), from("0.1 to 0.25 g in fingertip models"), changes(Opened);
+        PAD_STIFFNESS_N_M: "pad_stiffness_n_m", "N/m", limits::probe::PAD_STIFFNESS_N_M,
+            "Spring between skin and bone", or(contact::PAD_STIFFNESS_N_M),
+            from("1000 in a fingertip model of 2017; 600 to 1430 recalled"), changes(Opened);
+        PAD_DAMPING_N_S_M: "pad_damping_n_s_m", "N·s/m", limits::probe::PAD_DAMPING_N_S_M,
+            "Damper between skin and bone", or(contact::PAD_DAMPING_N_S_M),
+            from("1.0 in the same model; 1.45 to 2.77 recalled"), changes(Opened);
+        FINGER_MASS_KG: "finger_mass_kg", "kg", limits::probe::FINGER_MASS_KG, "Mass behind the pad",
+            or(contact::FINGER_MASS_KG), from("assumed"), changes(Opened);
+        CONTACT_STIFFNESS_N_M: "contact_stiffness_n_m", "N/m", limits::probe::CONTACT_STIFFNESS_N_M,
+            "Stiffness of skin on surface", or(contact::CONTACT_STIFFNESS_N_M),
+            from("chosen: 50 times the pad"), changes(Opened);
+        LEASH_M: "leash_m", "m", limits::probe::LEASH_M, "How far the finger may leave the surface",
+            or(contact::LEASH_M), from("chosen"), changes(Opened);
+        TIP_RADIUS_M: "tip_radius_m", "m", limits::probe::TIP_RADIUS_M, "Sphere that rides on the surface; 0 = a point",
+            or(0.0), changes(Opened);
+        FORCE_EXPONENT: "force_exponent", "", limits::probe::FORCE_EXPONENT, "n of the contact's stiffness, k ∝ Fⁿ",
+            or(contact::FORCE_EXPONENT), changes(Opened);
+    }
+    /// A haptic channel.
+    mod actuator = "actuator" {
+        FULL_SCALE: "full_scale", "m (or m/s²)", limits::output::FULL_SCALE,
+            "What sample value 1.0 stands for; missing: by the level policy", changes(Opened);
+        LOWPASS_HZ: "lowpass_hz", "Hz", limits::output::LOWPASS_HZ,
+            "Low-pass to what skin feels; missing: 1000 Hz for acceleration, off for displacement", changes(Opened);
+        HIGHPASS_HZ: "highpass_hz", "Hz", limits::output::HIGHPASS_HZ,
+            "High-pass about the mean surface", or(10.0), changes(Opened);
+    }
+    /// An audio bus.
+    mod audio = "audio" {
+        GAIN: "gain", "", limits::output::AUDIO_GAIN, "Linear gain; missing: by the level policy";
+    }
+    /// Sand that gives way.
+    mod sand = "sand" {
+        CELLS: "cells", "", Range::new(16.0, 2048.0, "16 to 2048"), "Cells along u", whole(), or(512.0), changes(Anew);
+        DEPTH_M: "depth_m", "m", limits::sand::DEPTH_M, "Depth of the bed", or(0.05), changes(Anew);
+        TALUS_DEG: "talus_deg", "degrees", limits::sand::TALUS_DEG, "Steepest slope that stays, dry", or(30.0), changes(Anew);
+        STIFFNESS_N: "stiffness_n", "N", limits::sand::STIFFNESS_N, "k_s of the repulse force",
+            or(LAW.stiffness_n), from("[Sand] §4.1"), changes(Anew);
+        EXPONENT_PER_M: "exponent_per_m", "1/m", limits::sand::EXPONENT_PER_M, "k_c of the repulse force",
+            or(LAW.exponent_per_m), from("[Sand] §4.1, its unit of length taken as 0.5 m"), changes(Anew);
+        DRAG_S_PER_M: "drag_s_per_m", "s/m", limits::sand::DRAG_S_PER_M, "k_f of the drag",
+            or(LAW.drag_s_per_m), from("[Sand] §4.1, its unit of length taken as 0.5 m"), changes(Anew);
+        WETNESS: "wetness", "", limits::sand::WETNESS, "0 = dry, 1 = wet", or(LAW.wetness), changes(Anew);
+        GRAIN_M: "grain_m", "m", limits::sand::GRAIN_M, "Diameter of a grain", or(LAW.grain_m),
+            from("assumed: medium sand"), changes(Anew);
+        TOOL_RADIUS_M: "tool_radius_m", "m", limits::sand::TOOL_RADIUS_M, "Radius of what is dragged through it",
+            or(0.005), from("a fingertip"), changes(Anew);
+    }
+    /// A layer of sand below the top.
+    mod layer = "sand.layers" {
+        FROM_M: "from_m", "m", limits::sand::LAYER_FROM_M, "Depth at which it begins", changes(Anew);
+        HARDNESS: "hardness", "", limits::sand::HARDNESS, "Hardness over the top's", changes(Anew);
+    }
+    /// A tool, by a picture of its underside.
+    mod tool = "sand.tool" {
+        WIDTH_M: "width_m", "m", Range::new(2e-4, 0.4, "2e-4 to 0.4 m"), "Width of the picture", changes(Anew);
+        RELIEF_M: "relief_m", "m", Range::above(0.0, 0.4, "above 0, to 0.4 m"), "Height of white over black in it", changes(Anew);
+    }
+    /// Solid noise; its defaults are its preset's.
+    mod solid = "solid" {
+        MAGNITUDE: "magnitude", "", limits::solid::MAGNITUDE, "M of the first module";
+        OCTAVES: "octaves", "", limits::solid::OCTAVES, "N of the first module", whole();
+        FREQUENCY: "frequency", "cells per unit of length", limits::solid::FREQUENCY, "f of the first module";
+        LACUNARITY: "lacunarity", "", limits::solid::LACUNARITY, "Ratio of frequencies from octave to octave";
+        PERSISTENCE: "persistence", "", limits::solid::PERSISTENCE, "Ratio of amplitudes from octave to octave";
+        TEXTURE_FACTOR_PER_M: "texture_factor_per_m", "1/m", limits::solid::TEXTURE_FACTOR_PER_M, "T";
+        AMPLITUDE_M: "amplitude_m", "m", limits::solid::AMPLITUDE_M, "A, height per unit of magnitude";
+        LIMIT_N: "limit_n", "N", limits::solid::LIMIT_N, "L, force per unit of magnitude";
+        CAP_N: "cap_n", "N", limits::solid::CAP_N, "Largest texture force";
+        VISCOSITY_N_S_M: "viscosity_n_s_m", "N·s/m", limits::solid::VISCOSITY_N_S_M, "b, drag of the medium";
+    }
+    /// Brownian relief.
+    mod brownian = "brownian" {
+        HURST: "hurst", "", limits::brownian::HURST, "Hurst exponent";
+        RMS_M: "rms_m", "m", limits::brownian::RMS_M, "Rms height";
+    }
+    /// From one source to another.
+    mod crossfade = "crossfade" {
+        AT_S: "at_s", "s", Range::new(0.0, 1e6, "0 to 1e6 s"), "When it begins";
+    }
+    /// A line of a contact log, or a report.
+    mod event = "event" {
+        UV: "uv", "", limits::UV, "Texture coordinates, each", changes(Event);
+        VELOCITY_M_S: "velocity_m_s", "m/s", limits::VELOCITY_M_S, "Tangential velocity, each component", changes(Event);
+        NORMAL_FORCE_N: "normal_force_n", "N", limits::NORMAL_FORCE_N, "Force that presses; one below zero presses with none", changes(Event);
+        CLOSING_M_S: "closing_m_s", "m/s", limits::SPEED_M_S, "Approach speed at landing", or(0.0), changes(Event);
+        SPEED_M_S: "speed_m_s", "m/s", limits::SPEED_M_S, "Approach speed of an impact", changes(Event);
+        MASS_KG: "mass_kg", "kg", limits::impact::MASS_KG, "Effective mass of the striker", changes(Event);
+        RADIUS_M: "radius_m", "m", limits::impact::RADIUS_M, "Its radius where it strikes", changes(Event);
+        RESTITUTION: "restitution", "", limits::impact::RESTITUTION, "Rebound over approach speed", or(1.0), changes(Event);
+        GAIN: "gain", "", limits::impact::GAIN, "Factor of what is felt and heard", or(1.0), changes(Event);
+        IMPORTANCE: "importance", "", limits::impact::IMPORTANCE, "Factor of a contact's priority", or(1.0), changes(Event);
+    }
+}

@@ -1,0 +1,145 @@
+//! How stiff a contact is: probe and ground in series, each stiffening with the reported force.
+//!
+//! ```text
+//! 1/k(F) = 1/(k_m Fⁿ) + 1/(k_g Fᵍ)        k_g = (6 E*² r)^(1/3),  F in newtons
+//! ```
+//! k_m and n are the probe's. k_g is the slope at 1 N of Hertz' sphere of the tip's radius r on ground of the modulus
+//! E* = E/(1 − ν²); g is ⅓ with it, and 0.8 on what is soft, because pile and foam close up under load (0.7–0.8, fitted to published strokes
+//! with a tool: Culbertson, Lopez Delgado, Kuchenbecker 2014). Stone, wood and plastic are hundreds of times stiffer than a probe and
+//! change nothing; rubber and foam are softer and are felt softer.
+
+use crate::model::material::Material;
+use asperity_dsp::DesignError;
+use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe, RUNGS_AN_OCTAVE};
+
+/// Forces between which the laws hold, N; beyond, the nearer end counts.
+const FORCE_N: (f64, f64) = (0.01, 300.0);
+/// Ground of a lower modulus is soft, Pa.
+const SOFT_PA: f64 = 1e8;
+/// g of soft ground.
+const SOFT_EXPONENT: f64 = 0.8;
+/// Least radius with which a probe presses on its ground, m: the exciter's.
+const LEAST_RADIUS_M: f64 = crate::model::surface::EXCITER_RADIUS_M;
+/// Octaves of stiffness below and above a probe's own that a contact can take.
+const OCTAVES: (usize, usize) = (5, 3);
+
+/// What a probe presses on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ground {
+    modulus_pa: f64,
+    exponent: f64,
+}
+
+impl Ground {
+    /// Of a material.
+    pub(crate) fn of(material: Material) -> Self {
+        let modulus_pa = material.young_pa / (1.0 - material.poisson * material.poisson);
+        let exponent = if material.young_pa < SOFT_PA { SOFT_EXPONENT } else { 1.0 / 3.0 };
+        Self { modulus_pa, exponent }
+    }
+}
+
+/// The stiffness of a probe on its ground under a reported force, N/m.
+pub(crate) fn stiffness_n_m(probe: &Probe, ground: &Ground, force_n: f64) -> f64 {
+    let force_n = within(force_n);
+    let own_n_m = probe.contact_stiffness_n_m * force_n.powf(probe.force_exponent);
+    let radius_m = probe.tip_radius_m.max(LEAST_RADIUS_M);
+    let ground_n_m =
+        (6.0 * ground.modulus_pa * ground.modulus_pa * radius_m).cbrt() * force_n.powf(ground.exponent);
+    own_n_m * ground_n_m / (own_n_m + ground_n_m)
+}
+
+/// How much louder a contact is than at 1 N: its area grows as F^(2/3) (Hertz), as many asperities more strike, and each by
+/// itself, so that their sum grows as F^(1/3).
+pub(crate) fn loudness(force_n: f64) -> f64 {
+    within(force_n).cbrt()
+}
+
+fn within(force_n: f64) -> f64 {
+    force_n.clamp(FORCE_N.0, FORCE_N.1)
+}
+
+/// Designs of one probe on contacts of rising stiffness.
+#[derive(Debug, Clone)]
+pub(crate) struct Ladder {
+    rungs: Box<[MicroContact]>,
+    /// Of the first rung.
+    lowest_n_m: f64,
+}
+
+impl Ladder {
+    /// Around the probe's own stiffness, as far as the integrator that runs there reaches.
+    pub(crate) fn new(
+        own: &MicroContact,
+        integrator: Integrator,
+        sample_rate_hz: f64,
+    ) -> Result<Self, DesignError> {
+        let probe = *own.probe();
+        let rung = |step: i32| {
+            let factor = (f64::from(step) / RUNGS_AN_OCTAVE as f64).exp2();
+            let contact_stiffness_n_m = (probe.contact_stiffness_n_m * factor).clamp(1.0, 1e9);
+            MicroContact::new(&Probe { contact_stiffness_n_m, ..probe }, integrator, sample_rate_hz)
+        };
+        let (below, above) = ((OCTAVES.0 * RUNGS_AN_OCTAVE) as i32, (OCTAVES.1 * RUNGS_AN_OCTAVE) as i32);
+        let steps = -below..=above;
+        let rungs: Vec<_> = steps.map(rung).collect::<Result<_, _>>()?;
+        let fits = |rung: &MicroContact| rung.is_a_rung_beside(own);
+        // The rungs about the probe's own that run as it does.
+        let middle = below as usize;
+        let first = middle - rungs[..middle].iter().rev().take_while(|rung| fits(rung)).count();
+        let last = middle + rungs[middle + 1..].iter().take_while(|rung| fits(rung)).count();
+        let rungs: Box<[_]> = rungs[first..=last].into();
+        let lowest_n_m = rungs[0].probe().contact_stiffness_n_m;
+        Ok(Self { rungs, lowest_n_m })
+    }
+
+    /// Makes `contact` the design of that stiffness, or of the nearest that the ladder has.
+    pub(crate) fn set(&self, contact: &mut MicroContact, stiffness_n_m: f64) {
+        let height = RUNGS_AN_OCTAVE as f64 * (stiffness_n_m / self.lowest_n_m).log2();
+        let height = height.clamp(0.0, (self.rungs.len() - 1) as f64);
+        let below = (height as usize).min(self.rungs.len().saturating_sub(2));
+        let (Some(softer), Some(harder)) = (self.rungs.get(below), self.rungs.get(below + 1)) else {
+            return contact.clone_from(&self.rungs[0]);
+        };
+        let [low, high] = [softer, harder].map(|rung| rung.probe().contact_stiffness_n_m);
+        let share = ((stiffness_n_m - low) / (high - low)).clamp(0.0, 1.0);
+        contact.become_between(softer, harder, if high > low { share } else { 0.0 });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hard_ground_changes_nothing_and_rubber_halves_a_tool() {
+        let tool = Probe {
+            contact_stiffness_n_m: 1e4,
+            force_exponent: 0.25,
+            tip_radius_m: 1.6e-3,
+            ..Probe::default()
+        };
+        let on = |material, force_n| stiffness_n_m(&tool, &Ground::of(material), force_n);
+        assert!((on(Material::STEEL, 1.0) / 1e4 - 1.0).abs() < 0.01);
+        assert!((on(Material::STEEL, 16.0) / 2e4 - 1.0).abs() < 0.01);
+        assert!((0.3..0.6).contains(&(on(Material::RUBBER, 1.0) / 1e4)));
+        let growth = (on(Material::RUBBER, 2.0) / on(Material::RUBBER, 0.5)).ln() / 4f64.ln();
+        assert!((0.45..0.8).contains(&growth), "{growth}");
+    }
+
+    #[test]
+    fn a_ladder_has_every_stiffness_between_its_ends() {
+        let probe = Probe::default();
+        let own = MicroContact::new(&probe, Integrator::ExactEvent, 44_100.0).unwrap();
+        let ladder = Ladder::new(&own, Integrator::ExactEvent, 44_100.0).unwrap();
+        let mut contact = own;
+        for factor in [0.05, 0.5, 0.99, 1.0, 3.3, 7.0] {
+            let wanted = factor * probe.contact_stiffness_n_m;
+            ladder.set(&mut contact, wanted);
+            assert!((contact.probe().contact_stiffness_n_m / wanted - 1.0).abs() < 1e-12);
+        }
+        ladder.set(&mut contact, probe.contact_stiffness_n_m);
+        let rest = contact.at_rest(0.0, 0.5);
+        assert!(contact.is_settled(&rest, 0.0, 0.5));
+    }
+}

@@ -1,0 +1,241 @@
+//! Moving picture: heights of a surface that changes, tile by tile, for whoever draws it.
+//!
+//! The simulation writes tiles that changed, a reader takes those it has not seen; neither waits. What is drawn is always the latest:
+//! a reader that comes late loses what lay between, and is told how many states of tiles that was.
+//!
+//! ```text
+//! writer: version + 1 (odd) → heights → version + 1 (even)     reader: version even? → copy → same version?
+//! ```
+//!
+//! A sequence lock a tile: a tile that changes while it is copied is taken the next time. The heights are made when a reader first asks,
+//! on its own thread; until then a picture costs its writer one look a frame.
+
+use std::sync::atomic::{AtomicU32, Ordering, fence};
+use std::sync::{Arc, OnceLock};
+
+/// Side of a tile, cells; those at the right and lower edge may be smaller.
+pub const TILE_CELLS: usize = 32;
+
+/// The heights of a grid of cells, shared by one writer and its readers.
+#[derive(Debug)]
+pub struct MovingPicture {
+    columns: usize,
+    rows: usize,
+    cell_m: f64,
+    shown: OnceLock<Shown>,
+}
+
+#[derive(Debug)]
+struct Shown {
+    /// Bits of the heights, m.
+    heights: Box<[AtomicU32]>,
+    /// Even, or odd while a tile is being written; 0 = never written.
+    versions: Box<[AtomicU32]>,
+}
+
+/// One tile of a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PictureTile<'a> {
+    /// Its first column and row in the picture, cells.
+    pub at: [usize; 2],
+    /// Its columns and rows.
+    pub size: [usize; 2],
+    /// Row after row, metres above the bottom.
+    pub height_m: &'a [f32],
+}
+
+/// Reads one picture; as many readers as one likes, each on a thread of its own.
+#[derive(Debug)]
+pub struct PictureReader {
+    picture: Arc<MovingPicture>,
+    seen: Vec<u32>,
+    tile: Vec<f32>,
+    missed: u64,
+}
+
+impl MovingPicture {
+    /// A picture of `columns` × `rows` cells that nobody looks at yet.
+    #[must_use]
+    pub fn new(columns: usize, rows: usize, cell_m: f64) -> Arc<Self> {
+        Arc::new(Self { columns, rows, cell_m, shown: OnceLock::new() })
+    }
+
+    /// Columns and rows, cells.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        [self.columns, self.rows]
+    }
+
+    /// Side of a cell, metres.
+    #[must_use]
+    pub fn cell_m(&self) -> f64 {
+        self.cell_m
+    }
+
+    /// A reader; the first one makes the picture.
+    #[must_use]
+    pub fn reader(self: &Arc<Self>) -> PictureReader {
+        let words = |count| (0..count).map(|_| AtomicU32::new(0)).collect();
+        let tiles = self.tiles();
+        self.shown.get_or_init(|| Shown { heights: words(self.columns * self.rows), versions: words(tiles) });
+        PictureReader {
+            picture: self.clone(),
+            seen: vec![0; tiles],
+            tile: Vec::with_capacity(TILE_CELLS * TILE_CELLS),
+            missed: 0,
+        }
+    }
+
+    /// Writes the tiles that differ from what the picture shows, of a surface whose cells lie at `height_m(column, row)`, m. Tells
+    /// how many were written. There is one writer; nothing is written before somebody looks.
+    pub fn write(&self, height_m: impl Fn(usize, usize) -> f32) -> usize {
+        let Some(shown) = self.shown.get() else { return 0 };
+        (0..self.tiles()).filter(|&tile| self.write_tile(shown, tile, &height_m)).count()
+    }
+
+    fn write_tile(&self, shown: &Shown, tile: usize, height_m: &impl Fn(usize, usize) -> f32) -> bool {
+        let ([x, y], [width, height]) = self.place(tile);
+        let cells = || {
+            (y..y + height).flat_map(move |row| {
+                let first = row * self.columns;
+                (x..x + width)
+                    .map(move |column| (&shown.heights[first + column], height_m(column, row).to_bits()))
+            })
+        };
+        let version = shown.versions[tile].load(Ordering::Relaxed);
+        if version != 0 && cells().all(|(old, new)| old.load(Ordering::Relaxed) == new) {
+            return false;
+        }
+        shown.versions[tile].store(version.wrapping_add(1), Ordering::Relaxed);
+        fence(Ordering::Release);
+        cells().for_each(|(old, new)| old.store(new, Ordering::Relaxed));
+        // 0 is kept for what was never written.
+        let next = version.wrapping_add(2);
+        shown.versions[tile].store(if next == 0 { 2 } else { next }, Ordering::Release);
+        true
+    }
+
+    fn tiles(&self) -> usize {
+        self.columns.div_ceil(TILE_CELLS) * self.rows.div_ceil(TILE_CELLS)
+    }
+
+    /// First column and row of a tile, and its size.
+    fn place(&self, tile: usize) -> ([usize; 2], [usize; 2]) {
+        let across = self.columns.div_ceil(TILE_CELLS);
+        let at = [tile % across * TILE_CELLS, tile / across * TILE_CELLS];
+        (at, [(self.columns - at[0]).min(TILE_CELLS), (self.rows - at[1]).min(TILE_CELLS)])
+    }
+}
+
+impl PictureReader {
+    /// Shows every tile that has changed since the last call, as it is now; tells how many.
+    pub fn changed(&mut self, mut show: impl FnMut(PictureTile<'_>)) -> usize {
+        let Some(shown) = self.picture.shown.get() else { return 0 };
+        let mut count = 0;
+        for tile in 0..self.seen.len() {
+            let version = shown.versions[tile].load(Ordering::Acquire);
+            if version == self.seen[tile] || version % 2 == 1 {
+                continue;
+            }
+            let (at, size) = self.picture.place(tile);
+            self.tile.clear();
+            for row in at[1]..at[1] + size[1] {
+                let first = row * self.picture.columns + at[0];
+                let heights = &shown.heights[first..first + size[0]];
+                self.tile.extend(heights.iter().map(|bits| f32::from_bits(bits.load(Ordering::Relaxed))));
+            }
+            fence(Ordering::Acquire);
+            if shown.versions[tile].load(Ordering::Relaxed) != version {
+                continue;
+            }
+            self.missed += u64::from(version.wrapping_sub(self.seen[tile]) / 2).saturating_sub(1);
+            self.seen[tile] = version;
+            show(PictureTile { at, size, height_m: &self.tile });
+            count += 1;
+        }
+        count
+    }
+
+    /// States of tiles that were written and never shown here.
+    #[must_use]
+    pub fn missed(&self) -> u64 {
+        self.missed
+    }
+
+    /// The picture.
+    #[must_use]
+    pub fn picture(&self) -> &MovingPicture {
+        &self.picture
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 70 × 40 cells: tiles of every size.
+    fn picture() -> (Arc<MovingPicture>, Vec<Vec<f32>>) {
+        (MovingPicture::new(70, 40, 1e-3), vec![vec![0.05; 70]; 40])
+    }
+
+    /// What a reader makes of its tiles.
+    fn draw(reader: &mut PictureReader, drawn: &mut [Vec<f32>]) -> usize {
+        reader.changed(|tile| {
+            for (y, row) in tile.height_m.chunks(tile.size[0]).enumerate() {
+                drawn[tile.at[1] + y][tile.at[0]..tile.at[0] + tile.size[0]].copy_from_slice(row);
+            }
+        })
+    }
+
+    #[test]
+    fn only_tiles_that_changed_are_shown_and_they_are_what_was_written() {
+        let (picture, mut heights) = picture();
+        assert_eq!(picture.write(|x, y| heights[y][x]), 0, "nobody looks");
+        let mut reader = picture.reader();
+        let mut drawn = vec![vec![0.0; 70]; 40];
+        assert_eq!((picture.write(|x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (6, 6));
+        assert!(drawn == heights);
+        heights[35][69] = 0.01;
+        heights[0][31] = 0.02;
+        assert_eq!((picture.write(|x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (2, 2));
+        assert!(drawn == heights);
+        assert_eq!((picture.write(|x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (0, 0));
+        assert_eq!(reader.missed(), 0);
+    }
+
+    #[test]
+    fn a_reader_that_comes_late_sees_the_latest_and_is_told_what_it_missed() {
+        let (picture, mut heights) = picture();
+        let (mut late, mut drawn) = (picture.reader(), vec![vec![0.0; 70]; 40]);
+        for n in 0..10 {
+            heights[3][3] = n as f32;
+            picture.write(|x, y| heights[y][x]);
+        }
+        assert_eq!(draw(&mut late, &mut drawn), 6);
+        assert!(drawn == heights);
+        assert_eq!(late.missed(), 9);
+        let mut second = picture.reader();
+        assert_eq!(draw(&mut second, &mut drawn), 6);
+    }
+
+    #[test]
+    fn a_tile_is_never_shown_half_written() {
+        let (picture, _) = picture();
+        let mut reader = picture.reader();
+        let shared = picture.clone();
+        let writing = std::thread::spawn(move || {
+            for n in 0..20_000 {
+                shared.write(|_, _| n as f32);
+            }
+        });
+        let mut seen = 0;
+        while seen < 6 * 19_999 {
+            reader.changed(|tile| {
+                let first = tile.height_m[0];
+                assert!(tile.height_m.iter().all(|height| *height == first));
+                seen = seen.max(if first == 19_999.0 { 6 * 19_999 } else { 0 });
+            });
+        }
+        writing.join().unwrap();
+    }
+}

@@ -1,0 +1,301 @@
+//! Decoded pictures: rows of pixels of one to four channels, and one channel of them as a map.
+//!
+//! Nothing here decodes a file, so that a game that has its textures in memory already hands them over as they are.
+
+use crate::deband::deband;
+use crate::raster::Raster;
+use crate::wrap::Wrap;
+use std::path::PathBuf;
+
+/// Most texels a side may have.
+pub const MAX_SIDE: u32 = 32_768;
+/// Most texels an image may have: 8192 × 8192. Half a gigabyte as a [`Raster`].
+pub const MAX_TEXELS: u64 = 1 << 26;
+/// Most bytes a file may have.
+pub const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// Which numbers of a pixel are the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Channel {
+    /// Grey, or 0.2126 R + 0.7152 G + 0.0722 B of the stored numbers (Rec. 709).
+    #[default]
+    Luma,
+    /// Red; grey in a grey image.
+    R,
+    /// Green; grey in a grey image.
+    G,
+    /// Blue; grey in a grey image.
+    B,
+    /// Alpha: where packed textures keep the height.
+    A,
+}
+
+/// The numbers of a picture, pixel by pixel, row by row from the top left.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Samples {
+    /// 0–255.
+    U8(Vec<u8>),
+    /// 0–65535.
+    U16(Vec<u16>),
+    /// Heights as they are.
+    F32(Vec<f32>),
+}
+
+impl Samples {
+    fn len(&self) -> usize {
+        match self {
+            Self::U8(samples) => samples.len(),
+            Self::U16(samples) => samples.len(),
+            Self::F32(samples) => samples.len(),
+        }
+    }
+}
+
+/// A decoded picture: 1 channel is grey, 2 grey and alpha, 3 red, green and blue, 4 the same and alpha.
+///
+/// ```
+/// use asperity_texture::picture::{Channel, Picture, Samples};
+///
+/// let grey = Picture::new(2, 1, Samples::U8(vec![0, 255]))?;
+/// assert_eq!(grey.channel(Channel::Luma)?.raster.values, [0.0, 1.0]);
+/// # Ok::<(), asperity_texture::picture::Problem>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    width: usize,
+    height: usize,
+    channels: usize,
+    samples: Samples,
+}
+
+impl Picture {
+    /// A picture of `width` × `height` pixels; how many channels it has follows from the number of samples.
+    ///
+    /// # Errors
+    /// When there are no pixels, too many, or samples that are not one to four a pixel.
+    pub fn new(width: u32, height: u32, samples: Samples) -> Result<Self, Problem> {
+        let texels = u64::from(width) * u64::from(height);
+        if texels == 0 {
+            return Err(Problem::Empty);
+        }
+        if width > MAX_SIDE || height > MAX_SIDE || texels > MAX_TEXELS {
+            return Err(Problem::TooLarge { width, height });
+        }
+        let (count, texels) = (samples.len(), texels as usize);
+        let channels = count / texels;
+        if !(1..=4).contains(&channels) || channels * texels != count {
+            return Err(Problem::Samples { count, width, height });
+        }
+        Ok(Self { width: width as usize, height: height as usize, channels, samples })
+    }
+
+    /// One channel as heights: integers as 0–1, floating point as it is.
+    ///
+    /// # Errors
+    /// When there is no such channel, or a value is not finite.
+    pub fn channel(&self, channel: Channel) -> Result<ChannelImage, Problem> {
+        let (width, height) = (self.width, self.height);
+        if channel == Channel::A && self.channels % 2 == 1 {
+            return Err(Problem::NoAlpha);
+        }
+        let shape = [width * height, self.channels];
+        let (values, step) = match &self.samples {
+            Samples::U8(samples) => integers(samples.iter().map(|&s| u16::from(s)), shape, 255, channel),
+            Samples::U16(samples) => integers(samples.iter().copied(), shape, 65_535, channel),
+            Samples::F32(samples) => {
+                let mut pixel = [0.0; 4];
+                let values = samples.chunks_exact(self.channels).map(|stored| {
+                    pixel.iter_mut().zip(stored).for_each(|(to, &from)| *to = f64::from(from));
+                    channel_of(&pixel[..self.channels], channel)
+                });
+                (values.collect(), 0.0)
+            }
+        };
+        let raster = Raster { width, height, values };
+        match raster.values.iter().position(|v| !v.is_finite()) {
+            Some(at) => Err(Problem::NotFinite { x: at % width, y: at / width }),
+            None => Ok(ChannelImage { raster, step }),
+        }
+    }
+}
+
+/// One channel of a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelImage {
+    /// Values 0–1 (black to white); EXR values as they are.
+    pub raster: Raster,
+    /// Distance between two neighbouring levels of the file, in the raster's units; 0 for floating
+    /// point. Measured, so that 8-bit data in a 16-bit file is known for what it is.
+    pub step: f64,
+}
+
+impl ChannelImage {
+    /// The raster without the terraces of coarse quantisation ([`crate::deband`]).
+    #[must_use]
+    pub fn debanded(&self, wrap: Wrap) -> Raster {
+        deband(&self.raster, self.step, wrap)
+    }
+}
+
+/// Why a map could not be read or written: which file, what is wrong, what would be right.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {problem}", .file.display())]
+pub struct ImageError {
+    /// The file.
+    pub file: PathBuf,
+    /// What is wrong with it.
+    pub problem: Problem,
+}
+
+/// What is wrong with a file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The system could not open, read or write it.
+    #[error("{0}; a readable file (or a writable folder for output) is needed")]
+    Io(std::io::Error),
+    /// Its first bytes are of no picture format we read.
+    #[error("not a picture this program reads; PNG, JPEG, PGM, GIF{} are read", if cfg!(feature = "exr") { " and EXR" } else { " (and EXR with the feature `exr`)" })]
+    UnknownFormat,
+    /// The picture is cut off or contradicts itself.
+    #[error("damaged or cut off ({0}); a complete file is needed")]
+    Damaged(String),
+    /// The format allows it, we do not read it.
+    #[error("not supported ({0}); 8 or 16 bits a channel, grey or colour, are read")]
+    Unsupported(String),
+    /// Larger than we are willing to decode.
+    #[error(
+        "{width} × {height} texels are too many; at most {MAX_SIDE} a side and {MAX_TEXELS} in all are read"
+    )]
+    TooLarge {
+        /// Texels in a row, as the header claims.
+        width: u32,
+        /// Rows, as the header claims.
+        height: u32,
+    },
+    /// The picture is still a file.
+    #[error(
+        "is not decoded, and this build decodes no file; build it with the feature `image`, or hand the picture over decoded"
+    )]
+    NotDecoded,
+    /// Decoding would take more memory than we grant.
+    #[error(
+        "asks for more memory than is granted; at most {MAX_SIDE} texels a side and {MAX_TEXELS} in all are read"
+    )]
+    TooMuchMemory,
+    /// The file itself is too long.
+    #[error("{0} bytes are too many; at most {MAX_FILE_BYTES} are read")]
+    TooLong(u64),
+    /// The channel asked for is not in the picture.
+    #[error("has no alpha channel; choose `luma`, `r`, `g` or `b`, or a picture with alpha")]
+    NoAlpha,
+    /// Samples that do not fill the pixels.
+    #[error("{count} samples do not fill {width} × {height} pixels; one to four a pixel are needed")]
+    Samples {
+        /// How many there are.
+        count: usize,
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// A value is not a number.
+    #[error("the value at column {x}, row {y} is not finite; only finite values make a map")]
+    NotFinite {
+        /// Column.
+        x: usize,
+        /// Row.
+        y: usize,
+    },
+    /// There is nothing in it.
+    #[error("has no texels; at least 1 × 1 is needed")]
+    Empty,
+}
+
+/// The channel of integer pixels as 0–1, and the distance of its levels: the greatest number of which
+/// every level is a multiple.
+fn integers(
+    samples: impl Iterator<Item = u16>,
+    [texels, channels]: [usize; 2],
+    white: u16,
+    channel: Channel,
+) -> (Vec<f64>, f64) {
+    let mut pixel = [0.0; 4];
+    let mut filled = 0;
+    let mut common = 0;
+    let mut values = Vec::with_capacity(texels);
+    for sample in samples {
+        pixel[filled] = f64::from(sample);
+        filled += 1;
+        if filled == channels {
+            filled = 0;
+            let value = channel_of(&pixel[..channels], channel);
+            if common != 1 {
+                common = greatest_common_divisor(common, value.round() as u16);
+            }
+            values.push(value / f64::from(white));
+        }
+    }
+    (values, f64::from(common) / f64::from(white))
+}
+
+fn greatest_common_divisor(mut a: u16, mut b: u16) -> u16 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+fn channel_of(pixel: &[f64], channel: Channel) -> f64 {
+    let is_grey = pixel.len() < 3;
+    match channel {
+        Channel::A => pixel[pixel.len() - 1],
+        Channel::Luma if !is_grey => luma(pixel[0], pixel[1], pixel[2]),
+        Channel::G if !is_grey => pixel[1],
+        Channel::B if !is_grey => pixel[2],
+        _ => pixel[0],
+    }
+}
+
+/// Weighted so that a grey pixel keeps its number exactly.
+fn luma(r: f64, g: f64, b: f64) -> f64 {
+    g + 0.2126 * (r - g) + 0.0722 * (b - g)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_channel_of_a_pixel_is_found_and_alpha_only_where_it_is() {
+        let pixel = [51, 102, 204, 255];
+        let rgba = Picture::new(1, 1, Samples::U8(pixel.to_vec())).unwrap();
+        for (channel, stored) in [(Channel::R, 51), (Channel::G, 102), (Channel::B, 204), (Channel::A, 255)] {
+            let value = rgba.channel(channel).unwrap().raster.values[0];
+            assert_eq!(value, f64::from(stored) / 255.0);
+        }
+        let weighted = (0.2126 * 51.0 + 0.7152 * 102.0 + 0.0722 * 204.0) / 255.0;
+        let luma = rgba.channel(Channel::Luma).unwrap();
+        assert!((luma.raster.values[0] - weighted).abs() < 1e-12);
+        let rgb = Picture::new(1, 1, Samples::U8(pixel[..3].to_vec())).unwrap();
+        assert!(matches!(rgb.channel(Channel::A), Err(Problem::NoAlpha)));
+    }
+
+    #[test]
+    fn eight_bits_in_sixteen_are_known_for_what_they_are() {
+        let picture = Picture::new(3, 1, Samples::U16(vec![0, 257, 3 * 257])).unwrap();
+        assert_eq!(picture.channel(Channel::Luma).unwrap().step, 257.0 / 65_535.0);
+    }
+
+    #[test]
+    fn samples_that_make_no_picture_are_refused_with_what_is_needed() {
+        let refused = |w, h, samples| Picture::new(w, h, samples).unwrap_err().to_string();
+        assert!(refused(2, 2, Samples::U8(vec![0; 3])).contains("3 samples do not fill 2 × 2 pixels"));
+        assert!(refused(1, 1, Samples::U8(vec![0; 5])).contains("one to four"));
+        assert!(refused(0, 7, Samples::U8(Vec::new())).contains("at least 1 × 1"));
+        assert!(refused(MAX_SIDE + 1, 1, Samples::U8(vec![0; 9])).contains("too many"));
+        let bad = Picture::new(2, 1, Samples::F32(vec![0.0, f32::NAN])).unwrap();
+        assert!(matches!(bad.channel(Channel::Luma), Err(Problem::NotFinite { x: 1, y: 0 })));
+    }
+}

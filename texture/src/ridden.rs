@@ -1,0 +1,143 @@
+//! The heights at which a sphere rides over a map: a dilation, done once.
+//!
+//! ```text
+//! z(x) = max over y of h(y) − |x − y|² / 2r
+//! ```
+//! The paraboloid stands for the sphere of radius r near its lowest point, which is where it touches as long as the relief is small beside
+//! r; it makes the dilation separable, rows and then columns, and exact. Each line is the upper envelope of its parabolas, found in one
+//! pass (P. Felzenszwalb, D. Huttenlocher, "Distance transforms of sampled functions", Theory of Computing 8, 2012).
+//!
+//! A rigid tip never reaches the ground of a valley sharper than itself; on random grains that takes 6–13 dB off a tool's acceleration.
+
+use crate::raster::Raster;
+use crate::wrap::Wrap;
+
+/// The map that a tip of `radius_m` rides on: texels `texel_m` apart along u and v.
+#[must_use]
+pub fn ridden(heights: &Raster, texel_m: [f64; 2], wrap: Wrap, radius_m: f64) -> Raster {
+    let (low_m, high_m) = heights.range();
+    let reach_m = (2.0 * radius_m * (high_m - low_m)).sqrt();
+    let along = |raster: &Raster, texel_m: f64| {
+        let fall_m = texel_m * texel_m / (2.0 * radius_m);
+        let reach = ((reach_m / texel_m).ceil() as usize).min(raster.width);
+        rows(raster, wrap, reach, fall_m)
+    };
+    let by_rows = along(heights, texel_m[0]);
+    transposed(&along(&transposed(&by_rows), texel_m[1]))
+}
+
+fn transposed(raster: &Raster) -> Raster {
+    Raster::from_fn(raster.height, raster.width, |x, y| raster.at(y, x))
+}
+
+/// Each row dilated; what lies beyond its ends within reach takes part.
+fn rows(raster: &Raster, wrap: Wrap, reach: usize, fall_m: f64) -> Raster {
+    let width = raster.width;
+    let mut values = Vec::with_capacity(raster.values.len());
+    let mut line = vec![0.0; width + 2 * reach];
+    let mut envelope = Envelope::default();
+    for row in raster.values.chunks_exact(width) {
+        for (i, height_m) in line.iter_mut().enumerate() {
+            *height_m = row[wrap.index(i as i64 - reach as i64, width)];
+        }
+        envelope.of(&line, fall_m);
+        values.extend((reach..reach + width).map(|x| envelope.at(&line, x, fall_m)));
+    }
+    Raster { width, height: raster.height, values }
+}
+
+/// Which parabola is the highest from where on.
+#[derive(Default)]
+struct Envelope {
+    /// Their vertices.
+    vertex: Vec<usize>,
+    /// From where on each is the highest.
+    from: Vec<f64>,
+    /// The parabola over the last place that was asked for.
+    over: usize,
+}
+
+impl Envelope {
+    fn of(&mut self, line: &[f64], fall_m: f64) {
+        self.vertex.clear();
+        self.from.clear();
+        self.over = 0;
+        for (q, height_m) in line.iter().enumerate() {
+            let mut from = f64::NEG_INFINITY;
+            while let (Some(&p), Some(&since)) = (self.vertex.last(), self.from.last()) {
+                // Where the parabola of q comes out above that of p.
+                from = 0.5 * ((q + p) as f64 - (height_m - line[p]) / (fall_m * (q - p) as f64));
+                if from > since {
+                    break;
+                }
+                self.vertex.pop();
+                self.from.pop();
+                from = f64::NEG_INFINITY;
+            }
+            self.vertex.push(q);
+            self.from.push(from);
+        }
+    }
+
+    /// Height of the envelope; places come in rising order.
+    fn at(&mut self, line: &[f64], x: usize, fall_m: f64) -> f64 {
+        while self.from.get(self.over + 1).is_some_and(|from| *from <= x as f64) {
+            self.over += 1;
+        }
+        let vertex = self.vertex[self.over];
+        let away = x as f64 - vertex as f64;
+        line[vertex] - fall_m * away * away
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn random(width: usize, height: usize) -> Raster {
+        let mut state = 9_u32;
+        Raster::from_fn(width, height, |_, _| {
+            state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+            f64::from(state >> 8) / f64::from(1 << 24) * 1e-4
+        })
+    }
+
+    #[test]
+    fn a_spike_becomes_the_sphere_that_stands_on_it() {
+        let spike = Raster::from_fn(33, 33, |x, y| if (x, y) == (16, 16) { 1e-4 } else { 0.0 });
+        let out = ridden(&spike, [1e-4, 1e-4], Wrap::Clamp, 1e-3);
+        for (x, y) in [(16, 16), (18, 16), (16, 13), (19, 18), (30, 30)] {
+            let away_m = 1e-4 * f64::hypot(x as f64 - 16.0, y as f64 - 16.0);
+            let sphere_m = (1e-4 - away_m * away_m / 2e-3).max(0.0);
+            assert!((out.at(x, y) - sphere_m).abs() < 1e-15, "{x} {y}: {}", out.at(x, y));
+        }
+    }
+
+    #[test]
+    fn the_envelope_is_the_largest_of_all_parabolas_whatever_the_wrap() {
+        let map = random(23, 17);
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            let out = ridden(&map, [1e-4, 2e-4], wrap, 2e-4);
+            for (x, y) in [(0, 0), (22, 16), (11, 5), (3, 15)] {
+                let mut best: f64 = 0.0;
+                for dy in -16_i64..=16 {
+                    for dx in -22_i64..=22 {
+                        let h = map.at(wrap.index(x as i64 + dx, 23), wrap.index(y as i64 + dy, 17));
+                        let square = (dx as f64 * 1e-4).powi(2) + (dy as f64 * 2e-4).powi(2);
+                        best = best.max(h - square / 4e-4);
+                    }
+                }
+                assert!((out.at(x, y) - best).abs() < 1e-15, "{wrap:?} {x} {y}: {} for {best}", out.at(x, y));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_ridden_never_lies_below_the_ground_and_a_plane_stays_a_plane() {
+        let map = random(40, 40);
+        let out = ridden(&map, [1e-4, 1e-4], Wrap::Repeat, 1e-3);
+        assert!(out.values.iter().zip(&map.values).all(|(z, h)| z >= h));
+        let plane = Raster::constant(5, 4, 0.3);
+        assert_eq!(ridden(&plane, [1e-3, 1e-3], Wrap::Repeat, 1e-2), plane);
+    }
+}
