@@ -41,6 +41,12 @@ const FASTEST_MODES: usize = 3;
 /// A push must save so many modes, and this part of them.
 const SAVED_MODES: usize = 4;
 const SAVED_SHARE: f64 = 0.125;
+/// Most modes after a push that is looked for where those from the onset on are too many.
+const MODES_OF_A_PUSH: usize = 80;
+/// A mode this part of as loud as any may be cancels others, as those do that stand for a push. Where there are more modes
+/// than that and fewer giants, it is a recording of many modes, and another fit would take as long.
+const GIANT: f64 = 0.2;
+const GIANTS: usize = 5;
 /// An end of the contact this much earlier than where the fit began is worth a fit from there, s.
 const EARLIER_S: f64 = 0.000_15;
 
@@ -111,11 +117,29 @@ impl Sound<'_> {
     /// The push and its modes, if there is proof of one that `whole` needs more modes for.
     fn pushed(&self, whole: &Analysis, progress: &mut dyn FnMut(f64)) -> Option<(usize, Analysis)> {
         let proven = |offset: usize, progress: &mut dyn FnMut(f64)| {
-            let sum = analysed_as_sum(&self.samples[offset..], &self.limits(offset), progress);
+            let (segment, limits) = (&self.samples[offset..], self.limits(offset));
+            let sum = if whole.capped {
+                // A push of few modes, or a recording, of which a fit of many is long.
+                analyse(
+                    segment,
+                    &Limits { max_partials: MODES_OF_A_PUSH.min(limits.max_partials), ..limits },
+                    progress,
+                )
+            } else {
+                analysed_as_sum(segment, &limits, progress)
+            };
             (sum.explained && (!whole.explained || saves(whole, &sum))).then_some((offset, sum))
         };
         let mut contacts = self.proposed().to_vec();
         contacts.retain(|&contact| contact > 0);
+        let giant = GIANT * self.limits(0).bounds.amplitude_high;
+        let giants = whole.partials.iter().filter(|p| p.c.norm() > giant).count();
+        if whole.partials.len() > MODES_OF_A_PUSH && giants < GIANTS {
+            return None;
+        }
+        if whole.capped {
+            contacts.truncate(1);
+        }
         let rate = self.recording.sample_rate_hz;
         let (late, late_sum) = contacts.into_iter().find_map(|contact| proven(contact, progress))?;
         let release =

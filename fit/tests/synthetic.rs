@@ -282,7 +282,7 @@ fn pushed(count: usize, push_s: f64, seed: u64) -> (Vec<f64>, Vec<Mode>) {
 
 #[test]
 fn the_end_of_a_push_is_found_and_the_modes_after_it_are_right() {
-    // Pushes once passed for a crowd of modes as fast as any may be, or for no sum of modes at all: 15 of 48 were found.
+    // Pushes once passed for a crowd of modes as fast as any may be, or for no sum of modes at all: 23 of 48 were found.
     for (count, push_s, seed) in [(8, 3e-4, 31), (24, 2e-3, 33)] {
         let (samples, modes) = pushed(count, push_s, seed);
         let recording = Recording::from_samples("pushed", samples, 44_100.0).unwrap();
