@@ -126,6 +126,8 @@ fn everything_a_scene_names_comes_through_the_files_it_was_opened_from() {
     Engine::open_from(&asked, "level/scene.toml").unwrap();
     let mut asked: Vec<String> = asked.1.borrow().iter().map(|path| path.display().to_string()).collect();
     asked.sort_unstable();
+    // A scene that writes no levels is opened twice: they are found by a trial.
+    asked.dedup();
     let named =
         ["level/../tile.modes.json", "level/maps/disp.png", "level/maps/rough.png", "level/mine.toml"];
     assert_eq!(asked, [named[0], named[1], named[2], named[3], "level/scene.toml"]);

@@ -120,7 +120,7 @@ fn the_documents_print_every_range() {
         ("restitution", limits::impact::RESTITUTION),
     ];
     for (key, range) in ALL.iter().map(|(_, key, range)| (*key, *range)).chain(reports) {
-        let row = format!("`{key}` {}", range.words);
+        let row = format!("`{key}` | {}", range.words);
         assert!(formats.contains(&row), "docs/formats.md lacks\n{row}");
     }
 }

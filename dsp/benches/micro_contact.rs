@@ -57,7 +57,12 @@ fn single(c: &mut Criterion) {
 
 fn eight(c: &mut Criterion) {
     let mut group = c.benchmark_group("micro_contact_lanes");
-    let design = MicroContact::new(&Probe::default(), Integrator::SemiImplicitEuler, RATE_HZ).unwrap();
+    let design = MicroContact::new(
+        &Probe { contact_stiffness_n_m: 5e4, force_exponent: 0.0, ..Probe::default() },
+        Integrator::SemiImplicitEuler,
+        RATE_HZ,
+    )
+    .unwrap();
     let lanes = design.lanes().unwrap();
     for (name, (heights, forces)) in &profiles() {
         let heights: Vec<Lanes> = heights.iter().map(|&h| [h; LANES]).collect();

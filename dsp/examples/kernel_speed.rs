@@ -58,8 +58,12 @@ fn contacts() {
                 }
             });
         }
-        let design =
-            MicroContact::new(&Probe::default(), Integrator::SemiImplicitEuler, RATE_HZ).expect("valid");
+        let design = MicroContact::new(
+            &Probe { contact_stiffness_n_m: 5e4, force_exponent: 0.0, ..Probe::default() },
+            Integrator::SemiImplicitEuler,
+            RATE_HZ,
+        )
+        .expect("valid");
         let lanes = design.lanes().expect("one step a sample");
         let heights: Vec<Lanes> = heights.iter().map(|&h| [h; LANES]).collect();
         let forces = vec![[0.5; LANES]; heights.len()];

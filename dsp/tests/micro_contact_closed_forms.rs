@@ -21,16 +21,21 @@ fn run(
     out
 }
 
+/// The contact that has closed forms: linear, 50 kN/m.
+fn linear() -> Probe {
+    Probe { contact_stiffness_n_m: 5e4, force_exponent: 0.0, ..Probe::default() }
+}
+
 /// A skin that hardly feels the finger: it lands, turns and leaves as a mass on one spring.
 fn lone_mass() -> Probe {
-    Probe { pad_stiffness_n_m: 1e-3, pad_damping_n_s_m: 0.0, leash_m: 0.05, ..Probe::default() }
+    Probe { pad_stiffness_n_m: 1e-3, pad_damping_n_s_m: 0.0, leash_m: 0.05, ..linear() }
 }
 
 #[test]
 fn a_resting_finger_stays_where_the_springs_hold_it_to_the_last_digits() {
     for rate_hz in RATES_HZ {
         for integrator in Integrator::ALL {
-            let design = MicroContact::new(&Probe::default(), integrator, rate_hz).unwrap();
+            let design = MicroContact::new(&linear(), integrator, rate_hz).unwrap();
             for (height_m, force_n) in [(0.0, 0.5), (4e-3, 2.0), (-1e-3, 0.02), (0.3, 0.0)] {
                 for row in run(&design, height_m, force_n, None, 4000) {
                     assert!(
@@ -106,7 +111,7 @@ fn a_landing_is_reported_once_with_its_speed() {
 #[test]
 fn an_unloaded_pad_rings_down_as_two_masses_on_a_spring_and_a_damper() {
     // Pressed hard, then released: skin and finger fly up together, and their distance rings.
-    let probe = Probe { pad_damping_n_s_m: 0.05, leash_m: 0.05, ..Probe::default() };
+    let probe = Probe { pad_damping_n_s_m: 0.05, leash_m: 0.05, ..linear() };
     let mass = 1.0 / (1.0 / probe.pad_mass_kg + 1.0 / probe.finger_mass_kg);
     let decay = probe.pad_damping_n_s_m / (2.0 * mass);
     let omega = (probe.pad_stiffness_n_m / mass - decay * decay).sqrt();
@@ -139,7 +144,7 @@ fn an_unloaded_pad_rings_down_as_two_masses_on_a_spring_and_a_damper() {
 #[test]
 fn an_unloaded_finger_stays_on_its_leash_and_comes_back() {
     for integrator in Integrator::ALL {
-        let design = MicroContact::new(&Probe::default(), integrator, 44_100.0).unwrap();
+        let design = MicroContact::new(&linear(), integrator, 44_100.0).unwrap();
         let mut state = design.at_rest(0.0, 0.5);
         let mut row = [ContactSample::default()];
         let mut farthest = 0.0_f64;
@@ -163,7 +168,7 @@ fn an_unloaded_finger_stays_on_its_leash_and_comes_back() {
 fn a_finger_that_landed_settles_and_says_so() {
     for rate_hz in [8_000.0, 44_100.0, 192_000.0] {
         for integrator in Integrator::ALL {
-            let design = MicroContact::new(&Probe::default(), integrator, rate_hz).unwrap();
+            let design = MicroContact::new(&linear(), integrator, rate_hz).unwrap();
             let mut state = design.landing(1e-3, 0.5, 0.05);
             assert!(!design.is_settled(&state, 1e-3, 0.5));
             let count = rate_hz as usize;
@@ -179,7 +184,7 @@ fn a_finger_that_landed_settles_and_says_so() {
 fn a_finger_that_rides_on_rising_ground_goes_on_without_a_blow() {
     for integrator in Integrator::ALL {
         for velocity_m_s in [-0.3, 0.02, 0.3] {
-            let design = MicroContact::new(&Probe::default(), integrator, 44_100.0).unwrap();
+            let design = MicroContact::new(&linear(), integrator, 44_100.0).unwrap();
             let mut state = design.riding(1e-3, 0.5, velocity_m_s);
             let heights: Vec<f64> =
                 (1..=2000).map(|n| 1e-3 + velocity_m_s * f64::from(n) / 44_100.0).collect();

@@ -2,7 +2,7 @@
 //!
 //! Corners and sharp edges are points and edges of the mesh from the beginning, and one layer of elements fills a wall
 //! however thin against the spacing. Isosurface stuffing (Labelle & Shewchuk 2007), which cuts a lattice instead, rounds
-//! edges off and needs cells finer than the wall: eight times the unknowns for a mug. What is inside is decided by the
+//! edges off and needs cells finer than the wall: many times the unknowns for a mug. What is inside is decided by the
 //! generalised winding number, which open and self-crossing meshes have as well. Where faces of the mesh stray from the
 //! surface or a sharp edge is crossed, points are added (Boissonnat & Oudot 2005).
 

@@ -28,7 +28,7 @@ pub struct ActuatorSettings {
     /// 0 = off.
     pub highpass_hz: f64,
     /// Cutoff of the low-pass (fourth order, −6 dB there) that keeps to what skin feels and actuators take, Hz; 0 = off; none =
-    /// [`ACCELERATION_BAND_HZ`] for acceleration, off for displacement.
+    /// 1000 Hz for acceleration, off for displacement.
     pub lowpass_hz: Option<f64>,
     /// Time from silence to full level after the start, s.
     pub soft_start_s: f64,

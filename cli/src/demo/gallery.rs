@@ -87,7 +87,7 @@ fn lattice_and_brownian() -> DemoScene {
              roughness = 0.3\nwidth_m = {SIDE_M}\nheight_m = {SIDE_M}\nrelief_m = 0.0004\n\n\
              [[surface]]\nname = \"brownian\"\nbody = \"plate\"\nbrownian = {{ hurst = 0.4, rms_m = 2e-4 }}\n\
              roughness = 0.6\nwidth_m = {SIDE_M}\nheight_m = {SIDE_M}\n\n\
-             [[actuator]]\nfull_scale = 0.001\n\n[audio]\ngain = 20.0\n",
+             [[actuator]]\nfull_scale = 0.001\n\n[audio]\ngain = 10.0\n",
             plate_body()
         ),
         log: log(lines),
@@ -123,7 +123,7 @@ fn sand() -> DemoScene {
              sand = {{ cells = 256, depth_m = 0.03, talus_deg = 32.0, stiffness_n = 1000.0, exponent_per_m = 1.0, \
              drag_s_per_m = 20.0, tool_radius_m = 0.006 }}\n\
              roughness = 0.8\nwidth_m = {BOX_M}\nheight_m = {BOX_M}\n\n\
-             [[actuator]]\nfull_scale = 0.001\n\n[audio]\ngain = 20.0\n",
+             [[actuator]]\nfull_scale = 0.001\n\n[audio]\ngain = 3.0\n",
             plate_body()
         ),
         log: log(finger.lines()),

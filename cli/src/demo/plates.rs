@@ -41,7 +41,7 @@ pub const PLATES: [Plate; 6] = [
         title: "Matte, then shiny",
         notice: "No relief at all, only the roughness map: the first half hisses and tingles, the second half is \
                  calm. On the way back the order is reversed.",
-        full_scale_m: 2.5e-4,
+        full_scale_m: 3e-4,
         height_m: |_, _| 0.0,
         roughness: |x, _| if x < SIDE_M / 2.0 { MATTE } else { SHINY },
     },
@@ -49,7 +49,7 @@ pub const PLATES: [Plate; 6] = [
         name: "shiny-matte",
         title: "Shiny, then matte",
         notice: "The mirror image: only where the finger is tells the two apart.",
-        full_scale_m: 2.5e-4,
+        full_scale_m: 3e-4,
         height_m: |_, _| 0.0,
         roughness: |x, _| if x < SIDE_M / 2.0 { SHINY } else { MATTE },
     },

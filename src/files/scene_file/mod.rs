@@ -224,7 +224,10 @@ fn read_probes(top: &mut Fields) -> Result<(Probe, Vec<(String, Probe)>), FileEr
                 return Err(fields.refuse("name", "is used twice", "give each a name of its own"));
             }
             None => default = Some(read_probe(fields)?),
-            Some(name) => named.push((name, read_probe(fields)?)),
+            Some(name) => {
+                fields.rename(format!("probe \"{name}\""));
+                named.push((name, read_probe(fields)?));
+            }
         }
     }
     Ok((default.unwrap_or_default(), named))
