@@ -4,7 +4,7 @@ use crate::eigenmodes::{Eigenmodes, MOST_MODES, Wanted, solve};
 use crate::elastic::Elastic;
 use crate::error::ShapeError;
 use crate::filling::Body;
-use crate::mesh_file::Mesh;
+use crate::mesh::Mesh;
 use crate::surface_field::{SurfaceField, surface_field};
 use crate::surface_mesh::SurfaceMesh;
 use crate::system::System;

@@ -1,22 +1,12 @@
 //! Meshes as files: `.msh` (Gmsh 2.2 and 4.1), `.obj`, `.stl`; what a file holds, by its ending.
 
 use crate::error::ShapeError;
-use crate::surface_mesh::SurfaceMesh;
-use crate::volume_mesh::VolumeMesh;
+use crate::mesh::Mesh;
 use crate::{msh, obj, stl};
 use std::path::Path;
 
 /// Largest file that is read, bytes.
 const LARGEST: u64 = 1 << 30;
-
-/// A body's shape as it came.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Mesh {
-    /// Cut into tetrahedra.
-    Volume(VolumeMesh),
-    /// Its surface only.
-    Surface(SurfaceMesh),
-}
 
 /// Reads a mesh.
 ///

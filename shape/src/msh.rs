@@ -4,7 +4,7 @@
 //! gaps and any order.
 
 use crate::error::ShapeError;
-use crate::mesh_file::Mesh;
+use crate::mesh::Mesh;
 use crate::surface_mesh::SurfaceMesh;
 use crate::vector::Vec3;
 use crate::volume_mesh::VolumeMesh;

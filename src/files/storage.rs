@@ -3,8 +3,7 @@
 //! Everything the engine reads comes through [`Files`], under paths as the scene writes them (relative to the scene file).
 
 use super::FileError;
-use super::scene_file::Pixels;
-use asperity_texture::picture::{ChannelImage, MAX_FILE_BYTES, Picture, Problem};
+use asperity_texture::picture::{Channel, ChannelImage, MAX_FILE_BYTES, Picture, Problem};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{self, Read};
@@ -109,6 +108,15 @@ fn plain(path: &Path) -> PathBuf {
 /// A file that is text.
 pub(crate) fn text(files: &dyn Files, path: &Path) -> io::Result<String> {
     String::from_utf8(files.read(path)?).map_err(|_| io::ErrorKind::InvalidData.into())
+}
+
+/// A channel of an image file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pixels {
+    /// Image file.
+    pub path: PathBuf,
+    /// Which numbers of its pixels.
+    pub channel: Channel,
 }
 
 /// One channel of a picture.

@@ -2,17 +2,8 @@
 
 use super::fields::Fields;
 use crate::files::FileError;
+pub use crate::files::storage::Pixels;
 use asperity_texture::picture::Channel;
-use std::path::PathBuf;
-
-/// A channel of an image file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pixels {
-    /// Image file.
-    pub path: PathBuf,
-    /// Which numbers of its pixels.
-    pub channel: Channel,
-}
 
 /// `r`, `g`, `b`, `a` or `luma`.
 pub fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Channel, FileError> {
