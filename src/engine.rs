@@ -8,7 +8,7 @@ use crate::link::ring;
 use crate::link::stats::Counters;
 use crate::model::config::Config;
 use crate::model::error::ConfigError;
-use crate::open::levels::Levels;
+use crate::model::levels::Levels;
 use crate::prepared::probe::PreparedProbe;
 use asperity_texture::sand::SandWorker;
 use std::sync::Arc;

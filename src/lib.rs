@@ -81,6 +81,7 @@ pub mod files;
 mod game;
 mod link;
 pub mod live;
+mod made;
 mod model;
 pub mod offline;
 pub mod open;

@@ -1,20 +1,17 @@
 //! From a scene file to a running engine.
 
 mod change;
-mod edit;
 pub mod levels;
-mod maker;
-mod source;
 
 use crate::engine::Engine;
 use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
+pub use crate::made::edit::{Edits, MakeSurface};
+use crate::made::maker::{self, Maker};
 use crate::{AudioBus, Config, Integrator, Isa, PathMode};
 use asperity_texture::raster::Raster;
 pub use change::Changes;
-pub use edit::{Edits, MakeSurface};
 use levels::Levels;
-use maker::Maker;
 use std::cell::RefCell;
 use std::path::Path;
 

@@ -12,6 +12,7 @@ pub(crate) mod excitation;
 pub(crate) mod frame;
 pub(crate) mod id;
 pub(crate) mod inner_rate;
+pub(crate) mod levels;
 pub(crate) mod material;
 pub(crate) mod modal_model;
 pub(crate) mod mode_shapes;

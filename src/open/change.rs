@@ -3,10 +3,10 @@
 //! Everything new is made before anything is changed, so that a broken map leaves the old scene as it was.
 
 use super::Overrides;
-use super::maker::Maker;
 use crate::files::FileError;
 use crate::files::contact_log::Names;
 use crate::files::scene_file::{BodyEntry, SceneFile, SurfaceEntry};
+use crate::made::maker::Maker;
 use crate::{Body, Scene, Surface};
 use asperity_texture::sand::SandWorker;
 use std::cell::RefCell;

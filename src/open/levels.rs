@@ -19,6 +19,7 @@ use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Striker}
 use crate::files::scene_file::{SceneFile, Source};
 use crate::model::actuator::Quantity;
 use crate::model::event::ContactSample;
+pub use crate::model::levels::Levels;
 use crate::offline::{self, Options, Render};
 use asperity_dsp::limits::output as limits;
 
@@ -46,15 +47,6 @@ const PAUSE_S: f64 = 0.1;
 const SILENT: f64 = 1e-10;
 /// Where a stroke begins, uv.
 const FROM: [f64; 2] = [0.31, 0.37];
-
-/// What was resolved: one number a channel or bus, whoever gave it.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Levels {
-    /// m or m/s² at sample value 1.0 of each actuator.
-    pub full_scale: Vec<f64>,
-    /// Linear gain of each bus.
-    pub gain: Vec<f64>,
-}
 
 impl Levels {
     /// What the scene says; NaN where it does not.

@@ -117,7 +117,7 @@ impl<'a> Maker<'a> {
 }
 
 /// An actuator of the scene that lies at `scene`.
-pub(super) fn actuator(
+pub(crate) fn actuator(
     files: &dyn Files,
     entry: &ActuatorEntry,
     full_scale: f64,

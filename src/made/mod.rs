@@ -1,0 +1,5 @@
+//! Making: from what a scene file or a recording says of bodies, surfaces and actuators to what the engine takes.
+
+pub(crate) mod edit;
+pub(crate) mod maker;
+pub(crate) mod source;
