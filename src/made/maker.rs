@@ -1,31 +1,16 @@
 //! From what a scene file says of bodies, surfaces and actuators to what the engine takes.
 
+pub(crate) use super::made_with::Maker;
 use super::source::Ground;
 use crate::files::contact_log::{LogSurface, Names};
-use crate::files::scene_file::{
-    ActuatorEntry, AudioEntry, BodyEntry, MakeSource, RoughnessEntry, Source, SurfaceEntry,
-};
+use crate::files::scene_file::{ActuatorEntry, AudioEntry, BodyEntry, RoughnessEntry, Source, SurfaceEntry};
 use crate::files::{FileError, Files, storage};
 use crate::{
     ActuatorPreset, ActuatorSettings, Body, DeviceProfile, Extent, Material, ModalModel, Roughness, Surface,
     Wrap,
 };
 use asperity_texture::height_map::HeightMap;
-use asperity_texture::sand::SandWorker;
-use std::cell::RefCell;
 use std::path::Path;
-
-/// What every thing of a scene is made with.
-#[derive(Clone, Copy)]
-pub(crate) struct Maker<'a> {
-    pub files: &'a dyn Files,
-    /// Makers of sources that the engine does not know.
-    pub own: &'a [(&'a str, MakeSource)],
-    /// For sources that name none.
-    pub seed: u64,
-    /// Where the workers of sand go that is simulated elsewhere; none = it is simulated within the source.
-    pub workers: Option<&'a RefCell<Vec<SandWorker>>>,
-}
 
 impl<'a> Maker<'a> {
     /// A body, on the bus that it names.

@@ -1,5 +1,6 @@
 //! Making: from what a scene file or a recording says of bodies, surfaces and actuators to what the engine takes.
 
 pub(crate) mod edit;
+mod made_with;
 pub(crate) mod maker;
 pub(crate) mod source;

@@ -1,6 +1,6 @@
 //! Sources made of a scene file's words: heights that the engine samples.
 
-use super::maker::Maker;
+use super::made_with::Maker;
 use crate::SurfaceFrame;
 #[cfg(feature = "brownian")]
 use crate::files::scene_file::BrownianForce as ForceEntry;

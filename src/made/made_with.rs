@@ -1,0 +1,18 @@
+//! Means: what every thing of a scene is made with.
+
+use crate::files::Files;
+use crate::files::scene_file::MakeSource;
+use asperity_texture::sand::SandWorker;
+use std::cell::RefCell;
+
+/// What every thing of a scene is made with.
+#[derive(Clone, Copy)]
+pub(crate) struct Maker<'a> {
+    pub files: &'a dyn Files,
+    /// Makers of sources that the engine does not know.
+    pub own: &'a [(&'a str, MakeSource)],
+    /// For sources that name none.
+    pub seed: u64,
+    /// Where the workers of sand go that is simulated elsewhere; none = it is simulated within the source.
+    pub workers: Option<&'a RefCell<Vec<SandWorker>>>,
+}
