@@ -50,6 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 velocity_m_s: Some([speed_m_s, 0.0]),
                 normal_force_n: 0.6,
                 closing_m_s: 0.0,
+                ..ContactSample::default()
             };
             let event = if started {
                 ContactEvent::moved(ContactId(finger), sample)

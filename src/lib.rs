@@ -26,7 +26,7 @@
 //!
 //! // Every physics step, on the game thread.
 //! let sample =
-//!     ContactSample { uv: [0.3, 0.5], velocity_m_s: Some([0.1, 0.0]), normal_force_n: 0.6, closing_m_s: 0.02 };
+//!     ContactSample { uv: [0.3, 0.5], velocity_m_s: Some([0.1, 0.0]), normal_force_n: 0.6, closing_m_s: 0.02, ..ContactSample::default() };
 //! scene.report(0.0, ContactEvent::begin(ContactId(1), plate, Actuator(0), sample))?;
 //!
 //! // Every audio callback, on the audio thread.

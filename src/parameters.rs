@@ -136,6 +136,8 @@ parameters! {
             "Wavelength beyond which the micro-relief is flat; missing: the engine's default";
         ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R; missing: its map's or its material's";
         FRICTION: "friction", "", limits::FRICTION, "Coulomb coefficient of the 3-D force; missing: the source's";
+        COMPLIANCE_M_N: "compliance_m_n", "m/N", limits::COMPLIANCE_M_N,
+            "How far it gives way under each newton; 0 = as its source does", or(0.0);
         SCALE: "scale", "", limits::combined::FACTOR, "Factor of the heights", or(1.0);
         STRIKE_POSITION: "strike_position", "", Range::new(0.0, 15.0, "0 to 15"),
             "Which of the body's strike positions contacts here excite", whole(), or(0.0);
@@ -189,6 +191,8 @@ parameters! {
         WETNESS: "wetness", "", limits::sand::WETNESS, "0 = dry, 1 = wet", or(LAW.wetness), changes(Anew);
         GRAIN_M: "grain_m", "m", limits::sand::GRAIN_M, "Diameter of a grain", or(LAW.grain_m),
             from("assumed: medium sand"), changes(Anew);
+        CAP_N: "cap_n", "N", limits::sand::CAP_N, "Largest force on the tool: what the device gives", or(LAW.cap_n),
+            from("[Sand] §4.2, the stronger of its devices"), changes(Anew);
         TOOL_RADIUS_M: "tool_radius_m", "m", limits::sand::TOOL_RADIUS_M, "Radius of what is dragged through it",
             or(0.005), from("a fingertip"), changes(Anew);
     }
@@ -214,6 +218,8 @@ parameters! {
         LIMIT_N: "limit_n", "N", limits::solid::LIMIT_N, "L, force per unit of magnitude";
         CAP_N: "cap_n", "N", limits::solid::CAP_N, "Largest texture force";
         VISCOSITY_N_S_M: "viscosity_n_s_m", "N·s/m", limits::solid::VISCOSITY_N_S_M, "b, drag of the medium";
+        FLOW_M_S: "flow_m_s", "m/s", limits::solid::FLOW_M_S,
+            "Flow of the block along u, v and out of the surface, each; one number is out of it", or(0.0);
     }
     /// Brownian relief.
     mod brownian = "brownian" {
@@ -229,6 +235,9 @@ parameters! {
         UV: "uv", "", limits::UV, "Texture coordinates, each", changes(Event);
         VELOCITY_M_S: "velocity_m_s", "m/s", limits::VELOCITY_M_S, "Tangential velocity, each component", changes(Event);
         NORMAL_FORCE_N: "normal_force_n", "N", limits::NORMAL_FORCE_N, "Force that presses; one below zero presses with none", changes(Event);
+        AT_M: "at_m", "m", limits::PLACE_M, "Place in the body's frame, each coordinate; instead of uv on a surface with a frame", changes(Event);
+        DEPTH_M: "depth_m", "m", limits::TIP_DEPTH_M,
+            "How deep the tip stands below the untouched surface, instead of a force, on what gives way", changes(Event);
         CLOSING_M_S: "closing_m_s", "m/s", limits::SPEED_M_S, "Approach speed at landing", or(0.0), changes(Event);
         SPEED_M_S: "speed_m_s", "m/s", limits::SPEED_M_S, "Approach speed of an impact", changes(Event);
         MASS_KG: "mass_kg", "kg", limits::impact::MASS_KG, "Effective mass of the striker", changes(Event);

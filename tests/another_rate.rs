@@ -61,6 +61,7 @@ fn stroke(
             velocity_m_s: Some([0.2, 0.0]),
             normal_force_n: 0.6,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let event = if begins && step == from {
             ContactEvent::begin(ContactId(1), on, Actuator(0), sample)
@@ -137,6 +138,7 @@ fn probes_gains_buses_and_sand_are_kept_and_events_that_wait_come_at_their_secon
             velocity_m_s: Some([0.08, 0.0]),
             normal_force_n: 0.6,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let event = if step == 0 {
             ContactEvent::begin_with(ContactId(1), touching, sample)

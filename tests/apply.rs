@@ -54,6 +54,7 @@ impl Game {
             velocity_m_s: Some([0.03, 0.0]),
             normal_force_n: 0.8,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let event = match self.step {
             0 => ContactEvent::begin(ContactId(1), self.names.surfaces["plate"], Actuator(0), sample),

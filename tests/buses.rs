@@ -30,7 +30,13 @@ fn strike(body: BodyId, speed_m_s: f64) -> ContactEvent {
 }
 
 fn touch(u: f64) -> ContactSample {
-    ContactSample { uv: [u, 0.5], velocity_m_s: Some([0.1, 0.0]), normal_force_n: 0.6, closing_m_s: 0.0 }
+    ContactSample {
+        uv: [u, 0.5],
+        velocity_m_s: Some([0.1, 0.0]),
+        normal_force_n: 0.6,
+        closing_m_s: 0.0,
+        ..ContactSample::default()
+    }
 }
 
 /// Renders blocks of `block` frames and returns what each bus carried.

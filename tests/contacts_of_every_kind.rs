@@ -165,6 +165,7 @@ fn over_one_plate_the_pads_of_three_probes_move_as_their_closed_forms_say() {
                     velocity_m_s: Some([speed_m_s, 0.0]),
                     normal_force_n: 0.6,
                     closing_m_s: 0.0,
+                    ..ContactSample::default()
                 };
                 let event = match step {
                     0 => ContactEvent::begin_with(
@@ -306,7 +307,13 @@ fn a_probe_a_holder_or_a_channel_that_is_not_there_is_refused() {
     let (mut scene, _renderer) = build(config());
     let [wood, pen] = pen_and_plate(&mut scene);
     let surface = scene.add_surface(plate(0.5).on(wood)).unwrap();
-    let sample = ContactSample { uv: [0.1, 0.1], velocity_m_s: None, normal_force_n: 0.5, closing_m_s: 0.0 };
+    let sample = ContactSample {
+        uv: [0.1, 0.1],
+        velocity_m_s: None,
+        normal_force_n: 0.5,
+        closing_m_s: 0.0,
+        ..ContactSample::default()
+    };
     let mut refused = |touching: Touching| {
         scene.report(0.0, ContactEvent::begin_with(ContactId(1), touching, sample)).unwrap_err().reason
     };

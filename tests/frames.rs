@@ -62,6 +62,7 @@ fn heights(surface: &str, from: [f64; 2], to: [f64; 2]) -> Vec<([f64; 2], f64)> 
             velocity_m_s: Some(velocity),
             normal_force_n: 0.5,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         }
     };
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, surface, 0, sample(0)) }];

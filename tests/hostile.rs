@@ -16,7 +16,13 @@ fn engine(config: Config) -> (Scene, Renderer, SurfaceId) {
 }
 
 fn sample(u: f64) -> ContactSample {
-    ContactSample { uv: [u, 0.5], velocity_m_s: Some([0.1, 0.0]), normal_force_n: 0.6, closing_m_s: 0.0 }
+    ContactSample {
+        uv: [u, 0.5],
+        velocity_m_s: Some([0.1, 0.0]),
+        normal_force_n: 0.6,
+        closing_m_s: 0.0,
+        ..ContactSample::default()
+    }
 }
 
 fn run(renderer: &mut Renderer, frames: usize) -> f32 {

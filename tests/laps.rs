@@ -42,6 +42,7 @@ fn laps(u_per_tile: f64, wrap: impl Fn(f64) -> f64) -> ContactLog {
         velocity_m_s: Some([SPEED_M_S, 0.0]),
         normal_force_n: 0.6,
         closing_m_s: 0.0,
+        ..ContactSample::default()
     };
     let begin = LogEvent::begin(1, "s", 0, sample(0.0));
     let mut lines = vec![LogLine { t: 0.0, event: begin }];

@@ -124,6 +124,7 @@ fn one_micro_collision_is_felt_and_heard_at_the_same_sample() {
                 velocity_m_s: Some([0.0, 0.0]),
                 normal_force_n: 0.5,
                 closing_m_s: 0.1,
+                ..ContactSample::default()
             };
             let event = ContactEvent::begin(ContactId(1), surface, Actuator(0), sample);
             scene.report(begin as f64 / RATE_HZ, event).unwrap();

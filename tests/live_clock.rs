@@ -75,6 +75,7 @@ impl Game {
             velocity_m_s: Some([SPEED_M_S, 0.0]),
             normal_force_n: 0.6,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         }
     }
 }

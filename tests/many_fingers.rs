@@ -50,6 +50,7 @@ fn strokes_beside(surface: Surface, fingers: u64, mut frame: impl FnMut()) -> Ve
                 velocity_m_s: Some([0.08, 0.0]),
                 normal_force_n: 0.6,
                 closing_m_s: 0.0,
+                ..ContactSample::default()
             };
             let event = match step {
                 0 => ContactEvent::begin(ContactId(finger), surface, Actuator(0), sample),

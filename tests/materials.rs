@@ -56,6 +56,7 @@ fn every_material_strikes_and_strokes_without_anything_recorded() {
             velocity_m_s: Some([0.15, 0.0]),
             normal_force_n: 0.8,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         engine.scene.report(0.3, ContactEvent::begin(ContactId(1), top, Actuator(0), sample(0.0))).unwrap();
         let (mut felt, mut heard) = (Vec::new(), Vec::new());
@@ -102,6 +103,7 @@ fn a_scene_file_sounds_with_a_stock_body_and_a_flat_surface_alone() {
         velocity_m_s: Some([0.2, 0.0]),
         normal_force_n: 1.0,
         closing_m_s: 0.1,
+        ..ContactSample::default()
     };
     let from_file = again.names.surfaces["top"];
     again.scene.report(0.0, ContactEvent::begin(ContactId(1), from_file, Actuator(0), sample)).unwrap();

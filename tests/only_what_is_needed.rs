@@ -134,7 +134,13 @@ fn a_modes_file_may_list_positions_and_is_refused_when_they_do_not_fit() {
 }
 
 fn sliding() -> ContactSample {
-    ContactSample { uv: [0.1, 0.4], velocity_m_s: Some([0.1, 0.02]), normal_force_n: 0.6, closing_m_s: 0.0 }
+    ContactSample {
+        uv: [0.1, 0.4],
+        velocity_m_s: Some([0.1, 0.02]),
+        normal_force_n: 0.6,
+        closing_m_s: 0.0,
+        ..ContactSample::default()
+    }
 }
 
 /// Ten fingers that stroke a body of 80 modes, reported at 60 Hz.
@@ -164,6 +170,7 @@ impl TenFingers {
             velocity_m_s: Some([0.1, 0.0]),
             normal_force_n: 0.3 + 0.05 * finger as f64,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         }
     }
 

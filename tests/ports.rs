@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::live::ports::{Feed, Force, ForceMeans, ForceRow, Of, Opened, Outlet, Pcm, Picture};
+use asperity::live::ports::{Feed, Force, ForceRow, ForceRows, Of, Opened, Outlet, Pcm, Picture};
 use asperity::live::ports::{PortKind, PortSetup};
 use asperity::texture::sand::{SandDesign, SandSource};
 use asperity::{
@@ -81,6 +81,7 @@ impl Game {
                 velocity_m_s: Some([0.1, 0.0]),
                 normal_force_n: 0.5 + finger as f64,
                 closing_m_s: 0.0,
+                ..ContactSample::default()
             };
             let event = if self.step == 0 {
                 let hand = Actuator(u16::from(finger == 2));
@@ -160,7 +161,7 @@ fn an_open_port_changes_no_bit_of_what_leaves() {
 }
 
 /// What the force port ought to say, from the tap.
-struct Rows(ForceMeans, Vec<ForceRow>, u64);
+struct Rows(ForceRows, Vec<ForceRow>, u64);
 
 impl Tap for Rows {
     fn contact(&mut self, block: &ContactBlock<'_>) {
@@ -177,7 +178,7 @@ fn a_force_port_gives_the_rows_of_an_offline_render_and_sums_them_for_each_hand(
     {
         let mut game = Game::new(rate_hz);
         let mut port = game.scene.open_port(Force { rate_hz: force_rate_hz, holds_s: 2.0 }).unwrap();
-        let mut expected = Rows(ForceMeans::new(force_rate_hz, rate_hz, 8), Vec::new(), 0);
+        let mut expected = Rows(ForceRows::new(force_rate_hz, rate_hz, 8), Vec::new(), 0);
         let mut left: [Vec<f32>; 4] = Default::default();
         let mut read = Vec::new();
         for _ in 0..20 {
@@ -314,6 +315,7 @@ fn sand_is_seen_as_it_moves_tile_by_tile_without_the_audio_half() {
             velocity_m_s: Some([0.05, 0.0]),
             normal_force_n: 2.0,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let event = if step == 0 {
             ContactEvent::begin(ContactId(1), surface, Actuator(0), sample)

@@ -41,6 +41,7 @@ impl Game {
             velocity_m_s: Some([0.1, 0.0]),
             normal_force_n: 0.6,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let event = if self.step == 0 {
             let touching = Touching::on(self.surface).felt_by(Actuator(0));
@@ -102,7 +103,13 @@ fn a_move_makes_a_contact_softer_without_a_step_and_louder_again_to_the_bit() {
         |samples: &[f32]| samples.windows(2).fold(0.0f32, |most, pair| most.max((pair[1] - pair[0]).abs()));
     assert!(step(&changed.haptic) < 1.05 * step(&plain.haptic), "no step");
     let unusual = Emphasis { gain: Some(-1.0), importance: None };
-    let sample = ContactSample { uv: [0.5; 2], velocity_m_s: None, normal_force_n: 0.5, closing_m_s: 0.0 };
+    let sample = ContactSample {
+        uv: [0.5; 2],
+        velocity_m_s: None,
+        normal_force_n: 0.5,
+        closing_m_s: 0.0,
+        ..ContactSample::default()
+    };
     let refused =
         changed.scene.report(2.0, ContactEvent::moved_with(ContactId(1), sample, unusual)).unwrap_err();
     assert!(refused.to_string().starts_with("gain"), "{refused}");
@@ -169,6 +176,7 @@ fn a_paused_game_is_silent_however_long_and_its_contact_comes_back_with_the_next
             velocity_m_s: Some([0.1, 0.0]),
             normal_force_n: 0.6,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         game.scene.report(t, ContactEvent::moved(ContactId(1), sample)).unwrap();
         game.render();
@@ -218,6 +226,7 @@ fn slow_motion_with_an_exact_clock_strokes_as_slowly_as_it_says() {
                 velocity_m_s: Some([0.1, 0.0]),
                 normal_force_n: 0.6,
                 closing_m_s: 0.0,
+                ..ContactSample::default()
             };
             game.scene.report(t, ContactEvent::moved(ContactId(1), sample)).unwrap();
             t += 1.0 / 60.0;

@@ -139,6 +139,7 @@ fn a_flood_of_a_million_events_a_second_for_ten_seconds_needs_no_more_memory() {
         velocity_m_s: Some([0.1, 0.0]),
         normal_force_n: 0.6,
         closing_m_s: 0.0,
+        ..ContactSample::default()
     };
     let contacts = 10u64;
     for contact in 0..contacts {

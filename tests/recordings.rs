@@ -61,6 +61,7 @@ impl Game {
             velocity_m_s: Some([0.06, 0.0]),
             normal_force_n: 0.8,
             closing_m_s: 0.02,
+            ..ContactSample::default()
         };
         let mut added = None;
         for step in 0..200 {

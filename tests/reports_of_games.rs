@@ -70,6 +70,7 @@ fn reports(mut change: impl FnMut(usize, f64, &mut ContactSample) -> bool) -> Co
             velocity_m_s: Some([SPEED_M_S, 0.0]),
             normal_force_n: FORCE_N,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let stays = change(step, t, &mut sample);
         let event = if step == 0 { LogEvent::begin(1, "s", 0, sample) } else { LogEvent::moved(1, sample) };

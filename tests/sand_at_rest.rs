@@ -50,6 +50,7 @@ impl Hand {
                 velocity_m_s: Some([if moves { self.drags_m_s } else { 0.0 }, 0.0]),
                 normal_force_n: self.normal_force_n,
                 closing_m_s: 0.0,
+                ..ContactSample::default()
             }
         };
         let at = |step: usize| self.begins_s + step as f64 / self.reports_hz;

@@ -87,7 +87,13 @@ impl Exploration {
                 uv[axis] += speed_m_s * t / SIDE_M;
                 let mut velocity = [0.0; 2];
                 velocity[axis] = speed_m_s;
-                ContactSample { uv, velocity_m_s: Some(velocity), normal_force_n, closing_m_s: 0.0 }
+                ContactSample {
+                    uv,
+                    velocity_m_s: Some(velocity),
+                    normal_force_n,
+                    closing_m_s: 0.0,
+                    ..ContactSample::default()
+                }
             };
             let contact = axis as u64;
             log.lines.push(LogLine { t: at_s, event: LogEvent::begin(contact, "s", 0, sample(0.0)) });

@@ -99,7 +99,13 @@ impl Run {
 }
 
 fn pressed(u: f64, speed_m_s: f64, normal_force_n: f64) -> ContactSample {
-    ContactSample { uv: [u, 0.4], velocity_m_s: Some([speed_m_s, 0.0]), normal_force_n, closing_m_s: 0.0 }
+    ContactSample {
+        uv: [u, 0.4],
+        velocity_m_s: Some([speed_m_s, 0.0]),
+        normal_force_n,
+        closing_m_s: 0.0,
+        ..ContactSample::default()
+    }
 }
 
 /// A second of everything that is hard on a contact: light, unloaded, 0 → 5 N, standing still, jumping.
@@ -220,6 +226,7 @@ fn a_storm_of_bad_numbers_leaves_a_working_engine() {
             velocity_m_s: (rng.next_u32().is_multiple_of(2)).then(|| [wild(&mut rng), wild(&mut rng)]),
             normal_force_n: wild(&mut rng),
             closing_m_s: wild(&mut rng),
+            ..ContactSample::default()
         };
         let now = run.now_s();
         let event = match rng.next_u32() % 4 {

@@ -60,6 +60,7 @@ fn stroke(engine: Engine) -> Render {
         velocity_m_s: Some([0.1, 0.0]),
         normal_force_n: 0.6,
         closing_m_s: 0.02,
+        ..ContactSample::default()
     };
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "tiles", 0, sample(0.0)) }];
     lines.extend((1..20).map(|i| {

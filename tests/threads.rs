@@ -39,6 +39,7 @@ fn sample_at(time_s: f64) -> ContactSample {
         velocity_m_s: Some([0.1, 0.0]),
         normal_force_n: 0.6,
         closing_m_s: 0.0,
+        ..ContactSample::default()
     }
 }
 

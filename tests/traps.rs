@@ -69,7 +69,13 @@ fn watch(config: Config, surface: Surface, log: &ContactLog) -> (Vec<Row>, Rende
 fn log(seconds: f64, at: impl Fn(f64) -> ([f64; 2], [f64; 2], f64)) -> ContactLog {
     let sample = |t: f64| {
         let (uv, velocity_m_s, normal_force_n) = at(t);
-        ContactSample { uv, velocity_m_s: Some(velocity_m_s), normal_force_n, closing_m_s: 0.0 }
+        ContactSample {
+            uv,
+            velocity_m_s: Some(velocity_m_s),
+            normal_force_n,
+            closing_m_s: 0.0,
+            ..ContactSample::default()
+        }
     };
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "s", 0, sample(0.0)) }];
     for step in 1..(seconds * 60.0) as usize {

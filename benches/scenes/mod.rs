@@ -124,6 +124,7 @@ impl Running {
             velocity_m_s: Some([u, v]),
             normal_force_n: 0.5,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         }
     }
 

@@ -117,6 +117,7 @@ impl Bench {
                 velocity_m_s: Some([speed_m_s, 0.0]),
                 normal_force_n: 0.5,
                 closing_m_s: 0.0,
+                ..ContactSample::default()
             };
             let event = match (self.event, lift) {
                 (_, true) => ContactEvent::end(id),

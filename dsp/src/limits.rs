@@ -83,10 +83,14 @@ pub const OUTER_SCALE_M: Range = Range::new(1e-5, 1.0, "1e-5 to 1 m");
 pub const SIDE_M: Range = Range::new(1e-6, 1e3, "1e-6 to 1e3 m");
 /// Each coordinate of a place in a body.
 pub const PLACE_M: Range = Range::new(-1e3, 1e3, "-1000 to 1000 m");
+/// How deep a tip stands below a surface; below 0 above it.
+pub const TIP_DEPTH_M: Range = Range::new(-1e3, 1.0, "-1000 to 1 m");
 /// Length of a direction, of which only the direction counts.
 pub const AXIS: Range = Range::new(1e-6, 1e6, "1e-6 to 1e6 long");
 /// Roughness of a surface.
 pub const ROUGHNESS: Range = Range::new(0.0, 1.0, "0 to 1");
+/// How far a surface gives way under a newton; 0 = hard.
+pub const COMPLIANCE_M_N: Range = Range::new(0.0, 0.1, "0 to 0.1 m/N");
 /// Friction coefficient.
 pub const FRICTION: Range = Range::new(0.0, 10.0, "0 to 10");
 /// Game time of a report with an exact clock, s.
@@ -200,6 +204,10 @@ pub mod sand {
     pub const WETNESS: Range = Range::new(0.0, 1.0, "0 to 1");
     /// Diameter of a grain.
     pub const GRAIN_M: Range = Range::new(1e-5, 0.01, "1e-5 to 0.01 m");
+    /// Largest force.
+    pub const CAP_N: Range = Range::above(0.0, 1e3, "above 0, to 1000 N");
+    /// How much more a tool is carried than a sphere of 5 mm.
+    pub const BEARING: Range = Range::above(0.0, 1e6, "above 0, to 1e6");
     /// Hardness of a layer over that of the top.
     pub const HARDNESS: Range = Range::new(0.01, 1e3, "0.01 to 1000");
     /// Where a layer begins.
@@ -239,6 +247,8 @@ pub mod solid {
     pub const CAP_N: Range = Range::new(0.0, 100.0, "0 to 100 N");
     /// b.
     pub const VISCOSITY_N_S_M: Range = Range::new(0.0, 1e3, "0 to 1000 N·s/m");
+    /// Speed of a block that flows.
+    pub const FLOW_M_S: Range = Range::new(-10.0, 10.0, "within ±10 m/s");
 }
 
 /// Brownian relief.
@@ -292,6 +302,8 @@ mod tests {
             AXIS,
             ROUGHNESS,
             FRICTION,
+            COMPLIANCE_M_N,
+            TIP_DEPTH_M,
             probe::PAD_MASS_KG,
             probe::PAD_STIFFNESS_N_M,
             probe::PAD_DAMPING_N_S_M,

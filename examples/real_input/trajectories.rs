@@ -84,6 +84,7 @@ pub fn strokes(samples: &[PenSample], surface: &str, size_m: [f64; 2], velocity:
             velocity_m_s: last.filter(|_| velocity).map(|before| speed(&before, now)),
             normal_force_n: now.pressure * FULL_PRESSURE_N,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let event = if last.is_some() {
             LogEvent::moved(contact, sample)

@@ -65,6 +65,7 @@ impl Hand {
                 velocity_m_s: Some([0, 1].map(|a| (after[a] - before[a]) * self.side_m / 0.008)),
                 normal_force_n: self.normal_force_n,
                 closing_m_s: 0.0,
+                ..ContactSample::default()
             };
             let event = match step {
                 0 => LogEvent::begin(contact, self.surface, 0, sample),

@@ -157,6 +157,7 @@ impl Seat {
             blend(&mut out.roughness[i], old.roughness[i]);
             blend(&mut out.friction[i], old.friction[i]);
             blend(&mut out.compliance_m_n[i], old.compliance_m_n[i]);
+            out.answer.mix(i, weight, &old.answer, 1.0 - weight);
         }
     }
 
@@ -179,6 +180,20 @@ impl Seat {
         match &mut self.current {
             Some(slot) => Some(&mut *slot.surface.source),
             None => None,
+        }
+    }
+
+    /// The force at which the surface carries a tip below a place, N.
+    pub(crate) fn carries_n(&mut self, contact: Option<usize>, uv: [f64; 2], depth_m: f64) -> f64 {
+        let Some(slot) = &mut self.current else { return 0.0 };
+        let position_m = [uv[0] * slot.surface.width_m, uv[1] * slot.surface.height_m];
+        slot.surface.carries_n(contact, position_m, depth_m).unwrap_or(0.0)
+    }
+
+    /// The next path lies at these places of the surface's body.
+    pub(crate) fn lie_at(&mut self, at_m: &[[f64; 3]]) {
+        for slot in [&mut self.current, &mut self.previous].into_iter().flatten() {
+            slot.surface.source.lie_at(at_m);
         }
     }
 
@@ -225,6 +240,7 @@ impl SurfaceSlot {
         out.friction[..n].fill(FRICTION);
         out.roughness[..n].fill(DEFAULT_ROUGHNESS);
         out.compliance_m_n[..n].fill(0.0);
+        out.answer.clear();
         surface.source.ride(noise.tip_radius_m);
         surface.source.sample(path, out);
         match &mut surface.roughness {
@@ -239,6 +255,9 @@ impl SurfaceSlot {
         }
         if let Some(friction) = surface.friction {
             out.friction[..n].fill(friction);
+        }
+        if surface.compliance_m_n > 0.0 {
+            out.compliance_m_n[..n].fill(surface.compliance_m_n);
         }
         if surface.micro_relief_m > 0.0 {
             let mut local_power_m2 = [0.0; MAX_BLOCK];

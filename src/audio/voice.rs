@@ -2,6 +2,7 @@
 //!
 //! path → profile → micro-contact → { pad displacement → actuator, impulses → body }
 
+mod body_path;
 mod events;
 mod excitation;
 mod fades;
@@ -19,7 +20,7 @@ pub(crate) use role::Role;
 use crate::audio::seat::{Noise, Seat};
 use crate::audio::smoothed::Smoothed;
 use crate::link::tap::Tap;
-use crate::model::event::ContactId;
+use crate::model::event::{ContactId, ContactSample};
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::probe::PreparedProbe;
@@ -31,8 +32,10 @@ use asperity_dsp::micro_contact::{ContactSample as PadSample, ContactState, Micr
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
+use body_path::BodyPath;
 use fades::Rising;
 use pressed::Pressed;
+use watching::Ground;
 
 /// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
 const STILL_M: f64 = 1e-12;
@@ -130,6 +133,14 @@ pub(crate) struct Voice {
     feel: ContactOutputState,
     force_high_pass: butterworth::State,
     reaction: Reaction,
+    /// What carries its tip, if it stands at a depth, N.
+    carried_n: Option<f64>,
+    /// Coming down through the air, as its rows tell.
+    falls: bool,
+    /// The ground under the last sample.
+    last_ground: Ground,
+    /// Its way through the body, where that is no plane.
+    body_path: Option<BodyPath>,
     grains: Rng,
     /// The impulses of the last forces, which are still on their way to the body.
     force_history_n_s: [f64; FORCE_HISTORY],
@@ -162,6 +173,8 @@ impl VoiceBlock {
 pub(crate) struct Scratch {
     points: [PathPoint; MAX_BLOCK],
     position_m: [[f64; 2]; MAX_BLOCK],
+    /// Places in the body, for a contact that tells them.
+    at_m: [[f64; 3]; MAX_BLOCK],
     velocity_m_s: [[f64; 2]; MAX_BLOCK],
     footprint_m: [f64; MAX_BLOCK],
     noise_footprint_m: [f64; MAX_BLOCK],
@@ -211,11 +224,25 @@ impl Voice {
             feel: ContactOutputState::begin(&shared.idle_output, 0.0, 0.0),
             force_high_pass: butterworth::State::default(),
             reaction: Reaction::default(),
+            carried_n: None,
+            falls: false,
+            last_ground: Ground::default(),
+            body_path: None,
             grains: Rng::new(slot as u64),
             force_history_n_s: [0.0; FORCE_HISTORY],
             bus: ImpulseRing::new(LONGEST_COLLISION_S, shared.sample_rate_hz),
             unshown_n_s: 0.0,
         }
+    }
+
+    /// Its place in the renderer, which is its number at the surfaces.
+    pub(crate) fn slot(&self) -> usize {
+        self.slot
+    }
+
+    /// A report tells what carries it, or that it is pressed.
+    pub(crate) fn carry(&mut self, sample: &ContactSample) {
+        self.carried_n = sample.depth_m.map(|_| sample.normal_force_n);
     }
 
     /// Something changed under a resting contact.
@@ -287,6 +314,9 @@ impl Voice {
     fn follow_path(&mut self, seat: &Seat, n: usize, scratch: &mut Scratch) {
         if let Some(slot) = seat.current() {
             self.trajectory.advance(&slot.trajectory, &mut scratch.points[..n]);
+            if let Some(path) = &mut self.body_path {
+                path.advance(&slot.place_trajectory, &mut scratch.at_m[..n]);
+            }
         }
     }
 
@@ -330,6 +360,9 @@ impl Voice {
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
         let noise =
             Noise { field: &shared.noise, footprint_m: &scratch.noise_footprint_m[..n], tip_radius_m };
+        if self.body_path.is_some() {
+            seat.lie_at(&scratch.at_m[..n]);
+        }
         seat.sample(&path, &noise, &mut scratch.surface, &mut scratch.rough);
         // A surface that gives way lies lower by as much as the force presses it in.
         let surface = &mut scratch.surface;
@@ -406,6 +439,7 @@ impl Voice {
         let feels_still = felt.abs() < still || (felt - row.pad_m).abs() < still;
         self.asleep = feels_still
             && self.trajectory.is_still()
+            && self.body_path.as_ref().is_none_or(BodyPath::is_still)
             && self.contact_model.is_settled(&self.pad, row.height_m, row.normal_force_n)
             && self.reaction.grain_rate_per_s == 0.0
             && !self.reaction.stirs

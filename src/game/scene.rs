@@ -18,9 +18,9 @@ use crate::link::stats::{Counters, Stats};
 use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::config::Config;
+use crate::model::contact_sample::Place;
 use crate::model::error::AddError;
 use crate::model::event::{Actuator, ContactEvent, ContactId};
-use crate::model::frame::SurfaceFrame;
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
@@ -73,6 +73,8 @@ pub struct Scene {
     pub(crate) from_audio: Receiver<Dead>,
     pub(crate) counters: Arc<Counters>,
     recording: Option<Recording>,
+    /// Surfaces of contacts that may tell a place or a depth.
+    touched: HashMap<ContactId, SurfaceId>,
     /// Bodies as they were given, for another rate.
     pub(crate) given: HashMap<BodyId, Body>,
     /// For [`Scene::why_silent`].
@@ -86,8 +88,7 @@ pub(crate) struct KnownSurface {
     rings: bool,
     /// How it looks, if it changes.
     picture: Option<Arc<MovingPicture>>,
-    size_m: [f64; 2],
-    frame: Option<SurfaceFrame>,
+    place: Place,
 }
 
 /// What the game half remembers of a body.
@@ -121,6 +122,7 @@ impl Scene {
             from_audio,
             counters,
             recording: None,
+            touched: HashMap::new(),
         }
     }
 
@@ -293,16 +295,20 @@ impl Scene {
         let stroking = self.stroking(body)?;
         let config = &self.config;
         let period_m = surface.wrap_period_m();
-        let trajectory =
-            TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)?;
+        let trajectory = |period_m| {
+            TrajectoryDesign::new(config.path, config.path_cutoff_hz, config.inner_rate_hz(), period_m)
+        };
+        let (trajectory, place_trajectory) = (trajectory(period_m)?, trajectory([f64::INFINITY; 2])?);
         let relief = (surface.micro_relief_m, surface.outer_scale_m);
         let overlay = Overlay::new(period_m, surface.source.band().shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
-        let (size_m, frame) = ([surface.width_m, surface.height_m], surface.frame);
+        let is_soft = surface.carries_n(None, [0.0; 2], 0.0).is_some();
+        let place = Place { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };
         let mut picture = None;
         surface.source.visit(&mut |part| picture = picture.take().or(part.downcast_ref().cloned()));
-        let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
-        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, size_m, frame }))
+        let surface =
+            Box::new(SurfaceSlot { surface, trajectory, place_trajectory, stroking, overlay, period_m });
+        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, place }))
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
@@ -329,7 +335,8 @@ impl Scene {
         point_m: impl Into<mint::Vector3<f64>>,
     ) -> Result<Option<[f64; 2]>, AddError> {
         let known = self.known_surface(id)?;
-        Ok(known.frame.map(|frame| frame.uv(point_m, known.size_m)))
+        let Place { frame, size_m, .. } = known.place;
+        Ok(frame.map(|frame| frame.uv(point_m, size_m)))
     }
 
     /// Takes a surface away; contacts on it fade.

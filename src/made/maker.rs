@@ -77,6 +77,9 @@ impl<'a> Maker<'a> {
         if let Some(friction) = entry.friction {
             surface = surface.friction(friction);
         }
+        if let Some(compliance_m_n) = entry.compliance_m_n {
+            surface = surface.compliance_m_n(compliance_m_n);
+        }
         let (table, folder) = &entry.written;
         let folder = Some(folder.display().to_string()).filter(|folder| !folder.is_empty());
         surface.described = Some(Box::new(LogSurface { is: Some(table.clone()), folder, material }));

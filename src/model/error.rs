@@ -57,6 +57,11 @@ pub enum Refusal {
     /// The surface is not, or no longer, in this scene.
     #[error("surface: is not in this scene; add it before it is touched")]
     UnknownSurface,
+    /// A depth was reported on a surface that does not give way.
+    #[error(
+        "depth_m: the surface is hard, so that a depth says nothing about the force; report normal_force_n, or make it soft (sand, or compliance_m_n)"
+    )]
+    Hard,
     /// The body is not, or no longer, in this scene.
     #[error("body: is not in this scene; add it before it is struck")]
     UnknownBody,

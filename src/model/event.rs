@@ -14,6 +14,7 @@
 //! of a contact that never ended is a landing.
 
 use crate::model::bad_value::{BadValue, within};
+pub use crate::model::contact_sample::ContactSample;
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
 use asperity_dsp::limits;
@@ -26,35 +27,6 @@ pub struct ContactId(pub u64);
 /// A haptic channel: the index of an actuator in [`Config::actuators`](crate::Config::actuators).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Actuator(pub u16);
-
-/// Where and how a contact touches at one instant.
-///
-/// ```
-/// use asperity::ContactSample;
-///
-/// let sample = ContactSample::new([0.3, 0.5], 0.6).sliding([0.1, 0.0]);
-/// assert_eq!(sample.closing_m_s, 0.0);
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
-pub struct ContactSample {
-    /// Texture coordinates of the contact point; 1 spans the surface's width and height. They may
-    /// wrap or run on beyond 0–1.
-    pub uv: [f64; 2],
-    /// Tangential velocity along the surface's u and v axes, m/s; estimated from `uv` when missing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity_m_s: Option<[f64; 2]>,
-    /// Force pressing the finger onto the surface, N. Physics engines report small negative values
-    /// around lift-off; they count as 0.
-    pub normal_force_n: f64,
-    /// Approach speed at landing, m/s; used by [`ContactEvent::begin`] only.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub closing_m_s: f64,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
 
 /// What touches what, and who feels it: fixed for as long as the contact lasts.
 ///
@@ -277,45 +249,6 @@ impl ContactEvent {
     }
 }
 
-impl ContactSample {
-    /// At texture coordinates `uv`, pressed with `normal_force_n`; its velocity is estimated from where it goes.
-    #[must_use]
-    pub fn new(uv: [f64; 2], normal_force_n: f64) -> Self {
-        Self { uv, normal_force_n, ..Self::default() }
-    }
-
-    /// Sliding with this velocity along u and v, m/s.
-    #[must_use]
-    pub fn sliding(mut self, velocity_m_s: [f64; 2]) -> Self {
-        self.velocity_m_s = Some(velocity_m_s);
-        self
-    }
-
-    /// Landing with this speed, m/s.
-    #[must_use]
-    pub fn landing(mut self, closing_m_s: f64) -> Self {
-        self.closing_m_s = closing_m_s;
-        self
-    }
-
-    /// The same sample with a negative force set to 0.
-    ///
-    /// # Errors
-    /// When a number is not finite or beyond the limits of this module.
-    pub fn checked(mut self) -> Result<Self, BadValue> {
-        for uv in self.uv {
-            within("uv", uv, limits::UV)?;
-        }
-        for v in self.velocity_m_s.into_iter().flatten() {
-            within("velocity_m_s", v, limits::VELOCITY_M_S)?;
-        }
-        within("normal_force_n", self.normal_force_n, limits::NORMAL_FORCE_N)?;
-        within("closing_m_s", self.closing_m_s, limits::SPEED_M_S)?;
-        self.normal_force_n = self.normal_force_n.max(0.0);
-        Ok(self)
-    }
-}
-
 impl Impact {
     /// A loss-free blow of a steel ball of 1 cm and 4 g at 1 m/s: a value to begin with, for the fields that a game does not know.
     #[must_use]
@@ -382,45 +315,5 @@ impl Impact {
         within("gain", self.gain, limits::impact::GAIN)?;
         self.striker.checked()?;
         Ok(self)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sample() -> ContactSample {
-        ContactSample {
-            uv: [0.1, 0.2],
-            velocity_m_s: Some([0.1, 0.0]),
-            normal_force_n: 0.5,
-            closing_m_s: 0.0,
-        }
-    }
-
-    #[test]
-    fn an_ordinary_sample_is_accepted_unchanged() {
-        assert_eq!(sample().checked(), Ok(sample()));
-    }
-
-    #[test]
-    fn a_negative_force_counts_as_none() {
-        let lifting = ContactSample { normal_force_n: -0.01, ..sample() };
-        assert_eq!(lifting.checked().unwrap().normal_force_n, 0.0);
-    }
-
-    #[test]
-    fn numbers_that_no_contact_has_are_refused_by_name() {
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
-            let cases = [
-                ("uv", ContactSample { uv: [0.0, bad], ..sample() }),
-                ("velocity_m_s", ContactSample { velocity_m_s: Some([bad, 0.0]), ..sample() }),
-                ("normal_force_n", ContactSample { normal_force_n: bad, ..sample() }),
-                ("closing_m_s", ContactSample { closing_m_s: bad, ..sample() }),
-            ];
-            for (field, case) in cases {
-                assert_eq!(case.checked().unwrap_err().field, field);
-            }
-        }
     }
 }

@@ -62,6 +62,13 @@ impl SurfaceFrame {
         [0, 1].map(|axis| from_origin.dot(self.axes[axis]) / size_m[axis])
     }
 
+    /// How deep a point of the body lies below the plane, m, against the direction u × v, which points out of the body.
+    #[must_use]
+    pub fn depth_m<T: Into<f64>>(&self, point_m: impl Into<Vector3<T>>) -> f64 {
+        let [u, v] = self.axes;
+        (self.origin_m - space(point_m)).dot(u.cross(v))
+    }
+
     /// Components of a velocity of the body's space along u and v, m/s.
     #[must_use]
     pub fn along<T: Into<f64>>(&self, velocity_m_s: impl Into<Vector3<T>>) -> [f64; 2] {

@@ -6,6 +6,7 @@ pub(crate) mod body;
 pub(crate) mod bus;
 pub(crate) mod clock_mode;
 pub(crate) mod config;
+pub(crate) mod contact_sample;
 pub(crate) mod error;
 pub(crate) mod event;
 pub(crate) mod excitation;

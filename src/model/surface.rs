@@ -56,6 +56,7 @@ pub struct Surface {
     pub(crate) micro_relief_m: f64,
     pub(crate) outer_scale_m: f64,
     pub(crate) friction: Option<f64>,
+    pub(crate) compliance_m_n: f64,
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
     pub(crate) frame: Option<SurfaceFrame>,
@@ -115,6 +116,7 @@ impl Surface {
             micro_relief_m: DEFAULT_MICRO_RELIEF_M,
             outer_scale_m: DEFAULT_OUTER_SCALE_M,
             friction: None,
+            compliance_m_n: 0.0,
             excitation: Excitation::default(),
             strike_position: 0,
             frame: None,
@@ -235,6 +237,30 @@ impl Surface {
         self
     }
 
+    /// How far it gives way under each newton, m/N, whatever its source says; 0 leaves that to the source. A cloth on foam: 1e-3.
+    ///
+    /// ```text
+    /// d = C F        a tip that stands d below the untouched surface is carried with d / C
+    /// ```
+    #[must_use]
+    pub fn compliance_m_n(mut self, compliance_m_n: f64) -> Self {
+        self.compliance_m_n = compliance_m_n;
+        self
+    }
+
+    /// The force at which it carries a tip, N; none where it is hard. See [`HeightField::carries_n`].
+    pub(crate) fn carries_n(
+        &mut self,
+        contact: Option<usize>,
+        position_m: [f64; 2],
+        depth_m: f64,
+    ) -> Option<f64> {
+        if self.compliance_m_n > 0.0 {
+            return Some(depth_m.max(0.0) / self.compliance_m_n);
+        }
+        self.source.carries_n(contact, position_m, depth_m)
+    }
+
     /// What sliding sends to the body.
     #[must_use]
     pub fn excitation(mut self, excitation: Excitation) -> Self {
@@ -258,6 +284,7 @@ impl Surface {
         let reach_m = self.source.reach_m();
         within("relief_m", reach_m, limits::REACH_M)?;
         within("friction", self.friction.unwrap_or(0.0), limits::FRICTION)?;
+        within("compliance_m_n", self.compliance_m_n, limits::COMPLIANCE_M_N)?;
         if let Roughness::Constant(r) = self.roughness {
             within("roughness", r, limits::ROUGHNESS)?;
         }

@@ -94,6 +94,7 @@ impl UvTriangle {
             velocity_m_s: Some(self.along(velocity_m_s)),
             normal_force_n,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         }
     }
 }

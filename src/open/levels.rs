@@ -159,7 +159,13 @@ impl Trials {
             let mut velocity_m_s = [0.0; 2];
             velocity_m_s[axis] = REFERENCE_SPEED_M_S;
             let velocity_m_s = Some(velocity_m_s);
-            ContactSample { uv, velocity_m_s, normal_force_n: REFERENCE_FORCE_N, closing_m_s: 0.0 }
+            ContactSample {
+                uv,
+                velocity_m_s,
+                normal_force_n: REFERENCE_FORCE_N,
+                closing_m_s: 0.0,
+                ..ContactSample::default()
+            }
         };
         let mut begin = LogEvent::begin(contact, &entry.name, actuator as u16, sample(0.0));
         if let LogEvent::Begin { touching, .. } = &mut begin {

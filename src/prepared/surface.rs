@@ -9,6 +9,8 @@ use asperity_dsp::trajectory::TrajectoryDesign;
 pub(crate) struct SurfaceSlot {
     pub(crate) surface: Surface,
     pub(crate) trajectory: TrajectoryDesign,
+    /// Through its body, where nothing wraps.
+    pub(crate) place_trajectory: TrajectoryDesign,
     /// How strokes excite the body below.
     pub(crate) stroking: Stroking,
     /// How the micro-noise lies on it.

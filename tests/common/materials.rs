@@ -28,6 +28,7 @@ fn random_stroke(rng: &mut Rng) -> ContactLog {
         velocity_m_s: Some(velocity),
         normal_force_n,
         closing_m_s: 0.0,
+        ..ContactSample::default()
     };
     let begin = LogEvent::begin(1, "s", 0, sample(0.0));
     let mut lines = vec![LogLine { t: 0.0, event: begin }];

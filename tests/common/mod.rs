@@ -67,6 +67,7 @@ pub fn stroke_of(
         velocity_m_s: Some([speed_m_s, 0.0]),
         normal_force_n,
         closing_m_s: 0.0,
+        ..ContactSample::default()
     };
     let steps = (seconds * 60.0) as usize;
     let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(contact, "s", 0, sample(0.0)) }];

@@ -202,6 +202,7 @@ pub fn outcome(seed: u64) -> Outcome {
             velocity_m_s: Some([speed_m_s, 0.0]),
             normal_force_n: force_n,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let event = if step == 0 {
             ContactEvent::begin(ContactId(1), surface, Actuator(0), sample)

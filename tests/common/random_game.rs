@@ -69,6 +69,7 @@ impl RandomGame {
                 velocity_m_s: (!self.rng.next_u32().is_multiple_of(5)).then(|| [0.3 * self.number(), 0.0]),
                 normal_force_n: 3.0 * self.number(),
                 closing_m_s: (0.1 * self.number()).abs(),
+                ..ContactSample::default()
             };
             let surface = self.surfaces[self.rng.next_u32() as usize % self.surfaces.len()];
             let event = match self.rng.next_u32() % 12 {

@@ -14,9 +14,11 @@
 //! every part; forces add up by the same weights as heights.
 
 mod band_split;
+mod mask;
 mod mixture;
 
 pub use band_split::{BandSplit, BandWeights};
+pub use mask::Mask;
 pub(crate) use mixture::add;
 
 use crate::fade::Fade;
@@ -53,6 +55,14 @@ impl HeightField for Sum {
         self.sources.iter_mut().for_each(|source| source.ride(radius_m));
     }
 
+    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
+        self.sources.iter_mut().for_each(|source| source.lie_at(at_m));
+    }
+
+    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        self.sources.iter_mut().find_map(|source| source.carries_n(contact, position_m, depth_m))
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
     }
@@ -87,6 +97,7 @@ impl HeightField for Sum {
                 out.gradient[i][0] += self.part.gradient[i][0];
                 out.gradient[i][1] += self.part.gradient[i][1];
                 out.compliance_m_n[i] += self.part.compliance_m_n[i];
+                out.answer.mix(i, 1.0, &self.part.answer, 1.0);
             }
         }
     }
@@ -141,6 +152,14 @@ impl HeightField for Scale {
         self.source.ride(radius_m);
     }
 
+    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
+        self.source.lie_at(at_m);
+    }
+
+    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        self.source.carries_n(contact, position_m, depth_m)
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.factor.prepare(setup.sample_rate_hz);
         self.source.prepare(setup)
@@ -171,6 +190,7 @@ impl HeightField for Scale {
             let factor = self.factor.at(path.first_sample + i as u64);
             out.height_m[i] *= factor;
             out.gradient[i] = out.gradient[i].map(|g| g * factor);
+            out.answer.scale(i, factor);
         }
     }
 
@@ -191,106 +211,6 @@ impl HeightField for Scale {
 
     fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
         self.source.visit(see);
-    }
-}
-
-/// One source where a mask is 1, another where it is 0.
-pub struct Mask {
-    mask: Source,
-    inside: Source,
-    outside: Source,
-    weight: SurfaceBlock,
-    other: SurfaceBlock,
-}
-
-impl Mask {
-    /// The *height* of `mask` is the weight of `inside`, held within 0–1: a height map with 1 m
-    /// relief serves as mask. It must be smooth on the scale of a footprint, or its edge is felt.
-    #[must_use]
-    pub fn new(mask: Source, inside: Source, outside: Source) -> Self {
-        let (weight, other) = (SurfaceBlock::default(), SurfaceBlock::default());
-        Self { mask, inside, outside, weight, other }
-    }
-}
-
-impl HeightField for Mask {
-    fn prepare_tip(&mut self, radius_m: f64) {
-        [&mut self.inside, &mut self.outside].into_iter().for_each(|source| source.prepare_tip(radius_m));
-    }
-
-    fn ride(&mut self, radius_m: f64) {
-        [&mut self.inside, &mut self.outside].into_iter().for_each(|source| source.ride(radius_m));
-    }
-
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.mask.prepare(setup)?;
-        self.inside.prepare(setup)?;
-        self.outside.prepare(setup)
-    }
-
-    fn band(&self) -> WavelengthBand {
-        self.inside.band().union(self.outside.band())
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.inside.reach_m().max(self.outside.reach_m())
-    }
-
-    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        self.inside.add_local_power(position_m, power_m2);
-        self.outside.add_local_power(position_m, power_m2);
-    }
-
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
-        let parts = [&self.mask, &self.inside, &self.outside].map(|s| s.beyond(tile_m));
-        parts.into_iter().fold(Beyond::Same, Beyond::max)
-    }
-
-    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        self.mask.sample(path, &mut self.weight);
-        self.inside.sample(path, &mut self.other);
-        self.outside.sample(path, out);
-        for i in 0..path.len().min(MAX_BLOCK) {
-            let raw = self.weight.height_m[i];
-            let w = raw.clamp(0.0, 1.0);
-            let edge = if raw == w { self.weight.gradient[i] } else { [0.0; 2] };
-            let step = self.other.height_m[i] - out.height_m[i];
-            mix(out, &self.other, i, w);
-            out.gradient[i][0] += edge[0] * step;
-            out.gradient[i][1] += edge[1] * step;
-        }
-    }
-
-    fn land(&mut self, touch: &Touch) {
-        self.inside.land(touch);
-        self.outside.land(touch);
-    }
-
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        let path = PathBlock {
-            position_m: &[touch.position_m],
-            velocity_m_s: &[touch.velocity_m_s],
-            footprint_m: &[0.0],
-            normal_force_n: &[],
-            first_sample: touch.sample,
-            contact: touch.contact,
-            slopes: false,
-        };
-        self.mask.sample(&path, &mut self.weight);
-        let w = self.weight.height_m[0].clamp(0.0, 1.0);
-        let inside = self.inside.react(touch);
-        add(add(Reaction::default(), inside, w), self.outside.react(touch), 1.0 - w)
-    }
-
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
-        let mask = self.mask.change(change, sample);
-        let inside = self.inside.change(change, sample);
-        self.outside.change(change, sample) | inside | mask
-    }
-
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        self.inside.visit(see);
-        self.outside.visit(see);
     }
 }
 
@@ -329,6 +249,14 @@ impl HeightField for Crossfade {
 
     fn ride(&mut self, radius_m: f64) {
         self.sources.iter_mut().for_each(|source| source.ride(radius_m));
+    }
+
+    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
+        self.sources.iter_mut().for_each(|source| source.lie_at(at_m));
+    }
+
+    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        self.sources.iter_mut().find_map(|source| source.carries_n(contact, position_m, depth_m))
     }
 
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {

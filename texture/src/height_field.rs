@@ -5,11 +5,15 @@
 //! is anchored to the absolute sample index), so that any split of time into blocks gives the same
 //! bits. The path's positions are finite; they may be any number of periods away from the origin.
 
+use crate::answer::{Answer, AnswerAt};
 use asperity_dsp::DesignError;
 use std::any::Any;
 
 /// Longest block a source is ever asked for, samples.
 pub const MAX_BLOCK: usize = 64;
+
+/// A force that is no touch, N: the weight of a tenth of a milligram.
+pub const NO_TOUCH_N: f64 = 1e-6;
 
 /// Where a contact is during up to [`MAX_BLOCK`] consecutive samples. All slices are equally long, but for
 /// [`normal_force_n`](Self::normal_force_n), which may be empty.
@@ -66,6 +70,8 @@ pub struct SurfaceBlock {
     /// How far the surface gives way over the force that presses it (the path's), m/N; 0 = rigid. It is
     /// the secant, not the slope: sand gives way by a law that is no straight line.
     pub compliance_m_n: [f64; MAX_BLOCK],
+    /// The force with which it answers; only where somebody looks at [slopes](PathBlock::slopes).
+    pub answer: Answer,
 }
 
 impl SurfaceBlock {
@@ -77,6 +83,16 @@ impl SurfaceBlock {
         self.roughness[..n].fill(0.0);
         self.friction[..n].fill(0.0);
         self.compliance_m_n[..n].fill(0.0);
+        self.answer.clear();
+    }
+}
+
+impl SurfaceBlock {
+    /// The relief of the first `n` entries has a force law of its own, so that its slope pushes no more.
+    pub fn push_no_slope(&mut self, n: usize) {
+        for (i, gradient) in self.gradient.iter().enumerate().take(n) {
+            self.answer.add(i, &AnswerAt { push_per_n: *gradient, ..AnswerAt::NONE }, 1.0);
+        }
     }
 }
 
@@ -88,6 +104,7 @@ impl Default for SurfaceBlock {
             roughness: [0.0; MAX_BLOCK],
             friction: [0.0; MAX_BLOCK],
             compliance_m_n: [0.0; MAX_BLOCK],
+            answer: Answer::default(),
         }
     }
 }
@@ -132,11 +149,9 @@ pub struct Touch {
     pub normal_force_n: f64,
 }
 
-/// What the surface does back.
+/// What a touch stirs up.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Reaction {
-    /// Force on the tool along u, v and out of the surface, N, beyond contact and Coulomb friction.
-    pub force_n: [f64; 3],
     /// Rate of small impacts among the surface's grains, 1/s; 0 for surfaces that do not give way.
     pub grain_rate_per_s: f64,
     /// Mean momentum of one such impact, N·s.
@@ -260,6 +275,17 @@ pub trait HeightField: Send + Sync {
         Beyond::Same
     }
 
+    /// The places of a body that the path of the next [`sample`](Self::sample) lies at, m, one a sample; none: the surface is a plane of
+    /// its body. What is cut from a block of stuff is cut there; a source that is a sheet need not mind. A source made of others hands this
+    /// on.
+    fn lie_at(&mut self, _at_m: &[[f64; 3]]) {}
+
+    /// The force at which the surface carries a tip that stands `depth_m` below the untouched surface, N, 0 above it; none where it is hard.
+    /// `contact` is the contact's slot, or none for one that has not landed yet.
+    fn carries_n(&mut self, _contact: Option<usize>, _position_m: [f64; 2], _depth_m: f64) -> Option<f64> {
+        None
+    }
+
     /// Fills the first `path.len()` entries of `out`.
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);
 
@@ -267,8 +293,7 @@ pub trait HeightField: Send + Sync {
     /// was kept of an earlier contact of this number is forgotten.
     fn land(&mut self, _touch: &Touch) {}
 
-    /// Tells the source how it is touched, whether the contact moves or rests; a source that gives way
-    /// answers with a force.
+    /// Tells the source how it is touched, whether the contact moves or rests.
     fn react(&mut self, _touch: &Touch) -> Reaction {
         Reaction::default()
     }

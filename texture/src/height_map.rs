@@ -416,5 +416,6 @@ impl HeightField for HeightMap {
         }
         out.friction[..path.len()].fill(self.friction);
         out.compliance_m_n[..path.len()].fill(0.0);
+        out.answer.clear();
     }
 }

@@ -5,6 +5,7 @@
 //! *Offline* (feature `offline`): tools that make surfaces from pictures and from other surfaces.
 
 // Real time.
+pub mod answer;
 #[cfg(feature = "brownian")]
 pub mod brownian;
 pub mod combine;

@@ -14,7 +14,8 @@
 //! | [`law`] | depth and force, drag, wetness, layers, grains |
 //! | [`simulation`] | contacts that drag tools, frame by frame |
 //! | [`patch`] | what the audio half sees: 64 × 64 heights around a contact |
-//! | [`source`] | the surface itself, and the hand-over that never waits |
+//! | [`source`] | the surface itself |
+//! | `hand_over` | rings between the audio half and the simulation, whose ends never wait |
 //! | [`worker`] | the other end of the hand-over, on a thread of its own |
 //!
 //! Source: Beneš, Dorjgotov, Arns & Bertoline, "Granular Material Interactive Manipulation" (2006).
@@ -23,6 +24,7 @@
 
 pub mod erosion;
 pub mod grid;
+mod hand_over;
 pub mod law;
 pub mod patch;
 pub mod simulation;

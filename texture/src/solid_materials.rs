@@ -115,6 +115,7 @@ impl SolidMaterial {
             direction: ForceDirection::X,
             proportional_to_contact: false,
             viscosity_n_s_m: if self == Self::Pebbles { PEBBLES_VISCOSITY_N_S_M } else { 0.0 },
+            flow_m_s: [0.0; 3],
             friction: if self == Self::RoughGlass { GLASS_FRICTION } else { FRICTION },
         }
     }

@@ -3,7 +3,7 @@
 //! ```text
 //! n_p(x) = Σ_modules M · Σ_{i=0}^{N−1} per^i · n_i(x · f · lac^i)
 //! height:  h = A · n_p(T · x)                                            metres
-//! force:   F_tex = L · n_p(T · x), no more than the cap;    F = F_contact + F_friction + F_tex − b v
+//! force:   F_tex = L · n_p(T · x), no more than the cap, in penetration;  F = F_contact + F_friction + F_tex − b v     [`force`]
 //! ```
 //!
 //! | symbol | here |
@@ -13,7 +13,8 @@
 //! | A | [`SolidNoiseParameters::amplitude_m`], metres per unit of magnitude (ours: the document has forces only) |
 //! | L, cap | [`SolidNoiseParameters::limit_n`], newton per unit of magnitude, and [`SolidNoiseParameters::cap_n`] |
 //! | b | [`SolidNoiseParameters::viscosity_n_s_m`], the "viscous cube" around the pebbles |
-//! | x | [`SolidCut`]: where the surface cuts the block |
+//! | x | [`SolidCut`]: where the surface cuts the block, or the place in the body that a contact tells; less the way that the block has
+//! [flowed](SolidNoiseParameters::flow_m_s), as the document's water and wind do |
 //!
 //! Source: the solid-noise paper, equations 3 and 4 and Table 1. What we read differently: the printed
 //! sum has one octave more than the table counts (N octaves are N terms), and the printed argument
@@ -23,6 +24,7 @@
 //! change by a fade ([`crate::fade`]).
 
 mod cut;
+mod force;
 mod parameters;
 
 pub use cut::SolidCut;
@@ -42,11 +44,12 @@ const FOOTPRINT_WHOLE: f64 = 0.4;
 /// Footprint over cell size from which an octave is silent: 0.66 cycles per cell reach the Nyquist
 /// frequency.
 const FOOTPRINT_SILENT: f64 = 0.75;
-/// Period of the force output that [`HeightField::react`] serves, seconds; the document's 1 kHz.
-const FORCE_PERIOD_S: f64 = 1e-3;
 
 /// Coordinates of a block of points in the noise, and the noise there.
 struct Scratch {
+    point_m: [[f64; 3]; MAX_BLOCK],
+    /// n_p, in units of magnitude.
+    texture: [f64; MAX_BLOCK],
     cells: [[f64; MAX_BLOCK]; 3],
     value: [f32; MAX_BLOCK],
     slope: [[f32; MAX_BLOCK]; 3],
@@ -58,6 +61,11 @@ pub struct SolidNoise {
     parameters: Fade<SolidNoiseParameters>,
     lattices: [[GradientNoise3d; MAX_OCTAVES]; 2],
     cut: SolidCut,
+    /// Length of a sample, s.
+    step_s: f64,
+    /// Places of a body that the next path lies at, and how many.
+    lies_at_m: [[f64; 3]; MAX_BLOCK],
+    lies: usize,
 }
 
 impl SolidNoise {
@@ -74,6 +82,9 @@ impl SolidNoise {
             parameters: Fade::new(parameters),
             lattices: [core::array::from_fn(|i| lattice(0, i)), core::array::from_fn(|i| lattice(1, i))],
             cut: SolidCut::SLANTED,
+            step_s: 1.0 / Setup::default().sample_rate_hz,
+            lies_at_m: [[0.0; 3]; MAX_BLOCK],
+            lies: 0,
         })
     }
 
@@ -113,67 +124,14 @@ impl SolidNoise {
         sum
     }
 
-    /// Force of the texture and the medium on a tool at `position_m`: along u, v and out of the
-    /// surface, newtons. `footprint_m` is the distance between two readings.
-    #[must_use]
-    pub fn force_n(
-        &self,
-        position_m: [f64; 2],
-        velocity_m_s: [f64; 2],
-        normal_force_n: f64,
-        footprint_m: f64,
-        sample: u64,
-    ) -> [f64; 3] {
-        let mut force = [0.0; 3];
-        for (weight, parameters) in self.parameters.weights(sample).iter().zip(self.parameters.values()) {
-            if *weight != 0.0 {
-                let one = self.force_of(parameters, position_m, velocity_m_s, normal_force_n, footprint_m);
-                for (sum, one) in force.iter_mut().zip(one) {
-                    *sum += weight * one;
-                }
-            }
-        }
-        force
+    /// How far the block has flowed past the surface, metres in the block.
+    fn flown_m(&self, parameters: &SolidNoiseParameters, sample: u64) -> [f64; 3] {
+        let [u, v, out] = parameters.flow_m_s.map(|speed| speed * (sample as f64 * self.step_s));
+        let (u_axis, v_axis, normal) = (self.cut.u_axis, self.cut.v_axis, self.cut.normal());
+        core::array::from_fn(|a| u * u_axis[a] + v * v_axis[a] + out * normal[a])
     }
 
-    fn force_of(
-        &self,
-        parameters: &SolidNoiseParameters,
-        position_m: [f64; 2],
-        velocity_m_s: [f64; 2],
-        normal_force_n: f64,
-        footprint_m: f64,
-    ) -> [f64; 3] {
-        let point = self.cut.at(position_m);
-        let mut texture = 0.0;
-        for (module, lattices) in parameters.modules.iter().zip(&self.lattices) {
-            for (index, lattice) in lattices.iter().enumerate().take(module.octaves) {
-                let (per_m, amplitude) = parameters.octave(module, index);
-                let whole = resolved(footprint_m * per_m);
-                if amplitude * whole != 0.0 {
-                    texture += amplitude * whole * f64::from(lattice.at(point.map(|x| x * per_m)).value);
-                }
-            }
-        }
-        let proportion = if parameters.proportional_to_contact { normal_force_n.max(0.0) } else { 1.0 };
-        let cap = parameters.cap_n;
-        let texture = (parameters.limit_n * texture * proportion).clamp(-cap, cap);
-        let speed = velocity_m_s[0].hypot(velocity_m_s[1]);
-        let direction = match parameters.direction {
-            ForceDirection::X => [1.0, 0.0, 0.0],
-            ForceDirection::Normal => [0.0, 0.0, 1.0],
-            ForceDirection::Tangent if speed > 0.0 => [velocity_m_s[0] / speed, velocity_m_s[1] / speed, 0.0],
-            ForceDirection::Tangent => [0.0; 3],
-        };
-        let drag = parameters.viscosity_n_s_m;
-        [
-            texture * direction[0] - drag * velocity_m_s[0],
-            texture * direction[1] - drag * velocity_m_s[1],
-            texture * direction[2],
-        ]
-    }
-
-    /// Adds one parameter set's heights and slopes, each sample weighted.
+    /// Adds one parameter set's heights, slopes and forces, each sample weighted.
     fn add(
         &self,
         parameters: &SolidNoiseParameters,
@@ -182,49 +140,77 @@ impl SolidNoise {
         scratch: &mut Scratch,
         out: &mut SurfaceBlock,
     ) {
-        let n = path.len().min(MAX_BLOCK);
+        self.place(parameters, path, &mut scratch.point_m);
+        scratch.texture = [0.0; MAX_BLOCK];
         for (module, lattices) in parameters.modules.iter().zip(&self.lattices) {
             if module.magnitude == 0.0 {
                 continue;
             }
             for (index, lattice) in lattices.iter().enumerate().take(module.octaves) {
                 let (per_m, amplitude) = parameters.octave(module, index);
-                if path.footprint_m.iter().all(|&p| resolved(p * per_m) == 0.0) {
-                    continue;
+                if path.footprint_m.iter().any(|&p| resolved(p * per_m) != 0.0) {
+                    self.octave(lattice, per_m, path.len(), scratch);
+                    self.add_octave(parameters, path, [per_m, amplitude], weight, scratch, out);
                 }
-                self.octave(lattice, per_m, path, n, scratch);
-                let [du, dv] = [self.cut.u_axis, self.cut.v_axis];
-                for i in 0..n {
-                    let height = weight[i]
-                        * parameters.amplitude_m
-                        * amplitude
-                        * resolved(path.footprint_m[i] * per_m);
-                    if height != 0.0 {
-                        let slope = scratch.slope.each_ref().map(|s| f64::from(s[i]));
-                        let along = |axis: [f64; 3]| {
-                            per_m * (slope[0] * axis[0] + slope[1] * axis[1] + slope[2] * axis[2])
-                        };
-                        out.height_m[i] += height * f64::from(scratch.value[i]);
-                        out.gradient[i][0] += height * along(du);
-                        out.gradient[i][1] += height * along(dv);
-                    }
-                }
+            }
+        }
+        if path.slopes {
+            Self::answer(parameters, path, weight, &scratch.texture, out);
+        }
+    }
+
+    /// Points of the block along a path.
+    fn place(
+        &self,
+        parameters: &SolidNoiseParameters,
+        path: &PathBlock<'_>,
+        point_m: &mut [[f64; 3]; MAX_BLOCK],
+    ) {
+        let flows = parameters.flow_m_s != [0.0; 3];
+        for (i, point_m) in point_m.iter_mut().enumerate().take(path.len()) {
+            *point_m = match self.lies_at_m.get(i) {
+                Some(at_m) if i < self.lies => SolidCut::in_body(*at_m),
+                _ => self.cut.at(path.position_m[i]),
+            };
+            if flows {
+                let flown_m = self.flown_m(parameters, path.first_sample + i as u64);
+                *point_m = core::array::from_fn(|a| point_m[a] - flown_m[a]);
             }
         }
     }
 
-    /// Evaluates one lattice along the path.
-    fn octave(
+    /// Adds what one octave gives.
+    fn add_octave(
         &self,
-        lattice: &GradientNoise3d,
-        per_m: f64,
+        parameters: &SolidNoiseParameters,
         path: &PathBlock<'_>,
-        n: usize,
+        [per_m, amplitude]: [f64; 2],
+        weight: &[f64; MAX_BLOCK],
         scratch: &mut Scratch,
+        out: &mut SurfaceBlock,
     ) {
+        let [du, dv] = [self.cut.u_axis, self.cut.v_axis];
+        for i in 0..path.len().min(MAX_BLOCK) {
+            let share = amplitude * resolved(path.footprint_m[i] * per_m);
+            scratch.texture[i] += share * f64::from(scratch.value[i]);
+            let height = weight[i] * parameters.amplitude_m * share;
+            if height != 0.0 {
+                let slope = scratch.slope.each_ref().map(|s| f64::from(s[i]));
+                let along =
+                    |axis: [f64; 3]| per_m * (slope[0] * axis[0] + slope[1] * axis[1] + slope[2] * axis[2]);
+                out.height_m[i] += height * f64::from(scratch.value[i]);
+                out.gradient[i][0] += height * along(du);
+                out.gradient[i][1] += height * along(dv);
+            }
+        }
+    }
+
+    /// Evaluates one lattice at the points.
+    fn octave(&self, lattice: &GradientNoise3d, per_m: f64, n: usize, scratch: &mut Scratch) {
+        let n = n.min(MAX_BLOCK);
         let [x, y, z] = &mut scratch.cells;
-        for (i, &position) in path.position_m.iter().enumerate().take(n) {
-            [x[i], y[i], z[i]] = self.cut.at(position).map(|p| p * per_m);
+        for (i, point_m) in scratch.point_m.iter().enumerate().take(n) {
+            [x[i], y[i], z[i]] = point_m.map(|p| p * per_m);
         }
         let [dx, dy, dz] = &mut scratch.slope;
         let mut batch = Noise3Batch {
@@ -248,6 +234,7 @@ fn resolved(footprint_cells: f64) -> f64 {
 impl HeightField for SolidNoise {
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.parameters.prepare(setup.sample_rate_hz);
+        self.step_s = 1.0 / setup.sample_rate_hz;
         Ok(())
     }
 
@@ -266,8 +253,13 @@ impl HeightField for SolidNoise {
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let n = path.len().min(MAX_BLOCK);
         out.clear(n);
-        let mut scratch =
-            Scratch { cells: [[0.0; MAX_BLOCK]; 3], value: [0.0; MAX_BLOCK], slope: [[0.0; MAX_BLOCK]; 3] };
+        let mut scratch = Scratch {
+            point_m: [[0.0; 3]; MAX_BLOCK],
+            texture: [0.0; MAX_BLOCK],
+            cells: [[0.0; MAX_BLOCK]; 3],
+            value: [0.0; MAX_BLOCK],
+            slope: [[0.0; MAX_BLOCK]; 3],
+        };
         let weights: [[f64; 3]; MAX_BLOCK] = core::array::from_fn(|i| {
             if i < n { self.parameters.weights(path.first_sample + i as u64) } else { [0.0; 3] }
         });
@@ -280,18 +272,23 @@ impl HeightField for SolidNoise {
                 }
             }
         }
+        if path.slopes {
+            out.push_no_slope(n);
+        }
+        self.lies = 0;
     }
 
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        let footprint_m = touch.velocity_m_s[0].hypot(touch.velocity_m_s[1]) * FORCE_PERIOD_S;
-        let force_n = self.force_n(
-            touch.position_m,
-            touch.velocity_m_s,
-            touch.normal_force_n,
-            footprint_m,
-            touch.sample,
-        );
-        Reaction { force_n, ..Reaction::default() }
+    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
+        self.lies = at_m.len().min(MAX_BLOCK);
+        self.lies_at_m[..self.lies].copy_from_slice(&at_m[..self.lies]);
+    }
+
+    /// What flows is felt by a resting finger.
+    fn react(&mut self, _touch: &Touch) -> Reaction {
+        Reaction {
+            stirs: self.parameters.values().iter().any(|p| p.flow_m_s != [0.0; 3]),
+            ..Reaction::default()
+        }
     }
 
     /// Takes [`SolidNoiseParameters`].

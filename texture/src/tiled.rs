@@ -63,6 +63,8 @@ pub struct Tiled {
     source: Source,
     axes: [TileAxis; 2],
     part: SurfaceBlock,
+    /// The next path lies at places of a body, which need no tiles.
+    has_places: bool,
 }
 
 impl Tiled {
@@ -71,7 +73,7 @@ impl Tiled {
     pub fn new(source: Source, tile_m: [f64; 2]) -> Self {
         let longest_m = source.band().longest_m.max(1e-6);
         let axes = tile_m.map(|length_m| TileAxis::new(length_m, longest_m));
-        Self { source, axes, part: SurfaceBlock::default() }
+        Self { source, axes, part: SurfaceBlock::default(), has_places: false }
     }
 
     fn places(&self, position_m: [f64; 2]) -> [Place; 2] {
@@ -103,6 +105,16 @@ impl HeightField for Tiled {
 
     fn ride(&mut self, radius_m: f64) {
         self.source.ride(radius_m);
+    }
+
+    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
+        self.has_places = !at_m.is_empty();
+        self.source.lie_at(at_m);
+    }
+
+    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        let position_m = self.places(position_m).map(|place| place.at_m);
+        self.source.carries_n(contact, position_m, depth_m)
     }
 
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
@@ -137,6 +149,9 @@ impl HeightField for Tiled {
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let n = path.len().min(MAX_BLOCK);
+        if std::mem::take(&mut self.has_places) {
+            return self.source.sample(path, out);
+        }
         let mut places = [[Place::default(); 2]; MAX_BLOCK];
         let mut position_m = [[0.0; 2]; MAX_BLOCK];
         for i in 0..n {
@@ -173,6 +188,14 @@ impl HeightField for Tiled {
                 out.roughness[i] += weight * part.roughness[i];
                 out.friction[i] += weight * part.friction[i];
                 out.compliance_m_n[i] += weight * part.compliance_m_n[i];
+                if !part.answer.is_empty() {
+                    let mut answer = part.answer.at(i);
+                    // The slope of the blend is none of the texture's.
+                    let blend = slope.map(|s| s * part.height_m[i]);
+                    answer.push_per_n = [0, 1].map(|a| weight * answer.push_per_n[a] + blend[a]);
+                    answer.force_n = answer.force_n.map(|f| weight * f);
+                    out.answer.add(i, &answer, 1.0);
+                }
             }
         }
     }

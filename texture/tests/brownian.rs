@@ -5,7 +5,7 @@ mod common;
 
 use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface, Rendering};
 use asperity_texture::brownian::{BrownianDesign, Method};
-use asperity_texture::height_field::{HeightField, Touch};
+use asperity_texture::height_field::HeightField;
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
 use common::{Stroke, bits, rms};
@@ -204,21 +204,14 @@ fn rms_force(source: &mut dyn HeightField, rate: f64) -> f64 {
             position_m: &[position],
             velocity_m_s: &[stroke.velocity_m_s],
             footprint_m: &[stroke.footprint_m()],
-            normal_force_n: &[],
+            normal_force_n: &[0.5],
             first_sample: 1 + n as u64,
             contact: 0,
             slopes: true,
         };
         source.sample(&path, &mut out);
         if n % 64 == 0 {
-            let touch = Touch {
-                contact: 0,
-                sample: 1 + n as u64,
-                position_m: position,
-                velocity_m_s: stroke.velocity_m_s,
-                normal_force_n: 0.5,
-            };
-            forces.extend(source.react(&touch).force_n);
+            forces.extend(out.answer.at(0).force_n);
         }
     }
     (forces.iter().map(|f| f * f).sum::<f64>() * 3.0 / forces.len() as f64).sqrt()

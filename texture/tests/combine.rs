@@ -4,7 +4,7 @@ mod common;
 
 use asperity_texture::combine::{BandSplit, Crossfade, Mask, Scale, Source, Sum};
 use asperity_texture::combine::{BandWeights, CrossfadeTo, ScaleTo};
-use asperity_texture::height_field::{HeightField, Touch};
+use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock};
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
 use asperity_texture::solid_materials::SolidMaterial;
@@ -41,14 +41,23 @@ fn a_sum_is_the_sum_of_its_parts_in_height_slope_and_force() {
             assert_eq!(a[k] + b[k], s[k]);
         }
     }
-    let touch = Touch {
+    let path = PathBlock {
+        position_m: &[[0.01, 0.02]],
+        velocity_m_s: &[[0.1, 0.0]],
+        footprint_m: &[0.0],
+        normal_force_n: &[1.0],
+        first_sample: 0,
         contact: 0,
-        sample: 0,
-        position_m: [0.01, 0.02],
-        velocity_m_s: [0.1, 0.0],
-        normal_force_n: 1.0,
+        slopes: true,
     };
-    let force = |mut s: Source| s.react(&touch).force_n;
+    let force = |mut s: Source| {
+        let mut out = SurfaceBlock::default();
+        s.sample(&path, &mut out);
+        let answer = out.answer.at(0);
+        // The law stands in the place of the slope.
+        assert_eq!(answer.push_per_n, out.gradient[0]);
+        answer.force_n
+    };
     let [a, b] = [SolidMaterial::Wood, SolidMaterial::Pebbles].map(|m| force(solid(m)));
     let both = force(Box::new(Sum::new(vec![solid(SolidMaterial::Wood), solid(SolidMaterial::Pebbles)])));
     assert_eq!(both, [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);

@@ -3,7 +3,7 @@
 mod common;
 
 use asperity_dsp::rng::Rng;
-use asperity_texture::height_field::{HeightField, Setup, Touch};
+use asperity_texture::height_field::{HeightField, PathBlock, Setup, SurfaceBlock, Touch};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::{ForceDirection, SolidCut, SolidNoise};
 use common::{Stroke, bits, rms};
@@ -85,19 +85,63 @@ fn any_split_into_blocks_gives_the_same_bits_also_across_a_change() {
 
 #[test]
 fn a_tool_at_rest_feels_a_constant_force_and_the_same_one_at_the_same_place() {
-    let mut source = made(SolidMaterial::Granite);
-    let touch = |sample| Touch {
-        contact: 0,
-        sample,
-        position_m: [0.0312, 0.0417],
-        velocity_m_s: [0.0; 2],
-        normal_force_n: 0.5,
-    };
-    let first = source.react(&touch(0)).force_n;
+    let source = made(SolidMaterial::Granite);
+    let force_at = |sample| felt(&mut source.clone(), sample, 0.5)[0];
+    let first = force_at(0);
     assert!(first[0] != 0.0 && first[1] == 0.0 && first[2] == 0.0, "along x only: {first:?}");
     for n in 1..100 {
-        assert_eq!(source.react(&touch(64 * n)).force_n, first);
+        assert_eq!(force_at(64 * n), first);
     }
+}
+
+/// Answers to a tool that stands somewhere.
+fn felt(source: &mut SolidNoise, first_sample: u64, normal_force_n: f64) -> Vec<[f64; 3]> {
+    let path = PathBlock {
+        position_m: &[[0.0312, 0.0417]; 64],
+        velocity_m_s: &[[0.0; 2]; 64],
+        footprint_m: &[0.0; 64],
+        normal_force_n: &[normal_force_n; 64],
+        first_sample,
+        contact: 0,
+        slopes: true,
+    };
+    let mut out = SurfaceBlock::default();
+    source.sample(&path, &mut out);
+    (0..64).map(|i| out.answer.at(i).force_n).collect()
+}
+
+#[test]
+fn nothing_is_felt_of_a_block_that_is_not_penetrated_neither_texture_nor_medium() {
+    for material in SolidMaterial::SEVEN {
+        assert_eq!(felt(&mut made(material), 0, 0.0), vec![[0.0; 3]; 64], "{material:?}");
+        assert_eq!(made(material).force_n([0.01, 0.02], [0.1, 0.0], 0.0, 0.0, 0), [0.0; 3]);
+        assert!(felt(&mut made(material), 0, 1e-5)[0][0] != 0.0, "{material:?}");
+    }
+}
+
+#[test]
+fn a_block_that_flows_is_felt_by_a_resting_tool_as_if_that_were_moving_and_keeps_it_awake() {
+    let mut parameters = SolidMaterial::Gravel.parameters();
+    let still = SolidNoise::new(parameters, 7).unwrap();
+    parameters.flow_m_s = [0.08, -0.03, 0.0];
+    let mut flows = SolidNoise::new(parameters, 7).unwrap();
+    flows.prepare(&Setup { sample_rate_hz: RATE, voices: 1 }).unwrap();
+    for block in [0, 100, 700] {
+        for (i, force) in felt(&mut flows, 64 * block, 0.5).iter().enumerate() {
+            let t = (64 * block + i as u64) as f64 / RATE;
+            let wanted = still.force_n([0.0312 - 0.08 * t, 0.0417 + 0.03 * t], [0.0; 2], 0.5, 0.0, 0);
+            assert!((force[0] - wanted[0]).abs() < 1e-6, "{force:?} {wanted:?}");
+        }
+    }
+    let touch =
+        Touch { contact: 0, sample: 0, position_m: [0.0; 2], velocity_m_s: [0.0; 2], normal_force_n: 0.5 };
+    assert!(flows.react(&touch).stirs && !still.clone().react(&touch).stirs);
+    // Out of the surface it boils in its place.
+    parameters.flow_m_s = [0.0, 0.0, 0.05];
+    let mut boils = SolidNoise::new(parameters, 7).unwrap();
+    boils.prepare(&Setup { sample_rate_hz: RATE, voices: 1 }).unwrap();
+    assert!(felt(&mut boils, 0, 0.5)[0] == felt(&mut still.clone(), 0, 0.5)[0]);
+    assert!(felt(&mut boils, 6400, 0.5)[0] != felt(&mut boils, 0, 0.5)[0]);
 }
 
 #[test]

@@ -73,6 +73,7 @@ impl Finger<'_> {
             velocity_m_s: Some(velocity.map(rounded)),
             normal_force_n: rounded(self.normal_force_n * wander * pressing(since)),
             closing_m_s: if first { LANDING_M_S } else { 0.0 },
+            ..ContactSample::default()
         };
         if first {
             let surface = self.surface.to_owned();

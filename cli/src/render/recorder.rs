@@ -3,7 +3,7 @@
 use super::picture::{ContactCurve, DRAWN_CONTACTS};
 use crate::csv::CsvWriter;
 use crate::progress::Progress;
-use asperity::live::ports::{ForceMeans, Of};
+use asperity::live::ports::{ForceRows, Of};
 use asperity::{ContactBlock, ContactId, Tap};
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -57,8 +57,8 @@ impl Recorder {
 
     /// Writes the forces, `rate_hz` rows a second and contact.
     pub fn force(&mut self, file: BufWriter<File>, rate_hz: f64) -> io::Result<()> {
-        let means = ForceMeans::new(rate_hz, self.sample_rate_hz, 64);
-        self.force = Some(Force { table: CsvWriter::new(file, FORCE_HEADER)?, rate_hz, means });
+        let rows = ForceRows::new(rate_hz, self.sample_rate_hz, 64);
+        self.force = Some(Force { table: CsvWriter::new(file, FORCE_HEADER)?, rate_hz, rows });
         Ok(())
     }
 
@@ -181,25 +181,25 @@ impl Trace {
     }
 }
 
-/// The rows of `STEM.force.csv`: means over a tick, one contact each.
+/// The rows of `STEM.force.csv`, one contact each.
 struct Force {
     table: Table,
     rate_hz: f64,
-    means: ForceMeans,
+    rows: ForceRows,
 }
 
 impl Force {
     fn add(&mut self, block: &ContactBlock<'_>) -> io::Result<()> {
         self.close(block.first_sample)?;
-        self.means.add(block);
+        self.rows.add(block);
         Ok(())
     }
 
     /// Writes the rows of every tick that lies before the stretch now being told.
     fn close(&mut self, before: u64) -> io::Result<()> {
-        let Self { table, rate_hz, means } = self;
+        let Self { table, rate_hz, rows } = self;
         let mut written = Ok(());
-        means.close(before, |row| {
+        rows.close(before, |row| {
             if let (Of::Contact(contact), Ok(())) = (row.of, &written) {
                 table.number(row.tick as f64 / *rate_hz).whole(contact.0);
                 for force_n in row.force_n {

@@ -122,6 +122,7 @@ fn random_strokes(size_m: [f64; 2], count: usize, seed: u64) -> ContactLog {
                 velocity_m_s: Some(velocity),
                 normal_force_n,
                 closing_m_s: 0.0,
+                ..ContactSample::default()
             };
             let event = if step == 0 {
                 LogEvent::begin(contact, "s", 0, sample)

@@ -98,6 +98,7 @@ fn stroke(
             velocity_m_s: Some([0.1, 0.0]),
             normal_force_n: 0.5,
             closing_m_s: 0.0,
+            ..ContactSample::default()
         };
         let event = match step {
             0 => ContactEvent::begin(ContactId(1), cloth, Actuator(0), sample),

@@ -3,7 +3,7 @@
 use super::Renderer;
 use crate::audio::voice::{EMPTY_FORCE_N, Phase, Role, Voice};
 use crate::link::stats::Counters;
-use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis};
+use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis, MAX_FORCE_N};
 use crate::model::stamp::Stamp;
 use asperity_dsp::trajectory::Trajectory;
 
@@ -28,6 +28,7 @@ impl Renderer {
         match *event {
             ContactEvent::Begin { contact, touching, sample } => {
                 let (surface, role) = (touching.surface.index(), Role::from(&touching));
+                let sample = self.carried(surface, None, &sample);
                 if !self.resume(contact, surface, role, &sample, stamp) {
                     self.end(contact);
                     self.land(contact, surface, role, &sample, stamp);
@@ -45,6 +46,14 @@ impl Renderer {
             // The scene turns impacts into strikes before they are sent.
             ContactEvent::Impact(_) => {}
         }
+    }
+
+    /// A tip that stands at a depth presses as hard as the surface carries it there; `contact` is the slot of its voice.
+    fn carried(&mut self, surface: usize, contact: Option<usize>, sample: &ContactSample) -> ContactSample {
+        let carried_n =
+            sample.depth_m.map(|depth_m| self.seats[surface].carries_n(contact, sample.uv, depth_m));
+        let normal_force_n = carried_n.map_or(sample.normal_force_n, |n| n.min(MAX_FORCE_N));
+        ContactSample { normal_force_n, ..*sample }
     }
 
     /// A landing right after a lift-off of the same contact at the same place is the physics engine's
@@ -135,9 +144,11 @@ impl Renderer {
     }
 
     fn moved(&mut self, contact: ContactId, sample: &ContactSample, stamp: Stamp) {
-        let mut sample = *sample;
         if let Some(index) = sounding(&self.voices, contact) {
+            let (surface, slot) = (self.voices[index].surface, self.voices[index].slot());
+            let mut sample = self.carried(surface, Some(slot), sample);
             let voice = &mut self.voices[index];
+            voice.carry(&sample);
             let Some(normal_force_n) = voice.pressed_n(sample.normal_force_n) else {
                 Counters::add(&self.counters.unpressed, 1);
                 return self.silence(index, false);
@@ -155,11 +166,12 @@ impl Renderer {
             Counters::add(&self.counters.orphaned, 1);
             return;
         };
+        let silent = self.silent[index];
+        let sample = self.carried(silent.surface, None, sample);
         if sample.normal_force_n <= EMPTY_FORCE_N {
             Counters::add(&self.counters.unpressed, 1);
             return;
         }
-        let silent = self.silent[index];
         if silent.stolen && self.sounding_count() >= self.contact_limit() {
             Counters::add(&self.counters.orphaned, 1);
             return;

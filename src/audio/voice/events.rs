@@ -1,5 +1,7 @@
 //! Contact events at a voice: it lands, appears, goes on.
 
+use super::body_path::BodyPath;
+use super::watching::Ground;
 use super::{PadSample, Phase, Scratch, Shared, Voice};
 use crate::audio::seat::Seat;
 use crate::model::event::{ContactId, ContactSample};
@@ -10,14 +12,14 @@ use asperity_dsp::butterworth;
 use asperity_dsp::hertz::{FORCE_HISTORY, OnsetMerge};
 use asperity_dsp::rng::Rng;
 use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory};
-use asperity_texture::height_field::{MAX_BLOCK, Reaction};
+use asperity_texture::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction};
 
 /// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
 /// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
 const SAME_TOUCH_M: f64 = 0.01;
 
-/// A force that is no touch, N: the weight of a tenth of a milligram.
-pub(crate) const EMPTY_FORCE_N: f64 = 1e-6;
+/// A force that is no touch, N.
+pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
 
 /// A contact force so many times what presses is a blow: no contact begins in the middle of one.
 const LEAD_IN_BLOW: f64 = 10.0;
@@ -51,6 +53,11 @@ impl Voice {
         self.rising = None;
         self.role_gain.set(self.role.gain);
         self.landing_m_s = sample.closing_m_s;
+        self.falls = sample.closing_m_s > 0.0;
+        self.carry(sample);
+        self.last_ground = Ground::default();
+        self.body_path = BodyPath::begin(&slot.place_trajectory, sample, stamp);
+        scratch.at_m = [sample.at_m.unwrap_or_default(); MAX_BLOCK];
         self.fade_in_left = if sample.closing_m_s > 0.0 { 0 } else { shared.fade_samples() };
         self.trajectory = Trajectory::begin(&slot.trajectory, &event);
         // The path may begin behind the event, by the filter's delay.
@@ -154,6 +161,9 @@ impl Voice {
     ) -> Option<Trajectory> {
         self.refreshed = position;
         self.asleep = false;
+        if let Some(path) = &mut self.body_path {
+            path.moved(&slot.place_trajectory, sample, stamp);
+        }
         let mut path = self.trajectory;
         match path.moved(&slot.trajectory, &path_event(sample, slot, stamp)) {
             Moved::Teleported => return Some(path),

@@ -10,6 +10,7 @@ impl Scratch {
         Box::new(Self {
             points: [PathPoint::default(); MAX_BLOCK],
             position_m: [[0.0; 2]; MAX_BLOCK],
+            at_m: [[0.0; 3]; MAX_BLOCK],
             velocity_m_s: [[0.0; 2]; MAX_BLOCK],
             footprint_m: [0.0; MAX_BLOCK],
             noise_footprint_m: [0.0; MAX_BLOCK],

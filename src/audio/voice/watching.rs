@@ -5,10 +5,32 @@ use crate::audio::seat::Seat;
 use crate::link::tap::{ContactBlock, Tap};
 use crate::model::event::Actuator;
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::Reaction;
+use asperity_texture::answer::AnswerAt;
+use asperity_texture::height_field::SurfaceBlock;
+use asperity_texture::sand::law::capped;
 
 /// Below this speed friction no longer jumps, m/s.
 const STICK_M_S: f64 = 1e-3;
+
+/// What the ground under a sample pushes with.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ground {
+    gradient: [f64; 2],
+    friction: f64,
+    answer: AnswerAt,
+}
+
+impl Ground {
+    fn at(surface: &SurfaceBlock, i: usize) -> Self {
+        Self { gradient: surface.gradient[i], friction: surface.friction[i], answer: surface.answer.at(i) }
+    }
+}
+
+impl Default for Ground {
+    fn default() -> Self {
+        Self { gradient: [0.0; 2], friction: 0.0, answer: AnswerAt::NONE }
+    }
+}
 
 impl Voice {
     /// Shows the stretch to the tap, a row for each sample that leaves. Rows describe the instant `latency` samples back, so the
@@ -44,10 +66,16 @@ impl Voice {
             scratch.uv[count] = [point.position_m[0] / size_m[0], point.position_m[1] / size_m[1]];
             scratch.shown[count] = scratch.pad[i];
             scratch.shown_n_s[count] = std::mem::take(&mut self.unshown_n_s);
-            let (slope, friction) = (scratch.surface.gradient[i], scratch.surface.friction[i]);
-            scratch.output_force_n[count] =
-                output_force(&point, &scratch.pad[i], slope, friction, &self.reaction);
+            let ground = if self.asleep || i < latency {
+                self.last_ground
+            } else {
+                Ground::at(&scratch.surface, i - latency)
+            };
+            scratch.output_force_n[count] = self.output_force(&point, &scratch.pad[i], &ground);
             count += 1;
+        }
+        if !self.asleep && n > 0 {
+            self.last_ground = Ground::at(&scratch.surface, n - 1);
         }
         tap.contact(&ContactBlock {
             first_sample,
@@ -61,21 +89,20 @@ impl Voice {
             force_n: &scratch.output_force_n[..count],
         });
     }
-}
 
-/// 3-D force on the finger: contact + friction + texture (along the surface's slope) + what the
-/// surface does by itself.
-fn output_force(
-    point: &PathPoint,
-    row: &PadSample,
-    gradient: [f64; 2],
-    friction: f64,
-    reaction: &Reaction,
-) -> [f64; 3] {
-    let [u, v] = point.velocity_m_s;
-    let pressed_n = row.contact_force_n;
-    // Below 1 mm/s friction grows linearly, so that a resting finger does not chatter.
-    let slide = friction * pressed_n / (u * u + v * v).sqrt().max(STICK_M_S);
-    let [fx, fy, fz] = reaction.force_n;
-    [fx - slide * u - pressed_n * gradient[0], fy - slide * v - pressed_n * gradient[1], fz + pressed_n]
+    /// 3-D force on the finger: contact + friction + what the surface answers beside them, which is nothing before it touches.
+    fn output_force(&mut self, point: &PathPoint, row: &PadSample, ground: &Ground) -> [f64; 3] {
+        self.falls &= row.contact_force_n == 0.0;
+        let pressed_n = self.carried_n.unwrap_or(row.contact_force_n);
+        if self.falls || self.carried_n == Some(0.0) {
+            return [0.0; 3];
+        }
+        let AnswerAt { force_n, push_per_n, cap_n } = ground.answer;
+        let velocity = point.velocity_m_s;
+        // Below 1 mm/s friction grows linearly, so that a resting finger does not chatter.
+        let slide = ground.friction / velocity[0].hypot(velocity[1]).max(STICK_M_S);
+        let along =
+            |a: usize| force_n[a] + pressed_n * (push_per_n[a] - ground.gradient[a] - slide * velocity[a]);
+        capped([along(0), along(1), force_n[2] + pressed_n], cap_n)
+    }
 }

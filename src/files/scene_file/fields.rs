@@ -171,6 +171,23 @@ impl Fields {
         vector.map(Some).ok_or_else(|| self.wrong_kind(key, &value, "three numbers, [x, y, z]"))
     }
 
+    /// One number, which is the third of a vector, or all three; each in its range.
+    pub fn number_or_vector(&mut self, of: &Parameter) -> Result<Option<[f64; 3]>, FileError> {
+        let vector = if self.is_list(of.key) {
+            self.vector(of.key)?
+        } else {
+            self.number(of)?.map(|number| [0.0, 0.0, number])
+        };
+        match vector {
+            Some(vector) if !vector.iter().all(|x| of.range.holds(*x)) => Err(self.refuse(
+                of.key,
+                format!("{vector:?} is refused"),
+                format!("each {}", right(of.range)),
+            )),
+            vector => Ok(vector),
+        }
+    }
+
     /// A table.
     pub fn table(&mut self, key: &'static str) -> Result<Option<Self>, FileError> {
         match self.take(key) {

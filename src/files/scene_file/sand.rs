@@ -38,6 +38,8 @@ pub fn read(mut table: Fields, folder: &Path) -> Result<Sand, FileError> {
         wetness: table.number_or(&sand::WETNESS, default.law.wetness)?,
         layers: read_layers(&mut table)?,
         grain_m: table.number_or(&sand::GRAIN_M, default.law.grain_m)?,
+        cap_n: table.number_or(&sand::CAP_N, default.law.cap_n)?,
+        bearing: default.law.bearing,
     };
     let (round, tool) = read_tool(&mut table, folder)?;
     let design = SandDesign {

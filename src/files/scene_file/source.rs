@@ -232,6 +232,7 @@ fn read_solid_table(mut table: Fields) -> Result<Source, FileError> {
     ] {
         *to = table.number_or(of, *to)?;
     }
+    parameters.flow_m_s = table.number_or_vector(&solid::FLOW_M_S)?.unwrap_or(parameters.flow_m_s);
     parameters.direction = table.word("direction", &directions)?.unwrap_or(parameters.direction);
     let proportional = table.flag("proportional")?;
     parameters.proportional_to_contact = proportional.unwrap_or(parameters.proportional_to_contact);

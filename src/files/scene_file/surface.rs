@@ -42,6 +42,8 @@ pub struct SurfaceEntry {
     pub frame: Option<SurfaceFrame>,
     /// Coulomb friction coefficient, for the 3-D force; none = the source's.
     pub friction: Option<f64>,
+    /// How far it gives way, m/N; none = as its source does.
+    pub compliance_m_n: Option<f64>,
 }
 
 /// Where R comes from.
@@ -81,6 +83,7 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
         excitation: read_excitation(&mut fields)?,
         frame: read_frame(&mut fields)?,
         friction: fields.number(&parameters::FRICTION)?,
+        compliance_m_n: fields.number(&parameters::COMPLIANCE_M_N)?,
     };
     fields.finish()?;
     Ok(surface)

@@ -1,13 +1,10 @@
-//! Force port: the 3-D force on the finger for force-feedback devices, as means over a tick of the device's own rate.
-//!
-//! ```text
-//! row(tick, contact) = mean over the tick's samples of (contact + friction + texture + what the surface does by itself)
-//! row(tick, hand)    = Σ over the contacts that the hand's actuator feels
-//! ```
+//! Force port: the 3-D force on the finger for force-feedback devices, as [rows](super::ForceRows) at the ticks of the device's own rate.
 //!
 //! x and y lie along the surface's u and v, z points out of it. Contacts of one hand on surfaces that lie differently are summed in each
-//! surface's own frame. `asperity render --force` writes the same rows.
+//! surface's own frame. `asperity render --force` writes the same rows. A row leaves 4 ticks after its own, so it is what a tool feels of
+//! textures and blows; a loop that holds a device against a wall runs [`Scene::tip_law`](crate::Scene::tip_law) on its own thread.
 
+use super::force_rows::{ForceRow, ForceRows, Of};
 use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
 use crate::link::overwriting::{Reader, Writer, ring};
 use crate::link::tap::ContactBlock;
@@ -25,109 +22,6 @@ pub struct Force {
     pub holds_s: f64,
 }
 
-/// Whose force a row tells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Of {
-    /// One contact's.
-    Contact(ContactId),
-    /// The sum of all contacts that this channel's hand feels.
-    Hand(Actuator),
-}
-
-/// A force during one tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ForceRow {
-    /// The tick: its beginning is `tick / rate_hz` seconds after sample 0.
-    pub tick: u64,
-    /// Whose force.
-    pub of: Of,
-    /// Along u, v and out of the surface, N.
-    pub force_n: [f64; 3],
-}
-
-/// Means of the force over ticks, contact by contact.
-#[derive(Debug, Clone)]
-pub struct ForceMeans {
-    rate_hz: f64,
-    sample_rate_hz: f64,
-    open: Vec<OpenRow>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct OpenRow {
-    tick: u64,
-    contact: ContactId,
-    actuator: Option<Actuator>,
-    count: f64,
-    sum_n: [f64; 3],
-}
-
-impl ForceMeans {
-    /// For `rate_hz` rows a second. Allocates room for `contacts` at once; more make it allocate later.
-    #[must_use]
-    pub fn new(rate_hz: f64, sample_rate_hz: f64, contacts: usize) -> Self {
-        // A stretch of samples may touch several ticks.
-        let ticks = (64.0 * rate_hz / sample_rate_hz).ceil() as usize + 2;
-        Self { rate_hz, sample_rate_hz, open: Vec::with_capacity(contacts * ticks) }
-    }
-
-    /// The tick that a sample lies in.
-    fn tick(&self, sample: u64) -> u64 {
-        (sample as f64 * self.rate_hz / self.sample_rate_hz + 1e-9) as u64
-    }
-
-    /// Adds what a contact does during a stretch.
-    pub fn add(&mut self, block: &ContactBlock<'_>) {
-        for (sample, force_n) in (block.first_sample..).zip(block.force_n) {
-            let (tick, contact) = (self.tick(sample), block.contact);
-            match self.open.iter_mut().find(|row| (row.tick, row.contact) == (tick, contact)) {
-                Some(row) => {
-                    row.count += 1.0;
-                    row.sum_n = std::array::from_fn(|axis| row.sum_n[axis] + force_n[axis]);
-                }
-                None => {
-                    let actuator = block.actuator;
-                    self.open.push(OpenRow { tick, contact, actuator, count: 1.0, sum_n: *force_n });
-                }
-            }
-        }
-    }
-
-    /// Hands out the rows of every tick that ends before a sample: the contacts of a tick in order, then the hands.
-    pub fn close(&mut self, before: u64, mut row: impl FnMut(ForceRow)) {
-        let before = self.tick(before);
-        if !self.open.iter().any(|open| open.tick < before) {
-            return;
-        }
-        self.open.sort_unstable_by_key(|open| (open.tick, open.contact));
-        let done = self.open.partition_point(|open| open.tick < before);
-        for tick in self.open[..done].chunk_by(|a, b| a.tick == b.tick) {
-            tick.iter().for_each(|open| row(open.row(Of::Contact(open.contact))));
-            for (index, open) in tick.iter().enumerate() {
-                let Some(hand) = open.actuator else { continue };
-                let felt_by_hand = |open: &&OpenRow| open.actuator == Some(hand);
-                if tick[..index].iter().any(|open| felt_by_hand(&open)) {
-                    continue;
-                }
-                let forces_n = tick[index..].iter().filter(felt_by_hand).map(OpenRow::mean_n);
-                let force_n = forces_n.fold([0.0; 3], |a, b| std::array::from_fn(|axis| a[axis] + b[axis]));
-                row(ForceRow { tick: open.tick, of: Of::Hand(hand), force_n });
-            }
-        }
-        self.open.drain(..done);
-    }
-}
-
-impl OpenRow {
-    fn mean_n(&self) -> [f64; 3] {
-        self.sum_n.map(|sum_n| sum_n / self.count)
-    }
-
-    fn row(&self, of: Of) -> ForceRow {
-        ForceRow { tick: self.tick, of, force_n: self.mean_n() }
-    }
-}
-
 /// Words of a row in the ring: tick, kind, name, three forces, and one that is free.
 const ROW_WORDS: usize = 16;
 
@@ -139,7 +33,7 @@ pub struct ForcePort {
 
 struct ForceOutlet {
     words: Writer,
-    means: ForceMeans,
+    rows: ForceRows,
 }
 
 impl PortKind for Force {
@@ -152,9 +46,9 @@ impl PortKind for Force {
         within("rate_hz", self.rate_hz, most)?;
         // A row a tick for some contacts and their hand; with more contacts it holds less long.
         let (writer, reader) = ring((8.0 * self.holds_s * self.rate_hz).ceil() as usize, ROW_WORDS);
-        let means = ForceMeans::new(self.rate_hz, setup.sample_rate_hz, setup.voices);
+        let rows = ForceRows::new(self.rate_hz, setup.sample_rate_hz, setup.voices);
         let port = ForcePort { words: reader, rate_hz: self.rate_hz };
-        Ok(Opened { outlet: Some(Box::new(ForceOutlet { words: writer, means })), port })
+        Ok(Opened { outlet: Some(Box::new(ForceOutlet { words: writer, rows })), port })
     }
 }
 
@@ -164,12 +58,12 @@ impl Outlet for ForceOutlet {
     }
 
     fn contact(&mut self, block: &ContactBlock<'_>) {
-        self.means.add(block);
+        self.rows.add(block);
     }
 
     fn shown(&mut self, before: u64) {
         let words = &mut self.words;
-        self.means.close(before, |row| words.write(packed(&row).into_iter()));
+        self.rows.close(before, |row| words.write(packed(&row).into_iter()));
     }
 
     fn is_closed(&self) -> bool {

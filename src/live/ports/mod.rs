@@ -24,10 +24,12 @@
 //! ```
 
 mod force;
+mod force_rows;
 mod pcm;
 mod picture;
 
 pub use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
-pub use force::{Force, ForceMeans, ForcePort, ForceRow, Of};
+pub use force::{Force, ForcePort};
+pub use force_rows::{ForceRow, ForceRows, LAG_TICKS, Of};
 pub use pcm::{Feed, Pcm, PcmPort};
 pub use picture::{Picture, PicturePort};

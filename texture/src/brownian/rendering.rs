@@ -17,8 +17,9 @@
 //! the same at any rate. Equation 6.8 replaces the gradient by (Δy, 0, Δy), which fixes the direction
 //! at 45°; ours is the gradient of 6.7, per millimetre (the unit is ours: the thesis has none).
 
+use crate::answer::AnswerAt;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, HeightField, MAX_BLOCK, NO_TOUCH_N, PathBlock, Setup, SurfaceBlock, WavelengthBand,
 };
 use asperity_dsp::DesignError;
 use std::any::Any;
@@ -90,18 +91,32 @@ impl BrownianForce {
     }
 }
 
+impl BrownianForce {
+    /// The rule in the place of the relief's own push, in penetration only.
+    fn answer(&self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        if !path.slopes {
+            return;
+        }
+        for (i, velocity_m_s) in path.velocity_m_s.iter().enumerate().take(MAX_BLOCK) {
+            let gradient = out.gradient[i];
+            let presses = path.pressed_n(i) > NO_TOUCH_N;
+            let force_n = if presses { self.force_n(gradient, *velocity_m_s) } else { [0.0; 3] };
+            out.answer.set(i, AnswerAt { force_n, push_per_n: gradient, cap_n: f64::INFINITY });
+        }
+    }
+}
+
 /// A relief (a height map of a Brownian surface) that also answers with one of the forces.
 pub struct BrownianSurface {
     relief: Box<dyn HeightField>,
     force: BrownianForce,
-    here: SurfaceBlock,
 }
 
 impl BrownianSurface {
     /// `relief` with a force rule.
     #[must_use]
     pub fn new(relief: Box<dyn HeightField>, force: BrownianForce) -> Self {
-        Self { relief, force, here: SurfaceBlock::default() }
+        Self { relief, force }
     }
 }
 
@@ -112,6 +127,10 @@ impl HeightField for BrownianSurface {
 
     fn ride(&mut self, radius_m: f64) {
         self.relief.ride(radius_m);
+    }
+
+    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
+        self.relief.lie_at(at_m);
     }
 
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
@@ -132,23 +151,7 @@ impl HeightField for BrownianSurface {
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         self.relief.sample(path, out);
-    }
-
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        let path = PathBlock {
-            position_m: &[touch.position_m],
-            velocity_m_s: &[touch.velocity_m_s],
-            footprint_m: &[0.0],
-            normal_force_n: &[],
-            first_sample: touch.sample,
-            contact: touch.contact,
-            slopes: true,
-        };
-        self.relief.sample(&path, &mut self.here);
-        Reaction {
-            force_n: self.force.force_n(self.here.gradient[0], touch.velocity_m_s),
-            ..Reaction::default()
-        }
+        self.force.answer(path, out);
     }
 
     fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
@@ -261,12 +264,8 @@ impl HeightField for BrownianPath {
             out.gradient[i] = Self::slope_along(slope, path.velocity_m_s[i]);
         }
         self.contacts[slot] = Travelled { first_sample: path.first_sample, begin_m, end_m: distance };
-    }
-
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        let Some(force) = &self.force else { return Reaction::default() };
-        let distance = self.contacts[self.slot(touch.contact)].end_m;
-        let slope = Self::slope_along(self.at(distance).1, touch.velocity_m_s);
-        Reaction { force_n: force.force_n(slope, touch.velocity_m_s), ..Reaction::default() }
+        if let Some(force) = &self.force {
+            force.answer(path, out);
+        }
     }
 }

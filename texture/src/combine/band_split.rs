@@ -62,6 +62,14 @@ impl HeightField for BandSplit {
         [&mut self.coarse, &mut self.fine].into_iter().for_each(|source| source.ride(radius_m));
     }
 
+    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
+        [&mut self.coarse, &mut self.fine].into_iter().for_each(|source| source.lie_at(at_m));
+    }
+
+    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        self.coarse.carries_n(contact, position_m, depth_m)
+    }
+
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.weights.prepare(setup.sample_rate_hz);
         self.coarse.prepare(setup)?;
@@ -101,6 +109,8 @@ impl HeightField for BandSplit {
                 out.gradient[i][a] =
                     low * out.gradient[i][a] + high * (self.all.gradient[i][a] - self.low.gradient[i][a]);
             }
+            out.answer.mix(i, low, &self.all.answer, high);
+            out.answer.mix(i, 1.0, &self.low.answer, -high);
         }
     }
 

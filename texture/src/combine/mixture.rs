@@ -18,6 +18,7 @@ pub(super) fn mix(out: &mut SurfaceBlock, other: &SurfaceBlock, i: usize, w: f64
     lerp(&mut out.roughness[i], other.roughness[i]);
     lerp(&mut out.friction[i], other.friction[i]);
     lerp(&mut out.compliance_m_n[i], other.compliance_m_n[i]);
+    out.answer.mix(i, 1.0 - w, &other.answer, w);
 }
 
 /// Adds a weighted reaction; grains keep their total momentum a second.
@@ -26,7 +27,6 @@ pub(crate) fn add(sum: Reaction, part: Reaction, weight: f64) -> Reaction {
     let rate = sum.grain_rate_per_s + weighted_rate;
     let momentum = sum.grain_rate_per_s * sum.grain_impulse_n_s + weighted_rate * part.grain_impulse_n_s;
     Reaction {
-        force_n: core::array::from_fn(|a| sum.force_n[a] + weight * part.force_n[a]),
         grain_rate_per_s: rate,
         grain_impulse_n_s: if rate > 0.0 { momentum / rate } else { 0.0 },
         stirs: sum.stirs || part.stirs,

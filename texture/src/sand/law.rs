@@ -1,8 +1,10 @@
 //! The force law of sand, and of its grains.
 //!
 //! ```text
-//! F_r(d) = k_s (e^{k_c d} − 1)   for d > 0, else 0, upwards      d(F) its inverse
+//! F_r(d) = k_s β (e^{k_c d} − 1)   for d > 0, else 0, upwards    d(F) its inverse
 //! F_f    = −k_f v |F_r|                                           along the surface
+//! |F_r + F_f| ≤ cap                                               what a device gives
+//! β      = A(3 mm) / A₀(3 mm)      A: area of the tool's print, A₀: that of the document's sphere of 5 mm
 //! layers: F_r(d) = ∫₀^d k_s k_c g(z) e^{k_c z} dz,  g = hardness of the layer at depth z
 //! ```
 //!
@@ -11,6 +13,8 @@
 //! | k_s | [`SandLaw::stiffness_n`] | 1000 | 1000 N |
 //! | k_c | [`SandLaw::exponent_per_m`] | ½ per unit | 1 m⁻¹ |
 //! | k_f | [`SandLaw::drag_s_per_m`] | 10 | 20 s/m |
+//! | β | [`SandLaw::bearing`] | – | the tool's |
+//! | cap | [`SandLaw::cap_n`] | 12 and 20 N | 20 N |
 //!
 //! Source: the sand paper §4.1, equations 1 and 3, on a square of 2 units with a sphere of 0.01. Its
 //! unit is taken as 0.5 m (ours), so that the sphere is a fingertip of 5 mm; 0.006 and 0.01 units
@@ -18,7 +22,12 @@
 //! 1 is −k_s e^{k_c d} − 1, a jump of 1001 N at the surface; and the friction is horizontal (the text
 //! says vertical). What we added, all ours and simple: wetness w multiplies k_s by 1 + 2w and raises
 //! the talus angle by 20° · w (damp sand holds a steeper slope); layers multiply the hardness below
-//! their depth; grains: a share of the displaced grains hits another one at the tool's speed.
+//! their depth; grains: a share of the displaced grains hits another one at the tool's speed. β is our
+//! answer to the authors' first open point, repulse by the area in the sand: they drop the area, because
+//! their tool is always the same sphere; here a wider tool is carried by more sand. It is measured at the
+//! depth of their 3 N, so that their sphere keeps their constants and d(F) stays a closed form. There is
+//! no Coulomb friction beside F_f, and grains finer than a cell do not push a tool sideways: it rides on
+//! many of them at once.
 
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::{Range, sand as limits};
@@ -35,6 +44,12 @@ pub const GRAIN_M: f64 = 3e-4;
 pub const GRAIN_DENSITY_KG_M3: f64 = 2650.0;
 /// Share of displaced grains that strike another one (assumed).
 pub const STRIKING_SHARE: f64 = 0.02;
+/// Largest force, N: of the document's two devices, the stronger.
+pub const CAP_N: f64 = 20.0;
+/// Depth at which the areas of prints are compared, metres: the document's 3.005 N.
+pub const BEARING_DEPTH_M: f64 = 0.003;
+/// The document's tool, metres.
+pub const REFERENCE_RADIUS_M: f64 = 0.005;
 /// Most layers.
 pub const MAX_LAYERS: usize = 4;
 
@@ -62,6 +77,10 @@ pub struct SandLaw {
     pub layers: [Option<Layer>; MAX_LAYERS],
     /// Diameter of a grain, metres.
     pub grain_m: f64,
+    /// Largest force, N, above 0.
+    pub cap_n: f64,
+    /// β: how much more the tool is carried than a sphere of 5 mm. A bed of sand sets it by its [tool](super::Tool::bearing).
+    pub bearing: f64,
 }
 
 impl Default for SandLaw {
@@ -79,6 +98,8 @@ impl SandLaw {
         wetness: 0.0,
         layers: [None; MAX_LAYERS],
         grain_m: GRAIN_M,
+        cap_n: CAP_N,
+        bearing: 1.0,
     };
 
     /// Refuses what has no force.
@@ -91,6 +112,8 @@ impl SandLaw {
         limits::DRAG_S_PER_M.check("drag_s_per_m", self.drag_s_per_m)?;
         limits::WETNESS.check("wetness", self.wetness)?;
         limits::GRAIN_M.check("grain_m", self.grain_m)?;
+        limits::CAP_N.check("cap_n", self.cap_n)?;
+        limits::BEARING.check("bearing", self.bearing)?;
         let mut above = 0.0;
         for layer in self.layers.iter().flatten() {
             let deeper = Range { low: above, ..limits::LAYER_FROM_M };
@@ -100,9 +123,9 @@ impl SandLaw {
         Ok(())
     }
 
-    /// Stiffness with wetness.
+    /// Stiffness with wetness, under the tool.
     fn wet_stiffness_n(&self) -> f64 {
-        self.stiffness_n * (1.0 + 2.0 * self.wetness)
+        self.stiffness_n * (1.0 + 2.0 * self.wetness) * self.bearing
     }
 
     /// Talus angle with wetness, degrees, at most 75.
@@ -153,6 +176,21 @@ impl SandLaw {
         top + (left / (hardness * self.wet_stiffness_n() * (k * top).exp())).ln_1p() / k
     }
 
+    /// The same law under another tool.
+    #[must_use]
+    pub fn under(self, bearing: f64) -> Self {
+        Self { bearing, ..self }
+    }
+
+    /// The force on a tool that stands `depth_m` deep and moves, N along u, v and out of the sand: what the document's loop
+    /// returns to the device.
+    #[must_use]
+    pub fn answer_n(&self, depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
+        let repulse_n = self.force_n(depth_m);
+        let [u, v] = self.drag_n(velocity_m_s, repulse_n);
+        capped([u, v, repulse_n], self.cap_n)
+    }
+
     /// Drag on a tool that the sand carries with `force_n`, N.
     #[must_use]
     pub fn drag_n(&self, velocity_m_s: [f64; 2], force_n: f64) -> [f64; 2] {
@@ -167,6 +205,13 @@ impl SandLaw {
         let rate = STRIKING_SHARE * displaced_m2 * speed_m_s / volume_m3;
         (rate, GRAIN_DENSITY_KG_M3 * volume_m3 * speed_m_s)
     }
+}
+
+/// A force no larger than a cap, in its own direction.
+#[must_use]
+pub fn capped(force_n: [f64; 3], cap_n: f64) -> [f64; 3] {
+    let size_n = force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
+    if size_n > cap_n { force_n.map(|f| f * (cap_n / size_n)) } else { force_n }
 }
 
 #[cfg(test)]

@@ -148,7 +148,7 @@ impl SandSimulation {
         let mut sand = Self {
             grid,
             erosion,
-            law: design.law,
+            law: design.law.under(design.tool.bearing()),
             dry_talus_deg: design.talus_deg,
             tool: design.tool.clone(),
             depth_m: design.depth_m,
@@ -197,10 +197,10 @@ impl SandSimulation {
         {
             self.erosion.activate_all();
         }
-        self.law = law;
+        self.law = law.under(self.tool.bearing());
     }
 
-    /// The force law.
+    /// The force law, under its tool.
     #[must_use]
     pub fn law(&self) -> &SandLaw {
         &self.law
@@ -287,6 +287,12 @@ impl SandSimulation {
     #[must_use]
     pub fn picture(&self) -> SandPicture {
         self.grid.picture()
+    }
+
+    /// Level of the sand around a place where no tool stands, metres above the bottom.
+    #[must_use]
+    pub fn level_m(&self, position_m: [f64; 2]) -> f64 {
+        level_around(&self.grid, position_m, self.tool.print_radius_m(super::law::BEARING_DEPTH_M))
     }
 
     /// Level that a contact would sink from where it lands, metres above the bottom, and the radius of

@@ -5,10 +5,7 @@
 //! | audio half, every 64 samples | sends the contact's pose, takes the newest patch, gives the old one back |
 //! | simulation, 60 times a second | takes the poses, moves tools, lets sand slide, sends a patch a contact |
 //!
-//! Both directions are lock-free rings of a fixed size whose ends never wait: a full ring drops the
-//! pose (the next one says more), a missing patch leaves the old one in use. Patches are boxes made
-//! beforehand that travel in a circle, so that neither side allocates. From one patch to the next the
-//! height fades over a frame on absolute samples.
+//! Neither end ever waits ([`hand_over`](super::hand_over)). From one patch to the next the height fades over a frame on absolute samples.
 //!
 //! *Synchronous* sand ([`SandSource::synchronous`]) keeps the simulation in the source and runs a
 //! frame wherever a contact's touch crosses a multiple of the frame length on the absolute sample
@@ -16,106 +13,31 @@
 //! rendering offline; a frame may take a millisecond.
 //!
 //! Height = the sand of the patch + grains (solid noise finer than a cell). A contact sinks as deep as its
-//! print, d(F) of the [law](super::law), but not below the bottom of the bed; drag and grain impacts are
-//! the answer to a touch. A contact reads the sand it lands on until its first patch has faded in; a patch
+//! print, d(F) of the [law](super::law), but not below the bottom of the bed; its drag is the answer along the
+//! surface, instead of Coulomb friction and of the grains' slope, and grain impacts that to a touch. A tip that stands
+//! at a depth is carried by the law at that depth below the sand as it lies around it. A contact reads the sand it lands on until its first patch has faded in; a patch
 //! that shows nothing new does not fade, and once none fades the sand does not stir under a resting
 //! contact, which may sleep.
 
 use super::grid::SandPicture;
+use super::hand_over::{
+    Link, Near, PATCHES_A_CONTACT, Slot, circulating, fade_samples, frame_samples, give_back, patches, rings,
+};
 use super::law::SandLaw;
 use super::patch::Patch;
-use super::simulation::{FRAMES_PER_S, Pose, SandDesign, SandFigures, SandSimulation};
-use super::worker::{Far, NewEnds, SandWorker};
-use crate::exclusive::Exclusive;
+use super::simulation::{Pose, SandDesign, SandFigures, SandSimulation};
+use super::worker::SandWorker;
+use crate::answer::AnswerAt;
 use crate::fade::Fade;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
 use crate::moving_picture::MovingPicture;
-use crate::solid_materials::{FRICTION, SolidMaterial};
+use crate::solid_materials::SolidMaterial;
 use crate::solid_noise::SolidNoise;
 use asperity_dsp::DesignError;
 use std::any::Any;
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Patches in circulation for every contact, besides the one it landed on: one that fades out, one that fades in, one that waits,
-/// one under way.
-const PATCHES_A_CONTACT: usize = 4;
-
-/// Where the simulation runs.
-enum Link {
-    Here(Box<SandSimulation>),
-    Elsewhere {
-        near: Near,
-        /// Where the worker finds the other ends of new rings.
-        line: NewEnds,
-    },
-}
-
-/// The audio half's ends of the rings.
-struct Near {
-    poses: Exclusive<rtrb::Producer<Pose>>,
-    laws: Exclusive<rtrb::Producer<SandLaw>>,
-    patches: Exclusive<rtrb::Consumer<Box<Patch>>>,
-    back: Exclusive<rtrb::Producer<Box<Patch>>>,
-}
-
-/// Patches in circulation for so many contacts.
-fn circulating(contacts: usize) -> usize {
-    contacts * PATCHES_A_CONTACT + 2
-}
-
-/// New rings for so many contacts: the worker's ends and the audio half's.
-fn rings(contacts: usize) -> (Far, Near) {
-    let count = circulating(contacts);
-    let (poses, poses_out) = rtrb::RingBuffer::new(contacts * 64);
-    let (laws, laws_out) = rtrb::RingBuffer::new(4);
-    let (patches_in, patches_out) = rtrb::RingBuffer::new(count);
-    let (back, back_out) = rtrb::RingBuffer::new(count);
-    let far = Far {
-        touched: vec![false; contacts],
-        poses: poses_out,
-        laws: laws_out,
-        patches: patches_in,
-        back: back_out,
-        spare: patches(count),
-    };
-    let near = Near {
-        poses: Exclusive::new(poses),
-        laws: Exclusive::new(laws),
-        patches: Exclusive::new(patches_out),
-        back: Exclusive::new(back),
-    };
-    (far, near)
-}
-
-/// What one contact reads.
-struct Slot {
-    /// The sand that it landed on.
-    ground: Box<Patch>,
-    old: Option<Box<Patch>>,
-    new: Option<Box<Patch>>,
-    waiting: Option<Box<Patch>>,
-    fade_start: u64,
-    /// Sample of the next touch, if the contact stays down; `None` before the first.
-    next_touch: Option<u64>,
-    /// The simulation has not been told yet that the contact has landed.
-    landed: bool,
-}
-
-impl Slot {
-    fn new() -> Self {
-        Self {
-            ground: Box::new(Patch::flat()),
-            old: None,
-            new: None,
-            waiting: None,
-            fade_start: 0,
-            next_touch: None,
-            landed: false,
-        }
-    }
-}
 
 /// A surface of sand.
 pub struct SandSource {
@@ -132,6 +54,8 @@ pub struct SandSource {
     longest_m: f64,
     /// Depth of the untouched bed, metres.
     depth_m: f64,
+    /// Of its tool.
+    bearing: f64,
     moving_picture: Arc<MovingPicture>,
 }
 
@@ -177,7 +101,8 @@ impl SandSource {
             depth_m: design.depth_m,
             overview: Box::new(Patch::flat()),
             spare: Vec::new(),
-            law: Fade::new(design.law),
+            law: Fade::new(design.law.under(design.tool.bearing())),
+            bearing: design.tool.bearing(),
             grains: SolidNoise::new(grains, seed)?,
             grain_relief: SurfaceBlock::default(),
             sample_rate_hz: Setup::default().sample_rate_hz,
@@ -294,6 +219,18 @@ impl SandSource {
         }
     }
 
+    /// The drag of the law in the place of what slopes and friction would push.
+    fn answer(&self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        for (i, velocity_m_s) in path.velocity_m_s.iter().enumerate().take(MAX_BLOCK) {
+            let weights = self.law.weights(path.first_sample + i as u64);
+            let drag_s_per_m: f64 =
+                weights.iter().zip(self.law.values()).map(|(w, l)| w * l.drag_s_per_m).sum();
+            let push_per_n = [0, 1].map(|a| out.gradient[i][a] - drag_s_per_m * velocity_m_s[a]);
+            let cap_n = self.law.target().cap_n;
+            out.answer.set(i, AnswerAt { push_per_n, cap_n, ..AnswerAt::NONE });
+        }
+    }
+
     /// Begins to fade to the waiting patch once the last fade is over. Whether a fade is under way, and how
     /// much sand the contact displaces, m³ a metre of its way.
     fn turn_over(&mut self, contact: usize, sample: u64) -> (bool, f64) {
@@ -332,32 +269,6 @@ fn pose(touch: &Touch) -> Pose {
     }
 }
 
-/// A patch that came back to the audio half goes to the simulation, or waits until there is room.
-fn give_back(patch: Option<Box<Patch>>, back: &mut rtrb::Producer<Box<Patch>>, spare: &mut Vec<Box<Patch>>) {
-    if let Some(patch) = patch
-        && let Err(rtrb::PushError::Full(patch)) = back.push(patch)
-        && spare.len() < spare.capacity()
-    {
-        spare.push(patch);
-    }
-}
-
-/// Samples a frame of the simulation: whole blocks, two at least.
-fn frame_samples(sample_rate_hz: f64) -> u64 {
-    (sample_rate_hz / FRAMES_PER_S / MAX_BLOCK as f64).round().max(2.0) as u64 * MAX_BLOCK as u64
-}
-
-/// The fade ends a block before the next frame.
-fn fade_samples(frame_samples: u64) -> u64 {
-    frame_samples - MAX_BLOCK as u64
-}
-
-fn patches(count: usize) -> Vec<Box<Patch>> {
-    let mut patches = Vec::with_capacity(count + PATCHES_A_CONTACT);
-    patches.extend((0..count).map(|_| Box::new(Patch::flat())));
-    patches
-}
-
 impl HeightField for SandSource {
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
         self.law.prepare(setup.sample_rate_hz);
@@ -378,7 +289,6 @@ impl HeightField for SandSource {
         let n = path.len().min(MAX_BLOCK);
         self.grains.sample(path, &mut self.grain_relief);
         out.clear(n);
-        out.friction[..n].fill(FRICTION);
         let fade_length = fade_samples(self.frame_samples) as f64;
         let Some(slot) = self.slots.get(path.contact) else { return };
         let ground = if slot.next_touch.is_some() { &slot.ground } else { &self.overview };
@@ -417,6 +327,20 @@ impl HeightField for SandSource {
                 out.compliance_m_n[i] = sinks_m.min((self.depth_m + height).max(0.0)) / pressed_n;
             }
         }
+        if path.slopes {
+            self.answer(path, out);
+        }
+    }
+
+    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        let slot =
+            contact.and_then(|contact| self.slots.get(contact)).filter(|slot| slot.next_touch.is_some());
+        let level_m = match (slot, &self.link) {
+            (Some(slot), _) => slot.new.as_ref().or(slot.old.as_ref()).unwrap_or(&slot.ground).base_m,
+            (None, Link::Here(simulation)) => simulation.level_m(position_m) - self.depth_m,
+            (None, Link::Elsewhere { .. }) => self.overview.at(position_m).0,
+        };
+        Some(self.law.target().force_n(depth_m + level_m))
     }
 
     fn land(&mut self, touch: &Touch) {
@@ -435,15 +359,10 @@ impl HeightField for SandSource {
     fn react(&mut self, touch: &Touch) -> Reaction {
         self.exchange(touch);
         let (stirs, displaced_m2) = self.turn_over(touch.contact, touch.sample);
-        let mut drag = [0.0; 2];
-        for (weight, law) in self.law.weights(touch.sample).iter().zip(self.law.values()) {
-            let part = law.drag_n(touch.velocity_m_s, touch.normal_force_n);
-            drag = [0, 1].map(|a| drag[a] + weight * part[a]);
-        }
         let law = self.law.target();
         let speed = touch.velocity_m_s[0].hypot(touch.velocity_m_s[1]);
         let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
-        Reaction { force_n: [drag[0], drag[1], 0.0], grain_rate_per_s, grain_impulse_n_s, stirs }
+        Reaction { grain_rate_per_s, grain_impulse_n_s, stirs }
     }
 
     /// Takes a [`SandLaw`].
@@ -452,7 +371,7 @@ impl HeightField for SandSource {
         if law.check().is_err() {
             return false;
         }
-        self.law.set(*law, sample);
+        self.law.set(law.under(self.bearing), sample);
         match &mut self.link {
             Link::Here(simulation) => simulation.set_law(*law),
             // A full ring: five changes within a frame, of which the simulation misses one.

@@ -12,6 +12,7 @@
 //! outline and not by a radius, and the weights lean forwards (bulldozing).
 
 use super::grid::{HIGHEST, SandGrid, UNITS_PER_M, WALL};
+use super::law::{BEARING_DEPTH_M, REFERENCE_RADIUS_M};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::{Range, sand as limits};
@@ -85,6 +86,14 @@ impl Tool {
                 texel_m * (texels as f64 / core::f64::consts::PI).sqrt()
             }
         }
+    }
+
+    /// How much more it is carried than the document's sphere, by the area of its print; see the [law](super::law).
+    #[must_use]
+    pub fn bearing(&self) -> f64 {
+        let reference = Self::Sphere { radius_m: REFERENCE_RADIUS_M };
+        let [own_m, reference_m] = [self, &reference].map(|tool| tool.print_radius_m(BEARING_DEPTH_M));
+        (own_m / reference_m).powi(2).max(1e-6)
     }
 
     /// Height of the underside above the lowest point, metres; infinite where there is no tool.

@@ -29,10 +29,28 @@ impl SolidCut {
     /// `u_axis` and `v_axis` are unit vectors at a right angle.
     #[must_use]
     pub fn of_body(origin_m: [f64; 3], u_axis: [f64; 3], v_axis: [f64; 3]) -> Self {
+        Self {
+            origin_m: Self::in_body(origin_m),
+            u_axis: Self::in_body(u_axis),
+            v_axis: Self::in_body(v_axis),
+        }
+    }
+
+    /// The point of the block at a place of the body that is made of it, or a direction of the block along one of the body, metres.
+    #[inline]
+    #[must_use]
+    pub fn in_body(place_m: [f64; 3]) -> [f64; 3] {
         let Self { u_axis: x, v_axis: y, .. } = Self::SLANTED;
-        let z = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
-        let turned = |v: [f64; 3]| core::array::from_fn(|a| v[0] * x[a] + v[1] * y[a] + v[2] * z[a]);
-        Self { origin_m: turned(origin_m), u_axis: turned(u_axis), v_axis: turned(v_axis) }
+        let z = Self::SLANTED.normal();
+        core::array::from_fn(|a| place_m[0] * x[a] + place_m[1] * y[a] + place_m[2] * z[a])
+    }
+
+    /// The unit vector that stands on the surface, u × v.
+    #[inline]
+    #[must_use]
+    pub fn normal(&self) -> [f64; 3] {
+        let (u, v) = (self.u_axis, self.v_axis);
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
     }
 
     /// The point of the block under a point of the surface, metres.

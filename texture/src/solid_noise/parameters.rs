@@ -69,6 +69,9 @@ pub struct SolidNoiseParameters {
     pub viscosity_n_s_m: f64,
     /// Coulomb friction coefficient, at or above 0.
     pub friction: f64,
+    /// How fast the block flows past the surface, m/s along u, along v and out of the surface; the last makes the texture boil in its
+    /// place.
+    pub flow_m_s: [f64; 3],
 }
 
 impl SolidNoiseParameters {
@@ -86,6 +89,9 @@ impl SolidNoiseParameters {
         limits::solid::CAP_N.check("cap_n", self.cap_n)?;
         limits::solid::VISCOSITY_N_S_M.check("viscosity_n_s_m", self.viscosity_n_s_m)?;
         limits::FRICTION.check("friction", self.friction)?;
+        for speed in self.flow_m_s {
+            limits::solid::FLOW_M_S.check("flow_m_s", speed)?;
+        }
         Ok(())
     }
 

@@ -1,0 +1,255 @@
+//! Contact sample: where and how a contact touches at one instant.
+//!
+//! ```text
+//! place   uv, or at_m: a place in the body, whose surface's frame tells uv; without a frame it is where a block of stuff is cut
+//! press   normal_force_n, or depth_m: how deep the tip stands below the untouched surface; at_m tells it where neither is written
+//! ```
+//!
+//! A device's loop knows where its tip is and wants to know the force: it reports a depth. Only what gives way can answer; on a hard
+//! surface a depth says nothing about the force, and is refused.
+
+use crate::model::bad_value::{BadValue, within};
+use crate::model::error::Refusal;
+use crate::model::frame::SurfaceFrame;
+use asperity_dsp::limits;
+
+/// Where and how a contact touches at one instant.
+///
+/// ```
+/// use asperity::ContactSample;
+///
+/// let sample = ContactSample::new([0.3, 0.5], 0.6).sliding([0.1, 0.0]);
+/// assert_eq!(sample.closing_m_s, 0.0);
+/// // A tip that stands 3 mm deep in sand.
+/// let tip = ContactSample::at_depth([0.3, 0.5], 0.003).sliding([0.1, 0.0]);
+/// assert_eq!(tip.depth_m, Some(0.003));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "Written", into = "Written")]
+pub struct ContactSample {
+    /// Texture coordinates of the contact point; 1 spans the surface's width and height. They may
+    /// wrap or run on beyond 0–1. [`at_m`](Self::at_m) counts instead on a surface with a frame; NaN if only that was told.
+    pub uv: [f64; 2],
+    /// Tangential velocity along the surface's u and v axes, m/s; estimated from `uv` when missing.
+    pub velocity_m_s: Option<[f64; 2]>,
+    /// Force pressing the finger onto the surface, N. Physics engines report small negative values
+    /// around lift-off; they count as 0. [`depth_m`](Self::depth_m) counts instead; NaN if the place tells the depth.
+    pub normal_force_n: f64,
+    /// Approach speed at landing, m/s; used by [`ContactEvent::begin`](crate::ContactEvent::begin) only.
+    pub closing_m_s: f64,
+    /// Place in the frame of the body that the surface belongs to, m.
+    pub at_m: Option<[f64; 3]>,
+    /// How deep the tip stands below the untouched surface, m; below 0 it is above it. For surfaces that give way.
+    pub depth_m: Option<f64>,
+}
+
+/// The same as it is written.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Written {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    uv: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    velocity_m_s: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    normal_force_n: Option<f64>,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    closing_m_s: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    at_m: Option<[f64; 3]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    depth_m: Option<f64>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+impl TryFrom<Written> for ContactSample {
+    type Error = &'static str;
+
+    fn try_from(written: Written) -> Result<Self, &'static str> {
+        let Written { uv, velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m } = written;
+        let normal_force_n = match (normal_force_n, depth_m) {
+            (Some(_), Some(_)) => return Err("depth_m stands beside normal_force_n; write one of them"),
+            (Some(force_n), None) => force_n,
+            (None, Some(_)) => 0.0,
+            (None, None) if at_m.is_some() => f64::NAN,
+            (None, None) => return Err("missing field `normal_force_n`; or depth_m, on what gives way"),
+        };
+        if uv.is_none() && at_m.is_none() {
+            return Err("missing field `uv`; or at_m, on a surface with a frame");
+        }
+        Ok(Self { uv: uv.unwrap_or([f64::NAN; 2]), velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m })
+    }
+}
+
+impl From<ContactSample> for Written {
+    fn from(sample: ContactSample) -> Self {
+        let ContactSample { uv, velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m } = sample;
+        let told_by_place = |value: f64| at_m.is_some() && value.is_nan();
+        Self {
+            uv: Some(uv).filter(|uv| !uv.iter().any(|x| told_by_place(*x))),
+            velocity_m_s,
+            normal_force_n: Some(normal_force_n).filter(|n| depth_m.is_none() && !told_by_place(*n)),
+            closing_m_s,
+            at_m,
+            depth_m,
+        }
+    }
+}
+
+/// What has to be known of a surface to place a contact on it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) frame: Option<SurfaceFrame>,
+    pub(crate) size_m: [f64; 2],
+    /// Whether it gives way.
+    pub(crate) is_soft: bool,
+}
+
+impl ContactSample {
+    /// At texture coordinates `uv`, pressed with `normal_force_n`; its velocity is estimated from where it goes.
+    #[must_use]
+    pub fn new(uv: [f64; 2], normal_force_n: f64) -> Self {
+        Self { uv, normal_force_n, ..Self::default() }
+    }
+
+    /// At texture coordinates `uv`, its tip `depth_m` below the untouched surface.
+    #[must_use]
+    pub fn at_depth(uv: [f64; 2], depth_m: f64) -> Self {
+        Self { uv, depth_m: Some(depth_m), ..Self::default() }
+    }
+
+    /// With its tip at a place of the body, m: the surface's frame tells where that is on the surface and how deep below it.
+    #[must_use]
+    pub fn tip_at(at_m: [f64; 3]) -> Self {
+        Self { uv: [f64::NAN; 2], normal_force_n: f64::NAN, at_m: Some(at_m), ..Self::default() }
+    }
+
+    /// At this place of the body, m.
+    #[must_use]
+    pub fn placed(mut self, at_m: [f64; 3]) -> Self {
+        self.at_m = Some(at_m);
+        self
+    }
+
+    /// Sliding with this velocity along u and v, m/s.
+    #[must_use]
+    pub fn sliding(mut self, velocity_m_s: [f64; 2]) -> Self {
+        self.velocity_m_s = Some(velocity_m_s);
+        self
+    }
+
+    /// Landing with this speed, m/s.
+    #[must_use]
+    pub fn landing(mut self, closing_m_s: f64) -> Self {
+        self.closing_m_s = closing_m_s;
+        self
+    }
+
+    /// The same sample with a negative force set to 0.
+    ///
+    /// # Errors
+    /// When a number is not finite or beyond the limits of this module.
+    pub fn checked(mut self) -> Result<Self, BadValue> {
+        for x in self.at_m.into_iter().flatten() {
+            within("at_m", x, limits::PLACE_M)?;
+        }
+        for uv in self.uv {
+            within("uv", uv, limits::UV)?;
+        }
+        for v in self.velocity_m_s.into_iter().flatten() {
+            within("velocity_m_s", v, limits::VELOCITY_M_S)?;
+        }
+        within("normal_force_n", self.normal_force_n, limits::NORMAL_FORCE_N)?;
+        within("depth_m", self.depth_m.unwrap_or(0.0), limits::TIP_DEPTH_M)?;
+        within("closing_m_s", self.closing_m_s, limits::SPEED_M_S)?;
+        self.normal_force_n = self.normal_force_n.max(0.0);
+        Ok(self)
+    }
+
+    /// On its surface: a place in a frame becomes texture coordinates and, where nothing else presses, a depth. On a surface without a
+    /// frame the place stays what it is, and texture coordinates are needed beside it.
+    pub(crate) fn on(mut self, place: &Place) -> Result<Self, Refusal> {
+        if let (Some(at_m), Some(frame)) = (self.at_m, place.frame) {
+            for x in at_m {
+                within("at_m", x, limits::PLACE_M)?;
+            }
+            self.uv = frame.uv(at_m, place.size_m);
+            if self.normal_force_n.is_nan() && self.depth_m.is_none() {
+                (self.depth_m, self.normal_force_n) = (Some(frame.depth_m(at_m)), 0.0);
+            }
+            self.at_m = None;
+        }
+        if self.depth_m.is_some() && !place.is_soft {
+            return Err(Refusal::Hard);
+        }
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> ContactSample {
+        ContactSample {
+            uv: [0.1, 0.2],
+            velocity_m_s: Some([0.1, 0.0]),
+            normal_force_n: 0.5,
+            ..ContactSample::default()
+        }
+    }
+
+    #[test]
+    fn an_ordinary_sample_is_accepted_unchanged() {
+        assert_eq!(sample().checked(), Ok(sample()));
+    }
+
+    #[test]
+    fn a_negative_force_counts_as_none() {
+        let lifting = ContactSample { normal_force_n: -0.01, ..sample() };
+        assert_eq!(lifting.checked().unwrap().normal_force_n, 0.0);
+    }
+
+    #[test]
+    fn a_sample_is_read_as_it_was_written() {
+        for sample in [
+            sample(),
+            ContactSample::at_depth([0.1, 0.2], 0.003),
+            ContactSample::tip_at([0.1, 0.2, -0.003]),
+            sample().placed([1.0, 2.0, 3.0]),
+        ] {
+            let text = serde_json::to_string(&sample).unwrap();
+            let again: ContactSample = serde_json::from_str(&text).unwrap();
+            assert_eq!(serde_json::to_string(&again).unwrap(), text);
+            assert!(!text.contains("null"));
+        }
+        for (wrong, word) in [
+            (r#"{"uv":[0,0]}"#, "normal_force_n"),
+            (r#"{"normal_force_n":1}"#, "uv"),
+            (r#"{"uv":[0,0],"normal_force_n":1,"depth_m":0.1}"#, "depth_m"),
+        ] {
+            let error = serde_json::from_str::<ContactSample>(wrong).unwrap_err().to_string();
+            assert!(error.contains(word), "{error}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_no_contact_has_are_refused_by_name() {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+            let cases = [
+                ("uv", ContactSample { uv: [0.0, bad], ..sample() }),
+                ("velocity_m_s", ContactSample { velocity_m_s: Some([bad, 0.0]), ..sample() }),
+                ("normal_force_n", ContactSample { normal_force_n: bad, ..sample() }),
+                ("depth_m", ContactSample::at_depth([0.1; 2], bad)),
+                ("at_m", sample().placed([0.0, bad, 0.0])),
+                ("closing_m_s", ContactSample { closing_m_s: bad, ..sample() }),
+            ];
+            for (field, case) in cases {
+                assert_eq!(case.checked().unwrap_err().field, field);
+            }
+        }
+    }
+}
