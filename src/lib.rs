@@ -137,4 +137,5 @@ pub use asperity_dsp::trajectory::PathMode;
 /// Sources of surfaces, and maps.
 pub use asperity_texture as texture;
 pub use asperity_texture::height_map::Extent;
+pub use asperity_texture::tip_law::TipLaw;
 pub use asperity_texture::wrap::Wrap;

@@ -184,10 +184,10 @@ impl Seat {
     }
 
     /// The force at which the surface carries a tip below a place, N.
-    pub(crate) fn carries_n(&mut self, contact: Option<usize>, uv: [f64; 2], depth_m: f64) -> f64 {
+    pub(crate) fn carries_n(&mut self, uv: [f64; 2], depth_m: f64) -> f64 {
         let Some(slot) = &mut self.current else { return 0.0 };
         let position_m = [uv[0] * slot.surface.width_m, uv[1] * slot.surface.height_m];
-        slot.surface.carries_n(contact, position_m, depth_m).unwrap_or(0.0)
+        slot.surface.carries_n(position_m, depth_m).unwrap_or(0.0)
     }
 
     /// The next path lies at these places of the surface's body.

@@ -235,11 +235,6 @@ impl Voice {
         }
     }
 
-    /// Its place in the renderer, which is its number at the surfaces.
-    pub(crate) fn slot(&self) -> usize {
-        self.slot
-    }
-
     /// A report tells what carries it, or that it is pressed.
     pub(crate) fn carry(&mut self, sample: &ContactSample) {
         self.carried_n = sample.depth_m.map(|_| sample.normal_force_n);

@@ -6,6 +6,7 @@ mod ports;
 mod quiet;
 mod recorded;
 mod reports;
+mod touched;
 
 use crate::files::contact_log::LogEdit;
 use crate::game::clock::Clock;
@@ -37,6 +38,8 @@ use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_dsp::{DesignError, limits};
 use asperity_texture::height_field::Setup;
 use asperity_texture::moving_picture::MovingPicture;
+use asperity_texture::sand::SandSource;
+use asperity_texture::tip_law::TipLaw;
 use std::any::Any;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -89,6 +92,7 @@ pub(crate) struct KnownSurface {
     /// How it looks, if it changes.
     picture: Option<Arc<MovingPicture>>,
     place: Place,
+    tip_law: Option<TipLaw>,
 }
 
 /// What the game half remembers of a body.
@@ -302,13 +306,17 @@ impl Scene {
         let relief = (surface.micro_relief_m, surface.outer_scale_m);
         let overlay = Overlay::new(period_m, surface.source.band().shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
-        let is_soft = surface.carries_n(None, [0.0; 2], 0.0).is_some();
+        let is_soft = surface.carries_n([0.0; 2], 0.0).is_some();
         let place = Place { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };
         let mut picture = None;
-        surface.source.visit(&mut |part| picture = picture.take().or(part.downcast_ref().cloned()));
+        let mut tip_law = (surface.compliance_m_n > 0.0).then(|| surface.spring());
+        surface.source.visit(&mut |part| {
+            picture = picture.take().or(part.downcast_ref().cloned());
+            tip_law = tip_law.or(part.downcast_ref::<SandSource>().map(SandSource::tip_law));
+        });
         let surface =
             Box::new(SurfaceSlot { surface, trajectory, place_trajectory, stroking, overlay, period_m });
-        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, place }))
+        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, place, tip_law }))
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
@@ -323,20 +331,6 @@ impl Scene {
         self.send(Message::ChangeSurface { slot: id.index(), change: Box::new(change) })?;
         self.note(|names| LogEdit::ChangeSurface { surface: names.surface(id) });
         Ok(())
-    }
-
-    /// Texture coordinates of a point in the body of a surface that has a [frame](Surface::frame), m; none for one that has none.
-    ///
-    /// # Errors
-    /// When the surface is not in this scene.
-    pub fn uv_at(
-        &self,
-        id: SurfaceId,
-        point_m: impl Into<mint::Vector3<f64>>,
-    ) -> Result<Option<[f64; 2]>, AddError> {
-        let known = self.known_surface(id)?;
-        let Place { frame, size_m, .. } = known.place;
-        Ok(frame.map(|frame| frame.uv(point_m, size_m)))
     }
 
     /// Takes a surface away; contacts on it fade.

@@ -71,8 +71,7 @@ impl TryFrom<Written> for ContactSample {
     fn try_from(written: Written) -> Result<Self, &'static str> {
         let Written { uv, velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m } = written;
         let normal_force_n = match (normal_force_n, depth_m) {
-            (Some(_), Some(_)) => return Err("depth_m stands beside normal_force_n; write one of them"),
-            (Some(force_n), None) => force_n,
+            (Some(force_n), _) => force_n,
             (None, Some(_)) => 0.0,
             (None, None) if at_m.is_some() => f64::NAN,
             (None, None) => return Err("missing field `normal_force_n`; or depth_m, on what gives way"),
@@ -226,11 +225,7 @@ mod tests {
             assert_eq!(serde_json::to_string(&again).unwrap(), text);
             assert!(!text.contains("null"));
         }
-        for (wrong, word) in [
-            (r#"{"uv":[0,0]}"#, "normal_force_n"),
-            (r#"{"normal_force_n":1}"#, "uv"),
-            (r#"{"uv":[0,0],"normal_force_n":1,"depth_m":0.1}"#, "depth_m"),
-        ] {
+        for (wrong, word) in [(r#"{"uv":[0,0]}"#, "normal_force_n"), (r#"{"normal_force_n":1}"#, "uv")] {
             let error = serde_json::from_str::<ContactSample>(wrong).unwrap_err().to_string();
             assert!(error.contains(word), "{error}");
         }

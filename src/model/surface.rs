@@ -8,13 +8,14 @@ use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
 use asperity_texture::height_field::{Beyond, HeightField};
-use asperity_texture::height_map::{Extent, HeightMap, MapError};
+use asperity_texture::height_map::{Extent, FRICTION, HeightMap, MapError};
 #[cfg(feature = "image")]
 use asperity_texture::image_io;
 #[cfg(feature = "image")]
 use asperity_texture::picture::Channel;
 use asperity_texture::picture::ImageError;
 use asperity_texture::tiled::Tiled;
+use asperity_texture::tip_law::TipLaw;
 use asperity_texture::wrap::Wrap;
 #[cfg(feature = "image")]
 use std::path::Path;
@@ -248,17 +249,18 @@ impl Surface {
         self
     }
 
+    /// The law of its compliance.
+    pub(crate) fn spring(&self) -> TipLaw {
+        let friction = self.friction.unwrap_or(FRICTION);
+        TipLaw::Spring { compliance_m_n: self.compliance_m_n, friction }
+    }
+
     /// The force at which it carries a tip, N; none where it is hard. See [`HeightField::carries_n`].
-    pub(crate) fn carries_n(
-        &mut self,
-        contact: Option<usize>,
-        position_m: [f64; 2],
-        depth_m: f64,
-    ) -> Option<f64> {
+    pub(crate) fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
         if self.compliance_m_n > 0.0 {
             return Some(depth_m.max(0.0) / self.compliance_m_n);
         }
-        self.source.carries_n(contact, position_m, depth_m)
+        self.source.carries_n(position_m, depth_m)
     }
 
     /// What sliding sends to the body.

@@ -59,8 +59,8 @@ impl HeightField for Sum {
         self.sources.iter_mut().for_each(|source| source.lie_at(at_m));
     }
 
-    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        self.sources.iter_mut().find_map(|source| source.carries_n(contact, position_m, depth_m))
+    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        self.sources.iter_mut().find_map(|source| source.carries_n(position_m, depth_m))
     }
 
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
@@ -156,8 +156,8 @@ impl HeightField for Scale {
         self.source.lie_at(at_m);
     }
 
-    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        self.source.carries_n(contact, position_m, depth_m)
+    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        self.source.carries_n(position_m, depth_m)
     }
 
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
@@ -255,8 +255,8 @@ impl HeightField for Crossfade {
         self.sources.iter_mut().for_each(|source| source.lie_at(at_m));
     }
 
-    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        self.sources.iter_mut().find_map(|source| source.carries_n(contact, position_m, depth_m))
+    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        self.sources.iter_mut().find_map(|source| source.carries_n(position_m, depth_m))
     }
 
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {

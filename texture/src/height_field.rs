@@ -281,8 +281,7 @@ pub trait HeightField: Send + Sync {
     fn lie_at(&mut self, _at_m: &[[f64; 3]]) {}
 
     /// The force at which the surface carries a tip that stands `depth_m` below the untouched surface, N, 0 above it; none where it is hard.
-    /// `contact` is the contact's slot, or none for one that has not landed yet.
-    fn carries_n(&mut self, _contact: Option<usize>, _position_m: [f64; 2], _depth_m: f64) -> Option<f64> {
+    fn carries_n(&mut self, _position_m: [f64; 2], _depth_m: f64) -> Option<f64> {
         None
     }
 

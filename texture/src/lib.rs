@@ -21,6 +21,7 @@ pub mod sand;
 pub mod solid_materials;
 pub mod solid_noise;
 pub mod tiled;
+pub mod tip_law;
 pub mod triplanar;
 
 // Maps in and out.

@@ -72,12 +72,31 @@ impl MovingPicture {
         self.cell_m
     }
 
+    /// Makes the picture, if nobody has; it allocates.
+    pub fn make(&self) {
+        let words = |count| (0..count).map(|_| AtomicU32::new(0)).collect();
+        let (cells, tiles) = (self.columns * self.rows, self.tiles());
+        self.shown.get_or_init(|| Shown { heights: words(cells), versions: words(tiles) });
+    }
+
+    /// Height of the cell at a place as it was written last, of the nearest one beyond the edge, m; none before a picture was written. It
+    /// neither waits nor allocates; two cells may be of two frames.
+    #[must_use]
+    pub fn height_at(&self, position_m: [f64; 2]) -> Option<f64> {
+        let shown = self.shown.get()?;
+        let cell = |a: usize, count: usize| ((position_m[a] / self.cell_m).max(0.0) as usize).min(count - 1);
+        let (column, row) = (cell(0, self.columns), cell(1, self.rows));
+        let tile = row / TILE_CELLS * self.columns.div_ceil(TILE_CELLS) + column / TILE_CELLS;
+        let is_written = shown.versions[tile].load(Ordering::Acquire) != 0;
+        let bits = shown.heights[row * self.columns + column].load(Ordering::Relaxed);
+        is_written.then(|| f64::from(f32::from_bits(bits)))
+    }
+
     /// A reader; the first one makes the picture.
     #[must_use]
     pub fn reader(self: &Arc<Self>) -> PictureReader {
-        let words = |count| (0..count).map(|_| AtomicU32::new(0)).collect();
         let tiles = self.tiles();
-        self.shown.get_or_init(|| Shown { heights: words(self.columns * self.rows), versions: words(tiles) });
+        self.make();
         PictureReader {
             picture: self.clone(),
             seen: vec![0; tiles],

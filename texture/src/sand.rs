@@ -14,6 +14,7 @@
 //! | [`law`] | depth and force, drag, wetness, layers, grains |
 //! | [`simulation`] | contacts that drag tools, frame by frame |
 //! | [`patch`] | what the audio half sees: 64 × 64 heights around a contact |
+//! | `around` | the sand around a contact: its level, and what a patch shows of it |
 //! | [`source`] | the surface itself |
 //! | `hand_over` | rings between the audio half and the simulation, whose ends never wait |
 //! | [`worker`] | the other end of the hand-over, on a thread of its own |
@@ -22,6 +23,7 @@
 //! What we read differently or changed is said in each file. The authors' open points that are ours:
 //! arbitrary tools, correct volume, wetness, layers, and that sand is heard.
 
+mod around;
 pub mod erosion;
 pub mod grid;
 mod hand_over;

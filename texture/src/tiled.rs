@@ -112,9 +112,9 @@ impl HeightField for Tiled {
         self.source.lie_at(at_m);
     }
 
-    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
         let position_m = self.places(position_m).map(|place| place.at_m);
-        self.source.carries_n(contact, position_m, depth_m)
+        self.source.carries_n(position_m, depth_m)
     }
 
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {

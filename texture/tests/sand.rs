@@ -339,3 +339,39 @@ fn impossible_beds_are_refused_by_name() {
     let law = SandLaw { stiffness_n: -1.0, ..SandLaw::default() };
     assert_eq!(field(SandDesign { law, ..good }), "stiffness_n");
 }
+
+#[test]
+fn a_fast_tool_leaves_no_scallops_of_a_frame_s_length() {
+    for (speed_m_s, force_n) in [(0.5, 3.0), (0.5, 1.5), (0.3, 3.0)] {
+        let mut sand = SandSimulation::new(&SandDesign::default()).unwrap();
+        let frames = (0.18 / speed_m_s * 60.0) as u32;
+        for frame in 0..=frames {
+            let at = [0.03 + speed_m_s * f64::from(frame) / 60.0, 0.125];
+            sand.tell(pose(at, [speed_m_s, 0.0], force_n));
+            sand.frame();
+        }
+        let depth_m = sand.law().depth_m(force_n);
+        let scallop_m = |sand: &SandSimulation| {
+            // Eight frames' lengths in the middle of the groove: the amplitude of that period, from end to end.
+            let period_m = speed_m_s / 60.0;
+            let turns = (0.1 / period_m).floor();
+            let sums = (0..4000).map(|n| {
+                let s = f64::from(n) / 4000.0 * turns;
+                let (sin, cos) = (std::f64::consts::TAU * s).sin_cos();
+                let height = sand.grid().height_at_m([0.06 + s * period_m, 0.125]);
+                [height * sin, height * cos]
+            });
+            let [a, b] = sums.fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+            2.0 * 2.0 * f64::hypot(a, b) / 4000.0
+        };
+        let moving = scallop_m(&sand) / depth_m;
+        sand.settle();
+        let settled = scallop_m(&sand) / depth_m;
+        println!(
+            "{speed_m_s} m/s, {force_n} N: scallops {:.2} % of the depth while it moves, {:.2} % settled",
+            1e2 * moving,
+            1e2 * settled
+        );
+        assert!(moving < 0.05 && settled < 0.05, "{moving} {settled}");
+    }
+}

@@ -287,13 +287,13 @@ fn a_tip_is_carried_by_the_law_at_its_depth_below_the_sand_as_it_lies() {
         let bed = SandDesign { law, ..design() };
         let mut sand = SandSource::synchronous(&bed, 1).unwrap();
         for depth_m in [-0.01, 0.0, 0.001, 0.003, 0.008] {
-            let n = sand.carries_n(None, [0.05, 0.05], depth_m).unwrap();
+            let n = sand.carries_n([0.05, 0.05], depth_m).unwrap();
             assert!((n - law.force_n(depth_m)).abs() <= 0.01 * law.force_n(depth_m), "{depth_m}: {n}");
         }
         // Where the bed is 2 mm lower there is 2 mm less of it to stand in.
         sand.shape(|_, _| bed.depth_m - 0.002);
-        assert_eq!(sand.carries_n(None, [0.05, 0.05], 0.002), Some(0.0));
-        let n = sand.carries_n(None, [0.05, 0.05], 0.005).unwrap();
+        assert_eq!(sand.carries_n([0.05, 0.05], 0.002), Some(0.0));
+        let n = sand.carries_n([0.05, 0.05], 0.005).unwrap();
         assert!((n / law.force_n(0.003) - 1.0).abs() < 1e-4, "{n}");
     }
 }
@@ -320,4 +320,43 @@ fn a_wider_tool_sinks_less_under_the_same_force() {
             },
         );
     assert!((Tool::LowerMap { map, texel_m: 1e-4 }.bearing() - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn a_contact_lands_on_the_sand_as_it_lies_whether_that_is_simulated_here_or_elsewhere() {
+    // A trench 2 mm deep and 6 mm wide, which the coarse view of the whole bed hardly shows.
+    let trench = |x: usize, _: usize| 0.05 - 0.002 * (-((x as f64 * 0.0005 - 0.07) / 0.003).powi(2)).exp();
+    let mut here = SandSource::synchronous(&design(), 1).unwrap();
+    here.shape(trench);
+    let (mut elsewhere, mut worker) = SandSource::threaded(&design(), 1).unwrap();
+    worker.shape(trench);
+    worker.frame();
+    for u in [0.05, 0.07, 0.075] {
+        let touch = Touch {
+            contact: 0,
+            sample: 0,
+            position_m: [u, 0.05],
+            velocity_m_s: [0.0; 2],
+            normal_force_n: 1.0,
+        };
+        let [a, b] = [&mut here, &mut elsewhere].map(|sand| {
+            sand.land(&touch);
+            let path = PathBlock {
+                position_m: &[touch.position_m],
+                velocity_m_s: &[[0.0; 2]],
+                footprint_m: &[0.0],
+                normal_force_n: &[1.0],
+                first_sample: 0,
+                contact: 0,
+                slopes: false,
+            };
+            let mut out = SurfaceBlock::default();
+            sand.sample(&path, &mut out);
+            out.height_m[0]
+        });
+        let carried = [&mut here, &mut elsewhere].map(|sand| sand.carries_n([u, 0.05], 0.003).unwrap());
+        println!("u = {u}: {a:.6} m here, {b:.6} m elsewhere; {carried:.3?} N");
+        assert!((a - b).abs() < 2e-5, "{a} {b}");
+        assert!((carried[0] - carried[1]).abs() < 0.03 * carried[0], "{carried:?}");
+    }
 }

@@ -28,7 +28,7 @@ impl Renderer {
         match *event {
             ContactEvent::Begin { contact, touching, sample } => {
                 let (surface, role) = (touching.surface.index(), Role::from(&touching));
-                let sample = self.carried(surface, None, &sample);
+                let sample = self.carried(surface, &sample);
                 if !self.resume(contact, surface, role, &sample, stamp) {
                     self.end(contact);
                     self.land(contact, surface, role, &sample, stamp);
@@ -48,10 +48,9 @@ impl Renderer {
         }
     }
 
-    /// A tip that stands at a depth presses as hard as the surface carries it there; `contact` is the slot of its voice.
-    fn carried(&mut self, surface: usize, contact: Option<usize>, sample: &ContactSample) -> ContactSample {
-        let carried_n =
-            sample.depth_m.map(|depth_m| self.seats[surface].carries_n(contact, sample.uv, depth_m));
+    /// A tip that stands at a depth presses as hard as the surface carries it there.
+    fn carried(&mut self, surface: usize, sample: &ContactSample) -> ContactSample {
+        let carried_n = sample.depth_m.map(|depth_m| self.seats[surface].carries_n(sample.uv, depth_m));
         let normal_force_n = carried_n.map_or(sample.normal_force_n, |n| n.min(MAX_FORCE_N));
         ContactSample { normal_force_n, ..*sample }
     }
@@ -145,8 +144,7 @@ impl Renderer {
 
     fn moved(&mut self, contact: ContactId, sample: &ContactSample, stamp: Stamp) {
         if let Some(index) = sounding(&self.voices, contact) {
-            let (surface, slot) = (self.voices[index].surface, self.voices[index].slot());
-            let mut sample = self.carried(surface, Some(slot), sample);
+            let mut sample = self.carried(self.voices[index].surface, sample);
             let voice = &mut self.voices[index];
             voice.carry(&sample);
             let Some(normal_force_n) = voice.pressed_n(sample.normal_force_n) else {
@@ -167,7 +165,7 @@ impl Renderer {
             return;
         };
         let silent = self.silent[index];
-        let sample = self.carried(silent.surface, None, sample);
+        let sample = self.carried(silent.surface, sample);
         if sample.normal_force_n <= EMPTY_FORCE_N {
             Counters::add(&self.counters.unpressed, 1);
             return;

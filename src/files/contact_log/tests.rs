@@ -87,7 +87,7 @@ fn every_key_of_the_format_is_accepted_and_those_read_past_are_told() {
     let text = format!("{}\n{}\n", begin.replace('\n', ""), strike.replace('\n', ""));
     let (log, unread) = ContactLog::parse_telling(&text, "log").unwrap();
     assert_eq!(log.lines.len(), 2);
-    assert!(unread.contains(&"log:1: at_m".to_owned()), "{unread:?}");
+    assert!(unread.contains(&"log:1: direction".to_owned()), "{unread:?}");
     let begun = log.lines[0].event.resolve(&names()).unwrap();
     let ContactEvent::Begin { touching, .. } = begun else { panic!("{begun:?}") };
     assert_eq!((touching.probe, touching.holder), (Some(ProbeId::from_bits(1 << 32)), Some(body())));

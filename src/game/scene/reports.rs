@@ -5,7 +5,6 @@ use crate::link::message::{Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::bad_value::within;
 use crate::model::body::Body;
-use crate::model::contact_sample::Place;
 use crate::model::error::{Refusal, ReportError};
 use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact};
 use crate::model::id::{BodyId, ProbeId};
@@ -127,32 +126,6 @@ impl Scene {
                 ContactEvent::Impact(impact.checked()?)
             }
         })
-    }
-
-    /// A move on the surface that its contact began on.
-    fn on_touched(&self, contact: ContactId, sample: ContactSample) -> Result<ContactSample, Refusal> {
-        if sample.at_m.is_none() && sample.depth_m.is_none() {
-            return Ok(sample);
-        }
-        let known = self.touched.get(&contact).and_then(|surface| self.surfaces.get(surface.0));
-        let nowhere = Place { frame: None, size_m: [1.0; 2], is_soft: false };
-        sample.on(known.map_or(&nowhere, |known| &known.place))
-    }
-
-    /// Which surface a contact is on, where a place or a depth on it means something.
-    fn remember_touched(&mut self, event: &ContactEvent) {
-        match event {
-            ContactEvent::Begin { contact, touching, .. } => {
-                let place = self.surfaces.get(touching.surface.0).map(|known| known.place);
-                if place.is_some_and(|place| place.is_soft || place.frame.is_some()) {
-                    self.touched.insert(*contact, touching.surface);
-                } else {
-                    self.touched.remove(contact);
-                }
-            }
-            ContactEvent::End { contact } => drop(self.touched.remove(contact)),
-            ContactEvent::Moved { .. } | ContactEvent::Impact(_) => {}
-        }
     }
 
     /// Who feels it, what is held, and what touches have to be in this scene.

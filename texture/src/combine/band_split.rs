@@ -66,8 +66,8 @@ impl HeightField for BandSplit {
         [&mut self.coarse, &mut self.fine].into_iter().for_each(|source| source.lie_at(at_m));
     }
 
-    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        self.coarse.carries_n(contact, position_m, depth_m)
+    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        self.coarse.carries_n(position_m, depth_m)
     }
 
     fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {

@@ -57,9 +57,9 @@ impl HeightField for Mask {
         [&mut self.inside, &mut self.outside].into_iter().for_each(|source| source.lie_at(at_m));
     }
 
-    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        let inside_n = self.inside.carries_n(contact, position_m, depth_m);
-        let outside_n = self.outside.carries_n(contact, position_m, depth_m);
+    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        let inside_n = self.inside.carries_n(position_m, depth_m);
+        let outside_n = self.outside.carries_n(position_m, depth_m);
         let w = self.weight_at(position_m);
         match (inside_n, outside_n) {
             (Some(inside_n), Some(outside_n)) => Some(w * inside_n + (1.0 - w) * outside_n),

@@ -89,6 +89,40 @@ impl Slot {
     }
 }
 
+impl Slot {
+    /// Begins to fade to the waiting patch once the last fade is over. Whether a fade is under way, and how
+    /// much sand the contact displaces, m³ a metre of its way.
+    pub(super) fn turn_over(
+        &mut self,
+        sample: u64,
+        fade_samples: u64,
+        spare: &mut Vec<Box<Patch>>,
+    ) -> (bool, f64) {
+        if !self.fades(sample, fade_samples)
+            && let Some(waiting) = self.waiting.take()
+        {
+            match &mut self.new {
+                Some(new) if new.shows(&waiting) => {
+                    new.displaced_m2 = waiting.displaced_m2;
+                    spare.push(waiting);
+                }
+                _ => {
+                    let old = self.old.take();
+                    self.old = self.new.take();
+                    self.new = Some(waiting);
+                    self.fade_start = sample;
+                    spare.extend(old);
+                }
+            }
+        }
+        (self.fades(sample, fade_samples), self.new.as_ref().map_or(0.0, |new| new.displaced_m2))
+    }
+
+    fn fades(&self, sample: u64, fade_samples: u64) -> bool {
+        self.new.is_some() && sample < self.fade_start.saturating_add(fade_samples)
+    }
+}
+
 /// A patch that came back to the audio half goes to the simulation, or waits until there is room.
 pub(super) fn give_back(
     patch: Option<Box<Patch>>,

@@ -1,13 +1,16 @@
 //! The sand and the tools dragged through it, one frame (1/60 s) after another.
 //!
-//! In a frame every contact's tool goes from where it was to where it is now, a cell at a time. Its
+//! In a frame every contact's tool goes from where it was to where it is now, a cell at a time, in as many parts as there are
+//! passes of sliding, so that a fast tool leaves no scallops of a frame's length. Its
 //! depth is the one at which the sand carries the contact's normal force (`law`), below the
 //! level of the sand around it (the median on a circle outside the heap). Then the sand slides
 //! for as many passes as the frame's budget of cells allows; where a tool stands it is a wall, so
 //! that nothing trickles into the cut it fills. A contact that was not told of in a frame is lifted.
 
+mod drag;
 mod view;
 
+use super::around;
 use super::erosion::Erosion;
 use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
@@ -16,6 +19,7 @@ use crate::height_field::Setup;
 use crate::moving_picture::MovingPicture;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
+use drag::{Way, wake_print};
 use std::sync::Arc;
 
 /// Frames a second.
@@ -24,8 +28,6 @@ pub const FRAMES_PER_S: f64 = 60.0;
 pub const PASSES_A_FRAME: usize = 8;
 /// Cells looked at in a frame before sliding is put off to the next: about 1 ms.
 pub const CELLS_A_FRAME: usize = 400_000;
-/// Steps of a tool in a frame, at most.
-const STEPS_A_FRAME: usize = 64;
 
 /// A bed of sand to be made.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,6 +103,7 @@ struct Track {
     /// Radius of the print, metres.
     radius_m: f64,
     displaced_m2: f64,
+    way: Option<Way>,
 }
 
 /// Sand, its sliding and its tools.
@@ -228,20 +231,25 @@ impl SandSimulation {
         self.tracks.get(contact).is_some_and(|t| t.pose.is_some())
     }
 
-    /// One frame: tools move, then sand slides.
+    /// One frame: tools move and sand slides, by turns.
     pub fn frame(&mut self) {
         for contact in 0..self.tracks.len() {
-            self.drag(contact);
+            self.set_out(contact);
         }
-        self.raise_walls();
         let mut cells = 0;
-        for _ in 0..PASSES_A_FRAME {
-            if cells > CELLS_A_FRAME || self.erosion.is_settled() {
-                break;
+        for pass in 0..PASSES_A_FRAME {
+            for contact in 0..self.tracks.len() {
+                self.drag(contact, pass);
             }
-            cells += self.erosion.pass(&mut self.grid);
+            if cells <= CELLS_A_FRAME && !self.erosion.is_settled() {
+                self.raise_walls();
+                cells += self.erosion.pass(&mut self.grid);
+                self.lower_walls();
+            }
         }
-        self.lower_walls();
+        for contact in 0..self.tracks.len() {
+            self.arrive(contact);
+        }
         let grid = &self.grid;
         self.moving_picture.write(|column, row| grid.height_m(column, row) as f32);
     }
@@ -289,10 +297,10 @@ impl SandSimulation {
         self.grid.picture()
     }
 
-    /// Level of the sand around a place where no tool stands, metres above the bottom.
+    /// Level of the sand around a print of this radius, metres above the bottom.
     #[must_use]
-    pub fn level_m(&self, position_m: [f64; 2]) -> f64 {
-        level_around(&self.grid, position_m, self.tool.print_radius_m(super::law::BEARING_DEPTH_M))
+    pub fn level_m(&self, position_m: [f64; 2], radius_m: f64) -> f64 {
+        level_around(&self.grid, position_m, radius_m)
     }
 
     /// Level that a contact would sink from where it lands, metres above the bottom, and the radius of
@@ -300,55 +308,6 @@ impl SandSimulation {
     fn landing(&self, pose: &Pose) -> (f64, f64) {
         let radius_m = self.tool.print_radius_m(self.law.depth_m(pose.normal_force_n));
         (level_around(&self.grid, pose.position_m, radius_m), radius_m)
-    }
-
-    /// Moves one contact's tool from its last pose to the one it was told.
-    fn drag(&mut self, contact: usize) {
-        let track = &mut self.tracks[contact];
-        let told = track.told.take();
-        if told.is_none_or(|to| to.landed) && track.pose.take().is_some() {
-            wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
-            track.displaced_m2 = 0.0;
-        }
-        let Some(to) = told else { return };
-        let landed = track.pose.is_none();
-        let depth_m = self.law.depth_m(to.normal_force_n);
-        // Of the tool, not of what it cuts: in its own groove it cuts next to nothing.
-        track.radius_m = self.tool.print_radius_m(depth_m);
-        let from = track.pose.map_or(to.position_m, |p| p.position_m);
-        let way = [0, 1].map(|a| to.position_m[a] - from[a]);
-        let distance = way[0].hypot(way[1]);
-        let direction = if distance > 0.0 { way.map(|w| w / distance) } else { [0.0; 2] };
-        let steps = ((distance / self.grid.cell_m()).ceil() as usize).clamp(1, STEPS_A_FRAME);
-        let mut units = 0;
-        for step in 1..=steps {
-            let t = step as f64 / steps as f64;
-            let at = [0, 1].map(|a| from[a] + t * way[a]);
-            let level = level_around(&self.grid, at, track.radius_m);
-            // The level follows within a radius, so that single grains of the heap do not shake it.
-            let follow = if landed && step == 1 {
-                1.0
-            } else {
-                1.0 - (-distance / steps as f64 / track.radius_m.max(self.grid.cell_m())).exp()
-            };
-            track.level_m += follow * (level - track.level_m);
-            let tip_m = track.level_m - depth_m;
-            let displaced = self.presses[contact].apply(&mut self.grid, &self.tool, at, tip_m, direction);
-            if displaced.units > 0 {
-                self.erosion.activate(displaced.columns, displaced.rows);
-                units += displaced.units;
-            }
-        }
-        if steps > 1 || distance > 0.0 {
-            let volume = units as f64 / UNITS_PER_M * self.grid.cell_m() * self.grid.cell_m();
-            let now = if distance > 0.0 { volume / distance } else { 0.0 };
-            track.displaced_m2 += if landed { now } else { 0.5 * (now - track.displaced_m2) };
-            wake_print(&mut self.erosion, &self.grid, &self.presses[contact]);
-        }
-        track.pose = Some(to);
-        let lowest = self.presses[contact].cut_cells().map(|at| self.grid.heights[at]).min();
-        self.print_m = lowest
-            .map_or(self.print_m, |lowest| self.print_m.max(self.depth_m - f64::from(lowest) / UNITS_PER_M));
     }
 
     /// Makes every tool that is down a wall for the sliding sand.
@@ -374,24 +333,7 @@ impl SandSimulation {
     }
 }
 
-/// Lets the sand around a print slide when the tool has left it.
-fn wake_print(erosion: &mut Erosion, grid: &SandGrid, press: &Press) {
-    for at in press.cut_cells() {
-        let (x, y) = (at % grid.stride() - 1, at / grid.stride() - 1);
-        erosion.activate([x, x], [y, y]);
-    }
-}
-
-/// Median height on a circle outside the heap, metres: the level of what is not yet disturbed, because a
-/// groove through the middle takes up less than half of the circle. (A mean sinks with the tool's own
-/// groove: a finger that stops and settles back a little then digs 4 to 9 % too deep.)
+/// Level of the sand around a place, metres above the bottom.
 fn level_around(grid: &SandGrid, at: [f64; 2], radius_m: f64) -> f64 {
-    const POINTS: usize = 32;
-    let ring = 1.6 * radius_m + 2.0 * grid.cell_m();
-    let mut heights: [f64; POINTS] = core::array::from_fn(|n| {
-        let (s, c) = (core::f64::consts::TAU * n as f64 / POINTS as f64).sin_cos();
-        grid.height_at_m([at[0] + ring * c, at[1] + ring * s])
-    });
-    heights.sort_unstable_by(f64::total_cmp);
-    0.5 * (heights[POINTS / 2 - 1] + heights[POINTS / 2])
+    around::level_around(grid.cell_m(), at, radius_m, |at| grid.height_at_m(at))
 }

@@ -19,6 +19,7 @@
 //! that shows nothing new does not fade, and once none fades the sand does not stir under a resting
 //! contact, which may sleep.
 
+use super::around::{Around, level_around};
 use super::grid::SandPicture;
 use super::hand_over::{
     Link, Near, PATCHES_A_CONTACT, Slot, circulating, fade_samples, frame_samples, give_back, patches, rings,
@@ -26,6 +27,7 @@ use super::hand_over::{
 use super::law::SandLaw;
 use super::patch::Patch;
 use super::simulation::{Pose, SandDesign, SandFigures, SandSimulation};
+use super::tool::Tool;
 use super::worker::SandWorker;
 use crate::answer::AnswerAt;
 use crate::fade::Fade;
@@ -35,9 +37,14 @@ use crate::height_field::{
 use crate::moving_picture::MovingPicture;
 use crate::solid_materials::SolidMaterial;
 use crate::solid_noise::SolidNoise;
+use crate::tip_law::TipLaw;
 use asperity_dsp::DesignError;
 use std::any::Any;
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// A tip's depth is told below the sand so many radii of its print around it: beyond the heap that it pushes up itself, which would tell
+/// on its own force by 2 % (twice as wide as where the tool's level is looked for).
+const WIDE: f64 = 2.0;
 
 /// A surface of sand.
 pub struct SandSource {
@@ -54,8 +61,7 @@ pub struct SandSource {
     longest_m: f64,
     /// Depth of the untouched bed, metres.
     depth_m: f64,
-    /// Of its tool.
-    bearing: f64,
+    tool: Tool,
     moving_picture: Arc<MovingPicture>,
 }
 
@@ -77,6 +83,8 @@ impl SandSource {
     pub fn threaded(design: &SandDesign, seed: u64) -> Result<(Self, SandWorker), DesignError> {
         let simulation = SandSimulation::new(design)?;
         let picture = simulation.moving_picture().clone();
+        // A contact that lands reads its ground there.
+        picture.make();
         let (far, near) = rings(simulation.contacts());
         let line = Arc::new(Mutex::new(None));
         let worker = SandWorker { simulation, far, line: line.clone(), frames: 0 };
@@ -102,7 +110,7 @@ impl SandSource {
             overview: Box::new(Patch::flat()),
             spare: Vec::new(),
             law: Fade::new(design.law.under(design.tool.bearing())),
-            bearing: design.tool.bearing(),
+            tool: design.tool.clone(),
             grains: SolidNoise::new(grains, seed)?,
             grain_relief: SurfaceBlock::default(),
             sample_rate_hz: Setup::default().sample_rate_hz,
@@ -134,6 +142,12 @@ impl SandSource {
                 *line.lock().unwrap_or_else(PoisonError::into_inner) = Some(far);
             }
         }
+    }
+
+    /// What a device's loop feels of it.
+    #[must_use]
+    pub fn tip_law(&self) -> TipLaw {
+        TipLaw::Sand(self.law.target())
     }
 
     /// The simulation, when it runs inside the source.
@@ -230,32 +244,13 @@ impl SandSource {
             out.answer.set(i, AnswerAt { push_per_n, cap_n, ..AnswerAt::NONE });
         }
     }
+}
 
-    /// Begins to fade to the waiting patch once the last fade is over. Whether a fade is under way, and how
-    /// much sand the contact displaces, m³ a metre of its way.
-    fn turn_over(&mut self, contact: usize, sample: u64) -> (bool, f64) {
-        let fade_samples = fade_samples(self.frame_samples);
-        let Some(slot) = self.slots.get_mut(contact) else { return (false, 0.0) };
-        let fades = |slot: &Slot| slot.new.is_some() && sample < slot.fade_start.saturating_add(fade_samples);
-        if !fades(slot)
-            && let Some(waiting) = slot.waiting.take()
-        {
-            match &mut slot.new {
-                Some(new) if new.shows(&waiting) => {
-                    new.displaced_m2 = waiting.displaced_m2;
-                    self.spare.push(waiting);
-                }
-                _ => {
-                    let old = slot.old.take();
-                    slot.old = slot.new.take();
-                    slot.new = Some(waiting);
-                    slot.fade_start = sample;
-                    self.spare.extend(old);
-                }
-            }
-        }
-        (fades(slot), slot.new.as_ref().map_or(0.0, |new| new.displaced_m2))
-    }
+/// Level of the sand around a place as the simulation showed it last, metres above the bottom; none before it ran.
+fn seen_level_m(picture: &MovingPicture, position_m: [f64; 2], radius_m: f64) -> Option<f64> {
+    let here_m = picture.height_at(position_m)?;
+    let height_at = |at| picture.height_at(at).unwrap_or(here_m);
+    Some(level_around(picture.cell_m(), position_m, radius_m, height_at))
 }
 
 /// Where a touch is; a contact that has just landed says so itself.
@@ -332,14 +327,14 @@ impl HeightField for SandSource {
         }
     }
 
-    fn carries_n(&mut self, contact: Option<usize>, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        let slot =
-            contact.and_then(|contact| self.slots.get(contact)).filter(|slot| slot.next_touch.is_some());
-        let level_m = match (slot, &self.link) {
-            (Some(slot), _) => slot.new.as_ref().or(slot.old.as_ref()).unwrap_or(&slot.ground).base_m,
-            (None, Link::Here(simulation)) => simulation.level_m(position_m) - self.depth_m,
-            (None, Link::Elsewhere { .. }) => self.overview.at(position_m).0,
+    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+        let radius_m = WIDE * self.tool.print_radius_m(depth_m);
+        let level_m = match &self.link {
+            Link::Here(simulation) => Some(simulation.level_m(position_m, radius_m)),
+            Link::Elsewhere { .. } => seen_level_m(&self.moving_picture, position_m, radius_m),
         };
+        // Before the simulation has run, the bed is untouched.
+        let level_m = level_m.map_or(0.0, |level_m| level_m - self.depth_m);
         Some(self.law.target().force_n(depth_m + level_m))
     }
 
@@ -352,13 +347,29 @@ impl HeightField for SandSource {
         slot.next_touch = Some(touch.sample.next_multiple_of(MAX_BLOCK as u64));
         match &self.link {
             Link::Here(simulation) => simulation.write_landing(&pose(touch), &mut slot.ground),
-            Link::Elsewhere { .. } => slot.ground.clone_from(&self.overview),
+            Link::Elsewhere { .. } => {
+                let radius_m = self.tool.print_radius_m(self.law.target().depth_m(touch.normal_force_n));
+                match seen_level_m(&self.moving_picture, touch.position_m, radius_m) {
+                    Some(level_m) => {
+                        let (picture, pose) = (&self.moving_picture, &pose(touch));
+                        let (cell_m, depth_m) = (picture.cell_m(), self.depth_m);
+                        let cell_at = |at| picture.height_at(at).unwrap_or(level_m);
+                        Around { pose, radius_m, cell_m, depth_m }.write(level_m, cell_at, &mut slot.ground);
+                    }
+                    // The simulation has not run yet.
+                    None => slot.ground.clone_from(&self.overview),
+                }
+            }
         }
     }
 
     fn react(&mut self, touch: &Touch) -> Reaction {
         self.exchange(touch);
-        let (stirs, displaced_m2) = self.turn_over(touch.contact, touch.sample);
+        let turned = self
+            .slots
+            .get_mut(touch.contact)
+            .map(|slot| slot.turn_over(touch.sample, fade_samples(self.frame_samples), &mut self.spare));
+        let (stirs, displaced_m2) = turned.unwrap_or((false, 0.0));
         let law = self.law.target();
         let speed = touch.velocity_m_s[0].hypot(touch.velocity_m_s[1]);
         let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
@@ -371,7 +382,7 @@ impl HeightField for SandSource {
         if law.check().is_err() {
             return false;
         }
-        self.law.set(law.under(self.bearing), sample);
+        self.law.set(law.under(self.tool.bearing()), sample);
         match &mut self.link {
             Link::Here(simulation) => simulation.set_law(*law),
             // A full ring: five changes within a frame, of which the simulation misses one.

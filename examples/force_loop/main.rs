@@ -1,0 +1,174 @@
+//! A force-feedback device on sand, on a wall and on a soft cloth: a loop of 1, 2 and 5 kHz holds it still, and gives no more energy than
+//! it takes.
+//!
+//! ```sh
+//! cargo run --release --example force_loop [FOLDER]     # default force_loop/
+//! ```
+//!
+//! The thread that drives a device asks [`Scene::tip_law`] once, and from then on turns the depth of its tip into a force without waiting
+//! for anything; the same depths go to the engine as reports, which makes what is felt of the grains, what is heard, and moves the sand.
+//! Writes sand.svg, wall.svg, cloth.svg, and prints how stiff a loop may be.
+
+mod device;
+mod picture;
+
+use asperity::live::ports::{Force, ForceRow, Of};
+use asperity::texture::sand::{SandDesign, SandSource};
+use asperity::{
+    Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Scene, Surface, SurfaceId, TipLaw,
+};
+use device::{Device, Tick};
+use picture::{Curve, svg};
+use std::error::Error;
+use std::path::Path;
+
+const SIDE_M: f64 = 0.1;
+const RATES_HZ: [f64; 3] = [1000.0, 2000.0, 5000.0];
+const MASSES_KG: [f64; 3] = [0.05, 0.15, 0.5];
+const COLOURS: [&str; 3] = ["#1b6ca8", "#d1495b", "#3a7d44"];
+/// Of a light device in a relaxed hand, N·s/m (assumed; a hand alone is told to damp with 2 to 20).
+const DAMPING_N_S_M: f64 = 2.0;
+/// The finer of the two sensors that the sand paper names, m.
+const RESOLUTION_M: f64 = 9e-6;
+/// Stiffness of the wall, N/m.
+const WALL_N_M: f64 = 1500.0;
+
+fn device(rate_hz: f64, mass_kg: f64) -> Device {
+    Device { mass_kg, damping_n_s_m: DAMPING_N_S_M, rate_hz, resolution_m: RESOLUTION_M }
+}
+
+/// A hand that leans on the tip with 2 N, and pushes to and fro from half time on.
+fn hand_n(t: f64) -> f64 {
+    if t < 0.7 { 2.0 } else { 2.0 + 1.2 * (std::f64::consts::TAU * 4.0 * (t - 0.7)).sin() }
+}
+
+fn surfaces() -> Result<[(&'static str, Surface); 3], Box<dyn Error>> {
+    let design = SandDesign { width_m: SIDE_M, height_m: SIDE_M, cells: 256, ..SandDesign::default() };
+    let sand = Surface::new(SandSource::synchronous(&design, 1)?, SIDE_M, SIDE_M)?.wraps(false);
+    let flat = || Surface::flat(SIDE_M, SIDE_M);
+    Ok([
+        ("sand", sand),
+        ("wall", flat()?.compliance_m_n(1.0 / WALL_N_M)),
+        ("cloth", flat()?.compliance_m_n(2e-3)),
+    ])
+}
+
+/// The loop and the engine side by side: the loop's ticks, and the engine's rows of the same contact.
+fn run(
+    scene: &mut Scene,
+    renderer: &mut asperity::Renderer,
+    surface: SurfaceId,
+    device: &Device,
+) -> Result<(Vec<Tick>, Vec<ForceRow>), Box<dyn Error>> {
+    let law = scene.tip_law(surface)?.ok_or("a hard surface")?;
+    let mut port = scene.open_port(Force { rate_hz: device.rate_hz, holds_s: 4.0 })?;
+    let ticks = device.push(0.004, hand_n, 1.6, |depth_m| law.answer_n(depth_m, [0.0; 2])[2]);
+    let frames = renderer.sample_rate_hz() / device.rate_hz;
+    let (mut haptic, mut audio) = (vec![0.0; 64], vec![0.0; 64]);
+    for (index, tick) in ticks.iter().enumerate() {
+        let sample = ContactSample::at_depth([0.5; 2], tick.depth_m).sliding([0.0; 2]);
+        let event = match index {
+            0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+            _ => ContactEvent::moved(ContactId(1), sample),
+        };
+        scene.report(tick.time_s, event)?;
+        let until = ((index + 1) as f64 * frames) as u64;
+        while renderer.position() < until {
+            let n = 64.min((until - renderer.position()) as usize);
+            renderer.render(&mut [&mut haptic[..n]], &mut [&mut audio[..n]]);
+        }
+    }
+    let rows = std::iter::from_fn(|| port.read()).filter(|row| row.of == Of::Contact(ContactId(1))).collect();
+    Ok((ticks, rows))
+}
+
+/// How far the engine's rows are from the loop's forces, over their rms.
+fn apart(ticks: &[Tick], rows: &[ForceRow]) -> f64 {
+    let pairs = rows.iter().filter_map(|row| Some((ticks.get(row.tick as usize)?.force_n, row.force_n[2])));
+    let (error, power) =
+        pairs.fold((0.0, 0.0), |(error, power), (a, b)| (error + (a - b) * (a - b), power + a * a));
+    (error / f64::max(power, 1e-12)).sqrt()
+}
+
+fn plot(folder: &Path, name: &str, runs: &[(f64, Vec<Tick>)]) -> Result<(), Box<dyn Error>> {
+    let curves = |of: fn(&Tick) -> f64| {
+        let curve = |(rate_hz, ticks): &(f64, Vec<Tick>), colour| Curve {
+            name: format!("{} kHz", rate_hz / 1000.0),
+            colour,
+            points: ticks.iter().map(|tick| [tick.time_s, of(tick)]).collect(),
+        };
+        runs.iter().zip(COLOURS).map(|(run, colour)| curve(run, colour)).collect()
+    };
+    let title = format!("{name}: 0.15 kg dropped from 4 mm, leaned on with 2 N, then pushed to and fro");
+    let panels = [
+        ("depth of the tip, mm", curves(|tick| 1e3 * tick.depth_m)),
+        ("force of the loop, N", curves(|tick| tick.force_n)),
+        ("energy given less taken, mJ", curves(|tick| 1e3 * tick.given_j)),
+    ];
+    std::fs::write(folder.join(format!("{name}.svg")), svg(&title, &panels))?;
+    Ok(())
+}
+
+/// The stiffest spring that a device holds still against, N/m.
+fn stiffest_n_m(rate_hz: f64, mass_kg: f64) -> f64 {
+    let holds = |stiffness_n_m: f64| {
+        let law = TipLaw::Spring { compliance_m_n: 1.0 / stiffness_n_m, friction: 0.0 };
+        let device = device(rate_hz, mass_kg);
+        let ticks =
+            device.push(0.0, |_| 2.0, 3.0 + 8.0 * mass_kg, |depth_m| law.answer_n(depth_m, [0.0; 2])[2]);
+        device.holds(&ticks)
+    };
+    let (mut low, mut high) = (10.0, 1e6);
+    while high / low > 1.02 {
+        let middle = f64::sqrt(low * high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| "force_loop".into());
+    let folder = Path::new(&folder);
+    std::fs::create_dir_all(folder)?;
+    for index in 0..3 {
+        let mut runs = Vec::new();
+        let mut name = "";
+        for rate_hz in RATES_HZ {
+            for mass_kg in MASSES_KG {
+                let Engine { mut scene, mut renderer, .. } = Config::default().build()?;
+                let mut made = surfaces()?;
+                let (called, surface) = std::mem::replace(&mut made[index], ("", Surface::flat(1.0, 1.0)?));
+                name = called;
+                let surface = scene.add_surface(surface)?;
+                let law = scene.tip_law(surface)?.ok_or("a hard surface")?;
+                let device = device(rate_hz, mass_kg);
+                let (ticks, rows) = run(&mut scene, &mut renderer, surface, &device)?;
+                let still = device.holds(&ticks[..(0.7 * rate_hz) as usize]);
+                let cycle_j = device.cycle_j(0.003, 0.002, 20.0, |d| law.answer_n(d, [0.0; 2])[2]);
+                println!(
+                    "{name:6} {:1} kHz {mass_kg:4} kg: {:.0} N/m, {}, a cycle of 20 Hz gives {:+.3} mJ, \
+                     engine's rows {:.2} % apart",
+                    rate_hz / 1000.0,
+                    law.stiffness_n_m(0.002),
+                    if still { "holds still" } else { "DOES NOT HOLD STILL" },
+                    1e3 * cycle_j,
+                    1e2 * apart(&ticks, &rows)
+                );
+                if mass_kg == MASSES_KG[1] {
+                    runs.push((rate_hz, ticks));
+                }
+            }
+        }
+        plot(folder, name, &runs)?;
+    }
+    println!(
+        "\nstiffest spring that holds still, N/m, with {DAMPING_N_S_M} N·s/m (2 b / T is what never gives energy)"
+    );
+    println!("rate     {}    2 b / T", MASSES_KG.map(|mass_kg| format!("{mass_kg:>8} kg")).join(""));
+    for rate_hz in RATES_HZ {
+        let row = MASSES_KG.map(|mass_kg| format!("{:>11.0}", stiffest_n_m(rate_hz, mass_kg)));
+        println!("{:1} kHz    {} {:>10.0}", rate_hz / 1000.0, row.join(""), 2.0 * DAMPING_N_S_M * rate_hz);
+    }
+    println!("\nplots: {}", folder.display());
+    Ok(())
+}

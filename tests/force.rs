@@ -1,0 +1,368 @@
+//! The 3-D force: the documents' laws at the ticks of a device, at every rate, from a force or from a depth.
+
+mod common;
+
+use asperity::dsp::rng::Rng;
+use asperity::live::ports::{Force, ForceRow, ForceRows, Of};
+use asperity::texture::raster::Raster;
+use asperity::texture::sand::{SandDesign, SandLaw, SandSource};
+use asperity::texture::solid_materials::SolidMaterial;
+use asperity::texture::solid_noise::{SolidCut, SolidNoise};
+use asperity::{
+    Actuator, Config, ContactBlock, ContactEvent, ContactId, ContactSample, Engine, Extent, Refusal, Surface,
+    SurfaceFrame, SurfaceId, Tap, TipLaw, Wrap,
+};
+use std::collections::HashMap;
+
+const SIDE_M: f64 = 0.2;
+
+/// Rows at a device's rate, and the path that the contact took.
+struct Felt {
+    rows: ForceRows,
+    told: Vec<ForceRow>,
+    path: Vec<([f64; 2], [f64; 2], f64)>,
+    first: Option<u64>,
+}
+
+impl Felt {
+    fn new(rate_hz: f64, sample_rate_hz: f64) -> Self {
+        let rows = ForceRows::new(rate_hz, sample_rate_hz, 4);
+        Self { rows, told: Vec::new(), path: Vec::new(), first: None }
+    }
+}
+
+impl Tap for Felt {
+    fn contact(&mut self, block: &ContactBlock<'_>) {
+        self.first.get_or_insert(block.first_sample);
+        self.rows.close(block.first_sample, |row| self.told.push(row));
+        self.rows.add(block);
+        let rows = block.position_m.iter().zip(block.velocity_m_s).zip(block.contact_samples);
+        self.path.extend(rows.map(|((p, v), row)| (*p, *v, row.height_m)));
+    }
+}
+
+/// Reports at `hz` of a stroke, felt at `rows_hz`; without a `material` the surface is soft or sand.
+struct Stroke {
+    sample_rate_hz: f64,
+    rows_hz: f64,
+    reports_hz: f64,
+    seconds: f64,
+}
+
+impl Stroke {
+    fn run(&self, surface: Surface, sample: impl Fn(f64) -> ContactSample) -> Felt {
+        let config = Config { sample_rate_hz: self.sample_rate_hz, ..Config::default() };
+        let Engine { mut scene, mut renderer, .. } = config.build().unwrap();
+        let id = scene.add_surface(surface).unwrap();
+        let mut felt = Felt::new(self.rows_hz, self.sample_rate_hz);
+        let (mut haptic, mut audio) = ([0.0f32; 64], [0.0f32; 64]);
+        for step in 0..(self.seconds * self.reports_hz) as u32 {
+            let t = f64::from(step) / self.reports_hz;
+            let event = if step == 0 {
+                ContactEvent::begin(ContactId(1), id, Actuator(0), sample(t))
+            } else {
+                ContactEvent::moved(ContactId(1), sample(t))
+            };
+            scene.report(t, event).unwrap();
+            let until = ((t + 1.0 / self.reports_hz) * self.sample_rate_hz) as u64;
+            while renderer.position() < until {
+                let n = 64.min((until - renderer.position()) as usize);
+                renderer.render_tapped(&mut [&mut haptic[..n]], &mut [&mut audio[..n]], &mut felt);
+            }
+        }
+        let Felt { rows, told, .. } = &mut felt;
+        rows.close(u64::MAX, |row| told.push(row));
+        told.retain(|row| matches!(row.of, Of::Contact(_)));
+        felt
+    }
+}
+
+fn block_of(material: SolidMaterial) -> Surface {
+    let noise = SolidNoise::new(material.parameters(), 7).unwrap();
+    Surface::new(noise, SIDE_M, SIDE_M).unwrap().wraps(false).friction(0.0).micro_relief_m(0.0)
+}
+
+#[test]
+fn the_law_agrees_with_plain_python_at_5_khz() {
+    let text = include_str!("independent/solid_force.csv");
+    let mut forces: HashMap<&str, Vec<[f64; 3]>> = HashMap::new();
+    for line in text.lines().skip(1) {
+        let mut cells = line.split(',');
+        let name = cells.next().unwrap();
+        let numbers: Vec<f64> = cells.map(|cell| cell.parse().unwrap()).collect();
+        forces.entry(name).or_default().push([numbers[0] / 5000.0, numbers[2], numbers[3]]);
+    }
+    for material in SolidMaterial::SEVEN {
+        let noise = SolidNoise::new(material.parameters(), 7).unwrap();
+        let rows = &forces[material.name()];
+        let velocity = [0.12, -0.05];
+        let mut worst = 0.0f64;
+        for [t, u_n, v_n] in rows {
+            let at = [0.0312 + velocity[0] * t, 0.0417 + velocity[1] * t];
+            let found = noise.force_n(at, velocity, 0.5, 0.0, 0);
+            worst = worst.max((found[0] - u_n).abs()).max((found[1] - v_n).abs());
+        }
+        println!("{}: {} rows, {worst:.1e} N apart", material.name(), rows.len());
+        assert!(rows.len() == 160 && worst < 2e-6, "{material:?}: {worst}");
+    }
+}
+
+#[test]
+fn the_force_of_seven_materials_is_the_law_within_one_percent_at_every_rate() {
+    for sample_rate_hz in [22_050.0, 44_100.0, 192_000.0] {
+        for material in SolidMaterial::SEVEN {
+            let noise = SolidNoise::new(material.parameters(), 7).unwrap();
+            let velocity = [0.14, -0.05];
+            let stroke = Stroke { sample_rate_hz, rows_hz: 5000.0, reports_hz: 60.0, seconds: 0.4 };
+            let felt = stroke.run(block_of(material), |t| {
+                let uv = [0, 1].map(|a| (0.05 + 0.1 * a as f64 + velocity[a] * t) / SIDE_M);
+                ContactSample::new(uv, 0.5).sliding(velocity)
+            });
+            let first = felt.first.unwrap() as f64;
+            let (mut error, mut power, mut count) = (0.0, 0.0, 0);
+            for row in &felt.told {
+                let at = row.tick as f64 / 5000.0 * sample_rate_hz - first;
+                let index = at.floor() as usize;
+                if !(0.1..0.35).contains(&(row.tick as f64 / 5000.0)) || index + 1 >= felt.path.len() {
+                    continue;
+                }
+                let (here, next) = (felt.path[index], felt.path[index + 1]);
+                let between = |a: f64, b: f64| a + (at - index as f64) * (b - a);
+                let place = [0, 1].map(|a| between(here.0[a], next.0[a]));
+                let wanted = noise.force_n(place, here.1, 0.5, 0.0, 0);
+                for a in 0..2 {
+                    error += (row.force_n[a] - wanted[a]).powi(2);
+                    power += wanted[a] * wanted[a];
+                }
+                count += 1;
+            }
+            let (rms, off) = ((power / f64::from(count)).sqrt(), (error / power).sqrt());
+            println!("{sample_rate_hz} {}: rms {rms:.3} N, {:.3} % off", material.name(), 1e2 * off);
+            assert!(count > 1200 && rms > 0.005 && off < 0.01, "{material:?} at {sample_rate_hz}: {off}");
+        }
+    }
+}
+
+#[test]
+fn a_thousand_rows_a_second_feel_sandpaper_at_15_cm_a_second_and_nothing_that_does_not_press() {
+    let rms = |speed_m_s: f64, force_n: f64| {
+        let stroke = Stroke { sample_rate_hz: 22_050.0, rows_hz: 1000.0, reports_hz: 60.0, seconds: 0.5 };
+        let felt = stroke.run(block_of(SolidMaterial::Sandpaper), |t| {
+            let sample = ContactSample::new([(0.03 + speed_m_s * t) / SIDE_M, 0.4], force_n);
+            let landing = if t == 0.0 && force_n == 0.0 { 1e-3 } else { 0.0 };
+            sample.sliding([speed_m_s, 0.0]).landing(landing)
+        });
+        let x: Vec<f64> = felt.told.iter().map(|row| row.force_n[0]).collect();
+        (x.iter().map(|x| x * x).sum::<f64>() / x.len().max(1) as f64).sqrt()
+    };
+    let [slow, fast] = [0.05, 0.15].map(|speed| rms(speed, 0.5));
+    println!("sandpaper: {slow:.4} N at 0.05 m/s, {fast:.4} N at 0.15 m/s");
+    assert!(fast > 0.5 * slow, "{fast} for {slow}");
+    assert_eq!(rms(0.15, 0.0), 0.0);
+}
+
+#[test]
+fn every_row_tells_another_force_at_every_rate() {
+    // It was one value in 64 samples, held.
+    let stroke = Stroke { sample_rate_hz: 22_050.0, rows_hz: 5000.0, reports_hz: 60.0, seconds: 0.3 };
+    let felt = stroke.run(block_of(SolidMaterial::Gravel), |t| {
+        ContactSample::new([(0.03 + 0.1 * t) / SIDE_M, 0.4], 0.5).sliding([0.1, 0.0])
+    });
+    let moving = &felt.told[200..];
+    assert!(moving.len() > 1000 && moving.windows(2).all(|pair| pair[0].force_n[0] != pair[1].force_n[0]));
+}
+
+fn sand(law: SandLaw) -> Surface {
+    let design = SandDesign { width_m: SIDE_M, height_m: SIDE_M, cells: 400, law, ..SandDesign::default() };
+    Surface::new(SandSource::synchronous(&design, 3).unwrap(), SIDE_M, SIDE_M).unwrap().wraps(false)
+}
+
+#[test]
+fn sand_drags_with_its_law_from_touch_on_and_with_nothing_before() {
+    // The scene of a landing at 5 cm/s with 3 N while the hand is already moving.
+    let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 60.0, seconds: 0.4 };
+    let felt = stroke.run(sand(SandLaw::default()), |t| {
+        let sample = ContactSample::new([(0.05 + 0.08 * t) / SIDE_M, 0.5], 3.005).sliding([0.08, 0.0]);
+        sample.landing(if t == 0.0 { 0.05 } else { 0.0 })
+    });
+    for row in &felt.told {
+        let [x, y, z] = row.force_n;
+        // Eq. 3 in every row, the landing's as well; a row spans 4 ticks either way.
+        assert!((x + 20.0 * 0.08 * z).abs() <= 0.01 * x.abs() + 0.02 && y.abs() < 1e-9, "{row:?}");
+        assert!((x * x + y * y + z * z).sqrt() <= 20.0 + 1e-9);
+    }
+    let [x, _, z] = felt.told[0].force_n;
+    println!("first row: {x:.4} N along, {z:.4} N out; last: {:?}", felt.told.last().unwrap().force_n);
+}
+
+#[test]
+fn depth_in_gives_the_document_s_force_out_dry_and_wet_resting_and_dragging() {
+    let wet = SandLaw { wetness: 0.7, ..SandLaw::default() };
+    let curved = SandLaw { stiffness_n: 8.0, exponent_per_m: 150.0, ..SandLaw::default() };
+    for law in [SandLaw::default(), wet, curved] {
+        for (depth_m, velocity) in [(0.003, [0.0, 0.0]), (0.002, [0.08, 0.0]), (0.004, [-0.06, 0.05])] {
+            let stroke =
+                Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 1000.0, seconds: 0.6 };
+            let felt = stroke.run(sand(law), |t| {
+                let uv = [0, 1].map(|a| (0.1 + velocity[a] * (t - 0.3)) / SIDE_M);
+                ContactSample::at_depth(uv, depth_m).sliding(velocity)
+            });
+            let wanted = law.answer_n(depth_m, velocity);
+            assert!(felt.told.len() > 590);
+            let mut worst = [0.0f64; 3];
+            for row in felt.told.iter().filter(|row| row.tick > 60) {
+                for a in 0..3 {
+                    worst[a] = worst[a].max((row.force_n[a] - wanted[a]).abs());
+                }
+            }
+            println!("{depth_m} m, {velocity:?}: {wanted:.3?} N, off by {worst:.4?}");
+            assert!((0..3).all(|a| worst[a] <= 0.01 * wanted[a].abs() + 1e-9), "{wanted:?} {worst:?}");
+        }
+    }
+}
+
+#[test]
+fn a_tip_above_the_sand_feels_nothing_and_one_that_dips_in_feels_its_way_down() {
+    let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 1000.0, seconds: 0.6 };
+    // Down at 2 cm/s from 2 mm above to 4 mm below, and up again.
+    let depth_m = |t: f64| if t < 0.3 { -0.002 + 0.02 * t } else { 0.004 - 0.02 * (t - 0.3) };
+    let felt = stroke.run(sand(SandLaw::default()), |t| ContactSample::at_depth([0.5, 0.5], depth_m(t)));
+    let law = SandLaw::default();
+    for row in &felt.told {
+        let t = row.tick as f64 / 1000.0;
+        // A report holds for a millisecond.
+        let (low, high) = (law.force_n(depth_m(t) - 1e-4), law.force_n(depth_m(t) + 1e-4));
+        let z = row.force_n[2];
+        assert!(z >= low - 0.03 && z <= high + 0.03, "{t} s: {z} N, between {low} and {high}");
+        assert!(row.force_n[0].hypot(row.force_n[1]) <= 0.01 * z + 1e-12);
+    }
+    let most = felt.told.iter().fold(0.0f64, |most, row| most.max(row.force_n[2]));
+    assert!((most / law.force_n(0.004) - 1.0).abs() < 0.03, "{most} N");
+}
+
+#[test]
+fn a_soft_map_is_a_spring_and_a_hard_one_refuses_a_depth_with_the_reason() {
+    let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1e-4 };
+    let mut rng = Rng::new(5);
+    let heights = Raster::from_fn(64, 64, |_, _| rng.uniform());
+    let cloth = || {
+        let map =
+            asperity::texture::height_map::HeightMap::new(&heights.clone().into(), extent, Wrap::Repeat);
+        Surface::from_map(map.unwrap()).unwrap().friction(0.0)
+    };
+    let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 1000.0, seconds: 0.3 };
+    for (compliance_m_n, depth_m) in [(1e-3, 0.002), (2.5e-3, 0.001)] {
+        let felt = stroke.run(cloth().compliance_m_n(compliance_m_n), |t| {
+            ContactSample::at_depth([0.2 + 0.1 * t, 0.3], depth_m)
+        });
+        let wanted = depth_m / compliance_m_n;
+        let off = felt.told.iter().skip(40).map(|row| (row.force_n[2] / wanted - 1.0).abs());
+        let off = off.fold(0.0f64, f64::max);
+        println!("{compliance_m_n} m/N, {depth_m} m: {wanted} N, {:.3} % off", 1e2 * off);
+        assert!(off < 0.01);
+        // And lies lower by as much as it is pressed in.
+        let mean = |felt: &Felt| {
+            felt.path[8000..].iter().map(|p| p.2).sum::<f64>() / (felt.path.len() - 8000) as f64
+        };
+        let hard = stroke.run(cloth(), |t| ContactSample::new([0.2 + 0.1 * t, 0.3], wanted));
+        let sunk = (mean(&hard) - mean(&felt)) / depth_m;
+        assert!((sunk - 1.0).abs() < 0.01, "sunk by {sunk} of the depth");
+    }
+    let Engine { mut scene, .. } = Config::default().build().unwrap();
+    let hard = scene.add_surface(cloth()).unwrap();
+    let event = |sample| ContactEvent::begin(ContactId(1), hard, Actuator(0), sample);
+    let refused = scene.report(0.0, event(ContactSample::at_depth([0.5; 2], 0.001))).unwrap_err();
+    assert_eq!(refused.reason, Refusal::Hard);
+    assert!(refused.to_string().starts_with("depth_m: the surface is hard"), "{refused}");
+    scene.report(0.0, event(ContactSample::new([0.5; 2], 0.5))).unwrap();
+    let deeper = ContactEvent::moved(ContactId(1), ContactSample::at_depth([0.5; 2], 0.001));
+    assert_eq!(scene.report(0.01, deeper).unwrap_err().reason, Refusal::Hard);
+    assert_eq!(scene.tip_law(hard).unwrap(), None);
+    let soft = scene.add_surface(cloth().compliance_m_n(1e-3)).unwrap();
+    let law = TipLaw::Spring { compliance_m_n: 1e-3, friction: 0.0 };
+    assert_eq!(scene.tip_law(soft).unwrap(), Some(law));
+}
+
+#[test]
+fn a_place_below_the_frame_is_a_depth() {
+    let frame = SurfaceFrame::new([0.1, 0.2, 0.3], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]).unwrap();
+    let surface = || Surface::flat(SIDE_M, SIDE_M).unwrap().compliance_m_n(1e-3).friction(0.0).frame(frame);
+    let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 1000.0, seconds: 0.2 };
+    // The normal is u × v, the body's x: 2 mm below is 2 mm before the plane.
+    let felt = stroke.run(surface(), |t| ContactSample::tip_at([0.098, 0.25 + 0.05 * t, 0.35]));
+    let last = felt.told[felt.told.len() - 10].force_n;
+    assert!((last[2] - 2.0).abs() < 0.02, "{last:?}");
+    let at = felt.path.last().unwrap().0;
+    assert!((at[1] - 0.05).abs() < 1e-9 && at[0] > 0.055, "{at:?}");
+}
+
+/// The height under a contact that rests.
+fn height(surface: Surface, sample: ContactSample) -> f64 {
+    let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 60.0, seconds: 0.1 };
+    stroke.run(surface, |_| sample).path.last().unwrap().2
+}
+
+#[test]
+fn a_sphere_and_a_cube_are_cut_from_one_block_by_the_place_that_a_contact_tells() {
+    let granite = || SolidNoise::new(SolidMaterial::Granite.parameters(), 7).unwrap();
+    let plane = |frame: SurfaceFrame| {
+        let [u_axis, v_axis] = frame.axes();
+        let noise = granite().with_cut(SolidCut::of_body(frame.origin_m(), u_axis, v_axis));
+        Surface::new(noise, SIDE_M, SIDE_M).unwrap().wraps(false).frame(frame).micro_relief_m(0.0)
+    };
+    // Repeats, as a mesh's texture coordinates do: places do not.
+    let sphere = || Surface::new(granite(), SIDE_M, SIDE_M).unwrap().micro_relief_m(0.0);
+    let (mut worst, mut range) = (0.0f64, [f64::INFINITY, f64::NEG_INFINITY]);
+    for k in 0..12 {
+        // Points of a sphere of 4 cm about the cube's corner that lie on the cube's faces z = 0 and y = 0.
+        let angle = 0.1 + 0.5 * f64::from(k);
+        let (s, c) = angle.sin_cos();
+        for (point, frame) in [
+            ([0.04 * c, 0.04 * s, 0.0], SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])),
+            ([0.04 * c, 0.0, 0.04 * s], SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0])),
+        ] {
+            let on_cube = height(plane(frame.unwrap()), ContactSample::new([0.0; 2], 0.5).placed(point));
+            let uv = [0.1 * f64::from(k), 0.9];
+            let on_sphere = height(sphere(), ContactSample::new(uv, 0.5).placed(point));
+            worst = worst.max((on_cube - on_sphere).abs());
+            range = [range[0].min(on_sphere), range[1].max(on_sphere)];
+        }
+    }
+    println!("{worst:.1e} m apart, heights from {:.1e} to {:.1e} m", range[0], range[1]);
+    assert!(worst < 1e-9 && range[1] - range[0] > 1e-5);
+}
+
+#[test]
+fn readers_of_force_that_stall_or_hurry_or_are_two_count_what_they_lose_and_hold_up_nothing() {
+    let Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
+    let surface: SurfaceId = scene.add_surface(block_of(SolidMaterial::Gravel)).unwrap();
+    let port = |holds_s| Force { rate_hz: 1000.0, holds_s };
+    let mut all = scene.open_port(port(4.0)).unwrap();
+    let mut hurried = scene.open_port(port(0.1)).unwrap();
+    let mut stalled = scene.open_port(port(0.1)).unwrap();
+    let (mut haptic, mut audio, mut in_a_hurry) = ([0.0f32; 64], [0.0f32; 64], Vec::new());
+    for step in 0..120u32 {
+        let t = f64::from(step) / 60.0;
+        let sample = ContactSample::new([(0.02 + 0.07 * t) / SIDE_M, 0.5], 0.5).sliding([0.07, 0.0]);
+        let event = if step == 0 {
+            ContactEvent::begin(ContactId(1), surface, Actuator(0), sample)
+        } else {
+            ContactEvent::moved(ContactId(1), sample)
+        };
+        scene.report(t, event).unwrap();
+        while (renderer.position() as f64) < (t + 1.0 / 60.0) * 44_100.0 {
+            renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+            // Twice as often as there are rows.
+            for _ in 0..3 {
+                in_a_hurry.extend(hurried.read());
+            }
+        }
+    }
+    in_a_hurry.extend(std::iter::from_fn(|| hurried.read()));
+    let told: Vec<ForceRow> = std::iter::from_fn(|| all.read()).collect();
+    assert_eq!((all.lost(), hurried.lost()), (0, 0));
+    assert!(told == in_a_hurry && told.len() > 3900, "{} and {}", told.len(), in_a_hurry.len());
+    let late: Vec<ForceRow> = std::iter::from_fn(|| stalled.read()).collect();
+    assert_eq!(late.len() as u64 + stalled.lost(), told.len() as u64);
+    assert!(stalled.lost() > 3000 && late[..] == told[told.len() - late.len()..]);
+}

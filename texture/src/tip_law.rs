@@ -1,0 +1,86 @@
+//! Tip law: depth in, force out. What a surface that gives way answers to a device whose tip stands in it.
+//!
+//! ```text
+//! sand     F_z = k_s β (e^{k_c d} − 1),  F_xy = −k_f v F_z          the document's loop, |F| ≤ cap
+//! spring   F_z = d / C,                  F_xy = −μ F_z v / max(|v|, 1 mm/s)
+//! ```
+//!
+//! A plain value for the thread that drives the device: it needs no engine, waits for nothing, and gives what the engine's own force
+//! rows give for the same depth, without their delay. d is the depth below the surface as it lies, which for sand in its own furrow is
+//! lower than it was.
+
+use crate::sand::SandLaw;
+
+/// Below this speed friction grows linearly, so that a resting tip does not chatter, m/s.
+const STICK_M_S: f64 = 1e-3;
+
+/// How a surface answers a depth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TipLaw {
+    /// Sand.
+    Sand(SandLaw),
+    /// A spring with Coulomb friction: a soft map, or a wall as stiff as a loop can hold.
+    Spring {
+        /// How far it gives way, m/N, above 0.
+        compliance_m_n: f64,
+        /// Coulomb coefficient.
+        friction: f64,
+    },
+}
+
+impl TipLaw {
+    /// Force on the tip along u, v and out of the surface, N; none above the surface.
+    #[must_use]
+    pub fn answer_n(&self, depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
+        match self {
+            Self::Sand(law) => law.answer_n(depth_m, velocity_m_s),
+            Self::Spring { compliance_m_n, friction } => {
+                let carried_n = depth_m.max(0.0) / compliance_m_n;
+                let slide = friction * carried_n / velocity_m_s[0].hypot(velocity_m_s[1]).max(STICK_M_S);
+                [-slide * velocity_m_s[0], -slide * velocity_m_s[1], carried_n]
+            }
+        }
+    }
+
+    /// How much the force grows with the depth, N/m: what a loop of period T can hold with a device that damps with b is at most 2 b / T.
+    #[must_use]
+    pub fn stiffness_n_m(&self, depth_m: f64) -> f64 {
+        match self {
+            Self::Spring { compliance_m_n, .. } => 1.0 / compliance_m_n,
+            Self::Sand(law) => {
+                let step_m = 1e-6;
+                let depth_m = depth_m.max(step_m);
+                (law.force_n(depth_m + step_m) - law.force_n(depth_m - step_m)) / (2.0 * step_m)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sand_answers_with_the_document_s_two_equations() {
+        let law = SandLaw::default();
+        for (depth_m, v) in [(0.003, [0.08, 0.0]), (0.006, [-0.02, 0.05]), (0.001, [0.0, 0.0])] {
+            let repulse_n = 1000.0 * (f64::exp(depth_m) - 1.0);
+            let wanted = [-20.0 * v[0] * repulse_n, -20.0 * v[1] * repulse_n, repulse_n];
+            let found = TipLaw::Sand(law).answer_n(depth_m, v);
+            assert!((0..3).all(|a| (found[a] - wanted[a]).abs() < 1e-9), "{found:?} {wanted:?}");
+        }
+        assert_eq!(TipLaw::Sand(law).answer_n(0.0, [0.1, 0.1]), [0.0; 3]);
+        assert!((TipLaw::Sand(law).stiffness_n_m(0.003) / 1003.0 - 1.0).abs() < 1e-4);
+        // 0.5 m/s at 5 N would drag with 50 N; no device gives more than it can, in the direction of the force.
+        let [u, v, z] = TipLaw::Sand(law).answer_n(0.005, [0.5, 0.0]);
+        assert!((u.hypot(z) - 20.0).abs() < 1e-9 && v == 0.0 && (u / z + 10.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_spring_carries_and_rubs() {
+        let law = TipLaw::Spring { compliance_m_n: 2e-3, friction: 0.5 };
+        assert_eq!(law.answer_n(0.004, [0.3, -0.4]), [-0.6, 0.8, 2.0]);
+        assert_eq!(law.answer_n(-0.004, [0.3, -0.4])[2], 0.0);
+        assert_eq!(law.stiffness_n_m(0.0), 500.0);
+    }
+}
