@@ -12,6 +12,7 @@ use crate::model::body::Body;
 use crate::model::surface::Surface;
 use asperity_texture::sand::SandWorker;
 use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 
 /// What became of a changed scene file.
 #[derive(Default)]
@@ -47,7 +48,7 @@ impl Scene {
             workers: overrides.live.then_some(&workers),
         };
         let at = |error: FileError| error.within(after.path.display());
-        let new = New::make(&maker, before, after).map_err(at)?;
+        let new = New::make(&maker, before, after, overrides.touched).map_err(at)?;
         let mut changes = Changes { waiting: waiting(before, after), ..Changes::default() };
         new.put(self, names, &mut changes).map_err(at)?;
         self.apply_buses(before, after, &mut changes).map_err(at)?;
@@ -108,9 +109,17 @@ struct New<'a> {
 }
 
 impl<'a> New<'a> {
-    fn make(maker: &Maker<'_>, before: &SceneFile, after: &'a SceneFile) -> Result<Self, FileError> {
+    fn make(
+        maker: &Maker<'_>,
+        before: &SceneFile,
+        after: &'a SceneFile,
+        touched: &[PathBuf],
+    ) -> Result<Self, FileError> {
+        let holds_touched = |files: Vec<&Path>| files.iter().any(|file| touched.iter().any(|t| t == file));
+        let differs =
+            |entry: &BodyEntry| !before.bodies.contains(entry) || holds_touched(entry.named_files());
         let mut bodies = Vec::new();
-        for entry in after.bodies.iter().filter(|entry| !before.bodies.contains(entry)) {
+        for entry in after.bodies.iter().filter(|entry| differs(entry)) {
             // Buses are those that the engine was built with.
             let body = maker.body(entry, &before.audio);
             bodies.push((entry, body.map_err(|error| error.within(format!("body \"{}\"", entry.name)))?));
@@ -124,6 +133,7 @@ impl<'a> New<'a> {
             let old = before.surfaces.iter().find(|old| *old == entry);
             let old_body = before.bodies.iter().find(|body| Some(&body.name) == entry.body.as_ref());
             if old.is_some()
+                && !holds_touched(entry.named_files())
                 && old_body.map(|body| body.material) == body_of(after, entry).map(|body| body.material)
             {
                 continue;
