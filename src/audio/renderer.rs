@@ -15,7 +15,7 @@ use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::{Change, Seat};
 use crate::audio::smoothed::Smoothed;
-use crate::audio::voice::{Phase, Scratch, Shared, Voice};
+use crate::audio::voice::{Phase, Scratch, Shared, Stretch, Voice};
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
@@ -421,7 +421,8 @@ impl Renderer {
             let seat = &mut self.seats[voice.surface];
             let channel = voice.role.actuator.map(|channel| &mut self.channels[channel]);
             let output = channel.as_ref().map_or(&self.shared.idle_output, |channel| &channel.output);
-            voice.render(seat, &self.shared, output, self.position, n, &mut self.scratch, tap);
+            let stretch = Stretch { shared: &self.shared, output, position: self.position, n };
+            voice.render(stretch, seat, &mut self.scratch, tap);
             let out = &self.scratch.out;
             collisions += out.collisions;
             shortened += out.shortened;
