@@ -36,6 +36,8 @@ pub struct Force {
     pub above: f64,
     /// The same with the hardest landing added to them.
     pub above_landing: f64,
+    /// Blows that were counted: more than thirty times what pressed.
+    pub blows: u64,
     /// Whether the fingertip preset touched.
     pub fingertip: bool,
     /// What touched.
@@ -82,7 +84,7 @@ struct Hardest {
 impl Hardest {
     /// Ground is judged over the whole scene: a contact is led in over ground
     /// that lies before its first row, and a blow comes after its cause.
-    fn force(&self, probe: &Probe) -> Force {
+    fn force(&self, probe: &Probe, blows: u64) -> Force {
         let inertia_n = self.masses_kg * self.acceleration_m_s2;
         let allowed_n = if inertia_n < self.pressed_n {
             10.0 * self.pressed_n
@@ -93,6 +95,7 @@ impl Hardest {
         Force {
             above: self.contact_n / allowed_n.max(1e-9),
             above_landing: self.contact_n / (allowed_n + landing_n).max(1e-9),
+            blows,
             fingertip: *probe == Probe::default(),
             probe: *probe,
             pressed_n: self.pressed_n,
@@ -224,5 +227,9 @@ pub fn outcome(seed: u64) -> Outcome {
             finite &= haptic.iter().chain(&audio).all(|x| x.is_finite());
         }
     }
-    if finite && hardest.finite { Outcome::Rendered(hardest.force(&probe)) } else { Outcome::NotFinite }
+    if finite && hardest.finite {
+        Outcome::Rendered(hardest.force(&probe, scene.stats().blows))
+    } else {
+        Outcome::NotFinite
+    }
 }
