@@ -8,6 +8,7 @@
 
 mod ac_coupling;
 mod block;
+mod blows;
 mod events;
 mod exciters;
 mod fades;
@@ -32,6 +33,7 @@ use ac_coupling::{AcCoupling, ForceCoupling};
 use asperity_dsp::micro_contact::ContactSample as PadSample;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
+use blows::Blows;
 use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
@@ -74,6 +76,7 @@ pub(crate) struct Voice {
     pad: Pad,
     ac: AcCoupling,
     exciters: Exciters,
+    blows: Blows,
     fades: Fades,
 }
 
@@ -99,6 +102,7 @@ impl Voice {
             pad: Pad::idle(&shared.own_probe),
             ac: AcCoupling::idle(&shared.idle_output),
             exciters: Exciters::idle(slot as u64, shared.sample_rate_hz),
+            blows: Blows::default(),
             fades: Fades::idle(shared.sample_rate_hz),
         }
     }
@@ -182,6 +186,8 @@ impl Voice {
         profile.run(seat, self.along(shared, position, slopes), points);
         out.resets = self.pad.run(probe.waits, &profile.surface.height_m[..n], &profile.force_n[..n], rows);
 
+        out.blows = self.blows.count(rows);
+
         let Some(slot) = seat.current() else { return };
         let sounds = slot.surface.excitation.has(Exciter::Force);
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
@@ -210,7 +216,7 @@ impl Voice {
         self.ac.rest(&mut out.haptic[..n]);
         out.impulse_n_s[..n].fill(0.0);
         out.excites = false;
-        (out.collisions, out.shortened, out.resets) = (0, 0, 0);
+        (out.collisions, out.shortened, out.resets, out.blows) = (0, 0, 0, 0);
     }
 
     fn show<T: Tap>(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch, tap: &mut T) {
