@@ -187,6 +187,7 @@ fn what_is_not_written_is_as_the_list_says() {
         ("sand", "drag_s_per_m", law.drag_s_per_m),
         ("sand", "wetness", law.wetness),
         ("sand", "grain_m", law.grain_m),
+        ("sand", "cap_n", law.cap_n),
         ("sand", "tool_radius_m", radius_m),
     ];
     let probe = serde_json::to_value(file.probe).unwrap();
@@ -200,5 +201,5 @@ fn what_is_not_written_is_as_the_list_says() {
     // Factors that leave things as they are, and what an event may leave out.
     let listed =
         ALL.iter().filter(|parameter| parameter.default.is_some() && parameter.table != "event").count();
-    assert_eq!(listed, read.len() + ["residual", "scale"].len());
+    assert_eq!(listed, read.len() + ["residual", "scale", "compliance_m_n", "flow_m_s"].len());
 }

@@ -18,6 +18,7 @@
 //! at 45°; ours is the gradient of 6.7, per millimetre (the unit is ours: the thesis has none).
 
 use crate::answer::AnswerAt;
+pub use crate::force_rendering::Rendering;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, NO_TOUCH_N, PathBlock, Setup, SurfaceBlock, WavelengthBand,
 };
@@ -30,15 +31,6 @@ pub const GREY_LEVELS: f64 = 256.0;
 pub const TICK_S: f64 = 1e-3;
 /// Unit of length of the lateral rule, metres (ours).
 pub const LATERAL_UNIT_M: f64 = 1e-3;
-
-/// Which way the force points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rendering {
-    /// Out of the surface, from the rate of climbing.
-    Orthogonal,
-    /// Along the surface, from the slope.
-    Lateral,
-}
 
 /// A force rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
