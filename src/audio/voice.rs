@@ -10,6 +10,7 @@ mod landing;
 mod pressed;
 mod role;
 mod scratch;
+mod skin;
 mod watching;
 
 pub(crate) use events::EMPTY_FORCE_N;
@@ -23,7 +24,7 @@ use crate::model::event::ContactId;
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::probe::PreparedProbe;
-use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
+use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity, Skin, SkinState};
 use asperity_dsp::butterworth;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::hertz::{FORCE_HISTORY, OnsetMerge};
@@ -128,6 +129,8 @@ pub(crate) struct Voice {
     resets_told: u32,
     merge: OnsetMerge,
     feel: ContactOutputState,
+    /// What the skin lets through of an acceleration, at present, and its memory.
+    skin: Option<(Skin, SkinState)>,
     force_high_pass: butterworth::State,
     reaction: Reaction,
     grains: Rng,
@@ -209,6 +212,7 @@ impl Voice {
             resets_told: 0,
             merge: OnsetMerge::default(),
             feel: ContactOutputState::begin(&shared.idle_output, 0.0, 0.0),
+            skin: None,
             force_high_pass: butterworth::State::default(),
             reaction: Reaction::default(),
             grains: Rng::new(slot as u64),
@@ -265,7 +269,8 @@ impl Voice {
             self.rest(n, scratch);
         } else {
             if at_grid {
-                self.stiffen(seat, shared, self.last_point.normal_force_n);
+                self.stiffen(seat, shared, position, self.last_point.normal_force_n);
+                self.soften(shared, output);
             }
             self.follow_path(seat, n, scratch);
             self.profile(seat, shared, position, n, tap.is_watching(), scratch);

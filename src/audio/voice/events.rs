@@ -60,7 +60,9 @@ impl Voice {
         seat.land(&self.touch_at(position));
         let force_n = event.normal_force_n;
         let lands = sample.closing_m_s > 0.0;
-        self.begin_pressed(seat, shared, force_n);
+        self.begin_pressed(seat, shared, position, force_n);
+        self.skin = None;
+        self.soften(shared, output);
         if lands {
             self.profile(seat, shared, position, 1, false, scratch);
             let height_m = scratch.surface.height_m[0];

@@ -42,6 +42,7 @@ impl Voice {
             *impulse_n_s = if impulse_n_s.abs() < ROUNDING_N { 0.0 } else { *impulse_n_s * step_s };
             *felt = if felt.abs() < ROUNDING { 0.0 } else { *felt };
         }
+        self.feel_through_skin(&mut scratch.out.haptic[..n]);
         self.last_felt = scratch.out.haptic[n - 1];
     }
 }

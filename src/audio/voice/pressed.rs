@@ -1,11 +1,12 @@
-//! What pressing harder changes: the contact stiffens and more of it sounds.
+//! What pressing harder changes: the contact stiffens and more of it sounds; and more of it sounds in a hollow than on a crest.
 //!
-//! Both follow the reported force, smoothed as the path is, at the steps of the absolute sample grid, so that they depend on no split into
+//! Both follow the reported force and the ground, smoothed as the path is, at the steps of the absolute sample grid, so that they depend on no split into
 //! blocks; between two steps the loudness goes along a straight line.
 
 use super::{Scratch, Shared, Voice};
 use crate::audio::seat::Seat;
-use crate::prepared::stiffness::{Ground, loudness, stiffness_n_m};
+use crate::prepared::area::{loudness, nestling};
+use crate::prepared::stiffness::{Ground, stiffness_n_m};
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// How a contact is pressed at present.
@@ -19,25 +20,28 @@ pub(super) struct Pressed {
 
 impl Voice {
     /// The contact becomes as stiff as probe, ground and force make it; the loudness sets out for its new place.
-    pub(super) fn stiffen(&mut self, seat: &Seat, shared: &Shared, force_n: f64) {
-        self.pressed.loudness[0] = self.pressed.loudness[1];
+    pub(super) fn stiffen(&mut self, seat: &mut Seat, shared: &Shared, position: u64, force_n: f64) {
+        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
+        let touch = self.touch_at(position);
+        let hollow = |reach_m| seat.hollow_m(&touch, reach_m, tip_radius_m);
+        let loudness = loudness(force_n) * nestling(tip_radius_m, hollow);
+        self.pressed.loudness = [self.pressed.loudness[1], loudness];
         let Some(slot) = seat.current() else { return };
         let now = (force_n, slot.stroking.ground);
         if self.pressed.of == Some(now) {
             return;
         }
         self.pressed.of = Some(now);
-        self.pressed.loudness[1] = loudness(force_n);
         let probe = shared.probe(self.role.probe);
         let stiffness_n_m = stiffness_n_m(probe.micro_contact.probe(), &now.1, force_n);
         probe.ladder.set(&mut self.contact_model, stiffness_n_m);
     }
 
     /// The contact begins as it is pressed.
-    pub(super) fn begin_pressed(&mut self, seat: &Seat, shared: &Shared, force_n: f64) {
+    pub(super) fn begin_pressed(&mut self, seat: &mut Seat, shared: &Shared, position: u64, force_n: f64) {
         self.pressed = Pressed::default();
-        self.stiffen(seat, shared, force_n);
-        self.pressed.loudness = [loudness(force_n); 2];
+        self.stiffen(seat, shared, position, force_n);
+        self.pressed.loudness[0] = self.pressed.loudness[1];
     }
 
     /// Weighs what the contact sends to the body by its loudness.
