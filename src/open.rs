@@ -8,7 +8,11 @@ use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
 pub use crate::made::edit::{Edits, MakeSurface};
 use crate::made::maker::{self, Maker};
-use crate::{AudioBus, Config, Integrator, Isa, PathMode};
+use crate::model::bus::AudioBus;
+use crate::model::config::Config;
+use asperity_dsp::micro_contact::Integrator;
+use asperity_dsp::modal_bank::Isa;
+use asperity_dsp::trajectory::PathMode;
 use asperity_texture::raster::Raster;
 pub use change::Changes;
 use levels::Levels;
@@ -101,7 +105,7 @@ fn calibrated(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Vec<bool>, 
     let is = |entry| {
         let body = maker.body(entry, &file.audio, &[])?;
         let pascals = file.audio.get(body.bus).and_then(|bus| bus.pascals_at_full_scale);
-        Ok(pascals.is_some() && body.model.unit == crate::ShapeUnit::PascalsAtOneMetre)
+        Ok(pascals.is_some() && body.model.unit == crate::model::mode_shapes::Unit::PascalsAtOneMetre)
     };
     if file.audio.iter().all(|bus| bus.pascals_at_full_scale.is_none()) {
         return Ok(vec![false; file.bodies.len()]);

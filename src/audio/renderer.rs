@@ -15,7 +15,7 @@ use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::{Change, Seat};
 use crate::audio::smoothed::Smoothed;
-use crate::audio::voice::{Phase, Scratch, Shared, Voice};
+use crate::audio::voice::{Phase, Scratch, Shared, Stretch, Voice};
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
@@ -412,7 +412,7 @@ impl Renderer {
             channel.sum[..n].fill(0.0);
         }
         let tap = &mut self.outlets.beside(tap);
-        let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
+        let (mut collisions, mut shortened, mut resets, mut blows) = (0, 0, 0, 0);
         for voice in self.voices_used.iter() {
             let voice = &mut self.voices[voice];
             if voice.phase == Phase::Free {
@@ -421,11 +421,13 @@ impl Renderer {
             let seat = &mut self.seats[voice.surface];
             let channel = voice.role.actuator.map(|channel| &mut self.channels[channel]);
             let output = channel.as_ref().map_or(&self.shared.idle_output, |channel| &channel.output);
-            voice.render(seat, &self.shared, output, self.position, n, &mut self.scratch, tap);
+            let stretch = Stretch { shared: &self.shared, output, position: self.position, n };
+            voice.render(stretch, seat, &mut self.scratch, tap);
             let out = &self.scratch.out;
             collisions += out.collisions;
             shortened += out.shortened;
             resets += out.resets;
+            blows += out.blows;
             if let Some(channel) = channel {
                 for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
                     *sum += x;
@@ -452,6 +454,7 @@ impl Renderer {
         Counters::add(&self.counters.micro_collisions, collisions);
         Counters::add(&self.counters.shortened_collisions, shortened);
         Counters::add(&self.counters.quarantined, resets);
+        Counters::add(&self.counters.blows, blows);
     }
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.

@@ -2,14 +2,19 @@
 
 pub(crate) use super::made_with::Maker;
 use super::source::Ground;
+use crate::files::actuator_profile::ActuatorPreset;
 use crate::files::contact_log::{LogSurface, Names};
 use crate::files::scene_file::{ActuatorEntry, AudioEntry, BodyEntry, RoughnessEntry, Source, SurfaceEntry};
 use crate::files::{FileError, Files, storage};
-use crate::{
-    ActuatorPreset, ActuatorSettings, Body, DeviceProfile, Extent, Material, ModalModel, Roughness,
-    ShapeUnit, Surface, Wrap,
-};
+use crate::model::actuator::{ActuatorSettings, DeviceProfile};
+use crate::model::body::Body;
+use crate::model::material::Material;
+use crate::model::modal_model::ModalModel;
+use crate::model::mode_shapes::Unit;
+use crate::model::surface::{Roughness, Surface};
+use asperity_texture::height_map::Extent;
 use asperity_texture::height_map::HeightMap;
+use asperity_texture::wrap::Wrap;
 use std::path::Path;
 
 impl<'a> Maker<'a> {
@@ -29,7 +34,7 @@ impl<'a> Maker<'a> {
             entry.bus.as_ref().and_then(|name| audio.iter().position(|bus| bus.name.as_ref() == Some(name)));
         let bus = bus.unwrap_or(0);
         if let Some(pascals) = audio.get(bus).and_then(|bus| bus.pascals_at_full_scale)
-            && model.unit == ShapeUnit::PascalsAtOneMetre
+            && model.unit == Unit::PascalsAtOneMetre
         {
             // A gain that nobody wrote is there for the other bodies of the bus.
             let found = gains.get(bus).filter(|_| audio[bus].gain.is_none());

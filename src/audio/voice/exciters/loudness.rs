@@ -1,0 +1,35 @@
+//! Loudness: the more of a contact touches, the more of it sounds.
+//!
+//! It is worked out at the steps of the absolute sample grid, so that it depends on no split into blocks, and goes along a straight line
+//! between two of them.
+
+use asperity_texture::height_field::MAX_BLOCK;
+
+/// How loud a contact is.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Loudness {
+    /// At the last step of the grid, and at the next.
+    ends: [f64; 2],
+}
+
+impl Loudness {
+    /// Of a contact that begins.
+    pub(super) fn of(loudness: f64) -> Self {
+        Self { ends: [loudness; 2] }
+    }
+
+    /// Sets out for another.
+    pub(super) fn set_out(&mut self, loudness: f64) {
+        self.ends = [self.ends[1], loudness];
+    }
+
+    /// Weighs what the contact sends to the body.
+    pub(super) fn weigh(&self, position: u64, impulse_n_s: &mut [f64]) {
+        let [from, to] = self.ends;
+        let first = position as usize % MAX_BLOCK;
+        for (i, impulse_n_s) in impulse_n_s.iter_mut().enumerate() {
+            let part = (first + i + 1) as f64 / MAX_BLOCK as f64;
+            *impulse_n_s *= from + part * (to - from);
+        }
+    }
+}
