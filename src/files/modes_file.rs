@@ -2,7 +2,7 @@
 
 use super::storage::{self, Disk, Files};
 use crate::model::modal_model::{ModalModel, ModalModelError};
-use crate::model::mode_shapes::ModeShapes;
+use crate::model::mode_shapes::{ModeShapes, Unit};
 use crate::model::residual::Residual;
 use asperity_dsp::mode::Mode;
 use serde::{Deserialize, Serialize};
@@ -24,6 +24,8 @@ struct File {
     source: String,
     #[serde(default = "one")]
     impulse_n_s: f64,
+    #[serde(default, skip_serializing_if = "is_relative")]
+    unit: Unit,
     modes: Vec<Mode>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     positions: Vec<Vec<f64>>,
@@ -31,6 +33,10 @@ struct File {
     residual: Option<Residual>,
     #[serde(default, skip_serializing)]
     shapes: Option<ModeShapes>,
+}
+
+fn is_relative(unit: &Unit) -> bool {
+    *unit == Unit::Relative
 }
 
 fn one() -> f64 {
@@ -87,8 +93,8 @@ impl ModalModel {
             (Some(_), VERSION) => return Err(malformed("shapes stand in version 1; need version 2".into())),
             _ => return Err(malformed(format!("version is {}", file.version))),
         }
-        let File { source, impulse_n_s, modes, positions, residual, .. } = file;
-        let model = Self { source, impulse_n_s, modes, positions, residual };
+        let File { source, impulse_n_s, modes, positions, residual, unit, .. } = file;
+        let model = Self { source, impulse_n_s, modes, positions, residual, unit };
         model.check()?;
         Ok(model)
     }
@@ -101,6 +107,7 @@ impl ModalModel {
             version: VERSION,
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
+            unit: self.unit,
             modes: self.modes.clone(),
             positions: self.positions.clone(),
             residual: self.residual.clone(),
@@ -122,6 +129,17 @@ mod tests {
         let model = ModalModel::parse(TILE).unwrap();
         assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
         assert_eq!(model.modes[0].frequency_hz, 812.4);
+    }
+
+    #[test]
+    fn a_unit_survives_the_round_trip_and_another_word_is_refused() {
+        let pascals = TILE.replace("\"version\":1,", "\"version\":1,\"unit\":\"pa_1m\",");
+        let model = ModalModel::parse(&pascals).unwrap();
+        assert_eq!(model.unit, Unit::PascalsAtOneMetre);
+        assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
+        assert_eq!(ModalModel::parse(TILE).unwrap().unit, Unit::Relative);
+        let sones = ModalModel::parse(&pascals.replace("pa_1m", "sone")).unwrap_err().to_string();
+        assert!(sones.contains("sone"), "{sones}");
     }
 
     #[test]

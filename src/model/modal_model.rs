@@ -5,6 +5,7 @@
 //! y · J / `impulse_n_s` (Hasti §III-D).
 
 use crate::model::material::Material;
+use crate::model::mode_shapes::Unit;
 use crate::model::residual::Residual;
 use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
@@ -37,6 +38,8 @@ pub struct ModalModel {
     pub positions: Vec<Vec<f64>>,
     /// What the strike had besides modes, played at every impact.
     pub residual: Option<Residual>,
+    /// What amplitudes and residual are.
+    pub unit: Unit,
 }
 
 /// Most strike positions a body may have, the first included.
@@ -94,6 +97,7 @@ impl ModalModel {
             modes: Vec::new(),
             positions: Vec::new(),
             residual: None,
+            unit: Unit::Relative,
         }
     }
 
@@ -197,6 +201,7 @@ impl ModalModel {
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
             residual: self.residual.clone(),
+            unit: self.unit,
         }
     }
 
