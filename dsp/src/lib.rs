@@ -17,6 +17,8 @@
 //! | [`mobility`] | force pulses → what the hand feels of an impact |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
 //! | [`damping`] | a material → the decays of its modes |
+//! | [`stick_slip`] | sweep and normal force → friction force, with the body that gives way |
+//! | [`tangential`] | friction force → skin dragged sideways |
 //! | [`actuator`] | pad motion → haptic samples |
 //! | [`limits`] | what all of them accept |
 //! | [`rng`] | seeded numbers for all of them |
@@ -41,6 +43,8 @@ pub mod modal_bank;
 pub mod mode;
 pub mod pair;
 pub mod rng;
+pub mod stick_slip;
+pub mod tangential;
 pub mod trajectory;
 mod vector;
 
