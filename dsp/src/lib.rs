@@ -16,6 +16,7 @@
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
 //! | [`mobility`] | force pulses → what the hand feels of an impact |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
+//! | [`held`] | contacts that press on a body → its pitches and decays |
 //! | [`damping`] | a material → the decays of its modes |
 //! | [`stick_slip`] | sweep and normal force → friction force, with the body that gives way |
 //! | [`tangential`] | friction force → skin dragged sideways |
@@ -35,6 +36,7 @@ mod error;
 pub mod fractal_noise;
 pub mod gradient_noise_2d;
 pub mod gradient_noise_3d;
+pub mod held;
 pub mod hertz;
 pub mod limits;
 pub mod micro_contact;
