@@ -17,6 +17,7 @@
 //! | [`mobility`] | force pulses → what the hand feels of an impact |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
 //! | [`held`] | contacts that press on a body → its pitches and decays |
+//! | [`radiation`] | motion of a surface → pressure at 1 m |
 //! | [`damping`] | a material → the decays of its modes |
 //! | [`stick_slip`] | sweep and normal force → friction force, with the body that gives way |
 //! | [`tangential`] | friction force → skin dragged sideways |
@@ -44,6 +45,7 @@ pub mod mobility;
 pub mod modal_bank;
 pub mod mode;
 pub mod pair;
+pub mod radiation;
 pub mod rng;
 pub mod stick_slip;
 pub mod tangential;
