@@ -5,7 +5,8 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::BodyId;
 use crate::model::stamp::Stamp;
-use crate::prepared::body::{BodySlot, Terms};
+use crate::prepared::body::{BodySlot, Spot, Terms};
+use crate::prepared::body_field::Owner;
 use asperity_dsp::hertz::HertzPulse;
 
 /// A body's place on the audio half. A replaced or removed body rings on without input and fades.
@@ -166,14 +167,14 @@ impl BodySeat {
     /// Adds an impact whose contact begins at `stamp`.
     pub(crate) fn strike(
         &mut self,
-        position: usize,
+        spot: &Spot,
         pulse: &HertzPulse,
         stamp: Stamp,
         mode_level: usize,
         sample_rate_hz: f64,
     ) {
         if let Some(body) = &mut self.current {
-            body.strike(position, pulse, stamp, mode_level, sample_rate_hz);
+            body.strike(spot, pulse, stamp, mode_level, sample_rate_hz);
         }
     }
 
@@ -181,6 +182,13 @@ impl BodySeat {
     pub(crate) fn touch(&mut self, id: BodyId, position: usize, impulse_n_s: &[f64], sign: f64) {
         if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
             body.touch(position, impulse_n_s, sign);
+        }
+    }
+
+    /// As [`touch`](Self::touch), at a place of its own.
+    pub(crate) fn touch_at(&mut self, id: BodyId, owner: Owner, spot: &Spot, impulse_n_s: &[f64]) {
+        if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
+            body.touch_at(owner, spot, impulse_n_s);
         }
     }
 

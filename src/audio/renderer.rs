@@ -24,6 +24,8 @@ use crate::model::config::Config;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
 use crate::model::stamp::Stamp;
+use crate::model::strike_field::StrikePlace;
+use crate::prepared::body::Spot;
 use crate::prepared::probe::{PreparedProbe, row_latency};
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::DesignError;
@@ -48,6 +50,8 @@ pub struct Renderer {
     timeout_samples: u64,
     max_contacts: usize,
     voices: Vec<Voice>,
+    /// Where each voice is on a body that has shapes.
+    placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
     bodies: Vec<BodySeat>,
@@ -105,6 +109,7 @@ impl Renderer {
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
             voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
+            placed: vec![None; voices],
             voices_used: Occupied::new(voices),
             seats_used: Occupied::new(config.max_surfaces),
             bodies_used: Occupied::new(config.max_bodies),
@@ -310,20 +315,21 @@ impl Renderer {
             {
                 Counters::add(&self.counters.superseded, 1);
             }
-            Message::Event { stamp, event } => {
+            Message::Event { stamp, event, place } => {
                 self.note_arrival(stamp);
                 self.apply_event(&event, stamp);
+                self.put(&event, place);
             }
-            Message::Strike { stamp, body, position, other, holder, felt, pulse } => {
+            Message::Strike { stamp, body, spot, other, holder, felt, pulse } => {
                 self.note_arrival(stamp);
                 Counters::add(&self.counters.impacts, 1);
-                self.strike(body, position, &pulse, stamp);
+                self.strike(body, &spot, &pulse, stamp);
                 if let Some(other) = other {
-                    self.strike(other, 0, &pulse, stamp);
+                    self.strike(other, &Spot::FIRST, &pulse, stamp);
                 }
                 let answer = HertzPulse { impulse_n_s: -pulse.impulse_n_s, ..pulse };
                 if let Some(holder) = holder {
-                    self.strike(holder, 0, &answer, stamp);
+                    self.strike(holder, &Spot::FIRST, &answer, stamp);
                 }
                 if let Some(felt) = felt {
                     self.feel(felt, &pulse, stamp);
@@ -393,11 +399,11 @@ impl Renderer {
         }
     }
 
-    fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
+    fn strike(&mut self, body: usize, spot: &Spot, pulse: &HertzPulse, stamp: Stamp) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
         let sounds = self.due(stamp).later(self.shared.row_latency as u64);
         let level = self.governor.mode_level();
-        self.bodies[body].strike(position, pulse, sounds, level, self.shared.sample_rate_hz);
+        self.bodies[body].strike(spot, pulse, sounds, level, self.shared.sample_rate_hz);
     }
 
     /// A strike is felt: its pulse goes through the mobility of the hand's probe.
@@ -413,8 +419,8 @@ impl Renderer {
         }
         let tap = &mut self.outlets.beside(tap);
         let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
-        for voice in self.voices_used.iter() {
-            let voice = &mut self.voices[voice];
+        for index in self.voices_used.iter() {
+            let voice = &mut self.voices[index];
             if voice.phase == Phase::Free {
                 continue;
             }
@@ -438,8 +444,9 @@ impl Renderer {
                 self.bodies[holder.index()].touch(holder, 0, &out.impulse_n_s[..n], -1.0);
             }
             let surface = seat.current().map(|slot| &slot.surface);
-            if let Some((body, place)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
-                self.bodies[body.index()].touch(body, place, &out.impulse_n_s[..n], 1.0);
+            if let Some((body, position)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
+                let (owner, spot) = ((index, voice.begun), Spot { place: self.placed[index], position });
+                self.bodies[body.index()].touch_at(body, owner, &spot, &out.impulse_n_s[..n]);
             }
         }
         let channels = &mut self.channels;

@@ -38,6 +38,19 @@ pub struct ModeShapes {
 }
 
 impl ModeShapes {
+    /// The shapes of some of the modes.
+    pub(crate) fn kept(&self, keep: &[bool]) -> Self {
+        let kept = |m: &usize| keep.get(*m).copied().unwrap_or(false);
+        let modes = || (0..self.gains.len()).filter(kept);
+        Self {
+            points_m: self.points_m.clone(),
+            triangles: self.triangles.clone(),
+            gains: modes().map(|m| self.gains[m]).collect(),
+            phi_per_sqrt_kg: modes().map(|m| self.phi_per_sqrt_kg[m].clone()).collect(),
+            struck_point: self.struck_point,
+        }
+    }
+
     /// # Errors
     /// What does not fit.
     pub(crate) fn check(&self, modes: usize) -> Result<(), String> {

@@ -169,7 +169,7 @@ impl Shape {
             positions.resize(at.len() - 1, Vec::new());
             positions.iter_mut().zip(&at[1..]).for_each(|(list, shape)| list.push(amplitude(*shape)));
         }
-        ModalModel { source, impulse_n_s: 1.0, modes, positions, residual: None }
+        ModalModel { source, impulse_n_s: 1.0, modes, positions, ..ModalModel::silent() }
     }
 }
 

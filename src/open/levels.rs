@@ -214,6 +214,8 @@ fn strike(body: &str, striker: Striker) -> LogEvent {
         striker,
         restitution: 1.0,
         position: 0,
+        at_m: None,
+        direction: None,
         hand: LogHand::default(),
     }
 }

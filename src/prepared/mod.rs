@@ -2,6 +2,7 @@
 //! beforehand.
 
 pub(crate) mod body;
+pub(crate) mod body_field;
 pub(crate) mod bursts;
 pub(crate) mod impulse_ring;
 pub(crate) mod overlay;
