@@ -195,3 +195,63 @@ fn an_impossible_place_is_refused_by_name() {
         assert!(refused.to_string().starts_with(field), "{refused}");
     }
 }
+
+/// What is left after a strike of a bar at its end while fingers press, and after they let go.
+fn held(fingers: &[(f64, f64)], let_go_s: f64, seconds: f64) -> Vec<f32> {
+    let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
+    let body = engine.scene.add_body(bar_body()).unwrap();
+    let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+    let surface = Surface::flat(0.5, 0.03).unwrap().micro_relief_m(0.0).frame(frame).on(body);
+    let surface = engine.scene.add_surface(surface).unwrap();
+    for (i, (x, force_n)) in fingers.iter().enumerate() {
+        let sample = ContactSample::new([*x, 0.5], *force_n).sliding([0.0; 2]);
+        engine
+            .scene
+            .report(0.0, ContactEvent::begin(ContactId(i as u64), surface, Actuator(0), sample))
+            .unwrap();
+    }
+    let at = [0.0, 0.015, 0.0];
+    engine.scene.report(0.5, ContactEvent::Impact(Impact::on(body).at(at))).unwrap();
+    for i in 0..fingers.len() {
+        engine.scene.report(let_go_s, ContactEvent::end(ContactId(i as u64))).unwrap();
+    }
+    let again_s = seconds - 1.0;
+    engine.scene.report(again_s, ContactEvent::Impact(Impact::on(body).at(at))).unwrap();
+    render(&mut engine, (seconds * RATE_HZ) as usize, 512)
+}
+
+/// Decay of a mode between two instants, 1/s.
+fn decay_per_s(sound: &[f32], hz: f64, from_s: f64, to_s: f64) -> f64 {
+    let window = (0.2 * RATE_HZ) as usize;
+    let level = |at_s: f64| {
+        let at = (at_s * RATE_HZ) as usize;
+        // `amplitude` looks at the second half of what it is given.
+        amplitude(&sound[at - window..at + window], hz)
+    };
+    (level(from_s) / level(to_s)).ln() / (to_s - from_s)
+}
+
+#[test]
+fn a_held_bar_rings_as_long_as_body_and_finger_say_and_let_go_as_before() {
+    use asperity::dsp::held::{Hold, Pole, held as poles_held};
+    let sound = held(&[(0.28, 1.0)], 1.5, 5.0);
+    let free: Vec<Pole> = (0..5).map(|m| Pole { decay_per_s: 4.0, frequency_hz: bar_hz(m) }).collect();
+    let phi: Vec<f64> = (0..5).map(|m| bar_shape(m, 0.28) / 0.2_f64.sqrt()).collect();
+    let probe = asperity::Probe::default();
+    for m in [0, 1] {
+        let pole = poles_held(&free, m, &[Hold { probe: &probe, phi_per_sqrt_kg: &phi }]).unwrap();
+        let found = decay_per_s(&sound, pole.frequency_hz, 0.75, 1.1);
+        println!("mode {m}: {found:.2} 1/s, coupled system {:.2}, free 4", pole.decay_per_s);
+        assert!((found / pole.decay_per_s - 1.0).abs() < 0.08, "{found} of {}", pole.decay_per_s);
+        assert!(pole.decay_per_s > 4.5, "the finger damps it");
+    }
+    // Struck again after it was let go: the same as a bar that nobody ever touched.
+    let untouched = held(&[], 1.5, 5.0);
+    let after = (4.2 * RATE_HZ) as usize;
+    let error: f64 =
+        sound[after..].iter().zip(&untouched[after..]).map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    let size: f64 = untouched[after..].iter().map(|y| f64::from(*y).powi(2)).sum();
+    let error_db = 10.0 * (error / size).log10();
+    println!("let go: {error_db:.1} dB from the free bar");
+    assert!(error_db < -60.0, "{error_db} dB");
+}

@@ -15,7 +15,7 @@ use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::{Change, Seat};
 use crate::audio::smoothed::Smoothed;
-use crate::audio::voice::{Phase, Scratch, Shared, Voice};
+use crate::audio::voice::{Phase, Scratch, Shared, Stretch, Voice};
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
@@ -427,7 +427,8 @@ impl Renderer {
             let seat = &mut self.seats[voice.surface];
             let channel = voice.role.actuator.map(|channel| &mut self.channels[channel]);
             let output = channel.as_ref().map_or(&self.shared.idle_output, |channel| &channel.output);
-            voice.render(seat, &self.shared, output, self.position, n, &mut self.scratch, tap);
+            let stretch = Stretch { shared: &self.shared, output, position: self.position, n };
+            voice.render(stretch, seat, &mut self.scratch, tap);
             let out = &self.scratch.out;
             collisions += out.collisions;
             shortened += out.shortened;
@@ -436,6 +437,13 @@ impl Renderer {
                 for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
                     *sum += x;
                 }
+            }
+            let touched = seat.current().and_then(|slot| Some((slot.surface.body?, slot)));
+            if let (Some((body, slot)), Some(place)) = (touched, self.placed[index])
+                && self.position.is_multiple_of(MAX_BLOCK as u64)
+                && let Some(probe) = voice.pressing(&self.shared, slot)
+            {
+                self.bodies[body.index()].press(body, (index, voice.begun), &place, &probe);
             }
             if !out.excites {
                 continue;

@@ -60,6 +60,8 @@ use std::sync::atomic::Ordering::Relaxed;
 /// ```
 pub struct Scene {
     pub(crate) config: Config,
+    /// The instructions that bodies and probes are prepared for.
+    pub(crate) kernel: Kernel,
     pub(crate) clock: Clock,
     last_time_s: f64,
     pub(crate) surfaces: Places<KnownSurface>,
@@ -106,6 +108,7 @@ pub(crate) struct KnownBody {
 impl Scene {
     pub(crate) fn new(
         config: Config,
+        kernel: Kernel,
         clock: Clock,
         to_audio: Sender<Message>,
         from_audio: Receiver<Dead>,
@@ -122,6 +125,7 @@ impl Scene {
             touched: HashMap::new(),
             held: Vec::new(),
             config,
+            kernel,
             clock,
             last_time_s: f64::NEG_INFINITY,
             to_audio,
@@ -198,7 +202,7 @@ impl Scene {
         let gain = within("gain", body.gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
-        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate, inner)?);
+        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), self.kernel, rate, inner)?);
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let heard = audible.as_ref().unwrap_or(model);
@@ -246,9 +250,7 @@ impl Scene {
     /// A probe as the audio half takes it.
     pub(crate) fn prepared_probe(&self, id: ProbeId, probe: &Probe) -> Result<Message, AddError> {
         let Config { probe: own, integrator, .. } = &self.config;
-        // An engine that was built has its kernel.
-        let kernel = self.config.kernel().unwrap_or(Kernel::PORTABLE);
-        let probe = PreparedProbe::new(probe, own, *integrator, self.config.inner_rate_hz(), kernel)?;
+        let probe = PreparedProbe::new(probe, own, *integrator, self.config.inner_rate_hz(), self.kernel)?;
         Ok(Message::AddProbe { index: id.index(), probe: Box::new(probe) })
     }
 

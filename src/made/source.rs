@@ -1,11 +1,11 @@
 //! Sources made of a scene file's words: heights that the engine samples.
 
 use super::made_with::Maker;
-use crate::SurfaceFrame;
 #[cfg(feature = "brownian")]
 use crate::files::scene_file::BrownianForce as ForceEntry;
 use crate::files::scene_file::{Brownian, Lattice as LatticeEntry, Sand, Source, ToolPicture};
 use crate::files::{FileError, storage};
+use crate::model::frame::SurfaceFrame;
 #[cfg(feature = "brownian")]
 use asperity_texture::brownian::BrownianDesign;
 #[cfg(feature = "brownian")]

@@ -6,8 +6,10 @@ use super::Overrides;
 use crate::files::FileError;
 use crate::files::contact_log::Names;
 use crate::files::scene_file::{BodyEntry, SceneFile, SurfaceEntry};
+use crate::game::scene::Scene;
 use crate::made::maker::Maker;
-use crate::{Body, Scene, Surface};
+use crate::model::body::Body;
+use crate::model::surface::Surface;
 use asperity_texture::sand::SandWorker;
 use std::cell::RefCell;
 
@@ -100,7 +102,7 @@ impl Scene {
 
 /// What differs, made and not yet in the scene.
 struct New<'a> {
-    probes: Vec<&'a (String, crate::Probe)>,
+    probes: Vec<&'a (String, asperity_dsp::micro_contact::Probe)>,
     bodies: Vec<(&'a BodyEntry, Body)>,
     surfaces: Vec<(&'a SurfaceEntry, Surface)>,
 }

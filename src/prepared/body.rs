@@ -8,9 +8,10 @@ use crate::prepared::bursts::Bursts;
 use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
+use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
-    self, Awake, Bank, FirstSamples, GroupOptions, GroupState, Input, Kernel, LaneGains, MissingSamples,
-    ModeGroup,
+    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, Kernel, LaneGains, MissingSamples,
+    ModalBank, ModeGroup,
 };
 use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
@@ -30,11 +31,12 @@ pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
 /// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
 const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
 
+/// The bank of a body.
+pub(crate) type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
+
 /// A body as the audio half owns it.
 pub(crate) struct BodySlot {
-    groups: Vec<ModeGroup>,
-    states: Vec<GroupState>,
-    awake: Awake,
+    bank: Bank,
     places: Vec<Place>,
     /// For a body that can be touched anywhere.
     field: Option<BodyField>,
@@ -74,7 +76,6 @@ impl Spot {
 /// How a stretch is rendered.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms {
-    pub(crate) kernel: Kernel,
     /// Absolute index of the first sample.
     pub(crate) position: u64,
     /// How many of the [`MODE_LEVELS`] are left out because blocks run late.
@@ -110,6 +111,7 @@ impl BodySlot {
     /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz` stay silent.
     pub(crate) fn new(
         model: &ModalModel,
+        kernel: Kernel,
         output_rate_hz: f64,
         sample_rate_hz: f64,
     ) -> Result<Self, DesignError> {
@@ -123,32 +125,23 @@ impl BodySlot {
         });
         let unit: Vec<(usize, Mode)> = modes.iter().map(|(number, (mode, _))| (*number, *mode)).collect();
         let modes: Vec<_> = modes.into_iter().map(|(_, mode)| mode).collect();
-        let options = GroupOptions::IMPULSE_RING;
-        let design = |chunk: &[(Mode, [f32; MAX_POSITIONS])]| {
-            let modes: Vec<_> = chunk.iter().map(|(mode, _)| *mode).collect();
-            modal_bank::design_group(&modes, sample_rate_hz, &options)
-        };
-        let groups = modes.chunks(modal_bank::LANES).map(design).collect::<Result<Vec<_>, _>>()?;
-        let states = vec![GroupState::default(); groups.len()];
-        let gains_at = |position: usize| {
-            let lane = |chunk: &[(Mode, [f32; MAX_POSITIONS])], lane: usize| {
-                chunk.get(lane).map_or(0.0, |(_, shares)| shares[position])
-            };
-            let chunks = modes.chunks(modal_bank::LANES);
-            chunks.map(|chunk| LaneGains(std::array::from_fn(|i| lane(chunk, i)))).collect()
-        };
+        let plain: Vec<Mode> = unit.iter().map(|(_, mode)| *mode).collect();
+        let groups = modal_bank::design_groups(&plain, sample_rate_hz, &GroupOptions::IMPULSE_RING);
+        let groups = groups.collect::<Result<Box<[_]>, _>>()?;
+        let states = vec![GroupState::REST; groups.len()].into();
         let count = model.position_count();
+        let mixed = count > 1 || model.shapes.is_some();
         let first_samples = first_samples(&modes, count, groups.len(), sample_rate_hz)?;
         let places = first_samples.into_iter().enumerate().map(|(position, first_samples)| {
-            let gains = if count == 1 && model.shapes.is_none() { Vec::new() } else { gains_at(position) };
-            Place::new(gains, first_samples, sample_rate_hz)
+            let shares = modes.iter().filter(|_| mixed).map(|(_, shares)| shares[position]);
+            Place::new(modal_bank::lane_gains(shares).collect(), first_samples, sample_rate_hz)
         });
         let places = places.collect();
         let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
         let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
-        let field = BodyField::new(model, &unit, groups.len(), sample_rate_hz)?;
-        Ok(Self { groups, states, awake: Awake::default(), places, field, bursts, early })
+        let field = BodyField::new(model, &unit, &groups, sample_rate_hz)?;
+        Ok(Self { bank: ModalBank::new(kernel, groups, states), places, field, bursts, early })
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
@@ -167,7 +160,7 @@ impl BodySlot {
         sample_rate_hz: f64,
     ) {
         let end = pulse.end_sample(stamp.sample(), sample_rate_hz);
-        let driven = groups_at(mode_level, self.groups.len());
+        let driven = groups_at(mode_level, self.bank.groups());
         let anywhere = self.field.as_mut().zip(spot.place.as_ref());
         let missing = match anywhere {
             Some((field, place)) => field.strike(place, pulse, stamp, driven),
@@ -191,6 +184,13 @@ impl BodySlot {
         }
     }
 
+    /// A contact presses at its place during the coming cell of the grid.
+    pub(crate) fn press(&mut self, owner: Owner, place: &StrikePlace, probe: &Probe) {
+        if let Some(field) = &mut self.field {
+            field.press(owner, place, probe);
+        }
+    }
+
     /// Adds what one contact sends during the present stretch.
     pub(crate) fn touch(&mut self, position: usize, impulse_n_s: &[f64], sign: f64) {
         let place = self.place(position);
@@ -202,8 +202,7 @@ impl BodySlot {
 
     /// Forgets all that rings and all that is on its way.
     pub(crate) fn silence(&mut self) {
-        self.states.fill(GroupState::default());
-        self.awake = Awake::default();
+        self.bank.silence();
         for place in &mut self.places {
             place.bus.clear();
             place.contacts_n_s.fill(0.0);
@@ -218,7 +217,7 @@ impl BodySlot {
 
     /// Whether nothing rings and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
-        self.awake.groups() == 0
+        self.bank.awake() == 0
             && self.bursts.is_silent(position)
             && self.early.is_empty(position)
             && self.places.iter().all(|place| !place.touched && place.bus.is_empty(position))
@@ -230,7 +229,7 @@ impl BodySlot {
         let n = out.len();
         if self.is_silent(terms.position) {
             if let Some(field) = &mut self.field {
-                field.end_stretch(terms.position, n);
+                field.end_stretch(terms.position, n, &mut self.bank);
             }
             return 0;
         }
@@ -252,21 +251,19 @@ impl BodySlot {
                 count += 1;
             }
         }
-        let driven = groups_at(terms.mode_level, self.groups.len());
-        let bank = Bank {
-            kernel: terms.kernel,
-            groups: &self.groups,
-            states: &mut self.states,
-            driven,
-            threshold: modal_bank::SLEEP_AMPLITUDE,
+        let groups = self.bank.groups();
+        let driven = groups_at(terms.mode_level, groups);
+        let inputs = match inputs[..count] {
+            [Input { impulses, gains: [] }] => Inputs::One(impulses),
+            _ => Inputs::Placed(&inputs[..count]),
         };
-        self.awake.render_bank(bank, terms.position, &inputs[..count], out);
+        self.bank.render_leading(driven, terms.position, inputs, out);
         if let Some(field) = &mut self.field {
-            field.end_stretch(terms.position, n);
+            field.end_stretch(terms.position, n, &mut self.bank);
         }
         self.bursts.render(terms.position, out);
         self.begin_strikes(terms.position, out);
-        self.groups.len() - driven
+        groups - driven
     }
 
     /// Adds what the bank leaves out of the first samples of strikes.

@@ -7,11 +7,13 @@
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::body::LONGEST_CONTACT_S;
+use crate::prepared::body::{Bank, LONGEST_CONTACT_S};
+use crate::prepared::holding::Holding;
 use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_dsp::modal_bank::{FirstSamples, Input, LANES, LaneGains, MissingSamples};
+use asperity_dsp::micro_contact::Probe;
+use asperity_dsp::modal_bank::{FirstSamples, Input, LANES, LaneGains, MissingSamples, ModeGroup};
 use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
 
@@ -35,6 +37,7 @@ pub(crate) struct BodyField {
     motion: Box<[[f32; 3]]>,
     points: usize,
     missing: Box<[MissingSamples]>,
+    holding: Holding,
     strikes: Box<[Struck]>,
     sliders: Box<[Slider]>,
     /// How far a gain goes within a cell.
@@ -70,7 +73,7 @@ impl BodyField {
     pub(crate) fn new(
         model: &ModalModel,
         modes: &[(usize, Mode)],
-        groups: usize,
+        groups: &[ModeGroup],
         sample_rate_hz: f64,
     ) -> Result<Option<Self>, DesignError> {
         let Some(shapes) = &model.shapes else { return Ok(None) };
@@ -78,7 +81,7 @@ impl BodyField {
             let gain = (shapes.gains[*number] / mode.amplitude) as f32;
             shapes.phi_per_sqrt_kg[*number].iter().map(move |phi| phi.map(|x| x * gain))
         });
-        let gains = || vec![LaneGains([0.0; LANES]); groups].into_boxed_slice();
+        let gains = || vec![LaneGains([0.0; LANES]); groups.len()].into_boxed_slice();
         let struck = || Struck {
             gains: gains(),
             bus: ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz),
@@ -99,6 +102,7 @@ impl BodyField {
             motion: motion.collect(),
             points: shapes.points_m.len(),
             missing: missing.collect::<Result<_, _>>()?,
+            holding: Holding::new(shapes, modes, groups, sample_rate_hz),
             strikes: (0..STRIKES).map(|_| struck()).collect(),
             sliders: (0..SLIDERS).map(|_| slider()).collect(),
             glide: (1.0 - (-(MAX_BLOCK as f64) / (GLIDE_S * sample_rate_hz)).exp()) as f32,
@@ -158,6 +162,12 @@ impl BodyField {
         true
     }
 
+    /// A contact presses here during the coming cell.
+    pub(crate) fn press(&mut self, owner: Owner, place: &StrikePlace, probe: &Probe) {
+        let share = |mode: usize| place.motion(&self.motion[mode * self.points..][..self.points]);
+        self.holding.press(owner, place, probe, share);
+    }
+
     /// Whether nothing is on its way from `position` on.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
         self.strikes.iter().all(|struck| struck.bus.is_empty(position))
@@ -204,9 +214,12 @@ impl BodyField {
     }
 
     /// The stretch has been rendered, or nothing rings in it; at the end of a cell gains go on.
-    pub(crate) fn end_stretch(&mut self, position: u64, n: usize) {
+    pub(crate) fn end_stretch(&mut self, position: u64, n: usize, bank: &mut Bank) {
         self.position = position + n as u64;
         let at_grid = self.position.is_multiple_of(MAX_BLOCK as u64);
+        if at_grid {
+            self.holding.go_on(bank);
+        }
         for slider in &mut self.sliders {
             if std::mem::take(&mut slider.touched) {
                 slider.touched_at = self.position;

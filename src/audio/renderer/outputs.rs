@@ -205,8 +205,7 @@ impl Renderer {
         for bus in &mut self.buses {
             bus.sum[..n].fill(0.0);
         }
-        let terms =
-            Terms { kernel: self.kernel, position: self.position, mode_level: self.governor.mode_level() };
+        let terms = Terms { position: self.position, mode_level: self.governor.mode_level() };
         let mut shed = 0;
         for body in self.bodies_used.iter() {
             let body = &mut self.bodies[body];

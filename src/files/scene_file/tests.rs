@@ -1,6 +1,6 @@
 use super::*;
-use crate::Material;
 use crate::model::excitation::Excitation;
+use crate::model::material::Material;
 use asperity_texture::picture::Channel;
 use asperity_texture::sand::Layer;
 use asperity_texture::solid_materials::SolidMaterial;
