@@ -203,15 +203,21 @@ fn held(fingers: &[(f64, f64)], let_go_s: f64, seconds: f64) -> Vec<f32> {
     let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
     let surface = Surface::flat(0.5, 0.03).unwrap().micro_relief_m(0.0).frame(frame).on(body);
     let surface = engine.scene.add_surface(surface).unwrap();
-    for (i, (x, force_n)) in fingers.iter().enumerate() {
-        let sample = ContactSample::new([*x, 0.5], *force_n).sliding([0.0; 2]);
-        engine
-            .scene
-            .report(0.0, ContactEvent::begin(ContactId(i as u64), surface, Actuator(0), sample))
-            .unwrap();
-    }
     let at = [0.0, 0.015, 0.0];
-    engine.scene.report(0.5, ContactEvent::Impact(Impact::on(body).at(at))).unwrap();
+    for step in 0..(60.0 * let_go_s) as u32 {
+        let t = f64::from(step) / 60.0;
+        for (i, (x, force_n)) in fingers.iter().enumerate() {
+            let sample = ContactSample::new([*x, 0.5], *force_n).sliding([0.0; 2]);
+            let event = match step {
+                0 => ContactEvent::begin(ContactId(i as u64), surface, Actuator(0), sample),
+                _ => ContactEvent::moved(ContactId(i as u64), sample),
+            };
+            engine.scene.report(t, event).unwrap();
+        }
+        if step == 30 {
+            engine.scene.report(t, ContactEvent::Impact(Impact::on(body).at(at))).unwrap();
+        }
+    }
     for i in 0..fingers.len() {
         engine.scene.report(let_go_s, ContactEvent::end(ContactId(i as u64))).unwrap();
     }

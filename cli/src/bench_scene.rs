@@ -54,7 +54,7 @@ pub fn modes(count: usize) -> ModalModel {
         impulse_n_s: 0.01,
         modes,
         positions: Vec::new(),
-        residual: None,
+        ..ModalModel::silent()
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod ac_coupling;
 mod block;
+mod drag;
 mod events;
 mod exciters;
 mod fades;
@@ -31,9 +32,11 @@ use crate::model::excitation::Exciter;
 use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use ac_coupling::{AcCoupling, ForceCoupling};
+use asperity_dsp::actuator::{ContactOutputState, Quantity};
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
+use drag::Drag;
 use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
@@ -74,6 +77,7 @@ pub(crate) struct Voice {
     unshown_n_s: f64,
     path: Path,
     pad: Pad,
+    drag: Drag,
     ac: AcCoupling,
     exciters: Exciters,
     fades: Fades,
@@ -99,6 +103,7 @@ impl Voice {
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
             pad: Pad::idle(&shared.own_probe),
+            drag: Drag::idle(shared.sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
             exciters: Exciters::idle(slot as u64, shared.sample_rate_hz),
             fades: Fades::idle(shared.sample_rate_hz),
@@ -189,19 +194,33 @@ impl Voice {
         let Scratch { points, profile, rows, force, out, .. } = scratch;
         let (points, rows) = (&mut points[..n], &mut rows[..n]);
         let probe = shared.probe(self.role.probe);
+        let dragged = output.quantity() == Quantity::Tangential;
         if at_grid {
             self.exciters.press(self.path.last.normal_force_n);
             self.pad.stiffen(probe, slot.stroking.ground, self.path.last.normal_force_n);
+            if dragged {
+                self.drag.press(self.path.last.normal_force_n);
+            }
         }
         self.path.run(&slot.trajectory, points);
-        profile.run(seat, self.along(shared, position, slopes), points);
+        profile.run(seat, self.along(shared, position, slopes || dragged), points);
         out.resets = self.pad.run(probe.waits, &profile.surface.height_m[..n], &profile.force_n[..n], rows);
 
         let Some(slot) = seat.current() else { return };
         let sounds = slot.surface.excitation.has(Exciter::Force);
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
         let heard = ForceCoupling { high_pass: &slot.stroking.force_high_pass, step_s };
-        self.ac.run(output, heard, rows, &mut out.haptic[..n], force.samples(n));
+        let felt = if dragged {
+            let (rows, from_m) = self.drag.run(points, &profile.surface, rows);
+            // A skin that has been dragged for long begins as if it had been there for ever.
+            if let Some(from_m) = from_m {
+                self.ac.feel = ContactOutputState::begin(output, from_m, 0.0);
+            }
+            rows
+        } else {
+            &*rows
+        };
+        self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
         let (reaction, sample_rate_hz) = (self.reaction, shared.sample_rate_hz);
         self.exciters.run(&Excited { slot, probe, reaction, sample_rate_hz, position }, rows, force, out);
     }

@@ -84,7 +84,7 @@ pub(super) fn resolve(
         });
         *level = match kind {
             _ if strongest > SILENT => strongest / HAPTIC_REFERENCE,
-            Quantity::Displacement => FALLBACK_FULL_SCALE_M,
+            Quantity::Displacement | Quantity::Tangential => FALLBACK_FULL_SCALE_M,
             Quantity::Acceleration => FALLBACK_FULL_SCALE_M_S2,
         };
     }
@@ -200,7 +200,10 @@ impl Trials {
 /// The first actuator of each kind of output.
 fn kinds(file: &SceneFile) -> Vec<usize> {
     let first = |kind| file.actuators.iter().position(|entry| entry.settings.output == kind);
-    [Quantity::Displacement, Quantity::Acceleration].into_iter().filter_map(first).collect()
+    [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential]
+        .into_iter()
+        .filter_map(first)
+        .collect()
 }
 
 /// The reference strike on a body.

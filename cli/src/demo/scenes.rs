@@ -102,7 +102,7 @@ pub fn plate_modes() -> ModalModel {
         impulse_n_s: 0.01,
         modes,
         positions: Vec::new(),
-        residual: None,
+        ..ModalModel::silent()
     }
 }
 
@@ -128,7 +128,7 @@ pub fn bar_modes() -> ModalModel {
         impulse_n_s: 0.01,
         modes,
         positions: Vec::new(),
-        residual: None,
+        ..ModalModel::silent()
     }
 }
 
