@@ -44,11 +44,11 @@ fn a_contact_begins_without_a_step() {
         assert_eq!(state.tick(&design, pad(0), 0.0), 0.0);
         let stroke: Vec<f64> = (1..3_000).map(|n| state.tick(&design, pad(n), velocity(n))).collect();
         let largest = stroke.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
-        assert!(
-            largest > 0.0 && stroke[0].abs() < 0.05 * largest,
-            "{quantity:?}: {} of {largest}",
-            stroke[0]
-        );
+        assert!(largest > 0.0);
+        // The acceleration of this stroke is there from its first sample on; its displacement is not.
+        if quantity == Quantity::Displacement {
+            assert!(stroke[0].abs() < 0.01 * largest, "{} of {largest}", stroke[0]);
+        }
     }
 }
 

@@ -418,7 +418,7 @@ impl Renderer {
             channel.sum[..n].fill(0.0);
         }
         let tap = &mut self.outlets.beside(tap);
-        let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
+        let (mut collisions, mut shortened, mut resets, mut blows) = (0, 0, 0, 0);
         for index in self.voices_used.iter() {
             let voice = &mut self.voices[index];
             if voice.phase == Phase::Free {
@@ -433,6 +433,7 @@ impl Renderer {
             collisions += out.collisions;
             shortened += out.shortened;
             resets += out.resets;
+            blows += out.blows;
             if let Some(channel) = channel {
                 for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
                     *sum += x;
@@ -467,6 +468,7 @@ impl Renderer {
         Counters::add(&self.counters.micro_collisions, collisions);
         Counters::add(&self.counters.shortened_collisions, shortened);
         Counters::add(&self.counters.quarantined, resets);
+        Counters::add(&self.counters.blows, blows);
     }
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.

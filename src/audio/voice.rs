@@ -8,6 +8,7 @@
 
 mod ac_coupling;
 mod block;
+mod blows;
 mod drag;
 mod events;
 mod exciters;
@@ -36,6 +37,7 @@ use asperity_dsp::actuator::{ContactOutputState, Quantity};
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
+use blows::Blows;
 use drag::Drag;
 use exciters::{Excited, Exciters};
 use fades::Fades;
@@ -80,6 +82,7 @@ pub(crate) struct Voice {
     drag: Drag,
     ac: AcCoupling,
     exciters: Exciters,
+    blows: Blows,
     fades: Fades,
 }
 
@@ -106,6 +109,7 @@ impl Voice {
             drag: Drag::idle(shared.sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
             exciters: Exciters::idle(slot as u64, shared.sample_rate_hz),
+            blows: Blows::default(),
             fades: Fades::idle(shared.sample_rate_hz),
         }
     }
@@ -206,6 +210,8 @@ impl Voice {
         profile.run(seat, self.along(shared, position, slopes || dragged), points);
         out.resets = self.pad.run(probe.waits, &profile.surface.height_m[..n], &profile.force_n[..n], rows);
 
+        out.blows = self.blows.count(rows);
+
         let Some(slot) = seat.current() else { return };
         let sounds = slot.surface.excitation.has(Exciter::Force);
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
@@ -244,7 +250,7 @@ impl Voice {
         self.ac.rest(&mut out.haptic[..n]);
         out.impulse_n_s[..n].fill(0.0);
         out.excites = false;
-        (out.collisions, out.shortened, out.resets) = (0, 0, 0);
+        (out.collisions, out.shortened, out.resets, out.blows) = (0, 0, 0, 0);
     }
 
     fn show<T: Tap>(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch, tap: &mut T) {

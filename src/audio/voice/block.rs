@@ -10,6 +10,8 @@ pub(crate) struct VoiceBlock {
     /// Whether `impulse_n_s` is more than zeros.
     pub(crate) excites: bool,
     pub(crate) collisions: u64,
+    /// Contact forces beyond thirty times what pressed.
+    pub(crate) blows: u64,
     /// Collisions that would have lasted longer.
     pub(crate) shortened: u64,
     pub(crate) resets: u64,
@@ -23,6 +25,7 @@ impl VoiceBlock {
             impulse_n_s: [0.0; MAX_BLOCK],
             excites: false,
             collisions: 0,
+            blows: 0,
             shortened: 0,
             resets: 0,
         }

@@ -1,5 +1,6 @@
 //! Contact events at a voice: it lands, appears, goes on, leaves.
 
+use super::blows::Blows;
 use super::profile::Along;
 use super::scratch::Scratch;
 use super::shared::{Shared, Stretch};
@@ -61,6 +62,7 @@ impl Voice {
         // The high-pass starts settled, so that beginning gives no step.
         self.ac.force = butterworth::State::settled_at(if lands { 0.0 } else { force_n });
         self.reaction = Reaction::default();
+        self.blows = Blows::default();
         self.exciters.begin(contact.0 ^ position.rotate_left(32), position, force_n);
     }
 
