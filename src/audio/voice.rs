@@ -1,7 +1,7 @@
 //! One contact: the signal path of the paper on one screen (Hasti, Fig. 2).
 //!
 //! ```text
-//! path → profile → pad ┬→ AC coupling → felt ──────────────────┬→ fades → channel, body
+//! path → profile → pad ┬→ AC coupling → skin → felt ───────────┬→ fades → channel, body
 //!                      └→ AC coupling, exciters → impulses ────┘
 //! ```
 //! Each stage is a file: its own state, what it is told, inputs in, outputs out.
@@ -19,6 +19,7 @@ mod profile;
 mod role;
 mod scratch;
 mod shared;
+mod skin;
 mod watching;
 
 pub(crate) use events::EMPTY_FORCE_N;
@@ -30,6 +31,7 @@ use crate::audio::seat::Seat;
 use crate::link::tap::Tap;
 use crate::model::event::ContactId;
 use crate::model::excitation::Exciter;
+use crate::prepared::area::{loudness, nestling};
 use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use ac_coupling::{AcCoupling, ForceCoupling};
@@ -43,6 +45,7 @@ use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
 use path::Path;
+use skin::ContactSkin;
 use watching::Done;
 
 /// Where the sound and feel of a voice stand.
@@ -81,6 +84,7 @@ pub(crate) struct Voice {
     pad: Pad,
     drag: Drag,
     ac: AcCoupling,
+    skin: ContactSkin,
     exciters: Exciters,
     blows: Blows,
     fades: Fades,
@@ -108,6 +112,7 @@ impl Voice {
             pad: Pad::idle(&shared.own_probe),
             drag: Drag::idle(shared.sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
+            skin: ContactSkin::default(),
             exciters: Exciters::idle(slot as u64, shared.sample_rate_hz),
             blows: Blows::default(),
             fades: Fades::idle(shared.sample_rate_hz),
@@ -193,17 +198,21 @@ impl Voice {
         seat: &mut Seat,
         scratch: &mut Scratch,
     ) {
-        let Some(slot) = seat.current() else { return };
         let Stretch { shared, output, position, n } = stretch;
+        if at_grid {
+            self.exciters.press(self.loudness(shared, position, seat));
+        }
+        let Some(slot) = seat.current() else { return };
         let Scratch { points, profile, rows, force, out, .. } = scratch;
         let (points, rows) = (&mut points[..n], &mut rows[..n]);
         let probe = shared.probe(self.role.probe);
         let dragged = output.quantity() == Quantity::Tangential;
         if at_grid {
-            self.exciters.press(self.path.last.normal_force_n);
             self.pad.stiffen(probe, slot.stroking.ground, self.path.last.normal_force_n);
             if dragged {
                 self.drag.press(self.path.last.normal_force_n);
+            } else {
+                self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
             }
         }
         self.path.run(&slot.trajectory, points);
@@ -227,8 +236,19 @@ impl Voice {
             &*rows
         };
         self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
+        if !dragged {
+            self.skin.pass(&mut out.haptic[..n]);
+        }
         let (reaction, sample_rate_hz) = (self.reaction, shared.sample_rate_hz);
         self.exciters.run(&Excited { slot, probe, reaction, sample_rate_hz, position }, rows, force, out);
+    }
+
+    /// How much of the contact sounds: the more, the harder it is pressed and the closer it nestles to the ground.
+    fn loudness(&self, shared: &Shared, position: u64, seat: &mut Seat) -> f64 {
+        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
+        let touch = self.touch_at(position);
+        let hollow_m = |reach_m| seat.hollow_m(&touch, reach_m, tip_radius_m);
+        loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
     }
 
     /// How the contact pressed at its last sample.
@@ -280,6 +300,7 @@ impl Voice {
         }
         self.asleep = self.ac.feels_still(output, row.pad_m)
             && self.path.is_still()
+            && self.skin.is_still()
             && self.pad.is_settled(&row)
             && self.reaction.grain_rate_per_s == 0.0
             && !self.reaction.stirs

@@ -25,13 +25,13 @@ struct File {
     source: String,
     #[serde(default = "one")]
     impulse_n_s: f64,
+    #[serde(default, skip_serializing_if = "is_relative")]
+    unit: Unit,
     modes: Vec<Mode>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     positions: Vec<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     residual: Option<Residual>,
-    #[serde(default, skip_serializing_if = "is_relative")]
-    unit: Unit,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shapes: Option<ModeShapes>,
 }
@@ -110,10 +110,10 @@ impl ModalModel {
             version: if self.shapes.is_some() { VERSION_WITH_SHAPES } else { VERSION },
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
+            unit: self.unit,
             modes: self.modes.clone(),
             positions: self.positions.clone(),
             residual: self.residual.clone(),
-            unit: self.unit,
             shapes: self.shapes.as_deref().cloned(),
         };
         serde_json::to_string(&file).unwrap_or_default()
@@ -132,6 +132,17 @@ mod tests {
         let model = ModalModel::parse(TILE).unwrap();
         assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
         assert_eq!(model.modes[0].frequency_hz, 812.4);
+    }
+
+    #[test]
+    fn a_unit_survives_the_round_trip_and_another_word_is_refused() {
+        let pascals = TILE.replace("\"version\":1,", "\"version\":1,\"unit\":\"pa_1m\",");
+        let model = ModalModel::parse(&pascals).unwrap();
+        assert_eq!(model.unit, Unit::PascalsAtOneMetre);
+        assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
+        assert_eq!(ModalModel::parse(TILE).unwrap().unit, Unit::Relative);
+        let sones = ModalModel::parse(&pascals.replace("pa_1m", "sone")).unwrap_err().to_string();
+        assert!(sones.contains("sone"), "{sones}");
     }
 
     #[test]

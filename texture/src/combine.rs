@@ -69,6 +69,10 @@ impl HeightField for Sum {
         self.sources.iter().for_each(|s| s.add_local_power(position_m, power_m2));
     }
 
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        self.sources.iter_mut().map(|s| s.hollow_m(touch, reach_m)).sum()
+    }
+
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
         self.sources.iter().fold(Beyond::Same, |beyond, s| beyond.max(s.beyond(tile_m)))
     }
@@ -161,6 +165,10 @@ impl HeightField for Scale {
         power_m2.iter_mut().zip(&own).for_each(|(power, own)| *power += factor * factor * own);
     }
 
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        self.factor.at(touch.sample) * self.source.hollow_m(touch, reach_m)
+    }
+
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
         self.source.beyond(tile_m)
     }
@@ -211,6 +219,21 @@ impl Mask {
         let (weight, other) = (SurfaceBlock::default(), SurfaceBlock::default());
         Self { mask, inside, outside, weight, other }
     }
+
+    /// Weight of the inside where it is touched.
+    fn weight_at(&mut self, touch: &Touch) -> f64 {
+        let path = PathBlock {
+            position_m: &[touch.position_m],
+            velocity_m_s: &[touch.velocity_m_s],
+            footprint_m: &[0.0],
+            normal_force_n: &[],
+            first_sample: touch.sample,
+            contact: touch.contact,
+            slopes: false,
+        };
+        self.mask.sample(&path, &mut self.weight);
+        self.weight.height_m[0].clamp(0.0, 1.0)
+    }
 }
 
 impl HeightField for Mask {
@@ -241,6 +264,11 @@ impl HeightField for Mask {
         self.outside.add_local_power(position_m, power_m2);
     }
 
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        let w = self.weight_at(touch);
+        w * self.inside.hollow_m(touch, reach_m) + (1.0 - w) * self.outside.hollow_m(touch, reach_m)
+    }
+
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
         let parts = [&self.mask, &self.inside, &self.outside].map(|s| s.beyond(tile_m));
         parts.into_iter().fold(Beyond::Same, Beyond::max)
@@ -267,17 +295,7 @@ impl HeightField for Mask {
     }
 
     fn react(&mut self, touch: &Touch) -> Reaction {
-        let path = PathBlock {
-            position_m: &[touch.position_m],
-            velocity_m_s: &[touch.velocity_m_s],
-            footprint_m: &[0.0],
-            normal_force_n: &[],
-            first_sample: touch.sample,
-            contact: touch.contact,
-            slopes: false,
-        };
-        self.mask.sample(&path, &mut self.weight);
-        let w = self.weight.height_m[0].clamp(0.0, 1.0);
+        let w = self.weight_at(touch);
         let inside = self.inside.react(touch);
         add(add(Reaction::default(), inside, w), self.outside.react(touch), 1.0 - w)
     }
@@ -351,6 +369,12 @@ impl HeightField for Crossfade {
 
     fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
         self.sources.iter().for_each(|s| s.add_local_power(position_m, power_m2));
+    }
+
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        let w = self.position.at(touch.sample);
+        let [first, second] = &mut self.sources;
+        (1.0 - w) * first.hollow_m(touch, reach_m) + w * second.hollow_m(touch, reach_m)
     }
 
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {

@@ -26,6 +26,7 @@ pub struct ContactOutput {
     quantity: Quantity,
     highpass: Option<Butterworth>,
     sample_rate_hz: f64,
+    through_skin: bool,
 }
 
 /// Memory of one contact.
@@ -50,7 +51,19 @@ impl ContactOutput {
             let named = |e: DesignError| DesignError { field: "highpass_hz", ..e };
             Some(Butterworth::new(highpass_hz, rate).map_err(named)?)
         };
-        Ok(Self { quantity, highpass, sample_rate_hz: rate })
+        Ok(Self { quantity, highpass, sample_rate_hz: rate, through_skin: false })
+    }
+
+    /// Whether an acceleration is what the skin of a finger lets through ([`super::Skin`]), and not its point's.
+    #[must_use]
+    pub const fn through_skin(self, through_skin: bool) -> Self {
+        Self { through_skin, ..self }
+    }
+
+    /// Whether a contact of a probe that has skin goes through it.
+    #[must_use]
+    pub const fn minds_skin(&self) -> bool {
+        self.through_skin && matches!(self.quantity, Quantity::Acceleration)
     }
 
     /// The high-pass, where there is one.
