@@ -3,16 +3,16 @@
 //! Everything that is said of the modes is said of the *struck body*: of what the engine plays when the modes file is
 //! struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t + φ) from the onset on and nothing else.
 
-use crate::damped::partial::Partial;
+use crate::analysis::Analysis;
 use crate::options::{FitOptions, Found, LARGEST_AMPLITUDE};
-use crate::played::residual::{Burst, Residual, ratio_db};
-use crate::played::struck::{lead, struck};
-use crate::proof::pruning::{Uncertainty, uncertainties};
-use crate::proof::suspicion::{self, energy_spectrum};
-pub use crate::proof::warning::Warning;
-use crate::sound::recording::Recording;
-use crate::stages::analysis::Analysis;
-use crate::stages::rumble::take_rumble;
+use crate::partial::Partial;
+use crate::pruning::{Uncertainty, uncertainties};
+use crate::recording::Recording;
+use crate::residual::{Burst, Residual, ratio_db};
+use crate::rumble::take_rumble;
+use crate::struck::{lead, struck};
+use crate::suspicion::{self, energy_spectrum};
+pub use crate::warning::Warning;
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 

@@ -37,38 +37,52 @@
 //! | [`table`] | modes ↔ CSV, and other programs' tables |
 //! | [`partial`], [`geometric_sum`], [`projection`], [`normal_equations`] | the damped sinusoid, its sums, its passes over samples, its least squares |
 //!
-//!
-//! The rooms, each above those it uses: [`damped`] and [`noise`], then [`proof`], [`refine`], [`search`], [`stages`], [`played`], [`after`]; [`sound`]
-//! holds the files and the strikes in them.
-//!
 //! On real recordings: `cargo run --release -p asperity-fit --example recordings` (60 modes against as many peaks of a
 //! short-time spectrum) and `--example struck` (as the engine plays them).
 
+pub mod amplitudes;
+pub mod analysis;
+mod candidates;
+pub mod contact;
+pub mod esprit;
 pub mod fitted;
+pub mod geometric_sum;
 pub mod limits;
+mod median_spectrum;
+pub mod merge;
+pub mod merging;
+pub mod model_order;
+pub mod noise_floor;
+pub mod normal_equations;
+mod one_mode;
+pub mod onset;
 mod options;
+mod packed_file;
+pub mod partial;
+pub mod projection;
+pub mod pruning;
+pub mod ranking;
+pub mod recording;
+pub mod refinement;
+pub mod residual;
+pub mod ringing;
+mod rumble;
+pub mod scaling;
+mod sound_file;
+mod sound_format;
 pub mod strike;
+pub mod struck;
+pub mod sub_band;
+pub mod sum_of_modes;
+pub mod suspicion;
+pub mod table;
+pub mod tail_to_attack;
+pub mod tilt;
+pub mod warning;
+mod wav_file;
+mod ways;
 
-pub mod after;
-pub mod damped;
-pub mod noise;
-pub mod played;
-pub mod proof;
-pub mod refine;
-pub mod search;
-pub mod sound;
-pub mod stages;
-
-pub use after::{merge, scaling, table};
-pub use damped::{amplitudes, geometric_sum, normal_equations, partial, projection};
 pub use fitted::{Fit, FittedMode, Warning};
-pub use noise::{noise_floor, ringing, tilt};
 pub use options::FitOptions;
-pub use played::{residual, struck};
-pub use proof::{pruning, suspicion, warning};
-pub use refine::{merging, refinement};
-pub use search::{esprit, model_order, sub_band};
-pub use sound::recording::{ChannelChoice, Recording, RecordingError, load};
-pub use sound::{onset, recording};
-pub use stages::{analysis, contact, ranking, sum_of_modes, tail_to_attack};
+pub use recording::{ChannelChoice, Recording, RecordingError, load};
 pub use strike::{FitError, fit};

@@ -1,8 +1,8 @@
 //! Limits of an analysis.
 
 use crate::options::{FitOptions, LARGEST_AMPLITUDE};
-use crate::refine::refinement::Bounds;
-use crate::sound::recording::Recording;
+use crate::recording::Recording;
+use crate::refinement::Bounds;
 use std::f64::consts::PI;
 
 /// Slowest decay that may be asked for as the fastest, 1/s: T60 = 60 s.

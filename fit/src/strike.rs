@@ -1,14 +1,14 @@
 //! The whole analysis of a strike: a recording becomes modes, past the traps of real recordings.
 //!
-//! mean removed → the best strike chosen ([`crate::sound::onset`]) → analysed from its onset on (`ways`) → what does not ring taken out
-//! and doubts named ([`crate::proof::suspicion`]) → held against the recording as the engine will play it ([`mod@crate::fitted`]).
+//! mean removed → the best strike chosen ([`crate::onset`]) → analysed from its onset on (`ways`) → what does not ring taken out
+//! and doubts named ([`crate::suspicion`]) → held against the recording as the engine will play it ([`mod@crate::fitted`]).
 
 use crate::fitted::{Fit, Warning};
 use crate::limits::LEAST_DECAY_PER_S;
+use crate::onset::{self, Strike};
 use crate::options::{FitOptions, Found};
-use crate::sound::onset::{self, Strike};
-use crate::sound::recording::{FEWEST_SAMPLES, Recording};
-use crate::stages::ways::Sound;
+use crate::recording::{FEWEST_SAMPLES, Recording};
+use crate::ways::Sound;
 
 /// Sound shorter than this is warned of, s.
 const SHORT_S: f64 = 0.05;
