@@ -7,6 +7,7 @@
 //! |---|---|
 //! | `sound_file`, `wav_file`, `packed_file` | WAV; FLAC, Ogg → frames |
 //! | `sound_format` | what a header says, and why a file is refused |
+//! | `whitened` | channel → what its past does not predict |
 //! | [`onset`] | channel → strikes, and the best of them |
 
 pub mod onset;
@@ -14,6 +15,7 @@ mod packed_file;
 mod sound_file;
 mod sound_format;
 mod wav_file;
+mod whitened;
 
 use crate::recording::sound_file::SoundFile;
 use crate::recording::sound_format::Refusal;

@@ -2,7 +2,9 @@
 //!
 //! The envelope is the rms over 1 ms. A *strike* is a place where it rises to twice what it reached in
 //! the 80 ms before, to 5 % of the recording's peak and well over the background; beats of close modes rise as far, but
-//! never above what they reached one beat ago, and noise at the very start of a file rises over nothing at all. Its
+//! never above what they reached one beat ago, and noise at the very start of a file rises over nothing at all. A body
+//! that still rings is not twice as loud when it is struck again: there the sound must grow by a seventh only, if what its
+//! past does not predict (`whitened`) rises fourfold, to a quarter of its own peak. A strike's
 //! first sample follows by Maeda's (1985) picker: the split of a few milliseconds into two parts of constant variance
 //! that is the likeliest.
 //!
@@ -13,6 +15,8 @@
 //! worth = t · √(level / strongest level)         of those with at least a quarter of the strongest one's level
 //! ```
 //! so that a strike of half the level must ring 1.4 times as long. Of two that are worth the same to a tenth, the first.
+
+use crate::recording::whitened::whitened;
 
 /// Length of the envelope's window, s.
 const ENVELOPE_S: f64 = 0.001;
@@ -25,6 +29,13 @@ const BACKGROUND: f64 = 0.1;
 const RISE: f64 = 2.0;
 /// Least level of a strike, of the recording's peak envelope.
 const LEAST_LEVEL: f64 = 0.05;
+/// What is predicted by nothing must rise so far where a body still rings, to so much of its own peak; the sound itself at
+/// least so far over what it was just before.
+const NEW_RISE: f64 = 4.0;
+const NEW_LEVEL: f64 = 0.25;
+const LOUDER: f64 = 1.15;
+/// A rise takes as long as this, s.
+const RISING_S: f64 = 0.004;
 /// Two rises closer than this are one strike, s.
 const SAME_STRIKE_S: f64 = 0.03;
 /// Least level of the best strike, of the strongest one's.
@@ -89,10 +100,10 @@ impl Strikes {
 #[must_use]
 pub fn find(samples: &[f64], rate_hz: f64) -> Strikes {
     let hop = ((ENVELOPE_S * rate_hz) as usize).max(1);
-    let envelope: Vec<f64> =
-        samples.chunks(hop).map(|c| (c.iter().map(|x| x * x).sum::<f64>() / c.len() as f64).sqrt()).collect();
+    let envelope = envelope_of(samples, hop);
     let background = background(&envelope);
-    let rises = rises(&envelope, background, rate_hz / hop as f64);
+    let new = envelope_of(&whitened(samples), hop);
+    let rises = rises(&envelope, &new, background, rate_hz / hop as f64);
     if rises.is_empty() {
         return Strikes { onsets: vec![0], ends: vec![samples.len()], worth: vec![1.0] };
     }
@@ -121,6 +132,11 @@ pub fn find(samples: &[f64], rate_hz: f64) -> Strikes {
     Strikes { onsets, ends, worth }
 }
 
+/// Rms of every `hop` samples.
+fn envelope_of(samples: &[f64], hop: usize) -> Vec<f64> {
+    samples.chunks(hop).map(|c| (c.iter().map(|x| x * x).sum::<f64>() / c.len() as f64).sqrt()).collect()
+}
+
 /// What the envelope is where nothing is struck.
 fn background(envelope: &[f64]) -> f64 {
     let mut sorted = envelope.to_vec();
@@ -128,20 +144,20 @@ fn background(envelope: &[f64]) -> f64 {
     sorted[(BACKGROUND * (sorted.len() - 1) as f64) as usize]
 }
 
-/// Where the envelope rises as it does at a strike, and how high within the next 30 ms.
-fn rises(envelope: &[f64], background: f64, hops_per_s: f64) -> Vec<(usize, f64)> {
-    let back = (LOOK_BACK_S * hops_per_s) as usize;
-    let same = (SAME_STRIKE_S * hops_per_s) as usize;
-    let peak = envelope.iter().copied().fold(0.0, f64::max);
+/// Where the envelope, or that of what is `new`, rises as it does at a strike, and how high within the next 30 ms.
+fn rises(envelope: &[f64], new: &[f64], background: f64, hops_per_s: f64) -> Vec<(usize, f64)> {
+    let hops = |s: f64| (s * hops_per_s) as usize;
+    let (back, same, rising) = (hops(LOOK_BACK_S), hops(SAME_STRIKE_S), hops(RISING_S));
+    let most = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+    let (peak, new_peak) = (most(envelope), most(new));
     let mut rises: Vec<(usize, f64)> = Vec::new();
     for i in 0..envelope.len() {
-        let before = &envelope[i.saturating_sub(back)..i];
-        let reached = before.iter().copied().fold(0.0, f64::max);
-        if envelope[i] < LEAST_LEVEL * peak || envelope[i] < RISE * reached {
-            continue;
-        }
-        let level = envelope[i..(i + same).min(envelope.len())].iter().copied().fold(0.0, f64::max);
-        if level < OVER_BACKGROUND * background {
+        let before = i.saturating_sub(back)..i.saturating_sub(rising);
+        let level = most(&envelope[i..(i + same).min(envelope.len())]);
+        let alone = envelope[i] >= RISE * most(&envelope[before.clone()]);
+        let again = new[i] >= (NEW_RISE * most(&new[before])).max(NEW_LEVEL * new_peak)
+            && level >= LOUDER * most(&envelope[i.saturating_sub(2 * rising)..i.saturating_sub(rising)]);
+        if envelope[i] < LEAST_LEVEL * peak || level < OVER_BACKGROUND * background || !(alone || again) {
             continue;
         }
         match rises.last_mut() {

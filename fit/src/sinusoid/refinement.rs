@@ -64,7 +64,7 @@ impl Bounds {
             && partial.c.norm() <= self.amplitude_high
     }
 
-    fn apply(&self, partial: &mut Partial) {
+    pub(crate) fn apply(&self, partial: &mut Partial) {
         partial.omega = partial.omega.clamp(self.omega_low, self.omega_high);
         partial.delta = partial.delta.clamp(self.delta_low, self.delta_high);
         let size = partial.c.norm();
