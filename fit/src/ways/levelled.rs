@@ -34,10 +34,14 @@ const STEP_S: f64 = 0.005;
 /// How far down a level is followed, and how far over the end of the sound it must stay, as amplitude ratios.
 const FOLLOWED: f64 = 0.02;
 const OVER_END: f64 = 3.0;
+/// A partial is not looked at beside another so near, in widths of a frame's band, and so many times as strong.
+const BANDS: f64 = 1.0;
+const HIDDEN: f64 = 4.0;
 /// Fewest frames.
 const FEWEST: usize = 10;
-/// A decay moves by at most this factor.
+/// A decay moves by at most this factor, a frequency by at most this part of the half width.
 const MOST_MOVED: f64 = 2.0;
+const MOST_TURNED: f64 = 0.5;
 /// Late is so many s after the onset; loud late what is within so much of the loudest in power; and so much of it must stay.
 const LATE_S: (f64, f64) = (0.3, 0.6);
 const LOUD_LATE: f64 = 3e-3;
@@ -48,7 +52,12 @@ const STEPS: usize = 8;
 /// Of a refit's refinement.
 const REFIT_STEPS: usize = 8;
 
-/// `partials` of `segment`, the strong ones with the decays of their levels, the others refitted beside them.
+/// What all may cost: so many times the squared residual, or what leaves so much of the sound.
+const COST: f64 = 1.26;
+const LEFT: f64 = 0.01;
+
+/// `partials` of `segment`, the strong ones with the decays of their levels, the others refitted beside them; as they are
+/// where that would cost more than 1 dB of signal to error and leave less than 20 dB.
 pub(crate) fn with_level_decays(
     segment: &[f64],
     partials: Vec<Partial>,
@@ -68,7 +77,9 @@ pub(crate) fn with_level_decays(
     refine(&target, &mut rest, bounds, REFIT_STEPS);
     one_mode_each(segment, &target, &strong, &mut rest, limits, bounds);
     strong.extend(rest);
-    strong
+    let energy = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+    let may_leave = (COST * energy(&subtract(segment, &partials))).max(LEFT * energy(segment));
+    if energy(&subtract(segment, &strong)) > may_leave { partials } else { strong }
 }
 
 /// Strong partials whose levels could be followed, with their decays; and all others.
@@ -76,7 +87,12 @@ fn level_decays(segment: &[f64], partials: &[Partial], rate_hz: f64) -> (Vec<Par
     let mut residual = subtract(segment, partials);
     let energy = |p: &Partial| p.energy(segment.len());
     let least = STRONG * partials.iter().map(energy).fold(0.0, f64::max);
-    let (strong, mut rest): (Vec<Partial>, Vec<Partial>) = partials.iter().partition(|p| energy(p) > least);
+    let band = BANDS * 2.0 * PI / (FRAME_S * rate_hz);
+    let hidden = |p: &Partial| {
+        partials.iter().any(|of| (of.omega - p.omega).abs() < band && energy(of) > HIDDEN * energy(p))
+    };
+    let (strong, mut rest): (Vec<Partial>, Vec<Partial>) =
+        partials.iter().partition(|p| energy(p) > least && !hidden(p));
     let alone = |residual: &[f64], partial: &Partial| -> Vec<f64> {
         residual.iter().zip(synthesise(&[*partial], segment.len())).map(|(r, own)| r + own).collect()
     };
@@ -164,7 +180,8 @@ impl Level {
         let (growth, turn) = nearest(&flat);
         let delta = (fall - growth) / self.step as f64;
         let omega = partial.omega + turn / self.step as f64;
-        let near = (partial.delta / MOST_MOVED..=partial.delta * MOST_MOVED).contains(&delta);
+        let near = (partial.delta / MOST_MOVED..=partial.delta * MOST_MOVED).contains(&delta)
+            && (omega - partial.omega).abs() <= MOST_TURNED * partial.delta;
         near.then_some(Partial { omega, delta, ..*partial })
     }
 }
