@@ -97,10 +97,24 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
         };
         assemble(file, &Overrides { live: false, ..*overrides }, levels, plain)
     };
-    let levels = levels::resolve(file, trial)?;
+    let levels = levels::resolve(file, &calibrated(file, overrides)?, trial)?;
     let mut engine = assemble(file, overrides, &levels, |config| config)?;
     engine.levels = levels;
     Ok(engine)
+}
+
+/// Which bodies sound in pascals, whatever the gain by policy, because their modes and their bus say how loud they are.
+fn calibrated(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Vec<bool>, FileError> {
+    let maker = Maker { files: overrides.files, own: overrides.own, seed: 0, workers: None };
+    let is = |entry| {
+        let body = maker.body(entry, &file.audio, &[])?;
+        let pascals = file.audio.get(body.bus).and_then(|bus| bus.pascals_at_full_scale);
+        Ok(pascals.is_some() && body.model.unit == crate::model::mode_shapes::Unit::PascalsAtOneMetre)
+    };
+    if file.audio.iter().all(|bus| bus.pascals_at_full_scale.is_none()) {
+        return Ok(vec![false; file.bodies.len()]);
+    }
+    file.bodies.iter().map(is).collect()
 }
 
 fn assemble(
@@ -127,7 +141,7 @@ fn assemble(
     }
     for entry in &file.bodies {
         let place = |error: FileError| at(error.within(format!("body \"{}\"", entry.name)));
-        let body = maker.body(entry, &file.audio).map_err(place)?;
+        let body = maker.body(entry, &file.audio, &levels.gain).map_err(place)?;
         let id = scene.add_body(body).map_err(|error| place(FileError::told(error)))?;
         names.bodies.insert(entry.name.clone(), id);
     }

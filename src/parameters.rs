@@ -163,6 +163,9 @@ parameters! {
             or(0.0), changes(Opened);
         FORCE_EXPONENT: "force_exponent", "", limits::probe::FORCE_EXPONENT, "n of the contact's stiffness, k ∝ Fⁿ",
             or(contact::FORCE_EXPONENT), changes(Opened);
+        RIDGE_M: "ridge_m", "m", limits::probe::RIDGE_M,
+            "Width over which skin averages what an acceleration channel without `lowpass_hz` has; 0 = no skin",
+            or(contact::RIDGE_M), from("spacing of the ridges of a fingerprint, about 0.5 mm"), changes(Opened);
     }
     /// A haptic channel.
     mod actuator = "actuator" {
@@ -176,6 +179,9 @@ parameters! {
     /// An audio bus.
     mod audio = "audio" {
         GAIN: "gain", "", limits::output::AUDIO_GAIN, "Linear gain; missing: by the level policy";
+        PASCALS_AT_FULL_SCALE: "pascals_at_full_scale", "Pa", limits::output::PASCALS,
+            "Sound pressure at 1 m that sample value 1 stands for, of bodies whose modes are in pascals; missing: their numbers count as any other's",
+            changes(Opened);
     }
     /// Sand that gives way.
     mod sand = "sand" {

@@ -233,9 +233,7 @@ fn a_tip_above_the_sand_feels_nothing_and_one_that_dips_in_feels_its_way_down() 
         // A report holds for a millisecond.
         let (low, high) = (law.force_n(depth_m(t) - 1e-4), law.force_n(depth_m(t) + 1e-4));
         let z = row.force_n[2];
-        // On its way up it stands between the heaps that it pushed up on its way down: up to 0.15 mm more sand.
-        let heap_n = if t > 0.3 { 0.15 } else { 0.0 };
-        assert!(z >= low - 0.03 && z <= high + 0.03 + heap_n, "{t} s: {z} N, between {low} and {high}");
+        assert!(z >= low - 0.03 && z <= high + 0.03, "{t} s: {z} N, between {low} and {high}");
         assert!(row.force_n[0].hypot(row.force_n[1]) <= 0.01 * z + 1e-12);
     }
     let most = felt.told.iter().fold(0.0f64, |most, row| most.max(row.force_n[2]));

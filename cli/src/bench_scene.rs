@@ -49,13 +49,7 @@ pub fn modes(count: usize) -> ModalModel {
             }
         })
         .collect();
-    ModalModel {
-        source: "made for measuring".to_owned(),
-        impulse_n_s: 0.01,
-        modes,
-        positions: Vec::new(),
-        residual: None,
-    }
+    ModalModel { source: "made for measuring".to_owned(), impulse_n_s: 0.01, modes, ..ModalModel::silent() }
 }
 
 fn plate() -> Option<HeightMap> {

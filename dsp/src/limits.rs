@@ -118,6 +118,8 @@ pub mod probe {
     pub const LEASH_M: Range = Range::new(1e-6, 0.05, "1e-6 to 0.05 m");
     /// Radius of the sphere that rides on the surface; 0 is a point.
     pub const TIP_RADIUS_M: Range = Range::new(0.0, 0.1, "0 to 0.1 m, 0 = a point");
+    /// Width over which skin averages; 0 is no skin.
+    pub const RIDGE_M: Range = Range::new(0.0, 0.01, "0 to 0.01 m, 0 = no skin");
     /// n of k_m ∝ Fⁿ.
     pub const FORCE_EXPONENT: Range = Range::new(0.0, 1.0, "0 to 1");
 }
@@ -166,6 +168,8 @@ pub mod output {
 
     /// Sample rate of everything that leaves.
     pub const SAMPLE_RATE_HZ: Range = Range::new(8e3, 384e3, "8000 to 384000 Hz");
+    /// Sound pressure at full scale.
+    pub const PASCALS: Range = Range::above(0.0, 1e6, "above 0, to 1e6 Pa");
     /// Gain of the audio.
     pub const AUDIO_GAIN: Range = Range::new(0.0, 1e6, "0 to 1e6");
     /// The user's gain of a haptic channel.
@@ -322,6 +326,7 @@ mod tests {
             material::DENSITY_KG_M3,
             material::RESIDUAL,
             output::SAMPLE_RATE_HZ,
+            output::PASCALS,
             output::AUDIO_GAIN,
             output::HAPTIC_GAIN,
             output::FULL_SCALE,

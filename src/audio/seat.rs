@@ -204,6 +204,14 @@ impl Seat {
         }
     }
 
+    /// How much higher the ground lies about a contact than under it, m, for a tip that rides on it.
+    pub(crate) fn hollow_m(&mut self, touch: &Touch, reach_m: f64, tip_radius_m: f64) -> f64 {
+        self.source().map_or(0.0, |source| {
+            source.ride(tip_radius_m);
+            source.hollow_m(touch, reach_m)
+        })
+    }
+
     /// Tells the surface how it is touched.
     pub(crate) fn react(&mut self, touch: &Touch) -> Reaction {
         self.current.as_mut().map_or_else(Reaction::default, |slot| slot.surface.source.react(touch))

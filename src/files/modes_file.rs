@@ -2,16 +2,17 @@
 
 use super::storage::{self, Disk, Files};
 use crate::model::modal_model::{ModalModel, ModalModelError};
-use crate::model::mode_shapes::ModeShapes;
+use crate::model::mode_shapes::{ModeShapes, Unit};
 use crate::model::residual::Residual;
 use asperity_dsp::mode::Mode;
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The `format` field of a modes file.
 pub const FORMAT: &str = "asperity.modes";
-/// The `version` of a file with modes alone, which this crate writes.
+/// The `version` of a file with modes alone.
 pub const VERSION: u32 = 1;
 /// The version that has shapes beside the modes ([`ModeShapes`]); its modes play as those of version 1 do.
 pub const VERSION_WITH_SHAPES: u32 = 2;
@@ -24,13 +25,20 @@ struct File {
     source: String,
     #[serde(default = "one")]
     impulse_n_s: f64,
+    #[serde(default, skip_serializing_if = "is_relative")]
+    unit: Unit,
     modes: Vec<Mode>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     positions: Vec<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     residual: Option<Residual>,
-    #[serde(default, skip_serializing)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     shapes: Option<ModeShapes>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
+fn is_relative(unit: &Unit) -> bool {
+    *unit == Unit::Relative
 }
 
 fn one() -> f64 {
@@ -87,24 +95,26 @@ impl ModalModel {
             (Some(_), VERSION) => return Err(malformed("shapes stand in version 1; need version 2".into())),
             _ => return Err(malformed(format!("version is {}", file.version))),
         }
-        let File { source, impulse_n_s, modes, positions, residual, .. } = file;
-        let model = Self { source, impulse_n_s, modes, positions, residual };
+        let File { source, impulse_n_s, modes, positions, residual, shapes, unit, .. } = file;
+        let shapes = shapes.map(Arc::new);
+        let model = Self { source, impulse_n_s, modes, positions, residual, shapes, unit };
         model.check()?;
         Ok(model)
     }
 
-    /// The text of the modes file; numbers round-trip.
+    /// The text of the modes file, of version 2 where there are shapes; numbers round-trip.
     #[must_use]
     pub fn to_json(&self) -> String {
         let file = File {
             format: FORMAT.into(),
-            version: VERSION,
+            version: if self.shapes.is_some() { VERSION_WITH_SHAPES } else { VERSION },
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
+            unit: self.unit,
             modes: self.modes.clone(),
             positions: self.positions.clone(),
             residual: self.residual.clone(),
-            shapes: None,
+            shapes: self.shapes.as_deref().cloned(),
         };
         serde_json::to_string(&file).unwrap_or_default()
     }
@@ -122,6 +132,17 @@ mod tests {
         let model = ModalModel::parse(TILE).unwrap();
         assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
         assert_eq!(model.modes[0].frequency_hz, 812.4);
+    }
+
+    #[test]
+    fn a_unit_survives_the_round_trip_and_another_word_is_refused() {
+        let pascals = TILE.replace("\"version\":1,", "\"version\":1,\"unit\":\"pa_1m\",");
+        let model = ModalModel::parse(&pascals).unwrap();
+        assert_eq!(model.unit, Unit::PascalsAtOneMetre);
+        assert_eq!(ModalModel::parse(&model.to_json()).unwrap(), model);
+        assert_eq!(ModalModel::parse(TILE).unwrap().unit, Unit::Relative);
+        let sones = ModalModel::parse(&pascals.replace("pa_1m", "sone")).unwrap_err().to_string();
+        assert!(sones.contains("sone"), "{sones}");
     }
 
     #[test]

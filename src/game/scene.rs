@@ -27,6 +27,7 @@ use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
 use crate::model::stamp::Stamp;
+use crate::model::strike_field::StrikeField;
 use crate::model::surface::Surface;
 use crate::prepared::overlay::Overlay;
 use crate::prepared::probe::PreparedProbe;
@@ -77,12 +78,12 @@ pub struct Scene {
     pub(crate) from_audio: Receiver<Dead>,
     pub(crate) counters: Arc<Counters>,
     recording: Option<Recording>,
-    /// Surfaces of contacts that may tell a place or a depth.
-    touched: HashMap<ContactId, SurfaceId>,
     /// Bodies as they were given, for another rate.
     pub(crate) given: HashMap<BodyId, Body>,
     /// For [`Scene::why_silent`].
     reported: Reported,
+    /// What each contact touches.
+    touched: HashMap<ContactId, SurfaceId>,
 }
 
 /// What the game half remembers of a surface.
@@ -94,13 +95,16 @@ pub(crate) struct KnownSurface {
     picture: Option<Arc<MovingPicture>>,
     place: Place,
     tip_law: Option<TipLaw>,
+    body: Option<BodyId>,
 }
 
 /// What the game half remembers of a body.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct KnownBody {
     material: Material,
     lowest_mode_hz: f64,
+    /// Its surface, where that is known.
+    field: Option<Arc<StrikeField>>,
 }
 
 impl Scene {
@@ -207,9 +211,10 @@ impl Scene {
         for radius_m in &self.tips_m {
             surface.source.prepare_tip(*radius_m);
         }
-        let silent = KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
+        let silent =
+            KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY, field: None };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
-        let stroking = self.stroking(body)?;
+        let stroking = self.stroking(&body)?;
         let config = &self.config;
         let period_m = surface.wrap_period_m();
         let trajectory = |period_m| {
@@ -221,6 +226,7 @@ impl Scene {
         let rings = body.lowest_mode_hz.is_finite();
         let is_soft = surface.carries_n([0.0; 2], 0.0).is_some();
         let place = Place { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };
+        let on = surface.body;
         let mut picture = None;
         let mut tip_law = (surface.compliance_m_n > 0.0).then(|| surface.spring());
         surface.source.visit(&mut |part| {
@@ -229,7 +235,7 @@ impl Scene {
         });
         let surface =
             Box::new(SurfaceSlot { surface, trajectory, place_trajectory, stroking, overlay, period_m });
-        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, place, tip_law }))
+        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, place, tip_law, body: on }))
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
@@ -352,6 +358,6 @@ impl Scene {
     }
 
     fn known_body(&self, id: BodyId) -> Result<KnownBody, AddError> {
-        self.bodies.get(id.0).copied().ok_or(AddError::Unknown("body"))
+        self.bodies.get(id.0).cloned().ok_or(AddError::Unknown("body"))
     }
 }

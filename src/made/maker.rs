@@ -10,6 +10,7 @@ use crate::model::actuator::{ActuatorSettings, DeviceProfile};
 use crate::model::body::Body;
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
+use crate::model::mode_shapes::Unit;
 use crate::model::surface::{Roughness, Surface};
 use asperity_texture::height_map::Extent;
 use asperity_texture::height_map::HeightMap;
@@ -18,7 +19,7 @@ use std::path::Path;
 
 impl<'a> Maker<'a> {
     /// A body, on the bus that it names.
-    pub fn body(&self, entry: &BodyEntry, audio: &[AudioEntry]) -> Result<Body, FileError> {
+    pub fn body(&self, entry: &BodyEntry, audio: &[AudioEntry], gains: &[f64]) -> Result<Body, FileError> {
         let material = entry.material.unwrap_or(Body::DEFAULT_MATERIAL);
         let mut model = match (&entry.modes, entry.stock) {
             (Some(path), _) => ModalModel::load_from(self.files, path).map_err(FileError::told)?,
@@ -31,7 +32,16 @@ impl<'a> Maker<'a> {
         }
         let bus =
             entry.bus.as_ref().and_then(|name| audio.iter().position(|bus| bus.name.as_ref() == Some(name)));
-        Ok(Body::new(model).of(material).on_bus(bus.unwrap_or(0)))
+        let bus = bus.unwrap_or(0);
+        if let Some(pascals) = audio.get(bus).and_then(|bus| bus.pascals_at_full_scale)
+            && model.unit == Unit::PascalsAtOneMetre
+        {
+            // A gain that nobody wrote is there for the other bodies of the bus.
+            let found = gains.get(bus).filter(|_| audio[bus].gain.is_none());
+            let gain = found.filter(|gain| **gain > 0.0).unwrap_or(&1.0);
+            model = model.with_gain(1.0 / (pascals * gain)).map_err(FileError::told)?;
+        }
+        Ok(Body::new(model).of(material).on_bus(bus))
     }
 
     /// What all sources of a surface share.

@@ -6,9 +6,9 @@ use asperity_dsp::micro_contact::Probe;
 ///
 /// | probe | what moves with the surface | source |
 /// |---|---|---|
-/// | `fingertip` | 0.15 g of skin on a pad of 1 kN/m | `Probe::default()`: fingertip models of the literature |
+/// | `fingertip` | 0.15 g of skin on a pad of 1 kN/m; an acceleration channel has what skin and tissue let through | `Probe::default()`: fingertip models of the literature |
 /// | `fingernail` | 0.5 g of nail, tied to the bone | Stiffness of keratin on a hard surface; masses **assumed** |
-/// | `stylus` | 40 g of tool in a hand of 0.3 kg behind 1 kN/m and 25 N·s/m, on 8 kN/m | Fitted to published accelerations of a steel-tipped tool (Culbertson, Lopez Delgado, Kuchenbecker 2014); one point of a valley of 20–60 g, 1.3–12 kN/m, 15–39 N·s/m |
+/// | `stylus` | 30 g of tool in a hand of 0.3 kg behind 1 kN/m and 39 N·s/m, on 6.5 kN/m | Fitted to published accelerations of a steel-tipped tool (Culbertson, Lopez Delgado, Kuchenbecker 2014); one point of a valley of 20–60 g, 1.3–12 kN/m, 15–39 N·s/m |
 /// | `sole` | 50 g of rubber under a leg of 5 kg | Rubber of 5 MPa under a heel of 5 cm², 1 cm thick: E A / t = 250 kN/m; masses and damping **assumed** |
 /// | `rigid` | 20 g, tied to 0.5 kg | A hard thing that is pushed along; all **assumed** |
 pub const PROBE_PRESETS: [(&str, Probe); 5] = [
@@ -23,6 +23,7 @@ pub const PROBE_PRESETS: [(&str, Probe); 5] = [
             leash_m: asperity_dsp::micro_contact::LEASH_M,
             tip_radius_m: 0.0,
             force_exponent: asperity_dsp::micro_contact::FORCE_EXPONENT,
+            ridge_m: asperity_dsp::micro_contact::RIDGE_M,
         },
     ),
     ("fingernail", held(0.5e-3, 5e3, 5.0, 20e-3, 1e6, (0.3e-3, 1.0 / 3.0))),
@@ -49,6 +50,7 @@ const fn held(
         leash_m,
         tip_radius_m,
         force_exponent,
+        ridge_m: 0.0,
     }
 }
 

@@ -27,6 +27,7 @@ use crate::model::bad_value::{BadValue, within};
 use crate::model::body::Body;
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
+use crate::model::mode_shapes::Unit;
 use asperity_dsp::limits::material::SIZE_M;
 use asperity_dsp::mode::Mode;
 use std::f64::consts::{PI, TAU};
@@ -169,7 +170,8 @@ impl Shape {
             positions.resize(at.len() - 1, Vec::new());
             positions.iter_mut().zip(&at[1..]).for_each(|(list, shape)| list.push(amplitude(*shape)));
         }
-        ModalModel { source, impulse_n_s: 1.0, modes, positions, residual: None }
+        let unit = Unit::PascalsAtOneMetre;
+        ModalModel { source, impulse_n_s: 1.0, modes, positions, unit, ..ModalModel::silent() }
     }
 }
 

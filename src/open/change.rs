@@ -5,7 +5,7 @@
 use super::Overrides;
 use crate::files::FileError;
 use crate::files::contact_log::Names;
-use crate::files::scene_file::{BodyEntry, SceneFile, SurfaceEntry};
+use crate::files::scene_file::{AudioEntry, BodyEntry, SceneFile, SurfaceEntry};
 use crate::game::scene::Scene;
 use crate::made::maker::Maker;
 use crate::model::body::Body;
@@ -48,7 +48,8 @@ impl Scene {
             workers: overrides.live.then_some(&workers),
         };
         let at = |error: FileError| error.within(after.path.display());
-        let new = New::make(&maker, before, after, overrides.touched).map_err(at)?;
+        let gains: Vec<f64> = self.config().audio.iter().map(|bus| bus.gain).collect();
+        let new = New::make(&maker, &gains, before, after, overrides.touched).map_err(at)?;
         let mut changes = Changes { waiting: waiting(before, after), ..Changes::default() };
         new.put(self, names, &mut changes).map_err(at)?;
         self.apply_buses(before, after, &mut changes).map_err(at)?;
@@ -111,6 +112,7 @@ struct New<'a> {
 impl<'a> New<'a> {
     fn make(
         maker: &Maker<'_>,
+        gains: &[f64],
         before: &SceneFile,
         after: &'a SceneFile,
         touched: &[PathBuf],
@@ -121,7 +123,7 @@ impl<'a> New<'a> {
         let mut bodies = Vec::new();
         for entry in after.bodies.iter().filter(|entry| differs(entry)) {
             // Buses are those that the engine was built with.
-            let body = maker.body(entry, &before.audio);
+            let body = maker.body(entry, &before.audio, gains);
             bodies.push((entry, body.map_err(|error| error.within(format!("body \"{}\"", entry.name)))?));
         }
         let body_of = |file: &'a SceneFile, entry: &SurfaceEntry| {
@@ -186,7 +188,10 @@ impl<'a> New<'a> {
 fn waiting(before: &SceneFile, after: &SceneFile) -> Vec<String> {
     let buses = |file: &SceneFile| -> Vec<_> {
         // A gain that is no longer written is found by the level policy, anew.
-        file.audio.iter().map(|entry| (entry.name.clone(), entry.limit, entry.gain.is_none())).collect()
+        let bus = |entry: &AudioEntry| {
+            (entry.name.clone(), entry.limit, entry.gain.is_none(), entry.pascals_at_full_scale)
+        };
+        file.audio.iter().map(bus).collect()
     };
     let known =
         |(name, probe): &(String, _)| after.probes.iter().any(|new| new.0 == *name && new.1 == *probe);
@@ -197,7 +202,7 @@ fn waiting(before: &SceneFile, after: &SceneFile) -> Vec<String> {
         ("probe", before.probe != after.probe || !before.probes.iter().all(known)),
         ("actuator", before.actuators != after.actuators),
         (
-            "audio: number, names and limits of buses, gains that are not written",
+            "audio: number, names, limits and pascals of buses, gains that are not written",
             buses(before) != buses(after),
         ),
     ];

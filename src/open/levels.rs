@@ -9,6 +9,9 @@
 //! | haptic channel | −26 dBFS rms ([`HAPTIC_REFERENCE`]) | strokes four times as fast and five times as hard, with peaks of four times their rms |
 //! | audio bus | −32 dBFS rms ([`AUDIO_REFERENCE`]) | the same for sound, whose peaks are higher |
 //!
+//! A bus that says how many pascals full scale is, and holds bodies whose modes are in pascals, has their level from there: its gain by
+//! policy follows from its other bodies and leaves these alone; without others it is 1.
+//!
 //! A bus that no stroke reaches follows a reference strike: 10 g of steel at 0.5 m/s peak at −12 dBFS. Sand is left out, because the
 //! stroke would leave its print; a scene of nothing else has [`FALLBACK_FULL_SCALE_M`] and a gain of 1. Where a level was
 //! resolved a peak limiter stands behind it, unless the scene says `limit = false`.
@@ -65,6 +68,7 @@ impl Levels {
 /// The levels of a scene; `assemble` builds it with levels of 1 and nothing behind them.
 pub(super) fn resolve(
     file: &SceneFile,
+    calibrated: &[bool],
     assemble: impl FnOnce(&Levels) -> Result<Engine, FileError>,
 ) -> Result<Levels, FileError> {
     let mut levels = Levels::written(file);
@@ -72,7 +76,7 @@ pub(super) fn resolve(
         return Ok(levels);
     }
     let plain = Levels { full_scale: vec![1.0; levels.full_scale.len()], gain: vec![1.0; levels.gain.len()] };
-    let trials = Trials::of(file);
+    let trials = Trials::of(file, calibrated);
     let Engine { scene, renderer, names, .. } = assemble(&plain)?;
     let options = Options { tail_s: 0.3, ..Options::default() };
     let render = offline::render(scene, renderer, &trials.log, &names, &options).map_err(FileError::told)?;
@@ -84,12 +88,13 @@ pub(super) fn resolve(
         });
         *level = match kind {
             _ if strongest > SILENT => strongest / HAPTIC_REFERENCE,
-            Quantity::Displacement => FALLBACK_FULL_SCALE_M,
+            Quantity::Displacement | Quantity::Tangential => FALLBACK_FULL_SCALE_M,
             Quantity::Acceleration => FALLBACK_FULL_SCALE_M_S2,
         };
     }
     for (bus, level) in levels.gain.iter_mut().enumerate().filter(|(_, level)| level.is_nan()) {
-        let loudest = trials.strongest(&render, |_| Some(&render.audio[bus][..]));
+        let loudest =
+            trials.strongest(&render, |stroke| (!stroke.calibrated).then_some(&render.audio[bus][..]));
         let struck = trials.struck(&render, &render.audio[bus]);
         *level = match (loudest > SILENT, struck > SILENT) {
             (true, _) => AUDIO_REFERENCE / loudest,
@@ -104,6 +109,8 @@ pub(super) fn resolve(
 /// A reference stroke among the trials.
 struct Trial {
     actuator: usize,
+    /// Whether the body tells in pascals how loud it is.
+    calibrated: bool,
     start_s: f64,
 }
 
@@ -116,7 +123,10 @@ struct Trials {
 }
 
 impl Trials {
-    fn of(file: &SceneFile) -> Self {
+    fn of(file: &SceneFile, calibrated: &[bool]) -> Self {
+        let is_calibrated = |name: &String| {
+            file.bodies.iter().zip(calibrated).any(|(body, calibrated)| body.name == *name && *calibrated)
+        };
         let mut trials = Self { log: ContactLog { lines: Vec::new() }, strokes: Vec::new(), strikes_s: 0.0 };
         let probes = std::iter::once(None).chain(file.probes.iter().map(|(name, _)| Some(name.as_str())));
         let probes: Vec<Option<&str>> = probes.collect();
@@ -128,14 +138,15 @@ impl Trials {
             for probe in &probes {
                 for actuator in kinds(file) {
                     for axis in 0..2 {
-                        trials.stroke(file, (surface, *probe, actuator), axis, at_s);
+                        let calibrated = entry.body.as_ref().is_some_and(is_calibrated);
+                        trials.stroke(file, (surface, *probe, actuator), axis, (at_s, calibrated));
                         at_s += STROKE_S + PAUSE_S;
                     }
                 }
             }
         }
         trials.strikes_s = at_s;
-        for body in &file.bodies {
+        for body in file.bodies.iter().filter(|body| !is_calibrated(&body.name)) {
             let striker = Striker::Preset("steel".to_owned());
             trials.log.lines.push(LogLine { t: at_s, event: strike(&body.name, striker) });
             at_s += PAUSE_S;
@@ -148,7 +159,7 @@ impl Trials {
         file: &SceneFile,
         (surface, probe, actuator): (usize, Option<&str>, usize),
         axis: usize,
-        start_s: f64,
+        (start_s, calibrated): (f64, bool),
     ) {
         let entry = &file.surfaces[surface];
         let size_m = [entry.width_m, entry.height_m];
@@ -178,7 +189,7 @@ impl Trials {
             self.log.lines.push(LogLine { t: start_s + t, event: LogEvent::moved(contact, sample(t)) });
         }
         self.log.lines.push(LogLine { t: start_s + STROKE_S, event: LogEvent::End { contact } });
-        self.strokes.push(Trial { actuator, start_s });
+        self.strokes.push(Trial { actuator, calibrated, start_s });
     }
 
     /// Greatest rms of what two strokes across each other give.
@@ -206,7 +217,10 @@ impl Trials {
 /// The first actuator of each kind of output.
 fn kinds(file: &SceneFile) -> Vec<usize> {
     let first = |kind| file.actuators.iter().position(|entry| entry.settings.output == kind);
-    [Quantity::Displacement, Quantity::Acceleration].into_iter().filter_map(first).collect()
+    [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential]
+        .into_iter()
+        .filter_map(first)
+        .collect()
 }
 
 /// The reference strike on a body.
@@ -220,6 +234,8 @@ fn strike(body: &str, striker: Striker) -> LogEvent {
         striker,
         restitution: 1.0,
         position: 0,
+        at_m: None,
+        direction: None,
         hand: LogHand::default(),
     }
 }

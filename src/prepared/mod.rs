@@ -1,8 +1,11 @@
 //! Prepared resources, designed by the game half and owned by the audio half: everything that a body or a surface needs to sound, in memory made
 //! beforehand.
 
+pub(crate) mod area;
 pub(crate) mod body;
+pub(crate) mod body_field;
 pub(crate) mod bursts;
+pub(crate) mod holding;
 pub(crate) mod impulse_ring;
 pub(crate) mod overlay;
 pub(crate) mod probe;

@@ -33,6 +33,11 @@ impl PreparedProbe {
         self.micro_contact.probe().tip_radius_m
     }
 
+    /// Width over which its skin averages, m; 0 where it has none.
+    pub(crate) fn ridge_m(&self) -> f64 {
+        self.micro_contact.probe().ridge_m
+    }
+
     /// At the engine's inner rate; `own` is the engine's own probe.
     pub(crate) fn new(
         probe: &Probe,

@@ -56,13 +56,7 @@ pub(crate) fn stiffness_n_m(probe: &Probe, ground: &Ground, force_n: f64) -> f64
     own_n_m * ground_n_m / (own_n_m + ground_n_m)
 }
 
-/// How much louder a contact is than at 1 N: its area grows as F^(2/3) (Hertz), as many asperities more strike, and each by
-/// itself, so that their sum grows as F^(1/3).
-pub(crate) fn loudness(force_n: f64) -> f64 {
-    within(force_n).cbrt()
-}
-
-fn within(force_n: f64) -> f64 {
+pub(crate) fn within(force_n: f64) -> f64 {
     force_n.clamp(FORCE_N.0, FORCE_N.1)
 }
 

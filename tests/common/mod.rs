@@ -1,6 +1,10 @@
 //! Scenes and strokes that several tests share.
 #![allow(dead_code)]
 
+pub mod exploration;
+pub mod plates;
+pub mod strokes;
+
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{ActuatorSettings, Config, Excitation, Extent, ModalModel, Mode, Surface, Tap, Wrap};

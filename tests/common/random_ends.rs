@@ -164,6 +164,7 @@ pub fn outcome(seed: u64) -> Outcome {
         leash_m: end_of(rng, limits::probe::LEASH_M),
         // The stiffness is drawn over its whole range; the figure of a landing is that of a fixed one.
         tip_radius_m: 0.0,
+        ridge_m: 0.0,
         force_exponent: 0.0,
     };
     let probe = if rng.next_u32().is_multiple_of(2) { Probe::default() } else { probe };

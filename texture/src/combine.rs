@@ -79,6 +79,10 @@ impl HeightField for Sum {
         self.sources.iter().for_each(|s| s.add_local_power(position_m, power_m2));
     }
 
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        self.sources.iter_mut().map(|s| s.hollow_m(touch, reach_m)).sum()
+    }
+
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
         self.sources.iter().fold(Beyond::Same, |beyond, s| beyond.max(s.beyond(tile_m)))
     }
@@ -180,6 +184,10 @@ impl HeightField for Scale {
         power_m2.iter_mut().zip(&own).for_each(|(power, own)| *power += factor * factor * own);
     }
 
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        self.factor.at(touch.sample) * self.source.hollow_m(touch, reach_m)
+    }
+
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
         self.source.beyond(tile_m)
     }
@@ -279,6 +287,12 @@ impl HeightField for Crossfade {
 
     fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
         self.sources.iter().for_each(|s| s.add_local_power(position_m, power_m2));
+    }
+
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        let w = self.position.at(touch.sample);
+        let [first, second] = &mut self.sources;
+        (1.0 - w) * first.hollow_m(touch, reach_m) + w * second.hollow_m(touch, reach_m)
     }
 
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {

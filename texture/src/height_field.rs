@@ -270,6 +270,13 @@ pub trait HeightField: Send + Sync {
         power_m2.fill(f64::INFINITY);
     }
 
+    /// How much higher the ground lies on the mean of four points `reach_m` away, along u and v, than where it is touched, m: above 0
+    /// in a hollow, below 0 on a crest. A source that does not know is flat; one whose samples depend on nothing but their places has
+    /// [`hollow_by_samples_m`].
+    fn hollow_m(&mut self, _touch: &Touch, _reach_m: f64) -> f64 {
+        0.0
+    }
+
     /// What lies beyond a tile of `tile_m` along u and v.
     fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
         Beyond::Same
@@ -307,4 +314,26 @@ pub trait HeightField: Send + Sync {
     /// Shows the source, and those that it is made of, to whoever knows their types: after a render, sand is asked for its figures. A
     /// source that has nothing to say shows nothing.
     fn visit(&mut self, _see: &mut dyn FnMut(&mut dyn Any)) {}
+}
+
+/// [`HeightField::hollow_m`] from five samples, blurred to an eighth of the reach.
+pub fn hollow_by_samples_m(source: &mut (impl HeightField + ?Sized), touch: &Touch, reach_m: f64) -> f64 {
+    let [u_m, v_m] = touch.position_m;
+    let position_m =
+        [[u_m, v_m], [u_m - reach_m, v_m], [u_m + reach_m, v_m], [u_m, v_m - reach_m], [u_m, v_m + reach_m]];
+    let mut out = SurfaceBlock::default();
+    source.sample(
+        &PathBlock {
+            position_m: &position_m,
+            velocity_m_s: &[[0.0; 2]; 5],
+            footprint_m: &[0.125 * reach_m; 5],
+            normal_force_n: &[],
+            first_sample: touch.sample,
+            contact: touch.contact,
+            slopes: false,
+        },
+        &mut out,
+    );
+    let [here_m, about_m @ ..] = &out.height_m[..5] else { return 0.0 };
+    0.25 * about_m.iter().sum::<f64>() - here_m
 }

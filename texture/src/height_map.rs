@@ -19,7 +19,9 @@ mod extent;
 
 pub use extent::{Extent, MapError};
 
-use crate::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
+use crate::height_field::{
+    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_by_samples_m,
+};
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
 use crate::resample::halve;
@@ -309,6 +311,10 @@ impl HeightField for HeightMap {
         for (position_m, power_m2) in position_m.iter().zip(power_m2) {
             *power_m2 += local.at(*position_m);
         }
+    }
+
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        if self.heights.levels.is_empty() { 0.0 } else { hollow_by_samples_m(self, touch, reach_m) }
     }
 
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {

@@ -16,7 +16,9 @@
 //! contact's footprint does not resolve the texels, copies of the cell smoothed by 1–4–6–4–1 at
 //! dyadic scales take over (not thinned out, so that any cell size will do), down to its mean.
 
-use crate::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
+use crate::height_field::{
+    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_by_samples_m,
+};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::combined as limits;
@@ -253,6 +255,10 @@ impl HeightField for Lattice {
 
     fn reach_m(&self) -> f64 {
         self.levels[0].iter().fold(0.0, |reach, c| reach.max(c.abs()))
+    }
+
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        hollow_by_samples_m(self, touch, reach_m)
     }
 
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {

@@ -143,6 +143,18 @@ impl HeightField for Tiled {
         }
     }
 
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        let places = self.places(touch.position_m);
+        let part = |copy: &[usize; 2]| {
+            let (weight, _) = share(&places, *copy);
+            let position_m = self.back(&places, *copy);
+            (weight, Touch { position_m, ..*touch })
+        };
+        let parts = COPIES.map(|copy| part(&copy));
+        let present = parts.iter().filter(|(weight, _)| *weight > 0.0);
+        present.map(|(weight, touch)| weight * self.source.hollow_m(touch, reach_m)).sum()
+    }
+
     fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
         Beyond::Same
     }

@@ -16,8 +16,8 @@ const ROUGHNESS_PX: usize = 256;
 /// R of the glossy half and of the matte half.
 const SHINY: f64 = 0.1;
 const MATTE: f64 = 0.9;
-/// R of the plates with relief: printed plastic, whose layers are felt.
-const PLASTIC: f64 = 0.6;
+/// R of the plates with relief: printed PLA, as the table of materials has it.
+const PLASTIC: f64 = 0.5;
 
 /// A plate: names, what to notice, and its two maps as functions of the place in metres.
 #[derive(Debug, Clone, Copy)]

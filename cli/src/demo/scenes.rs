@@ -32,8 +32,9 @@ fn plate_scene(plate: &Plate) -> DemoScene {
         extent_m: [SIDE_M; 2],
         start_s: LEAD_S,
         normal_force_n: 0.6,
-        from_m: [0.018, 0.066],
-        strokes: vec![([0.122, 0.068], 0.08), ([0.018, 0.07], 0.2)],
+        // Along a row of bumps: the bow of a hand is 3 mm, as wide as a bump's half.
+        from_m: [0.018, 0.065],
+        strokes: vec![([0.122, 0.066], 0.08), ([0.018, 0.07], 0.2)],
     };
     let toml = format!(
         "# {title}: a plate of the Hasti study, stroked across at 80 mm/s and back at 200 mm/s.\n\
@@ -101,8 +102,7 @@ pub fn plate_modes() -> ModalModel {
         source: "free circular plate, chosen damping".to_owned(),
         impulse_n_s: 0.01,
         modes,
-        positions: Vec::new(),
-        residual: None,
+        ..ModalModel::silent()
     }
 }
 
@@ -127,8 +127,7 @@ pub fn bar_modes() -> ModalModel {
         source: "free bar, chosen damping".to_owned(),
         impulse_n_s: 0.01,
         modes,
-        positions: Vec::new(),
-        residual: None,
+        ..ModalModel::silent()
     }
 }
 
@@ -144,6 +143,8 @@ fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m)
             striker: Striker::Preset(striker.to_owned()),
             restitution: 0.5,
             position: 0,
+            at_m: None,
+            direction: None,
             hand: LogHand::default(),
         },
     }

@@ -4,7 +4,7 @@ use super::Report;
 use super::picture::{self, ContactCurve, Ground, HapticChannel, Take};
 use crate::plot;
 use asperity::files::contact_log::{ContactLog, LogEvent};
-use asperity::files::scene_file::{SceneFile, Source};
+use asperity::files::scene_file::{RoughnessEntry, SceneFile, Source, SurfaceEntry};
 use asperity::offline::Render;
 use asperity::open;
 use asperity::{Quantity, SurfaceId, Wrap};
@@ -25,6 +25,7 @@ pub fn draw(
         let (quantity, unit) = match actuator.settings.output {
             Quantity::Displacement => ("displacement", "m"),
             Quantity::Acceleration => ("acceleration", "m/s²"),
+            Quantity::Tangential => ("tangential displacement", "m"),
         };
         HapticChannel { quantity, unit, full_scale: actuator.full_scale.unwrap_or(1.0), samples }
     });
@@ -59,7 +60,8 @@ pub fn draw(
 /// Texels a side of a surface in the picture.
 const GROUND_PX: usize = 192;
 
-/// The surfaces as they are seen from above: what has a relief as it is at first, sand as it lies afterwards.
+/// The surfaces as they are seen from above: what has a relief as it is at first, sand as it lies afterwards, and what is flat by its
+/// map of roughness.
 fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> Vec<Ground> {
     file.surfaces
         .iter()
@@ -73,8 +75,14 @@ fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> 
                     let upright = if *invert { raster.map(|height| 1.0 - height) } else { raster };
                     ("from above", upright)
                 }
-                (Source::Flat, _) => return None,
+                (Source::Flat, _) => ("from above", Raster::constant(1, 1, 0.0)),
                 _ => ("from above", open::relief(surface, file.seed, GROUND_PX)?),
+            };
+            let (low, high) = heights.range();
+            let (title, heights) = if low < high {
+                (title, heights)
+            } else {
+                ("its roughness: light is matte", roughness(surface)?)
             };
             // Sand ends at its edges.
             let wrap = if sand.is_some() { Wrap::Clamp } else { surface.wrap };
@@ -87,6 +95,15 @@ fn grounds(file: &SceneFile, render: &Render, names: &[(String, SurfaceId)]) -> 
             })
         })
         .collect()
+}
+
+/// A surface's map of R, where it has one that varies.
+fn roughness(surface: &SurfaceEntry) -> Option<Raster> {
+    let RoughnessEntry::Map { image, gloss } = &surface.roughness else { return None };
+    let raster = load_channel(&image.path, image.channel).ok()?.raster;
+    let (low, high) = raster.range();
+    let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
+    (low < high).then_some(raster)
 }
 
 /// A small copy whose heights fill 0–1.

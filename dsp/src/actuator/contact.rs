@@ -12,6 +12,8 @@ pub enum Quantity {
     Displacement,
     /// Acceleration, m/s².
     Acceleration,
+    /// Where friction drags the skin along the motion, m ([`crate::tangential`]): the place of the skin is handed in as the pad's.
+    Tangential,
 }
 
 /// Time in which a contact that has ended fades, s (chosen: shorter than two 60 Hz events, and a fade this
@@ -24,6 +26,7 @@ pub struct ContactOutput {
     quantity: Quantity,
     highpass: Option<Butterworth>,
     sample_rate_hz: f64,
+    through_skin: bool,
 }
 
 /// Memory of one contact.
@@ -48,7 +51,19 @@ impl ContactOutput {
             let named = |e: DesignError| DesignError { field: "highpass_hz", ..e };
             Some(Butterworth::new(highpass_hz, rate).map_err(named)?)
         };
-        Ok(Self { quantity, highpass, sample_rate_hz: rate })
+        Ok(Self { quantity, highpass, sample_rate_hz: rate, through_skin: false })
+    }
+
+    /// Whether an acceleration is what the skin of a finger lets through ([`super::Skin`]), and not its point's.
+    #[must_use]
+    pub const fn through_skin(self, through_skin: bool) -> Self {
+        Self { through_skin, ..self }
+    }
+
+    /// Whether a contact of a probe that has skin goes through it.
+    #[must_use]
+    pub const fn minds_skin(&self) -> bool {
+        self.through_skin && matches!(self.quantity, Quantity::Acceleration)
     }
 
     /// The high-pass, where there is one.
@@ -70,7 +85,7 @@ impl ContactOutputState {
     #[must_use]
     pub fn begin(design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> Self {
         let settled = match design.quantity {
-            Quantity::Displacement => pad_m,
+            Quantity::Displacement | Quantity::Tangential => pad_m,
             Quantity::Acceleration => 0.0,
         };
         Self { highpass: State::settled_at(settled), velocity_m_s: pad_velocity_m_s }
@@ -110,7 +125,7 @@ impl ContactOutputState {
     pub fn quantity(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
         let before_m_s = core::mem::replace(&mut self.velocity_m_s, pad_velocity_m_s);
         match design.quantity {
-            Quantity::Displacement => pad_m,
+            Quantity::Displacement | Quantity::Tangential => pad_m,
             Quantity::Acceleration => (pad_velocity_m_s - before_m_s) * design.sample_rate_hz,
         }
     }

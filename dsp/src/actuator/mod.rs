@@ -8,6 +8,7 @@
 //! | step | here |
 //! |---|---|
 //! | high-pass about the start of the contact | [`ContactOutput`] |
+//! | what a fingertip's skin and tissue let through, of an acceleration | [`Skin`] |
 //! | device model and its parameters | [`DeviceProfile`], [`DeviceModel`] |
 //! | inverse of the device | [`Equaliser`] |
 //! | excursion, heat and drive | [`Protection`] |
@@ -23,9 +24,11 @@ mod contact;
 mod device;
 mod equaliser;
 mod limiter;
+mod skin;
 
 pub use channel::{Channel, ChannelControl, ChannelOptions, ChannelState, GAIN_RAMP_S};
 pub use contact::{ContactOutput, ContactOutputState, Quantity, RELEASE_S};
 pub use device::{DeviceModel, DeviceProfile, DeviceState};
 pub use equaliser::{EDGE, Equaliser, EqualiserState};
 pub use limiter::{PeakLimiter, PeakLimiterState, Protection, ProtectionState, RELEASE_TIME_S};
+pub use skin::{SLIDING_M_S, Skin, SkinState, TISSUE_MASS_KG};

@@ -40,8 +40,9 @@ impl OnsetMerge {
         if !(excess > 0.0 && excess.is_finite()) {
             return None;
         }
-        self.held_n_s = pulse.impulse_n_s;
-        self.end = self.end.max(end);
+        // It lasts as long as the harder one: a slow touch before it, which alone would last longer, leaves nothing behind. So one that just
+        // grazes may be there or not, and all that comes after sounds the same.
+        *self = Self { end, held_n_s: pulse.impulse_n_s };
         Some(HertzPulse { impulse_n_s: excess, ..pulse })
     }
 }

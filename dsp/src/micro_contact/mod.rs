@@ -55,7 +55,7 @@ pub use choice::{
 pub use lanes::{EulerLanes, LANES, LaneRow, Lanes};
 pub use probe::{
     CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, FORCE_EXPONENT, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG,
-    PAD_STIFFNESS_N_M, Probe,
+    PAD_STIFFNESS_N_M, Probe, RIDGE_M,
 };
 pub use state::{ContactSample, ContactState, Onset};
 pub use stiffening::RUNGS_AN_OCTAVE;

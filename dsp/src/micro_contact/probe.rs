@@ -19,6 +19,8 @@ pub const FINGER_MASS_KG: f64 = 20e-3;
 pub const CONTACT_STIFFNESS_N_M: f64 = 2e5;
 /// n of k_m ∝ Fⁿ: Hertz, a sphere on a plane.
 pub const FORCE_EXPONENT: f64 = 1.0 / 3.0;
+/// Width of a ridge of the fingerprint, m: about 0.5 mm from one to the next (Scheibert and others 2009).
+pub const RIDGE_M: f64 = 0.46e-3;
 /// Longest gap between skin and surface that the finger's own motion may open, m. **Design choice**:
 /// an unloaded finger drifts 88 mm away in one second without it.
 pub const LEASH_M: f64 = 1e-3;
@@ -48,6 +50,9 @@ pub struct Probe {
     pub tip_radius_m: f64,
     /// n of k_m ∝ Fⁿ, F the pressing force in newtons; 0 (always `contact_stiffness_n_m`) to 1.
     pub force_exponent: f64,
+    /// Width over which skin averages what an acceleration channel has of the ground ([`crate::actuator::Skin`]), m; 0 (no skin: a tool) to
+    /// 0.01. The contact model does not see it.
+    pub ridge_m: f64,
 }
 
 impl Default for Probe {
@@ -62,6 +67,7 @@ impl Default for Probe {
             leash_m: LEASH_M,
             tip_radius_m: 0.0,
             force_exponent: FORCE_EXPONENT,
+            ridge_m: RIDGE_M,
         }
     }
 }
@@ -86,6 +92,7 @@ impl Probe {
         limits::CONTACT_STIFFNESS_N_M.check("contact_stiffness_n_m", self.contact_stiffness_n_m)?;
         limits::LEASH_M.check("leash_m", self.leash_m)?;
         limits::TIP_RADIUS_M.check("tip_radius_m", self.tip_radius_m)?;
-        limits::FORCE_EXPONENT.check("force_exponent", self.force_exponent).map(|_| ())
+        limits::FORCE_EXPONENT.check("force_exponent", self.force_exponent)?;
+        limits::RIDGE_M.check("ridge_m", self.ridge_m).map(|_| ())
     }
 }

@@ -81,7 +81,8 @@ impl HapticChannel {
             limit: settings.limit,
         };
         Ok(Self {
-            output: ContactOutput::new(settings.output, settings.highpass_hz, sample_rate_hz)?,
+            output: ContactOutput::new(settings.output, settings.highpass_hz, sample_rate_hz)?
+                .through_skin(settings.lowpass_hz.is_none()),
             design: actuator::Channel::new(&options, sample_rate_hz)?,
             control: ChannelControl::default(),
             state: ChannelState::default(),

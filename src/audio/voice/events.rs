@@ -4,6 +4,7 @@ use super::blows::Blows;
 use super::profile::Along;
 use super::scratch::Scratch;
 use super::shared::{Shared, Stretch};
+use super::skin::ContactSkin;
 use super::tip::Tip;
 use super::{PadSample, Phase, Voice};
 use crate::audio::seat::Seat;
@@ -50,6 +51,8 @@ impl Voice {
         let ground = slot.stroking.ground;
         seat.land(&self.touch_at(position));
         self.pad.begin(shared.probe(self.role.probe), ground, force_n);
+        self.drag.begin();
+        self.drag.press(force_n);
         if lands {
             let points = std::slice::from_ref(&self.path.last);
             scratch.profile.run(seat, self.along(shared, position, false), points);
@@ -64,7 +67,11 @@ impl Voice {
         self.ac.force = butterworth::State::settled_at(if lands { 0.0 } else { force_n });
         self.reaction = Reaction::default();
         self.blows = Blows::default();
-        self.exciters.begin(contact.0 ^ position.rotate_left(32), position, force_n);
+        self.skin = ContactSkin::default();
+        let probe = shared.probe(self.role.probe);
+        self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
+        let loudness = self.loudness(shared, position, seat);
+        self.exciters.begin(contact.0 ^ position.rotate_left(32), position, loudness);
     }
 
     /// A finger that is suddenly there has been sliding already: the pad is led along the straight line

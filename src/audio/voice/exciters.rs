@@ -62,20 +62,20 @@ impl Exciters {
         }
     }
 
-    /// Another contact begins, pressed with `force_n`.
-    pub(super) fn begin(&mut self, seed: u64, position: u64, force_n: f64) {
+    /// Another contact begins, as loud as this.
+    pub(super) fn begin(&mut self, seed: u64, position: u64, loudness: f64) {
         self.collisions = Collisions::default();
         self.grains = Grains::new(seed);
         self.force = ContactForce::default();
-        self.loudness = Loudness::pressed(force_n);
+        self.loudness = Loudness::of(loudness);
         if !self.ring.is_empty(position) {
             self.ring.clear();
         }
     }
 
     /// More of it sounds, or less: called at the steps of the absolute sample grid.
-    pub(super) fn press(&mut self, force_n: f64) {
-        self.loudness.press(force_n);
+    pub(super) fn press(&mut self, loudness: f64) {
+        self.loudness.set_out(loudness);
     }
 
     /// Rows and the alternating force in; impulses, and what was counted, out.

@@ -85,6 +85,8 @@ pub struct AudioEntry {
     pub name: Option<String>,
     /// Linear gain; none = by the level policy.
     pub gain: Option<f64>,
+    /// Pascals at 1 m at sample value 1, of bodies whose modes are in pascals; none = their numbers are as any other's.
+    pub pascals_at_full_scale: Option<f64>,
     /// Keeps the channel within ±1; none = before a sound card, where a device is named, and where the gain is by policy.
     pub limit: Option<bool>,
 }
@@ -259,13 +261,18 @@ fn read_probe(mut fields: Fields) -> Result<Probe, FileError> {
         leash_m: fields.number_or(&parameters::probe::LEASH_M, preset.leash_m)?,
         tip_radius_m: fields.number_or(&parameters::probe::TIP_RADIUS_M, preset.tip_radius_m)?,
         force_exponent: fields.number_or(&parameters::probe::FORCE_EXPONENT, force_exponent)?,
+        ridge_m: fields.number_or(&parameters::probe::RIDGE_M, preset.ridge_m)?,
     };
     fields.finish()?;
     Ok(probe)
 }
 
 fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
-    let words = [("displacement", Quantity::Displacement), ("acceleration", Quantity::Acceleration)];
+    let words = [
+        ("displacement", Quantity::Displacement),
+        ("acceleration", Quantity::Acceleration),
+        ("tangential", Quantity::Tangential),
+    ];
     let default = ActuatorSettings::default();
     let output = fields.word("output", &words)?.unwrap_or(default.output);
     let equalise = fields.text("equalise")?.filter(|name| name != "none");
@@ -320,6 +327,7 @@ fn read_audio(mut fields: Fields) -> Result<AudioEntry, FileError> {
     let audio = AudioEntry {
         name: fields.text("name")?,
         gain: fields.number(&parameters::audio::GAIN)?,
+        pascals_at_full_scale: fields.number(&parameters::audio::PASCALS_AT_FULL_SCALE)?,
         limit: fields.flag("limit")?,
     };
     fields.finish()?;

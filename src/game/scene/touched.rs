@@ -3,7 +3,7 @@
 use super::Scene;
 use crate::model::contact_sample::Place;
 use crate::model::error::{AddError, Refusal};
-use crate::model::event::{ContactEvent, ContactId, ContactSample};
+use crate::model::event::{ContactId, ContactSample};
 use crate::model::id::SurfaceId;
 use asperity_texture::tip_law::TipLaw;
 
@@ -43,21 +43,5 @@ impl Scene {
         let known = self.touched.get(&contact).and_then(|surface| self.surfaces.get(surface.0));
         let nowhere = Place { frame: None, size_m: [1.0; 2], is_soft: false };
         sample.on(known.map_or(&nowhere, |known| &known.place))
-    }
-
-    /// Which surface a contact is on, where a place or a depth on it means something.
-    pub(super) fn remember_touched(&mut self, event: &ContactEvent) {
-        match event {
-            ContactEvent::Begin { contact, touching, .. } => {
-                let place = self.surfaces.get(touching.surface.0).map(|known| known.place);
-                if place.is_some_and(|place| place.is_soft || place.frame.is_some()) {
-                    self.touched.insert(*contact, touching.surface);
-                } else {
-                    self.touched.remove(contact);
-                }
-            }
-            ContactEvent::End { contact } => drop(self.touched.remove(contact)),
-            ContactEvent::Moved { .. } | ContactEvent::Impact(_) => {}
-        }
     }
 }

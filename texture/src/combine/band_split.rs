@@ -88,6 +88,11 @@ impl HeightField for BandSplit {
         self.coarse.reach_m() + 2.0 * self.fine.reach_m()
     }
 
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        let [low, _] = self.weights_at(touch.sample);
+        low * self.coarse.hollow_m(touch, reach_m)
+    }
+
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
         self.coarse.beyond(tile_m).max(self.fine.beyond(tile_m))
     }

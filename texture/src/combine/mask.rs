@@ -86,6 +86,11 @@ impl HeightField for Mask {
         self.outside.add_local_power(position_m, power_m2);
     }
 
+    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+        let w = self.weight_at(touch.position_m);
+        w * self.inside.hollow_m(touch, reach_m) + (1.0 - w) * self.outside.hollow_m(touch, reach_m)
+    }
+
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
         let parts = [&self.mask, &self.inside, &self.outside].map(|s| s.beyond(tile_m));
         parts.into_iter().fold(Beyond::Same, Beyond::max)

@@ -24,7 +24,7 @@ use super::grid::SandPicture;
 use super::hand_over::{
     Link, Near, PATCHES_A_CONTACT, Slot, circulating, fade_samples, frame_samples, give_back, patches, rings,
 };
-use super::law::SandLaw;
+use super::law::{BEARING_DEPTH_M, SandLaw};
 use super::patch::Patch;
 use super::simulation::{Pose, SandDesign, SandFigures, SandSimulation};
 use super::tool::Tool;
@@ -328,7 +328,8 @@ impl HeightField for SandSource {
     }
 
     fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        let radius_m = WIDE * self.tool.print_radius_m(depth_m);
+        // A tip on its way up still stands between the heaps of its way down.
+        let radius_m = WIDE * self.tool.print_radius_m(depth_m.max(BEARING_DEPTH_M));
         let level_m = match &self.link {
             Link::Here(simulation) => Some(simulation.level_m(position_m, radius_m)),
             Link::Elsewhere { .. } => seen_level_m(&self.moving_picture, position_m, radius_m),
