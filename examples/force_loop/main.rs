@@ -37,9 +37,12 @@ fn device(rate_hz: f64, mass_kg: f64) -> Device {
     Device { mass_kg, damping_n_s_m: DAMPING_N_S_M, rate_hz, resolution_m: RESOLUTION_M }
 }
 
-/// A hand that leans on the tip with 2 N, and pushes to and fro from half time on.
+/// How long the hand keeps still, s: half a kilogram rings for half a second in 2 N·s/m.
+const STILL_S: f64 = 5.0;
+
+/// A hand that leans on the tip with 2 N, and pushes to and fro in the end.
 fn hand_n(t: f64) -> f64 {
-    if t < 0.7 { 2.0 } else { 2.0 + 1.2 * (std::f64::consts::TAU * 4.0 * (t - 0.7)).sin() }
+    if t < STILL_S { 2.0 } else { 2.0 + 1.2 * (std::f64::consts::TAU * 4.0 * (t - STILL_S)).sin() }
 }
 
 fn surfaces() -> Result<[(&'static str, Surface); 3], Box<dyn Error>> {
@@ -61,8 +64,8 @@ fn run(
     device: &Device,
 ) -> Result<(Vec<Tick>, Vec<ForceRow>), Box<dyn Error>> {
     let law = scene.tip_law(surface)?.ok_or("a hard surface")?;
-    let mut port = scene.open_port(Force { rate_hz: device.rate_hz, holds_s: 4.0 })?;
-    let ticks = device.push(0.004, hand_n, 1.6, |depth_m| law.answer_n(depth_m, [0.0; 2])[2]);
+    let mut port = scene.open_port(Force { rate_hz: device.rate_hz, holds_s: 8.0 })?;
+    let ticks = device.push(0.004, hand_n, STILL_S + 1.0, |depth_m| law.answer_n(depth_m, [0.0; 2])[2]);
     let frames = renderer.sample_rate_hz() / device.rate_hz;
     let (mut haptic, mut audio) = (vec![0.0; 64], vec![0.0; 64]);
     for (index, tick) in ticks.iter().enumerate() {
@@ -143,7 +146,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let law = scene.tip_law(surface)?.ok_or("a hard surface")?;
                 let device = device(rate_hz, mass_kg);
                 let (ticks, rows) = run(&mut scene, &mut renderer, surface, &device)?;
-                let still = device.holds(&ticks[..(0.7 * rate_hz) as usize]);
+                let still = device.holds(&ticks[..(STILL_S * rate_hz) as usize]);
                 let cycle_j = device.cycle_j(0.003, 0.002, 20.0, |d| law.answer_n(d, [0.0; 2])[2]);
                 println!(
                     "{name:6} {:1} kHz {mass_kg:4} kg: {:.0} N/m, {}, a cycle of 20 Hz gives {:+.3} mJ, \
