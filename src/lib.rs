@@ -118,6 +118,7 @@ pub use model::mode_shapes::{ModeShapes, Unit as ShapeUnit};
 pub use model::probe::{PROBE_PRESETS, probe_by_name};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
 pub use model::stock::Stock;
+pub use model::strike_field::{StrikeField, StrikePlace};
 pub use model::surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Roughness, Surface,
     SurfaceError,

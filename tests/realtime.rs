@@ -1,6 +1,9 @@
 //! The audio half never allocates or frees, whatever happens: events of every kind, surfaces and bodies
 //! swapped and removed while they sound, voices stolen, contacts lapsing, hostile numbers.
 
+#[path = "common/closed_forms.rs"]
+#[allow(dead_code)]
+mod closed_forms;
 mod common;
 #[path = "common/counting.rs"]
 mod counting;
@@ -69,6 +72,48 @@ fn five_minutes_of_randomised_events_touch_no_heap(seed: u64) {
         ("micro_collisions", stats.micro_collisions),
     ] {
         assert!(count > 0, "the random game {seed} never met: {name}");
+    }
+}
+
+#[test]
+fn strikes_strokes_and_holds_anywhere_on_a_body_touch_no_heap() {
+    let config = Config { actuators: vec![tangential()], ..Config::default() };
+    let asperity::Engine { mut scene, mut renderer, .. } = config.build().unwrap();
+    let text = closed_forms::modes_file(&closed_forms::plate(), |m| 90.0 * (m + 1) as f64, 5.0);
+    let body = scene.add_body(asperity::ModalModel::parse(&text).unwrap()).unwrap();
+    let frame = asperity::SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+    let surface = asperity::Surface::flat(0.4, 0.3).unwrap().frame(frame).on(body);
+    let surface = scene.add_surface(surface).unwrap();
+    let mut rng = asperity::dsp::rng::Rng::new(12);
+    let (mut haptic, mut audio) = ([0.0f32; 300], [0.0f32; 300]);
+    let (mut touched, mut peak) = (0, 0.0f32);
+    for step in 0..3000 {
+        let t = f64::from(step) * 300.0 / 44_100.0;
+        let contact = ContactId(u64::from(rng.next_u32() % 24));
+        let sample =
+            ContactSample::new([rng.uniform(), rng.uniform()], 2.0 * rng.uniform()).sliding([0.1, 0.05]);
+        let event = match rng.next_u32() % 8 {
+            0 => ContactEvent::begin(contact, surface, Actuator(0), sample),
+            1 => ContactEvent::end(contact),
+            2 => {
+                let at_m = [0.4 * rng.uniform(), 0.3 * rng.uniform(), 0.0];
+                ContactEvent::Impact(asperity::Impact::on(body).at(at_m))
+            }
+            _ => ContactEvent::moved(contact, sample),
+        };
+        scene.report(t, event).unwrap();
+        touched += heap_operations(|| renderer.render(&mut [&mut haptic], &mut [&mut audio]));
+        peak = haptic.iter().chain(&audio).fold(peak, |a, x| a.max(x.abs()));
+        assert!(peak.is_finite());
+    }
+    assert_eq!(touched, 0, "heap operations on the audio half");
+    assert!(peak > 0.0);
+}
+
+fn tangential() -> asperity::ActuatorSettings {
+    asperity::ActuatorSettings {
+        output: asperity::Quantity::Tangential,
+        ..asperity::ActuatorSettings::default()
     }
 }
 

@@ -54,6 +54,34 @@ fn a_mesh_becomes_a_body_that_the_engine_plays_and_can_be_struck_anywhere() {
 }
 
 #[test]
+fn with_radiation_levels_are_pascals_and_low_bending_modes_are_far_below_a_breathing_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("bar.obj"), BAR).unwrap();
+    for (name, more) in [("dry", None), ("air", Some("--radiation"))] {
+        let file = format!("{name}.modes.json");
+        let mut arguments = vec!["modes", "bar.obj", "--material", "steel", "--max-modes", "6", "-o", &file];
+        arguments.extend(more);
+        let output = asperity(at, &arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let load = |name: &str| asperity::ModalModel::load(at.join(name)).unwrap();
+    let (dry, air) = (load("dry.modes.json"), load("air.modes.json"));
+    assert_eq!((dry.unit, air.unit), (asperity::ShapeUnit::Relative, asperity::ShapeUnit::PascalsAtOneMetre));
+    let (dry_shapes, air_shapes) = (dry.shapes.unwrap(), air.shapes.unwrap());
+    for m in 0..6 {
+        assert!(air.modes[m].decay_per_s >= dry.modes[m].decay_per_s);
+        // A surface that moved as one with the mode's rms velocity at full efficiency: ρ c √(S / 4π), S = 6.4e-3 m² here.
+        let most = 1.2 * 343.0 * (6.4e-3_f64 / (4.0 * std::f64::consts::PI)).sqrt() * dry_shapes.gains[m];
+        assert!(
+            air_shapes.gains[m] > 0.0 && air_shapes.gains[m] < 1.5 * most,
+            "mode {m}: {} of {most}",
+            air_shapes.gains[m]
+        );
+    }
+}
+
+#[test]
 fn damping_is_learned_from_a_recorded_body() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

@@ -16,7 +16,11 @@
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
 //! | [`mobility`] | force pulses → what the hand feels of an impact |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
+//! | [`held`] | contacts that press on a body → its pitches and decays |
+//! | [`radiation`] | motion of a surface → pressure at 1 m |
 //! | [`damping`] | a material → the decays of its modes |
+//! | [`stick_slip`] | sweep and normal force → friction force, with the body that gives way |
+//! | [`tangential`] | friction force → skin dragged sideways |
 //! | [`actuator`] | pad motion → haptic samples |
 //! | [`limits`] | what all of them accept |
 //! | [`rng`] | seeded numbers for all of them |
@@ -33,6 +37,7 @@ mod error;
 pub mod fractal_noise;
 pub mod gradient_noise_2d;
 pub mod gradient_noise_3d;
+pub mod held;
 pub mod hertz;
 pub mod limits;
 pub mod micro_contact;
@@ -40,7 +45,10 @@ pub mod mobility;
 pub mod modal_bank;
 pub mod mode;
 pub mod pair;
+pub mod radiation;
 pub mod rng;
+pub mod stick_slip;
+pub mod tangential;
 pub mod trajectory;
 mod vector;
 

@@ -165,6 +165,8 @@ fn impact(body: &str, gained_m_s: f64) -> LogEvent {
         striker: Striker::Preset("plastic".into()),
         restitution: CUBE_RESTITUTION,
         position: 0,
+        at_m: None,
+        direction: None,
         hand: Default::default(),
     }
 }

@@ -1,13 +1,13 @@
 //! The whole analysis of a strike: a recording becomes modes, past the traps of real recordings.
 //!
-//! mean removed → the best strike chosen ([`crate::onset`]) → analysed from its onset on (`ways`) → what does not ring taken out
-//! and doubts named ([`crate::suspicion`]) → held against the recording as the engine will play it ([`mod@crate::fitted`]).
+//! mean removed → the best strike chosen ([`crate::recording::onset`]) → analysed from its onset on (`ways`) → what does not ring taken out
+//! and doubts named ([`crate::proof::suspicion`]) → held against the recording as the engine will play it ([`mod@crate::body::fitted`]).
 
-use crate::fitted::{Fit, Warning};
-use crate::limits::LEAST_DECAY_PER_S;
-use crate::onset::{self, Strike};
+use crate::body::fitted::{Fit, Warning};
 use crate::options::{FitOptions, Found};
+use crate::recording::onset::{self, Strike};
 use crate::recording::{FEWEST_SAMPLES, Recording};
+use crate::search::limits::LEAST_DECAY_PER_S;
 use crate::ways::Sound;
 
 /// Sound shorter than this is warned of, s.

@@ -162,7 +162,7 @@ fn a_soft_strike_noise_or_hum_before_the_real_one_is_not_taken_for_it() {
         let mut samples = vec![0.0; 100_000];
         strike(1.0, onset, &mut samples);
         disturb(&mut samples);
-        let strikes = asperity_fit::onset::find(&noisy(samples, 1e-4, 4), RATE_HZ);
+        let strikes = asperity_fit::recording::onset::find(&noisy(samples, 1e-4, 4), RATE_HZ);
         let best = strikes.strike(strikes.best());
         assert!(best.onset.abs_diff(onset) < 40, "{name}: {} of {:?}", best.onset, strikes.onsets);
     }

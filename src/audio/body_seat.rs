@@ -5,8 +5,11 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::BodyId;
 use crate::model::stamp::Stamp;
-use crate::prepared::body::{BodySlot, Terms};
+use crate::model::strike_field::StrikePlace;
+use crate::prepared::body::{BodySlot, Spot, Terms};
+use crate::prepared::body_field::Owner;
 use asperity_dsp::hertz::HertzPulse;
+use asperity_dsp::micro_contact::Probe;
 
 /// A body's place on the audio half. A replaced or removed body rings on without input and fades.
 pub(crate) struct BodySeat {
@@ -156,14 +159,14 @@ impl BodySeat {
     /// Adds an impact whose contact begins at `stamp`.
     pub(crate) fn strike(
         &mut self,
-        position: usize,
+        spot: &Spot,
         pulse: &HertzPulse,
         stamp: Stamp,
         mode_level: usize,
         sample_rate_hz: f64,
     ) {
         if let Some(body) = &mut self.current {
-            body.strike(position, pulse, stamp, mode_level, sample_rate_hz);
+            body.strike(spot, pulse, stamp, mode_level, sample_rate_hz);
         }
     }
 
@@ -171,6 +174,20 @@ impl BodySeat {
     pub(crate) fn touch(&mut self, id: BodyId, position: usize, impulse_n_s: &[f64], sign: f64) {
         if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
             body.touch(position, impulse_n_s, sign);
+        }
+    }
+
+    /// A contact presses on the body of that name.
+    pub(crate) fn press(&mut self, id: BodyId, owner: Owner, place: &StrikePlace, probe: &Probe) {
+        if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
+            body.press(owner, place, probe);
+        }
+    }
+
+    /// As [`touch`](Self::touch), at a place of its own.
+    pub(crate) fn touch_at(&mut self, id: BodyId, owner: Owner, spot: &Spot, impulse_n_s: &[f64]) {
+        if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
+            body.touch_at(owner, spot, impulse_n_s);
         }
     }
 

@@ -24,6 +24,8 @@ use crate::link::tap::{NoTap, Tap};
 use crate::model::config::Config;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
+use crate::model::strike_field::StrikePlace;
+use crate::prepared::body::Spot;
 use crate::prepared::probe::{PreparedProbe, row_latency};
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
@@ -46,6 +48,8 @@ pub struct Renderer {
     timeout_samples: u64,
     max_contacts: usize,
     voices: Vec<Voice>,
+    /// Where each voice is on a body that has shapes.
+    placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
     bodies: Vec<BodySeat>,
@@ -103,6 +107,7 @@ impl Renderer {
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
             voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
+            placed: vec![None; voices],
             voices_used: Occupied::new(voices),
             seats_used: Occupied::new(config.max_surfaces),
             bodies_used: Occupied::new(config.max_bodies),
@@ -270,8 +275,8 @@ impl Renderer {
         }
         let tap = &mut self.outlets.beside(tap);
         let (mut collisions, mut shortened, mut resets, mut blows) = (0, 0, 0, 0);
-        for voice in self.voices_used.iter() {
-            let voice = &mut self.voices[voice];
+        for index in self.voices_used.iter() {
+            let voice = &mut self.voices[index];
             if voice.phase == Phase::Free {
                 continue;
             }
@@ -290,6 +295,13 @@ impl Renderer {
                     *sum += x;
                 }
             }
+            let touched = seat.current().and_then(|slot| Some((slot.surface.body?, slot)));
+            if let (Some((body, slot)), Some(place)) = (touched, self.placed[index])
+                && self.position.is_multiple_of(MAX_BLOCK as u64)
+                && let Some(probe) = voice.pressing(&self.shared, slot)
+            {
+                self.bodies[body.index()].press(body, (index, voice.begun), &place, &probe);
+            }
             if !out.excites {
                 continue;
             }
@@ -297,8 +309,9 @@ impl Renderer {
                 self.bodies[holder.index()].touch(holder, 0, &out.impulse_n_s[..n], -1.0);
             }
             let surface = seat.current().map(|slot| &slot.surface);
-            if let Some((body, place)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
-                self.bodies[body.index()].touch(body, place, &out.impulse_n_s[..n], 1.0);
+            if let Some((body, position)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
+                let (owner, spot) = ((index, voice.begun), Spot { place: self.placed[index], position });
+                self.bodies[body.index()].touch_at(body, owner, &spot, &out.impulse_n_s[..n]);
             }
         }
         let channels = &mut self.channels;

@@ -9,6 +9,7 @@
 mod ac_coupling;
 mod block;
 mod blows;
+mod drag;
 mod events;
 mod exciters;
 mod fades;
@@ -31,11 +32,15 @@ use crate::link::tap::Tap;
 use crate::model::event::ContactId;
 use crate::model::excitation::Exciter;
 use crate::prepared::area::{loudness, nestling};
+use crate::prepared::stiffness::stiffness_n_m;
+use crate::prepared::surface::SurfaceSlot;
 use ac_coupling::{AcCoupling, ForceCoupling};
-use asperity_dsp::micro_contact::ContactSample as PadSample;
+use asperity_dsp::actuator::{ContactOutputState, Quantity};
+use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
 use blows::Blows;
+use drag::Drag;
 use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
@@ -77,6 +82,7 @@ pub(crate) struct Voice {
     unshown_n_s: f64,
     path: Path,
     pad: Pad,
+    drag: Drag,
     ac: AcCoupling,
     skin: ContactSkin,
     exciters: Exciters,
@@ -104,6 +110,7 @@ impl Voice {
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
             pad: Pad::idle(&shared.own_probe),
+            drag: Drag::idle(shared.sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
             skin: ContactSkin::default(),
             exciters: Exciters::idle(slot as u64, shared.sample_rate_hz),
@@ -125,6 +132,19 @@ impl Voice {
             Phase::Free | Phase::Fading { .. } => -1.0,
             Phase::Sounding => self.role.importance * self.path.last.normal_force_n * (1e-3 + speed_m_s),
         }
+    }
+
+    /// What presses on the touched body: the probe, as stiff as its ground and the force make it, to a quarter of an octave. None while nothing
+    /// presses.
+    pub(crate) fn pressing(&self, shared: &Shared, slot: &SurfaceSlot) -> Option<Probe> {
+        let force_n = self.path.last.normal_force_n;
+        if self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
+            return None;
+        }
+        let probe = shared.probe(self.role.probe).micro_contact.probe();
+        let stiffness_n_m = stiffness_n_m(probe, &slot.stroking.ground, force_n);
+        let contact_stiffness_n_m = ((4.0 * stiffness_n_m.log2()).round() / 4.0).exp2();
+        Some(Probe { contact_stiffness_n_m, ..*probe })
     }
 
     /// Renders a stretch into `scratch.out`.
@@ -186,12 +206,17 @@ impl Voice {
         let Scratch { points, profile, rows, force, out, .. } = scratch;
         let (points, rows) = (&mut points[..n], &mut rows[..n]);
         let probe = shared.probe(self.role.probe);
+        let dragged = output.quantity() == Quantity::Tangential;
         if at_grid {
             self.pad.stiffen(probe, slot.stroking.ground, self.path.last.normal_force_n);
-            self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
+            if dragged {
+                self.drag.press(self.path.last.normal_force_n);
+            } else {
+                self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
+            }
         }
         self.path.run(&slot.trajectory, points);
-        profile.run(seat, self.along(shared, position, slopes), points);
+        profile.run(seat, self.along(shared, position, slopes || dragged), points);
         out.resets = self.pad.run(probe.waits, &profile.surface.height_m[..n], &profile.force_n[..n], rows);
 
         out.blows = self.blows.count(rows);
@@ -200,8 +225,20 @@ impl Voice {
         let sounds = slot.surface.excitation.has(Exciter::Force);
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
         let heard = ForceCoupling { high_pass: &slot.stroking.force_high_pass, step_s };
-        self.ac.run(output, heard, rows, &mut out.haptic[..n], force.samples(n));
-        self.skin.pass(&mut out.haptic[..n]);
+        let felt = if dragged {
+            let (rows, from_m) = self.drag.run(points, &profile.surface, rows);
+            // A skin that has been dragged for long begins as if it had been there for ever.
+            if let Some(from_m) = from_m {
+                self.ac.feel = ContactOutputState::begin(output, from_m, 0.0);
+            }
+            rows
+        } else {
+            &*rows
+        };
+        self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
+        if !dragged {
+            self.skin.pass(&mut out.haptic[..n]);
+        }
         let (reaction, sample_rate_hz) = (self.reaction, shared.sample_rate_hz);
         self.exciters.run(&Excited { slot, probe, reaction, sample_rate_hz, position }, rows, force, out);
     }

@@ -86,6 +86,12 @@ pub enum LogEvent {
         /// Which of the body's strike positions is hit; missing: 0.
         #[serde(default, skip_serializing_if = "is_first")]
         position: usize,
+        /// Where it is hit, m in the body's frame; missing: at `position`.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        at_m: Option<[f64; 3]>,
+        /// Along what it is hit; missing: the inward normal.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        direction: Option<[f64; 3]>,
         /// The hand: who feels it and what it holds.
         #[serde(flatten)]
         hand: LogHand,
@@ -296,6 +302,8 @@ impl LogEvent {
                 striker,
                 restitution,
                 position,
+                at_m,
+                direction,
                 hand,
             } => ContactEvent::Impact(Impact {
                 body: find("body", body, &names.bodies)?,
@@ -306,6 +314,8 @@ impl LogEvent {
                 striker: striker.material()?,
                 restitution: *restitution,
                 position: *position,
+                at_m: *at_m,
+                direction: *direction,
                 actuator: hand.actuator.map(Actuator),
                 holder: hand.holder(names)?,
                 probe: hand.probe(names)?,

@@ -8,10 +8,11 @@ use asperity_dsp::mode::Mode;
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The `format` field of a modes file.
 pub const FORMAT: &str = "asperity.modes";
-/// The `version` of a file with modes alone, which this crate writes.
+/// The `version` of a file with modes alone.
 pub const VERSION: u32 = 1;
 /// The version that has shapes beside the modes ([`ModeShapes`]); its modes play as those of version 1 do.
 pub const VERSION_WITH_SHAPES: u32 = 2;
@@ -31,10 +32,11 @@ struct File {
     positions: Vec<Vec<f64>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     residual: Option<Residual>,
-    #[serde(default, skip_serializing)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     shapes: Option<ModeShapes>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
 fn is_relative(unit: &Unit) -> bool {
     *unit == Unit::Relative
 }
@@ -93,25 +95,26 @@ impl ModalModel {
             (Some(_), VERSION) => return Err(malformed("shapes stand in version 1; need version 2".into())),
             _ => return Err(malformed(format!("version is {}", file.version))),
         }
-        let File { source, impulse_n_s, modes, positions, residual, unit, .. } = file;
-        let model = Self { source, impulse_n_s, modes, positions, residual, unit };
+        let File { source, impulse_n_s, modes, positions, residual, shapes, unit, .. } = file;
+        let shapes = shapes.map(Arc::new);
+        let model = Self { source, impulse_n_s, modes, positions, residual, shapes, unit };
         model.check()?;
         Ok(model)
     }
 
-    /// The text of the modes file; numbers round-trip.
+    /// The text of the modes file, of version 2 where there are shapes; numbers round-trip.
     #[must_use]
     pub fn to_json(&self) -> String {
         let file = File {
             format: FORMAT.into(),
-            version: VERSION,
+            version: if self.shapes.is_some() { VERSION_WITH_SHAPES } else { VERSION },
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
             unit: self.unit,
             modes: self.modes.clone(),
             positions: self.positions.clone(),
             residual: self.residual.clone(),
-            shapes: None,
+            shapes: self.shapes.as_deref().cloned(),
         };
         serde_json::to_string(&file).unwrap_or_default()
     }

@@ -125,6 +125,8 @@ impl Recording {
                 striker: impact.striker.into(),
                 restitution: impact.restitution,
                 position: impact.position,
+                at_m: impact.at_m,
+                direction: impact.direction,
                 hand: self.hand(impact.actuator, impact.probe, impact.holder, impact.gain),
             },
         };

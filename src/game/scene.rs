@@ -26,6 +26,7 @@ use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
 use crate::model::stamp::Stamp;
+use crate::model::strike_field::StrikeField;
 use crate::model::surface::Surface;
 use crate::prepared::overlay::Overlay;
 use crate::prepared::probe::PreparedProbe;
@@ -78,6 +79,8 @@ pub struct Scene {
     pub(crate) given: HashMap<BodyId, Body>,
     /// For [`Scene::why_silent`].
     reported: Reported,
+    /// What each contact touches, where that is a body with shapes.
+    touched: HashMap<ContactId, SurfaceId>,
 }
 
 /// What the game half remembers of a surface.
@@ -89,13 +92,16 @@ pub(crate) struct KnownSurface {
     picture: Option<Arc<MovingPicture>>,
     size_m: [f64; 2],
     frame: Option<SurfaceFrame>,
+    body: Option<BodyId>,
 }
 
 /// What the game half remembers of a body.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct KnownBody {
     material: Material,
     lowest_mode_hz: f64,
+    /// Its surface, where that is known.
+    field: Option<Arc<StrikeField>>,
 }
 
 impl Scene {
@@ -115,6 +121,7 @@ impl Scene {
             tips_m: vec![config.probe.tip_radius_m],
             given: HashMap::new(),
             reported: Reported::default(),
+            touched: HashMap::new(),
             held: Vec::new(),
             config,
             kernel,
@@ -201,9 +208,10 @@ impl Scene {
         for radius_m in &self.tips_m {
             surface.source.prepare_tip(*radius_m);
         }
-        let silent = KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY };
+        let silent =
+            KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY, field: None };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
-        let stroking = self.stroking(body)?;
+        let stroking = self.stroking(&body)?;
         let config = &self.config;
         let period_m = surface.wrap_period_m();
         let trajectory =
@@ -212,10 +220,11 @@ impl Scene {
         let overlay = Overlay::new(period_m, surface.source.band().shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
         let (size_m, frame) = ([surface.width_m, surface.height_m], surface.frame);
+        let on = surface.body;
         let mut picture = None;
         surface.source.visit(&mut |part| picture = picture.take().or(part.downcast_ref().cloned()));
         let surface = Box::new(SurfaceSlot { surface, trajectory, stroking, overlay, period_m });
-        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, size_m, frame }))
+        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, size_m, frame, body: on }))
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
@@ -351,6 +360,6 @@ impl Scene {
     }
 
     fn known_body(&self, id: BodyId) -> Result<KnownBody, AddError> {
-        self.bodies.get(id.0).copied().ok_or(AddError::Unknown("body"))
+        self.bodies.get(id.0).cloned().ok_or(AddError::Unknown("body"))
     }
 }

@@ -4,7 +4,8 @@ use crate::link::outlet::Outlet;
 use crate::model::event::ContactEvent;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::stamp::Stamp;
-use crate::prepared::body::BodySlot;
+use crate::model::strike_field::StrikePlace;
+use crate::prepared::body::{BodySlot, Spot};
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
@@ -13,13 +14,13 @@ use std::any::Any;
 
 /// Game thread → audio thread, in order.
 pub(crate) enum Message {
-    /// What a contact does, and when it holds.
-    Event { stamp: Stamp, event: ContactEvent },
+    /// What a contact does, when it holds, and where on a body that has shapes.
+    Event { stamp: Stamp, event: ContactEvent, place: Option<StrikePlace> },
     /// A rigid striker hits a body, and perhaps rings itself.
     Strike {
         stamp: Stamp,
         body: usize,
-        position: usize,
+        spot: Spot,
         other: Option<usize>,
         holder: Option<usize>,
         felt: Option<Felt>,

@@ -20,9 +20,9 @@ pub const ACCELERATION_BAND_HZ: f64 = 1000.0;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ActuatorSettings {
-    /// What the channel plays: the pad's displacement (the paper) or its acceleration.
+    /// What the channel plays: the pad's displacement (the paper), its acceleration, or how friction drags the skin sideways.
     pub output: Quantity,
-    /// m or m/s² at sample value 1.0; 1.0 gives SI units.
+    /// m (or m/s²) at sample value 1.0; 1.0 gives SI units.
     pub full_scale: f64,
     /// Cutoff of the high-pass that turns pad positions into movement about the mean surface, Hz;
     /// 0 = off.

@@ -159,6 +159,11 @@ pub struct Impact {
     /// Which of the body's strike positions is hit; 0 is the one every body has, and one that the body
     /// does not have counts as its last.
     pub position: usize,
+    /// Where it is hit, m in the body's frame: the nearest point of its surface counts, instead of `position`. Only a body whose modes have
+    /// [shapes](crate::ModeShapes) takes it.
+    pub at_m: Option<[f64; 3]>,
+    /// Along what it is hit there, in the body's frame; none = the inward normal. Its length does not count.
+    pub direction: Option<[f64; 3]>,
     /// The haptic channel that feels the blow; none = the first one if somebody holds the striker, else nobody feels it.
     pub actuator: Option<Actuator>,
     /// The body in the hand, which rings at its position 0 from the same pulse with opposite sign.
@@ -329,6 +334,8 @@ impl Impact {
             striker: Material::STEEL,
             restitution: 1.0,
             position: 0,
+            at_m: None,
+            direction: None,
             actuator: None,
             holder: None,
             probe: None,
@@ -365,6 +372,13 @@ impl Impact {
         self
     }
 
+    /// At a place of the body, m in its frame.
+    #[must_use]
+    pub fn at(mut self, at_m: [f64; 3]) -> Self {
+        self.at_m = Some(at_m);
+        self
+    }
+
     /// Felt by a haptic channel.
     #[must_use]
     pub fn felt_by(mut self, actuator: Actuator) -> Self {
@@ -380,6 +394,12 @@ impl Impact {
         within("radius_m", self.radius_m, limits::impact::RADIUS_M)?;
         within("restitution", self.restitution, limits::impact::RESTITUTION)?;
         within("gain", self.gain, limits::impact::GAIN)?;
+        for x in self.at_m.into_iter().flatten() {
+            within("at_m", x, limits::PLACE_M)?;
+        }
+        if let Some(direction) = self.direction {
+            within("direction", direction.iter().map(|x| x * x).sum::<f64>().sqrt(), limits::AXIS)?;
+        }
         self.striker.checked()?;
         Ok(self)
     }

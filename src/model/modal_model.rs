@@ -5,11 +5,12 @@
 //! y · J / `impulse_n_s` (Hasti §III-D).
 
 use crate::model::material::Material;
-use crate::model::mode_shapes::Unit;
+use crate::model::mode_shapes::{ModeShapes, Unit};
 use crate::model::residual::Residual;
 use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Most modes a body may have.
 pub const MAX_MODES: usize = 65_536;
@@ -38,12 +39,14 @@ pub struct ModalModel {
     pub positions: Vec<Vec<f64>>,
     /// What the strike had besides modes, played at every impact.
     pub residual: Option<Residual>,
+    /// How the surface moves in each mode: such a body can be struck and stroked anywhere.
+    pub shapes: Option<Arc<ModeShapes>>,
     /// What amplitudes and residual are.
     pub unit: Unit,
 }
 
 /// Most strike positions a body may have, the first included.
-pub const MAX_POSITIONS: usize = modal_bank::MAX_INPUTS;
+pub const MAX_POSITIONS: usize = 16;
 
 /// Why a modes file was refused.
 #[derive(Debug, thiserror::Error)]
@@ -97,6 +100,7 @@ impl ModalModel {
             modes: Vec::new(),
             positions: Vec::new(),
             residual: None,
+            shapes: None,
             unit: Unit::Relative,
         }
     }
@@ -108,6 +112,9 @@ impl ModalModel {
     pub fn with_gain(mut self, gain: f64) -> Result<Self, ModalModelError> {
         self.modes.iter_mut().for_each(|mode| mode.amplitude *= gain);
         self.positions.iter_mut().flatten().for_each(|amplitude| *amplitude *= gain);
+        if let Some(shapes) = &mut self.shapes {
+            Arc::make_mut(shapes).gains.iter_mut().for_each(|g| *g *= gain);
+        }
         if let Some(residual) = &mut self.residual {
             residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
         }
@@ -142,6 +149,9 @@ impl ModalModel {
                 mode.decay_per_s *= damping.decay_per_s(mode.frequency_hz) / own_per_s;
             }
         }
+        if let Some(shapes) = &mut self.shapes {
+            Arc::make_mut(shapes).scale(size);
+        }
         self.residual = None;
         self.check()?;
         Ok(self)
@@ -170,6 +180,23 @@ impl ModalModel {
         Ok(self)
     }
 
+    /// The same model with the motion of its surface, in the order of its modes: it can be struck anywhere.
+    ///
+    /// # Errors
+    /// When the shapes do not fit the modes or each other.
+    pub fn with_shapes(
+        mut self,
+        shapes: impl Into<Arc<ModeShapes>>,
+        unit: Unit,
+    ) -> Result<Self, ModalModelError> {
+        let shapes = shapes.into();
+        let misfit = |message| ModalModelError::Malformed { path: "shapes".into(), message };
+        shapes.check(self.modes.len()).map_err(misfit)?;
+        (self.shapes, self.unit) = (Some(shapes), unit);
+        self.check()?;
+        Ok(self)
+    }
+
     /// How many strike positions there are, the first included.
     #[must_use]
     pub fn position_count(&self) -> usize {
@@ -184,8 +211,9 @@ impl ModalModel {
         // Slow decays first: maskers come before what they mask.
         let mut order: Vec<usize> = (0..self.modes.len()).collect();
         order.sort_by(|&a, &b| self.modes[a].decay_per_s.total_cmp(&self.modes[b].decay_per_s));
-        for position in 0..self.position_count() {
-            let at: Vec<_> = self.modes_at(position).collect();
+        let positions = (0..self.position_count()).map(|position| self.modes_at(position).collect());
+        for at in positions.chain(self.shapes.is_some().then(|| self.modes_anywhere())) {
+            let at: Vec<Mode> = at;
             let sorted: Vec<_> = order.iter().map(|&i| at[i]).collect();
             modal_bank::audible(&sorted, sample_rate_hz, culling, &mut audible);
             order.iter().zip(&audible).for_each(|(&i, audible)| keep[i] |= audible);
@@ -201,6 +229,7 @@ impl ModalModel {
             source: self.source.clone(),
             impulse_n_s: self.impulse_n_s,
             residual: self.residual.clone(),
+            shapes: self.shapes.as_ref().map(|shapes| Arc::new(shapes.kept(&keep))),
             unit: self.unit,
         }
     }
@@ -214,13 +243,29 @@ impl ModalModel {
         })
     }
 
+    /// The modes, each as it answers where it swings most.
+    fn modes_anywhere(&self) -> Vec<Mode> {
+        let most = |(i, mode): (usize, &Mode)| Mode { amplitude: self.most_anywhere(i), ..*mode };
+        self.modes.iter().enumerate().map(most).collect()
+    }
+
+    /// What a mode answers an impulse of `impulse_n_s` with where it swings most; 0 without shapes.
+    fn most_anywhere(&self, mode: usize) -> f64 {
+        let Some(shapes) = &self.shapes else { return 0.0 };
+        let square = |phi: &[f32; 3]| phi.iter().map(|x| f64::from(x * x)).sum::<f64>();
+        let most = shapes.phi_per_sqrt_kg[mode].iter().map(square).fold(0.0, f64::max).sqrt();
+        self.impulse_n_s * shapes.gains[mode] * most
+    }
+
     /// The modes for an impulse of 1 N·s, each at the position where it answers most, and its share of
     /// that (−1 to 1) at every position.
     pub(crate) fn unit_modes(&self) -> impl Iterator<Item = (Mode, [f32; MAX_POSITIONS])> + '_ {
         (0..self.modes.len()).map(|i| {
             let mode = self.modes[i];
             let at = |p: usize| if p == 0 { mode.amplitude } else { self.positions[p - 1][i] };
-            let most = (0..self.position_count()).map(at).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            let places =
+                (0..self.position_count()).map(at).chain(self.shapes.as_ref().map(|_| self.most_anywhere(i)));
+            let most = places.max_by(|a, b| a.abs().total_cmp(&b.abs()));
             let most = most.unwrap_or(mode.amplitude);
             let share =
                 |p| if p < self.position_count() && most != 0.0 { (at(p) / most) as f32 } else { 0.0 };

@@ -38,6 +38,28 @@ pub struct ModeShapes {
 }
 
 impl ModeShapes {
+    /// The same body `size` times as large: mass-normalised motion falls as its mass grows, and what it sounds like stays.
+    pub(crate) fn scale(&mut self, size: f64) {
+        let heavier = size.powf(1.5);
+        self.points_m.iter_mut().flatten().for_each(|x| *x *= size);
+        self.gains.iter_mut().for_each(|gain| *gain *= heavier);
+        let motion = self.phi_per_sqrt_kg.iter_mut().flatten().flatten();
+        motion.for_each(|x| *x = (f64::from(*x) / heavier) as f32);
+    }
+
+    /// The shapes of some of the modes.
+    pub(crate) fn kept(&self, keep: &[bool]) -> Self {
+        let kept = |m: &usize| keep.get(*m).copied().unwrap_or(false);
+        let modes = || (0..self.gains.len()).filter(kept);
+        Self {
+            points_m: self.points_m.clone(),
+            triangles: self.triangles.clone(),
+            gains: modes().map(|m| self.gains[m]).collect(),
+            phi_per_sqrt_kg: modes().map(|m| self.phi_per_sqrt_kg[m].clone()).collect(),
+            struck_point: self.struck_point,
+        }
+    }
+
     /// # Errors
     /// What does not fit.
     pub(crate) fn check(&self, modes: usize) -> Result<(), String> {

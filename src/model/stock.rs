@@ -171,7 +171,7 @@ impl Shape {
             positions.iter_mut().zip(&at[1..]).for_each(|(list, shape)| list.push(amplitude(*shape)));
         }
         let unit = Unit::PascalsAtOneMetre;
-        ModalModel { source, impulse_n_s: 1.0, modes, positions, residual: None, unit }
+        ModalModel { source, impulse_n_s: 1.0, modes, positions, unit, ..ModalModel::silent() }
     }
 }
 

@@ -88,7 +88,7 @@ pub(super) fn resolve(
         });
         *level = match kind {
             _ if strongest > SILENT => strongest / HAPTIC_REFERENCE,
-            Quantity::Displacement => FALLBACK_FULL_SCALE_M,
+            Quantity::Displacement | Quantity::Tangential => FALLBACK_FULL_SCALE_M,
             Quantity::Acceleration => FALLBACK_FULL_SCALE_M_S2,
         };
     }
@@ -211,7 +211,10 @@ impl Trials {
 /// The first actuator of each kind of output.
 fn kinds(file: &SceneFile) -> Vec<usize> {
     let first = |kind| file.actuators.iter().position(|entry| entry.settings.output == kind);
-    [Quantity::Displacement, Quantity::Acceleration].into_iter().filter_map(first).collect()
+    [Quantity::Displacement, Quantity::Acceleration, Quantity::Tangential]
+        .into_iter()
+        .filter_map(first)
+        .collect()
 }
 
 /// The reference strike on a body.
@@ -225,6 +228,8 @@ fn strike(body: &str, striker: Striker) -> LogEvent {
         striker,
         restitution: 1.0,
         position: 0,
+        at_m: None,
+        direction: None,
         hand: LogHand::default(),
     }
 }

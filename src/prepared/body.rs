@@ -2,10 +2,13 @@
 
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
+use crate::model::strike_field::StrikePlace;
+use crate::prepared::body_field::{BodyField, FIELD_INPUTS, Owner};
 use crate::prepared::bursts::Bursts;
 use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
+use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
     self, FirstSamples, GroupOptions, GroupState, Input, Inputs, Kernel, LaneGains, MissingSamples,
     ModalBank, ModeGroup,
@@ -28,10 +31,15 @@ pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
 /// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
 const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
 
+/// The bank of a body.
+pub(crate) type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
+
 /// A body as the audio half owns it.
 pub(crate) struct BodySlot {
-    bank: ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>,
+    bank: Bank,
     places: Vec<Place>,
+    /// For a body that can be touched anywhere.
+    field: Option<BodyField>,
     bursts: Bursts,
     /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
     early: ImpulseRing<f32>,
@@ -49,6 +57,20 @@ struct Place {
     touched: bool,
     /// All of it, while the stretch is rendered.
     input: [f32; MAX_BLOCK],
+}
+
+/// Where something touches a body.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spot {
+    /// A place of its surface, for a body that has shapes.
+    pub(crate) place: Option<StrikePlace>,
+    /// One of its strike positions, for one that has none.
+    pub(crate) position: usize,
+}
+
+impl Spot {
+    /// Where the body's own amplitudes belong.
+    pub(crate) const FIRST: Self = Self { place: None, position: 0 };
 }
 
 /// How a stretch is rendered.
@@ -94,27 +116,32 @@ impl BodySlot {
         sample_rate_hz: f64,
     ) -> Result<Self, DesignError> {
         let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
-        let mut modes: Vec<_> = model.unit_modes().filter(|(mode, _)| heard(mode)).collect();
+        let numbered = model.unit_modes().enumerate().filter(|(_, (mode, _))| heard(mode));
+        let mut modes: Vec<(usize, (Mode, [f32; MAX_POSITIONS]))> = numbered.collect();
         // What rings longest comes first, so that the groups still awake are always a prefix.
         let rings = |mode: &Mode| modal_bank::ringing_s(mode, TYPICAL_IMPULSE_N_S);
-        modes.sort_by(|(a, _), (b, _)| {
+        modes.sort_by(|(_, (a, _)), (_, (b, _))| {
             rings(b).total_cmp(&rings(a)).then(a.frequency_hz.total_cmp(&b.frequency_hz))
         });
-        let unit: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
-        let groups = modal_bank::design_groups(&unit, sample_rate_hz, &GroupOptions::IMPULSE_RING);
+        let unit: Vec<(usize, Mode)> = modes.iter().map(|(number, (mode, _))| (*number, *mode)).collect();
+        let modes: Vec<_> = modes.into_iter().map(|(_, mode)| mode).collect();
+        let plain: Vec<Mode> = unit.iter().map(|(_, mode)| *mode).collect();
+        let groups = modal_bank::design_groups(&plain, sample_rate_hz, &GroupOptions::IMPULSE_RING);
         let groups = groups.collect::<Result<Box<[_]>, _>>()?;
         let states = vec![GroupState::REST; groups.len()].into();
         let count = model.position_count();
+        let mixed = count > 1 || model.shapes.is_some();
         let first_samples = first_samples(&modes, count, groups.len(), sample_rate_hz)?;
         let places = first_samples.into_iter().enumerate().map(|(position, first_samples)| {
-            let shares = modes.iter().filter(|_| count > 1).map(|(_, shares)| shares[position]);
+            let shares = modes.iter().filter(|_| mixed).map(|(_, shares)| shares[position]);
             Place::new(modal_bank::lane_gains(shares).collect(), first_samples, sample_rate_hz)
         });
         let places = places.collect();
         let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
         let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
-        Ok(Self { bank: ModalBank::new(kernel, groups, states), places, bursts, early })
+        let field = BodyField::new(model, &unit, &groups, sample_rate_hz)?;
+        Ok(Self { bank: ModalBank::new(kernel, groups, states), places, field, bursts, early })
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
@@ -126,21 +153,42 @@ impl BodySlot {
     /// Adds an impact whose contact begins at `stamp`, while modes are left out as far as `mode_level`.
     pub(crate) fn strike(
         &mut self,
-        position: usize,
+        spot: &Spot,
         pulse: &HertzPulse,
         stamp: Stamp,
         mode_level: usize,
         sample_rate_hz: f64,
     ) {
         let end = pulse.end_sample(stamp.sample(), sample_rate_hz);
-        let last = self.places.len() - 1;
-        let place = &mut self.places[position.min(last)];
-        place.bus.deposit(pulse, stamp.sample(), stamp.fraction(), sample_rate_hz);
-        let missing = &place.first_samples[mode_level];
+        let driven = groups_at(mode_level, self.bank.groups());
+        let anywhere = self.field.as_mut().zip(spot.place.as_ref());
+        let missing = match anywhere {
+            Some((field, place)) => field.strike(place, pulse, stamp, driven),
+            None => {
+                let place = self.place(spot.position);
+                place.bus.deposit(pulse, stamp.sample(), stamp.fraction(), sample_rate_hz);
+                place.first_samples[mode_level]
+            }
+        };
         let (sample, offset) = (stamp.sample(), stamp.fraction());
         self.early.write(end, |early| missing.deposit(pulse, early, sample, offset, sample_rate_hz));
         // A burst is noise-like: the whole sample is near enough.
         self.bursts.strike(stamp.sample(), pulse.impulse_n_s);
+    }
+
+    /// Adds what one contact sends during the present stretch to where it is.
+    pub(crate) fn touch_at(&mut self, owner: Owner, spot: &Spot, impulse_n_s: &[f64]) {
+        let anywhere = self.field.as_mut().zip(spot.place.as_ref());
+        if !anywhere.is_some_and(|(field, place)| field.touch(owner, place, impulse_n_s)) {
+            self.touch(spot.position, impulse_n_s, 1.0);
+        }
+    }
+
+    /// A contact presses at its place during the coming cell of the grid.
+    pub(crate) fn press(&mut self, owner: Owner, place: &StrikePlace, probe: &Probe) {
+        if let Some(field) = &mut self.field {
+            field.press(owner, place, probe);
+        }
     }
 
     /// Adds what one contact sends during the present stretch.
@@ -160,6 +208,9 @@ impl BodySlot {
             place.contacts_n_s.fill(0.0);
             place.touched = false;
         }
+        if let Some(field) = &mut self.field {
+            field.silence();
+        }
         self.bursts.silence();
         self.early.clear();
     }
@@ -170,16 +221,29 @@ impl BodySlot {
             && self.bursts.is_silent(position)
             && self.early.is_empty(position)
             && self.places.iter().all(|place| !place.touched && place.bus.is_empty(position))
+            && self.field.as_ref().is_none_or(|field| field.is_silent(position))
     }
 
     /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck it.
     pub(crate) fn render(&mut self, terms: Terms, out: &mut [f32]) -> usize {
+        let n = out.len();
         if self.is_silent(terms.position) {
+            if let Some(field) = &mut self.field {
+                field.end_stretch(terms.position, n, &mut self.bank);
+            }
             return 0;
         }
-        let n = out.len();
-        let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_POSITIONS];
+        let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_POSITIONS + FIELD_INPUTS];
         let mut count = 0;
+        if let Some(field) = &mut self.field {
+            field.gather(terms.position, n);
+        }
+        if let Some(field) = &self.field {
+            field.inputs(terms.position, n, |input| {
+                inputs[count] = input;
+                count += 1;
+            });
+        }
         // Only positions that something reaches are mixed; adding zeros would change nothing.
         for place in &mut self.places {
             if place.gather(terms.position, n) || count == 0 {
@@ -194,6 +258,9 @@ impl BodySlot {
             _ => Inputs::Placed(&inputs[..count]),
         };
         self.bank.render_leading(driven, terms.position, inputs, out);
+        if let Some(field) = &mut self.field {
+            field.end_stretch(terms.position, n, &mut self.bank);
+        }
         self.bursts.render(terms.position, out);
         self.begin_strikes(terms.position, out);
         groups - driven

@@ -27,6 +27,11 @@ impl<T: Copy + Default> ImpulseRing<T> {
         self.busy_until <= position
     }
 
+    /// The first sample from which on it is empty.
+    pub(crate) fn busy_until(&self) -> u64 {
+        self.busy_until
+    }
+
     /// Forgets everything.
     pub(crate) fn clear(&mut self) {
         self.values.fill(T::default());

@@ -3,7 +3,9 @@
 
 pub(crate) mod area;
 pub(crate) mod body;
+pub(crate) mod body_field;
 pub(crate) mod bursts;
+pub(crate) mod holding;
 pub(crate) mod impulse_ring;
 pub(crate) mod overlay;
 pub(crate) mod probe;

@@ -30,6 +30,7 @@ mod steps;
 mod tests;
 mod tiling;
 mod turning;
+mod walls;
 mod wiener;
 
 pub use differences::differences;
@@ -38,6 +39,7 @@ pub use periodic::{Projection, integrate_periodic, slopes};
 pub use spectrum::SlopeSpectrum;
 pub use tiling::integrate_rounded;
 pub use turning::curl;
+pub use walls::Walls;
 
 use crate::fft2::angular_frequency;
 use crate::raster::Raster;

@@ -18,7 +18,7 @@
 //! ```
 //! and [`SlopeSpectrum::heights`] takes no more height from the slopes than that leaves. Normals that were resized, saved as JPEG or
 //! painted over are those of no surface by more than that: how much is measured at every frequency, as what lies across the derivative, and taken off too. What made
-//! such a map is never certain, and of the derivatives that may have, the one that raises short waves the least is taken. 8-bit maps have no number for 0 (127.5),
+//! such a map is never certain; where it is flat but for walls, these are taken for narrower than they look ([`Walls`]); of the derivatives that may have, the one that raises short waves the least is taken. 8-bit maps have no number for 0 (127.5),
 //! so that a flat map tilts by 0.4 %: the mean slope of a map that tiles is
 //! dropped, and of one that does not, too, unless [`NormalMapOptions::keep_tilt`]. What is flat in a map comes out at the step next to 0:
 //! where that step stands out of the others, its texels are taken for what they are on average.
@@ -28,7 +28,7 @@ mod next_to_zero;
 mod seams;
 
 use crate::borders::Borders;
-use crate::gradient_field::{Derivative, SlopeSpectrum, integrate_periodic};
+use crate::gradient_field::{Derivative, SlopeSpectrum, Walls, integrate_periodic};
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 use decode::{rounding_noise, rounding_steps, slopes_of_normals};
@@ -78,6 +78,8 @@ pub struct NormalMapHeights {
     pub derivative_is_certain: bool,
     /// Whether it tiles.
     pub tileable: bool,
+    /// How far it was taken for flat places with walls between them, 0–1 ([`Walls`]): short waves are then lowered.
+    pub walls: f64,
     /// What is not integrable in it, 0–1 of the power of its slopes' derivatives.
     pub curl: f64,
 }
@@ -110,10 +112,14 @@ pub fn heights_from_normals(
     let (green, green_is_certain) = which_green(&mut spectrum, options.green);
     let (derivative, derivative_is_certain) = which_derivative(&spectrum, noise, options.derivative);
     let curl = spectrum.curl(derivative);
+    // Normals made of this map's own heights by differences are those heights'; of others' walls they say too much.
+    let may_be_baked =
+        matches!(derivative, Derivative::Exact | Derivative::ExactOrCentral) && !derivative_is_certain;
+    let walls = if may_be_baked { Walls::of(spectrum.field()) } else { Walls::NONE };
     let height_px = match steps {
         None if tileable => integrate_periodic(spectrum.field(), derivative),
-        None => spectrum.heights(derivative, f64::INFINITY),
-        Some(_) => spectrum.heights(derivative, noise),
+        None => spectrum.heights(derivative, f64::INFINITY, walls),
+        Some(_) => spectrum.heights(derivative, noise, walls),
     };
     Ok(NormalMapHeights {
         height_px,
@@ -122,6 +128,7 @@ pub fn heights_from_normals(
         derivative,
         derivative_is_certain,
         tileable,
+        walls: walls.share(),
         curl,
     })
 }

@@ -119,6 +119,70 @@ fn upright_walls_saved_as_jpeg_give_no_short_waves_that_are_not_there() {
     }
 }
 
+/// Means of 4 × 4.
+fn quartered(fine: &Raster) -> Raster {
+    Raster::from_fn(fine.width / 4, fine.height / 4, |x, y| {
+        (0..16).map(|i| fine.at(4 * x + i % 4, 4 * y + i / 4)).sum::<f64>() / 16.0
+    })
+}
+
+/// A 256² map as it is baked: normals of a surface of four times as many texels, averaged, lengths 1 again; and the means of its heights.
+fn baked(surface: &Raster) -> ([Raster; 3], Raster) {
+    let fine = slopes(&surface.map(|z| 4.0 * z), Derivative::Central);
+    let normal = |which: usize| {
+        quartered(&Raster::from_fn(surface.width, surface.height, |x, y| {
+            let (p, q) = (fine.along_u.at(x, y), fine.along_v.at(x, y));
+            [-p, q, 1.0][which] / (1.0 + p * p + q * q).sqrt()
+        }))
+    };
+    let normals = [0, 1, 2].map(normal);
+    let level = |which: usize| {
+        Raster::from_fn(surface.width / 4, surface.height / 4, |x, y| {
+            let length = normals.iter().map(|n| n.at(x, y).powi(2)).sum::<f64>().sqrt();
+            ((0.5 + 0.5 * normals[which].at(x, y) / length) * 255.0).round() / 255.0
+        })
+    };
+    ([0, 1, 2].map(level), quartered(surface))
+}
+
+#[test]
+fn walls_between_flat_places_are_no_stronger_than_a_height_map_shows_them() {
+    // Distances in texels of the baked map: round holes in rows, panels with grooves, discs of three heights.
+    let at = |i: usize| 0.25 * i as f64;
+    let wall = |distance: f64, width: f64| (distance / width + 0.5).clamp(0.0, 1.0);
+    let holes = |x: usize, y: usize| {
+        let shift = 16.0 * (y / 128 % 2) as f64;
+        let from = |v: f64| v.rem_euclid(32.0) - 15.9;
+        6.0 * wall(from(at(x) + shift).hypot(from(at(y))) - 9.3, 1.5)
+    };
+    let panels = |x: usize, y: usize| {
+        let edge = |v: f64, side: f64| (v.rem_euclid(side) - 0.5 * side).abs();
+        let groove = (32.0 - edge(at(x), 64.0)).min(16.0 - edge(at(y) + 5.3, 32.0));
+        1.2 * wall(groove - 1.7, 1.0)
+    };
+    let discs = |x: usize, y: usize| {
+        let cell = (at(x) / 64.0) as usize + 3 * ((at(y) / 64.0) as usize);
+        let from = |v: f64| v.rem_euclid(64.0) - 31.7;
+        (1.0 + (cell % 3) as f64) * wall(21.4 - from(at(x)).hypot(from(at(y))), 1.2)
+    };
+    for (name, surface) in [
+        ("holes", Raster::from_fn(1024, 1024, holes)),
+        ("panels", Raster::from_fn(1024, 1024, panels)),
+        ("discs", Raster::from_fn(1024, 1024, discs)),
+    ] {
+        let (map, truth) = baked(&surface);
+        check(name, &made(&map), (&truth, Truth::Tiles), 0.97);
+        check(&format!("{name}, JPEG"), &made(&as_jpeg(&map, 90, true)), (&truth, Truth::Tiles), 0.97);
+        let piece = map.map(|channel| cut(&channel, [21, 10], [191, 203]));
+        check(
+            &format!("{name}, cut"),
+            &made(&piece),
+            (&cut(&truth, [21, 10], [191, 203]), Truth::Ends),
+            0.97,
+        );
+    }
+}
+
 #[test]
 fn short_waves_of_a_cut_map_are_as_strong_as_they_are() {
     for (name, surface) in [("studs", studs(512)), ("ground", ground(512))] {

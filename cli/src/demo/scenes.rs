@@ -143,6 +143,8 @@ fn strike(t: f64, body: &str, speed_m_s: f64, striker: &str, (mass_kg, radius_m)
             striker: Striker::Preset(striker.to_owned()),
             restitution: 0.5,
             position: 0,
+            at_m: None,
+            direction: None,
             hand: LogHand::default(),
         },
     }

@@ -1,6 +1,6 @@
 //! Modal tables of other programs become modes files.
 //!
-//! CSV as [`asperity_fit::table`] reads it, a modes file, or JSON: one object of equally long number
+//! CSV as [`asperity_fit::after::table`] reads it, a modes file, or JSON: one object of equally long number
 //! lists, or a list of such objects with a `name` each. Beside the names of the CSV columns these are known:
 //!
 //! | key | meaning |
@@ -15,7 +15,7 @@
 use crate::error::CliError;
 use asperity::{MAX_POSITIONS, ModalModel};
 use asperity_dsp::mode::Mode;
-use asperity_fit::table;
+use asperity_fit::after::table;
 use serde_json::{Map, Value};
 use std::path::Path;
 

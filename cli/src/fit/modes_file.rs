@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::output::Outputs;
 use asperity_dsp::mode::Mode;
-use asperity_fit::residual::{BandEnvelope, Burst};
+use asperity_fit::body::residual::{BandEnvelope, Burst};
 use asperity_fit::{Fit, FittedMode};
 use serde::Serialize;
 use std::path::Path;
@@ -121,7 +121,7 @@ impl Details {
             residual: ResidualSummary {
                 level_db: fit.residual.level_db,
                 attack_db: fit.residual.attack_db,
-                step_s: asperity_fit::residual::STEP_S,
+                step_s: asperity_fit::body::residual::STEP_S,
                 bands: fit.residual.bands.iter().map(band).collect(),
             },
         }

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::output;
 use asperity_dsp::mode::Mode;
 use asperity_fit::Fit;
-use asperity_fit::scaling::DampingLaw;
+use asperity_fit::after::scaling::DampingLaw;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -3,7 +3,9 @@
 use crate::error::CliError;
 use asperity::{ModeShapes, ShapeUnit};
 use asperity_dsp::damping::Damping;
+use asperity_dsp::radiation::{EquivalentSphere, Surface};
 use asperity_shape::SolvedBody;
+use asperity_shape::surface_field::SurfaceField;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
@@ -46,22 +48,34 @@ fn rounded(x: f64) -> f64 {
 }
 
 impl ModesFile {
-    /// A body with its damping; modes that do not swing any more are left out and told.
-    pub fn new(body: &mut SolvedBody, damping: &Damping, source: &Path) -> Result<Self, CliError> {
+    /// A body with its damping, and with `radiation` in pascals at 1 m; modes that do not swing any more are left out and told.
+    pub fn new(
+        body: &mut SolvedBody,
+        damping: &Damping,
+        radiation: bool,
+        source: &Path,
+    ) -> Result<Self, CliError> {
         let field = &body.field;
+        let air = radiation.then(|| Air::around(field)).flatten();
+        let mut gains = Vec::new();
         let struck_point = field.lively_point().unwrap_or(0);
         let mut modes = Vec::new();
         let mut kept = Vec::new();
         for (m, hz) in body.frequency_hz.iter().enumerate() {
-            let (omega, decay_per_s) = (TAU * hz, damping.decay_per_s(*hz));
+            let (gain, loss_per_s) = match &air {
+                Some(air) => air.gain_and_loss(field, m, *hz),
+                None => (field.gains[m], 0.0),
+            };
+            let (omega, decay_per_s) = (TAU * hz, damping.decay_per_s(*hz) + loss_per_s);
             if decay_per_s >= omega {
                 continue;
             }
             kept.push(m);
+            gains.push(gain);
             modes.push(FileMode {
                 frequency_hz: (omega * omega - decay_per_s * decay_per_s).sqrt() / TAU,
                 decay_per_s,
-                amplitude: field.gains[m] * field.along_normal(m, struck_point),
+                amplitude: gain * field.along_normal(m, struck_point),
                 // Heard is the velocity, which begins at its peak.
                 phase_rad: FRAC_PI_2,
             });
@@ -83,7 +97,7 @@ impl ModesFile {
                 .map(|p| p.map(rounded))
                 .collect(),
             triangles: field.triangles.clone(),
-            gains: kept.iter().map(|&m| field.gains[m]).collect(),
+            gains,
             phi_per_sqrt_kg: kept
                 .iter()
                 .map(|&m| field.shapes[m].iter().map(|s| s.map(|x| rounded(x) as f32)).collect())
@@ -96,10 +110,29 @@ impl ModesFile {
             version: 2,
             source: source.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default(),
             impulse_n_s: 1.0,
-            unit: ShapeUnit::Relative,
+            unit: if radiation { ShapeUnit::PascalsAtOneMetre } else { ShapeUnit::Relative },
             damping: FileDamping { alpha_per_s, eta, beta_s },
             modes,
             shapes,
         })
+    }
+}
+
+/// The air about a body.
+struct Air<'a> {
+    surface: Surface<'a>,
+    sphere: EquivalentSphere,
+}
+
+impl<'a> Air<'a> {
+    fn around(field: &'a SurfaceField) -> Option<Self> {
+        let surface = Surface { points_m: &field.points, triangles: &field.triangles };
+        Some(Self { surface, sphere: EquivalentSphere::of(&surface)? })
+    }
+
+    /// Pascals at 1 m for a mode's velocity, and what radiation adds to its decay, 1/s.
+    fn gain_and_loss(&self, field: &SurfaceField, mode: usize, hz: f64) -> (f64, f64) {
+        let multipoles = self.sphere.multipoles(&self.surface, |point| field.shapes[mode][point]);
+        (self.sphere.pressure_pa_s_m(&multipoles, hz), self.sphere.loss_per_s(&multipoles, hz))
     }
 }

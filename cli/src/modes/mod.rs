@@ -53,7 +53,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     })
     .map_err(|error| CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) }))?;
     drop(progress);
-    let file = ModesFile::new(&mut body, &damping, &options.body)?;
+    let file = ModesFile::new(&mut body, &damping, options.radiation, &options.body)?;
     let mut outputs = Outputs::new();
     let text = serde_json::to_string(&file)
         .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;

@@ -43,6 +43,9 @@ pub struct Options {
     /// Damping of a recorded body of the same material: its modes file
     #[arg(long, value_name = "HIT.modes.json")]
     pub damping_from: Option<PathBuf>,
+    /// How loud each mode is in the air at 1 m, in pascals, and what radiation takes from it; without this levels are relative
+    #[arg(long)]
+    pub radiation: bool,
     /// Every mode below this frequency, Hz
     #[arg(long, value_name = "HZ")]
     pub up_to: Option<f64>,

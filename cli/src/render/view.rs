@@ -25,6 +25,7 @@ pub fn draw(
         let (quantity, unit) = match actuator.settings.output {
             Quantity::Displacement => ("displacement", "m"),
             Quantity::Acceleration => ("acceleration", "m/s²"),
+            Quantity::Tangential => ("tangential displacement", "m"),
         };
         HapticChannel { quantity, unit, full_scale: actuator.full_scale.unwrap_or(1.0), samples }
     });

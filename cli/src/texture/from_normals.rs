@@ -121,6 +121,8 @@ struct Report {
     /// Whether it was told or the map says so.
     derivative_is_certain: bool,
     tileable: bool,
+    /// How far the map was taken for flat places with walls between them, 0–1.
+    walls: f64,
     /// What no surface has of the map's slopes, 0–1.
     curl: f64,
     files: Vec<PathBuf>,
@@ -173,6 +175,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         derivative: DerivativeName::of(found.derivative),
         derivative_is_certain: found.derivative_is_certain,
         tileable: found.tileable,
+        walls: found.walls,
         curl: found.curl,
         files: outputs.commit()?,
     };
@@ -187,7 +190,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     let sure = |certain: bool| if certain { "" } else { " (the map does not tell)" };
     output::say(&format!(
-        "{} × {} texels; white is {relief_per_px:.2} texels above black; {} green{}; {} slopes{}; {}\nwrote {}",
+        "{} × {} texels; white is {relief_per_px:.2} texels above black; {} green{}; {} slopes{}; {}{}\nwrote {}",
         report.width,
         report.height,
         report.green.in_words(),
@@ -195,6 +198,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         report.derivative.in_words(),
         sure(report.derivative_is_certain),
         if report.tileable { "tiles" } else { "does not tile" },
+        if report.walls > 0.0 { "; flat but for walls, whose short waves are lowered" } else { "" },
         options.output.display()
     ));
     Ok(())

@@ -163,7 +163,7 @@ impl DeviceState {
         let acceleration = (velocity - self.velocity) * model.quantity_scale;
         self.velocity = velocity;
         match model.quantity {
-            Quantity::Displacement => self.z[1],
+            Quantity::Displacement | Quantity::Tangential => self.z[1],
             Quantity::Acceleration => acceleration,
         }
     }

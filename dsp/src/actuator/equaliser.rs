@@ -53,7 +53,7 @@ impl Equaliser {
         let low = profile.band_hz[0] / EDGE;
         let high = (profile.band_hz[1] * EDGE).min(HIGHEST_CORNER * sample_rate_hz);
         let (inverse_hz, edge_hz) = match quantity {
-            Quantity::Displacement => (high, low),
+            Quantity::Displacement | Quantity::Tangential => (high, low),
             Quantity::Acceleration => (low, high),
         };
         let inverse = Butterworth::new(inverse_hz, sample_rate_hz)?;
@@ -72,7 +72,7 @@ impl Equaliser {
         let at_resonance = out.gain_at(profile.resonance_hz, inverse_hz, edge_hz, sample_rate_hz);
         out.mix = mix.map(|g| g / at_resonance);
         out.group_delay_s = match quantity {
-            Quantity::Displacement => inverse.group_delay_s(),
+            Quantity::Displacement | Quantity::Tangential => inverse.group_delay_s(),
             Quantity::Acceleration => edge.group_delay_s(),
         };
         Ok(out)

@@ -3,7 +3,7 @@
 use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup, TURN};
 
 /// Most inputs of a bank.
-pub const MAX_INPUTS: usize = 16;
+pub const MAX_INPUTS: usize = 64;
 
 /// One of several inputs of a bank.
 #[derive(Debug, Clone, Copy)]

@@ -1,8 +1,9 @@
-//! Fitted bodies beside their recordings, as the engine plays them: `struck [--program ASPERITY] FILE…`
+//! Fitted bodies beside their recordings, as the engine plays them: `struck [--program ASPERITY] [--out DIR] FILE…`
 //!
 //! Every file is fitted, the modes are struck once in the engine by an impulse of the model's own size, and what the
 //! renderer gives is held against the recording from the onset on (time zero within ±1 ms). With `--program` the fit is
-//! that of another build of `asperity` (its `--json` and modes file are read), so that two builds can be compared.
+//! that of another build of `asperity` (its `--json` and modes file are read), so that two builds can be compared. With
+//! `--out` recording, struck body and modes of every file are written there, to be heard and looked at.
 //!
 //! | column | what |
 //! |---|---|
@@ -21,6 +22,7 @@ mod fitting;
 mod partials;
 mod resonances;
 
+use asperity_dsp::mode::Mode;
 use asperity_fit::{ChannelChoice, Recording, load};
 use asperity_measure::score::snr_db;
 use fitting::{Fitted, by_program, in_process};
@@ -38,6 +40,7 @@ const ALIGNED_S: f64 = 0.05;
 fn main() {
     let mut args = std::env::args().skip(1).peekable();
     let program = args.next_if(|arg| arg == "--program").and_then(|_| args.next());
+    let out = args.next_if(|arg| arg == "--out").and_then(|_| args.next());
     println!("    s   peak   err5  burst    snr   told    late  decay  split     ring  modes limit  file");
     let mut rows = Vec::new();
     for path in args {
@@ -48,7 +51,7 @@ fn main() {
         };
         let row = fitted.and_then(|fitted| {
             let recording = load(&path, ChannelChoice::Loudest).map_err(|error| error.to_string())?;
-            Ok(Row::of(&recording, &fitted))
+            Row::of(&recording, &fitted, out.as_deref().map(|out| format!("{out}/{name}")))
         });
         match row {
             Ok(row) => {
@@ -78,7 +81,7 @@ struct Row {
 }
 
 impl Row {
-    fn of(recording: &Recording, fitted: &Fitted) -> Self {
+    fn of(recording: &Recording, fitted: &Fitted, out: Option<String>) -> Result<Self, String> {
         let rate = recording.sample_rate_hz;
         let tail = &recording.samples[recording.samples.len() * 3 / 4..];
         let mean = tail.iter().sum::<f64>() / tail.len() as f64;
@@ -90,8 +93,11 @@ impl Row {
         let whole = aligned(&sound, &whole, rate);
         let left: Vec<f64> = sound.iter().zip(&alone).map(|(x, y)| x - y).collect();
         let attack = ((ATTACK_S * rate) as usize).min(sound.len());
+        if let Some(out) = out {
+            written(&out, fitted, &sound, &alone, rate).map_err(|error| error.to_string())?;
+        }
         let strongest = fitted.modes.iter().map(|m| m.t60_s()).fold(0.0, f64::max);
-        Self {
+        Ok(Self {
             cpu_s: fitted.cpu_s,
             peak_db: 20.0 * (peak(&alone) / peak(&sound)).max(1e-9).log10(),
             err5_db: -snr_db(&sound[..attack], &alone[..attack]),
@@ -104,7 +110,7 @@ impl Row {
             ring: strongest * rate / sound.len() as f64,
             modes: fitted.modes.len(),
             limit: fitted.warnings.iter().any(|w| w.starts_with("mode limit")),
-        }
+        })
     }
 
     fn text(&self) -> String {
@@ -127,6 +133,30 @@ impl Row {
             if self.limit { "yes" } else { "no" }
         )
     }
+}
+
+/// `OUT.recorded.wav`, `OUT.struck.wav` and the modes, `OUT.csv`.
+fn written(
+    out: &str,
+    fitted: &Fitted,
+    sound: &[f64],
+    struck: &[f64],
+    rate: f64,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: rate as u32,
+        bits_per_sample: 32,
+        sample_format: hound::SampleFormat::Float,
+    };
+    for (kind, samples) in [("recorded", sound), ("struck", struck)] {
+        let mut file = hound::WavWriter::create(format!("{out}.{kind}.wav"), spec)?;
+        samples.iter().try_for_each(|&x| file.write_sample(x as f32))?;
+        file.finalize()?;
+    }
+    let row = |m: &Mode| format!("{},{},{},{}\n", m.frequency_hz, m.decay_per_s, m.amplitude, m.phase_rad);
+    let rows: String = fitted.modes.iter().map(row).collect();
+    Ok(std::fs::write(format!("{out}.csv"), format!("frequency_hz,decay_per_s,amplitude,phase_rad\n{rows}"))?)
 }
 
 /// Medians, extremes and sums over all files.

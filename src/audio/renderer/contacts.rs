@@ -5,6 +5,7 @@ use crate::audio::voice::{EMPTY_FORCE_N, Phase, Role, Stretch, Voice};
 use crate::link::stats::Counters;
 use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis};
 use crate::model::stamp::Stamp;
+use crate::model::strike_field::StrikePlace;
 use asperity_dsp::trajectory::Trajectory;
 
 /// A contact that goes on without a voice: it lapsed, or its voice was stolen. A later move revives it.
@@ -24,6 +25,16 @@ impl SilentContact {
 }
 
 impl Renderer {
+    /// The contact of an event that was applied is at a place of a body from now on.
+    pub(super) fn put(&mut self, event: &ContactEvent, place: Option<StrikePlace>) {
+        let (ContactEvent::Begin { contact, .. } | ContactEvent::Moved { contact, .. }) = *event else {
+            return;
+        };
+        if let Some(voice) = sounding(&self.voices, contact) {
+            self.placed[voice] = place;
+        }
+    }
+
     pub(super) fn apply_event(&mut self, event: &ContactEvent, stamp: Stamp) {
         match *event {
             ContactEvent::Begin { contact, touching, sample } => {

@@ -70,9 +70,11 @@ impl Renderer {
         old.waiting
             .into_iter()
             .map(|message| match message {
-                Message::Event { stamp, event } => Message::Event { stamp: at_rate(stamp), event },
-                Message::Strike { stamp, body, position, other, holder, felt, pulse } => {
-                    Message::Strike { stamp: at_rate(stamp), body, position, other, holder, felt, pulse }
+                Message::Event { stamp, event, place } => {
+                    Message::Event { stamp: at_rate(stamp), event, place }
+                }
+                Message::Strike { stamp, body, spot, other, holder, felt, pulse } => {
+                    Message::Strike { stamp: at_rate(stamp), body, spot, other, holder, felt, pulse }
                 }
                 other => other,
             })

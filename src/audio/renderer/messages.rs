@@ -7,6 +7,7 @@ use crate::link::message::{Dead, Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
+use crate::prepared::body::Spot;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_texture::height_field::MAX_BLOCK;
@@ -57,20 +58,21 @@ impl Renderer {
             {
                 Counters::add(&self.counters.superseded, 1);
             }
-            Message::Event { stamp, event } => {
+            Message::Event { stamp, event, place } => {
                 self.note_arrival(stamp);
                 self.apply_event(&event, stamp);
+                self.put(&event, place);
             }
-            Message::Strike { stamp, body, position, other, holder, felt, pulse } => {
+            Message::Strike { stamp, body, spot, other, holder, felt, pulse } => {
                 self.note_arrival(stamp);
                 Counters::add(&self.counters.impacts, 1);
-                self.strike(body, position, &pulse, stamp);
+                self.strike(body, &spot, &pulse, stamp);
                 if let Some(other) = other {
-                    self.strike(other, 0, &pulse, stamp);
+                    self.strike(other, &Spot::FIRST, &pulse, stamp);
                 }
                 let answer = HertzPulse { impulse_n_s: -pulse.impulse_n_s, ..pulse };
                 if let Some(holder) = holder {
-                    self.strike(holder, 0, &answer, stamp);
+                    self.strike(holder, &Spot::FIRST, &answer, stamp);
                 }
                 if let Some(felt) = felt {
                     self.feel(felt, &pulse, stamp);
@@ -140,11 +142,11 @@ impl Renderer {
         }
     }
 
-    fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
+    fn strike(&mut self, body: usize, spot: &Spot, pulse: &HertzPulse, stamp: Stamp) {
         // Impacts pass the same look-ahead as contacts, so that both stay aligned.
         let sounds = self.due(stamp).later(self.shared.row_latency as u64);
         let level = self.governor.mode_level();
-        self.bodies[body].strike(position, pulse, sounds, level, self.shared.sample_rate_hz);
+        self.bodies[body].strike(spot, pulse, sounds, level, self.shared.sample_rate_hz);
     }
 
     /// A strike is felt: its pulse goes through the mobility of the hand's probe.

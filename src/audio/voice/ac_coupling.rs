@@ -100,7 +100,7 @@ impl AcCoupling {
 
 fn still(output: &ContactOutput) -> f64 {
     match output.quantity() {
-        Quantity::Displacement => STILL_M,
+        Quantity::Displacement | Quantity::Tangential => STILL_M,
         Quantity::Acceleration => STILL_M_S2,
     }
 }

@@ -48,6 +48,8 @@ impl Voice {
         let ground = slot.stroking.ground;
         seat.land(&self.touch_at(position));
         self.pad.begin(shared.probe(self.role.probe), ground, force_n);
+        self.drag.begin();
+        self.drag.press(force_n);
         if lands {
             let points = std::slice::from_ref(&self.path.last);
             scratch.profile.run(seat, self.along(shared, position, false), points);

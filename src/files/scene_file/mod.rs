@@ -268,7 +268,11 @@ fn read_probe(mut fields: Fields) -> Result<Probe, FileError> {
 }
 
 fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
-    let words = [("displacement", Quantity::Displacement), ("acceleration", Quantity::Acceleration)];
+    let words = [
+        ("displacement", Quantity::Displacement),
+        ("acceleration", Quantity::Acceleration),
+        ("tangential", Quantity::Tangential),
+    ];
     let default = ActuatorSettings::default();
     let output = fields.word("output", &words)?.unwrap_or(default.output);
     let equalise = fields.text("equalise")?.filter(|name| name != "none");

@@ -7,9 +7,11 @@ use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::error::AddError;
 use crate::model::id::BodyId;
+use crate::model::strike_field::StrikeField;
 use crate::prepared::body::BodySlot;
 use crate::prepared::stroking::Stroking;
 use asperity_dsp::{DesignError, limits};
+use std::sync::Arc;
 
 impl Scene {
     /// Adds a body that rings: a [`Body`], or the modes of one of PLA on the first bus.
@@ -76,13 +78,15 @@ impl Scene {
         let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), self.kernel, rate, inner)?);
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
-        let known = KnownBody { material, lowest_mode_hz };
-        let stroking = self.stroking(known)?;
+        let heard = audible.as_ref().unwrap_or(model);
+        let field = heard.shapes.as_ref().map(|shapes| Arc::new(StrikeField::new(Arc::clone(shapes))));
+        let known = KnownBody { material, lowest_mode_hz, field };
+        let stroking = self.stroking(&known)?;
         Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
     }
 
     /// How strokes excite a body.
-    pub(super) fn stroking(&self, body: KnownBody) -> Result<Stroking, DesignError> {
+    pub(super) fn stroking(&self, body: &KnownBody) -> Result<Stroking, DesignError> {
         let (mass_kg, rate_hz) = (self.config.probe.pad_mass_kg, self.config.inner_rate_hz());
         Stroking::new(body.material, body.lowest_mode_hz, mass_kg, rate_hz)
     }

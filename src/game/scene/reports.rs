@@ -9,7 +9,8 @@ use crate::model::error::{Refusal, ReportError};
 use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact};
 use crate::model::id::{BodyId, ProbeId};
 use crate::model::stamp::Stamp;
-use crate::prepared::body::LONGEST_CONTACT_S;
+use crate::model::strike_field::StrikePlace;
+use crate::prepared::body::{LONGEST_CONTACT_S, Spot};
 use crate::prepared::stroking::elastic;
 use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::limits;
@@ -83,7 +84,7 @@ impl Scene {
                 let before = self.held.len();
                 self.held.retain(|(_, held, _)| *held != contact);
                 Counters::add(&self.counters.superseded, (before - self.held.len()) as u64);
-                self.send_event(Message::Event { stamp, event })
+                self.send_contact(stamp, event)
             }
             ContactEvent::Impact(impact) => self.send_impact(stamp, &impact),
         }
@@ -155,7 +156,7 @@ impl Scene {
         let event = ContactEvent::moved_with(contact, sample, emphasis);
         // The last quarter of the queue is kept for landings, lift-offs and impacts.
         if self.to_audio.free() > self.to_audio.capacity() / 4 {
-            return self.send_event(Message::Event { stamp, event });
+            return self.send_contact(stamp, event);
         }
         if let Some((at, _, held)) = self.held.iter_mut().find(|(_, held, _)| *held == contact) {
             // A place gives way to the next one; a gain that was asked for does not.
@@ -176,7 +177,7 @@ impl Scene {
             let Some(oldest) = oldest else { return };
             let (stamp, _, event) = self.held.swap_remove(oldest);
             // There is room: checked just above.
-            let _ = self.to_audio.send(Message::Event { stamp, event });
+            let _ = self.send_contact(stamp, event);
         }
     }
 
@@ -203,12 +204,42 @@ impl Scene {
         self.send_event(Message::Strike {
             stamp,
             body: impact.body.index(),
-            position: impact.position,
+            spot: Spot { place: self.struck(impact), position: impact.position },
             other,
             holder: impact.holder.map(BodyId::index),
             felt,
             pulse,
         })
+    }
+
+    fn send_contact(&mut self, stamp: Stamp, event: ContactEvent) -> Result<(), Refusal> {
+        let place = self.touched(&event);
+        self.send_event(Message::Event { stamp, event, place })
+    }
+
+    /// Where a contact is on a body that has shapes, by the frame of its surface; none where one of them is missing.
+    fn touched(&mut self, event: &ContactEvent) -> Option<StrikePlace> {
+        let (contact, sample) = match event {
+            ContactEvent::Begin { contact, touching, sample } => {
+                self.touched.insert(*contact, touching.surface);
+                (contact, sample)
+            }
+            ContactEvent::Moved { contact, sample, .. } => (contact, sample),
+            ContactEvent::End { contact } => {
+                self.touched.remove(contact);
+                return None;
+            }
+            ContactEvent::Impact(_) => return None,
+        };
+        let known = self.surfaces.get(self.touched.get(contact)?.0)?;
+        let field = self.bodies.get(known.body?.0)?.field.as_ref()?;
+        field.place(known.frame?.point_m(sample.uv, known.size_m), None)
+    }
+
+    /// Where an impact hits a body that has shapes.
+    fn struck(&self, impact: &Impact) -> Option<StrikePlace> {
+        let field = self.bodies.get(impact.body.0)?.field.as_ref()?;
+        field.place(impact.at_m?, impact.direction)
     }
 
     fn send_event(&mut self, message: Message) -> Result<(), Refusal> {

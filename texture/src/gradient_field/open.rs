@@ -9,6 +9,7 @@ use super::border_share::BorderShare;
 use super::mirror_transform::{Mirror, MirrorTransform, Waves, frequencies};
 use super::noise::Noise;
 use super::steps;
+use super::walls::{Walls, gain};
 use super::wiener::Wiener;
 use super::{Derivative, Slopes};
 use crate::raster::Raster;
@@ -96,7 +97,7 @@ impl Open {
     }
 
     /// The surface; `noise` is a slope's variance at the most.
-    pub fn heights(self, derivative: Derivative, noise: f64) -> Raster {
+    pub fn heights(self, derivative: Derivative, noise: f64, walls: Walls) -> Raster {
         let (mut waves, seen) = self.seen(derivative);
         let bands = Bands::new(&self.along_u, &self.along_v, PI / self.width.max(self.height) as f64);
         // Cosines and sines have a quarter of the power of a spectrum's lines.
@@ -106,6 +107,11 @@ impl Open {
             *wave *= wiener.gain(place, seen);
         }
         waves[0] = 0.0;
+        if !walls.are_none() {
+            let [axis_u, axis_v] = [&self.along_u, &self.along_v].map(|along| walls.axis(along));
+            let places = axis_u.iter().flat_map(|&u| axis_v.iter().map(move |&v| (u, v)));
+            waves.iter_mut().zip(places).for_each(|(wave, (u, v))| *wave *= gain(u, v));
+        }
         let waves = Waves { values: waves, ..self.p };
         let made = MirrorTransform::default().inverse(&waves, self.width, self.height, self.mirror);
         let mean = made.mean();
@@ -151,5 +157,5 @@ pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
 /// The same where the slopes have a noise: `noise` is the variance in each that rounding leaves at the most; what is more is measured.
 #[must_use]
 pub fn integrate_open_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
-    Open::of(field, derivative).heights(derivative, noise)
+    Open::of(field, derivative).heights(derivative, noise, Walls::NONE)
 }

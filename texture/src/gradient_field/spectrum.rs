@@ -3,7 +3,7 @@
 use super::open::Open;
 use super::tiling::Tiling;
 use super::turning::{Evidence, share_across};
-use super::{Derivative, Slopes};
+use super::{Derivative, Slopes, Walls};
 use crate::raster::Raster;
 
 enum Waves {
@@ -71,13 +71,14 @@ impl SlopeSpectrum {
         }
     }
 
-    /// The surface with these slopes, mean 0; `noise` is the variance that rounding leaves in each at the most.
+    /// The surface with these slopes, mean 0; `noise` is the variance that rounding leaves in each at the most, `walls` what true slopes are
+    /// of.
     #[must_use]
-    pub fn heights(self, derivative: Derivative, noise: f64) -> Raster {
+    pub fn heights(self, derivative: Derivative, noise: f64, walls: Walls) -> Raster {
         match self.waves {
-            Waves::Tiling(tiling) => tiling.heights(derivative, noise),
-            Waves::Open(open) if of_true_slopes(derivative) => open.heights(derivative, noise),
-            Waves::Open(_) => Open::of(&self.field, derivative).heights(derivative, noise),
+            Waves::Tiling(tiling) => tiling.heights(derivative, noise, walls),
+            Waves::Open(open) if of_true_slopes(derivative) => open.heights(derivative, noise, walls),
+            Waves::Open(_) => Open::of(&self.field, derivative).heights(derivative, noise, walls),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bands::{Bands, Seen};
 use super::noise::Noise;
+use super::walls::{Walls, gain};
 use super::wiener::Wiener;
 use super::{Derivative, Slopes, unpack};
 use crate::fft2::{Fft2, angular_frequency};
@@ -70,7 +71,7 @@ impl Tiling {
     }
 
     /// The surface; `noise` is a slope's variance at the most.
-    pub fn heights(mut self, derivative: Derivative, noise: f64) -> Raster {
+    pub fn heights(mut self, derivative: Derivative, noise: f64, walls: Walls) -> Raster {
         let ([along_u, along_v], step) = self.frequencies();
         let seen = self.all_seen(derivative);
         let bands = Bands::new(&along_u, &along_v, step);
@@ -79,6 +80,11 @@ impl Tiling {
         let height = |(place, at): (usize, &Seen)| self.seen(place, derivative).0 * wiener.gain(place, at);
         let mut heights: Vec<Complex64> = seen.iter().enumerate().map(height).collect();
         heights[0] = Complex64::default();
+        if !walls.are_none() {
+            let [axis_u, axis_v] = [&along_u, &along_v].map(|along| walls.axis(along));
+            let places = axis_u.iter().flat_map(|&u| axis_v.iter().map(move |&v| (u, v)));
+            heights.iter_mut().zip(places).for_each(|(height, (u, v))| *height *= gain(u, v));
+        }
         self.fft.image(&mut heights)
     }
 }
@@ -87,7 +93,7 @@ impl Tiling {
 /// more is measured.
 #[must_use]
 pub fn integrate_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
-    Tiling::of(field).heights(derivative, noise)
+    Tiling::of(field).heights(derivative, noise, Walls::NONE)
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@
 mod cell;
 mod detrend;
 mod document;
+mod every_direction;
 mod feature_matrix;
 mod frieze;
 mod frieze_group;

@@ -13,6 +13,7 @@
 //! 5. *Refuse* scores below [`MERIT_LIMIT`], and lattices at whose half translations the picture fits nearly as well, however often they are
 //!    halved: stripes fit themselves at any shift along them. Then the next best are tried.
 //!
+//!    So are pictures whose waves of a translation's length have every direction.
 //! 6. *Coarsen.* A lattice is given up for a coarser one, of up to nine times its cell a step, whose nodes fit better than can be chance: a cell
 //!    with two nearly equal halves, or frames whose gap is a quarter of their period, which fit themselves in part at every quarter. So it
 //!    is for any other larger cell that was proposed: a gap and a side that are no multiples of each other have no fraction in common.
@@ -23,6 +24,7 @@
 //! 38 in 864 were once told a quarter or a fifth of their lattice.
 
 use super::detrend::{decimated, detrended};
+use super::every_direction::has_waves_of_every_direction;
 use super::feature_matrix::{feature_matrix, tapered_feature_matrix};
 use super::lattice::{Lattice, combine, cross, length, reduced, upright};
 use super::minima::{Fit, Minimum};
@@ -117,6 +119,7 @@ fn search(picture: &Raster, scale: f64) -> Option<Lattice> {
     });
     // The first that repeats along two directions; else the best, with no merit at all.
     let (chosen, merit) = match tried.find(|(_, repeats)| *repeats) {
+        Some((found, _)) if has_waves_of_every_direction(&level, length(found.basis[0])) => (found, 0.0),
         Some((found, _)) => (found, found.merit),
         None => (*even.first()?, 0.0),
     };

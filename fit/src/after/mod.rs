@@ -1,0 +1,11 @@
+//! After a fit: bodies of another size or material, several strikes of one body, tables of modes.
+//!
+//! | file | from → to |
+//! |---|---|
+//! | [`scaling`] | modes → modes of another size or material |
+//! | [`strikes`] | fits of several strikes → one body with amplitudes per strike |
+//! | [`table`] | modes ↔ CSV, and other programs' tables |
+
+pub mod scaling;
+pub mod strikes;
+pub mod table;

@@ -1,0 +1,15 @@
+//! Proof: which partials the data need, which of them ring, and what a user should know of the others.
+//!
+//! | file | from → to |
+//! |---|---|
+//! | `pruning` | partials → proven partials with standard deviations |
+//! | `ringing` | segment → is there anything but noise; partials → which stand out of steep noise |
+//! | `suspicion` | partials → hum, no decay, not exponential |
+//! | `rumble` | partials → those from the lowest partial of the body on |
+//! | [`warning`] | what is said of all this |
+
+pub(crate) mod pruning;
+pub(crate) mod ringing;
+pub(crate) mod rumble;
+pub(crate) mod suspicion;
+pub mod warning;

@@ -1,0 +1,125 @@
+//! FLAC and Ogg (Vorbis or FLAC inside) frame by frame, decoded by `symphonia`; the only place that names it.
+//!
+//! FLAC gives the integers that were packed, exactly; Vorbis what its decoder makes of it.
+
+use crate::recording::sound_format::{Format, MOST_CHANNELS, Refusal};
+use std::fs::File;
+use symphonia::core::codecs::audio::{AudioDecoder, AudioDecoderOptions};
+use symphonia::core::errors::Error;
+use symphonia::core::formats::probe::Hint;
+use symphonia::core::formats::{FormatOptions, FormatReader, TrackType};
+use symphonia::core::io::{MediaSourceStream, MediaSourceStreamOptions};
+use symphonia::core::meta::MetadataOptions;
+
+/// A packed file.
+pub(crate) struct PackedFile {
+    reader: Box<dyn FormatReader>,
+    decoder: Box<dyn AudioDecoder>,
+    track: u32,
+    format: Format,
+    /// Samples of the present packet, frame by frame, and how many of them have been read.
+    samples: Vec<f64>,
+    read: usize,
+    frames_read: u64,
+    truncated: bool,
+    ended: bool,
+}
+
+impl PackedFile {
+    pub(crate) fn open(file: File) -> Result<Self, Refusal> {
+        let stream = MediaSourceStream::new(Box::new(file), MediaSourceStreamOptions::default());
+        let (format, meta) = (FormatOptions::default(), MetadataOptions::default());
+        let reader =
+            symphonia::default::get_probe().probe(&Hint::new(), stream, format, meta).map_err(refusal)?;
+        let unknown = || Refusal::Not("FLAC or Ogg without a sound that can be decoded; Opus cannot".into());
+        let track = reader.default_track(TrackType::Audio).ok_or_else(unknown)?;
+        let parameters =
+            track.codec_params.as_ref().and_then(|parameters| parameters.audio()).ok_or_else(unknown)?;
+        let decoder = symphonia::default::get_codecs()
+            .make_audio_decoder(parameters, &AudioDecoderOptions::default())
+            .map_err(|_| unknown())?;
+        let channels = parameters.channels.as_ref().map_or(0, |channels| channels.count());
+        if channels == 0 || channels > MOST_CHANNELS {
+            return Err(Refusal::Not(format!("FLAC or Ogg of {channels} channels")));
+        }
+        let bits = parameters.bits_per_sample.unwrap_or(0);
+        let format = Format {
+            channels,
+            rate_hz: f64::from(parameters.sample_rate.unwrap_or(0)),
+            quantum: if bits == 0 { 0.0 } else { 0.5_f64.powi(bits as i32 - 1) },
+            frames: track.num_frames.unwrap_or(u64::MAX),
+        };
+        let track = track.id;
+        let samples = Vec::new();
+        Ok(Self {
+            reader,
+            decoder,
+            track,
+            format,
+            samples,
+            read: 0,
+            frames_read: 0,
+            truncated: false,
+            ended: false,
+        })
+    }
+
+    pub(crate) fn format(&self) -> Format {
+        self.format
+    }
+
+    pub(crate) fn truncated(&self) -> bool {
+        self.truncated
+    }
+
+    pub(crate) fn next(&mut self, frame: &mut [f64]) -> Result<bool, Refusal> {
+        let channels = self.format.channels;
+        while self.read + channels > self.samples.len() {
+            if self.ended || !self.packet()? {
+                let said = self.format.frames;
+                self.truncated |= said != u64::MAX && self.frames_read < said;
+                return Ok(false);
+            }
+        }
+        frame.copy_from_slice(&self.samples[self.read..self.read + channels]);
+        self.read += channels;
+        self.frames_read += 1;
+        Ok(true)
+    }
+
+    /// Decodes the next packet; `false` at the end, wherever the file has it.
+    fn packet(&mut self) -> Result<bool, Refusal> {
+        let broken_off = |error: &Error| matches!(error, Error::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof);
+        let decoded = match self.reader.next_packet() {
+            Ok(None) => {
+                self.ended = true;
+                return Ok(false);
+            }
+            Ok(Some(packet)) if packet.track_id != self.track => return Ok(true),
+            Ok(Some(packet)) => self.decoder.decode(&packet),
+            Err(error) => Err(error),
+        };
+        match decoded {
+            Ok(buffer) => {
+                if buffer.spec().channels().count() != self.format.channels {
+                    return Err(Refusal::Not("FLAC or Ogg whose number of channels changes".into()));
+                }
+                buffer.copy_to_vec_interleaved(&mut self.samples);
+                self.read = 0;
+                Ok(true)
+            }
+            Err(error) if broken_off(&error) => {
+                (self.ended, self.truncated) = (true, true);
+                Ok(false)
+            }
+            Err(error) => Err(refusal(error)),
+        }
+    }
+}
+
+fn refusal(error: Error) -> Refusal {
+    match error {
+        Error::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => Refusal::Io(error),
+        error => Refusal::Not(format!("FLAC or Ogg with a fault: {error}")),
+    }
+}
