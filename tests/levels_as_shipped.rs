@@ -48,6 +48,8 @@ fn strike(t: f64, body: &str) -> LogLine {
         striker: Striker::Preset("steel".to_owned()),
         restitution: 1.0,
         position: 0,
+        at_m: None,
+        direction: None,
         hand: LogHand::default(),
     };
     LogLine { t, event }
