@@ -21,7 +21,7 @@
 //! p = (1 + r / n)^(−n)            r = n (p^(−1/n) − 1)            p = FALSE_ALARM / samples
 //! ```
 //! The mean of others is arithmetic and taken on both sides: where the noise is steep, it is too high rather than too low.
-//! A mode must have 2 to 4 dB more than [`crate::proof::pruning`] asks for: the price of not knowing the noise. It is paid
+//! A mode must have 2 to 4 dB more than [`crate::refine::pruning`] asks for: the price of not knowing the noise. It is paid
 //! only by a mode that is alone, or stands in noise that is steep.
 
 use crate::damped::partial::Partial;

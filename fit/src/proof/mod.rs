@@ -1,5 +1,4 @@
-//! Which partials are proven, and what is to be said against them.
+//! Warnings: what is to be said against partials.
 
-pub mod pruning;
 pub mod suspicion;
 pub mod warning;

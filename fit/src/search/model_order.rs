@@ -7,7 +7,7 @@
 //!
 //! *Order.* The number of singular values of the L × M Hankel matrix above 1.05 σ (√L + √M), the edge
 //! a random matrix has. It errs towards too many; significance is tested afterwards on the joint fit,
-//! where it can be done properly ([`crate::proof::pruning`]).
+//! where it can be done properly ([`crate::refine::pruning`]).
 
 use asperity_fft::{Fft, FftPlanner};
 use nalgebra::Complex;
