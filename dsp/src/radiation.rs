@@ -222,6 +222,7 @@ fn harmonics([x, y, z]: [f64; 3], out: &mut [[f64; 2 * ORDERS - 1]; ORDERS]) {
 }
 
 /// L⁻¹ of a positive definite matrix L Lᵀ.
+#[expect(clippy::needless_range_loop, reason = "rows and columns of two matrices at once")]
 fn inverse_of_root(a: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let mut l = [[0.0; 3]; 3];
     for i in 0..3 {

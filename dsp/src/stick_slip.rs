@@ -191,6 +191,7 @@ impl<'a> RubbedBody<'a> {
 
     /// Where the modes go by themselves, and how far that moves the place, m.
     #[inline]
+    #[expect(clippy::needless_range_loop, reason = "a lane of several arrays at once")]
     fn free_step(&mut self) -> f64 {
         let mut sums = [0.0; LANES];
         for modes in self.modes.iter_mut() {

@@ -94,6 +94,7 @@ impl Tangential {
 
     /// The same finger, pressed with another force; infallible, and a few dozen operations. What is no number counts as the lightest touch.
     #[must_use]
+    #[expect(clippy::manual_clamp, reason = "what is no number becomes the lightest touch")]
     pub fn pressed_with(mut self, normal_force_n: f64) -> Self {
         let firmness = libm::pow(normal_force_n.max(LIGHTEST_N).min(FIRMEST_N), FORCE_EXPONENT);
         (self.stiffness_n_m, self.damping_n_s_m) = (STIFFNESS_N_M * firmness, DAMPING_N_S_M * firmness);

@@ -301,7 +301,8 @@ mod tests {
     fn gains_of_a_contact_that_slides_have_no_step_above_minus_sixty_decibels_and_arrive() {
         let model = strip();
         let places = StrikeField::new(model.shapes.clone().unwrap());
-        let modes: Vec<(usize, Mode)> = model.modes.iter().copied().enumerate().collect();
+        // As the bank is designed: each at its amplitude where it swings most, so that the greatest gain is 1.
+        let modes: Vec<(usize, Mode)> = model.unit_modes().map(|(mode, _)| mode).enumerate().collect();
         let groups = design_groups(&model.modes, RATE_HZ, &GroupOptions::IMPULSE_RING);
         let groups: Box<[ModeGroup]> = groups.collect::<Result<_, _>>().unwrap();
         let mut field = BodyField::new(&model, &modes, &groups, RATE_HZ).unwrap().unwrap();

@@ -181,7 +181,7 @@ fn numbers_out_of_range_are_named_with_what_would_be_right() {
         ("[[actuator]]\nfull_scale = 0.0", "actuator 1: full_scale: 0.0 is refused"),
         (
             "[[actuator]]\noutput = \"smell\"",
-            "\"smell\" is unknown; must be \"displacement\" or \"acceleration\"",
+            "\"smell\" is unknown; must be \"displacement\", \"acceleration\" or \"tangential\"",
         ),
         ("[[body]]\nname = \"b\"\nmaterial = 3", "body 1 \"b\": material: 3 is not a material"),
         (
