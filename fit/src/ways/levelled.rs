@@ -35,8 +35,8 @@ const STEP_S: f64 = 0.005;
 const FOLLOWED: f64 = 0.02;
 const OVER_END: f64 = 3.0;
 /// A partial is not looked at beside another so near, in widths of a frame's band, and so many times as strong.
-const BANDS: f64 = 1.0;
-const HIDDEN: f64 = 4.0;
+const BANDS: f64 = 0.3;
+const HIDDEN: f64 = 10.0;
 /// Fewest frames.
 const FEWEST: usize = 10;
 /// A decay moves by at most this factor, a frequency by at most this part of the half width.
