@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn of_a_decay_only_its_first_sample_is_left() {
         let samples: Vec<f64> = (0..20_000)
-            .map(|n| f64::from(n))
+            .map(f64::from)
             .map(|n| (-3e-4 * n).exp() * ((0.1 * n).sin() + (0.7 * n).cos()))
             .collect();
         let left = whitened(&samples);
