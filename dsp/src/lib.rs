@@ -18,6 +18,7 @@
 //! | [`mode`], [`modal_bank`] | impulses → sound |
 //! | [`damping`] | a material → the decays of its modes |
 //! | [`actuator`] | pad motion → haptic samples |
+//! | [`sensation`], [`vibration_points`] | haptic samples → points for hardware that plays no waveform |
 //! | [`limits`] | what all of them accept |
 //! | [`rng`] | seeded numbers for all of them |
 //! | [`pair`] | two filters in one register |
@@ -41,7 +42,9 @@ pub mod modal_bank;
 pub mod mode;
 pub mod pair;
 pub mod rng;
+pub mod sensation;
 pub mod trajectory;
 mod vector;
+pub mod vibration_points;
 
 pub use error::DesignError;
