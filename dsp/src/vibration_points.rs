@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! S(k)  = mean over two hops of (W x)²               sensation energy
-//! p_b   ∝ mean over two hops of (B_b W x)²            share of a band
-//! f̂_b   = f_b √(Σ (B_b W x)² / Σ (L_b W x)²)           where in the band it lies
+//! p_b   ∝ mean over the last 40 ms of (B_b W x)²     share of a band
+//! f̂_b   = f_b √(Σ (B_b W x)² / Σ (L_b W x)²)         where in the band it lies
 //! f(k)  = f̂ of one band inside the device's range    the strongest, or drawn by the golden ratio
 //! A(k)  = √(2 S) / |W(f)|                            a sine that is felt as much
 //! ```
@@ -27,6 +27,8 @@ pub const BANDS_HZ: [f64; 11] = [20.0, 28.28, 40.0, 56.57, 80.0, 113.1, 160.0, 2
 const QUALITY: f64 = 2.871;
 /// Slow motion that is not felt is kept away from the bands, Hz.
 const SLOWEST_HZ: f64 = 8.0;
+/// How long the bands remember, s: two periods of the slowest that is felt well.
+const MEMORY_S: f64 = 0.04;
 /// Where low and high part, Hz; as in the balance that reductions are judged by.
 pub const SPLIT_HZ: f64 = 100.0;
 /// What a pad's two motors turn at, Hz. **Assumed**: the class of pads with a heavy and a light weight.
@@ -63,6 +65,8 @@ pub struct PointDesign {
     sensation: Sensation,
     slowest: Section,
     bands: [Section; BANDS_HZ.len()],
+    /// What is left of the bands' energies after a hop.
+    keep: f64,
 }
 
 /// A vibration between two ticks.
@@ -85,12 +89,12 @@ pub struct Point {
 pub struct PointState {
     samples: u64,
     tick: u64,
-    count: f64,
     slowest: SectionState,
     sensation: SensationState,
     bands: [SectionState; BANDS_HZ.len()],
     hop: Energies,
-    before: Energies,
+    /// The hop before of what is felt, and the bands over [`MEMORY_S`].
+    smooth: Energies,
 }
 
 /// Energies summed over a hop.
@@ -119,7 +123,8 @@ impl PointDesign {
         // A band beyond what is sampled repeats the highest that is.
         let bands = BANDS_HZ.map(|hz| Section::new(hz.min(0.4 * sample_rate_hz), QUALITY, sample_rate_hz));
         let slowest = Section::new(SLOWEST_HZ, core::f64::consts::FRAC_1_SQRT_2, sample_rate_hz);
-        Ok(Self { settings, sample_rate_hz, sensation, slowest, bands })
+        let keep = libm::exp(-1.0 / (settings.rate_hz * MEMORY_S));
+        Ok(Self { settings, sample_rate_hz, sensation, slowest, bands, keep })
     }
 
     /// Points a second, Hz.
@@ -152,16 +157,20 @@ impl PointState {
     }
 
     fn end_of_hop(&mut self, design: &PointDesign) -> Point {
-        let point = point(design, &self.hop, &self.before, self.tick);
-        self.before = core::mem::take(&mut self.hop);
+        let hop = core::mem::take(&mut self.hop);
+        for index in 0..BANDS_HZ.len() {
+            self.smooth.band[index] = hop.band[index] + design.keep * self.smooth.band[index];
+            self.smooth.low[index] = hop.low[index] + design.keep * self.smooth.low[index];
+        }
+        let felt = (hop.felt + self.smooth.felt) / (hop.count + self.smooth.count);
+        (self.smooth.felt, self.smooth.count) = (hop.felt, hop.count);
+        let point = point(design, &self.smooth, felt, self.tick);
         self.tick += 1;
         point
     }
 }
 
-fn point(design: &PointDesign, hop: &Energies, before: &Energies, tick: u64) -> Point {
-    let count = hop.count + before.count;
-    let felt = (hop.felt + before.felt) / count;
+fn point(design: &PointDesign, bands: &Energies, felt: f64, tick: u64) -> Point {
     let [lowest, highest] = design.settings.band_hz;
     if felt < SILENCE * SILENCE {
         return Point { tick, frequency_hz: libm::sqrt(lowest * highest), ..Point::default() };
@@ -169,10 +178,10 @@ fn point(design: &PointDesign, hop: &Energies, before: &Energies, tick: u64) -> 
     let mut frequency_hz = BANDS_HZ;
     let mut share = [0.0; BANDS_HZ.len()];
     for (index, centre_hz) in BANDS_HZ.into_iter().enumerate() {
-        let (band, low) = (hop.band[index] + before.band[index], hop.low[index] + before.low[index]);
-        // Within the half octave; a neighbour's tone is the neighbour's.
-        let at = libm::sqrt(band / low.max(1e-300)).clamp(0.84, 1.19);
-        frequency_hz[index] = centre_hz * at;
+        let (band, low) = (bands.band[index], bands.low[index]);
+        // A tone on a band's skirt is known by its own frequency, not by the band's.
+        let at = libm::sqrt(band / low.max(1e-300));
+        frequency_hz[index] = (centre_hz * at).clamp(SLOWEST_HZ, 1000.0);
         share[index] = band;
     }
     let all: f64 = share.iter().sum();
@@ -236,13 +245,16 @@ mod tests {
             for frequency_hz in [60.0, 75.0, 97.0, 130.0, 155.0, 190.0] {
                 let points = points(QUEST, rate_hz, sine(frequency_hz, 0.3, rate_hz));
                 assert_eq!(points.len(), 200);
+                // A hop holds half a period of what is slow, so a point by itself is off by a decibel; their mean is not.
                 for point in &points[50..] {
-                    assert!((point.amplitude / 0.3 - 1.0).abs() < 0.08, "{rate_hz} {frequency_hz} {point:?}");
+                    assert!((point.amplitude / 0.3 - 1.0).abs() < 0.15, "{rate_hz} {frequency_hz} {point:?}");
                     assert!(
                         (point.frequency_hz / frequency_hz - 1.0).abs() < 0.06,
                         "{frequency_hz} {point:?}"
                     );
                 }
+                let mean = points[50..].iter().map(|point| point.amplitude).sum::<f64>() / 150.0;
+                assert!((mean / 0.3 - 1.0).abs() < 0.04, "{rate_hz} {frequency_hz}: {mean}");
             }
         }
     }

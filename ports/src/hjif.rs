@@ -54,7 +54,7 @@ pub fn write(
     let kept = keyframes::keyframes(samples, most, wanted_snr_db);
     // As the file says them: rounded to five digits.
     let frames: Vec<(usize, f64)> =
-        kept.iter().map(|&n| (n, ((samples[n] * 1e5).round() / 1e5).clamp(-1.0, 1.0))).collect();
+        kept.iter().map(|&(n, value)| (n, ((value * 1e5).round() / 1e5).clamp(-1.0, 1.0))).collect();
     let mut list = String::with_capacity(60 * frames.len());
     for (tick, value) in &frames {
         let comma = if list.is_empty() { "" } else { "," };

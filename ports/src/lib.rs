@@ -23,6 +23,7 @@
 
 pub mod acf;
 pub mod ahap;
+mod ahap_reader;
 pub mod android;
 pub mod clip;
 pub mod device;
@@ -32,11 +33,13 @@ pub mod felt;
 pub mod haptic_file;
 pub mod hjif;
 pub mod keyframes;
+mod nodes;
 pub mod oscillator;
 pub mod reduction;
 pub mod resample;
 pub mod rumble;
 pub mod score;
+mod thinning;
 mod tone_track;
 mod wave_track;
 pub mod xr;

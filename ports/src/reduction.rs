@@ -21,8 +21,10 @@ use crate::clip::{About, AmplitudePoint, Clip, Emphasis, FrequencyPoint, LONGEST
 use crate::device::Device;
 use crate::error::{PortError, within};
 use crate::felt::{RATE_HZ, felt, power, weight};
+use crate::nodes::Nodes;
 use crate::resample::resampled;
 use crate::score::{Reference, Score, third_octaves};
+use crate::thinning::thinned;
 use crate::tone_track::{Choice, ToneTrack};
 use crate::{oscillator, wave_track};
 
@@ -146,7 +148,11 @@ fn most_taken(ways: &[usize; 3]) -> Way {
     Way::ALL[(0..3).fold(0, |most, k| if ways[k] > ways[most] { k } else { most })]
 }
 
-fn checked(samples: &[f64], rate_hz: f64) -> Result<Vec<f64>, PortError> {
+/// Samples at 8 kHz, when they are some and all of them are numbers.
+///
+/// # Errors
+/// As [`reduce`].
+pub fn checked(samples: &[f64], rate_hz: f64) -> Result<Vec<f64>, PortError> {
     within("rate", rate_hz, [100.0, 1e6])?;
     if samples.len() < 2 {
         return Err(PortError::new("samples", format!("are {} only", samples.len()), "must last longer"));
@@ -193,58 +199,6 @@ fn finish(
         }
     }
     Ok(Reduction { clip: clip.checked()?, gain, way, original, left, score })
-}
-
-/// Points of both envelopes before they are thinned.
-#[derive(Debug, Clone, Default)]
-struct Nodes {
-    time_s: Vec<f64>,
-    amplitude: Vec<f64>,
-    hz: Vec<f64>,
-    strokes: Vec<(f64, Emphasis)>,
-}
-
-impl Nodes {
-    fn append(&mut self, other: Self, from_s: f64) {
-        let skip = usize::from(!self.time_s.is_empty());
-        self.time_s.extend(other.time_s.iter().skip(skip).map(|t| t + from_s));
-        self.amplitude.extend(other.amplitude.iter().skip(skip));
-        self.hz.extend(other.hz.iter().skip(skip));
-        self.strokes.extend(other.strokes.iter().map(|(t, e)| (t + from_s, *e)));
-    }
-
-    fn peak(&self) -> f64 {
-        let strokes = self.strokes.iter().map(|(_, e)| e.amplitude);
-        self.amplitude.iter().copied().chain(strokes).fold(0.0, f64::max)
-    }
-
-    fn clip(&self, gain: f64, device: &Device, about: &About) -> Clip {
-        let rounded = |x: f64| (x * 1e6).round() / 1e6;
-        let times = || self.time_s.iter().map(|t| rounded(*t));
-        let frequency = times().zip(&self.hz);
-        let frequency = frequency
-            .map(|(time_s, hz)| FrequencyPoint { time_s, frequency: rounded(device.frequency(*hz)) })
-            .collect();
-        let mut amplitude: Vec<AmplitudePoint> = times()
-            .zip(&self.amplitude)
-            .map(|(time_s, a)| AmplitudePoint {
-                time_s,
-                amplitude: rounded((gain * a).min(1.0)),
-                emphasis: None,
-            })
-            .collect();
-        for (begins_s, stroke) in &self.strokes {
-            // At the nearest node, so that a stroke costs no point.
-            let next = amplitude.partition_point(|p| p.time_s < *begins_s).min(amplitude.len() - 1);
-            let before = next.saturating_sub(1);
-            let nearer =
-                (amplitude[next].time_s - begins_s).abs() <= (amplitude[before].time_s - begins_s).abs();
-            let point = &mut amplitude[if nearer { next } else { before }];
-            let level = rounded((gain * stroke.amplitude).min(1.0)).max(point.amplitude);
-            point.emphasis = Some(Emphasis { amplitude: level, frequency: rounded(stroke.frequency) });
-        }
-        Clip { amplitude, frequency, about: about.clone() }
-    }
 }
 
 /// One stretch of samples on its way to nodes.
@@ -426,39 +380,4 @@ fn levels_at(felt: &[f64], time_s: &[f64]) -> Vec<f64> {
             if sum > 0.0 { (energy / sum).sqrt() } else { 0.0 }
         })
         .collect()
-}
-
-/// Both envelopes without the points that lie within a tolerance of the line between their neighbours.
-fn thinned(clip: &Clip, tolerance: f64) -> Clip {
-    let peak = clip.amplitude.iter().map(|p| p.amplitude).fold(0.0, f64::max);
-    let levels: Vec<(f64, f64)> = clip.amplitude.iter().map(|p| (p.time_s, p.amplitude)).collect();
-    let mut keep = kept(&levels, tolerance * peak);
-    keep.iter_mut().zip(&clip.amplitude).for_each(|(keep, p)| *keep |= p.emphasis.is_some());
-    let tones: Vec<(f64, f64)> = clip.frequency.iter().map(|p| (p.time_s, p.frequency)).collect();
-    let keep_tones = kept(&tones, tolerance);
-    let mut some = keep.iter();
-    let mut some_tones = keep_tones.iter();
-    let mut thin = clip.clone();
-    thin.amplitude.retain(|_| some.next().copied().unwrap_or(true));
-    thin.frequency.retain(|_| some_tones.next().copied().unwrap_or(true));
-    thin
-}
-
-/// Which points the line needs (Ramer, Douglas, Peucker, distances along the values).
-fn kept(points: &[(f64, f64)], tolerance: f64) -> Vec<bool> {
-    let mut keep = vec![false; points.len()];
-    let Some(last) = points.len().checked_sub(1) else { return keep };
-    (keep[0], keep[last]) = (true, true);
-    let mut spans = vec![(0, last)];
-    while let Some((from, to)) = spans.pop() {
-        let (a, b) = (points[from], points[to]);
-        let slope = if b.0 > a.0 { (b.1 - a.1) / (b.0 - a.0) } else { 0.0 };
-        let off = |i: usize| (points[i].1 - a.1 - slope * (points[i].0 - a.0)).abs();
-        let worst = (from + 1..to).fold(from, |worst, i| if off(i) > off(worst) { i } else { worst });
-        if worst > from && off(worst) > tolerance {
-            keep[worst] = true;
-            spans.extend([(from, worst), (worst, to)]);
-        }
-    }
-    keep
 }
