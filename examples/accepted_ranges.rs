@@ -32,6 +32,8 @@ fn main() {
     }
     println!("{count} scenes: {refused} refused, {broken} not finite, {} rendered", forces.len());
     let fingertips: Vec<_> = forces.iter().copied().filter(|(_, force)| force.fingertip).collect();
+    let untold = forces.iter().filter(|(_, force)| force.above > 1.0 && force.blows == 0).count();
+    println!("above what is allowed and not counted as a blow: {untold}");
     tell("every probe", &forces, |force| force.above);
     tell("the fingertip", &fingertips, |force| force.above);
     tell("every probe, landings added", &forces, |force| force.above_landing);

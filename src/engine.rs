@@ -60,7 +60,7 @@ impl Config {
         let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies) + self.max_ports);
         let renderer = Renderer::new(&self, kernel, probe, from_game, to_game, counters.clone())?;
         let clock = Clock::new(self.clock, self.inner_rate_hz());
-        let scene = Scene::new(self, clock, to_audio, from_audio, counters);
+        let scene = Scene::new(self, kernel, clock, to_audio, from_audio, counters);
         Ok(Engine {
             scene,
             renderer,

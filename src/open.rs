@@ -8,12 +8,16 @@ use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
 pub use crate::made::edit::{Edits, MakeSurface};
 use crate::made::maker::{self, Maker};
-use crate::{AudioBus, Config, Integrator, Isa, PathMode};
+use crate::model::bus::AudioBus;
+use crate::model::config::Config;
+use asperity_dsp::micro_contact::Integrator;
+use asperity_dsp::modal_bank::Isa;
+use asperity_dsp::trajectory::PathMode;
 use asperity_texture::raster::Raster;
 pub use change::Changes;
 use levels::Levels;
 use std::cell::RefCell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How a scene is opened, and what may be set whatever the scene file says.
 #[derive(Clone, Copy)]
@@ -34,6 +38,9 @@ pub struct Overrides<'a> {
     pub live: bool,
     /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names them.
     pub own: &'a [(&'a str, MakeSource)],
+    /// For [`Scene::apply`](crate::Scene::apply): files that hold something else than before, though the scene names them alike. What is made
+    /// from them is made anew.
+    pub touched: &'a [PathBuf],
 }
 
 impl Default for Overrides<'_> {
@@ -47,6 +54,7 @@ impl Default for Overrides<'_> {
             kernel: None,
             live: false,
             own: &[],
+            touched: &[],
         }
     }
 }

@@ -86,7 +86,7 @@ macro_rules! parameters {
     })+) => {
         $($(#[doc = $doc])+ pub mod $module {
             #[allow(unused_imports, reason = "not every table needs all")]
-            use super::{Changes::{Anew, Event, Opened}, *};
+            use crate::parameters::{Changes::{Anew, Event, Opened}, *};
             $(#[doc = $meaning]
             pub const $name: Parameter =
                 Parameter::new($table, $key, $unit, $range, $meaning)$(.$method($($value)?))*;)+

@@ -76,7 +76,7 @@ impl Scene {
     fn designed_anew(&self) -> Result<New, AddError> {
         let config: &Config = &self.config;
         config.check().map_err(design)?;
-        let (kernel, inner_hz) = (config.kernel().map_err(design)?, config.inner_rate_hz());
+        let (kernel, inner_hz) = (self.kernel, config.inner_rate_hz());
         let probe = PreparedProbe::new(&config.probe, &config.probe, config.integrator, inner_hz, kernel)?;
         let (to_audio, from_game) = ring::channel(config.queue_capacity);
         let (to_game, from_audio) =

@@ -112,7 +112,8 @@ fn a_body_that_changes_its_bus_while_it_sounds_makes_no_step_and_any_split_gives
         .map(|i| f64::from((moves[0][i] + moves[1][i] - stays[0][i]).abs()))
         .fold(0.0, f64::max);
     assert!(worst <= 1e-6 * peak(&stays[0]), "{worst}");
-    assert!(moves[0][4096 + 1024..].iter().all(|x| *x == 0.0));
+    // One pole of 5 ms is there, to the bit, within a tenth of a second.
+    assert!(moves[0][4096 + 4410..].iter().all(|x| *x == 0.0));
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Ports: what they give is what leaves, whoever reads late is told, and the audio half does not notice.
 
 mod common;
+#[path = "common/counting.rs"]
+mod counting;
 
 use asperity::live::ports::{Feed, Force, ForceMeans, ForceRow, Of, Opened, Outlet, Pcm, Picture};
 use asperity::live::ports::{Levels, Point, PointSettings, Points, PortKind, PortSetup, Tone};
@@ -11,41 +13,7 @@ use asperity::{
 };
 use asperity_dsp::vibration_points::{PointDesign, PointState};
 use common::{bar, grating, plate};
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
-struct Counting;
-
-thread_local! {
-    static WATCHED: Cell<bool> = const { Cell::new(false) };
-    static TOUCHED: Cell<u64> = const { Cell::new(0) };
-}
-
-fn note() {
-    if WATCHED.with(Cell::get) {
-        TOUCHED.with(|touched| touched.set(touched.get() + 1));
-    }
-}
-
-// SAFETY: every call is passed on to the system allocator unchanged; the counters are plain
-// thread-local cells without destructors, so they may be touched inside an allocator.
-#[allow(unsafe_code)]
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        note();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        note();
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
+use counting::heap_operations;
 
 /// A hand on each of two channels, a bar on the second bus, three fingers: two on channel 0, one on 1.
 struct Game {
@@ -214,11 +182,7 @@ fn a_reader_that_stalls_for_two_seconds_loses_the_oldest_is_told_and_costs_the_a
         game.report();
         while (game.renderer.position() as f64) < f64::from(game.step) / 60.0 * 44_100.0 {
             let ([a, b], [c, d]) = (&mut haptic, &mut audio);
-            TOUCHED.with(|count| count.set(0));
-            WATCHED.with(|watched| watched.set(true));
-            game.renderer.render(&mut [a, b], &mut [c, d]);
-            WATCHED.with(|watched| watched.set(false));
-            touched += TOUCHED.with(Cell::get);
+            touched += heap_operations(|| game.renderer.render(&mut [a, b], &mut [c, d]));
             left.extend(haptic[0]);
         }
     }

@@ -2,72 +2,15 @@
 //! swapped and removed while they sound, voices stolen, contacts lapsing, hostile numbers.
 
 mod common;
+#[path = "common/counting.rs"]
+mod counting;
 #[path = "common/random_game.rs"]
 mod random_game;
 
 use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Renderer, Scene};
 use common::{bar, plate};
+use counting::{heap_operations, held_bytes};
 use random_game::RandomGame;
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
-
-struct Counting;
-
-thread_local! {
-    static WATCHED: Cell<bool> = const { Cell::new(false) };
-    static TOUCHED: Cell<u64> = const { Cell::new(0) };
-    /// Bytes allocated less bytes freed on this thread.
-    static HELD: Cell<i64> = const { Cell::new(0) };
-}
-
-fn hold(bytes: i64) {
-    HELD.with(|held| held.set(held.get() + bytes));
-}
-
-fn note() {
-    if WATCHED.with(Cell::get) {
-        TOUCHED.with(|touched| touched.set(touched.get() + 1));
-    }
-}
-
-// SAFETY: every call is passed on to the system allocator unchanged; the counters are plain
-// thread-local cells without destructors, so they may be touched inside an allocator.
-#[allow(unsafe_code)]
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        note();
-        hold(layout.size() as i64);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        note();
-        hold(-(layout.size() as i64));
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        note();
-        hold(size as i64 - layout.size() as i64);
-        // SAFETY: the caller's promises are passed on.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-/// Heap operations of `work` on this thread.
-fn heap_operations(work: impl FnOnce()) -> u64 {
-    TOUCHED.with(|touched| touched.set(0));
-    WATCHED.with(|watched| watched.set(true));
-    work();
-    WATCHED.with(|watched| watched.set(false));
-    TOUCHED.with(Cell::get)
-}
-
 #[test]
 fn the_counting_allocator_counts() {
     assert!(heap_operations(|| drop(std::hint::black_box(vec![1u8; 100]))) >= 2);
@@ -148,7 +91,7 @@ fn a_flood_of_a_million_events_a_second_for_ten_seconds_needs_no_more_memory() {
     let (mut haptic, mut audio) = ([0.0f32; 256], [0.0f32; 256]);
     let (mut reported, mut handed_back, mut touched) = (contacts, 0u64, 0);
     let mut step = 0.0f64;
-    let held = HELD.with(Cell::get);
+    let held = held_bytes();
     let mut most = 0;
     for microsecond in 0..10_000_000u64 {
         let time_s = microsecond as f64 * 1e-6;
@@ -156,7 +99,7 @@ fn a_flood_of_a_million_events_a_second_for_ten_seconds_needs_no_more_memory() {
         reported += 1;
         handed_back += u64::from(scene.report(time_s, event).is_err());
         if microsecond % 64 == 0 {
-            most = most.max(HELD.with(Cell::get) - held);
+            most = most.max(held_bytes() - held);
         }
         while (renderer.position() as f64) < time_s * renderer.sample_rate_hz() {
             touched += heap_operations(|| renderer.render(&mut [&mut haptic], &mut [&mut audio]));

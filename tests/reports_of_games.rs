@@ -5,7 +5,7 @@ mod common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::{Options, Render};
-use asperity::{ContactBlock, Extent, Surface, Tap, Wrap};
+use asperity::{Config, ContactBlock, Extent, Probe, SilentBecause, Surface, Tap, Wrap, probe_by_name};
 use asperity_dsp::rng::Rng;
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::raster::Raster;
@@ -239,6 +239,20 @@ fn a_finger_that_teleports_at_every_report_is_quiet_and_ends() {
     );
     assert!(take.stats.jumps > 100);
     assert_eq!(take.stats.contacts, 0);
+}
+
+#[test]
+fn a_heavy_stick_that_leaps_over_ribs_is_told_with_its_remedy_and_a_finger_is_not() {
+    let over_ribs = |probe: Probe, force_n: f64| {
+        let config = Config { probe, ..si_config() };
+        let ribs = common::grating(2e-3, 0.5e-3);
+        let take = common::render(config, ribs, &stroke(SIDE_M, 0.2, force_n, 1.0), &Options::default());
+        (take.stats.blows, take.why_silent.iter().any(|told| matches!(told, SilentBecause::Leapt { .. })))
+    };
+    let (blows, told) = over_ribs(probe_by_name("rigid").unwrap(), 0.1);
+    println!("{blows} blows");
+    assert!(blows > 5 && told, "{blows} blows, told: {told}");
+    assert_eq!(over_ribs(Probe::default(), FORCE_N), (0, false));
 }
 
 #[test]

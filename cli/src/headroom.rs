@@ -11,7 +11,9 @@ use crate::output;
 use crate::progress::Progress;
 use asperity::{Config, Integrator, Probe};
 use asperity_dsp::micro_contact::{ContactSample, MicroContact};
-use asperity_dsp::modal_bank::{GroupOptions, GroupState, Kernel, LANES, design_group, sort_by_decay};
+use asperity_dsp::modal_bank::{
+    GroupOptions, GroupState, Inputs, Kernel, ModalBank, design_groups, sort_by_decay,
+};
 use asperity_dsp::rng::Rng;
 use clap::Args;
 use serde::Serialize;
@@ -216,20 +218,18 @@ fn block_ns(load: Load) -> Result<f64, CliError> {
 fn bank(count: usize) -> Result<BankRow, CliError> {
     let mut modes = modes(count).modes;
     sort_by_decay(&mut modes);
-    let groups = modes
-        .chunks(LANES)
-        .map(|chunk| design_group(chunk, SAMPLE_RATE_HZ, &GroupOptions::IMPULSE_RING))
+    let groups = design_groups(&modes, SAMPLE_RATE_HZ, &GroupOptions::IMPULSE_RING)
         .collect::<Result<Vec<_>, _>>()
         .map_err(refused)?;
-    let mut states = vec![GroupState::default(); groups.len()];
+    let states = vec![GroupState::REST; groups.len()];
+    let mut bank = ModalBank::new(Kernel::detect(), groups, states);
     let mut rng = Rng::new(1);
     let force: Vec<f32> = (0..BLOCK_FRAMES).map(|_| 1e-6 * (rng.uniform() as f32 - 0.5)).collect();
     let mut out = [0.0f32; BLOCK_FRAMES];
-    let kernel = Kernel::detect();
     let mut at = 0;
     let ns = ns_spread(BLOCK_FRAMES * count, || {
         out.fill(0.0);
-        kernel.render(at, &groups, &mut states, &force, &mut out);
+        bank.render(at, Inputs::One(&force), &mut out);
         at += BLOCK_FRAMES as u64;
         std::hint::black_box(&out);
     });

@@ -2,7 +2,7 @@
 //! The comparison with C in one run is `examples/modal_speed.rs`.
 
 use asperity_dsp::modal_bank::{
-    Awake, GroupOptions, GroupState, Isa, Kernel, LANES, ModeGroup, SLEEP_AMPLITUDE, design_group,
+    GroupOptions, GroupState, Inputs, Isa, Kernel, ModalBank, ModeGroup, design_groups,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -18,7 +18,7 @@ fn bank(modes: usize) -> Vec<ModeGroup> {
         phase_rad: 0.0,
     };
     let all: Vec<Mode> = (0..modes).map(mode).collect();
-    all.chunks(LANES).map(|m| design_group(m, 44_100.0, &GroupOptions::IMPULSE_RING).unwrap()).collect()
+    design_groups(&all, 44_100.0, &GroupOptions::IMPULSE_RING).collect::<Result<_, _>>().unwrap()
 }
 
 fn modal_bank(c: &mut Criterion) {
@@ -30,19 +30,22 @@ fn modal_bank(c: &mut Criterion) {
         group.throughput(Throughput::Elements((modes * BLOCK) as u64));
         for kernel in [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512].into_iter().filter_map(Kernel::find)
         {
-            let (mut states, mut out, mut at) = (vec![GroupState::REST; groups.len()], vec![0.0; BLOCK], 0);
+            let states = vec![GroupState::REST; groups.len()];
+            let mut bank = ModalBank::new(kernel, &groups[..], states);
+            let (mut out, mut at) = (vec![0.0; BLOCK], 0);
             group.bench_function(format!("{:?}, {modes} modes", kernel.isa()), |b| {
                 b.iter(|| {
-                    kernel.render(at, &groups, &mut states, &force, &mut out);
+                    bank.render(at, Inputs::One(&force), &mut out);
                     at += BLOCK as u64;
                 });
             });
         }
-        let (mut states, mut out, mut at) = (vec![GroupState::REST; groups.len()], vec![0.0; BLOCK], 0);
-        let (mut awake, kernel, silence) = (Awake::default(), Kernel::detect(), vec![0.0; BLOCK]);
+        let states = vec![GroupState::REST; groups.len()];
+        let mut bank = ModalBank::new(Kernel::detect(), &groups[..], states);
+        let (mut out, mut at, silence) = (vec![0.0; BLOCK], 0, vec![0.0; BLOCK]);
         group.bench_function(format!("rung out, {modes} modes"), |b| {
             b.iter(|| {
-                awake.render(kernel, at, &groups, &mut states, &silence, &mut out, SLEEP_AMPLITUDE);
+                bank.render(at, Inputs::One(&silence), &mut out);
                 at += BLOCK as u64;
             });
         });

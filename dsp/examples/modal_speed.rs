@@ -7,7 +7,7 @@
 //! about 1 ms, so that other work on the machine hurts neither side alone.
 
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Input, Isa, Kernel, LANES, LaneGains, ModeGroup, design_group, groups_for,
+    GroupOptions, GroupState, Input, Inputs, Isa, Kernel, ModalBank, ModeGroup, design_groups, lane_gains,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -26,14 +26,15 @@ fn bank(modes: usize) -> Vec<ModeGroup> {
             phase_rad: 0.0,
         })
         .collect();
-    all.chunks(LANES).map(|m| design_group(m, 44_100.0, &GroupOptions::IMPULSE_RING).unwrap()).collect()
+    design_groups(&all, 44_100.0, &GroupOptions::IMPULSE_RING).collect::<Result<_, _>>().unwrap()
 }
 
 /// Mode-samples per nanosecond of one segment; `inputs` = 0 is the shared input.
 fn segment(kernel: Kernel, modes: usize, inputs: usize, rng: &mut Rng) -> f64 {
     let groups = bank(modes);
-    let gains = vec![LaneGains([0.5; LANES]); groups_for(modes)];
-    let mut states = vec![GroupState::REST; groups.len()];
+    let gains: Vec<_> = lane_gains(vec![0.5; modes]).collect();
+    let states = vec![GroupState::REST; groups.len()];
+    let mut bank = ModalBank::new(kernel, groups, states);
     let force: Vec<f32> = (0..BLOCK).map(|_| rng.uniform() as f32 - 0.5).collect();
     let several = vec![Input { impulses: &force, gains: &gains }; inputs];
     let mut out = vec![0.0_f32; BLOCK];
@@ -41,11 +42,8 @@ fn segment(kernel: Kernel, modes: usize, inputs: usize, rng: &mut Rng) -> f64 {
     let start = Instant::now();
     for b in 0..blocks {
         let at = (b * BLOCK) as u64;
-        if inputs == 0 {
-            kernel.render(at, &groups, &mut states, &force, &mut out);
-        } else {
-            kernel.render_mixed(at, &groups, &mut states, &several, &mut out);
-        }
+        let inputs = if inputs == 0 { Inputs::One(&force) } else { Inputs::Placed(&several) };
+        bank.render(at, inputs, &mut out);
     }
     let ns = start.elapsed().as_nanos() as f64;
     assert!(out.iter().all(|x| x.is_finite()));

@@ -3,9 +3,8 @@
 use asperity_dsp::actuator::{
     Channel, ChannelControl, ChannelOptions, ChannelState, ContactOutput, ContactOutputState, DeviceModel,
     DeviceProfile, DeviceState, Equaliser, EqualiserState, PeakLimiter, PeakLimiterState, Protection,
-    ProtectionState, Quantity, RELEASE_S,
+    ProtectionState, Quantity,
 };
-use asperity_dsp::butterworth::{Butterworth, State};
 use asperity_dsp::rng::Rng;
 use std::f64::consts::PI;
 
@@ -35,7 +34,7 @@ fn amplitude(f: f64, rate: f64, mut run: impl FnMut(f64) -> f64) -> f64 {
 }
 
 #[test]
-fn a_contact_begins_without_a_step_and_ends_at_exactly_zero() {
+fn a_contact_begins_without_a_step() {
     let rate = 44_100.0;
     for quantity in [Quantity::Displacement, Quantity::Acceleration] {
         let design = ContactOutput::new(quantity, 10.0, rate).unwrap();
@@ -43,22 +42,13 @@ fn a_contact_begins_without_a_step_and_ends_at_exactly_zero() {
         let velocity = |n: usize| 2e-5 * 2.0 * PI * 80.0 * (2.0 * PI * 80.0 * n as f64 / rate).sin();
         let mut state = ContactOutputState::begin(&design, pad(0), 0.0);
         assert_eq!(state.tick(&design, pad(0), 0.0), 0.0);
-        let mut last = 0.0;
-        let mut largest = 0.0_f64;
-        for n in 1..3_000 {
-            last = state.tick(&design, pad(n), velocity(n));
-            largest = largest.max(last.abs());
+        let stroke: Vec<f64> = (1..3_000).map(|n| state.tick(&design, pad(n), velocity(n))).collect();
+        let largest = stroke.iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+        assert!(largest > 0.0);
+        // The acceleration of this stroke is there from its first sample on; its displacement is not.
+        if quantity == Quantity::Displacement {
+            assert!(stroke[0].abs() < 0.01 * largest, "{} of {largest}", stroke[0]);
         }
-        let mut steps = 0;
-        while !state.is_over() {
-            let y = state.tick_released(&design);
-            assert!((y - last).abs() <= 2e-3 * largest, "no step above −54 dB of the stroke within the fade");
-            last = y;
-            steps += 1;
-        }
-        assert_eq!(last, 0.0);
-        assert!((f64::from(steps) / rate - RELEASE_S).abs() < 1e-3);
-        assert_eq!(state.tick_released(&design), 0.0);
     }
 }
 
@@ -113,37 +103,6 @@ fn device_and_high_pass_agree_with_scipy() {
     let passed: Vec<f64> = (0..4_000).map(|n| state.tick(&design, pad(n), 0.0)).collect();
     for (n, expected) in HIGH_PASS {
         assert!((passed[n] - expected).abs() < 1e-14, "sample {n}: {}", passed[n]);
-    }
-}
-
-#[test]
-fn a_contact_beside_another_high_pass_gives_the_bits_of_each_alone() {
-    let rate = 44_100.0;
-    let other = Butterworth::new(900.0, rate).unwrap();
-    for (quantity, highpass_hz) in
-        [(Quantity::Displacement, 10.0), (Quantity::Acceleration, 40.0), (Quantity::Displacement, 0.0)]
-    {
-        let design = ContactOutput::new(quantity, highpass_hz, rate).unwrap();
-        let mut rng = Rng::new(7);
-        let input: Vec<_> =
-            (0..500).map(|_| ([1e-4 * rng.uniform(), rng.uniform() - 0.5], 3.0 * rng.uniform())).collect();
-        let mut alone = (ContactOutputState::begin(&design, 5e-5, 0.0), State::settled_at(1.0));
-        let mut beside = alone;
-        // In two runs, because a run may end anywhere.
-        for run in [0..123, 123..500] {
-            let first = run.start;
-            beside.0.run_beside(
-                &design,
-                (&other, &mut beside.1),
-                input[run].iter().copied(),
-                |n, felt, passed| {
-                    let ([pad_m, velocity_m_s], force_n) = input[first + n];
-                    assert_eq!(felt, alone.0.tick(&design, pad_m, velocity_m_s));
-                    assert_eq!(passed, alone.1.tick(&other, force_n).high);
-                },
-            );
-        }
-        assert_eq!(beside, alone);
     }
 }
 

@@ -5,7 +5,7 @@ use asperity_dsp::hertz::{
     spread_force, take,
 };
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Kernel, ReferenceMode, ReferenceState, design_group,
+    GroupOptions, GroupState, Inputs, Kernel, ModalBank, ReferenceMode, ReferenceState, design_group,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -256,7 +256,8 @@ fn an_impact_is_equally_loud_at_every_rate() {
             let samples = (0.25 * rate) as usize;
             let (mut impulses, mut out) = (vec![0.0; samples], vec![0.0; samples]);
             take(&mut ring, 0, &mut impulses);
-            Kernel::detect().render(0, &[group], &mut [GroupState::REST], &impulses, &mut out);
+            let mut bank = ModalBank::new(Kernel::detect(), [group], [GroupState::REST]);
+            bank.render(0, Inputs::One(&impulses), &mut out);
             levels.push(10.0 * (out.iter().map(|y| f64::from(*y).powi(2)).sum::<f64>() / rate).log10());
         }
         println!("{contact_time_s} s: {levels:?}");

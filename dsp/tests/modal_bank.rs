@@ -1,8 +1,9 @@
 //! The modal bank against closed forms, against figures of scipy, and against its own reference.
 
 use asperity_dsp::modal_bank::{
-    Awake, Culling, GRID_SAMPLES, GroupOptions, GroupState, Input, Isa, Kernel, LANES, LaneGains, ModeGroup,
-    ReferenceMode, ReferenceState, SLEEP_AMPLITUDE, audible, design_group, energy, retune, sort_by_decay,
+    Culling, GRID_SAMPLES, GroupOptions, GroupState, Input, Inputs, Isa, Kernel, LANES, LaneGains, ModalBank,
+    ModeGroup, ReferenceMode, ReferenceState, SLEEP_AMPLITUDE, audible, design_group, design_groups,
+    lane_gains, sort_by_decay,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -20,7 +21,7 @@ fn mode(frequency_hz: f64, decay_per_s: f64, amplitude: f64, phase_rad: f64) -> 
 }
 
 fn design(modes: &[Mode], rate_hz: f64) -> Vec<ModeGroup> {
-    modes.chunks(LANES).map(|m| design_group(m, rate_hz, &PLAIN).unwrap()).collect()
+    design_groups(modes, rate_hz, &PLAIN).collect::<Result<_, _>>().unwrap()
 }
 
 /// A seeded body: frequencies spread over the audible band, decays that grow with frequency.
@@ -34,6 +35,11 @@ fn body(count: usize, rng: &mut Rng) -> Vec<Mode> {
         .collect()
 }
 
+/// A bank at rest that rings on to the last bit.
+fn bank(kernel: Kernel, groups: &[ModeGroup]) -> ModalBank<&[ModeGroup], Vec<GroupState>> {
+    ModalBank::new(kernel, groups, vec![GroupState::REST; groups.len()]).sleeping_below(0.0)
+}
+
 /// Renders `impulses` from absolute sample `first` in blocks whose lengths `next` gives.
 fn render(
     kernel: Kernel,
@@ -42,18 +48,12 @@ fn render(
     first: u64,
     mut next: impl FnMut() -> usize,
 ) -> Vec<f32> {
-    let mut states = vec![GroupState::REST; groups.len()];
+    let mut bank = bank(kernel, groups);
     let mut out = vec![0.0; impulses.len()];
     let mut at = 0;
     while at < out.len() {
         let len = next().min(out.len() - at);
-        kernel.render(
-            first + at as u64,
-            groups,
-            &mut states,
-            &impulses[at..at + len],
-            &mut out[at..at + len],
-        );
+        bank.render(first + at as u64, Inputs::One(&impulses[at..at + len]), &mut out[at..at + len]);
         at += len;
     }
     out
@@ -273,7 +273,7 @@ fn any_split_gives_the_same_bits_with_gained_inputs_too() {
             .collect();
         for kernel in kernels() {
             let split = |size: usize| {
-                let (mut states, mut out) = (vec![GroupState::REST; groups.len()], vec![0.0; 1_000]);
+                let (mut bank, mut out) = (bank(kernel, &groups), vec![0.0; 1_000]);
                 for at in (0..1_000).step_by(size) {
                     let to = (at + size).min(1_000);
                     let feed: Vec<Input> = impulses
@@ -281,7 +281,7 @@ fn any_split_gives_the_same_bits_with_gained_inputs_too() {
                         .zip(&gains)
                         .map(|(impulses, gains)| Input { impulses: &impulses[at..to], gains })
                         .collect();
-                    kernel.render_mixed(77 + at as u64, &groups, &mut states, &feed, &mut out[at..to]);
+                    bank.render(77 + at as u64, Inputs::Placed(&feed), &mut out[at..to]);
                 }
                 out
             };
@@ -353,8 +353,8 @@ fn several_inputs_add_up_with_their_gains() {
         let feed: Vec<Input> =
             impulses.iter().zip(&gains).map(|(impulses, gains)| Input { impulses, gains }).collect();
         for kernel in kernels() {
-            let (mut states, mut out) = (vec![GroupState::REST; groups.len()], vec![0.0; 700]);
-            kernel.render_mixed(3, &groups, &mut states, &feed, &mut out);
+            let mut out = vec![0.0; 700];
+            bank(kernel, &groups).render(3, Inputs::Placed(&feed), &mut out);
             let db = error_db(&out, &exact);
             assert!(db < -100.0, "{inputs} inputs, {:?}: {db} dB", kernel.isa());
         }
@@ -362,18 +362,68 @@ fn several_inputs_add_up_with_their_gains() {
 }
 
 #[test]
+fn gains_that_change_while_something_slides_are_two_inputs_that_cross_fade_without_a_step() {
+    let (rate, samples) = (44_100.0, 8_820);
+    let mut rng = Rng::new(71);
+    let modes = body(37, &mut rng);
+    let groups = design(&modes, rate);
+    let ends: [Vec<f32>; 2] = std::array::from_fn(|_| modes.iter().map(|_| rng.normal() as f32).collect());
+    let gains = ends.each_ref().map(|gains| lane_gains(gains.iter().copied()).collect::<Vec<_>>());
+    let force: Vec<f32> = (0..samples).map(|_| 1e-6 * rng.normal() as f32).collect();
+    let way = |n: usize| (n as f32 / samples as f32).clamp(0.0, 1.0);
+    let leaving: Vec<f32> = force.iter().enumerate().map(|(n, u)| (1.0 - way(n)) * u).collect();
+    let coming: Vec<f32> = force.iter().enumerate().map(|(n, u)| way(n) * u).collect();
+    // Each mode by itself, driven by the force times its own gain at that sample.
+    let mut exact = vec![0.0; samples];
+    for (i, m) in modes.iter().enumerate() {
+        let (design, mut state) = (ReferenceMode::new(m, rate, &PLAIN).unwrap(), ReferenceState::default());
+        for (n, y) in exact.iter_mut().enumerate() {
+            let gain = (1.0 - way(n)) * ends[0][i] + way(n) * ends[1][i];
+            *y += design.tick(&mut state, f64::from(gain) * f64::from(force[n]));
+        }
+    }
+    for kernel in kernels() {
+        let mut out = vec![0.0; samples];
+        let feed =
+            [Input { impulses: &leaving, gains: &gains[0] }, Input { impulses: &coming, gains: &gains[1] }];
+        bank(kernel, &groups).render(0, Inputs::Placed(&feed), &mut out);
+        let db = error_db(&out, &exact);
+        assert!(db < -100.0, "{:?}: {db} dB", kernel.isa());
+    }
+}
+
+#[test]
+fn a_bank_begins_as_its_states_are_and_forgets_them_when_it_is_silenced() {
+    let groups = design(&body(40, &mut Rng::new(72)), 48_000.0);
+    let mut struck = ModalBank::new(Kernel::detect(), &groups[..], [GroupState::REST; 3]);
+    let mut impulses = [0.0; 64];
+    impulses[5] = 1e-3;
+    let (mut out, mut rest) = ([0.0; 64], [0.0; 64]);
+    struck.render(0, Inputs::One(&impulses), &mut out);
+    assert_eq!((struck.awake(), struck.groups()), (3, 3));
+    let mut copy = struck.clone();
+    copy.render(64, Inputs::One(&[0.0; 64]), &mut rest);
+    assert!(rest.iter().any(|y| *y != 0.0));
+    struck.silence();
+    assert!(struck.is_at_rest() && struck.awake() == 0 && struck.energy() == 0.0);
+    out.fill(0.0);
+    struck.render(64, Inputs::One(&[0.0; 64]), &mut out);
+    assert!(out.iter().all(|y| *y == 0.0));
+}
+
+#[test]
 fn output_is_added_to_what_is_there_and_unequal_slices_do_no_harm() {
     let groups = design(&[mode(500.0, 20.0, 1.0, 0.5)], 44_100.0);
-    let mut states = [GroupState::REST];
     let mut out = [1.0_f32; 8];
-    let kernel = Kernel::detect();
-    kernel.render(0, &groups, &mut states, &[0.0; 3], &mut out);
+    let mut bank = bank(Kernel::detect(), &groups);
+    bank.render(0, Inputs::One(&[0.0; 3]), &mut out);
     assert_eq!(out, [1.0; 8]);
-    kernel.render(0, &groups, &mut [], &[1.0; 8], &mut out);
-    kernel.render_mixed(0, &groups, &mut states, &[], &mut out);
-    kernel.render_mixed(0, &groups, &mut states, &[Input { impulses: &[1.0; 8], gains: &[] }], &mut out);
+    let mut without_memory = ModalBank::new(Kernel::detect(), &groups[..], []);
+    without_memory.render(0, Inputs::One(&[1.0; 8]), &mut out);
+    bank.render(0, Inputs::Placed(&[]), &mut out);
+    bank.render(0, Inputs::Placed(&[Input { impulses: &[1.0; 8], gains: &[] }]), &mut out);
     assert_eq!(out, [1.0; 8]);
-    kernel.render(u64::MAX - 2, &groups, &mut states, &[1.0; 8], &mut out);
+    bank.render(u64::MAX - 2, Inputs::One(&[1.0; 8]), &mut out);
     assert!(out.iter().all(|&y| y > 1.0));
 }
 
@@ -391,13 +441,12 @@ fn a_body_that_has_rung_out_sleeps_exactly_and_wakes_with_the_next_impulse() {
     impulses[samples - 1000] = 1e-2;
     let whole = render(Kernel::detect(), &groups, &impulses, 7, || 64);
     let sleepy = |block: usize| {
-        let (mut awake, mut states) = (Awake::default(), vec![GroupState::REST; groups.len()]);
+        let mut bank = ModalBank::new(Kernel::detect(), &groups[..], vec![GroupState::REST; groups.len()]);
         let (mut out, mut history) = (vec![0.0_f32; samples], vec![]);
         for at in (0..samples).step_by(block) {
             let to = (at + block).min(samples);
-            let (u, y) = (&impulses[at..to], &mut out[at..to]);
-            awake.render(Kernel::detect(), 7 + at as u64, &groups, &mut states, u, y, SLEEP_AMPLITUDE);
-            history.push((awake.groups(), states.iter().all(GroupState::is_at_rest)));
+            bank.render(7 + at as u64, Inputs::One(&impulses[at..to]), &mut out[at..to]);
+            history.push((bank.awake(), bank.is_at_rest()));
         }
         (out, history)
     };
@@ -422,7 +471,10 @@ fn no_state_is_ever_denormal_while_a_body_rings_out() {
     let mut modes = body(64, &mut rng);
     sort_by_decay(&mut modes);
     let groups = design(&modes, 44_100.0);
-    let (mut states, mut awake) = (vec![GroupState::REST; groups.len()], Awake::default());
+    // A bank a group: so that the quietest of them is seen.
+    let states = vec![GroupState::REST; groups.len()];
+    let alone = groups.iter().zip(states.chunks(1));
+    let mut banks: Vec<_> = alone.map(|(g, s)| ModalBank::new(Kernel::detect(), [*g], s.to_vec())).collect();
     let mut out = [0.0_f32; 64];
     for block in 0..20_000_u64 {
         let mut impulses = [0.0; 64];
@@ -430,36 +482,27 @@ fn no_state_is_ever_denormal_while_a_body_rings_out() {
             impulses[0] = 1e-3;
         }
         out.fill(0.0);
-        awake.render(
-            Kernel::detect(),
-            block * 64,
-            &groups,
-            &mut states,
-            &impulses,
-            &mut out,
-            SLEEP_AMPLITUDE,
-        );
-        assert!(out.iter().all(|y| *y == 0.0 || y.is_normal()));
-        let quiet = groups
-            .iter()
-            .zip(&states)
-            .all(|(g, s)| s.is_at_rest() || energy(g, s) >= 0.99 * SLEEP_AMPLITUDE * SLEEP_AMPLITUDE);
-        assert!(quiet, "block {block}");
+        for bank in &mut banks {
+            bank.render(block * 64, Inputs::One(&impulses), &mut out);
+            assert!(out.iter().all(|y| *y == 0.0 || y.is_normal()));
+            let rings = bank.energy() >= 0.99 * SLEEP_AMPLITUDE * SLEEP_AMPLITUDE;
+            assert!(bank.is_at_rest() || rings, "block {block}");
+        }
     }
-    assert_eq!(awake.groups(), 0);
+    assert!(banks.iter().all(|bank| bank.awake() == 0));
 }
 
 #[test]
 fn broken_states_are_put_to_rest() {
     let groups = design(&[mode(500.0, 1.0, 1.0, 0.5); 20], 44_100.0);
     for poison in [f32::NAN, f32::INFINITY, 1e38] {
-        let mut states = vec![GroupState::REST; 2];
+        let mut bank = bank(Kernel::detect(), &groups).sleeping_below(SLEEP_AMPLITUDE);
         let mut out = [0.0; 64];
         let mut impulses = [0.0; 64];
         impulses[3] = poison;
-        Kernel::detect().render(0, &groups, &mut states, &impulses, &mut out);
-        assert_eq!(Kernel::detect().settle(&groups, &mut states, SLEEP_AMPLITUDE), 0);
-        assert!(states.iter().all(GroupState::is_at_rest));
+        bank.render(0, Inputs::One(&impulses), &mut out);
+        assert_eq!(bank.awake(), 0);
+        assert!(bank.is_at_rest());
     }
 }
 
@@ -471,18 +514,17 @@ fn retuning_every_grid_step_adds_no_energy_and_no_jump() {
         let moved: Vec<Mode> =
             base.iter().map(|m| Mode { frequency_hz: m.frequency_hz * factor, ..*m }).collect();
         let pair = [design(&base, 44_100.0)[0], design(&moved, 44_100.0)[0]];
-        let mut state = [GroupState::REST];
+        let mut bank = ModalBank::new(Kernel::detect(), [pair[0]], [GroupState::REST]);
         let mut impulses = [0.0; GRID_SAMPLES as usize];
         impulses[0] = 1.0;
         let mut out = [0.0; GRID_SAMPLES as usize];
-        Kernel::detect().render(0, &pair[..1], &mut state, &impulses, &mut out);
-        let struck = energy(&pair[0], &state[0]);
+        bank.render(0, Inputs::One(&impulses), &mut out);
+        let struck = bank.energy();
         assert!((struck - 16.0).abs() < 1e-3, "16 undamped modes of amplitude 1: {struck}");
         for step in 0..1000_usize {
-            let (old, new) = (&pair[step % 2], &pair[(step + 1) % 2]);
-            retune(old, new, &mut state[0]);
-            Kernel::detect().render(0, &[*new], &mut state, &[0.0; 64], &mut out);
-            let now = energy(new, &state[0]);
+            bank.retune(0, &pair[(step + 1) % 2]);
+            bank.render(0, Inputs::One(&[0.0; 64]), &mut out);
+            let now = bank.energy();
             assert!((now / struck - 1.0).abs() < 1e-3, "x{factor}, step {step}: {now} of {struck}");
         }
     }
@@ -498,17 +540,17 @@ fn undamped_modes_keep_their_energy_for_three_million_samples() {
     for kernel in kernels() {
         for m in &modes {
             let groups = design(&[*m], rate);
-            let (mut state, mut out) = ([GroupState::REST], vec![0.0; 4096]);
+            let (mut bank, mut out) = (bank(kernel, &groups), vec![0.0; 4096]);
             let mut impulses = vec![0.0; 4096];
             impulses[0] = 1.0;
-            kernel.render(0, &groups, &mut state, &impulses, &mut out);
-            let struck = energy(&groups[0], &state[0]);
+            bank.render(0, Inputs::One(&impulses), &mut out);
+            let struck = bank.energy();
             impulses[0] = 0.0;
             let blocks = 730;
             for block in 1..blocks {
-                kernel.render(block * 4096, &groups, &mut state, &impulses, &mut out);
+                bank.render(block * 4096, Inputs::One(&impulses), &mut out);
             }
-            let gain = energy(&groups[0], &state[0]) / struck;
+            let gain = bank.energy() / struck;
             println!("{:?}, {} Hz: energy x {gain}", kernel.isa(), m.frequency_hz);
             assert!((gain - 1.0).abs() < 1e-2, "{:?}, {} Hz: energy x {gain}", kernel.isa(), m.frequency_hz);
         }
@@ -520,14 +562,14 @@ fn a_retuned_mode_goes_on_at_its_phase_with_its_new_frequency() {
     let rate = 44_100.0;
     let (old, new) = (mode(700.0, 10.0, 0.9, 0.4), mode(1_000.0, 30.0, 0.3, -1.0));
     let pair = [design(&[old], rate)[0], design(&[new], rate)[0]];
-    let mut state = [GroupState::REST];
+    let mut bank = ModalBank::new(Kernel::detect(), [pair[0]], [GroupState::REST]);
     let mut impulses = [0.0; 500];
     impulses[0] = 1.0;
     let mut out = [0.0; 500];
-    Kernel::detect().render(0, &pair[..1], &mut state, &impulses, &mut out);
-    retune(&pair[0], &pair[1], &mut state[0]);
+    bank.render(0, Inputs::One(&impulses), &mut out);
+    bank.retune(0, &pair[1]);
     out.fill(0.0);
-    Kernel::detect().render(500, &pair[1..], &mut state, &[0.0; 500], &mut out);
+    bank.render(500, Inputs::One(&[0.0; 500]), &mut out);
     let t0 = 499.0 / rate;
     let level = 0.9 * (-10.0 * t0).exp();
     let phase = 2.0 * PI * 700.0 * t0 + 0.4;

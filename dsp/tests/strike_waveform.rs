@@ -1,7 +1,9 @@
 //! A strike through ring, bank and first samples against the equation: the integrated Hertz force convolved with the modes.
 
 use asperity_dsp::hertz::{HertzPulse, take};
-use asperity_dsp::modal_bank::{FirstSamples, GroupOptions, GroupState, Kernel, LANES, design_group};
+use asperity_dsp::modal_bank::{
+    FirstSamples, GroupOptions, GroupState, Inputs, Kernel, ModalBank, design_groups,
+};
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
 use std::f64::consts::PI;
@@ -75,10 +77,10 @@ fn convolved(
 
 /// The same through the ring, the bank and the first samples.
 fn rendered(modes: &[Mode], contact_s: f64, onset: f64, rate_hz: f64, count: usize) -> Vec<f64> {
-    let options = GroupOptions::IMPULSE_RING;
-    let groups: Vec<_> =
-        modes.chunks(LANES).map(|chunk| design_group(chunk, rate_hz, &options).unwrap()).collect();
-    let mut states = vec![GroupState::default(); groups.len()];
+    let groups = design_groups(modes, rate_hz, &GroupOptions::IMPULSE_RING);
+    let groups = groups.collect::<Result<Vec<_>, _>>().unwrap();
+    let states = vec![GroupState::REST; groups.len()];
+    let mut bank = ModalBank::new(Kernel::detect(), groups, states);
     let first = FirstSamples::new(modes.iter().copied(), rate_hz).unwrap();
     let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: contact_s };
     let ring = (count + 512).next_power_of_two();
@@ -87,7 +89,7 @@ fn rendered(modes: &[Mode], contact_s: f64, onset: f64, rate_hz: f64, count: usi
     first.deposit(&pulse, &mut early, onset as u64, onset.fract(), rate_hz);
     let (mut input, mut out) = (vec![0.0; count], vec![0.0; count]);
     take(&mut impulses, 0, &mut input);
-    Kernel::detect().render(0, &groups, &mut states, &input, &mut out);
+    bank.render(0, Inputs::One(&input), &mut out);
     out.iter().zip(&early).map(|(y, early)| f64::from(*y) + f64::from(*early)).collect()
 }
 

@@ -14,43 +14,23 @@ pub(crate) struct BodySeat {
     /// The name of what is here.
     id: Option<BodyId>,
     bus: usize,
-    /// The bus it comes from, and how many samples of the way are left.
-    moving: Option<(usize, u32)>,
+    /// The bus it comes from, and how much of it plays on its own by now.
+    moving: Option<(usize, Smoothed)>,
     /// Linear gain, and the way there.
     gain: f64,
     smoothed: Smoothed,
     /// How many samples are left of being damped.
     damped: Option<u32>,
+    /// How many samples a body that leaves takes to fade.
+    leaving_samples: u32,
+    sample_rate_hz: f64,
     leaving: [Option<Leaving>; LEAVING],
 }
 
 /// Replacements of one body that may still be fading at the same time; more wait in the queue.
 const LEAVING: usize = 4;
-/// How many samples a body that leaves takes to fade.
-const LEAVING_SAMPLES: u32 = 4096;
-/// How many samples a body takes from one bus to another.
-const MOVING_SAMPLES: u32 = 1024;
-
-/// A body between two buses during a stretch.
-pub(crate) struct BetweenBuses {
-    pub(crate) from: usize,
-    pub(crate) to: usize,
-    /// Samples left at the first of the stretch.
-    left: u32,
-}
-
-impl BetweenBuses {
-    /// On one bus alone.
-    pub(crate) fn one(bus: usize) -> Self {
-        Self { from: bus, to: bus, left: 0 }
-    }
-
-    /// Share of the new bus at sample `i` of the stretch.
-    pub(crate) fn weight(&self, i: usize) -> f32 {
-        let left = self.left.saturating_sub(i as u32 + 1);
-        1.0 - left as f32 / MOVING_SAMPLES as f32
-    }
-}
+/// How long a body that leaves takes to fade, s: 4096 samples at 44.1 kHz.
+const LEAVING_S: f64 = 4096.0 / 44_100.0;
 
 struct Leaving {
     body: Box<BodySlot>,
@@ -70,6 +50,8 @@ impl BodySeat {
             gain: 1.0,
             smoothed: Smoothed::new(sample_rate_hz),
             damped: None,
+            leaving_samples: (LEAVING_S * sample_rate_hz).round() as u32,
+            sample_rate_hz,
             leaving: Default::default(),
         }
     }
@@ -106,7 +88,7 @@ impl BodySeat {
     pub(crate) fn play_on(&mut self, bus: usize) {
         if bus != self.bus {
             let from = std::mem::replace(&mut self.bus, bus);
-            self.moving = Some((from, MOVING_SAMPLES));
+            self.moving = Some((from, Smoothed::settled(0.0, self.sample_rate_hz)));
         }
     }
 
@@ -117,16 +99,17 @@ impl BodySeat {
 
     /// What rings fades as if a hand were laid on it.
     pub(crate) fn damp(&mut self) {
-        self.damped = self.damped.or(self.current.is_some().then_some(LEAVING_SAMPLES));
+        self.damped = self.damped.or(self.current.is_some().then_some(self.leaving_samples));
         self.leaving
             .iter_mut()
             .flatten()
-            .for_each(|leaving| leaving.left = leaving.left.min(LEAVING_SAMPLES));
+            .for_each(|leaving| leaving.left = leaving.left.min(self.leaving_samples));
     }
 
-    /// Whether the body sounds as it is: at a gain of 1, and not being damped.
+    /// Whether the body sounds as it is: at a gain of 1, on one bus, and not being damped.
     pub(crate) fn is_plain(&self) -> bool {
-        self.damped.is_none() && self.gain == 1.0 && self.smoothed.settled_at(1.0)
+        let keeps = self.damped.is_none() && self.moving.is_none();
+        keeps && self.gain == 1.0 && self.smoothed.settled_at(1.0)
     }
 
     /// Applies the gain to the next samples of the body.
@@ -135,7 +118,7 @@ impl BodySeat {
             let mut gain = self.smoothed.tick(self.gain) as f32;
             if let Some(left) = &mut self.damped {
                 *left = left.saturating_sub(1);
-                gain *= *left as f32 / LEAVING_SAMPLES as f32;
+                gain *= *left as f32 / self.leaving_samples as f32;
             }
             *x *= gain;
         }
@@ -147,18 +130,25 @@ impl BodySeat {
         }
     }
 
-    /// The two buses that share the next `n` samples, while it changes from one to the other.
-    pub(crate) fn moves_between(&mut self, n: usize) -> Option<BetweenBuses> {
-        let (from, left) = self.moving?;
-        let rest = left.saturating_sub(n as u32);
-        self.moving = (rest > 0).then_some((from, rest));
-        Some(BetweenBuses { from, to: self.bus, left })
+    /// The bus it comes from and its own; the same when it does not move.
+    pub(crate) fn between(&self) -> (usize, usize) {
+        (self.moving.map_or(self.bus, |(from, _)| from), self.bus)
+    }
+
+    /// Share of its own bus in the next sample.
+    pub(crate) fn arrive(&mut self) -> f32 {
+        let Some((_, arrived)) = &mut self.moving else { return 1.0 };
+        let share = arrived.tick(1.0);
+        if arrived.settled_at(1.0) {
+            self.moving = None;
+        }
+        share as f32
     }
 
     /// Lets the body ring out.
     pub(crate) fn remove(&mut self) {
         if let Some(place) = self.leaving.iter_mut().find(|place| place.is_none()) {
-            let (bus, gain, left) = (self.bus, self.gain as f32, self.damped.unwrap_or(LEAVING_SAMPLES));
+            let (bus, gain, left) = (self.bus, self.gain as f32, self.damped.unwrap_or(self.leaving_samples));
             *place = self.current.take().map(|body| Leaving { body, bus, gain, left });
         }
     }
@@ -202,7 +192,7 @@ impl BodySeat {
             leaving.body.render(terms, tail);
             for x in tail.iter_mut() {
                 leaving.left = leaving.left.saturating_sub(1);
-                *x *= leaving.gain * (leaving.left as f32 / LEAVING_SAMPLES as f32);
+                *x *= leaving.gain * (leaving.left as f32 / self.leaving_samples as f32);
             }
             add(leaving.bus, tail);
         }

@@ -6,6 +6,7 @@
 
 mod contacts;
 mod hand_over;
+mod messages;
 mod outputs;
 
 use crate::audio::blows::Blows;
@@ -13,23 +14,20 @@ use crate::audio::body_seat::BodySeat;
 use crate::audio::governor::Governor;
 use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
-use crate::audio::seat::{Change, Seat};
+use crate::audio::seat::Seat;
 use crate::audio::smoothed::Smoothed;
-use crate::audio::voice::{Phase, Scratch, Shared, Voice};
-use crate::link::message::{Dead, Felt, Message};
+use crate::audio::voice::{Phase, Scratch, Shared, Stretch, Voice};
+use crate::link::message::{Dead, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
 use crate::link::tap::{NoTap, Tap};
 use crate::model::config::Config;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
-use crate::model::stamp::Stamp;
 use crate::prepared::probe::{PreparedProbe, row_latency};
-use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
-use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::modal_bank::{Isa, Kernel};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
@@ -266,153 +264,12 @@ impl Renderer {
         found
     }
 
-    /// How many samples can be rendered before the next event, the grid or the end of the block.
-    fn stretch(&mut self, wanted: usize) -> usize {
-        let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
-        let to_event = match self.from_game.peek() {
-            Some(Message::Event { stamp, .. } | Message::Strike { stamp, .. }) => {
-                usize::try_from(stamp.sample().saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
-            }
-            _ => usize::MAX,
-        };
-        wanted.min(to_grid).min(to_event)
-    }
-
-    fn apply_due(&mut self) {
-        while let Some(message) = self.from_game.peek() {
-            let ended = self.counters.resets_asked.load(Relaxed) != self.resets;
-            let due = match message {
-                Message::Event { stamp, .. } | Message::Strike { stamp, .. } => {
-                    ended || stamp.sample() <= self.position
-                }
-                Message::Reset => true,
-                // Each of these may send something home; it waits until there is room.
-                Message::SetBody { id, .. } => {
-                    self.to_game.free() > 0 && self.bodies[id.index()].can_change()
-                }
-                _ => self.to_game.free() > 0,
-            };
-            if !due {
-                return;
-            }
-            if let Some(message) = self.from_game.receive() {
-                self.apply(message);
-            }
-        }
-    }
-
-    fn apply(&mut self, message: Message) {
-        match message {
-            Message::Reset => self.resets += 1,
-            // It waited for a time that has ended.
-            Message::Event { stamp, .. } | Message::Strike { stamp, .. }
-                if stamp.sample() > self.position =>
-            {
-                Counters::add(&self.counters.superseded, 1);
-            }
-            Message::Event { stamp, event } => {
-                self.note_arrival(stamp);
-                self.apply_event(&event, stamp);
-            }
-            Message::Strike { stamp, body, position, other, holder, felt, pulse } => {
-                self.note_arrival(stamp);
-                Counters::add(&self.counters.impacts, 1);
-                self.strike(body, position, &pulse, stamp);
-                if let Some(other) = other {
-                    self.strike(other, 0, &pulse, stamp);
-                }
-                let answer = HertzPulse { impulse_n_s: -pulse.impulse_n_s, ..pulse };
-                if let Some(holder) = holder {
-                    self.strike(holder, 0, &answer, stamp);
-                }
-                if let Some(felt) = felt {
-                    self.feel(felt, &pulse, stamp);
-                }
-            }
-            Message::AddProbe { index, probe } => self.shared.probes[index] = Some(probe),
-            Message::SetSurface { id, surface } => self.set_surface(id, surface),
-            Message::ChangeSurface { slot, change } => {
-                if !self.seats[slot].change(&*change, self.position) {
-                    Counters::add(&self.counters.quarantined, 1);
-                }
-                // There is room: the message waited for it.
-                let _ = self.to_game.send(Dead::Change(change));
-                // A resting finger feels the change.
-                self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(Voice::wake);
-            }
-            Message::RemoveSurface { slot } => {
-                self.seats[slot].remove();
-                self.fade_contacts_on(slot);
-            }
-            Message::SetBody { id, body, bus, gain, stroking } => {
-                self.bodies[id.index()].set(id, body, bus, gain);
-                self.bodies_used.insert(id.index());
-                for seat in self.seats_used.iter() {
-                    self.seats[seat].body_changed(id, &stroking);
-                }
-            }
-            Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
-            Message::SetBodyGain { slot, gain } => self.bodies[slot].set_gain(gain),
-            Message::Mute(muted) => self.muted = muted,
-            Message::Pause(paused) => {
-                self.paused = paused;
-                if paused {
-                    self.silence_all();
-                }
-            }
-            Message::FadeAll => {
-                self.end_all();
-                self.bodies_used.iter().for_each(|body| self.bodies[body].damp());
-            }
-            Message::RemoveBody { slot } => self.bodies[slot].remove(),
-            Message::AddOutlet(outlet) => self.outlets.add(outlet),
-            Message::SetAudioGain { bus, gain } => self.buses[bus].set_gain(gain),
-            Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
-        }
-    }
-
-    fn note_arrival(&self, stamp: Stamp) {
-        Counters::add(&self.counters.events, 1);
-        Counters::add(&self.counters.late, u64::from(stamp.sample() < self.position));
-    }
-
-    /// When something begins that holds at `stamp`: what is late begins at once.
-    fn due(&self, stamp: Stamp) -> Stamp {
-        stamp.max(Stamp::whole(self.position))
-    }
-
-    fn set_surface(&mut self, id: SurfaceId, surface: Box<SurfaceSlot>) {
-        let (slot, rate) = (id.index(), self.shared.sample_rate_hz);
-        self.seats_used.insert(slot);
-        if self.seats[slot].set(id, surface, self.position, rate, &mut self.to_game) == Change::Restart {
-            for index in 0..self.voices.len() {
-                if self.voices[index].surface == slot && self.voices[index].phase == Phase::Sounding {
-                    self.silence(index, false);
-                }
-            }
-        }
-    }
-
-    fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
-        // Impacts pass the same look-ahead as contacts, so that both stay aligned.
-        let sounds = self.due(stamp).later(self.shared.row_latency as u64);
-        let level = self.governor.mode_level();
-        self.bodies[body].strike(position, pulse, sounds, level, self.shared.sample_rate_hz);
-    }
-
-    /// A strike is felt: its pulse goes through the mobility of the hand's probe.
-    fn feel(&mut self, felt: Felt, pulse: &HertzPulse, stamp: Stamp) {
-        let sounds = self.due(stamp).later(self.shared.row_latency as u64);
-        let output = &self.channels[felt.channel].output;
-        self.blows.strike(felt, output, pulse, sounds, self.position, self.shared.sample_rate_hz);
-    }
-
     fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
         for channel in &mut self.channels {
             channel.sum[..n].fill(0.0);
         }
         let tap = &mut self.outlets.beside(tap);
-        let (mut collisions, mut shortened, mut resets) = (0, 0, 0);
+        let (mut collisions, mut shortened, mut resets, mut blows) = (0, 0, 0, 0);
         for voice in self.voices_used.iter() {
             let voice = &mut self.voices[voice];
             if voice.phase == Phase::Free {
@@ -421,11 +278,13 @@ impl Renderer {
             let seat = &mut self.seats[voice.surface];
             let channel = voice.role.actuator.map(|channel| &mut self.channels[channel]);
             let output = channel.as_ref().map_or(&self.shared.idle_output, |channel| &channel.output);
-            voice.render(seat, &self.shared, output, self.position, n, &mut self.scratch, tap);
+            let stretch = Stretch { shared: &self.shared, output, position: self.position, n };
+            voice.render(stretch, seat, &mut self.scratch, tap);
             let out = &self.scratch.out;
             collisions += out.collisions;
             shortened += out.shortened;
             resets += out.resets;
+            blows += out.blows;
             if let Some(channel) = channel {
                 for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
                     *sum += x;
@@ -452,6 +311,7 @@ impl Renderer {
         Counters::add(&self.counters.micro_collisions, collisions);
         Counters::add(&self.counters.shortened_collisions, shortened);
         Counters::add(&self.counters.quarantined, resets);
+        Counters::add(&self.counters.blows, blows);
     }
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.

@@ -24,6 +24,11 @@ impl Smoothed {
         Self { now: 1.0, share: 1.0 - (-1.0 / (TIME_CONSTANT_S * sample_rate_hz)).exp() }
     }
 
+    /// A gain that has been `gain` for ever.
+    pub(crate) fn settled(gain: f64, sample_rate_hz: f64) -> Self {
+        Self { now: gain, ..Self::new(sample_rate_hz) }
+    }
+
     /// Is there at once.
     pub(crate) fn set(&mut self, gain: f64) {
         self.now = gain;

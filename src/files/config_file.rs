@@ -43,7 +43,11 @@ impl Config {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ActuatorSettings, ClockMode, DeviceProfile, Integrator, Isa, PathMode, Quantity};
+    use crate::model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
+    use crate::model::clock_mode::ClockMode;
+    use asperity_dsp::micro_contact::Integrator;
+    use asperity_dsp::modal_bank::Isa;
+    use asperity_dsp::trajectory::PathMode;
 
     #[test]
     fn every_field_survives_the_way_through_text() {

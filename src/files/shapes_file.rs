@@ -55,7 +55,7 @@ pub fn parse_shapes(text: &str) -> Result<Option<(ModeShapes, Unit)>, ModalModel
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ModalModel;
+    use crate::model::modal_model::ModalModel;
 
     const TETRA: &str = r#"{"format":"asperity.modes","version":2,"unit":"relative",
         "modes":[{"frequency_hz":812.4,"decay_per_s":14.2,"amplitude":0.5,"phase_rad":1.5}],

@@ -2,6 +2,7 @@
 //!
 //! Every call returns at once. Nothing here waits for the audio thread.
 
+mod bodies;
 mod ports;
 mod quiet;
 mod recorded;
@@ -26,15 +27,13 @@ use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
 use crate::model::stamp::Stamp;
 use crate::model::surface::Surface;
-use crate::prepared::body::BodySlot;
 use crate::prepared::overlay::Overlay;
 use crate::prepared::probe::PreparedProbe;
-use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
+use asperity_dsp::limits;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::Kernel;
 use asperity_dsp::trajectory::TrajectoryDesign;
-use asperity_dsp::{DesignError, limits};
 use asperity_texture::height_field::Setup;
 use asperity_texture::moving_picture::MovingPicture;
 use std::any::Any;
@@ -59,6 +58,8 @@ use std::sync::atomic::Ordering::Relaxed;
 /// ```
 pub struct Scene {
     pub(crate) config: Config,
+    /// The instructions that bodies and probes are prepared for.
+    pub(crate) kernel: Kernel,
     pub(crate) clock: Clock,
     last_time_s: f64,
     pub(crate) surfaces: Places<KnownSurface>,
@@ -100,6 +101,7 @@ pub(crate) struct KnownBody {
 impl Scene {
     pub(crate) fn new(
         config: Config,
+        kernel: Kernel,
         clock: Clock,
         to_audio: Sender<Message>,
         from_audio: Receiver<Dead>,
@@ -115,6 +117,7 @@ impl Scene {
             reported: Reported::default(),
             held: Vec::new(),
             config,
+            kernel,
             clock,
             last_time_s: f64::NEG_INFINITY,
             to_audio,
@@ -128,94 +131,6 @@ impl Scene {
     #[must_use]
     pub fn config(&self) -> &Config {
         &self.config
-    }
-
-    /// Adds a body that rings: a [`Body`], or the modes of one of PLA on the first bus.
-    ///
-    /// # Errors
-    /// When every place is taken, the modes cannot be rendered at this rate, the material is impossible, or there is no such bus.
-    pub fn add_body(&mut self, body: impl Into<Body>) -> Result<BodyId, AddError> {
-        self.collect();
-        let (id, body) = (BodyId(self.bodies.free()?), body.into());
-        self.set_body(id, &body)?;
-        self.given.insert(id, body.clone());
-        self.note(|names| LogEdit::AddBody { body: names.body(id), is: (&body).into() });
-        Ok(id)
-    }
-
-    /// Gives a body other modes, another material and another bus while it sounds; the old modes ring out under the new ones, and
-    /// strokes on its surfaces take the new material at once.
-    ///
-    /// # Errors
-    /// As [`add_body`](Self::add_body), or when the body is not in this scene.
-    pub fn replace_body(&mut self, id: BodyId, body: impl Into<Body>) -> Result<(), AddError> {
-        self.collect();
-        self.known_body(id)?;
-        let body = body.into();
-        self.set_body(id, &body)?;
-        self.given.insert(id, body.clone());
-        self.note(|names| LogEdit::ReplaceBody { body: names.body(id), is: (&body).into() });
-        Ok(())
-    }
-
-    /// Lets a body sound on another bus from now on, without a click.
-    ///
-    /// # Errors
-    /// When the body is not in this scene, there is no such bus, or the queue is full.
-    pub fn set_body_bus(&mut self, id: BodyId, bus: usize) -> Result<(), AddError> {
-        self.known_body(id)?;
-        self.checked_bus(bus)?;
-        self.send(Message::SetBodyBus { slot: id.index(), bus })?;
-        if let Some(given) = self.given.get_mut(&id) {
-            given.bus = bus;
-        }
-        self.note(|names| LogEdit::BodyBus { body: names.body(id), bus });
-        Ok(())
-    }
-
-    fn checked_bus(&self, bus: usize) -> Result<usize, AddError> {
-        let buses = self.config.audio.len();
-        if bus < buses { Ok(bus) } else { Err(AddError::UnknownBus { bus, buses }) }
-    }
-
-    fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {
-        let (message, known) = self.prepared_body(id, body)?;
-        self.send(message)?;
-        self.bodies.set(id.0, known);
-        Ok(())
-    }
-
-    /// A body as the audio half takes it.
-    pub(crate) fn prepared_body(&self, id: BodyId, body: &Body) -> Result<(Message, KnownBody), AddError> {
-        let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
-        let gain = within("gain", body.gain, limits::impact::GAIN)?;
-        let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
-        let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
-        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), rate, inner)?);
-        let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
-        let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
-        let known = KnownBody { material, lowest_mode_hz };
-        let stroking = self.stroking(known)?;
-        Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
-    }
-
-    /// How strokes excite a body.
-    fn stroking(&self, body: KnownBody) -> Result<Stroking, DesignError> {
-        let (mass_kg, rate_hz) = (self.config.probe.pad_mass_kg, self.config.inner_rate_hz());
-        Stroking::new(body.material, body.lowest_mode_hz, mass_kg, rate_hz)
-    }
-
-    /// Takes a body away; it rings out.
-    ///
-    /// # Errors
-    /// When it is not in this scene or the queue is full.
-    pub fn remove_body(&mut self, body: BodyId) -> Result<(), AddError> {
-        self.known_body(body)?;
-        self.send(Message::RemoveBody { slot: body.index() })?;
-        self.bodies.remove(body.0);
-        self.given.remove(&body);
-        self.note(|names| LogEdit::RemoveBody { body: names.body(body) });
-        Ok(())
     }
 
     /// Adds a probe that contacts may touch with: a [preset](crate::PROBE_PRESETS) or one's own. It stays as long as the scene.
@@ -237,9 +152,7 @@ impl Scene {
     /// A probe as the audio half takes it.
     pub(crate) fn prepared_probe(&self, id: ProbeId, probe: &Probe) -> Result<Message, AddError> {
         let Config { probe: own, integrator, .. } = &self.config;
-        // An engine that was built has its kernel.
-        let kernel = self.config.kernel().unwrap_or(Kernel::PORTABLE);
-        let probe = PreparedProbe::new(probe, own, *integrator, self.config.inner_rate_hz(), kernel)?;
+        let probe = PreparedProbe::new(probe, own, *integrator, self.config.inner_rate_hz(), self.kernel)?;
         Ok(Message::AddProbe { index: id.index(), probe: Box::new(probe) })
     }
 

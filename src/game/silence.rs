@@ -103,6 +103,15 @@ pub enum SilentBecause {
         /// Longest contact of an impact, s.
         longest_s: f64,
     },
+    /// A probe leapt and came down hard; rendered as it is.
+    #[error(
+        "{count} times a probe that had left the ground came down with more than 30 times what pressed it; a probe that is \
+         softer or lighter, more normal_force_n, less relief or less speed keeps it on the ground"
+    )]
+    Leapt {
+        /// How many times.
+        count: u64,
+    },
     /// Work was left out because blocks were late.
     #[error(
         "{count} pieces of sound were left out because blocks ran late; render larger blocks or fewer contacts, \
@@ -222,6 +231,7 @@ impl Reported {
                 count: stats.shortened + stats.shortened_collisions,
                 longest_s: LONGEST_CONTACT_S,
             },
+            SilentBecause::Leapt { count: stats.blows },
             SilentBecause::Shed { count: stats.shed },
         ];
         because.extend(counted.into_iter().filter(|reason| reason.count() > 0));
@@ -238,6 +248,7 @@ impl SilentBecause {
             | Self::Dropped { count }
             | Self::Orphaned { count }
             | Self::Lapsed { count, .. }
+            | Self::Leapt { count }
             | Self::Stolen { count, .. }
             | Self::Quarantined { count }
             | Self::Shortened { count, .. }

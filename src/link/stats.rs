@@ -60,6 +60,8 @@ counters! {
     shortened_collisions,
     /// Onsets of contact found by the micro-contact model.
     micro_collisions,
+    /// Blows of a probe that had left the ground: contact forces beyond thirty times what pressed.
+    blows,
     /// Events handed back because the queue was full.
     dropped,
     /// Moves that a newer event of the same contact made pointless before they were sent.

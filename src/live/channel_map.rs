@@ -195,11 +195,19 @@ mod tests {
     #[test]
     fn any_callback_size_gives_the_same_samples() {
         let fill = |sizes: &[usize]| {
-            let crate::Engine { mut scene, renderer, .. } = Config::default().build().unwrap();
-            let mode = crate::Mode { frequency_hz: 500.0, decay_per_s: 5.0, amplitude: 1.0, phase_rad: 0.0 };
-            let body = scene.add_body(crate::ModalModel::new(vec![mode], 0.01).unwrap()).unwrap();
-            let impact = crate::Impact { body, mass_kg: 0.01, ..crate::Impact::on(body) };
-            scene.report(0.01, crate::ContactEvent::Impact(impact)).unwrap();
+            let crate::engine::Engine { mut scene, renderer, .. } = Config::default().build().unwrap();
+            let mode = asperity_dsp::mode::Mode {
+                frequency_hz: 500.0,
+                decay_per_s: 5.0,
+                amplitude: 1.0,
+                phase_rad: 0.0,
+            };
+            let body = scene
+                .add_body(crate::model::modal_model::ModalModel::new(vec![mode], 0.01).unwrap())
+                .unwrap();
+            let impact =
+                crate::model::event::Impact { body, mass_kg: 0.01, ..crate::model::event::Impact::on(body) };
+            scene.report(0.01, crate::model::event::ContactEvent::Impact(impact)).unwrap();
             let mut device = Interleaver::new(renderer, ChannelMap::parse("audio=2 haptic=0").unwrap());
             let mut out = vec![0.0; 3 * 6000];
             let mut rest = &mut out[..];

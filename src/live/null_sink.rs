@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn the_null_sink_keeps_the_pace_of_real_time() {
-        let crate::Engine { scene: _scene, renderer, .. } = Config::default().build().unwrap();
+        let crate::engine::Engine { scene: _scene, renderer, .. } = Config::default().build().unwrap();
         let device = Interleaver::new(renderer, ChannelMap::stereo_then_haptics(1));
         let began = Instant::now();
         let sink = NullSink::start(device, 256).unwrap();

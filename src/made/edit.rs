@@ -4,7 +4,10 @@ use super::maker::Maker;
 use crate::files::contact_log::{LogEdit, LogSurface, Names};
 use crate::files::scene_file::{MakeSource, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
-use crate::{Actuator, BodyId, Scene, Surface, SurfaceId};
+use crate::game::scene::Scene;
+use crate::model::event::Actuator;
+use crate::model::id::{BodyId, SurfaceId};
+use crate::model::surface::Surface;
 use std::path::Path;
 
 /// Makes the surfaces of a recording that the game's own code made, by name: `None` for one it does not know.

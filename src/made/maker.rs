@@ -2,14 +2,18 @@
 
 pub(crate) use super::made_with::Maker;
 use super::source::Ground;
+use crate::files::actuator_profile::ActuatorPreset;
 use crate::files::contact_log::{LogSurface, Names};
 use crate::files::scene_file::{ActuatorEntry, AudioEntry, BodyEntry, RoughnessEntry, Source, SurfaceEntry};
 use crate::files::{FileError, Files, storage};
-use crate::{
-    ActuatorPreset, ActuatorSettings, Body, DeviceProfile, Extent, Material, ModalModel, Roughness, Surface,
-    Wrap,
-};
+use crate::model::actuator::{ActuatorSettings, DeviceProfile};
+use crate::model::body::Body;
+use crate::model::material::Material;
+use crate::model::modal_model::ModalModel;
+use crate::model::surface::{Roughness, Surface};
+use asperity_texture::height_map::Extent;
 use asperity_texture::height_map::HeightMap;
+use asperity_texture::wrap::Wrap;
 use std::path::Path;
 
 impl<'a> Maker<'a> {

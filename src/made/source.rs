@@ -1,15 +1,13 @@
 //! Sources made of a scene file's words: heights that the engine samples.
 
 use super::made_with::Maker;
-use crate::SurfaceFrame;
-#[cfg(feature = "brownian")]
-use crate::files::scene_file::BrownianForce as ForceEntry;
 use crate::files::scene_file::{Brownian, Lattice as LatticeEntry, Sand, Source, ToolPicture};
 use crate::files::{FileError, storage};
+use crate::model::frame::SurfaceFrame;
 #[cfg(feature = "brownian")]
 use asperity_texture::brownian::BrownianDesign;
 #[cfg(feature = "brownian")]
-use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface, Rendering};
+use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface};
 use asperity_texture::combine::{Crossfade, Mask, Scale, Sum};
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
 use asperity_texture::height_map::{Extent, HeightMap};
@@ -141,10 +139,7 @@ impl Ground<'_> {
     fn brownian(self, entry: &Brownian) -> Result<Boxed, FileError> {
         let told = |error| FileError::told(error).within("brownian");
         let mut design = BrownianDesign::new(entry.hurst, entry.rms_m, entry.seed.unwrap_or(self.maker.seed));
-        let rendering = entry.force.map(|force| match force {
-            ForceEntry::Orthogonal => Rendering::Orthogonal,
-            ForceEntry::Lateral => Rendering::Lateral,
-        });
+        let rendering = entry.force;
         if entry.graph {
             design.size = entry.cells.map_or(GRAPH_POINTS, |cells| cells as usize);
             let heights_m = design.path().map_err(told)?;

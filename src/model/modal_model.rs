@@ -4,6 +4,7 @@
 //! to an impulse of `impulse_n_s`; the engine scales linearly, so an impulse J sounds as
 //! y · J / `impulse_n_s` (Hasti §III-D).
 
+use crate::model::material::Material;
 use crate::model::residual::Residual;
 use asperity_dsp::modal_bank::{self, Culling};
 use asperity_dsp::mode::Mode;
@@ -106,6 +107,38 @@ impl ModalModel {
         if let Some(residual) = &mut self.residual {
             residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
         }
+        self.check()?;
+        Ok(self)
+    }
+
+    /// The same body `size` times as large, of `material`: every mode lower by `size`, and its decay as much longer or shorter as the
+    /// material's damping says of its new frequency. Amplitudes stay; a residual is of the size it was recorded at, and is left out.
+    ///
+    /// ```
+    /// use asperity::{Material, Stock};
+    ///
+    /// let bar = Stock::Bar.modes(&Material::STEEL, 0.2)?;
+    /// let larger = bar.clone().scaled(2.0, &Material::STEEL)?;
+    /// assert!((larger.modes[0].frequency_hz / bar.modes[0].frequency_hz - 0.5).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the size is not a finite number above 0, or a mode leaves the range of frequencies.
+    pub fn scaled(mut self, size: f64, material: &Material) -> Result<Self, ModalModelError> {
+        if !(size.is_finite() && size > 0.0) {
+            let (field, expected) = ("size".into(), "a finite factor above 0");
+            return Err(ModalModelError::BadValue { field, value: size, expected });
+        }
+        let damping = material.damping();
+        for mode in &mut self.modes {
+            let own_per_s = damping.decay_per_s(mode.frequency_hz);
+            mode.frequency_hz /= size;
+            if own_per_s > 0.0 {
+                mode.decay_per_s *= damping.decay_per_s(mode.frequency_hz) / own_per_s;
+            }
+        }
+        self.residual = None;
         self.check()?;
         Ok(self)
     }

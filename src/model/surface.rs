@@ -1,6 +1,5 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
-use crate::files::contact_log::LogSurface;
 use crate::model::bad_value::{BadValue, within};
 use crate::model::excitation::Excitation;
 use crate::model::frame::SurfaceFrame;
@@ -16,6 +15,7 @@ use asperity_texture::picture::Channel;
 use asperity_texture::picture::ImageError;
 use asperity_texture::tiled::Tiled;
 use asperity_texture::wrap::Wrap;
+use std::any::Any;
 #[cfg(feature = "image")]
 use std::path::Path;
 
@@ -59,8 +59,8 @@ pub struct Surface {
     pub(crate) excitation: Excitation,
     pub(crate) strike_position: usize,
     pub(crate) frame: Option<SurfaceFrame>,
-    /// What a scene file says of it, if it comes from one.
-    pub(crate) described: Option<Box<LogSurface>>,
+    /// What it was made from, as whoever made it wrote it down, so that a recording can say it again.
+    pub(crate) described: Option<Box<dyn Any + Send + Sync>>,
 }
 
 impl std::fmt::Debug for Surface {

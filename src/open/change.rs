@@ -6,10 +6,13 @@ use super::Overrides;
 use crate::files::FileError;
 use crate::files::contact_log::Names;
 use crate::files::scene_file::{BodyEntry, SceneFile, SurfaceEntry};
+use crate::game::scene::Scene;
 use crate::made::maker::Maker;
-use crate::{Body, Scene, Surface};
+use crate::model::body::Body;
+use crate::model::surface::Surface;
 use asperity_texture::sand::SandWorker;
 use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 
 /// What became of a changed scene file.
 #[derive(Default)]
@@ -45,7 +48,7 @@ impl Scene {
             workers: overrides.live.then_some(&workers),
         };
         let at = |error: FileError| error.within(after.path.display());
-        let new = New::make(&maker, before, after).map_err(at)?;
+        let new = New::make(&maker, before, after, overrides.touched).map_err(at)?;
         let mut changes = Changes { waiting: waiting(before, after), ..Changes::default() };
         new.put(self, names, &mut changes).map_err(at)?;
         self.apply_buses(before, after, &mut changes).map_err(at)?;
@@ -100,15 +103,23 @@ impl Scene {
 
 /// What differs, made and not yet in the scene.
 struct New<'a> {
-    probes: Vec<&'a (String, crate::Probe)>,
+    probes: Vec<&'a (String, asperity_dsp::micro_contact::Probe)>,
     bodies: Vec<(&'a BodyEntry, Body)>,
     surfaces: Vec<(&'a SurfaceEntry, Surface)>,
 }
 
 impl<'a> New<'a> {
-    fn make(maker: &Maker<'_>, before: &SceneFile, after: &'a SceneFile) -> Result<Self, FileError> {
+    fn make(
+        maker: &Maker<'_>,
+        before: &SceneFile,
+        after: &'a SceneFile,
+        touched: &[PathBuf],
+    ) -> Result<Self, FileError> {
+        let holds_touched = |files: Vec<&Path>| files.iter().any(|file| touched.iter().any(|t| t == file));
+        let differs =
+            |entry: &BodyEntry| !before.bodies.contains(entry) || holds_touched(entry.named_files());
         let mut bodies = Vec::new();
-        for entry in after.bodies.iter().filter(|entry| !before.bodies.contains(entry)) {
+        for entry in after.bodies.iter().filter(|entry| differs(entry)) {
             // Buses are those that the engine was built with.
             let body = maker.body(entry, &before.audio);
             bodies.push((entry, body.map_err(|error| error.within(format!("body \"{}\"", entry.name)))?));
@@ -122,6 +133,7 @@ impl<'a> New<'a> {
             let old = before.surfaces.iter().find(|old| *old == entry);
             let old_body = before.bodies.iter().find(|body| Some(&body.name) == entry.body.as_ref());
             if old.is_some()
+                && !holds_touched(entry.named_files())
                 && old_body.map(|body| body.material) == body_of(after, entry).map(|body| body.material)
             {
                 continue;

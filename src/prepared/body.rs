@@ -7,8 +7,8 @@ use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::modal_bank::{
-    self, Awake, Bank, FirstSamples, GroupOptions, GroupState, Input, Kernel, LaneGains, MissingSamples,
-    ModeGroup,
+    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, Kernel, LaneGains, MissingSamples,
+    ModalBank, ModeGroup,
 };
 use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
@@ -30,9 +30,7 @@ const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
 
 /// A body as the audio half owns it.
 pub(crate) struct BodySlot {
-    groups: Vec<ModeGroup>,
-    states: Vec<GroupState>,
-    awake: Awake,
+    bank: ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>,
     places: Vec<Place>,
     bursts: Bursts,
     /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
@@ -56,7 +54,6 @@ struct Place {
 /// How a stretch is rendered.
 #[derive(Clone, Copy)]
 pub(crate) struct Terms {
-    pub(crate) kernel: Kernel,
     /// Absolute index of the first sample.
     pub(crate) position: u64,
     /// How many of the [`MODE_LEVELS`] are left out because blocks run late.
@@ -92,6 +89,7 @@ impl BodySlot {
     /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz` stay silent.
     pub(crate) fn new(
         model: &ModalModel,
+        kernel: Kernel,
         output_rate_hz: f64,
         sample_rate_hz: f64,
     ) -> Result<Self, DesignError> {
@@ -102,31 +100,21 @@ impl BodySlot {
         modes.sort_by(|(a, _), (b, _)| {
             rings(b).total_cmp(&rings(a)).then(a.frequency_hz.total_cmp(&b.frequency_hz))
         });
-        let options = GroupOptions::IMPULSE_RING;
-        let design = |chunk: &[(Mode, [f32; MAX_POSITIONS])]| {
-            let modes: Vec<_> = chunk.iter().map(|(mode, _)| *mode).collect();
-            modal_bank::design_group(&modes, sample_rate_hz, &options)
-        };
-        let groups = modes.chunks(modal_bank::LANES).map(design).collect::<Result<Vec<_>, _>>()?;
-        let states = vec![GroupState::default(); groups.len()];
-        let gains_at = |position: usize| {
-            let lane = |chunk: &[(Mode, [f32; MAX_POSITIONS])], lane: usize| {
-                chunk.get(lane).map_or(0.0, |(_, shares)| shares[position])
-            };
-            let chunks = modes.chunks(modal_bank::LANES);
-            chunks.map(|chunk| LaneGains(std::array::from_fn(|i| lane(chunk, i)))).collect()
-        };
+        let unit: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
+        let groups = modal_bank::design_groups(&unit, sample_rate_hz, &GroupOptions::IMPULSE_RING);
+        let groups = groups.collect::<Result<Box<[_]>, _>>()?;
+        let states = vec![GroupState::REST; groups.len()].into();
         let count = model.position_count();
         let first_samples = first_samples(&modes, count, groups.len(), sample_rate_hz)?;
         let places = first_samples.into_iter().enumerate().map(|(position, first_samples)| {
-            let gains = if count == 1 { Vec::new() } else { gains_at(position) };
-            Place::new(gains, first_samples, sample_rate_hz)
+            let shares = modes.iter().filter(|_| count > 1).map(|(_, shares)| shares[position]);
+            Place::new(modal_bank::lane_gains(shares).collect(), first_samples, sample_rate_hz)
         });
         let places = places.collect();
         let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
         let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
-        Ok(Self { groups, states, awake: Awake::default(), places, bursts, early })
+        Ok(Self { bank: ModalBank::new(kernel, groups, states), places, bursts, early })
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
@@ -166,8 +154,7 @@ impl BodySlot {
 
     /// Forgets all that rings and all that is on its way.
     pub(crate) fn silence(&mut self) {
-        self.states.fill(GroupState::default());
-        self.awake = Awake::default();
+        self.bank.silence();
         for place in &mut self.places {
             place.bus.clear();
             place.contacts_n_s.fill(0.0);
@@ -179,7 +166,7 @@ impl BodySlot {
 
     /// Whether nothing rings and nothing is coming.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
-        self.awake.groups() == 0
+        self.bank.awake() == 0
             && self.bursts.is_silent(position)
             && self.early.is_empty(position)
             && self.places.iter().all(|place| !place.touched && place.bus.is_empty(position))
@@ -200,18 +187,16 @@ impl BodySlot {
                 count += 1;
             }
         }
-        let driven = groups_at(terms.mode_level, self.groups.len());
-        let bank = Bank {
-            kernel: terms.kernel,
-            groups: &self.groups,
-            states: &mut self.states,
-            driven,
-            threshold: modal_bank::SLEEP_AMPLITUDE,
+        let groups = self.bank.groups();
+        let driven = groups_at(terms.mode_level, groups);
+        let inputs = match inputs[..count] {
+            [Input { impulses, gains: [] }] => Inputs::One(impulses),
+            _ => Inputs::Placed(&inputs[..count]),
         };
-        self.awake.render_bank(bank, terms.position, &inputs[..count], out);
+        self.bank.render_leading(driven, terms.position, inputs, out);
         self.bursts.render(terms.position, out);
         self.begin_strikes(terms.position, out);
-        self.groups.len() - driven
+        groups - driven
     }
 
     /// Adds what the bank leaves out of the first samples of strikes.

@@ -36,6 +36,8 @@ pub struct Force {
     pub above: f64,
     /// The same with the hardest landing added to them.
     pub above_landing: f64,
+    /// Blows that were counted: more than thirty times what pressed.
+    pub blows: u64,
     /// Whether the fingertip preset touched.
     pub fingertip: bool,
     /// What touched.
@@ -74,13 +76,15 @@ struct Hardest {
     acceleration_m_s2: f64,
     contact_n: f64,
     closing_m_s: f64,
+    /// How deep the pad was in the ground in the last two rows, m; negative above it.
+    depths_m: [f64; 2],
     finite: bool,
 }
 
 impl Hardest {
     /// Ground is judged over the whole scene: a contact is led in over ground
     /// that lies before its first row, and a blow comes after its cause.
-    fn force(&self, probe: &Probe) -> Force {
+    fn force(&self, probe: &Probe, blows: u64) -> Force {
         let inertia_n = self.masses_kg * self.acceleration_m_s2;
         let allowed_n = if inertia_n < self.pressed_n {
             10.0 * self.pressed_n
@@ -91,6 +95,7 @@ impl Hardest {
         Force {
             above: self.contact_n / allowed_n.max(1e-9),
             above_landing: self.contact_n / (allowed_n + landing_n).max(1e-9),
+            blows,
             fingertip: *probe == Probe::default(),
             probe: *probe,
             pressed_n: self.pressed_n,
@@ -111,7 +116,12 @@ impl Tap for Hardest {
             }
             self.pressed_n = self.pressed_n.max(row.normal_force_n);
             self.contact_n = self.contact_n.max(row.contact_force_n);
-            self.closing_m_s = self.closing_m_s.max(row.onset.map_or(0.0, |onset| onset.closing_m_s));
+            // A surface whose sound is of the force alone tells no onsets: then by how fast the last two rows came closer.
+            let [two_ago_m, last_m] = self.depths_m;
+            let falling_m_s = if last_m < 0.0 { (last_m - two_ago_m) * self.rate_hz } else { 0.0 };
+            let closing_m_s = row.onset.map_or(falling_m_s, |onset| onset.closing_m_s);
+            self.closing_m_s = self.closing_m_s.max(closing_m_s);
+            self.depths_m = [last_m, row.height_m - row.pad_m];
             self.finite &=
                 row.contact_force_n.is_finite() && row.pad_m.is_finite() && row.finger_m.is_finite();
         }
@@ -191,6 +201,7 @@ pub fn outcome(seed: u64) -> Outcome {
         acceleration_m_s2: 0.0,
         contact_n: 0.0,
         closing_m_s: 0.0,
+        depths_m: [0.0; 2],
         finite: true,
     };
     let (mut haptic, mut audio) = (vec![0.0; 256], vec![0.0; 256]);
@@ -216,5 +227,9 @@ pub fn outcome(seed: u64) -> Outcome {
             finite &= haptic.iter().chain(&audio).all(|x| x.is_finite());
         }
     }
-    if finite && hardest.finite { Outcome::Rendered(hardest.force(&probe)) } else { Outcome::NotFinite }
+    if finite && hardest.finite {
+        Outcome::Rendered(hardest.force(&probe, scene.stats().blows))
+    } else {
+        Outcome::NotFinite
+    }
 }

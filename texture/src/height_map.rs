@@ -15,6 +15,10 @@
 //! the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid as well, so
 //! that a seamless map has no seam.
 
+mod extent;
+
+pub use extent::{Extent, MapError};
+
 use crate::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, WavelengthBand};
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
@@ -22,56 +26,11 @@ use crate::resample::halve;
 use crate::ridden::ridden;
 use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
+use extent::check;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
 /// Assumed; measured values range from 0.2 to above 1.
 pub const FRICTION: f64 = 0.5;
-
-/// The patch of surface a map covers.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Extent {
-    /// Size along u, metres.
-    pub width_m: f64,
-    /// Size along v, metres.
-    pub height_m: f64,
-    /// Height of value 1 over value 0, metres: negative for depth maps, 1 for maps in metres.
-    pub relief_m: f64,
-}
-
-/// Why a map cannot be made.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MapError {
-    /// A size that is not a size.
-    #[error("{field}: {value} is refused; must be finite{}", if *.field == "relief_m" { "" } else { " and above 0 m" })]
-    Extent {
-        /// Name of the field.
-        field: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// No texels, or not as many as width × height.
-    #[error("a map of {width} × {height} texels with {values} values is refused; at least 1 × 1, all there")]
-    Shape {
-        /// Texels in a row.
-        width: usize,
-        /// Rows.
-        height: usize,
-        /// Number of values.
-        values: usize,
-    },
-    /// A texel that is no number.
-    #[error("the value at column {x}, row {y} is not finite; only finite values make a map")]
-    NotFinite {
-        /// Column.
-        x: usize,
-        /// Row.
-        y: usize,
-    },
-    /// Roughness outside its range.
-    #[error("roughness: {0} is refused; must be 0 to 1")]
-    Roughness(f64),
-}
 
 /// A surface made of maps.
 ///
@@ -208,31 +167,6 @@ impl HeightMap {
     #[must_use]
     pub fn wrap_period_m(&self) -> [f64; 2] {
         [self.wrap.period_m(self.extent.width_m), self.wrap.period_m(self.extent.height_m)]
-    }
-}
-
-impl Extent {
-    fn check(&self) -> Result<(), MapError> {
-        for (field, value) in [("width_m", self.width_m), ("height_m", self.height_m)] {
-            if !(value.is_finite() && value > 0.0) {
-                return Err(MapError::Extent { field, value });
-            }
-        }
-        if !self.relief_m.is_finite() {
-            return Err(MapError::Extent { field: "relief_m", value: self.relief_m });
-        }
-        Ok(())
-    }
-}
-
-fn check(raster: &Raster) -> Result<(), MapError> {
-    let Raster { width, height, ref values } = *raster;
-    if values.is_empty() || width.checked_mul(height) != Some(values.len()) {
-        return Err(MapError::Shape { width, height, values: values.len() });
-    }
-    match values.iter().position(|v| !v.is_finite()) {
-        Some(at) => Err(MapError::NotFinite { x: at % width, y: at / width }),
-        None => Ok(()),
     }
 }
 

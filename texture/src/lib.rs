@@ -10,6 +10,7 @@ pub mod brownian;
 pub mod combine;
 pub mod exclusive;
 pub mod fade;
+pub mod force_rendering;
 pub mod height_field;
 pub mod height_map;
 pub mod lattice;

@@ -1,4 +1,5 @@
-//! `play --watch`: the scene file is looked at while it plays, and what has changed in it is applied to what sounds.
+//! `play --watch`: the scene file, and the pictures and modes files that it names, are looked at while it plays, and what has changed is
+//! applied to what sounds.
 
 use crate::error::CliError;
 use asperity::Scene;
@@ -6,7 +7,8 @@ use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::open::Overrides;
 use asperity_texture::sand::{SandThread, SandWorker};
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
 /// How often the file is looked at.
@@ -18,9 +20,16 @@ pub struct Watch<'a> {
     pub file: SceneFile,
     overrides: Overrides<'a>,
     seen: Option<SystemTime>,
+    /// The files that it names, and when they were written.
+    named: BTreeMap<PathBuf, Option<SystemTime>>,
     looked: Instant,
     /// Simulations of the sand that changes brought.
     pub sand: Vec<SandThread>,
+}
+
+/// The files that a scene names, and when they were written.
+fn named(file: &SceneFile) -> BTreeMap<PathBuf, Option<SystemTime>> {
+    file.named_files().into_iter().map(|path| (path.to_owned(), written(path))).collect()
 }
 
 /// When a file was written last; none while an editor puts another in its place.
@@ -31,8 +40,8 @@ fn written(path: &Path) -> Option<SystemTime> {
 impl<'a> Watch<'a> {
     /// Watches the file that a scene was opened from.
     pub fn new(file: SceneFile, overrides: Overrides<'a>) -> Self {
-        let seen = written(&file.path);
-        Self { file, overrides, seen, looked: Instant::now(), sand: Vec::new() }
+        let (seen, named) = (written(&file.path), named(&file));
+        Self { file, overrides, seen, named, looked: Instant::now(), sand: Vec::new() }
     }
 
     /// What there is to say since the last look: what was applied, what waits, or why the old scene goes on.
@@ -42,24 +51,34 @@ impl<'a> Watch<'a> {
         }
         self.looked = Instant::now();
         let now = written(&self.file.path);
-        if now.is_none() || now == self.seen {
+        let touched = self.touched();
+        if now.is_none() || (now == self.seen && touched.is_empty()) {
             return Vec::new();
         }
-        match self.apply(scene, names) {
-            Ok(said) => {
-                self.seen = now;
-                said
-            }
-            Err(error) => {
-                self.seen = now;
-                vec![format!("warning: {}; the scene goes on as it was", error.without_prefix())]
-            }
-        }
+        let said = self.apply(scene, names, &touched);
+        self.seen = now;
+        self.named = named(&self.file);
+        said.unwrap_or_else(|error| {
+            vec![format!("warning: {}; the scene goes on as it was", error.without_prefix())]
+        })
     }
 
-    fn apply(&mut self, scene: &mut Scene, names: &mut Names) -> Result<Vec<String>, CliError> {
+    /// Files that were written since the last look; one that is just being put in its place is not there yet.
+    fn touched(&self) -> Vec<PathBuf> {
+        let now = |path: &PathBuf| written(path);
+        let newer = self.named.iter().filter(|(path, seen)| now(path).is_some_and(|now| Some(now) != **seen));
+        newer.map(|(path, _)| path.clone()).collect()
+    }
+
+    fn apply(
+        &mut self,
+        scene: &mut Scene,
+        names: &mut Names,
+        touched: &[PathBuf],
+    ) -> Result<Vec<String>, CliError> {
         let after = SceneFile::load(&self.file.path)?;
-        let changes = scene.apply(names, &self.file, &after, &self.overrides)?;
+        let overrides = Overrides { touched, ..self.overrides };
+        let changes = scene.apply(names, &self.file, &after, &overrides)?;
         self.sand.extend(changes.workers.into_iter().map(SandWorker::spawn));
         self.file = after;
         let waiting = changes.waiting.iter().map(|waiting| format!("warning: {waiting}"));
@@ -139,6 +158,29 @@ mod tests {
             said.contains(&"warning: sample_rate_hz: takes effect when the scene is opened again".to_owned()),
             "{said:?}"
         );
+
+        // Nothing in the scene file changes, only the picture that it names.
+        let relief = folder.path().join("relief.pgm");
+        let paint = |text: &str, age: u64| {
+            std::fs::write(&relief, text).unwrap();
+            let later = SystemTime::now() + Duration::from_secs(age);
+            std::fs::File::options().write(true).open(&relief).unwrap().set_modified(later).unwrap();
+        };
+        paint("P2 2 2 255 0 255 255 0", 10);
+        let mapped =
+            SCENE.replace("height_m = 0.1", "height_m = 0.1\ndisplacement = \"relief.pgm\"\nrelief_m = 1e-4");
+        write(&mapped);
+        assert!(heard(&mut watch, &mut scene, &mut names).contains(&"surface \"plate\": changed".to_owned()));
+        paint("P2 2 2 255 255 0 0 255", 20);
+        assert_eq!(heard(&mut watch, &mut scene, &mut names), ["surface \"plate\": changed"]);
+        paint("no picture", 30);
+        let said = heard(&mut watch, &mut scene, &mut names);
+        assert!(
+            said[0].contains("relief.pgm") && said[0].ends_with("the scene goes on as it was"),
+            "{said:?}"
+        );
+        paint("P2 2 2 255 0 128 128 0", 40);
+        assert_eq!(heard(&mut watch, &mut scene, &mut names), ["surface \"plate\": changed"]);
 
         assert_eq!(names.surfaces["plate"], plate, "ids stay what they are");
         assert!(scene.remove_body(bell).is_err(), "the bell is gone");

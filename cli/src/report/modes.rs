@@ -6,8 +6,8 @@ use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
 use asperity::Mode;
 use asperity_dsp::modal_bank::{
-    Awake, Bank, Culling, GroupOptions, GroupState, Input, Isa, Kernel, LANES, ModeGroup, ReferenceMode,
-    ReferenceState, SLEEP_AMPLITUDE, audible, design_group, ringing_s, sort_by_decay,
+    Culling, GroupOptions, GroupState, Inputs, Isa, Kernel, ModalBank, ModeGroup, ReferenceMode,
+    ReferenceState, SLEEP_AMPLITUDE, audible, design_groups, ringing_s, sort_by_decay,
 };
 use asperity_dsp::rng::Rng;
 
@@ -48,29 +48,25 @@ fn white() -> Vec<f32> {
 
 /// The groups of a body, designed once.
 fn designed(modes: &[Mode]) -> Result<Vec<ModeGroup>, CliError> {
-    let design = |chunk: &[Mode]| design_group(chunk, SAMPLE_RATE_HZ, &OPTIONS);
-    modes.chunks(LANES).map(design).collect::<Result<Vec<_>, _>>().map_err(refused)
+    design_groups(modes, SAMPLE_RATE_HZ, &OPTIONS).collect::<Result<Vec<_>, _>>().map_err(refused)
 }
 
-/// The engine's bank, block by block.
+/// The engine's bank, block by block, of which no mode ever sleeps.
 fn bank(groups: &[ModeGroup], kernel: Kernel, impulses: &[f32]) -> Vec<f32> {
-    let mut states = vec![GroupState::default(); groups.len()];
-    let mut out = vec![0.0f32; impulses.len()];
-    for (index, (input, block)) in impulses.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).enumerate() {
-        kernel.render((index * BLOCK) as u64, groups, &mut states, input, block);
-    }
-    out
+    let states = vec![GroupState::REST; groups.len()];
+    run(ModalBank::new(kernel, groups, states).sleeping_below(0.0), groups.len(), impulses)
 }
 
 /// The same where the groups that have rung out sleep, and only the first `driven` hear what strikes.
 fn sleeping_bank(groups: &[ModeGroup], driven: usize, threshold: f32, impulses: &[f32]) -> Vec<f32> {
-    let mut states = vec![GroupState::default(); groups.len()];
+    let states = vec![GroupState::REST; groups.len()];
+    run(ModalBank::new(Kernel::detect(), groups, states).sleeping_below(threshold), driven, impulses)
+}
+
+fn run(mut bank: ModalBank<&[ModeGroup], Vec<GroupState>>, driven: usize, impulses: &[f32]) -> Vec<f32> {
     let mut out = vec![0.0f32; impulses.len()];
-    let mut awake = Awake::default();
     for (index, (input, block)) in impulses.chunks(BLOCK).zip(out.chunks_mut(BLOCK)).enumerate() {
-        let bank = Bank { kernel: Kernel::detect(), groups, states: &mut states, driven, threshold };
-        let inputs = [Input { impulses: input, gains: &[] }];
-        awake.render_bank(bank, (index * BLOCK) as u64, &inputs, block);
+        bank.render_leading(driven, (index * BLOCK) as u64, Inputs::One(input), block);
     }
     out
 }

@@ -1,9 +1,8 @@
 //! Output of one contact to its actuator: the motion of the pad, high-passed about its resting position.
 
 use crate::DesignError;
-use crate::butterworth::{Butterworth, State, Two};
+use crate::butterworth::{Butterworth, State};
 use crate::limits::output as limits;
-use core::f64::consts::PI;
 
 /// Which quantity of the pad is played.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,11 +29,9 @@ pub struct ContactOutput {
 /// Memory of one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactOutputState {
-    highpass: State,
+    /// Of the high-pass, where the design has one.
+    pub highpass: State,
     velocity_m_s: f64,
-    last: f64,
-    /// 1 while in contact; falls to 0 in [`RELEASE_S`].
-    held: f64,
 }
 
 impl ContactOutput {
@@ -54,6 +51,12 @@ impl ContactOutput {
         Ok(Self { quantity, highpass, sample_rate_hz: rate })
     }
 
+    /// The high-pass, where there is one.
+    #[must_use]
+    pub const fn high_pass(&self) -> Option<&Butterworth> {
+        self.highpass.as_ref()
+    }
+
     /// Which quantity this design plays.
     #[must_use]
     pub const fn quantity(&self) -> Quantity {
@@ -70,7 +73,7 @@ impl ContactOutputState {
             Quantity::Displacement => pad_m,
             Quantity::Acceleration => 0.0,
         };
-        Self { highpass: State::settled_at(settled), velocity_m_s: pad_velocity_m_s, last: 0.0, held: 1.0 }
+        Self { highpass: State::settled_at(settled), velocity_m_s: pad_velocity_m_s }
     }
 
     /// A contact that has been sliding already: its pad has risen at `slope_m_s` and bent by `bend_m_s2` for as
@@ -95,67 +98,20 @@ impl ContactOutputState {
     #[inline]
     pub fn tick(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
         let value = self.quantity(design, pad_m, pad_velocity_m_s);
-        self.last = match &design.highpass {
+        match &design.highpass {
             Some(filter) => self.highpass.tick(filter, value).high,
             None => value,
-        };
-        self.last
-    }
-
-    /// A run of samples, each as [`Self::tick`] would make it, beside the high-pass of something else: `input` gives the pad's
-    /// displacement and velocity and that other thing, `output` takes the output quantity and the other's high-pass.
-    #[inline]
-    pub fn run_beside(
-        &mut self,
-        design: &ContactOutput,
-        (other, of_other): (&Butterworth, &mut State),
-        input: impl Iterator<Item = ([f64; 2], f64)>,
-        mut output: impl FnMut(usize, f64, f64),
-    ) {
-        let Some(filter) = &design.highpass else {
-            for (n, ([pad_m, pad_velocity_m_s], beside)) in input.enumerate() {
-                let felt = self.tick(design, pad_m, pad_velocity_m_s);
-                output(n, felt, of_other.tick(other, beside).high);
-            }
-            return;
-        };
-        let mut two = Two::new([filter, other], [self.highpass, *of_other]);
-        for (n, ([pad_m, pad_velocity_m_s], beside)) in input.enumerate() {
-            let value = self.quantity(design, pad_m, pad_velocity_m_s);
-            let [felt, passed] = two.tick([value, beside].into()).high.into();
-            self.last = felt;
-            output(n, felt, passed);
         }
-        [self.highpass, *of_other] = two.states();
     }
 
-    /// What is played of the pad's motion, before the high-pass.
-    #[inline(always)]
-    fn quantity(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
+    /// What is played of the pad's motion, before the high-pass: for a caller that runs the high-pass beside another
+    /// ([`butterworth::Two`](crate::butterworth::Two)).
+    #[inline]
+    pub fn quantity(&mut self, design: &ContactOutput, pad_m: f64, pad_velocity_m_s: f64) -> f64 {
         let before_m_s = core::mem::replace(&mut self.velocity_m_s, pad_velocity_m_s);
         match design.quantity {
             Quantity::Displacement => pad_m,
             Quantity::Acceleration => (pad_velocity_m_s - before_m_s) * design.sample_rate_hz,
-        }
-    }
-
-    /// One sample after the contact has ended: the last value along a raised cosine to exactly zero.
-    #[inline]
-    pub fn tick_released(&mut self, design: &ContactOutput) -> f64 {
-        self.held = (self.held - 1.0 / (RELEASE_S * design.sample_rate_hz)).max(0.0);
-        if self.held == 0.0 { 0.0 } else { self.last * 0.5 * (1.0 - libm::cos(PI * self.held)) }
-    }
-
-    /// True when the fade after the end is over.
-    #[must_use]
-    pub fn is_over(&self) -> bool {
-        self.held == 0.0
-    }
-
-    /// The pad's reference moves by `offset_m` without being felt (a path that wraps round on a slope).
-    pub fn shift(&mut self, design: &ContactOutput, offset_m: f64) {
-        if design.quantity == Quantity::Displacement && design.highpass.is_some() {
-            self.highpass.shift(offset_m);
         }
     }
 }

@@ -245,13 +245,19 @@ pub fn design_group(
     Ok(group)
 }
 
-/// Groups that `modes` modes need.
-#[must_use]
-pub const fn groups_for(modes: usize) -> usize {
-    modes.div_ceil(LANES)
+/// Designs the groups of a body, 16 modes each in their order; modes at or above Nyquist are silent.
+///
+/// # Errors
+/// Each group names the field that is out of range.
+pub fn design_groups(
+    modes: &[Mode],
+    sample_rate_hz: f64,
+    options: &GroupOptions,
+) -> impl ExactSizeIterator<Item = Result<ModeGroup, DesignError>> {
+    modes.chunks(LANES).map(move |chunk| design_group(chunk, sample_rate_hz, options))
 }
 
-/// Puts the slowest decays first, as the sleep of [`super::Awake`] wants them; allocates nothing.
+/// Puts the slowest decays first, as the sleep of a [`super::ModalBank`] wants them; allocates nothing.
 pub fn sort_by_decay(modes: &mut [Mode]) {
     modes.sort_unstable_by(|a, b| {
         a.decay_per_s.total_cmp(&b.decay_per_s).then(a.frequency_hz.total_cmp(&b.frequency_hz))

@@ -2,7 +2,7 @@
 
 use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup, TURN};
 
-/// Most inputs of [`super::Awake::render_bank`].
+/// Most inputs of a bank.
 pub const MAX_INPUTS: usize = 16;
 
 /// One of several inputs of a bank.
@@ -10,7 +10,7 @@ pub const MAX_INPUTS: usize = 16;
 pub struct Input<'a> {
     /// Impulse of each sample, N·s.
     pub impulses: &'a [f32],
-    /// What each lane takes from it, one entry a group.
+    /// What each lane takes from it, one entry a group ([`super::lane_gains`]).
     pub gains: &'a [LaneGains],
 }
 

@@ -81,7 +81,7 @@ impl Kernel {
     /// Adds the bank's response to `impulses_n_s` to `out`; sample 0 of both is the absolute sample
     /// `first_sample`, which goes on where the last call ended. Every lane hears the one input at gain 1. Slices of unequal length are used as far
     /// as the shortest reaches.
-    pub fn render(
+    pub(super) fn render(
         self,
         first_sample: u64,
         groups: &[ModeGroup],
@@ -95,7 +95,7 @@ impl Kernel {
 
     /// As [`Kernel::render`] for up to [`MAX_INPUTS`] inputs (more are not heard), each with a gain for every
     /// lane. Two inputs cost two to three more operations a mode and sample than the shared one.
-    pub fn render_mixed(
+    pub(super) fn render_mixed(
         self,
         first_sample: u64,
         groups: &[ModeGroup],
@@ -153,7 +153,7 @@ impl Kernel {
     /// hold no finite number are put to rest as well.
     ///
     /// Call it at absolute multiples of [`super::GRID_SAMPLES`], or the output depends on the split into blocks.
-    pub fn settle(self, groups: &[ModeGroup], states: &mut [GroupState], threshold: f32) -> usize {
+    pub(super) fn settle(self, groups: &[ModeGroup], states: &mut [GroupState], threshold: f32) -> usize {
         match self.0 {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: a Kernel of these sets exists only where the processor has them.

@@ -46,13 +46,18 @@
 //! - *Phase.* φ costs one operation of four. It is needed even for the paper's φ = 0, because
 //!   [`GroupOptions::impulse_kernel_compensation`] advances each mode by the latency of the impulse ring.
 //! - Modes at or above the Nyquist frequency are silent.
-//! - Several inputs with a gain a lane ([`Kernel::render_mixed`]): strike positions, or the few modes of
+//! - Several inputs with a gain a lane ([`Inputs::Placed`]): strike positions, or the few modes of
 //!   several bodies in one group.
 //!
 //! Sample n of the output depends on no split into blocks; the order of summation is fixed, and the same
 //! for every instruction set with a fused multiply-add. In an `f32` that rings out, denormal numbers
-//! would slow the bank a hundredfold; [`Kernel::settle`] zeroes each lane long before.
+//! would slow the bank a hundredfold; each lane is zeroed long before, below [`SLEEP_AMPLITUDE`].
+//!
+//! [`ModalBank`] is its face: the modes and their memory, which instructions run them, and what sleeps. [`Culling`] says which modes are worth it,
+//! [`FirstSamples`] what the impulse ring takes from the beginning of a strike.
 
+mod awake;
+mod bank;
 mod culling;
 mod design;
 mod direct;
@@ -67,16 +72,16 @@ mod sums;
 mod vector;
 mod walk;
 
+pub use bank::{Inputs, ModalBank, lane_gains};
 pub use culling::{Culling, audible};
 pub use design::{
-    GRID_SAMPLES, GroupOptions, GroupState, LaneGains, ModeGroup, design_group, groups_for, sort_by_decay,
+    GRID_SAMPLES, GroupOptions, GroupState, LaneGains, ModeGroup, design_group, design_groups, sort_by_decay,
 };
 pub use first_samples::{FirstSamples, MissingSamples};
 pub use job::{Input, MAX_INPUTS};
 pub use kernel::{Isa, Kernel};
 pub use reference::{ReferenceMode, ReferenceState};
-pub use retune::retune;
-pub use sleep::{Awake, Bank, SLEEP_AMPLITUDE, energy, ringing_s};
+pub use sleep::{SLEEP_AMPLITUDE, ringing_s};
 
 /// Modes in a group.
 pub const LANES: usize = 16;

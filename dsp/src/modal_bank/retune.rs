@@ -33,10 +33,7 @@ impl Phasor {
 
 /// Carries `state` from the coefficients `old` to `new`, lane by lane. A lane that is silent before or
 /// after comes to rest.
-///
-/// Call it before a sample that is an absolute multiple of four is rendered, best at multiples of
-/// [`super::GRID_SAMPLES`]: within a turn of four the state is still that of its beginning.
-pub fn retune(old: &ModeGroup, new: &ModeGroup, state: &mut GroupState) {
+pub(super) fn retune(old: &ModeGroup, new: &ModeGroup, state: &mut GroupState) {
     for lane in 0..LANES {
         let (from, to) = (Phasor::read(old, lane), Phasor::read(new, lane));
         let [v, w] = to.carry(&from, f64::from(state.v[lane]), f64::from(state.w[lane]));

@@ -96,11 +96,10 @@ impl Trajectory {
         let late = unknown || self.is_late(design, event, seen.gap_s);
         let distance = if seen.surprise_m > self.reach_m(reported, seen.gap_s) {
             Distance::TooFar
-        } else if design.mode != PathMode::Hold && (late || velocity == [0.0; 2]) {
+        } else if self.may_part(design, late, velocity) {
             let (away_m, speeds) = self.part(design, event, &seen, velocity, late);
             self.catch_up.over(design, away_m, &speeds)
         } else {
-            // The paper's path, which holds, hurries at every event.
             Distance::Small
         };
         match distance {
@@ -172,6 +171,16 @@ impl Trajectory {
         self.reckoning.keep_rate(&reckoning, gap_s);
         self.standstill = standstill;
         Moved::Teleported
+    }
+
+    /// Whether the path may be elsewhere than an event says. One that extrapolates has run on past a finger that stopped; one that
+    /// interpolates reads late enough to see it stop; the paper's, which holds, hurries at every event.
+    fn may_part(&self, design: &TrajectoryDesign, late: bool, velocity: [f64; 2]) -> bool {
+        match design.mode {
+            PathMode::Extrapolate => late || velocity == [0.0; 2],
+            PathMode::Hermite => late,
+            PathMode::Hold => false,
+        }
     }
 
     /// How far from its expected position an event may be and still belong to the same stroke.

@@ -1,7 +1,7 @@
 //! Contacts come, go on, are stolen, revived and let go.
 
 use super::Renderer;
-use crate::audio::voice::{EMPTY_FORCE_N, Phase, Role, Voice};
+use crate::audio::voice::{EMPTY_FORCE_N, Phase, Role, Stretch, Voice};
 use crate::link::stats::Counters;
 use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis};
 use crate::model::stamp::Stamp;
@@ -70,8 +70,7 @@ impl Renderer {
                 && (voice.surface, voice.role) == (surface, role)
                 && voice.ended
                 && matches!(voice.phase, Phase::Fading { .. })
-                && voice.is_near(sample, slot)
-                && !voice.would_jump(sample, slot, stamp)
+                && voice.goes_on_at(sample, slot, stamp)
         }) else {
             return false;
         };
@@ -113,15 +112,9 @@ impl Renderer {
         self.voices_used.insert(index);
         let voice = &mut self.voices[index];
         (voice.surface, voice.role) = (surface, role);
-        voice.begin(
-            contact,
-            sample,
-            &mut self.seats[surface],
-            role.actuator.map_or(&self.shared.idle_output, |channel| &self.channels[channel].output),
-            &self.shared,
-            due,
-            &mut self.scratch,
-        );
+        let output = role.actuator.map_or(&self.shared.idle_output, |channel| &self.channels[channel].output);
+        let at = Stretch { shared: &self.shared, output, position: due.sample(), n: 1 };
+        voice.begin(contact, sample, due, at, &mut self.seats[surface], &mut self.scratch);
         Some(index)
     }
 

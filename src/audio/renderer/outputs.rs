@@ -1,7 +1,7 @@
 //! Output stage: the haptic channels with their actuators, and the audio buses.
 
 use super::Renderer;
-use crate::audio::body_seat::BetweenBuses;
+use crate::audio::smoothed::Smoothed;
 use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
 use crate::model::bus::AudioBus;
 use crate::prepared::body::Terms;
@@ -14,9 +14,6 @@ use asperity_dsp::butterworth::{self, Butterworth};
 use asperity_dsp::limits::output as limits;
 use asperity_texture::height_field::MAX_BLOCK;
 use std::sync::atomic::Ordering::Relaxed;
-
-/// How many samples a bus takes from one gain to another.
-const MOVING_SAMPLES: u32 = 1024;
 
 /// Where limiters hold the peaks: full scale.
 const CEILING: f64 = 1.0;
@@ -36,9 +33,9 @@ pub(super) struct HapticChannel {
 
 /// An audio bus: the sound of the bodies that play on it.
 pub(super) struct Bus {
-    gain: f32,
-    /// The gain it comes from, and how many samples of the way are left.
-    moving: Option<(f32, u32)>,
+    gain: f64,
+    /// On its way to the gain.
+    smoothed: Smoothed,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
     meter: Meter,
     /// Sum of the bodies.
@@ -111,8 +108,8 @@ impl HapticChannel {
 impl Bus {
     pub(super) fn new(settings: &AudioBus, sample_rate_hz: f64) -> Result<Self, DesignError> {
         Ok(Self {
-            gain: settings.gain as f32,
-            moving: None,
+            gain: settings.gain,
+            smoothed: Smoothed::settled(settings.gain, sample_rate_hz),
             limiter: limiter(settings.limit, sample_rate_hz)?,
             meter: Meter::new(sample_rate_hz),
             sum: [0.0; MAX_BLOCK],
@@ -121,29 +118,17 @@ impl Bus {
 
     /// Goes to another gain.
     pub(super) fn set_gain(&mut self, gain: f64) {
-        let now = self.moving.map_or(self.gain, |(from, left)| self.between(from, left));
-        self.moving = Some((now, MOVING_SAMPLES));
-        self.gain = gain as f32;
-    }
-
-    /// The gain while so many samples of the way are left.
-    fn between(&self, from: f32, left: u32) -> f32 {
-        self.gain + (from - self.gain) * (left as f32 / MOVING_SAMPLES as f32)
+        self.gain = gain;
     }
 
     /// What leaves of the present stretch of `n` samples.
     fn finish(&mut self, n: usize, master: Option<&[f32]>) -> &[f32] {
-        // The samples of the way from one gain to another come first.
-        let mut done = 0;
-        while let Some((from, left)) = self.moving.filter(|_| done < n) {
-            let left = left - 1;
-            self.sum[done] *= self.between(from, left);
-            self.moving = (left > 0).then_some((from, left));
-            done += 1;
-        }
         let sum = &mut self.sum[..n];
-        for x in &mut sum[done..] {
-            *x *= self.gain;
+        if self.smoothed.settled_at(self.gain) {
+            let gain = self.gain as f32;
+            sum.iter_mut().for_each(|x| *x *= gain);
+        } else {
+            sum.iter_mut().for_each(|x| *x *= self.smoothed.tick(self.gain) as f32);
         }
         if let Some((design, state)) = &mut self.limiter {
             state.run(design, sum);
@@ -205,23 +190,20 @@ impl Renderer {
         for bus in &mut self.buses {
             bus.sum[..n].fill(0.0);
         }
-        let terms =
-            Terms { kernel: self.kernel, position: self.position, mode_level: self.governor.mode_level() };
+        let terms = Terms { position: self.position, mode_level: self.governor.mode_level() };
         let mut shed = 0;
         for body in self.bodies_used.iter() {
             let body = &mut self.bodies[body];
-            let between = body.moves_between(n);
-            if between.is_some() || !body.is_plain() {
+            if !body.is_plain() {
                 let sound = &mut self.mix.body[..n];
                 sound.fill(0.0);
                 shed += body.render(terms, sound);
                 body.scale(sound);
-                let here = BetweenBuses::one(body.bus());
-                let share = between.unwrap_or(here);
+                let (from, to) = body.between();
                 for (i, x) in sound.iter().enumerate() {
-                    let weight = share.weight(i);
-                    self.buses[share.from].sum[i] += (1.0 - weight) * x;
-                    self.buses[share.to].sum[i] += weight * x;
+                    let weight = body.arrive();
+                    self.buses[from].sum[i] += (1.0 - weight) * x;
+                    self.buses[to].sum[i] += weight * x;
                 }
             } else {
                 shed += body.render(terms, &mut self.buses[body.bus()].sum[..n]);

@@ -1,6 +1,9 @@
 //! Fades of a contact that comes or goes, without a click.
 
-use super::{Phase, Scratch, Shared, Voice};
+use super::Phase;
+use super::block::VoiceBlock;
+use super::shared::Shared;
+use crate::audio::smoothed::Smoothed;
 
 /// Share of a fade's length that its turning takes.
 const TURN: f64 = 0.2;
@@ -23,46 +26,65 @@ impl Rising {
     }
 }
 
-impl Voice {
-    /// Starts to fade, if it has not yet, pressed as it is now: the smoothed force still falls after a
-    /// lift-off, and the pad it sets free would be felt as a thump louder than the stroke.
-    pub(crate) fn fade(&mut self, shared: &Shared) {
-        if self.phase == Phase::Sounding {
-            self.trajectory.hold_force(self.last_point.normal_force_n);
-            self.phase = Phase::Fading { left: shared.fade_samples() };
-        }
+/// The gains of one contact over time.
+pub(super) struct Fades {
+    in_left: u32,
+    /// Coming back out of a fade.
+    rising: Option<Rising>,
+    /// Gain of the last sample.
+    gain: f64,
+    /// On its way to the role's gain.
+    role_gain: Smoothed,
+}
+
+impl Fades {
+    /// Nobody's.
+    pub(super) fn idle(sample_rate_hz: f64) -> Self {
+        Self { in_left: 0, rising: None, gain: 0.0, role_gain: Smoothed::new(sample_rate_hz) }
     }
 
-    /// Comes back out of its fade, from the level it has faded to and without a corner.
-    pub(crate) fn resume(&mut self, shared: &Shared) {
+    /// Another contact begins. A landing has its own beginning; what is suddenly there fades in.
+    pub(super) fn begin(&mut self, role_gain: f64, lands: bool, shared: &Shared) {
+        self.rising = None;
+        self.role_gain.set(role_gain);
+        self.in_left = if lands { 0 } else { shared.fade_samples() };
+    }
+
+    /// Comes back out of a fade that stands at `phase`, from the level it has faded to and without a corner.
+    pub(super) fn resume(&mut self, phase: Phase, shared: &Shared) {
         let step = 1.0 / f64::from(shared.fade_samples());
-        let faded = matches!(self.phase, Phase::Fading { left } if left < shared.fade_samples());
-        let phase = (1.0 - 2.0 * self.gain).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
         // Before the first faded sample nothing has happened yet.
+        let faded = matches!(phase, Phase::Fading { left } if left < shared.fade_samples());
+        let phase = (1.0 - 2.0 * self.gain).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
         self.rising = faded.then_some(Rising { phase, speed: -step });
         if faded {
-            self.fade_in_left = 0;
+            self.in_left = 0;
         }
-        self.phase = Phase::Sounding;
-        self.ended = false;
     }
 
     /// Raised cosines, without step or corner: in for a contact that was suddenly there (a landing has
-    /// its own beginning), out for one that ended, lapsed or was stolen.
-    pub(super) fn apply_fades(&mut self, shared: &Shared, n: usize, scratch: &mut Scratch) {
-        if self.role.gain != 1.0 || !self.role_gain.settled_at(1.0) {
-            (0..n).for_each(|i| scratch.out.scale(i, self.role_gain.tick(self.role.gain)));
+    /// its own beginning), out for one that ended, lapsed or was stolen. The phase after `n` samples.
+    pub(super) fn run(
+        &mut self,
+        mut phase: Phase,
+        role_gain: f64,
+        shared: &Shared,
+        n: usize,
+        out: &mut VoiceBlock,
+    ) -> Phase {
+        if role_gain != 1.0 || !self.role_gain.settled_at(1.0) {
+            (0..n).for_each(|i| out.scale(i, self.role_gain.tick(role_gain)));
         }
-        if self.fade_in_left == 0 && self.rising.is_none() && self.phase == Phase::Sounding {
+        if self.in_left == 0 && self.rising.is_none() && phase == Phase::Sounding {
             self.gain = 1.0;
-            return;
+            return phase;
         }
         let (total, rise) = (shared.fade_samples(), &shared.fade);
         for i in 0..n {
             self.gain = 1.0;
-            if self.fade_in_left > 0 {
-                self.fade_in_left -= 1;
-                self.gain *= rise[(total - self.fade_in_left) as usize];
+            if self.in_left > 0 {
+                self.in_left -= 1;
+                self.gain *= rise[(total - self.in_left) as usize];
             }
             if let Some(rising) = &mut self.rising {
                 self.gain *= rising.tick(total);
@@ -70,17 +92,15 @@ impl Voice {
                     self.rising = None;
                 }
             }
-            if let Phase::Fading { left } = self.phase {
+            if let Phase::Fading { left } = phase {
                 let left = left.saturating_sub(1);
                 self.gain *= rise[left as usize];
-                self.phase = Phase::Fading { left };
+                phase = Phase::Fading { left };
             }
             if self.gain != 1.0 {
-                scratch.out.scale(i, self.gain);
+                out.scale(i, self.gain);
             }
         }
-        if self.phase == (Phase::Fading { left: 0 }) {
-            self.phase = Phase::Free;
-        }
+        if phase == (Phase::Fading { left: 0 }) { Phase::Free } else { phase }
     }
 }

@@ -1,35 +1,31 @@
-//! The work space of a stretch, at rest.
+//! What passes from stage to stage during one stretch; made once, used by every voice in turn.
 
-use super::{PadSample, Scratch, VoiceBlock};
-use asperity_dsp::hertz::FORCE_HISTORY;
-use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
+use super::block::VoiceBlock;
+use super::exciters::ForceRun;
+use super::profile::Profile;
+use super::watching::Shown;
+use super::{PadSample, PathPoint};
+use asperity_texture::height_field::MAX_BLOCK;
+
+/// Outputs of the stages, in their order.
+pub(crate) struct Scratch {
+    pub(super) points: [PathPoint; MAX_BLOCK],
+    pub(super) profile: Profile,
+    pub(super) rows: [PadSample; MAX_BLOCK],
+    pub(super) force: ForceRun,
+    pub(super) shown: Shown,
+    pub(crate) out: VoiceBlock,
+}
 
 impl Scratch {
     pub(crate) fn new() -> Box<Self> {
         Box::new(Self {
             points: [PathPoint::default(); MAX_BLOCK],
-            position_m: [[0.0; 2]; MAX_BLOCK],
-            velocity_m_s: [[0.0; 2]; MAX_BLOCK],
-            footprint_m: [0.0; MAX_BLOCK],
-            noise_footprint_m: [0.0; MAX_BLOCK],
-            force_n: [0.0; MAX_BLOCK],
-            uv: [[0.0; 2]; MAX_BLOCK],
-            force_impulse_n_s: [0.0; FORCE_HISTORY + MAX_BLOCK],
-            surface: SurfaceBlock::default(),
-            rough: SurfaceBlock::default(),
-            pad: [PadSample::default(); MAX_BLOCK],
-            shown: [PadSample::default(); MAX_BLOCK],
-            shown_n_s: [0.0; MAX_BLOCK],
-            output_force_n: [[0.0; 3]; MAX_BLOCK],
-            out: VoiceBlock {
-                haptic: [0.0; MAX_BLOCK],
-                impulse_n_s: [0.0; MAX_BLOCK],
-                excites: false,
-                collisions: 0,
-                shortened: 0,
-                resets: 0,
-            },
+            profile: Profile::new(),
+            rows: [PadSample::default(); MAX_BLOCK],
+            force: ForceRun::new(),
+            shown: Shown::new(),
+            out: VoiceBlock::new(),
         })
     }
 }

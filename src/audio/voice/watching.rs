@@ -1,64 +1,100 @@
 //! The tap of a contact: rows of the trace and the 3-D force.
 
-use super::{PadSample, Scratch, Shared, Voice};
-use crate::audio::seat::Seat;
+use super::PadSample;
+use super::profile::Profile;
+use super::role::Role;
+use super::shared::Stretch;
 use crate::link::tap::{ContactBlock, Tap};
-use crate::model::event::Actuator;
+use crate::model::event::{Actuator, ContactId};
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::Reaction;
+use asperity_texture::height_field::{MAX_BLOCK, Reaction};
 
 /// Below this speed friction no longer jumps, m/s.
 const STICK_M_S: f64 = 1e-3;
 
-impl Voice {
+/// The rows that a tap is shown.
+pub(super) struct Shown {
+    position_m: [[f64; 2]; MAX_BLOCK],
+    velocity_m_s: [[f64; 2]; MAX_BLOCK],
+    uv: [[f64; 2]; MAX_BLOCK],
+    rows: [PadSample; MAX_BLOCK],
+    impulse_n_s: [f64; MAX_BLOCK],
+    force_n: [[f64; 3]; MAX_BLOCK],
+}
+
+/// What one contact has done in a stretch.
+pub(super) struct Done<'a> {
+    pub(super) contact: ContactId,
+    pub(super) role: &'a Role,
+    /// When it began, absolute sample.
+    pub(super) begun: u64,
+    /// Where it was before the stretch.
+    pub(super) last_point: PathPoint,
+    /// Of the surface, m.
+    pub(super) size_m: [f64; 2],
+    pub(super) reaction: &'a Reaction,
+    pub(super) points: &'a [PathPoint],
+    pub(super) profile: &'a Profile,
+    pub(super) rows: &'a [PadSample],
+    pub(super) impulse_n_s: &'a [f64],
+}
+
+impl Shown {
+    pub(super) fn new() -> Self {
+        Self {
+            position_m: [[0.0; 2]; MAX_BLOCK],
+            velocity_m_s: [[0.0; 2]; MAX_BLOCK],
+            uv: [[0.0; 2]; MAX_BLOCK],
+            rows: [PadSample::default(); MAX_BLOCK],
+            impulse_n_s: [0.0; MAX_BLOCK],
+            force_n: [[0.0; 3]; MAX_BLOCK],
+        }
+    }
+
     /// Shows the stretch to the tap, a row for each sample that leaves. Rows describe the instant `latency` samples back, so the
-    /// path's points are delayed by as much.
+    /// path's points are delayed by as much. `unshown_n_s` is what was sent to the body since the last row.
     pub(super) fn show<T: Tap>(
         &mut self,
-        seat: &Seat,
-        shared: &Shared,
-        position: u64,
-        n: usize,
-        scratch: &mut Scratch,
+        stretch: Stretch<'_>,
+        done: &Done<'_>,
+        unshown_n_s: &mut f64,
         tap: &mut T,
     ) {
-        // A contact that has jumped is shown where it is, and not where it fades.
-        let watched = tap.is_watching() && !self.left_behind;
-        let Some(slot) = seat.current().filter(|_| watched) else { return };
-        let size_m = [slot.surface.width_m, slot.surface.height_m];
+        let Stretch { shared, position, n, .. } = stretch;
+        let [width_m, height_m] = done.size_m;
         let latency = shared.row_latency;
         let (mut count, mut first_sample) = (0, 0);
         for i in 0..n {
             let sample = position + i as u64;
-            self.unshown_n_s += scratch.out.impulse_n_s[i];
+            *unshown_n_s += done.impulse_n_s[i];
             // The first rows of a contact would describe instants before it began.
-            if !shared.inner.leaves(sample) || sample < self.begun + latency as u64 {
+            if !shared.inner.leaves(sample) || sample < done.begun + latency as u64 {
                 continue;
             }
             if count == 0 {
                 first_sample = (sample - latency as u64) / shared.inner.every as u64;
             }
-            let point = if i >= latency { scratch.points[i - latency] } else { self.last_point };
-            scratch.position_m[count] = point.position_m;
-            scratch.velocity_m_s[count] = point.velocity_m_s;
-            scratch.uv[count] = [point.position_m[0] / size_m[0], point.position_m[1] / size_m[1]];
-            scratch.shown[count] = scratch.pad[i];
-            scratch.shown_n_s[count] = std::mem::take(&mut self.unshown_n_s);
-            let (slope, friction) = (scratch.surface.gradient[i], scratch.surface.friction[i]);
-            scratch.output_force_n[count] =
-                output_force(&point, &scratch.pad[i], slope, friction, &self.reaction);
+            let point = if i >= latency { done.points[i - latency] } else { done.last_point };
+            self.position_m[count] = point.position_m;
+            self.velocity_m_s[count] = point.velocity_m_s;
+            self.uv[count] = [point.position_m[0] / width_m, point.position_m[1] / height_m];
+            self.rows[count] = done.rows[i];
+            self.impulse_n_s[count] = std::mem::take(unshown_n_s);
+            let surface = &done.profile.surface;
+            let (slope, friction) = (surface.gradient[i], surface.friction[i]);
+            self.force_n[count] = output_force(&point, &done.rows[i], slope, friction, done.reaction);
             count += 1;
         }
         tap.contact(&ContactBlock {
             first_sample,
-            contact: self.contact,
-            actuator: self.role.actuator.map(|channel| Actuator(channel as u16)),
-            position_m: &scratch.position_m[..count],
-            uv: &scratch.uv[..count],
-            velocity_m_s: &scratch.velocity_m_s[..count],
-            contact_samples: &scratch.shown[..count],
-            impulse_n_s: &scratch.shown_n_s[..count],
-            force_n: &scratch.output_force_n[..count],
+            contact: done.contact,
+            actuator: done.role.actuator.map(|channel| Actuator(channel as u16)),
+            position_m: &self.position_m[..count],
+            uv: &self.uv[..count],
+            velocity_m_s: &self.velocity_m_s[..count],
+            contact_samples: &self.rows[..count],
+            impulse_n_s: &self.impulse_n_s[..count],
+            force_n: &self.force_n[..count],
         });
     }
 }

@@ -6,6 +6,7 @@
 
 mod body;
 mod fields;
+mod named_files;
 mod own;
 mod pixels;
 mod sand;
@@ -16,7 +17,7 @@ pub use body::BodyEntry;
 pub use own::{MakeSource, OwnSource};
 pub use pixels::Pixels;
 pub use sand::{Sand, ToolPicture};
-pub use source::{Brownian, BrownianForce, Lattice, Source};
+pub use source::{Brownian, Lattice, Source};
 pub use surface::{RoughnessEntry, SurfaceEntry};
 
 use crate::files::FileError;

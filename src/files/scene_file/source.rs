@@ -9,6 +9,7 @@ use super::sand::{self, Sand};
 use crate::files::FileError;
 use crate::parameters::{self, solid};
 use asperity_dsp::limits;
+use asperity_texture::force_rendering::Rendering;
 use asperity_texture::picture::Channel;
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::{ForceDirection, SolidNoiseParameters};
@@ -82,16 +83,7 @@ pub struct Brownian {
     /// Heights follow the distance travelled instead of the place.
     pub graph: bool,
     /// The force that the relief answers with.
-    pub force: Option<BrownianForce>,
-}
-
-/// The thesis' force renderings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BrownianForce {
-    /// Out of the surface, from the rate of climbing.
-    Orthogonal,
-    /// Along the surface, from the slope.
-    Lateral,
+    pub force: Option<Rendering>,
 }
 
 /// A repeated cell.
@@ -240,7 +232,7 @@ fn read_solid_table(mut table: Fields) -> Result<Source, FileError> {
 }
 
 fn read_brownian(mut table: Fields) -> Result<Source, FileError> {
-    let forces = [("orthogonal", BrownianForce::Orthogonal), ("lateral", BrownianForce::Lateral)];
+    let forces = [("orthogonal", Rendering::Orthogonal), ("lateral", Rendering::Lateral)];
     let graph = table.flag("graph")?.unwrap_or(false);
     let most = if graph { 1 << 22 } else { 4096 };
     let brownian = Brownian {

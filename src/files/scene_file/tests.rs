@@ -1,6 +1,7 @@
 use super::*;
-use crate::Material;
 use crate::model::excitation::Excitation;
+use crate::model::material::Material;
+use asperity_texture::force_rendering::Rendering;
 use asperity_texture::picture::Channel;
 use asperity_texture::sand::Layer;
 use asperity_texture::solid_materials::SolidMaterial;
@@ -114,7 +115,7 @@ fn sources_are_put_together_from_tables_like_a_surfaces_own() {
     let Source::Mask { image, outside, .. } = *mask else { panic!("not a mask") };
     assert_eq!((image.path.as_path(), image.channel), (Path::new("dir/m.png"), Channel::G));
     let graph = Brownian { hurst: 0.2, rms_m: 1e-5, seed: None, cells: None, graph: true, force: None };
-    assert_eq!(*outside, Source::Brownian(Brownian { force: Some(BrownianForce::Lateral), ..graph }));
+    assert_eq!(*outside, Source::Brownian(Brownian { force: Some(Rendering::Lateral), ..graph }));
     let fade = "crossfade = { from = { solid = { preset = \"wood\", octaves = 3 } }, to = {}, at_s = 0.25 }";
     let Source::Crossfade { from, at_s: 0.25, .. } = source(fade) else { panic!("not a crossfade") };
     assert!(matches!(*from, Source::Solid { parameters, .. } if parameters.modules[0].octaves == 3));

@@ -49,10 +49,8 @@ impl Scene {
 
     /// What a recording can say of a surface.
     pub(super) fn described(&self, surface: &Surface) -> LogSurface {
-        match (&self.recording, &surface.described) {
-            (Some(_), Some(described)) => (**described).clone(),
-            _ => LogSurface::default(),
-        }
+        let described = surface.described.as_ref().filter(|_| self.recording.is_some());
+        described.and_then(|described| described.downcast_ref::<LogSurface>()).cloned().unwrap_or_default()
     }
 
     /// What the audio half has not come to when game time begins anew is dropped there, and here.

@@ -17,6 +17,7 @@
 //! the same at any rate. Equation 6.8 replaces the gradient by (Δy, 0, Δy), which fixes the direction
 //! at 45°; ours is the gradient of 6.7, per millimetre (the unit is ours: the thesis has none).
 
+pub use crate::force_rendering::Rendering;
 use crate::height_field::{
     Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
 };
@@ -29,15 +30,6 @@ pub const GREY_LEVELS: f64 = 256.0;
 pub const TICK_S: f64 = 1e-3;
 /// Unit of length of the lateral rule, metres (ours).
 pub const LATERAL_UNIT_M: f64 = 1e-3;
-
-/// Which way the force points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rendering {
-    /// Out of the surface, from the rate of climbing.
-    Orthogonal,
-    /// Along the surface, from the slope.
-    Lateral,
-}
 
 /// A force rule.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -123,8 +123,10 @@ fn reports_that_get_lost_make_nobody_hurry() {
 
 #[test]
 fn a_finger_that_stops_dead_is_not_thrown_back() {
-    for (report_hz, bound) in [(30.0, 1.45), (60.0, 1.45), (90.0, 1.2)] {
-        let design = design(PathMode::Extrapolate);
+    let extrapolated = [(30.0, 1.45), (60.0, 1.45), (90.0, 1.2)].map(|rate| (PathMode::Extrapolate, rate));
+    let interpolated = [(30.0, 0.5), (60.0, 0.2), (90.0, 0.1)].map(|rate| (PathMode::Hermite, rate));
+    for (mode, (report_hz, bound)) in extrapolated.into_iter().chain(interpolated) {
+        let design = design(mode);
         let step = (RATE_HZ / report_hz).round() as u64;
         let place = |n: u64| 0.5 * (n.min(20) * step) as f64 / RATE_HZ;
         let mut path = Trajectory::begin(&design, &event(0, 0.0, Some(0.5)));
@@ -139,8 +141,8 @@ fn a_finger_that_stops_dead_is_not_thrown_back() {
                 Moved::Followed
             );
         }
-        assert!(slowest > -bound, "{report_hz} Hz: back at {slowest} times its speed");
-        assert!(furthest < 0.5 / report_hz, "{report_hz} Hz: {furthest} m too far");
+        assert!(slowest > -bound, "{mode:?}, {report_hz} Hz: back at {slowest} times its speed");
+        assert!(furthest < 0.5 / report_hz, "{mode:?}, {report_hz} Hz: {furthest} m too far");
         assert!((points.last().unwrap().position_m[0] - place(20)).abs() < 1e-6);
     }
 }

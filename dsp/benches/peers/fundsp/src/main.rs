@@ -7,7 +7,7 @@
 
 mod ring;
 
-use asperity_dsp::modal_bank::{GroupOptions, GroupState, Isa, Kernel, design_group};
+use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, Isa, Kernel, ModalBank, design_group};
 use asperity_dsp::mode::Mode;
 use fundsp::biquad::BiquadCoefs;
 use fundsp::biquad_bank::BiquadBank;
@@ -160,11 +160,11 @@ fn pitch(rate_hz: f64) {
         let Some(kernel) = Kernel::find(isa) else { continue };
         let group =
             [design_group(&[mode], rate_hz, &GroupOptions::IMPULSE_RING).expect("a mode like any other")];
-        let mut state = [GroupState::REST];
+        let mut bank = ModalBank::new(kernel, group, [GroupState::REST]);
         let mut input = vec![0.0; (ring::LENGTH_S * rate_hz) as usize];
         input[0] = 1.0;
         let mut output = vec![0.0; input.len()];
-        kernel.render(0, &group, &mut state, &input, &mut output);
+        bank.render(0, Inputs::One(&input), &mut output);
         show(&format!("asperity, {isa:?}"), rate_hz, &output);
     }
     let mut bank = lanes(|_| PITCH_HZ, decay, 1.0, rate_hz);

@@ -1,0 +1,156 @@
+//! What the game half sends, applied at its sample.
+
+use super::Renderer;
+use crate::audio::seat::Change;
+use crate::audio::voice::{Phase, Voice};
+use crate::link::message::{Dead, Felt, Message};
+use crate::link::stats::Counters;
+use crate::model::id::SurfaceId;
+use crate::model::stamp::Stamp;
+use crate::prepared::surface::SurfaceSlot;
+use asperity_dsp::hertz::HertzPulse;
+use asperity_texture::height_field::MAX_BLOCK;
+use std::sync::atomic::Ordering::Relaxed;
+
+impl Renderer {
+    /// How many samples can be rendered before the next event, the grid or the end of the block.
+    pub(super) fn stretch(&mut self, wanted: usize) -> usize {
+        let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
+        let to_event = match self.from_game.peek() {
+            Some(Message::Event { stamp, .. } | Message::Strike { stamp, .. }) => {
+                usize::try_from(stamp.sample().saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
+            }
+            _ => usize::MAX,
+        };
+        wanted.min(to_grid).min(to_event)
+    }
+
+    pub(super) fn apply_due(&mut self) {
+        while let Some(message) = self.from_game.peek() {
+            let ended = self.counters.resets_asked.load(Relaxed) != self.resets;
+            let due = match message {
+                Message::Event { stamp, .. } | Message::Strike { stamp, .. } => {
+                    ended || stamp.sample() <= self.position
+                }
+                Message::Reset => true,
+                // Each of these may send something home; it waits until there is room.
+                Message::SetBody { id, .. } => {
+                    self.to_game.free() > 0 && self.bodies[id.index()].can_change()
+                }
+                _ => self.to_game.free() > 0,
+            };
+            if !due {
+                return;
+            }
+            if let Some(message) = self.from_game.receive() {
+                self.apply(message);
+            }
+        }
+    }
+
+    pub(super) fn apply(&mut self, message: Message) {
+        match message {
+            Message::Reset => self.resets += 1,
+            // It waited for a time that has ended.
+            Message::Event { stamp, .. } | Message::Strike { stamp, .. }
+                if stamp.sample() > self.position =>
+            {
+                Counters::add(&self.counters.superseded, 1);
+            }
+            Message::Event { stamp, event } => {
+                self.note_arrival(stamp);
+                self.apply_event(&event, stamp);
+            }
+            Message::Strike { stamp, body, position, other, holder, felt, pulse } => {
+                self.note_arrival(stamp);
+                Counters::add(&self.counters.impacts, 1);
+                self.strike(body, position, &pulse, stamp);
+                if let Some(other) = other {
+                    self.strike(other, 0, &pulse, stamp);
+                }
+                let answer = HertzPulse { impulse_n_s: -pulse.impulse_n_s, ..pulse };
+                if let Some(holder) = holder {
+                    self.strike(holder, 0, &answer, stamp);
+                }
+                if let Some(felt) = felt {
+                    self.feel(felt, &pulse, stamp);
+                }
+            }
+            Message::AddProbe { index, probe } => self.shared.probes[index] = Some(probe),
+            Message::SetSurface { id, surface } => self.set_surface(id, surface),
+            Message::ChangeSurface { slot, change } => {
+                if !self.seats[slot].change(&*change, self.position) {
+                    Counters::add(&self.counters.quarantined, 1);
+                }
+                // There is room: the message waited for it.
+                let _ = self.to_game.send(Dead::Change(change));
+                // A resting finger feels the change.
+                self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(Voice::wake);
+            }
+            Message::RemoveSurface { slot } => {
+                self.seats[slot].remove();
+                self.fade_contacts_on(slot);
+            }
+            Message::SetBody { id, body, bus, gain, stroking } => {
+                self.bodies[id.index()].set(id, body, bus, gain);
+                self.bodies_used.insert(id.index());
+                for seat in self.seats_used.iter() {
+                    self.seats[seat].body_changed(id, &stroking);
+                }
+            }
+            Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
+            Message::SetBodyGain { slot, gain } => self.bodies[slot].set_gain(gain),
+            Message::Mute(muted) => self.muted = muted,
+            Message::Pause(paused) => {
+                self.paused = paused;
+                if paused {
+                    self.silence_all();
+                }
+            }
+            Message::FadeAll => {
+                self.end_all();
+                self.bodies_used.iter().for_each(|body| self.bodies[body].damp());
+            }
+            Message::RemoveBody { slot } => self.bodies[slot].remove(),
+            Message::AddOutlet(outlet) => self.outlets.add(outlet),
+            Message::SetAudioGain { bus, gain } => self.buses[bus].set_gain(gain),
+            Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
+        }
+    }
+
+    fn note_arrival(&self, stamp: Stamp) {
+        Counters::add(&self.counters.events, 1);
+        Counters::add(&self.counters.late, u64::from(stamp.sample() < self.position));
+    }
+
+    /// When something begins that holds at `stamp`: what is late begins at once.
+    pub(super) fn due(&self, stamp: Stamp) -> Stamp {
+        stamp.max(Stamp::whole(self.position))
+    }
+
+    fn set_surface(&mut self, id: SurfaceId, surface: Box<SurfaceSlot>) {
+        let (slot, rate) = (id.index(), self.shared.sample_rate_hz);
+        self.seats_used.insert(slot);
+        if self.seats[slot].set(id, surface, self.position, rate, &mut self.to_game) == Change::Restart {
+            for index in 0..self.voices.len() {
+                if self.voices[index].surface == slot && self.voices[index].phase == Phase::Sounding {
+                    self.silence(index, false);
+                }
+            }
+        }
+    }
+
+    fn strike(&mut self, body: usize, position: usize, pulse: &HertzPulse, stamp: Stamp) {
+        // Impacts pass the same look-ahead as contacts, so that both stay aligned.
+        let sounds = self.due(stamp).later(self.shared.row_latency as u64);
+        let level = self.governor.mode_level();
+        self.bodies[body].strike(position, pulse, sounds, level, self.shared.sample_rate_hz);
+    }
+
+    /// A strike is felt: its pulse goes through the mobility of the hand's probe.
+    fn feel(&mut self, felt: Felt, pulse: &HertzPulse, stamp: Stamp) {
+        let sounds = self.due(stamp).later(self.shared.row_latency as u64);
+        let output = &self.channels[felt.channel].output;
+        self.blows.strike(felt, output, pulse, sounds, self.position, self.shared.sample_rate_hz);
+    }
+}

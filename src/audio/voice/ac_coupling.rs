@@ -1,0 +1,106 @@
+//! AC coupling: high-pass the pad motion (felt) and the contact force (heard).
+
+use super::PadSample;
+use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
+use asperity_dsp::butterworth::{self, Butterworth, Two};
+
+/// What rounding leaves of a pad that does not move, m or m/s².
+const ROUNDING: f64 = 1e-13;
+/// What rounding leaves of a force that does not change, N.
+const ROUNDING_N: f64 = 1e-11;
+/// High-passed pad displacement that counts as still, m: −160 dB of 0.1 mm.
+const STILL_M: f64 = 1e-12;
+/// Pad acceleration that counts as still, m/s²: −120 dB of what a fingertip just feels.
+const STILL_M_S2: f64 = 1e-6;
+
+/// The two high-passes of a contact.
+pub(super) struct AcCoupling {
+    pub(super) feel: ContactOutputState,
+    pub(super) force: butterworth::State,
+    /// What was felt last.
+    last_felt: f64,
+}
+
+/// What the force is to become.
+#[derive(Clone, Copy)]
+pub(super) struct ForceCoupling<'a> {
+    pub(super) high_pass: &'a Butterworth,
+    /// The time of a sample, s; 0 for a force that is not to sound.
+    pub(super) step_s: f64,
+}
+
+impl AcCoupling {
+    /// Nobody's.
+    pub(super) fn idle(output: &ContactOutput) -> Self {
+        let feel = ContactOutputState::begin(output, 0.0, 0.0);
+        Self { feel, force: butterworth::State::default(), last_felt: 0.0 }
+    }
+
+    /// The two high-passes side by side, because each waits for itself most of the time: the pad's displacement or acceleration about
+    /// the mean surface, which the actuator is to reproduce, and the alternating contact force, which sounds, as impulses of N·s.
+    pub(super) fn run(
+        &mut self,
+        output: &ContactOutput,
+        by: ForceCoupling<'_>,
+        rows: &[PadSample],
+        felt: &mut [f64],
+        impulse_n_s: &mut [f64],
+    ) {
+        match output.high_pass() {
+            Some(filter) => self.run_both(output, [filter, by.high_pass], rows, felt, impulse_n_s),
+            None => {
+                for (i, row) in rows.iter().enumerate() {
+                    felt[i] = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
+                    impulse_n_s[i] = self.force.tick(by.high_pass, row.contact_force_n).high;
+                }
+            }
+        }
+        for (impulse_n_s, felt) in impulse_n_s.iter_mut().zip(felt.iter_mut()) {
+            *impulse_n_s = if impulse_n_s.abs() < ROUNDING_N { 0.0 } else { *impulse_n_s * by.step_s };
+            *felt = if felt.abs() < ROUNDING { 0.0 } else { *felt };
+        }
+        self.last_felt = felt[rows.len() - 1];
+    }
+
+    fn run_both(
+        &mut self,
+        output: &ContactOutput,
+        high_passes: [&Butterworth; 2],
+        rows: &[PadSample],
+        felt: &mut [f64],
+        alternating_n: &mut [f64],
+    ) {
+        let mut feel = self.feel;
+        let mut two = Two::new(high_passes, [feel.highpass, self.force]);
+        for (i, row) in rows.iter().enumerate() {
+            let moved = feel.quantity(output, row.pad_m, row.pad_velocity_m_s);
+            [felt[i], alternating_n[i]] = two.tick([moved, row.contact_force_n].into()).high.into();
+        }
+        [feel.highpass, self.force] = two.states();
+        self.feel = feel;
+    }
+
+    /// What a resting contact is felt as.
+    pub(super) fn rest(&self, felt: &mut [f64]) {
+        felt.fill(self.last_felt);
+    }
+
+    /// Whether nothing of a pad at `pad_m` is felt to move. Without a high-pass a resting pad is felt as its constant displacement.
+    pub(super) fn feels_still(&self, output: &ContactOutput, pad_m: f64) -> bool {
+        self.last_felt.abs() < still(output) || (self.last_felt - pad_m).abs() < still(output)
+    }
+
+    /// What is left of a contact that has come to rest.
+    pub(super) fn settle(&mut self, output: &ContactOutput) {
+        if self.last_felt.abs() < still(output) {
+            self.last_felt = 0.0;
+        }
+    }
+}
+
+fn still(output: &ContactOutput) -> f64 {
+    match output.quantity() {
+        Quantity::Displacement => STILL_M,
+        Quantity::Acceleration => STILL_M_S2,
+    }
+}

@@ -1,0 +1,45 @@
+//! What a voice hands on: what is felt of it, what it sends to the body, what was counted.
+
+use asperity_texture::height_field::MAX_BLOCK;
+
+/// What one voice adds to a stretch of samples.
+pub(crate) struct VoiceBlock {
+    /// m or m/s², as the actuator plays it.
+    pub(crate) haptic: [f64; MAX_BLOCK],
+    pub(crate) impulse_n_s: [f64; MAX_BLOCK],
+    /// Whether `impulse_n_s` is more than zeros.
+    pub(crate) excites: bool,
+    pub(crate) collisions: u64,
+    /// Contact forces beyond thirty times what pressed.
+    pub(crate) blows: u64,
+    /// Collisions that would have lasted longer.
+    pub(crate) shortened: u64,
+    pub(crate) resets: u64,
+}
+
+impl VoiceBlock {
+    /// Nothing.
+    pub(super) fn new() -> Self {
+        Self {
+            haptic: [0.0; MAX_BLOCK],
+            impulse_n_s: [0.0; MAX_BLOCK],
+            excites: false,
+            collisions: 0,
+            blows: 0,
+            shortened: 0,
+            resets: 0,
+        }
+    }
+
+    /// Louder or softer, felt and heard.
+    pub(super) fn scale(&mut self, i: usize, gain: f64) {
+        self.haptic[i] *= gain;
+        self.impulse_n_s[i] *= gain;
+    }
+
+    /// Nothing felt and nothing heard of some samples.
+    pub(super) fn silence(&mut self, samples: std::ops::Range<usize>) {
+        self.haptic[samples.clone()].fill(0.0);
+        self.impulse_n_s[samples].fill(0.0);
+    }
+}

@@ -1,0 +1,125 @@
+//! Excitation of the touched body: what a contact sends it, by exciters of which a surface names those that sound (Hasti §III-D).
+//!
+//! ```text
+//! collisions, grains → Hertz pulses → ring ┐
+//! alternating contact force ───────────────┴ × loudness → impulses, N·s
+//! ```
+//! Pulses and force meet sample by sample, not in the ring, so that the order of additions depends on no split into blocks.
+
+mod collisions;
+mod force;
+mod grains;
+mod loudness;
+
+pub(super) use force::ForceRun;
+
+use super::PadSample;
+use super::block::VoiceBlock;
+use crate::prepared::impulse_ring::ImpulseRing;
+use crate::prepared::probe::PreparedProbe;
+use crate::prepared::surface::SurfaceSlot;
+use asperity_texture::height_field::Reaction;
+use collisions::Collisions;
+use force::ContactForce;
+use grains::Grains;
+use loudness::Loudness;
+
+/// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms, against jelly 20.
+const LONGEST_COLLISION_S: f64 = 0.04;
+/// Impulse per sample below which a contact counts as silent, N·s: −120 dB of an ordinary stroke's.
+const STILL_N_S: f64 = 1e-12;
+
+/// What exciters go by during a stretch.
+#[derive(Clone, Copy)]
+pub(super) struct Excited<'a> {
+    pub(super) slot: &'a SurfaceSlot,
+    pub(super) probe: &'a PreparedProbe,
+    pub(super) reaction: Reaction,
+    pub(super) sample_rate_hz: f64,
+    /// Absolute index of the first sample.
+    pub(super) position: u64,
+}
+
+/// The exciters of one contact.
+pub(super) struct Exciters {
+    collisions: Collisions,
+    grains: Grains,
+    force: ContactForce,
+    loudness: Loudness,
+    /// Pulses on their way to the body.
+    ring: ImpulseRing,
+}
+
+impl Exciters {
+    /// Nobody's. Allocates the ring.
+    pub(super) fn idle(seed: u64, sample_rate_hz: f64) -> Self {
+        Self {
+            collisions: Collisions::default(),
+            grains: Grains::new(seed),
+            force: ContactForce::default(),
+            loudness: Loudness::default(),
+            ring: ImpulseRing::new(LONGEST_COLLISION_S, sample_rate_hz),
+        }
+    }
+
+    /// Another contact begins, pressed with `force_n`.
+    pub(super) fn begin(&mut self, seed: u64, position: u64, force_n: f64) {
+        self.collisions = Collisions::default();
+        self.grains = Grains::new(seed);
+        self.force = ContactForce::default();
+        self.loudness = Loudness::pressed(force_n);
+        if !self.ring.is_empty(position) {
+            self.ring.clear();
+        }
+    }
+
+    /// More of it sounds, or less: called at the steps of the absolute sample grid.
+    pub(super) fn press(&mut self, force_n: f64) {
+        self.loudness.press(force_n);
+    }
+
+    /// Rows and the alternating force in; impulses, and what was counted, out.
+    pub(super) fn run(
+        &mut self,
+        by: &Excited<'_>,
+        rows: &[PadSample],
+        force: &mut ForceRun,
+        out: &mut VoiceBlock,
+    ) {
+        let (mut collisions, mut shortened) = (0, 0);
+        let grains = by.reaction.grain_rate_per_s > 0.0;
+        for (row, sample) in rows.iter().zip(by.position..) {
+            if let Some(onset) = row.onset {
+                collisions += 1;
+                shortened += u64::from(self.collisions.strike(by, &onset, sample, &mut self.ring));
+            }
+            if grains {
+                self.grains.shift(by, sample, &mut self.ring);
+            }
+        }
+        let impulse_n_s = &mut out.impulse_n_s[..rows.len()];
+        self.empty_ring(by.position, impulse_n_s);
+        self.force.add(force, impulse_n_s);
+        self.loudness.weigh(by.position, impulse_n_s);
+        (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
+    }
+
+    /// Takes the pulses of the coming samples off the ring, which is empty beyond the last pulse.
+    fn empty_ring(&mut self, position: u64, out: &mut [f64]) {
+        if self.ring.is_empty(position) {
+            return out.fill(0.0);
+        }
+        let mut next = self.ring.drain(position);
+        out.iter_mut().for_each(|y| *y = next());
+    }
+
+    /// Whether nothing sounds from `end` on, when this was the last impulse.
+    pub(super) fn are_still(&self, last_n_s: f64, end: u64) -> bool {
+        last_n_s.abs() < STILL_N_S && self.ring.is_empty(end)
+    }
+
+    /// Forgets the forces of a contact that has come to rest.
+    pub(super) fn settle(&mut self) {
+        self.force = ContactForce::default();
+    }
+}

@@ -1,0 +1,134 @@
+//! Pad: the micro-contact of one voice (`dsp::micro_contact`), as stiff as what presses makes it, one row a sample.
+//!
+//! Heights and forces in, [rows](PadSample) out. The stiffness follows the reported force, smoothed as the path is, at the steps of the
+//! absolute sample grid, so that it depends on no split into blocks.
+
+use super::PadSample;
+use crate::prepared::probe::PreparedProbe;
+use crate::prepared::stiffness::{Ground, stiffness_n_m};
+use asperity_dsp::micro_contact::{ContactState, MicroContact};
+
+/// A contact force so many times what presses is a blow: no contact begins in the middle of one.
+const LEAD_IN_BLOW: f64 = 10.0;
+
+/// The pad of one contact.
+pub(super) struct Pad {
+    /// As stiff as what presses makes it.
+    model: Box<MicroContact>,
+    state: ContactState,
+    /// What the stiffness was worked out for.
+    stiff_for: Option<(f64, Ground)>,
+    /// The row that waits, where rows have to.
+    late_row: PadSample,
+    /// How fast it comes down while it is still in the air, m/s; 0 once it has touched.
+    landing_m_s: f64,
+    resets_told: u32,
+}
+
+impl Pad {
+    /// Nobody's. Allocates the model.
+    pub(super) fn idle(probe: &PreparedProbe) -> Self {
+        Self {
+            model: Box::new(probe.micro_contact),
+            state: probe.micro_contact.at_rest(0.0, 0.0),
+            stiff_for: None,
+            late_row: PadSample::default(),
+            landing_m_s: 0.0,
+            resets_told: 0,
+        }
+    }
+
+    /// The contact becomes as stiff as probe, ground and force make it.
+    pub(super) fn stiffen(&mut self, probe: &PreparedProbe, ground: Ground, force_n: f64) {
+        let now = (force_n, ground);
+        if self.stiff_for == Some(now) {
+            return;
+        }
+        self.stiff_for = Some(now);
+        let stiffness_n_m = stiffness_n_m(probe.micro_contact.probe(), &now.1, force_n);
+        probe.ladder.set(&mut self.model, stiffness_n_m);
+    }
+
+    /// Another contact begins, on this ground and pressed like this.
+    pub(super) fn begin(&mut self, probe: &PreparedProbe, ground: Ground, force_n: f64) {
+        self.stiff_for = None;
+        self.landing_m_s = 0.0;
+        self.stiffen(probe, ground, force_n);
+    }
+
+    /// It comes down and touches `later` samples after the stretch that follows begins.
+    pub(super) fn land(&mut self, height_m: f64, force_n: f64, closing_m_s: f64, later: f64) {
+        self.landing_m_s = closing_m_s;
+        self.state = self.model.landing_later(height_m, force_n, closing_m_s, later);
+        let pad_velocity_m_s = -closing_m_s;
+        self.late_row = PadSample { height_m, pad_m: height_m, pad_velocity_m_s, ..PadSample::default() };
+        self.resets_told = self.state.resets();
+    }
+
+    /// It has been sliding over these heights already; the row it ends with.
+    pub(super) fn lead_in(
+        &mut self,
+        heights_m: &[f64],
+        forces_n: &[f64],
+        sample_rate_hz: f64,
+        rows: &mut [PadSample],
+    ) -> PadSample {
+        let last = heights_m.len() - 1;
+        // Finger and pad rise as the ground does on the whole: set off from rest they would still swing when they are heard.
+        let rise_m_s = (heights_m[last] - heights_m[0]) * sample_rate_hz / last as f64;
+        self.state = self.model.riding(heights_m[0], forces_n[0], rise_m_s);
+        self.model.run(&mut self.state, heights_m, forces_n, rows);
+        self.late_row = PadSample { onset: None, ..rows[last] };
+        let (height_m, force_n) = (heights_m[last], forces_n[last]);
+        if self.state.resets() > 0 || self.late_row.contact_force_n > LEAD_IN_BLOW * force_n {
+            // What never was there cannot have thrown it.
+            let rise_m_s = (height_m - heights_m[last - 1]) * sample_rate_hz;
+            self.state = self.model.riding(height_m, force_n, rise_m_s);
+        }
+        self.resets_told = self.state.resets();
+        self.late_row
+    }
+
+    /// A row for each height; how often the state was no longer finite and begun anew.
+    pub(super) fn run(
+        &mut self,
+        waits: bool,
+        heights_m: &[f64],
+        forces_n: &[f64],
+        rows: &mut [PadSample],
+    ) -> u64 {
+        self.model.run(&mut self.state, heights_m, forces_n, rows);
+        if waits {
+            self.wait_a_row(rows);
+        }
+        if self.landing_m_s > 0.0 {
+            self.feel_no_air(rows);
+        }
+        let resets = self.state.resets();
+        u64::from(resets.wrapping_sub(std::mem::replace(&mut self.resets_told, resets)))
+    }
+
+    /// Rows come a sample later, so that those of every probe describe the same instant.
+    fn wait_a_row(&mut self, rows: &mut [PadSample]) {
+        for row in rows {
+            std::mem::swap(row, &mut self.late_row);
+        }
+    }
+
+    /// Until it touches, a pad that comes down is as far as the surface: nothing is felt of its way through the air.
+    fn feel_no_air(&mut self, rows: &mut [PadSample]) {
+        for row in rows {
+            if row.onset.is_some() || row.pad_m < row.height_m {
+                self.landing_m_s = 0.0;
+                return;
+            }
+            row.finger_m -= row.pad_m - row.height_m;
+            (row.pad_m, row.pad_velocity_m_s) = (row.height_m, -self.landing_m_s);
+        }
+    }
+
+    /// Whether finger and pad rest where the last row says.
+    pub(super) fn is_settled(&self, row: &PadSample) -> bool {
+        self.model.is_settled(&self.state, row.height_m, row.normal_force_n)
+    }
+}

@@ -1,0 +1,118 @@
+//! Path: sparse reports become a point every sample (`dsp::trajectory`).
+
+use crate::model::event::ContactSample;
+use crate::model::stamp::Stamp;
+use crate::prepared::surface::SurfaceSlot;
+use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
+use asperity_texture::height_field::MAX_BLOCK;
+
+/// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
+/// (chosen; a finger at 0.5 m/s moves 8 mm between two reports at 60 Hz).
+const SAME_TOUCH_M: f64 = 0.01;
+
+/// Where a contact is before it is anybody's.
+const IDLE: PathEvent =
+    PathEvent { sample: 0, fraction: 0.0, position_m: [0.0; 2], velocity_m_s: None, normal_force_n: 0.0 };
+
+/// Where a contact goes.
+pub(super) struct Path {
+    trajectory: Trajectory,
+    /// Where it was at the last sample that was rendered.
+    pub(super) last: PathPoint,
+}
+
+impl Path {
+    /// Nobody's.
+    pub(super) fn idle(design: &TrajectoryDesign) -> Self {
+        Self { trajectory: Trajectory::begin(design, &IDLE), last: PathPoint::default() }
+    }
+
+    /// Begins where a report says; the force it presses with, N.
+    pub(super) fn begin(&mut self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> f64 {
+        let event = path_event(sample, slot, stamp);
+        self.trajectory = Trajectory::begin(&slot.trajectory, &event);
+        // The path may begin behind the event, by the filter's delay.
+        let mut ahead = self.trajectory;
+        ahead.advance(&slot.trajectory, std::slice::from_mut(&mut self.last));
+        event.normal_force_n
+    }
+
+    /// The next points.
+    pub(super) fn run(&mut self, design: &TrajectoryDesign, points: &mut [PathPoint]) {
+        self.trajectory.advance(design, points);
+    }
+
+    /// A report. A jump that no stroke makes changes nothing here: it returns the path that begins where the contact now is.
+    pub(super) fn moved(
+        &mut self,
+        sample: &ContactSample,
+        slot: &SurfaceSlot,
+        stamp: Stamp,
+    ) -> Option<Trajectory> {
+        let mut path = self.trajectory;
+        match path.moved(&slot.trajectory, &path_event(sample, slot, stamp)) {
+            Moved::Teleported => return Some(path),
+            // An event older than the last is dropped.
+            Moved::Followed | Moved::Ignored => self.trajectory = path,
+        }
+        None
+    }
+
+    /// Whether a report would be a jump.
+    pub(super) fn would_jump(&self, sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> bool {
+        let mut path = self.trajectory;
+        path.moved(&slot.trajectory, &path_event(sample, slot, stamp)) == Moved::Teleported
+    }
+
+    /// Whether a landing is so close that it can be the same touch.
+    pub(super) fn is_near(&self, sample: &ContactSample, slot: &SurfaceSlot) -> bool {
+        let event = path_event(sample, slot, Stamp::default());
+        let period_m = slot.period_m;
+        let apart_m = (0..2).map(|axis| {
+            let apart_m = event.position_m[axis] - self.last.position_m[axis];
+            let turns = if period_m[axis].is_finite() { (apart_m / period_m[axis]).round() } else { 0.0 };
+            apart_m - if turns == 0.0 { 0.0 } else { turns * period_m[axis] }
+        });
+        apart_m.map(|apart_m| apart_m * apart_m).sum::<f64>() <= SAME_TOUCH_M * SAME_TOUCH_M
+    }
+
+    /// Goes on as a path before it, as far as that has learned to know the game.
+    pub(super) fn succeed(&mut self, path: &Trajectory) {
+        self.trajectory.succeed(path);
+    }
+
+    /// Presses from now on as it did at its last sample.
+    pub(super) fn hold_force(&mut self) {
+        self.trajectory.hold_force(self.last.normal_force_n);
+    }
+
+    /// The force of the last report, N.
+    pub(super) fn reported_force_n(&self) -> f64 {
+        self.trajectory.reported_force_n()
+    }
+
+    /// Whether it has come to rest.
+    pub(super) fn is_still(&self) -> bool {
+        self.trajectory.is_still()
+    }
+
+    /// The straight line that ends where the contact is, a point every `stride` samples.
+    pub(super) fn lay_behind(&self, stride: usize, sample_rate_hz: f64, points: &mut [PathPoint; MAX_BLOCK]) {
+        let PathPoint { position_m: end_m, velocity_m_s, normal_force_n } = self.last;
+        for (i, point) in points.iter_mut().enumerate() {
+            let before_s = ((MAX_BLOCK - i) * stride) as f64 / sample_rate_hz;
+            let position_m = [0, 1].map(|axis| end_m[axis] - velocity_m_s[axis] * before_s);
+            *point = PathPoint { position_m, velocity_m_s, normal_force_n };
+        }
+    }
+}
+
+fn path_event(sample: &ContactSample, slot: &SurfaceSlot, stamp: Stamp) -> PathEvent {
+    PathEvent {
+        sample: stamp.sample(),
+        fraction: stamp.fraction(),
+        position_m: [sample.uv[0] * slot.surface.width_m, sample.uv[1] * slot.surface.height_m],
+        velocity_m_s: sample.velocity_m_s,
+        normal_force_n: sample.normal_force_n,
+    }
+}

@@ -1,0 +1,51 @@
+//! What voices are rendered with: the designs that none of them owns, and the stretch of samples at hand.
+
+use crate::model::inner_rate::InnerRate;
+use crate::prepared::probe::PreparedProbe;
+use asperity_dsp::actuator::ContactOutput;
+use asperity_dsp::fractal_noise::FractalNoise;
+use asperity_dsp::trajectory::TrajectoryDesign;
+
+/// What every voice needs and none owns.
+pub(crate) struct Shared {
+    pub(crate) idle_path: TrajectoryDesign,
+    pub(crate) idle_output: ContactOutput,
+    /// Inside; which of these samples leave says `inner`.
+    pub(crate) sample_rate_hz: f64,
+    pub(crate) inner: InnerRate,
+    /// The engine's own probe, and those that were added.
+    pub(crate) own_probe: PreparedProbe,
+    pub(crate) probes: Vec<Option<Box<PreparedProbe>>>,
+    /// By how many samples the rows of every probe lag behind its inputs.
+    pub(crate) row_latency: usize,
+    pub(crate) noise: FractalNoise,
+    /// Octaves of noise left out because blocks run late.
+    pub(crate) noise_octaves_gone: u32,
+    /// The rise of a fade, 0 to 1.
+    pub(crate) fade: Box<[f64]>,
+}
+
+impl Shared {
+    /// The probe of a place; the engine's own for none.
+    pub(crate) fn probe(&self, place: Option<usize>) -> &PreparedProbe {
+        let added = place.and_then(|place| self.probes.get(place)?.as_deref());
+        added.unwrap_or(&self.own_probe)
+    }
+
+    /// How long a contact takes to fade.
+    pub(super) fn fade_samples(&self) -> u32 {
+        self.fade.len().saturating_sub(1) as u32
+    }
+}
+
+/// The samples at hand. A stretch lies within one cell of the absolute grid of [`MAX_BLOCK`](asperity_texture::height_field::MAX_BLOCK) samples.
+#[derive(Clone, Copy)]
+pub(crate) struct Stretch<'a> {
+    pub(crate) shared: &'a Shared,
+    /// What the contact's actuator plays.
+    pub(crate) output: &'a ContactOutput,
+    /// Absolute index of the first sample.
+    pub(crate) position: u64,
+    /// How many.
+    pub(crate) n: usize,
+}

@@ -1,0 +1,102 @@
+//! Bodies of a scene: added, replaced, moved from bus to bus, taken away.
+
+use super::{KnownBody, Scene};
+use crate::files::contact_log::LogEdit;
+use crate::link::message::Message;
+use crate::model::bad_value::within;
+use crate::model::body::Body;
+use crate::model::error::AddError;
+use crate::model::id::BodyId;
+use crate::prepared::body::BodySlot;
+use crate::prepared::stroking::Stroking;
+use asperity_dsp::{DesignError, limits};
+
+impl Scene {
+    /// Adds a body that rings: a [`Body`], or the modes of one of PLA on the first bus.
+    ///
+    /// # Errors
+    /// When every place is taken, the modes cannot be rendered at this rate, the material is impossible, or there is no such bus.
+    pub fn add_body(&mut self, body: impl Into<Body>) -> Result<BodyId, AddError> {
+        self.collect();
+        let (id, body) = (BodyId(self.bodies.free()?), body.into());
+        self.set_body(id, &body)?;
+        self.given.insert(id, body.clone());
+        self.note(|names| LogEdit::AddBody { body: names.body(id), is: (&body).into() });
+        Ok(id)
+    }
+
+    /// Gives a body other modes, another material and another bus while it sounds; the old modes ring out under the new ones, and
+    /// strokes on its surfaces take the new material at once.
+    ///
+    /// # Errors
+    /// As [`add_body`](Self::add_body), or when the body is not in this scene.
+    pub fn replace_body(&mut self, id: BodyId, body: impl Into<Body>) -> Result<(), AddError> {
+        self.collect();
+        self.known_body(id)?;
+        let body = body.into();
+        self.set_body(id, &body)?;
+        self.given.insert(id, body.clone());
+        self.note(|names| LogEdit::ReplaceBody { body: names.body(id), is: (&body).into() });
+        Ok(())
+    }
+
+    /// Lets a body sound on another bus from now on, without a click.
+    ///
+    /// # Errors
+    /// When the body is not in this scene, there is no such bus, or the queue is full.
+    pub fn set_body_bus(&mut self, id: BodyId, bus: usize) -> Result<(), AddError> {
+        self.known_body(id)?;
+        self.checked_bus(bus)?;
+        self.send(Message::SetBodyBus { slot: id.index(), bus })?;
+        if let Some(given) = self.given.get_mut(&id) {
+            given.bus = bus;
+        }
+        self.note(|names| LogEdit::BodyBus { body: names.body(id), bus });
+        Ok(())
+    }
+
+    pub(super) fn checked_bus(&self, bus: usize) -> Result<usize, AddError> {
+        let buses = self.config.audio.len();
+        if bus < buses { Ok(bus) } else { Err(AddError::UnknownBus { bus, buses }) }
+    }
+
+    fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {
+        let (message, known) = self.prepared_body(id, body)?;
+        self.send(message)?;
+        self.bodies.set(id.0, known);
+        Ok(())
+    }
+
+    /// A body as the audio half takes it.
+    pub(crate) fn prepared_body(&self, id: BodyId, body: &Body) -> Result<(Message, KnownBody), AddError> {
+        let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
+        let gain = within("gain", body.gain, limits::impact::GAIN)?;
+        let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
+        let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
+        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), self.kernel, rate, inner)?);
+        let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
+        let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
+        let known = KnownBody { material, lowest_mode_hz };
+        let stroking = self.stroking(known)?;
+        Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
+    }
+
+    /// How strokes excite a body.
+    pub(super) fn stroking(&self, body: KnownBody) -> Result<Stroking, DesignError> {
+        let (mass_kg, rate_hz) = (self.config.probe.pad_mass_kg, self.config.inner_rate_hz());
+        Stroking::new(body.material, body.lowest_mode_hz, mass_kg, rate_hz)
+    }
+
+    /// Takes a body away; it rings out.
+    ///
+    /// # Errors
+    /// When it is not in this scene or the queue is full.
+    pub fn remove_body(&mut self, body: BodyId) -> Result<(), AddError> {
+        self.known_body(body)?;
+        self.send(Message::RemoveBody { slot: body.index() })?;
+        self.bodies.remove(body.0);
+        self.given.remove(&body);
+        self.note(|names| LogEdit::RemoveBody { body: names.body(body) });
+        Ok(())
+    }
+}
