@@ -178,3 +178,40 @@ fn what_is_no_vibration_is_refused_in_one_line_and_leaves_no_file() {
         );
     }
 }
+
+/// Scenes of the demo: none of them chose a number of the reduction.
+#[test]
+fn five_scenes_are_felt_alike_on_a_headsets_controller() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (status, _, err) = told(&asperity(folder, &["demo", "-o", "demo"]));
+    assert_eq!(status, 0, "{err}");
+    let mut scenes: Vec<String> = fs::read_dir(folder.join("demo"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.ends_with(".toml"))
+        .collect();
+    scenes.sort();
+    let mut in_band_db = Vec::new();
+    for name in &scenes {
+        let report =
+            json_of(folder, &["haptic", &format!("demo/{name}"), "-o", "a.haptic", "--score", "--json"]);
+        let score = |key: &str| report[key].as_f64().unwrap();
+        println!(
+            "{name}: {} {:.1} dB in band, balance {:.1}, bias {:+.2}, envelope {:.3}, {} points in {:.1} s",
+            report["way"],
+            score("in_band_error_db"),
+            score("balance_db"),
+            score("level_bias_db"),
+            score("envelope_correlation"),
+            report["points"],
+            score("duration_s")
+        );
+        assert!(score("balance_db") <= 6.0 && score("level_bias_db").abs() <= 1.0, "{name}: {report}");
+        assert!(score("envelope_correlation") >= 0.93, "{name}: {report}");
+        in_band_db.push(score("in_band_error_db"));
+    }
+    let mean_db = in_band_db.iter().sum::<f64>() / in_band_db.len() as f64;
+    println!("mean of {} scenes {mean_db:.2} dB", scenes.len());
+    assert!(scenes.len() >= 5 && mean_db <= 5.0, "{mean_db} dB");
+}

@@ -120,17 +120,18 @@ fn mpegs_synthesiser_makes_of_a_curve_the_samples_it_was_written_from_not_one_la
     let Some(synth) = tool("hjif-synth") else { return };
     let folder = folder("mpeg");
     let mut rng = Rng::new(29);
-    let mut slow = [0.0; 2];
+    let mut slow = [0.0; 4];
     let mut waves = vibrations();
     waves.truncate(1);
     waves.push((0..16_000).map(|n| 0.9 * (TAU * 150.0 * f64::from(n) / 8000.0).sin()).collect());
-    // Noise below about 400 Hz.
+    // Noise below about 300 Hz.
     waves.push(
         (0..16_000)
             .map(|_| {
-                slow[0] += 0.3 * (rng.normal() - slow[0]);
-                slow[1] += 0.3 * (slow[0] - slow[1]);
-                0.5 * slow[1]
+                slow.iter_mut().fold(rng.normal(), |x, y| {
+                    *y += 0.22 * (x - *y);
+                    *y
+                })
             })
             .collect(),
     );

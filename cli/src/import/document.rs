@@ -16,10 +16,8 @@ pub struct Document {
     buffers: Vec<Vec<u8>>,
 }
 
-/// An accessor's numbers, row by row.
+/// An accessor's numbers, one row after the other.
 pub struct Rows {
-    /// Numbers a row.
-    pub width: usize,
     /// All of them.
     pub values: Vec<f64>,
 }
@@ -142,7 +140,7 @@ impl Document {
         if values.iter().any(|x| !x.is_finite()) {
             return Err(wrong("holds a number that is not finite".to_owned(), "must be finite"));
         }
-        Ok(Rows { width, values })
+        Ok(Rows { values })
     }
 
     /// The bytes of the picture of a texture.
