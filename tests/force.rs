@@ -130,9 +130,9 @@ fn the_force_of_seven_materials_is_the_law_within_one_percent_at_every_rate() {
                 let between = |a: f64, b: f64| a + (at - index as f64) * (b - a);
                 let place = [0, 1].map(|a| between(here.0[a], next.0[a]));
                 let wanted = noise.force_n(place, here.1, 0.5, 0.0, 0);
-                for a in 0..2 {
-                    error += (row.force_n[a] - wanted[a]).powi(2);
-                    power += wanted[a] * wanted[a];
+                for (given_n, wanted_n) in row.force_n.iter().zip(&wanted[..2]) {
+                    error += (given_n - wanted_n).powi(2);
+                    power += wanted_n * wanted_n;
                 }
                 count += 1;
             }
@@ -246,8 +246,7 @@ fn a_soft_map_is_a_spring_and_a_hard_one_refuses_a_depth_with_the_reason() {
     let mut rng = Rng::new(5);
     let heights = Raster::from_fn(64, 64, |_, _| rng.uniform());
     let cloth = || {
-        let map =
-            asperity::texture::height_map::HeightMap::new(&heights.clone().into(), extent, Wrap::Repeat);
+        let map = asperity::texture::height_map::HeightMap::new(&heights, extent, Wrap::Repeat);
         Surface::from_map(map.unwrap()).unwrap().friction(0.0)
     };
     let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz: 1000.0, reports_hz: 1000.0, seconds: 0.3 };

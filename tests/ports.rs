@@ -5,12 +5,13 @@ mod common;
 mod counting;
 
 use asperity::live::ports::{Feed, Force, ForceRow, ForceRows, Of, Opened, Outlet, Pcm, Picture};
-use asperity::live::ports::{PortKind, PortSetup};
+use asperity::live::ports::{Levels, Point, PointSettings, Points, PortKind, PortSetup, Tone};
 use asperity::texture::sand::{SandDesign, SandSource};
 use asperity::{
     Actuator, ActuatorSettings, AddError, AudioBus, Body, Config, ContactBlock, ContactEvent, ContactId,
     ContactSample, Engine, Quantity, Renderer, Scene, Surface, SurfaceId, Tap, Touching,
 };
+use asperity_dsp::vibration_points::{PointDesign, PointState};
 use common::{bar, grating, plate};
 use counting::heap_operations;
 
@@ -202,6 +203,85 @@ fn a_reader_that_stalls_for_two_seconds_loses_the_oldest_is_told_and_costs_the_a
     let lost = (pcm.lost(), force.lost());
     assert!(pcm.read(&mut read) > 0 && force.newest(Actuator(1)).unwrap().1[2] > 1.0);
     assert_eq!((pcm.lost(), force.lost()), lost);
+}
+
+/// 100 points a second for a headset's controller.
+const HEADSET: PointSettings = PointSettings { rate_hz: 100.0, band_hz: [55.0, 200.0], tone: Tone::Drawn };
+
+/// What the causal reduction makes of samples offline.
+fn reduced(samples: &[f32], settings: PointSettings, rate_hz: f64) -> Vec<Point> {
+    let design = PointDesign::new(settings, rate_hz).unwrap();
+    let mut state = PointState::default();
+    samples.iter().filter_map(|x| state.tick(&design, f64::from(*x))).collect()
+}
+
+#[test]
+fn points_and_levels_are_those_of_the_offline_reduction_to_the_bit_in_any_blocks() {
+    for (rate_hz, frames) in [(8_000.0, 64), (44_100.0, 1), (44_100.0, 333), (48_000.0, 64)] {
+        let mut game = Game::new(rate_hz);
+        let from = Feed::Haptic(Actuator(0));
+        let mut points = game.scene.open_port(Points { from, settings: HEADSET, holds_s: 2.0 }).unwrap();
+        let mut levels = game.scene.open_port(Levels { from, rate_hz: 30.0, holds_s: 2.0 }).unwrap();
+        let mut left: [Vec<f32>; 4] = Default::default();
+        for _ in 0..30 {
+            game.report();
+            game.render(frames, &mut left, &mut Nothing);
+        }
+        let read: Vec<Point> = std::iter::from_fn(|| points.read()).collect();
+        assert_eq!((read.len(), points.lost(), points.rate_hz()), (50, 0, 100.0));
+        assert!(read == reduced(&left[0], HEADSET, rate_hz), "{rate_hz} Hz, {frames} frames");
+        assert!(read.iter().any(|point| point.amplitude > 0.0));
+        let motors = PointSettings { rate_hz: 30.0, band_hz: [20.0, 250.0], tone: Tone::Strongest };
+        let expected: Vec<[f64; 2]> =
+            reduced(&left[0], motors, rate_hz).iter().map(|point| [point.low, point.high]).collect();
+        let read: Vec<[f64; 2]> = std::iter::from_fn(|| levels.read()).collect();
+        assert!(read == expected && levels.newest() == expected[expected.len() - 1]);
+    }
+}
+
+#[test]
+fn a_reader_of_points_and_of_3_khz_pcm_that_stalls_for_two_seconds_costs_the_audio_half_nothing() {
+    let mut game = Game::new(44_100.0);
+    let from = Feed::Haptic(Actuator(0));
+    let mut points = game.scene.open_port(Points { from, settings: HEADSET, holds_s: 0.25 }).unwrap();
+    let mut levels = game.scene.open_port(Levels { from, rate_hz: 60.0, holds_s: 0.25 }).unwrap();
+    let mut pcm = game.scene.open_port(Pcm { from, holds_s: 0.25 }).unwrap();
+    let (mut haptic, mut audio) = ([[0.0f32; 64]; 2], [[0.0f32; 64]; 2]);
+    let (mut left, mut touched) = (Vec::new(), 0);
+    while game.step < 120 {
+        game.report();
+        while (game.renderer.position() as f64) < f64::from(game.step) / 60.0 * 44_100.0 {
+            let ([a, b], [c, d]) = (&mut haptic, &mut audio);
+            touched += heap_operations(|| game.renderer.render(&mut [a, b], &mut [c, d]));
+            left.extend(haptic[0]);
+        }
+    }
+    assert_eq!(touched, 0, "heap operations on the audio half");
+    let all = reduced(&left, HEADSET, 44_100.0);
+    let read: Vec<Point> = std::iter::from_fn(|| points.read()).collect();
+    assert!(read[..] == all[all.len() - read.len()..], "the newest are left");
+    assert_eq!(points.lost(), (all.len() - read.len()) as u64);
+    assert!(points.lost() > 100 && read.len() >= 25, "{} lost, {} read", points.lost(), read.len());
+    levels.newest();
+    assert!(levels.lost() > 50);
+    let mut samples = vec![0.0; left.len()];
+    let count = pcm.read(&mut samples);
+    assert_eq!(pcm.lost(), (left.len() - count) as u64);
+}
+
+#[test]
+fn points_that_no_device_plays_are_refused_by_name() {
+    let Engine { mut scene, .. } = Config::default().build().unwrap();
+    let points = |settings, from| Points { from, settings, holds_s: 0.1 };
+    let from = Feed::Haptic(Actuator(0));
+    let mut refused = |port: Points| scene.open_port(port).err().unwrap().to_string();
+    assert!(refused(points(PointSettings { rate_hz: 0.0, ..HEADSET }, from)).starts_with("rate_hz"));
+    assert!(
+        refused(points(PointSettings { band_hz: [f64::NAN; 2], ..HEADSET }, from)).starts_with("band_hz")
+    );
+    assert!(refused(points(HEADSET, Feed::Bus(7))).starts_with("bus: 7"));
+    assert!(refused(points(HEADSET, Feed::Haptic(Actuator(9)))).starts_with("actuator"));
+    assert!(refused(Points { holds_s: 0.0, ..points(HEADSET, from) }).starts_with("holds_s"));
 }
 
 #[test]

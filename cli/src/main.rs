@@ -21,7 +21,9 @@ mod csv;
 mod demo;
 mod error;
 mod fit;
+mod haptic;
 mod headroom;
+mod import;
 mod measure;
 mod modes;
 mod output;
@@ -52,6 +54,8 @@ enum Verb {
     Demo(demo::Options),
     Fit(Box<fit::Options>),
     Modes(Box<modes::Options>),
+    Haptic(Box<haptic::Options>),
+    Import(import::Options),
     Render(render::Options),
     Play(play::Options),
     /// Make surfaces from pictures and from other surfaces
@@ -66,6 +70,8 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Demo(options) => demo::run(&options),
         Verb::Fit(options) => fit::run(&options),
         Verb::Modes(options) => modes::run(&options),
+        Verb::Haptic(options) => haptic::run(&options),
+        Verb::Import(options) => import::run(&options),
         Verb::Render(options) => render::run(&options),
         Verb::Play(options) => play::run(&options),
         Verb::Texture(verb) => texture::run(verb),

@@ -22,6 +22,7 @@
 //! | [`stick_slip`] | sweep and normal force → friction force, with the body that gives way |
 //! | [`tangential`] | friction force → skin dragged sideways |
 //! | [`actuator`] | pad motion → haptic samples |
+//! | [`sensation`], [`vibration_points`] | haptic samples → points for hardware that plays no waveform |
 //! | [`limits`] | what all of them accept |
 //! | [`rng`] | seeded numbers for all of them |
 //! | [`pair`] | two filters in one register |
@@ -47,9 +48,11 @@ pub mod mode;
 pub mod pair;
 pub mod radiation;
 pub mod rng;
+pub mod sensation;
 pub mod stick_slip;
 pub mod tangential;
 pub mod trajectory;
 mod vector;
+pub mod vibration_points;
 
 pub use error::DesignError;

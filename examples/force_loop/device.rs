@@ -25,8 +25,6 @@ pub struct Tick {
     pub time_s: f64,
     /// How deep the tip stands, m.
     pub depth_m: f64,
-    /// Upwards, m/s.
-    pub velocity_m_s: f64,
     /// What the loop gives, N, upwards.
     pub force_n: f64,
     /// Energy that the loop has given since it began, less what it has taken, J.
@@ -50,7 +48,7 @@ impl Device {
             let time_s = f64::from(tick) * step_s;
             let seen_m = -(x / self.resolution_m).round() * self.resolution_m;
             let loop_n = force_n(seen_m);
-            ticks.push(Tick { time_s, depth_m: -x, velocity_m_s: v, force_n: loop_n, given_j });
+            ticks.push(Tick { time_s, depth_m: -x, force_n: loop_n, given_j });
             let terminal = (loop_n - push_n(time_s)) / self.damping_n_s_m;
             let way = terminal * step_s + (v - terminal) * self.mass_kg / self.damping_n_s_m * (1.0 - decay);
             v = terminal + (v - terminal) * decay;

@@ -97,6 +97,7 @@ fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
         force: false,
         force_rate: 1000.0,
         plot: true,
+        port: None,
         json: false,
     })
 }

@@ -8,24 +8,20 @@ mod view;
 
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
-use crate::{pixels, plot, wav};
+use crate::{haptic, pixels, plot, wav};
 use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::files::scene_file::SceneFile;
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
-use asperity::open::levels::Levels;
-use asperity::{Integrator, Isa, PathMode, SurfaceId};
+use asperity::{Integrator, Isa, PathMode, Quantity, SurfaceId};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
 use recorder::Recorder;
 use report::report;
 pub use report::{Report, SandReport};
-use serde::Serialize;
-use serde_json::Value;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -74,6 +70,9 @@ pub struct Options {
     /// Write STEM.svg, a picture of what happened
     #[arg(long)]
     pub plot: bool,
+    /// Write the first haptic channel as a headset's controller plays it, too: `asperity haptic` has more options
+    #[arg(long, value_name = "OUT.(haptic|ahap|hjif|android.json|pcm.wav|wav)")]
+    pub port: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -203,6 +202,16 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     if options.plot {
         let svg = view::draw(&file, &log, &render, &curves, &report, &names);
         outputs.write(&with_suffix(stem, "svg"), svg.as_bytes())?;
+    }
+    if let Some(path) = &options.port {
+        let acceleration = file.actuators.first().is_none_or(|a| a.settings.output == Quantity::Acceleration);
+        if acceleration {
+            let right = "write output = \"displacement\" for the first actuator";
+            return Err(CliError::new("--port", "a clip is made of displacement", right));
+        }
+        let samples = render.haptic[0].iter().map(|x| f64::from(*x)).collect();
+        let strokes_s = haptic::strokes_s(&log, 0);
+        report.warnings.extend(haptic::write_port(samples, rate_hz, strokes_s, path, &mut outputs)?);
     }
     report.files = outputs.commit()?;
     Ok(report)

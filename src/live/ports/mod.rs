@@ -4,6 +4,8 @@
 //! |---|---|---|
 //! | [`Pcm`] | the samples of a haptic channel or an audio bus | a controller, a recorder, a level meter |
 //! | [`Force`] | the 3-D force, contact by contact and summed for each hand | a force-feedback device |
+//! | [`Points`] | an amplitude and a frequency some hundred times a second | a phone, a headset |
+//! | [`Levels`] | how hard a heavy and a light motor turn | a pad that rumbles |
 //! | [`Picture`] | the heights of a surface that changes | whoever draws it |
 //!
 //! [`Scene::open_port`](crate::Scene::open_port) gives the reading end, which may go to any one thread and be read at any pace: nothing
@@ -25,11 +27,15 @@
 
 mod force;
 mod force_rows;
+mod levels;
 mod pcm;
 mod picture;
+mod points;
 
 pub use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
 pub use force::{Force, ForcePort};
 pub use force_rows::{ForceRow, ForceRows, LAG_TICKS, Of};
+pub use levels::{Levels, LevelsPort};
 pub use pcm::{Feed, Pcm, PcmPort};
 pub use picture::{Picture, PicturePort};
+pub use points::{Point, PointSettings, Points, PointsPort, Tone};

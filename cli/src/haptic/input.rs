@@ -1,0 +1,165 @@
+//! What is read: samples, a scene that is rendered, or a clip.
+
+use super::{name_of, port::transients_of};
+use crate::error::CliError;
+use crate::render;
+use asperity::files::contact_log::{ContactLog, LogEvent};
+use asperity::files::scene_file::SceneFile;
+use asperity::offline;
+use asperity::open::Overrides;
+use asperity::{Engine, Quantity};
+use asperity_ports::{Clip, Device, ahap, haptic_file, hjif};
+use hound::SampleFormat;
+use std::path::Path;
+
+/// Longest file that is read as text, bytes.
+const LONGEST_TEXT: u64 = 1 << 30;
+
+/// What was read.
+pub enum Input {
+    /// Samples of displacement.
+    Samples {
+        samples: Vec<f64>,
+        rate_hz: f64,
+        /// Where contacts begin and bodies are struck, s.
+        strokes_s: Vec<f64>,
+        told: Vec<String>,
+        source: String,
+    },
+    /// Envelopes.
+    Clip { clip: Clip, told: Vec<String> },
+}
+
+/// Reads a file by the end of its name.
+pub fn read(path: &Path, channel: usize, _device: &Device) -> Result<Input, CliError> {
+    let name = name_of(path);
+    let ending = name.rsplit('.').next().unwrap_or_default().to_lowercase();
+    let told = |error: asperity_ports::PortError| CliError::told(error.within(path.display()));
+    match ending.as_str() {
+        "wav" => wav(path, channel),
+        "toml" => scene(path, channel),
+        "haptic" => {
+            let read = haptic_file::parse(&text(path)?).map_err(told)?;
+            Ok(Input::Clip { clip: read.clip, told: read.told })
+        }
+        "ahap" => clip_of_ahap(path),
+        "hjif" => {
+            let samples = hjif::rendered(&text(path)?, channel).map_err(told)?;
+            Ok(Input::Samples {
+                samples,
+                rate_hz: hjif::RATE_HZ,
+                strokes_s: Vec::new(),
+                told: Vec::new(),
+                source: name,
+            })
+        }
+        _ => Err(CliError::file(
+            path,
+            "is no format that is read",
+            "must end in .wav, .toml, .haptic, .ahap or .hjif",
+        )),
+    }
+}
+
+fn text(path: &Path) -> Result<String, CliError> {
+    let length = std::fs::metadata(path).map_err(|error| CliError::read(path, &error))?.len();
+    if length > LONGEST_TEXT {
+        return Err(CliError::file(path, format!("has {length} bytes"), "must be at most 1 GiB"));
+    }
+    let bytes = std::fs::read(path).map_err(|error| CliError::read(path, &error))?;
+    String::from_utf8(bytes).map_err(|_| CliError::file(path, "is no text", "must be JSON in UTF-8"))
+}
+
+/// A clip, and its strokes where they lie in a file of their own beside it.
+fn clip_of_ahap(path: &Path) -> Result<Input, CliError> {
+    let at = |path: &Path, error: asperity_ports::PortError| CliError::told(error.within(path.display()));
+    let beside = transients_of(path);
+    let main = text(path)?;
+    if !beside.exists() {
+        let read = ahap::parse(&main).map_err(|error| at(path, error))?;
+        return Ok(Input::Clip { clip: read.clip, told: read.told });
+    }
+    let read = ahap::parse_both(&main, &text(&beside)?).map_err(|error| at(path, error))?;
+    let mut told = read.told;
+    told.push(format!("strokes are from {}", name_of(&beside)));
+    Ok(Input::Clip { clip: read.clip, told })
+}
+
+/// One channel of a WAV file.
+fn wav(path: &Path, channel: usize) -> Result<Input, CliError> {
+    let failed = |error: hound::Error| match error {
+        hound::Error::IoError(error) => CliError::read(path, &error),
+        other => CliError::file(
+            path,
+            format!("is no WAV file that is read ({other})"),
+            "must be PCM or 32-bit float",
+        ),
+    };
+    let mut reader = hound::WavReader::open(path).map_err(failed)?;
+    let spec = reader.spec();
+    let channels = usize::from(spec.channels);
+    if channel >= channels {
+        let right = format!("must be below {channels}");
+        return Err(CliError::new("--channel", format!("{channel} is not in {}", path.display()), right));
+    }
+    let longest = (asperity_ports::clip::LONGEST_S * f64::from(spec.sample_rate)) as u64;
+    if u64::from(reader.duration()) > longest {
+        let what = format!("lasts {:.0} s", f64::from(reader.duration()) / f64::from(spec.sample_rate));
+        return Err(CliError::file(path, what, "must last at most an hour"));
+    }
+    let all: Result<Vec<f64>, hound::Error> = match spec.sample_format {
+        SampleFormat::Float => {
+            reader.samples::<f32>().skip(channel).step_by(channels).map(|x| x.map(f64::from)).collect()
+        }
+        SampleFormat::Int => {
+            let full = 2f64.powi(i32::from(spec.bits_per_sample) - 1);
+            let samples = reader.samples::<i32>().skip(channel).step_by(channels);
+            samples.map(|x| x.map(|x| f64::from(x) / full)).collect()
+        }
+    };
+    Ok(Input::Samples {
+        samples: all.map_err(failed)?,
+        rate_hz: f64::from(spec.sample_rate),
+        strokes_s: Vec::new(),
+        told: Vec::new(),
+        source: name_of(path),
+    })
+}
+
+/// What an actuator of a scene is driven by.
+fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
+    let file = SceneFile::load(path)?;
+    let Some(actuator) = file.actuators.get(channel) else {
+        let right = format!("must be below {}, the number of [[actuator]] tables", file.actuators.len());
+        return Err(CliError::new("--channel", format!("{channel} is not in {}", path.display()), right));
+    };
+    if actuator.settings.output == Quantity::Acceleration {
+        let what = format!("actuator {channel} gives acceleration");
+        return Err(CliError::file(path, what, "write output = \"displacement\" to make a clip of it"));
+    }
+    let (log, unread) = render::load_log(&file)?;
+    let built = Engine::from_scene(&file, &Overrides::default())?;
+    let settings = offline::Options { tail_s: file.tail_s, ..offline::Options::default() };
+    let Engine { scene, renderer, names, .. } = built;
+    let render = offline::render(scene, renderer, &log, &names, &settings)
+        .map_err(|error| CliError::told(error).within(path.display()))?;
+    let samples = render.haptic[channel].iter().map(|x| f64::from(*x)).collect();
+    Ok(Input::Samples {
+        samples,
+        rate_hz: render.sample_rate_hz,
+        strokes_s: strokes_s(&log, channel),
+        told: unread.iter().map(|place| render::told::read_past(place)).collect(),
+        source: name_of(path),
+    })
+}
+
+/// When something lands on a channel's hand or strikes in it, s.
+pub fn strokes_s(log: &ContactLog, channel: usize) -> Vec<f64> {
+    let felt_here = |event: &LogEvent| match event {
+        LogEvent::Begin { touching, .. } => touching.hand.actuator,
+        LogEvent::Impact { hand, .. } => hand.actuator,
+        LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => None,
+    };
+    let here = |actuator: Option<u16>| actuator.is_some_and(|actuator| usize::from(actuator) == channel);
+    log.lines.iter().filter(|line| here(felt_here(&line.event))).map(|line| line.t).collect()
+}

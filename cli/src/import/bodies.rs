@@ -1,0 +1,119 @@
+//! Modal models → modes files.
+
+use super::document::Document;
+use crate::error::CliError;
+use asperity::ModeShapes;
+use serde_json::{Value, json};
+use std::f64::consts::FRAC_PI_2;
+
+/// A model as a modes file, scaled by the node's gain.
+pub fn modes(document: &Document, model: &Value, at: &str, gain: f64) -> Result<String, CliError> {
+    let column = |key: &str, kind: &str| document.accessor(&model[key], kind, &format!("{at}.{key}"));
+    let frequencies = column("frequencies", "SCALAR")?.values;
+    let decays = column("decayRates", "SCALAR")?.values;
+    let points = column("positions", "VEC3")?.triples();
+    let shapes = column("shapes", "VEC3")?.triples();
+    let (modes, count) = (frequencies.len(), points.len());
+    if decays.len() != modes || shapes.len() != modes * count {
+        let what = format!(
+            "holds {} decays and {} shapes for {modes} modes at {count} points",
+            decays.len(),
+            shapes.len()
+        );
+        return Err(document.wrong(at, what, "must hold a decay a mode and a shape a mode and point"));
+    }
+    if let Some(bad) = frequencies.iter().zip(&decays).position(|(hz, decay)| *hz <= 0.0 || *decay < 0.0) {
+        let what = format!("mode {bad} has {} Hz and decays by {} 1/s", frequencies[bad], decays[bad]);
+        return Err(document.wrong(at, what, "must be positive, and not grow"));
+    }
+    let triangles = triangles(document, model, at, count)?;
+    let normals = normals(&points, &triangles);
+    let along = |mode: usize, point: usize| dot(shapes[mode * count + point], normals[point]);
+    // As `asperity modes` has it: a mode's gain is the root mean square of its motion out of the surface.
+    let gains: Vec<f64> = (0..modes)
+        .map(|mode| gain * ((0..count).map(|p| along(mode, p).powi(2)).sum::<f64>() / count as f64).sqrt())
+        .collect();
+    let lively = |point: usize| (0..modes).map(|mode| (gains[mode] * along(mode, point)).abs()).sum::<f64>();
+    let struck_point = (0..count).fold(0, |best, p| if lively(p) > lively(best) { p } else { best });
+    let list: Vec<Value> = (0..modes)
+        .map(|mode| {
+            json!({
+                "frequency_hz": frequencies[mode], "decay_per_s": decays[mode],
+                "amplitude": gains[mode] * along(mode, struck_point), "phase_rad": FRAC_PI_2,
+            })
+        })
+        .collect();
+    let source = model["name"].as_str().unwrap_or("glTF");
+    let mut file = json!({
+        "format": asperity::files::modes_file::FORMAT, "version": 1, "source": source, "impulse_n_s": 1.0, "modes": list,
+    });
+    if !triangles.is_empty() {
+        let motion = |mode: usize| {
+            shapes[mode * count..(mode + 1) * count].iter().map(|s| s.map(|x| x as f32)).collect()
+        };
+        let shapes = ModeShapes {
+            points_m: points.clone(),
+            triangles,
+            gains,
+            phi_per_sqrt_kg: (0..modes).map(motion).collect(),
+            struck_point,
+        };
+        file["version"] = json!(2);
+        file["unit"] = json!("relative");
+        file["shapes"] =
+            serde_json::to_value(shapes).map_err(|error| document.wrong(at, error, "please report it"))?;
+    }
+    let text = file.to_string();
+    // What the engine would refuse is no body.
+    asperity::ModalModel::parse(&text).map_err(|error| CliError::told(error).within(at))?;
+    Ok(text)
+}
+
+fn triangles(document: &Document, model: &Value, at: &str, count: usize) -> Result<Vec<[u32; 3]>, CliError> {
+    if model["indices"].is_null() {
+        return Ok(Vec::new());
+    }
+    let at = format!("{at}.indices");
+    let corners = document.accessor(&model["indices"], "SCALAR", &at)?.values;
+    if corners.len() % 3 != 0 || corners.iter().any(|corner| *corner >= count as f64) {
+        return Err(document.wrong(
+            at,
+            "are no triangles of the points",
+            "must be threes, each below the number of points",
+        ));
+    }
+    Ok(corners.chunks_exact(3).map(|c| [c[0] as u32, c[1] as u32, c[2] as u32]).collect())
+}
+
+/// Out of the surface at every point; without triangles away from the middle.
+fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[f64; 3]> {
+    let middle: [f64; 3] =
+        std::array::from_fn(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64);
+    let mut normals = vec![[0.0; 3]; points.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| points[i as usize]);
+        let (u, v) = (minus(b, a), minus(c, a));
+        let area = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+        for corner in triangle {
+            let normal = &mut normals[*corner as usize];
+            *normal = std::array::from_fn(|k| normal[k] + area[k]);
+        }
+    }
+    normals
+        .iter()
+        .zip(points)
+        .map(|(normal, point)| {
+            let outwards = if dot(*normal, *normal) > 0.0 { *normal } else { minus(*point, middle) };
+            let length = dot(outwards, outwards).sqrt();
+            if length > 0.0 { outwards.map(|x| x / length) } else { [0.0, 0.0, 1.0] }
+        })
+        .collect()
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| a[k] - b[k])
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

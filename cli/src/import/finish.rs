@@ -1,0 +1,84 @@
+//! Acoustic surfaces → micro-relief and heights.
+//!
+//! ```text
+//! draft: spectrum ∝ k^p beyond 1/ℓ, flat below, down to ℓ/16, rms σ
+//! ours:  a(λ) = m · 10^(0.75 (R − 1)) (λ/1 mm)^((α − 1)/2) (1 + (λ/L)²)^(−α/4)      α = 2.5 − 1.5 R
+//! so     R = (2.5 + p)/1.5 within 0–1,  L = ℓ,  m such that Σ over octaves of a² = σ²
+//! ```
+
+use super::document::Document;
+use crate::error::CliError;
+use asperity_texture::normal_map::{NormalMapOptions, heights_from_normals};
+use asperity_texture::raster::Raster;
+use serde_json::Value;
+
+/// Micro-relief of a surface in our terms.
+pub struct Finish {
+    pub roughness: f64,
+    pub micro_relief_m: f64,
+    pub outer_scale_m: f64,
+}
+
+/// Reads σ, ℓ and p, each with the draft's default.
+pub fn finish(document: &Document, surface: &Value, at: &str) -> Result<Finish, CliError> {
+    let number = |key: &str, default: f64, low: f64, high: f64| {
+        let value = surface[key].as_f64().unwrap_or(default);
+        let inside = value.is_finite()
+            && value > low
+            && value <= high
+            && (surface[key].is_null() || surface[key].is_number());
+        let right = format!("must be a number above {low}, to {high}");
+        if inside {
+            Ok(value)
+        } else {
+            Err(document.wrong(format!("{at}.{key}"), format!("{} is refused", surface[key]), &right))
+        }
+    };
+    let sigma_m = number("roughness", 2e-6, 0.0, 0.01)?;
+    let length_m = number("correlationLength", 5e-5, 0.0, 1.0)?;
+    let slope = number("spectralSlope", -2.4, -10.0, 0.0)?;
+    let shortest_m = number("shortWavelength", length_m / 16.0, 0.0, 1.0)?.min(length_m);
+    let roughness = ((2.5 + slope) / 1.5).clamp(0.0, 1.0);
+    let (alpha, outer_scale_m) = (2.5 - 1.5 * roughness, length_m.clamp(1e-5, 1.0));
+    let rms = |wave_m: f64| {
+        10f64.powf(0.75 * (roughness - 1.0))
+            * (wave_m / 1e-3).powf(0.5 * (alpha - 1.0))
+            * (1.0 + (wave_m / outer_scale_m).powi(2)).powf(-0.25 * alpha)
+    };
+    let octaves =
+        std::iter::successors(Some(shortest_m * std::f64::consts::SQRT_2), |wave_m| Some(2.0 * wave_m));
+    let power: f64 =
+        octaves.take_while(|wave_m| *wave_m < 64.0 * length_m).map(|wave_m| rms(wave_m).powi(2)).sum();
+    let micro_relief_m = if power > 0.0 { (sigma_m / power.sqrt()).min(0.01) } else { 0.0 };
+    Ok(Finish { roughness, micro_relief_m, outer_scale_m })
+}
+
+/// Heights of a normal texture: a 16-bit picture's greys, and white over black in texels.
+pub struct Heights {
+    pub width: usize,
+    pub height: usize,
+    pub grey: Vec<u16>,
+    pub relief_px: f64,
+}
+
+/// Solves a normal texture for heights; `scale` multiplies its slopes.
+pub fn heights(document: &Document, texture: &Value, at: &str) -> Result<Heights, CliError> {
+    let picture = document.picture(&texture["index"], at)?;
+    let wrong = |what: String| document.wrong(at, what, "must be a normal map as PNG or JPEG");
+    let picture = image::load_from_memory(&picture).map_err(|error| wrong(error.to_string()))?.to_rgb16();
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let channel = |k: usize| {
+        let values = picture.pixels().map(|p| f64::from(p.0[k]) / 65_535.0).collect();
+        Raster { width, height, values }
+    };
+    let found = heights_from_normals(&channel(0), &channel(1), &channel(2), &NormalMapOptions::default())
+        .map_err(|error| wrong(error.to_string()))?;
+    let (low, high) = found.height_px.range();
+    let scale = texture["scale"].as_f64().filter(|s| s.is_finite()).unwrap_or(1.0);
+    let relief = high - low;
+    let up = scale >= 0.0;
+    let part = |z: f64| if relief > 0.0 { (z - low) / relief } else { 0.5 };
+    let grey = |z: &f64| ((if up { part(*z) } else { 1.0 - part(*z) }) * 65_535.0).round() as u16;
+    let grey = found.height_px.values.iter().map(grey).collect();
+    Ok(Heights { width, height, grey, relief_px: relief * scale.abs() })
+}

@@ -1,0 +1,281 @@
+//! `asperity import SCENE.gltf -o DIR`: a scene of the draft `KHR_audio_rigid_bodies` becomes one that renders.
+
+mod bodies;
+mod document;
+mod finish;
+
+use crate::error::CliError;
+use crate::output::{self, Outputs, ensure_folder};
+use crate::pixels;
+use clap::Args;
+use document::Document;
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// The extension, as of the draft's commit 2ea03a8 of 2026-08-22.
+const EXTENSION: &str = "KHR_audio_rigid_bodies";
+/// Side of a surface whose node has no mesh, m.
+const PLAIN_SIDE_M: f64 = 0.1;
+/// Relief of a surface without a normal texture, m.
+const FLAT_M: f64 = 0.0;
+
+/// Make a scene of a glTF document with acoustic bodies and surfaces (the draft KHR_audio_rigid_bodies)
+#[derive(Debug, Args)]
+pub struct Options {
+    /// The document
+    #[arg(value_name = "SCENE.(gltf|glb)")]
+    pub document: PathBuf,
+    /// Folder to fill: scene.toml, contacts.jsonl, modes and heights
+    #[arg(short, long = "output", value_name = "DIR")]
+    pub output: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Report {
+    bodies: usize,
+    surfaces: usize,
+    warnings: Vec<String>,
+    files: Vec<PathBuf>,
+}
+
+/// Runs the verb.
+///
+/// # Errors
+/// When the document is no glTF, its extension breaks the draft, or a file cannot be written.
+pub fn run(options: &Options) -> Result<(), CliError> {
+    let document = Document::read(&options.document)?;
+    let mut scene = Scene::of(&document)?;
+    ensure_folder(&options.output)?;
+    let mut outputs = Outputs::new();
+    for (name, bytes) in &scene.files {
+        outputs.write(&options.output.join(name), bytes)?;
+    }
+    outputs.write(&options.output.join("scene.toml"), scene.toml().as_bytes())?;
+    outputs.write(&options.output.join("contacts.jsonl"), scene.contacts().as_bytes())?;
+    let report = Report {
+        bodies: scene.bodies.len(),
+        surfaces: scene.surfaces.len(),
+        warnings: std::mem::take(&mut scene.told),
+        files: outputs.commit()?,
+    };
+    if options.json {
+        return output::say_json(&report);
+    }
+    output::say(&format!(
+        "{}: {} bodies, {} surfaces",
+        options.output.display(),
+        report.bodies,
+        report.surfaces
+    ));
+    report.warnings.iter().for_each(|warning| output::say(&format!("warning: {warning}")));
+    Ok(())
+}
+
+/// What the nodes of a document give.
+#[derive(Default)]
+struct Scene {
+    bodies: Vec<(String, String)>,
+    surfaces: Vec<(String, String)>,
+    files: Vec<(String, Vec<u8>)>,
+    told: Vec<String>,
+}
+
+impl Scene {
+    fn of(document: &Document) -> Result<Self, CliError> {
+        let mut scene = Self::default();
+        let nodes = document.json["nodes"].as_array().map_or(&[][..], Vec::as_slice);
+        for (index, node) in nodes.iter().enumerate() {
+            let extension = &node["extensions"][EXTENSION];
+            if extension.is_object() {
+                scene.node(document, node, extension, index)?;
+            }
+        }
+        if scene.bodies.is_empty() && scene.surfaces.is_empty() {
+            let right =
+                format!("must have a node with {EXTENSION} that names a modalModel or an acousticSurface");
+            return Err(document.wrong("nodes", "hold nothing that sounds or is touched", &right));
+        }
+        Ok(scene)
+    }
+
+    fn tell(&mut self, what: String) {
+        if !self.told.contains(&what) {
+            self.told.push(what);
+        }
+    }
+
+    fn node(
+        &mut self,
+        document: &Document,
+        node: &Value,
+        extension: &Value,
+        index: usize,
+    ) -> Result<(), CliError> {
+        let at = format!("nodes[{index}].extensions.{EXTENSION}");
+        let root = &document.json["extensions"][EXTENSION];
+        let entry = |list: &str, key: &str| -> Result<Option<&Value>, CliError> {
+            if extension[key].is_null() {
+                return Ok(None);
+            }
+            let found = extension[key].as_u64().and_then(|i| root[list].get(i as usize));
+            let right = format!("must be the index of one of {list}");
+            found.map(Some).ok_or_else(|| {
+                document.wrong(format!("{at}.{key}"), format!("{} is not there", extension[key]), &right)
+            })
+        };
+        let gain = extension["gain"].as_f64().unwrap_or(1.0);
+        if !(gain.is_finite() && gain >= 0.0) {
+            return Err(document.wrong(format!("{at}.gain"), "is below 0", "must be 0 or more"));
+        }
+        if node["scale"].as_array().is_some_and(|scale| scale.iter().any(|s| s.as_f64() != Some(1.0))) {
+            self.tell(
+                "scales of nodes are read past: modes and shapes are those of the model's own size"
+                    .to_owned(),
+            );
+        }
+        let name = format!("{}-{index}", plain(node["name"].as_str().unwrap_or("node")));
+        let model = entry("modalModels", "modalModel")?;
+        let surface = entry("acousticSurfaces", "acousticSurface")?;
+        let material = |of: Option<&Value>| {
+            of.and_then(|of| of["material"].as_u64()).and_then(|i| root["acousticMaterials"].get(i as usize))
+        };
+        if let Some(model) = model {
+            let text = bodies::modes(document, model, &format!("{at}.modalModel"), gain)?;
+            let file = format!("{name}.modes.json");
+            let mut table = format!("[[body]]\nname = {}\nmodes = {}\n", json!(name), json!(file));
+            table.push_str(&stiffness(material(Some(model)).or(material(surface))));
+            self.files.push((file, text.into_bytes()));
+            self.bodies.push((name.clone(), table));
+        }
+        if let Some(surface) = surface {
+            let body = model.is_some().then_some(name.as_str());
+            let at = format!("{at}.acousticSurface");
+            self.surface(document, node, surface, &name, body, &at)?;
+        }
+        Ok(())
+    }
+
+    fn surface(
+        &mut self,
+        document: &Document,
+        node: &Value,
+        surface: &Value,
+        name: &str,
+        body: Option<&str>,
+        at: &str,
+    ) -> Result<(), CliError> {
+        let finish = finish::finish(document, surface, at)?;
+        if !surface["profile"].is_null() {
+            self.tell(
+                "stored profiles are read past: their surfaces are made from roughness, length and slope"
+                    .to_owned(),
+            );
+        }
+        let [width_m, height_m] = extent_m(document, node);
+        let mut table = format!("[[surface]]\nname = {}\n", json!(name));
+        if let Some(body) = body {
+            let _ = writeln!(table, "body = {}", json!(body));
+        }
+        let mut relief_m = FLAT_M;
+        if surface["normalTexture"].is_object() {
+            let heights =
+                finish::heights(document, &surface["normalTexture"], &format!("{at}.normalTexture"))?;
+            relief_m = (heights.relief_px * width_m / heights.width.max(1) as f64).min(0.1);
+            let file = format!("{name}.heights.png");
+            let _ = writeln!(table, "displacement = {}", json!(file));
+            self.files.push((file, pixels::png16(heights.width, heights.height, &heights.grey)));
+        }
+        let _ = writeln!(table, "width_m = {width_m:?}\nheight_m = {height_m:?}");
+        if relief_m > 0.0 {
+            let _ = writeln!(table, "relief_m = {relief_m:?}");
+        }
+        let _ = writeln!(table, "roughness = {:?}", finish.roughness);
+        let _ = writeln!(
+            table,
+            "micro_relief_m = {:?}\nouter_scale_m = {:?}",
+            finish.micro_relief_m, finish.outer_scale_m
+        );
+        self.surfaces.push((name.to_owned(), table));
+        Ok(())
+    }
+
+    fn toml(&self) -> String {
+        let mut text = format!(
+            "# From a glTF document with {EXTENSION}, a draft.\ncontacts = \"contacts.jsonl\"\ntail_s = 1.0\n"
+        );
+        for (_, table) in self.bodies.iter().chain(&self.surfaces) {
+            let _ = write!(text, "\n{table}");
+        }
+        text.push_str("\n[[actuator]]\noutput = \"displacement\"\n");
+        text
+    }
+
+    /// A strike on every body, then a stroke on every surface: the document says what there is, not what is done to it.
+    fn contacts(&self) -> String {
+        let mut text = String::new();
+        let mut t = 0.0;
+        for (name, _) in &self.bodies {
+            let strike = json!({"t": t, "event": "impact", "body": name, "speed_m_s": 0.5, "mass_kg": 0.01, "radius_m": 0.005, "striker": "steel"});
+            let _ = writeln!(text, "{strike}");
+            t += 0.5;
+        }
+        for (contact, (name, _)) in self.surfaces.iter().enumerate() {
+            for step in 0..=24 {
+                let part = f64::from(step) / 24.0;
+                let mut event = json!({"t": t + 0.4 * part, "event": "move", "contact": contact, "uv": [0.2 + 0.6 * part, 0.5], "normal_force_n": 0.6});
+                if step == 0 {
+                    event["event"] = json!("begin");
+                    event["surface"] = json!(name);
+                    event["actuator"] = json!(0);
+                }
+                let _ = writeln!(text, "{event}");
+            }
+            t += 0.45;
+            let _ = writeln!(text, "{}", json!({"t": t, "event": "end", "contact": contact}));
+            t += 0.1;
+        }
+        text
+    }
+}
+
+/// A material's constants as a table; nothing where one is missing.
+fn stiffness(material: Option<&Value>) -> String {
+    let number = |key: &str| material.and_then(|m| m[key].as_f64());
+    match (number("youngsModulus"), number("poissonRatio"), number("density")) {
+        (Some(young), Some(poisson), Some(density)) => {
+            format!(
+                "material = {{ young_pa = {young:?}, poisson = {poisson:?}, density_kg_m3 = {density:?} }}\n"
+            )
+        }
+        _ => String::new(),
+    }
+}
+
+/// The two longest sides of a node's mesh, m.
+fn extent_m(document: &Document, node: &Value) -> [f64; 2] {
+    let mesh = node["mesh"]
+        .as_u64()
+        .map(|i| &document.json["meshes"][i as usize]["primitives"][0]["attributes"]["POSITION"]);
+    let accessor = mesh.and_then(Value::as_u64).map(|i| &document.json["accessors"][i as usize]);
+    let side = |k: usize| {
+        let bound = |key: &str| accessor.and_then(|a| a[key][k].as_f64());
+        Some(bound("max")? - bound("min")?)
+            .filter(|side| side.is_finite() && *side > 1e-3)
+            .map(|side| side.min(100.0))
+    };
+    let mut sides: Vec<f64> = (0..3).filter_map(side).collect();
+    sides.sort_by(|a, b| b.total_cmp(a));
+    [sides.first().copied().unwrap_or(PLAIN_SIDE_M), sides.get(1).copied().unwrap_or(PLAIN_SIDE_M)]
+}
+
+/// A name that a file may have.
+fn plain(name: &str) -> String {
+    let kept: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).take(60).collect();
+    if kept.is_empty() { "node".to_owned() } else { kept }
+}

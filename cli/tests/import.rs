@@ -1,0 +1,163 @@
+//! `asperity import`: scenes of the draft `KHR_audio_rigid_bodies`, and what is none.
+
+mod support;
+
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use support::{asperity, assert_refused, told};
+
+fn floats(values: &[f32]) -> Vec<u8> {
+    values.iter().flat_map(|x| x.to_le_bytes()).collect()
+}
+
+/// Two modes at three points, a triangle, and a floor that makes no sound.
+fn document() -> (Value, Vec<u8>) {
+    let mut bytes = floats(&[500.0, 1300.0, 12.0, 40.0]);
+    bytes.extend(floats(&[0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1, 0.0]));
+    bytes.extend(floats(&[
+        0.0, 0.0, 2.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, -2.0,
+    ]));
+    bytes.extend([0_u16, 1, 2].iter().flat_map(|x| x.to_le_bytes()));
+    let view =
+        |offset: usize, length: usize| json!({"buffer": 0, "byteOffset": offset, "byteLength": length});
+    let accessor = |view: usize, kind: &str, count: usize| json!({"bufferView": view, "componentType": 5126, "type": kind, "count": count});
+    let mut indices = accessor(4, "SCALAR", 3);
+    indices["componentType"] = json!(5123);
+    let document = json!({
+        "asset": {"version": "2.0"}, "buffers": [{"uri": "scene.bin", "byteLength": bytes.len()}],
+        "bufferViews": [view(0, 8), view(8, 8), view(16, 36), view(52, 72), view(124, 6)],
+        "accessors": [accessor(0, "SCALAR", 2), accessor(1, "SCALAR", 2), accessor(2, "VEC3", 3), accessor(3, "VEC3", 6), indices],
+        "nodes": [
+            {"name": "Bell", "extensions": {"KHR_audio_rigid_bodies": {"modalModel": 0, "acousticSurface": 0, "gain": 0.5}}},
+            {"name": "Floor", "extensions": {"KHR_audio_rigid_bodies": {"acousticSurface": 0}}},
+        ],
+        "extensions": {"KHR_audio_rigid_bodies": {
+            "acousticMaterials": [{"density": 2700, "youngsModulus": 7.2e10, "poissonRatio": 0.19}],
+            "acousticSurfaces": [{"roughness": 2e-5, "correlationLength": 5e-4, "spectralSlope": -2.0, "material": 0}],
+            "modalModels": [{"frequencies": 0, "decayRates": 1, "positions": 2, "shapes": 3, "indices": 4, "material": 0}],
+        }},
+    });
+    (document, bytes)
+}
+
+fn put(folder: &Path, document: &Value, bytes: &[u8]) {
+    fs::write(folder.join("scene.gltf"), document.to_string()).unwrap();
+    fs::write(folder.join("scene.bin"), bytes).unwrap();
+}
+
+fn import_and_render(folder: &Path, document: &str) -> Value {
+    let (status, _, err) = told(&asperity(folder, &["import", document, "-o", "out"]));
+    assert_eq!((status, err.as_str()), (0, ""), "{document}");
+    let (status, out, err) = told(&asperity(folder, &["render", "out/scene.toml", "-o", "take", "--json"]));
+    assert_eq!((status, err.as_str()), (0, ""), "{document}");
+    serde_json::from_str(&out).unwrap()
+}
+
+#[test]
+fn a_body_and_two_surfaces_render_and_a_mode_keeps_its_frequency_and_decay() {
+    let folder = tempfile::tempdir().unwrap();
+    let (document, bytes) = document();
+    put(folder.path(), &document, &bytes);
+    let report = import_and_render(folder.path(), "scene.gltf");
+    assert!(
+        report["audio_peak"].as_f64().unwrap() > 1e-4 && report["haptic_peak"][0].as_f64().unwrap() > 0.0,
+        "{report}"
+    );
+    let modes: Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("out/Bell-0.modes.json")).unwrap())
+            .unwrap();
+    assert_eq!(
+        (modes["version"].as_u64(), modes["modes"][1]["frequency_hz"].as_f64()),
+        (Some(2), Some(1300.0))
+    );
+    assert_eq!(modes["modes"][0]["decay_per_s"].as_f64(), Some(12.0));
+    // φ·n at the three points: 2, −1, 0.5; half of the gain.
+    let rms = ((4.0 + 1.0 + 0.25_f64) / 3.0).sqrt();
+    assert!((modes["shapes"]["gains"][0].as_f64().unwrap() - 0.5 * rms).abs() < 1e-6);
+}
+
+#[test]
+fn what_breaks_the_draft_is_refused_where_it_stands() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (good, bytes) = document();
+    let model = "/extensions/KHR_audio_rigid_bodies/modalModels/0";
+    for (place, value, parts) in [
+        ("/asset/version", json!("1.0"), vec!["asset.version"]),
+        (
+            "/nodes/0/extensions/KHR_audio_rigid_bodies/modalModel",
+            json!(7),
+            vec!["nodes[0]", "modalModel", "modalModels"],
+        ),
+        ("/nodes/0/extensions/KHR_audio_rigid_bodies/gain", json!(-1), vec!["nodes[0]", "gain"]),
+        ("/nodes", json!([]), vec!["nodes", "modalModel"]),
+        ("/accessors/0/count", json!(0), vec!["frequencies"]),
+        ("/accessors/0/count", json!(1_u64 << 60), vec!["frequencies"]),
+        ("/accessors/3/count", json!(5), vec!["shapes"]),
+        ("/accessors/0/type", json!("VEC3"), vec!["frequencies"]),
+        ("/bufferViews/3/byteLength", json!(4000), vec!["shapes", "buffer"]),
+        ("/buffers/0/uri", json!("../elsewhere.bin"), vec!["buffers[0].uri"]),
+        ("/buffers/0/uri", json!("data:x;base64,***"), vec!["base64"]),
+        (&format!("{model}/indices"), json!(0), vec!["indices"]),
+        (&format!("{model}/decayRates"), json!(null), vec!["decayRates"]),
+        ("/extensions/KHR_audio_rigid_bodies/acousticSurfaces/0/roughness", json!(-1), vec!["roughness"]),
+        (
+            "/extensions/KHR_audio_rigid_bodies/acousticSurfaces/0/spectralSlope",
+            json!("steep"),
+            vec!["spectralSlope"],
+        ),
+    ] {
+        let mut broken = good.clone();
+        *broken.pointer_mut(place).unwrap() = value;
+        put(folder, &broken, &bytes);
+        assert_refused(&asperity(folder, &["import", "scene.gltf", "-o", "out"]), &parts);
+    }
+    fs::write(folder.join("x.glb"), b"glTF\x02\0\0\0\xff\xff\xff\xff\xff\xff\xff\xffJSON").unwrap();
+    assert_refused(&asperity(folder, &["import", "x.glb", "-o", "out"]), &["x.glb"]);
+    fs::write(folder.join("x.gltf"), "not json").unwrap();
+    assert_refused(&asperity(folder, &["import", "x.gltf", "-o", "out"]), &["x.gltf"]);
+}
+
+fn documents(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            documents(&path, found);
+        } else if path.extension().is_some_and(|e| e == "gltf")
+            && fs::read_to_string(&path).unwrap().contains("KHR_audio_rigid_bodies")
+        {
+            found.push(path);
+        }
+    }
+}
+
+/// `ASPERITY_KHR_SAMPLES` names a folder with the draft's sample scenes.
+#[test]
+fn every_sample_scene_of_the_draft_is_read_and_five_render() {
+    let Some(samples) = std::env::var_os("ASPERITY_KHR_SAMPLES") else {
+        println!("skipped: ASPERITY_KHR_SAMPLES names no folder with the draft's sample scenes");
+        return;
+    };
+    let mut found = Vec::new();
+    documents(Path::new(&samples), &mut found);
+    found.sort();
+    assert!(found.len() >= 50, "{}", found.len());
+    let folder = tempfile::tempdir().unwrap();
+    for (index, path) in found.iter().enumerate() {
+        let path = path.to_str().unwrap();
+        let (status, _, err) = told(&asperity(folder.path(), &["import", path, "-o", "parsed"]));
+        assert_eq!((status, err.as_str()), (0, ""), "{path}");
+        if index % (found.len() / 5) == 0 {
+            let report = import_and_render(folder.path(), path);
+            // Small bodies of the samples ring above what is heard; their surfaces are felt all the same.
+            let peak = |value: &Value| value.as_f64().unwrap();
+            assert!(
+                peak(&report["audio_peak"]) > 0.0 || peak(&report["haptic_peak"][0]) > 0.0,
+                "{path}: {report}"
+            );
+            println!("{path}: audio {}, haptic {}", report["audio_peak"], report["haptic_peak"]);
+        }
+    }
+    println!("{} documents read", found.len());
+}
