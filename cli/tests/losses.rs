@@ -122,8 +122,8 @@ fn a_key_that_the_log_does_not_know_is_refused_and_one_that_is_read_past_is_told
         &scene.render(&[]),
         &["stroke.jsonl:1: velocity", "unknown key of \"begin\"", "write velocity_m_s"],
     );
-    let place = stroke(1, 0.2).replacen("\"contact\":1,", "\"contact\":1,\"at_m\":[0,0,0],", 1);
-    assert_says(&said(TOML, &place), &["stroke.jsonl:1: at_m: is a key of the format"]);
+    let place = stroke(1, 0.2).replacen("\"contact\":1,", "\"contact\":1,\"direction\":[0,0,1],", 1);
+    assert_says(&said(TOML, &place), &["stroke.jsonl:1: direction: is a key of the format"]);
 }
 
 #[test]
