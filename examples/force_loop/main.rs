@@ -153,7 +153,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                      engine's rows {:.2} % apart",
                     rate_hz / 1000.0,
                     law.stiffness_n_m(0.002),
-                    if still { "holds still" } else { "DOES NOT HOLD STILL" },
+                    if still { "holds still" } else { "STILL SWINGS AT THE END" },
                     1e3 * cycle_j,
                     1e2 * apart(&ticks, &rows)
                 );
