@@ -81,7 +81,7 @@ impl Voice {
         let [slope_m_s, bend_m_s2] = self.trend(shared, position, seat, scratch);
         self.lay_behind(1, shared, position, seat, scratch);
         let (heights_m, forces_n) = (&scratch.profile.surface.height_m, &scratch.profile.force_n);
-        let row = self.pad.lead_in(heights_m, forces_n, shared.sample_rate_hz, &mut scratch.rows);
+        let row = self.pad.lead_in(heights_m, forces_n, slope_m_s, &mut scratch.rows);
         let PadSample { pad_m, pad_velocity_m_s, .. } = row;
         self.ac.feel =
             ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);

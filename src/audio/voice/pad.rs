@@ -65,24 +65,24 @@ impl Pad {
         self.resets_told = self.state.resets();
     }
 
-    /// It has been sliding over these heights already; the row it ends with.
+    /// It has been sliding over these heights already, which rise by `rise_m_s` on the whole; the row it ends with.
+    ///
+    /// Finger and pad rise with them: set off from rest they would still swing when they are heard. On the whole means over the
+    /// time that a finger answers in: with the slope of a millisecond's roughness a lightly pressed one would be thrown.
     pub(super) fn lead_in(
         &mut self,
         heights_m: &[f64],
         forces_n: &[f64],
-        sample_rate_hz: f64,
+        rise_m_s: f64,
         rows: &mut [PadSample],
     ) -> PadSample {
         let last = heights_m.len() - 1;
-        // Finger and pad rise as the ground does on the whole: set off from rest they would still swing when they are heard.
-        let rise_m_s = (heights_m[last] - heights_m[0]) * sample_rate_hz / last as f64;
         self.state = self.model.riding(heights_m[0], forces_n[0], rise_m_s);
         self.model.run(&mut self.state, heights_m, forces_n, rows);
         self.late_row = PadSample { onset: None, ..rows[last] };
         let (height_m, force_n) = (heights_m[last], forces_n[last]);
         if self.state.resets() > 0 || self.late_row.contact_force_n > LEAD_IN_BLOW * force_n {
             // What never was there cannot have thrown it.
-            let rise_m_s = (height_m - heights_m[last - 1]) * sample_rate_hz;
             self.state = self.model.riding(height_m, force_n, rise_m_s);
         }
         self.resets_told = self.state.resets();
