@@ -33,6 +33,7 @@ mod plot;
 mod progress;
 mod render;
 mod report;
+mod scene_log;
 mod texture;
 mod wav;
 

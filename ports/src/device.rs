@@ -79,7 +79,7 @@ impl Device {
     #[must_use]
     pub fn shipped(name: &str) -> Option<Self> {
         let (_, text) = SHIPPED.into_iter().find(|(shipped, _)| *shipped == name)?;
-        Self::parse(text).ok()
+        Self::from_toml(text).ok()
     }
 
     /// The device that is meant where none is named.
@@ -89,15 +89,7 @@ impl Device {
         Self::shipped("quest").unwrap_or_else(|| unreachable!("the shipped profile is read by a test"))
     }
 
-    /// A profile from TOML, or an actuator configuration (ACF) from JSON with comments.
-    ///
-    /// # Errors
-    /// When it is neither, or a number is one that no device has.
-    pub fn parse(text: &str) -> Result<Self, PortError> {
-        let plain = crate::acf::without_comments(text);
-        if plain.trim_start().starts_with('{') {
-            return crate::acf::device(&plain);
-        }
+    pub(crate) fn from_toml(text: &str) -> Result<Self, PortError> {
         let device: Self = toml::from_str(text).map_err(|error| {
             let right =
                 "must be TOML with label, band_hz, pcm_rate_hz, points_per_s, [emphasis] and [source]";

@@ -35,6 +35,7 @@ pub mod hjif;
 pub mod keyframes;
 mod nodes;
 pub mod oscillator;
+mod profile_file;
 pub mod reduction;
 pub mod resample;
 pub mod rumble;

@@ -6,8 +6,8 @@ use crate::link::ring::Sender;
 use crate::model::id::BodyId;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
+use crate::prepared::bank::Owner;
 use crate::prepared::body::{BodySlot, Spot, Terms};
-use crate::prepared::body_field::Owner;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 

@@ -3,22 +3,18 @@
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::body_field::{BodyField, FIELD_INPUTS, Owner};
+use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
+use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
 use crate::prepared::bursts::Bursts;
 use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
-    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, Kernel, LaneGains, MissingSamples,
-    ModalBank, ModeGroup,
+    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, Kernel, LaneGains, MissingSamples, ModalBank,
 };
 use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
-
-/// Longest contact of an impact, s: 5 kg of foam that fall 5 cm. What would last longer lasts so long, at every rate, and is
-/// counted ([`Stats::shortened`](crate::Stats::shortened)).
-pub const LONGEST_CONTACT_S: f64 = 0.17;
 
 /// Levels of modes left out, from none.
 pub(crate) const MODE_LEVELS: usize = 5;
@@ -30,9 +26,6 @@ pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
 
 /// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
 const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
-
-/// The bank of a body.
-pub(crate) type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
 
 /// A body as the audio half owns it.
 pub(crate) struct BodySlot {

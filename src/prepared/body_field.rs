@@ -7,7 +7,7 @@
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::body::{Bank, LONGEST_CONTACT_S};
+use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
 use crate::prepared::holding::Holding;
 use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
@@ -27,9 +27,6 @@ pub(crate) const FIELD_INPUTS: usize = STRIKES + 2 * SLIDERS;
 const GLIDE_S: f64 = 0.008;
 /// A gain nearer than this to where it goes is there.
 const ARRIVED: f32 = 1e-6;
-
-/// Which contact an input belongs to: a voice and the sample at which it began.
-pub(crate) type Owner = (usize, u64);
 
 /// The shapes of a body, as the audio half owns them.
 pub(crate) struct BodyField {

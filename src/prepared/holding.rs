@@ -6,8 +6,7 @@
 
 use crate::model::mode_shapes::ModeShapes;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::body::Bank;
-use crate::prepared::body_field::Owner;
+use crate::prepared::bank::{Bank, Owner};
 use asperity_dsp::held::{Hold, Pole, held};
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{GroupOptions, LANES, ModeGroup, design_group};

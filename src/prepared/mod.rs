@@ -2,6 +2,7 @@
 //! beforehand.
 
 pub(crate) mod area;
+pub(crate) mod bank;
 pub(crate) mod body;
 pub(crate) mod body_field;
 pub(crate) mod bursts;

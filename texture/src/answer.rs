@@ -15,7 +15,7 @@
 //!
 //! Most surfaces leave it empty: their slope is all they push with. It is made only where somebody looks at slopes.
 
-use crate::height_field::MAX_BLOCK;
+use crate::block::MAX_BLOCK;
 
 /// What a surface answers at each sample of a block.
 #[derive(Debug, Clone)]

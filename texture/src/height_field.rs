@@ -6,11 +6,9 @@
 //! bits. The path's positions are finite; they may be any number of periods away from the origin.
 
 use crate::answer::{Answer, AnswerAt};
+pub use crate::block::MAX_BLOCK;
 use asperity_dsp::DesignError;
 use std::any::Any;
-
-/// Longest block a source is ever asked for, samples.
-pub const MAX_BLOCK: usize = 64;
 
 /// A force that is no touch, N: the weight of a tenth of a milligram.
 pub const NO_TOUCH_N: f64 = 1e-6;

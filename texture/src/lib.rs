@@ -6,6 +6,7 @@
 
 // Real time.
 pub mod answer;
+mod block;
 #[cfg(feature = "brownian")]
 pub mod brownian;
 pub mod combine;

@@ -29,6 +29,7 @@ pub mod grid;
 mod hand_over;
 pub mod law;
 pub mod patch;
+mod pose;
 pub mod simulation;
 pub mod source;
 pub mod tool;

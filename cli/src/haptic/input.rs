@@ -2,7 +2,7 @@
 
 use super::{name_of, port::transients_of};
 use crate::error::CliError;
-use crate::render;
+use crate::scene_log::{load_log, read_past};
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::files::scene_file::SceneFile;
 use asperity::offline;
@@ -137,7 +137,7 @@ fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
         let what = format!("actuator {channel} gives acceleration");
         return Err(CliError::file(path, what, "write output = \"displacement\" to make a clip of it"));
     }
-    let (log, unread) = render::load_log(&file)?;
+    let (log, unread) = load_log(&file)?;
     let built = Engine::from_scene(&file, &Overrides::default())?;
     let settings = offline::Options { tail_s: file.tail_s, ..offline::Options::default() };
     let Engine { scene, renderer, names, .. } = built;
@@ -148,7 +148,7 @@ fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
         samples,
         rate_hz: render.sample_rate_hz,
         strokes_s: strokes_s(&log, channel),
-        told: unread.iter().map(|place| render::told::read_past(place)).collect(),
+        told: unread.iter().map(|place| read_past(place)).collect(),
         source: name_of(path),
     })
 }

@@ -6,7 +6,7 @@ use super::watch::Watch;
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
-use crate::render::{load_log, told};
+use crate::scene_log::{load_log, read_past};
 use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogError, Names};
 use asperity::files::scene_file::SceneFile;
@@ -86,7 +86,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let file = SceneFile::load(Path::new(&scene_path))?;
     let (log, unread) = load_log(&file)?;
     for place in &unread {
-        eprintln!("warning: {}", told::read_past(place));
+        eprintln!("warning: {}", read_past(place));
     }
     let device_options = DeviceOptions {
         host: options.host.clone(),

@@ -8,6 +8,7 @@ mod view;
 
 use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination, with_suffix};
+use crate::scene_log::{load_log, read_past};
 use crate::{haptic, pixels, plot, wav};
 use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogEvent};
@@ -22,7 +23,7 @@ use picture::ContactCurve;
 use recorder::Recorder;
 use report::report;
 pub use report::{Report, SandReport};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -179,7 +180,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
     let mut report = report(&render, kernel, levels, watching);
-    report.warnings = unread.iter().map(|place| told::read_past(place)).collect();
+    report.warnings = unread.iter().map(|place| read_past(place)).collect();
     report.warnings.extend(told::warnings(&file, &log, &render, &report));
     for sand in &render.sand {
         let Some((name, _)) = names.iter().find(|(_, id)| *id == sand.surface) else { continue };
@@ -215,42 +216,6 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     }
     report.files = outputs.commit()?;
     Ok(report)
-}
-
-/// The contact log that a scene file names, and the keys in it that are read past.
-///
-/// # Errors
-/// When none is named, it is no log, or it speaks of a channel that the scene does not have.
-pub fn load_log(file: &SceneFile) -> Result<(ContactLog, Vec<String>), CliError> {
-    let path = file.contacts.as_ref().ok_or_else(|| {
-        CliError::new(
-            format!("{}: contacts", file.path.display()),
-            "is missing",
-            "write contacts = \"NAME.jsonl\", the events to render",
-        )
-    })?;
-    let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
-    let (log, unread) =
-        ContactLog::parse_telling(&text, &path.display().to_string()).map_err(CliError::told)?;
-    check_actuators(&log, path, file.actuators.len())?;
-    Ok((log, unread))
-}
-
-/// A contact on a channel that is not there would be felt nowhere.
-fn check_actuators(log: &ContactLog, path: &Path, channels: usize) -> Result<(), CliError> {
-    for line in &log.lines {
-        let hand = match &line.event {
-            LogEvent::Begin { touching, .. } => &touching.hand,
-            LogEvent::Impact { hand, .. } => hand,
-            LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => continue,
-        };
-        if let Some(actuator) = hand.actuator.filter(|actuator| usize::from(*actuator) >= channels) {
-            let what = format!("actuator {actuator} at t = {} s is not in the scene", line.t);
-            let right = format!("must be below {channels}, the number of [[actuator]] tables");
-            return Err(CliError::new("actuator", what, right).within(path.display()));
-        }
-    }
-    Ok(())
 }
 
 fn check_length(file: &SceneFile, duration_s: f64, rate_hz: f64) -> Result<(), CliError> {

@@ -25,11 +25,6 @@ pub fn warnings(file: &SceneFile, log: &ContactLog, render: &Render, report: &Re
     told
 }
 
-/// A key of the log format that this version does not act on.
-pub fn read_past(place: &str) -> String {
-    format!("{place}: is a key of the format, but this version does not act on it")
-}
-
 fn clipped(report: &Report) -> Vec<String> {
     let mut told = Vec::new();
     if report.audio_peak > 1.0 {

@@ -2,7 +2,7 @@
 //! because it moves along with the tool and is not what the tool meets next.
 
 use super::patch::{PATCH, Patch};
-use super::simulation::{FRAMES_PER_S, Pose};
+use super::pose::{FRAMES_PER_S, Pose};
 
 /// Points of the circle on which the level is looked for.
 const POINTS: usize = 32;

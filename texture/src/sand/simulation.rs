@@ -14,6 +14,7 @@ use super::around;
 use super::erosion::Erosion;
 use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
+pub use super::pose::{FRAMES_PER_S, Pose};
 use super::tool::{Press, Tool};
 use crate::height_field::Setup;
 use crate::moving_picture::MovingPicture;
@@ -22,8 +23,6 @@ use asperity_dsp::limits::sand as limits;
 use drag::{Way, wake_print};
 use std::sync::Arc;
 
-/// Frames a second.
-pub const FRAMES_PER_S: f64 = 60.0;
 /// Passes of sliding in a frame, at most.
 pub const PASSES_A_FRAME: usize = 8;
 /// Cells looked at in a frame before sliding is put off to the next: about 1 ms.
@@ -61,21 +60,6 @@ impl Default for SandDesign {
             tool: Tool::Sphere { radius_m: 0.005 },
         }
     }
-}
-
-/// Where a contact is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pose {
-    /// Its number.
-    pub contact: usize,
-    /// Position, metres.
-    pub position_m: [f64; 2],
-    /// Velocity, m/s.
-    pub velocity_m_s: [f64; 2],
-    /// Force pressing it down, N.
-    pub normal_force_n: f64,
-    /// It was lifted since the last pose: its tool is put down here, not dragged here.
-    pub landed: bool,
 }
 
 /// What a render tells about the sand.
