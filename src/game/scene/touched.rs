@@ -8,7 +8,7 @@ use crate::model::id::SurfaceId;
 use asperity_texture::tip_law::TipLaw;
 
 impl Scene {
-    /// Texture coordinates of a point in the body of a surface that has a [frame](Surface::frame), m; none for one that has none.
+    /// Texture coordinates of a point in the body of a surface that has a [frame](crate::Surface::frame), m; none for one that has none.
     ///
     /// # Errors
     /// When the surface is not in this scene.
