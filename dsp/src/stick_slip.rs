@@ -12,7 +12,7 @@
 //!
 //! | symbol | here | |
 //! |---|---|---|
-//! | R, θ, ω, m = 1 − 2R cos θ + R² | [`RubbedMode`] at one rate | as in the [modal bank](crate::modal_bank) |
+//! | R, θ, ω, m = 1 − 2R cos θ + R² | `RubbedMode` at one rate | as in the [modal bank](crate::modal_bank) |
 //! | φ_k | [`RubbedBody::touch_at`] | motion of the rubbed place along the motion, kg^−½ |
 //! | V | `sweep_m_s` | speed of what rubs |
 //! | N | `normal_force_n` | |

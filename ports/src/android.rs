@@ -88,7 +88,7 @@ pub fn file(clip: &Clip, device: &Device) -> Result<File, PortError> {
 /// The file as JSON.
 ///
 /// # Errors
-/// As [`file`].
+/// As [`fn@file`].
 pub fn write(clip: &Clip, device: &Device) -> Result<String, PortError> {
     serde_json::to_string(&file(clip, device)?)
         .map_err(|error| PortError::new("android", error, "please report it"))

@@ -8,10 +8,10 @@
 //! |---|---|
 //! | F_c | the contact force, N |
 //! | ∇h | [`SurfaceBlock::gradient`](crate::height_field::SurfaceBlock::gradient): relief pushes a tool down its slope |
-//! | a | [`Answer::force_n`]: a force law that does not depend on F_c |
-//! | p | [`Answer::push_per_n`]: one in proportion to F_c. A source whose texture has a law of its own puts its slope here, so that the
+//! | a | `force_n`: a force law that does not depend on F_c |
+//! | p | `push_per_n`: one in proportion to F_c. A source whose texture has a law of its own puts its slope here, so that the
 //! same relief does not push twice |
-//! | cap | [`Answer::cap_n`]: what the device behind the surface gives at most |
+//! | cap | `cap_n`: what the device behind the surface gives at most |
 //!
 //! Most surfaces leave it empty: their slope is all they push with. It is made only where somebody looks at slopes.
 

@@ -5,7 +5,7 @@
 //! | audio half, every 64 samples | sends the contact's pose, takes the newest patch, gives the old one back |
 //! | simulation, 60 times a second | takes the poses, moves tools, lets sand slide, sends a patch a contact |
 //!
-//! Neither end ever waits ([`hand_over`](super::hand_over)). From one patch to the next the height fades over a frame on absolute samples.
+//! Neither end ever waits (`hand_over`). From one patch to the next the height fades over a frame on absolute samples.
 //!
 //! *Synchronous* sand ([`SandSource::synchronous`]) keeps the simulation in the source and runs a
 //! frame wherever a contact's touch crosses a multiple of the frame length on the absolute sample
