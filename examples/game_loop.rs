@@ -7,6 +7,20 @@
 //! ```
 //!
 //! A finger circles over a grooved plate for three seconds, lifts off, and a steel ball hits the plate.
+//!
+//! In a game of your own paste these lines into the `Cargo.toml` of the workspace as well: an unoptimised development build renders
+//! three objects at 0.9 times real time and crackles.
+//!
+//! ```toml
+//! [profile.dev.package.asperity]
+//! opt-level = 3
+//! [profile.dev.package.asperity-dsp]
+//! opt-level = 3
+//! [profile.dev.package.asperity-texture]
+//! opt-level = 3
+//! [profile.dev.package.libm]
+//! opt-level = 3
+//! ```
 
 use asperity::offline::{self, Options};
 use asperity::texture::height_map::HeightMap;

@@ -94,6 +94,7 @@ pub use audio::renderer::Renderer;
 pub use engine::Engine;
 pub use files::actuator_profile::{ActuatorPreset, PresetError};
 pub use files::shapes_file::{load_shapes, parse_shapes};
+pub use files::shapes_sidecar::{shapes_from_bytes, shapes_to_bytes};
 pub use game::scene::Scene;
 pub use game::silence::SilentBecause;
 pub use link::stats::Stats;
@@ -102,6 +103,7 @@ pub use model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
 pub use model::bad_value::BadValue;
 pub use model::body::Body;
 pub use model::bus::{AudioBus, BusLevels, MAX_BUSES};
+pub use model::click::Click;
 pub use model::clock_mode::ClockMode;
 pub use model::config::Config;
 pub use model::error::{AddError, ConfigError, Refusal, ReportError};
@@ -120,8 +122,8 @@ pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
 pub use model::stock::Stock;
 pub use model::strike_field::{StrikeField, StrikePlace};
 pub use model::surface::{
-    DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, EXCITER_MATERIAL, EXCITER_RADIUS_M, Roughness, Surface,
-    SurfaceError,
+    DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, DEFAULT_STICK_SLIP, EXCITER_MATERIAL, EXCITER_RADIUS_M,
+    Roughness, Surface, SurfaceError,
 };
 pub use model::uv_triangle::UvTriangle;
 pub use rate::{AtRate, RateError};
@@ -132,8 +134,10 @@ pub use asperity_dsp::DesignError;
 /// What [`ContactBlock::contact_samples`] holds: the pad at one sample.
 pub use asperity_dsp::micro_contact::ContactSample as PadSample;
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
-pub use asperity_dsp::modal_bank::{Culling, Isa};
+pub use asperity_dsp::modal_bank::Culling;
 pub use asperity_dsp::mode::Mode;
+pub use asperity_dsp::simd::Isa;
+pub use asperity_dsp::stick_slip::Friction;
 pub use asperity_dsp::trajectory::PathMode;
 /// Sources of surfaces, and maps.
 pub use asperity_texture as texture;

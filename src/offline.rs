@@ -102,7 +102,7 @@ pub fn render(
 /// [`render`], with a view into every contact.
 ///
 /// # Errors
-/// As [`render`].
+/// As [`render`], and [`LogError::Stopped`] when the tap [does not go on](Tap::goes_on).
 pub fn render_tapped<T: Tap>(
     scene: Scene,
     renderer: Renderer,
@@ -138,6 +138,9 @@ pub fn render_edited<T: Tap>(
     let mut names = names.clone();
     let mut take = Take::new(scene, renderer, frames, options);
     for LogLine { t, event } in &log.lines {
+        if take.stopped {
+            break;
+        }
         let sample = Stamp::at(t * inner_rate).sample() / every;
         if let LogEvent::Edit(edit) = event {
             // It was made at this sample, behind what was reported before.
@@ -155,7 +158,7 @@ pub fn render_edited<T: Tap>(
         }
     }
     take.render_to(take.end, tap);
-    Ok(take.finish())
+    if take.stopped { Err(LogError::Stopped) } else { Ok(take.finish()) }
 }
 
 /// A render in progress.
@@ -164,6 +167,8 @@ struct Take {
     renderer: Renderer,
     block_frames: usize,
     clock_s: Option<fn() -> f64>,
+    /// The tap wanted no more.
+    stopped: bool,
     /// One past the last sample to render, the latency included.
     end: u64,
     audio: Vec<Vec<f32>>,
@@ -180,6 +185,7 @@ impl Take {
             scene,
             block_frames: options.block_frames.clamp(1, 4096),
             clock_s: options.clock_s,
+            stopped: false,
             end: total as u64,
             audio: vec![vec![0.0; total]; renderer.audio_buses()],
             haptic,
@@ -192,7 +198,8 @@ impl Take {
     /// Renders whole blocks that no coming event can touch, and more when the queue runs full. Where
     /// the queue is flushed does not change the result, because every event carries its sample.
     fn make_room<T: Tap>(&mut self, next_event: u64, tap: &mut T) {
-        while self.renderer.position() + self.block_frames as u64 <= next_event.min(self.end) {
+        while !self.stopped && self.renderer.position() + self.block_frames as u64 <= next_event.min(self.end)
+        {
             self.render_block(self.block_frames, tap);
         }
         if self.scene.is_filling() {
@@ -202,13 +209,17 @@ impl Take {
     }
 
     fn render_to<T: Tap>(&mut self, end: u64, tap: &mut T) {
-        while self.renderer.position() < end {
+        while !self.stopped && self.renderer.position() < end {
             let left = (end - self.renderer.position()) as usize;
             self.render_block(left.min(self.block_frames), tap);
         }
     }
 
     fn render_block<T: Tap>(&mut self, frames: usize, tap: &mut T) {
+        self.stopped = !tap.goes_on(self.renderer.position(), self.end);
+        if self.stopped {
+            return;
+        }
         let at = self.renderer.position() as usize;
         let range = at..at + frames;
         let mut haptic: Vec<_> = self.haptic.iter_mut().map(|channel| &mut channel[range.clone()]).collect();

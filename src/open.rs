@@ -2,20 +2,24 @@
 
 mod change;
 pub mod levels;
+mod parts;
 
 use crate::engine::Engine;
 use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
 pub use crate::made::edit::{Edits, MakeSurface};
 use crate::made::maker::{self, Maker};
+use crate::made::maps::Maps;
 use crate::model::bus::AudioBus;
+use crate::model::clock_mode::ClockMode;
 use crate::model::config::Config;
 use asperity_dsp::micro_contact::Integrator;
-use asperity_dsp::modal_bank::Isa;
+use asperity_dsp::simd::Isa;
 use asperity_dsp::trajectory::PathMode;
 use asperity_texture::raster::Raster;
 pub use change::Changes;
 use levels::Levels;
+pub use parts::ReadSurface;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
@@ -34,6 +38,9 @@ pub struct Overrides<'a> {
     pub path: Option<PathMode>,
     /// Instruction set of the kernels whose last bits depend on it.
     pub kernel: Option<Isa>,
+    /// How game time becomes samples; exactly unless told otherwise, for a render or a replay. A game that opens a scene and runs now takes
+    /// [`ClockMode::LIVE`].
+    pub clock: Option<ClockMode>,
     /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are limited.
     pub live: bool,
     /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names them.
@@ -52,6 +59,7 @@ impl Default for Overrides<'_> {
             integrator: None,
             path: None,
             kernel: None,
+            clock: None,
             live: false,
             own: &[],
             touched: &[],
@@ -87,6 +95,7 @@ impl Engine {
 }
 
 fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileError> {
+    let maps = Maps::default();
     let trial = |levels: &Levels| {
         let plain = |mut config: Config| {
             for actuator in &mut config.actuators {
@@ -95,17 +104,18 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
             config.audio.iter_mut().for_each(|bus| bus.limit = false);
             config
         };
-        assemble(file, &Overrides { live: false, ..*overrides }, levels, plain)
+        assemble(file, &Overrides { live: false, clock: None, ..*overrides }, &maps, levels, plain)
     };
     let levels = levels::resolve(file, &calibrated(file, overrides)?, trial)?;
-    let mut engine = assemble(file, overrides, &levels, |config| config)?;
+    let mut engine = assemble(file, overrides, &maps, &levels, |config| config)?;
     engine.levels = levels;
     Ok(engine)
 }
 
 /// Which bodies sound in pascals, whatever the gain by policy, because their modes and their bus say how loud they are.
 fn calibrated(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Vec<bool>, FileError> {
-    let maker = Maker { files: overrides.files, own: overrides.own, seed: 0, workers: None };
+    let maker =
+        Maker { files: overrides.files, maps: &Maps::default(), own: overrides.own, seed: 0, workers: None };
     let is = |entry| {
         let body = maker.body(entry, &file.audio, &[])?;
         let pascals = file.audio.get(body.bus).and_then(|bus| bus.pascals_at_full_scale);
@@ -120,6 +130,7 @@ fn calibrated(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Vec<bool>, 
 fn assemble(
     file: &SceneFile,
     overrides: &Overrides<'_>,
+    maps: &Maps,
     levels: &Levels,
     change: impl FnOnce(Config) -> Config,
 ) -> Result<Engine, FileError> {
@@ -128,6 +139,7 @@ fn assemble(
     let workers = RefCell::default();
     let maker = Maker {
         files: overrides.files,
+        maps,
         own: overrides.own,
         seed: config.seed,
         workers: overrides.live.then_some(&workers),
@@ -168,6 +180,7 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Resul
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: file.probe,
         kernel: overrides.kernel,
+        clock: overrides.clock.unwrap_or(default.clock),
         actuators: actuators.collect::<Result<_, _>>()?,
         audio: file
             .audio
@@ -196,6 +209,6 @@ fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides
 /// do not belong to places, or the source cannot be made.
 pub fn relief(entry: &SurfaceEntry, seed: Option<u64>, longest: usize) -> Option<Raster> {
     let seed = seed.unwrap_or(Config::default().seed);
-    let maker = Maker { files: &Disk, own: &[], seed, workers: None };
+    let maker = Maker { files: &Disk, maps: &Maps::default(), own: &[], seed, workers: None };
     maker.ground(entry).relief(&entry.source, longest)
 }

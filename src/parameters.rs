@@ -3,6 +3,7 @@
 //! One list for everybody: the reader of scene files takes its ranges from here, `docs/formats.md` its tables, an inspector its sliders.
 //! The ranges themselves are those of [`limits`], which the kernels check.
 
+use crate::model::surface::DEFAULT_STICK_SLIP;
 use asperity_dsp::limits::{self, Range};
 use asperity_dsp::micro_contact as contact;
 use asperity_texture::sand::SandLaw;
@@ -34,6 +35,8 @@ pub struct Parameter {
     pub range: Range,
     /// Whether it is a whole number.
     pub whole: bool,
+    /// How many numbers it holds, each in the range: 2 or 3 for a vector.
+    pub components: usize,
     /// What counts where it is not written; none where it must be, or where something else decides.
     pub default: Option<f64>,
     /// When a new value is heard and felt.
@@ -52,12 +55,16 @@ impl Parameter {
         range: Range,
         meaning: &'static str,
     ) -> Self {
-        let (whole, default, changes, source) = (false, None, Changes::Sounding, "");
-        Self { table, key, unit, range, whole, default, changes, meaning, source }
+        let (whole, components, default, changes, source) = (false, 1, None, Changes::Sounding, "");
+        Self { table, key, unit, range, whole, components, default, changes, meaning, source }
     }
 
     const fn whole(self) -> Self {
         Self { whole: true, ..self }
+    }
+
+    const fn vector(self, components: usize) -> Self {
+        Self { components, ..self }
     }
 
     const fn or(self, default: f64) -> Self {
@@ -98,12 +105,14 @@ macro_rules! parameters {
 }
 
 const LAW: SandLaw = SandLaw::DEFAULT;
+const SEEDS: Range = Range::new(0.0, u64::MAX as f64, "0 to 2⁶⁴ − 1");
 
 parameters! {
     /// The top of a scene file.
     mod scene = "" {
         SAMPLE_RATE_HZ: "sample_rate_hz", "Hz", limits::output::SAMPLE_RATE_HZ,
             "Rate of the outputs; a sound card's own wins", or(44_100.0), changes(Opened);
+        SEED: "seed", "", SEEDS, "Seed of every random number that has none of its own", whole(), changes(Opened);
         TAIL_S: "tail_s", "s", Range::new(0.0, 600.0, "0 to 600 s"), "Ring-out after the last event", or(1.0);
     }
     /// A body.
@@ -111,6 +120,8 @@ parameters! {
         RESIDUAL: "residual", "", limits::material::RESIDUAL,
             "Gain of the residual that the modes file may carry; 0 = not played", or(1.0);
         SIZE_M: "size_m", "m", limits::material::SIZE_M, "Longest side or diameter of a stock body";
+        MASS_KG: "mass_kg", "kg", limits::material::MASS_KG,
+            "Mass, for friction that rings a body without shapes; a stock body's is known";
     }
     /// What a body is made of.
     mod material = "material" {
@@ -136,11 +147,26 @@ parameters! {
             "Wavelength beyond which the micro-relief is flat; missing: the engine's default";
         ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R; missing: its map's or its material's";
         FRICTION: "friction", "", limits::FRICTION, "Coulomb coefficient of the 3-D force; missing: the source's";
+        MU_STATIC: "mu_static", "", limits::FRICTION, "With `friction` among `excitation`: coefficient of what sticks",
+            or(DEFAULT_STICK_SLIP.mu_static), from("assumed: rosin");
+        MU_KINETIC: "mu_kinetic", "", limits::FRICTION,
+            "The same of what slides fast, at most `mu_static`", or(DEFAULT_STICK_SLIP.mu_kinetic), from("assumed: rosin");
+        SLIP_SPEED_M_S: "slip_speed_m_s", "m/s", limits::SLIP_SPEED_M_S,
+            "Speed of slipping that halves the difference of both", or(DEFAULT_STICK_SLIP.slip_speed_m_s), from("assumed: rosin");
         COMPLIANCE_M_N: "compliance_m_n", "m/N", limits::COMPLIANCE_M_N,
-            "How far it gives way under each newton; 0 = as its source does", or(0.0);
+            "How far it gives way under each newton, so that a round tip feels the mean of a map under it; 0 = as its source does", or(0.0);
         SCALE: "scale", "", limits::combined::FACTOR, "Factor of the heights", or(1.0);
         STRIKE_POSITION: "strike_position", "", Range::new(0.0, 15.0, "0 to 15"),
             "Which of the body's strike positions contacts here excite", whole(), or(0.0);
+    }
+    /// Where a surface lies in its body.
+    mod frame = "surface.frame" {
+        ORIGIN_M: "origin_m", "m", limits::PLACE_M, "Where uv (0, 0) lies in the body, each coordinate; missing: its origin",
+            vector(3), changes(Anew);
+        U_AXIS: "u_axis", "", limits::AXIS, "Where u grows to; only its direction counts; missing: the body's x",
+            vector(3), changes(Anew);
+        V_AXIS: "v_axis", "", limits::AXIS, "Where v grows to, at a right angle to u; missing: the body's y",
+            vector(3), changes(Anew);
     }
     /// What touches.
     mod probe = "probe" {
@@ -207,6 +233,16 @@ parameters! {
         FROM_M: "from_m", "m", limits::sand::LAYER_FROM_M, "Depth at which it begins", changes(Anew);
         HARDNESS: "hardness", "", limits::sand::HARDNESS, "Hardness over the top's", changes(Anew);
     }
+    /// A stone or a shell in the sand.
+    mod buried = "sand.buried" {
+        U_M: "u_m", "m", limits::sand::BURIED_AT_M, "Where its top lies along u", changes(Anew);
+        V_M: "v_m", "m", limits::sand::BURIED_AT_M, "Where its top lies along v", changes(Anew);
+        TOP_M: "top_m", "m", limits::sand::BURIED_TOP_M, "Depth of its top below the untouched sand", changes(Anew);
+        HALF_U_M: "half_u_m", "m", limits::sand::BURIED_HALF_M, "Half its width along u", changes(Anew);
+        HALF_V_M: "half_v_m", "m", limits::sand::BURIED_HALF_M, "Half its width along v", changes(Anew);
+        HEIGHT_M: "height_m", "m", limits::sand::BURIED_HEIGHT_M, "How much lower it is at half its width", changes(Anew);
+        HARDNESS: "hardness", "", limits::sand::HARDNESS, "Hardness over the top sand's", changes(Anew);
+    }
     /// A tool, by a picture of its underside.
     mod tool = "sand.tool" {
         WIDTH_M: "width_m", "m", Range::new(2e-4, 0.4, "2e-4 to 0.4 m"), "Width of the picture", changes(Anew);
@@ -226,11 +262,18 @@ parameters! {
         VISCOSITY_N_S_M: "viscosity_n_s_m", "N·s/m", limits::solid::VISCOSITY_N_S_M, "b, drag of the medium";
         FLOW_M_S: "flow_m_s", "m/s", limits::solid::FLOW_M_S,
             "Flow of the block along u, v and out of the surface, each; one number is out of it", or(0.0);
+        SEED: "seed", "", SEEDS, "Its own seed; missing: the scene's", whole(), changes(Anew);
     }
     /// Brownian relief.
     mod brownian = "brownian" {
         HURST: "hurst", "", limits::brownian::HURST, "Hurst exponent";
         RMS_M: "rms_m", "m", limits::brownian::RMS_M, "Rms height";
+        SEED: "seed", "", SEEDS, "Its own seed; missing: the scene's", whole(), changes(Anew);
+    }
+    /// A cell that repeats along two translations.
+    mod lattice = "lattice" {
+        T1_M: "t1_m", "m", limits::combined::STEP_M, "First translation, along u and v, each", vector(2), changes(Anew);
+        T2_M: "t2_m", "m", limits::combined::STEP_M, "Second translation, another way", vector(2), changes(Anew);
     }
     /// From one source to another.
     mod crossfade = "crossfade" {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use asperity::dsp::modal_bank::Kernel;
+use asperity::dsp::simd::Level;
 use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Isa};
 use common::{bar, grating};
 
@@ -37,7 +37,7 @@ fn a_pinned_kernel_is_the_one_that_runs_and_gives_the_bits_of_its_family() {
     let portable = render(Some(Isa::Portable), 128);
     let fused: Vec<_> = Isa::ALL
         .into_iter()
-        .filter(|isa| *isa != Isa::Portable && Kernel::find(*isa).is_some())
+        .filter(|isa| *isa != Isa::Portable && Level::find(*isa).is_some())
         .map(|isa| render(Some(isa), 128))
         .collect();
     assert_eq!(portable.0, Isa::Portable);
@@ -53,7 +53,7 @@ fn a_pinned_kernel_is_the_one_that_runs_and_gives_the_bits_of_its_family() {
     }
     assert!(portable == render(Some(Isa::Portable), 441));
     let fastest = render(None, 128);
-    assert_eq!(fastest.0, Kernel::detect().isa());
+    assert_eq!(fastest.0, Level::detect().isa());
     let same = fused.iter().chain([&portable]).find(|pinned| pinned.0 == fastest.0);
     assert!(same == Some(&fastest), "what is found is what may be pinned");
 }

@@ -84,7 +84,12 @@ const SURFACE: &str = "[[surface]]\nname = \"s\"\n";
 
 /// A scene file that writes one key with a value; none for a line of a contact log.
 fn scene(parameter: &Parameter, value: &str) -> Option<String> {
-    let written = format!("{} = {value}", parameter.key);
+    let written = match (parameter.key, parameter.components) {
+        (key, 1) => format!("{key} = {value}"),
+        (key @ "v_axis", _) => format!("{key} = [0, {value}, 0]"),
+        (key @ "u_axis", _) => format!("{key} = [{value}, 0, 0]"),
+        (key, components) => format!("{key} = [{}]", vec![value; components].join(", ")),
+    };
     let size = "width_m = 1.0\nheight_m = 1.0\n";
     let in_surface = |line: String| format!("{SURFACE}{size}{line}\n");
     Some(match parameter.table {
@@ -102,6 +107,8 @@ fn scene(parameter: &Parameter, value: &str) -> Option<String> {
         "surface" => match parameter.key {
             "width_m" => format!("{SURFACE}height_m = 1.0\n{written}"),
             "height_m" => format!("{SURFACE}width_m = 1.0\n{written}"),
+            "mu_static" | "slip_speed_m_s" => in_surface(format!("excitation = [\"friction\"]\n{written}")),
+            "mu_kinetic" => in_surface(format!("excitation = \"friction\"\nmu_static = 10.0\n{written}")),
             _ => in_surface(written),
         },
         "probe" | "audio" | "actuator" => {
@@ -113,15 +120,28 @@ fn scene(parameter: &Parameter, value: &str) -> Option<String> {
             let other = if parameter.key == "from_m" { "hardness = 1.0" } else { "from_m = 0.01" };
             in_surface(format!("sand = {{ layers = [{{ {written}, {other} }}] }}"))
         }
+        "sand.buried" => {
+            let keys = ["u_m", "v_m", "top_m", "half_u_m", "half_v_m", "height_m", "hardness"];
+            let others = keys.into_iter().filter(|key| *key != parameter.key);
+            let others: String = others.map(|key| format!(", {key} = 0.01")).collect();
+            in_surface(format!("sand = {{ buried = [{{ {written}{others} }}] }}"))
+        }
         "sand.tool" => {
             let other = if parameter.key == "width_m" { "relief_m = 0.01" } else { "width_m = 0.01" };
             in_surface(format!("sand = {{ tool = {{ map = \"t.png\", {written}, {other} }} }}"))
         }
         "solid" => in_surface(format!("solid = {{ preset = \"wood\", {written} }}")),
         "brownian" => {
-            let other = if parameter.key == "hurst" { "rms_m = 1e-4" } else { "hurst = 0.5" };
-            in_surface(format!("brownian = {{ {written}, {other} }}"))
+            let others =
+                [("hurst", "0.5"), ("rms_m", "1e-4")].into_iter().filter(|(key, _)| *key != parameter.key);
+            let others: String = others.map(|(key, value)| format!(", {key} = {value}")).collect();
+            in_surface(format!("brownian = {{ {written}{others} }}"))
         }
+        "lattice" => {
+            let other = if parameter.key == "t1_m" { "t2_m = [0.1, 0]" } else { "t1_m = [0.1, 0]" };
+            in_surface(format!("relief_m = 1e-3\nlattice = {{ cell = \"c.png\", {written}, {other} }}"))
+        }
+        "surface.frame" => in_surface(format!("frame = {{ {written} }}")),
         "crossfade" => in_surface(format!("crossfade = {{ from = {{}}, to = {{}}, {written} }}")),
         "event" => return None,
         other => panic!("no scene for {other}"),
@@ -151,7 +171,12 @@ fn the_reader_takes_both_ends_of_every_range_and_refuses_what_is_beyond_in_its_w
         let step = if parameter.whole { 1.0 } else { 1e-3 * (range.high - range.low) };
         for beyond in [range.low - step, range.high + step, if range.above { range.low } else { f64::NAN }] {
             let value = if beyond.is_nan() && parameter.whole { range.low - step } else { beyond };
-            let Some(outcome) = read(value) else { continue };
+            // Of a direction the length counts.
+            let value = if parameter.key.ends_with("_axis") { value.max(0.0) } else { value };
+            // A seed may be as great as a whole number of a file.
+            let Some(outcome) = read(value).filter(|_| parameter.key != "seed" || value < 0.0) else {
+                continue;
+            };
             let refusal = outcome.expect_err(parameter.key);
             let words = if parameter.whole {
                 "must be a whole number from".to_owned()
@@ -174,10 +199,16 @@ fn what_is_not_written_is_as_the_list_says() {
     let asperity::texture::sand::Tool::Sphere { radius_m } = design.tool else { panic!("not a sphere") };
     let config = asperity::Config::default();
     let actuator = file.actuators[0].settings;
+    let text = format!("{SURFACE}width_m = 1.0\nheight_m = 1.0\nexcitation = [\"friction\"]\n");
+    let rubbed = SceneFile::parse(&text, Path::new("scene.toml")).unwrap();
+    let friction = rubbed.surfaces[0].stick_slip.unwrap();
     let mut read = vec![
         ("", "sample_rate_hz", config.sample_rate_hz),
         ("", "tail_s", file.tail_s),
         ("surface", "strike_position", file.surfaces[0].strike_position as f64),
+        ("surface", "mu_static", friction.mu_static),
+        ("surface", "mu_kinetic", friction.mu_kinetic),
+        ("surface", "slip_speed_m_s", friction.slip_speed_m_s),
         ("actuator", "highpass_hz", actuator.highpass_hz),
         ("sand", "cells", design.cells as f64),
         ("sand", "depth_m", design.depth_m),
@@ -202,4 +233,23 @@ fn what_is_not_written_is_as_the_list_says() {
     let listed =
         ALL.iter().filter(|parameter| parameter.default.is_some() && parameter.table != "event").count();
     assert_eq!(listed, read.len() + ["residual", "scale", "compliance_m_n", "flow_m_s"].len());
+}
+
+#[test]
+fn numbers_of_friction_without_friction_and_a_kinetic_one_above_the_static_are_refused_by_name() {
+    for (lines, told) in [
+        ("mu_static = 0.5", "mu_static: stands without friction"),
+        ("excitation = [\"force\"]\nslip_speed_m_s = 0.1", "slip_speed_m_s: stands without friction"),
+        ("excitation = [\"friction\"]\nmu_static = 0.2\nmu_kinetic = 0.4", "must be at most mu_static, 0.2"),
+        ("excitation = [\"bow\"]", "friction"),
+    ] {
+        let text = format!("{SURFACE}width_m = 1.0\nheight_m = 1.0\n{lines}\n");
+        let error = SceneFile::parse(&text, Path::new("scene.toml")).unwrap_err().to_string();
+        assert!(error.contains(told), "{error}");
+    }
+    // Less than what slides by default: what is not written follows it.
+    let text =
+        format!("{SURFACE}width_m = 1.0\nheight_m = 1.0\nexcitation = \"friction\"\nmu_static = 0.1\n");
+    let file = SceneFile::parse(&text, Path::new("scene.toml")).unwrap();
+    assert_eq!(file.surfaces[0].stick_slip.unwrap().mu_kinetic, 0.1);
 }

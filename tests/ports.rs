@@ -74,6 +74,22 @@ impl Game {
             left.iter_mut().zip(&out).for_each(|(left, out)| left.extend(out));
         }
     }
+
+    /// Steps while nobody reads, in blocks of 64 without a heap operation; what left on the first channel.
+    fn play_unread(&mut self, steps: u32) -> Vec<f32> {
+        let (mut haptic, mut audio) = ([[0.0f32; 64]; 2], [[0.0f32; 64]; 2]);
+        let (mut left, mut touched) = (Vec::new(), 0);
+        while self.step < steps {
+            self.report();
+            while (self.renderer.position() as f64) < f64::from(self.step) / 60.0 * 44_100.0 {
+                let ([a, b], [c, d]) = (&mut haptic, &mut audio);
+                touched += heap_operations(|| self.renderer.render(&mut [a, b], &mut [c, d]));
+                left.extend(haptic[0]);
+            }
+        }
+        assert_eq!(touched, 0, "heap operations on the audio half");
+        left
+    }
 }
 
 struct Nothing;
@@ -177,17 +193,7 @@ fn a_reader_that_stalls_for_two_seconds_loses_the_oldest_is_told_and_costs_the_a
     let mut game = Game::new(44_100.0);
     let mut pcm = game.scene.open_port(Pcm { from: Feed::Haptic(Actuator(0)), holds_s: 0.25 }).unwrap();
     let mut force = game.scene.open_port(Force { rate_hz: 1000.0, holds_s: 0.25 }).unwrap();
-    let (mut haptic, mut audio) = ([[0.0f32; 64]; 2], [[0.0f32; 64]; 2]);
-    let (mut left, mut touched) = (Vec::new(), 0);
-    while game.step < 150 {
-        game.report();
-        while (game.renderer.position() as f64) < f64::from(game.step) / 60.0 * 44_100.0 {
-            let ([a, b], [c, d]) = (&mut haptic, &mut audio);
-            touched += heap_operations(|| game.renderer.render(&mut [a, b], &mut [c, d]));
-            left.extend(haptic[0]);
-        }
-    }
-    assert_eq!(touched, 0, "heap operations on the audio half");
+    let left = game.play_unread(150);
     let mut read = vec![0.0; left.len()];
     let count = pcm.read(&mut read);
     assert!((11_025..44_100 / 2).contains(&count), "{count}");
@@ -246,17 +252,7 @@ fn a_reader_of_points_and_of_3_khz_pcm_that_stalls_for_two_seconds_costs_the_aud
     let mut points = game.scene.open_port(Points { from, settings: HEADSET, holds_s: 0.25 }).unwrap();
     let mut levels = game.scene.open_port(Levels { from, rate_hz: 60.0, holds_s: 0.25 }).unwrap();
     let mut pcm = game.scene.open_port(Pcm { from, holds_s: 0.25 }).unwrap();
-    let (mut haptic, mut audio) = ([[0.0f32; 64]; 2], [[0.0f32; 64]; 2]);
-    let (mut left, mut touched) = (Vec::new(), 0);
-    while game.step < 120 {
-        game.report();
-        while (game.renderer.position() as f64) < f64::from(game.step) / 60.0 * 44_100.0 {
-            let ([a, b], [c, d]) = (&mut haptic, &mut audio);
-            touched += heap_operations(|| game.renderer.render(&mut [a, b], &mut [c, d]));
-            left.extend(haptic[0]);
-        }
-    }
-    assert_eq!(touched, 0, "heap operations on the audio half");
+    let left = game.play_unread(120);
     let all = reduced(&left, HEADSET, 44_100.0);
     let read: Vec<Point> = std::iter::from_fn(|| points.read()).collect();
     assert!(read[..] == all[all.len() - read.len()..], "the newest are left");

@@ -72,6 +72,7 @@ impl Hand {
 #[derive(Default)]
 struct Felt {
     rows: Vec<(u64, f64, f64)>,
+    speeds_m_s: Vec<(u64, f64)>,
 }
 
 impl Tap for Felt {
@@ -79,6 +80,8 @@ impl Tap for Felt {
         let rows = block.contact_samples.iter().enumerate();
         self.rows
             .extend(rows.map(|(i, row)| (block.first_sample + i as u64, row.contact_force_n, row.height_m)));
+        let speeds = block.velocity_m_s.iter().map(|[u, v]| u.hypot(*v));
+        self.speeds_m_s.extend((block.first_sample..).zip(speeds));
     }
 }
 
@@ -153,6 +156,102 @@ fn a_finger_that_drags_and_stops_leaves_a_print_of_its_law_and_is_not_hit() {
             Hand { normal_force_n, begins_s: 0.0137, drags_m_s, drags_s: 0.25, rests_s: 0.6, reports_hz };
         // While it drags, grains and heaps are felt; the blow was 55 times the force.
         assert_at_rest(&format!("{normal_force_n} N at {drags_m_s} m/s"), &bed(), &hand, 0.5);
+    }
+}
+
+/// Largest contact force over the pressed one and largest haptic sample between two instants, and the fastest speed there.
+fn hardest(render: &Render, felt: &Felt, force_n: f64, (from_s, until_s): (f64, f64)) -> (f64, f64, f64) {
+    let within = |sample: u64| (from_s..until_s).contains(&(sample as f64 / RATE_HZ));
+    let rows = felt.rows.iter().filter(|(sample, ..)| within(*sample));
+    let most = rows.fold(0.0f64, |most, row| most.max(row.1 / force_n));
+    let fast = felt.speeds_m_s.iter().filter(|(sample, _)| within(*sample));
+    let fastest = fast.fold(0.0f64, |most, row| most.max(row.1));
+    let haptic = &render.haptic[0][(from_s * RATE_HZ) as usize..(until_s * RATE_HZ) as usize];
+    (most, common::peak(haptic), fastest)
+}
+
+#[test]
+fn a_finger_stopped_dead_in_sand_is_not_hit_at_30_reports_a_second() {
+    let cases = [
+        (1.5, 0.1, 30.0),
+        (1.5, 0.5, 30.0),
+        (3.0, 0.5, 30.0),
+        (6.0, 0.5, 30.0),
+        (1.5, 0.5, 60.0),
+        (3.0, 0.3, 90.0),
+    ];
+    for (normal_force_n, drags_m_s, reports_hz) in cases {
+        let drags_s = f64::min(0.3, 0.055 / drags_m_s);
+        let hand = Hand { normal_force_n, begins_s: 0.0137, drags_m_s, drags_s, rests_s: 0.6, reports_hz };
+        let (render, felt) = touch(&bed(), &hand);
+        let stops_s = hand.begins_s + (drags_s * reports_hz).ceil() / reports_hz;
+        let stroke = hardest(&render, &felt, normal_force_n, (hand.begins_s + 0.02, stops_s));
+        let stop = hardest(&render, &felt, normal_force_n, (stops_s, hand.begins_s + drags_s + 0.59));
+        println!(
+            "{normal_force_n} N, {drags_m_s} m/s, {reports_hz} Hz: stroke {:.2} x the force, {:.1} um; stop {:.2} x, {:.1} um, {:.2} x the speed",
+            stroke.0,
+            1e6 * stroke.1,
+            stop.0,
+            1e6 * stop.1,
+            stop.2 / drags_m_s
+        );
+        assert!(
+            stop.1 <= 2.0 * stroke.1,
+            "{normal_force_n} N, {drags_m_s} m/s: {} m after {} m",
+            stop.1,
+            stroke.1
+        );
+        assert!(stop.0 <= 2.0 * stroke.0 && stop.2 <= 1.5 * drags_m_s, "{stop:?} after {stroke:?}");
+    }
+}
+
+/// A finger that goes to and fro in its own furrow reads the level around it and not the furrow's bottom.
+#[test]
+fn a_finger_that_goes_back_in_its_own_furrow_does_not_fall_in_with_every_frame() {
+    for (normal_force_n, drags_m_s) in [(1.5, 0.1), (1.5, 0.4), (3.0, 0.4)] {
+        let there_s = 0.05 / drags_m_s;
+        let there = Hand {
+            normal_force_n,
+            begins_s: 0.0,
+            drags_m_s,
+            drags_s: there_s,
+            rests_s: 0.3,
+            reports_hz: 120.0,
+        };
+        let mut log = there.log();
+        log.lines.pop();
+        let (back_from_s, step_s) = (there_s + 0.3, 1.0 / 120.0);
+        for step in 1..=((there_s + 0.3) / step_s) as usize {
+            let t = step as f64 * step_s;
+            let moves = t < there_s;
+            let sample = ContactSample {
+                uv: [0.303 + (0.05 - drags_m_s * t.min(there_s)) / SIDE_M, 0.517],
+                velocity_m_s: Some([if moves { -drags_m_s } else { 0.0 }, 0.0]),
+                normal_force_n,
+                closing_m_s: 0.0,
+                ..ContactSample::default()
+            };
+            log.lines.push(LogLine { t: back_from_s + t, event: LogEvent::moved(1, sample) });
+        }
+        let until_s = log.lines.last().map_or(0.0, |line| line.t);
+        log.lines.push(LogLine { t: until_s, event: LogEvent::End { contact: 1 } });
+        let sand = SandSource::synchronous(&bed(), 1).unwrap();
+        let surface = Surface::new(sand, SIDE_M, SIDE_M).unwrap().wraps(false);
+        let mut felt = Felt::default();
+        let options = Options { tail_s: 0.1, ..Options::default() };
+        let render = render_tapped(si_config(), surface, &log, &options, &mut felt);
+        let there = hardest(&render, &felt, normal_force_n, (0.02, there_s));
+        let back = hardest(&render, &felt, normal_force_n, (back_from_s, back_from_s + there_s));
+        println!(
+            "{normal_force_n} N, {drags_m_s} m/s: there {:.2} x, {:.1} um; back {:.2} x, {:.1} um",
+            there.0,
+            1e6 * there.1,
+            back.0,
+            1e6 * back.1
+        );
+        // It was 4.8 times as much at 0.4 m/s.
+        assert!(back.1 <= 2.0 * there.1, "{} m back, {} m there", back.1, there.1);
+        assert!(back.0 < 1.5 * there.0, "{back:?} after {there:?}");
     }
 }
 

@@ -105,6 +105,36 @@ fn a_strike_where_the_own_amplitudes_belong_is_the_strike_without_a_place() {
     assert!(size > 0.0 && 10.0 * (error / size).log10() < -90.0, "{} dB", 10.0 * (error / size).log10());
 }
 
+#[test]
+fn a_finger_that_presses_harder_and_harder_holds_a_body_the_same_whatever_the_blocks() {
+    let squeezed = |block: usize| {
+        let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
+        let body = engine.scene.add_body(plate_body()).unwrap();
+        let frame = SurfaceFrame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]).unwrap();
+        let surface =
+            Surface::flat(PLATE_M[0], PLATE_M[1]).unwrap().micro_relief_m(0.0).frame(frame).on(body);
+        let surface = engine.scene.add_surface(surface).unwrap();
+        let blow = Impact::on(body).at([0.1, 0.1, 0.0]);
+        engine.scene.report(0.0, ContactEvent::Impact(blow)).unwrap();
+        for step in 0..50 {
+            let t = f64::from(step) / 90.0;
+            let sample = ContactSample::new([0.3, 0.4], 0.2 + 8.0 * t).sliding([0.0, 0.0]);
+            let event = match step {
+                0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+                _ => ContactEvent::moved(ContactId(1), sample),
+            };
+            engine.scene.report(t, event).unwrap();
+        }
+        render(&mut engine, 25_000, block)
+    };
+    let whole = squeezed(25_000);
+    for block in [17, 100] {
+        let split = squeezed(block);
+        let first = whole.iter().zip(&split).position(|(a, b)| a.to_bits() != b.to_bits());
+        assert_eq!(first, None, "blocks of {block}");
+    }
+}
+
 /// A finger that slides across the plate and back, while mallets fall on it.
 fn slide(block: usize, speed_m_s: f64) -> Vec<f32> {
     let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
@@ -260,4 +290,36 @@ fn a_held_bar_rings_as_long_as_body_and_finger_say_and_let_go_as_before() {
     let error_db = 10.0 * (error / size).log10();
     println!("let go: {error_db:.1} dB from the free bar");
     assert!(error_db < -60.0, "{error_db} dB");
+}
+
+#[test]
+fn a_contact_that_tells_its_own_place_is_there_and_not_where_its_surface_lies() {
+    let loud = |at_m: Option<[f64; 3]>, frame: bool| {
+        let mut engine = Config { culling: None, ..Config::default() }.build().unwrap();
+        let body = engine.scene.add_body(plate_body()).unwrap();
+        // The frame lies along the middle, where the second mode along has a node line.
+        let lies =
+            SurfaceFrame::new([0.5 * PLATE_M[0], 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]).unwrap();
+        let surface = Surface::flat(0.3, 0.1).unwrap().micro_relief_m(4e-6).on(body);
+        let surface = if frame { surface.frame(lies) } else { surface };
+        let surface = engine.scene.add_surface(surface).unwrap();
+        for step in 0..60 {
+            let t = f64::from(step) / 60.0;
+            let sample = ContactSample::new([0.2 + 0.5 * t, 0.0], 0.6).sliding([0.15, 0.0]);
+            let sample = ContactSample { at_m: at_m.map(|[x, y, z]| [x, y + 0.15 * t, z]), ..sample };
+            let event = match step {
+                0 => ContactEvent::begin(ContactId(1), surface, Actuator(0), sample),
+                _ => ContactEvent::moved(ContactId(1), sample),
+            };
+            engine.scene.report(t, event).unwrap();
+        }
+        let second_hz = 90.0 * (4.0 + (PLATE_M[0] / PLATE_M[1]).powi(2));
+        amplitude(&render(&mut engine, 44_100, 512), second_hz)
+    };
+    let on_the_node = loud(None, true);
+    let beside = loud(Some([0.25 * PLATE_M[0], 0.06, 0.0]), true);
+    let without_a_frame = loud(Some([0.25 * PLATE_M[0], 0.06, 0.0]), false);
+    println!("{:.1} dB, {:.1} dB", db(on_the_node / beside), db(without_a_frame / beside));
+    assert!(db(on_the_node / beside) < -30.0, "{on_the_node} {beside}");
+    assert!(db(without_a_frame / beside).abs() < 6.0, "{without_a_frame} {beside}");
 }

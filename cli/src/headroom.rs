@@ -11,10 +11,9 @@ use crate::output;
 use crate::progress::Progress;
 use asperity::{Config, Integrator, Probe};
 use asperity_dsp::micro_contact::{ContactSample, MicroContact};
-use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Inputs, Kernel, ModalBank, design_groups, sort_by_decay,
-};
+use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, design_groups, sort_by_decay};
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::Level;
 use clap::Args;
 use serde::Serialize;
 
@@ -132,7 +131,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         sample_rate_hz: SAMPLE_RATE_HZ,
         block_frames: BLOCK_FRAMES,
         cpu: cpu_name(),
-        instruction_set: format!("{:?}", Kernel::detect().isa()),
+        instruction_set: format!("{:?}", Level::detect().isa()),
         estimate: ESTIMATE,
         scenes,
         modal_bank,
@@ -222,7 +221,7 @@ fn bank(count: usize) -> Result<BankRow, CliError> {
         .collect::<Result<Vec<_>, _>>()
         .map_err(refused)?;
     let states = vec![GroupState::REST; groups.len()];
-    let mut bank = ModalBank::new(Kernel::detect(), groups, states);
+    let mut bank = ModalBank::new(Level::detect(), groups, states);
     let mut rng = Rng::new(1);
     let force: Vec<f32> = (0..BLOCK_FRAMES).map(|_| 1e-6 * (rng.uniform() as f32 - 0.5)).collect();
     let mut out = [0.0f32; BLOCK_FRAMES];

@@ -20,6 +20,7 @@ mod bench_scene;
 mod csv;
 mod demo;
 mod error;
+mod export;
 mod fit;
 mod haptic;
 mod headroom;
@@ -57,6 +58,7 @@ enum Verb {
     Modes(Box<modes::Options>),
     Haptic(Box<haptic::Options>),
     Import(import::Options),
+    Export(export::Options),
     Render(render::Options),
     Play(play::Options),
     /// Make surfaces from pictures and from other surfaces
@@ -73,6 +75,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Modes(options) => modes::run(&options),
         Verb::Haptic(options) => haptic::run(&options),
         Verb::Import(options) => import::run(&options),
+        Verb::Export(options) => export::run(&options),
         Verb::Render(options) => render::run(&options),
         Verb::Play(options) => play::run(&options),
         Verb::Texture(verb) => texture::run(verb),

@@ -1,7 +1,8 @@
 //! Value and gradient of one octave: ns per sample is the printed time of one element.
 
-use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Kernel, Noise3Batch};
+use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::Level;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -25,13 +26,10 @@ fn gradient_noise(c: &mut Criterion) {
         });
     });
     let mut out = [vec![0.0; POINTS], vec![0.0; POINTS], vec![0.0; POINTS], vec![0.0; POINTS]];
-    for kernel in [Kernel::Portable, Kernel::Avx2, Kernel::Avx512] {
-        if !kernel.is_available() {
-            continue;
-        }
-        let noise = noise.with_kernel(kernel);
+    for level in Level::available() {
+        let noise = noise.on(level);
         for (name, axis) in [("anywhere", &anywhere), ("along a path", &path)] {
-            group.bench_function(format!("batch {name}, {kernel:?}"), |b| {
+            group.bench_function(format!("batch {name}, {:?}", level.isa()), |b| {
                 b.iter(|| {
                     let [value, dx, dy, dz] = &mut out;
                     let [x, y, z] = black_box(axis);

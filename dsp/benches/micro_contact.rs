@@ -1,11 +1,11 @@
-//! Time a sample of the micro-contact: every integrator on a smooth and on a rough profile, and eight
-//! contacts side by side. Throughput is in samples (for the lanes: contact samples).
+//! Time a sample of the micro-contact: every integrator on a smooth and on a rough profile.
+//! Throughput is in samples.
 #![allow(missing_docs)]
 
 #[path = "../tests/profiles/mod.rs"]
 mod profiles;
 
-use asperity_dsp::micro_contact::{ContactSample, Integrator, LANES, LaneRow, Lanes, MicroContact, Probe};
+use asperity_dsp::micro_contact::{ContactSample, Integrator, MicroContact, Probe};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use profiles::{Force, Profile, Shape};
 use std::hint::black_box;
@@ -55,33 +55,6 @@ fn single(c: &mut Criterion) {
     group.finish();
 }
 
-fn eight(c: &mut Criterion) {
-    let mut group = c.benchmark_group("micro_contact_lanes");
-    let design = MicroContact::new(
-        &Probe { contact_stiffness_n_m: 5e4, force_exponent: 0.0, ..Probe::default() },
-        Integrator::SemiImplicitEuler,
-        RATE_HZ,
-    )
-    .unwrap();
-    let lanes = design.lanes().unwrap();
-    for (name, (heights, forces)) in &profiles() {
-        let heights: Vec<Lanes> = heights.iter().map(|&h| [h; LANES]).collect();
-        let forces: Vec<Lanes> = forces.iter().map(|&f| [f; LANES]).collect();
-        group.throughput(Throughput::Elements((heights.len() * LANES) as u64));
-        let mut states = [design.at_rest(0.0, forces[0][0]); LANES];
-        let mut out = [LaneRow::default(); BLOCK];
-        group.bench_function(format!("semi-implicit-euler/{name}"), |b| {
-            b.iter(|| {
-                for (height, force) in heights.chunks_exact(BLOCK).zip(forces.chunks_exact(BLOCK)) {
-                    lanes.run(&mut states, height, force, &mut out);
-                    black_box(&out);
-                }
-            });
-        });
-    }
-    group.finish();
-}
-
 fn building(c: &mut Criterion) {
     for integrator in [Integrator::ExactEvent, Integrator::EnergyConserving] {
         c.bench_function(&format!("micro_contact_design/{}", integrator.name()), |b| {
@@ -90,5 +63,5 @@ fn building(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, single, eight, building);
+criterion_group!(benches, single, building);
 criterion_main!(benches);

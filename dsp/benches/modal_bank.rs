@@ -1,11 +1,10 @@
 //! Mode-samples a second of every instruction set at hand, force in every sample; and what silence costs.
 //! The comparison with C in one run is `examples/modal_speed.rs`.
 
-use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Inputs, Isa, Kernel, ModalBank, ModeGroup, design_groups,
-};
+use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, ModeGroup, design_groups};
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::{Isa, Level};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const BLOCK: usize = 64;
@@ -28,8 +27,7 @@ fn modal_bank(c: &mut Criterion) {
     for modes in [16, 64, 256, 1024, 4096] {
         let groups = bank(modes);
         group.throughput(Throughput::Elements((modes * BLOCK) as u64));
-        for kernel in [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512].into_iter().filter_map(Kernel::find)
-        {
+        for kernel in Isa::ALL.into_iter().filter_map(Level::find) {
             let states = vec![GroupState::REST; groups.len()];
             let mut bank = ModalBank::new(kernel, &groups[..], states);
             let (mut out, mut at) = (vec![0.0; BLOCK], 0);
@@ -41,7 +39,7 @@ fn modal_bank(c: &mut Criterion) {
             });
         }
         let states = vec![GroupState::REST; groups.len()];
-        let mut bank = ModalBank::new(Kernel::detect(), &groups[..], states);
+        let mut bank = ModalBank::new(Level::detect(), &groups[..], states);
         let (mut out, mut at, silence) = (vec![0.0; BLOCK], 0, vec![0.0; BLOCK]);
         group.bench_function(format!("rung out, {modes} modes"), |b| {
             b.iter(|| {

@@ -1,7 +1,8 @@
 //! Micro-relief with all 12 octaves alive (0.09 m/s at 44.1 kHz), by instruction set: ns per sample is
 //! the printed time of one element.
 
-use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath, OctaveWeights};
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
+use asperity_dsp::simd::Level;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -20,13 +21,10 @@ fn noise(c: &mut Criterion) {
     let roughness = vec![0.5; BLOCK];
     for (name, speed, longest) in [("12 octaves", 0.09, f64::INFINITY), ("below a 0.3 mm map", 0.09, 3e-4)] {
         let (positions, footprints) = path(speed);
-        for kernel in [Kernel::Portable, Kernel::Avx2, Kernel::Avx512] {
-            if !kernel.is_available() {
-                continue;
-            }
-            let noise = FractalNoise::with_kernel(1, kernel);
+        for level in Level::available() {
+            let noise = FractalNoise::new(1).on(level);
             let mut height = vec![0.0; BLOCK * BLOCKS];
-            group.bench_function(format!("{name}, {kernel:?}"), |b| {
+            group.bench_function(format!("{name}, {:?}", level.isa()), |b| {
                 b.iter(|| {
                     let blocks = positions.chunks(BLOCK).zip(footprints.chunks(BLOCK));
                     for ((position_m, footprint_m), out) in blocks.zip(height.chunks_mut(BLOCK)) {

@@ -1,7 +1,8 @@
 //! Prints nanoseconds per sample of value and gradient, one octave, for every kernel: points anywhere, and
 //! the samples of a finger at 100 mm/s on sandpaper (cells of 0.2 mm).
 
-use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Kernel, Noise3Batch};
+use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
+use asperity_dsp::simd::Level;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -33,12 +34,9 @@ fn main() {
     });
     println!("one point at a time: {scalar:.2} ns");
     let mut out = [vec![0.0_f32; 64], vec![0.0; 64], vec![0.0; 64], vec![0.0; 64]];
-    for kernel in [Kernel::Portable, Kernel::Avx2, Kernel::Avx512] {
-        if !kernel.is_available() {
-            println!("{kernel:?}: not on this processor");
-            continue;
-        }
-        let noise = noise.with_kernel(kernel);
+    for level in Level::available() {
+        let isa = level.isa();
+        let noise = noise.on(level);
         let mut batches = |axis: &[Vec<f64>; 3]| {
             best_ns(n, || {
                 for block in (0..n).step_by(64) {
@@ -50,6 +48,6 @@ fn main() {
             })
         };
         let (anywhere, on_path) = (batches(&axis), batches(&path));
-        println!("{kernel:?}, blocks of 64: {anywhere:.2} ns anywhere, {on_path:.2} ns along a path");
+        println!("{isa:?}, blocks of 64: {anywhere:.2} ns anywhere, {on_path:.2} ns along a path");
     }
 }

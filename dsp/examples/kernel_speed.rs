@@ -1,5 +1,5 @@
-//! Prints what the kernels of one contact cost: every integrator on a smooth and on a rough profile, eight contacts
-//! side by side, the micro-relief on every instruction set, and a Hertz impact.
+//! Prints what the kernels of one contact cost: every integrator on a smooth and on a rough profile, the
+//! micro-relief on every instruction set, and a Hertz impact.
 //!
 //! `cargo run --release -p asperity-dsp --example kernel_speed`
 //!
@@ -9,9 +9,10 @@
 #[path = "../tests/profiles/mod.rs"]
 mod profiles;
 
-use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath, OctaveWeights};
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
 use asperity_dsp::hertz::{Elastic, HertzContact, HertzPulse};
-use asperity_dsp::micro_contact::{ContactSample, Integrator, LANES, LaneRow, Lanes, MicroContact, Probe};
+use asperity_dsp::micro_contact::{ContactSample, Integrator, MicroContact, Probe};
+use asperity_dsp::simd::Level;
 use profiles::{Force, Profile, Shape};
 use std::hint::black_box;
 use std::time::Instant;
@@ -58,23 +59,6 @@ fn contacts() {
                 }
             });
         }
-        let design = MicroContact::new(
-            &Probe { contact_stiffness_n_m: 5e4, force_exponent: 0.0, ..Probe::default() },
-            Integrator::SemiImplicitEuler,
-            RATE_HZ,
-        )
-        .expect("valid");
-        let lanes = design.lanes().expect("one step a sample");
-        let heights: Vec<Lanes> = heights.iter().map(|&h| [h; LANES]).collect();
-        let forces = vec![[0.5; LANES]; heights.len()];
-        let mut states = [design.at_rest(0.0, 0.5); LANES];
-        let mut out = [LaneRow::default(); BLOCK];
-        show(&format!("semi-implicit-euler, {LANES} lanes, {name}"), heights.len() * LANES, || {
-            for (height, force) in heights.chunks_exact(BLOCK).zip(forces.chunks_exact(BLOCK)) {
-                lanes.run(&mut states, height, force, &mut out);
-                black_box(&out);
-            }
-        });
     }
 }
 
@@ -85,9 +69,9 @@ fn noise() {
         (0..4096).map(|n| [0.02 + 0.8 * step * f64::from(n), 0.07 + 0.6 * step * f64::from(n)]).collect();
     let (footprint_m, roughness) = (vec![step; position_m.len()], vec![0.5; BLOCK]);
     let mut height = vec![0.0; position_m.len()];
-    for kernel in [Kernel::Portable, Kernel::Avx2, Kernel::Avx512].into_iter().filter(|k| k.is_available()) {
-        let noise = FractalNoise::with_kernel(1, kernel);
-        show(&format!("{kernel:?}"), height.len(), || {
+    for level in Level::available() {
+        let noise = FractalNoise::new(1).on(level);
+        show(&format!("{:?}", level.isa()), height.len(), || {
             let blocks = position_m.chunks(BLOCK).zip(footprint_m.chunks(BLOCK));
             for ((position_m, footprint_m), out) in blocks.zip(height.chunks_mut(BLOCK)) {
                 noise.add(

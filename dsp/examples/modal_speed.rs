@@ -7,10 +7,11 @@
 //! about 1 ms, so that other work on the machine hurts neither side alone.
 
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Input, Inputs, Isa, Kernel, ModalBank, ModeGroup, design_groups, lane_gains,
+    GroupOptions, GroupState, Input, Inputs, ModalBank, ModeGroup, design_groups, lane_gains,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::{Isa, Level};
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::Instant;
@@ -30,7 +31,7 @@ fn bank(modes: usize) -> Vec<ModeGroup> {
 }
 
 /// Mode-samples per nanosecond of one segment; `inputs` = 0 is the shared input.
-fn segment(kernel: Kernel, modes: usize, inputs: usize, rng: &mut Rng) -> f64 {
+fn segment(kernel: Level, modes: usize, inputs: usize, rng: &mut Rng) -> f64 {
     let groups = bank(modes);
     let gains: Vec<_> = lane_gains(vec![0.5; modes]).collect();
     let states = vec![GroupState::REST; groups.len()];
@@ -51,6 +52,10 @@ fn segment(kernel: Kernel, modes: usize, inputs: usize, rng: &mut Rng) -> f64 {
 }
 
 fn c_peer() -> Option<PathBuf> {
+    // Neither compilers nor folders in a sandbox.
+    if cfg!(target_family = "wasm") {
+        return None;
+    }
     let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("benches/peers/fast_math.c");
     let binary = std::env::temp_dir().join(format!("asperity_fast_math_{}", std::process::id()));
     let built = Command::new("gcc")
@@ -77,8 +82,7 @@ fn best_and_median(mut rates: Vec<f64>) -> String {
 
 fn main() {
     let rounds: usize = std::env::args().nth(1).and_then(|a| a.parse().ok()).unwrap_or(12);
-    let kernels: Vec<Kernel> =
-        [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512].into_iter().filter_map(Kernel::find).collect();
+    let kernels: Vec<Level> = Isa::ALL.into_iter().filter_map(Level::find).collect();
     let peer = c_peer();
     if peer.is_none() {
         println!("no gcc here: the C column stays empty");

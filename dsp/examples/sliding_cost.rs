@@ -1,30 +1,43 @@
-//! What a contact that slides over a body costs the modal bank: two inputs with gains (fading out, fading in) against one with gains (a place that
-//! stays) and one without (a body of one position). Processor time of the best of many runs; and stick–slip against one-way modes.
+//! What contacts on a body cost its modal bank: a shared input, a place with gains, a slide (two inputs: fading out, fading in), a rub that sticks and
+//! slips with it, and a rub that slides.
+//!
+//! Without arguments processor times, the best of many runs, as ratios. With `KIND MODES` a second of that kind alone, for an instruction
+//! counter: `valgrind --tool=callgrind target/release/examples/sliding_cost rub 100`; the kind `nothing` is what has to be taken off.
 
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Input, Inputs, Kernel, LaneGains, ModalBank, design_groups,
+    GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank, ModeGroup, design_groups,
 };
 use asperity_dsp::mode::Mode;
-use asperity_dsp::stick_slip::{Friction, RubState, RubbedBody, RubbedModes, Sweep};
+use asperity_dsp::simd::Level;
+use asperity_dsp::stick_slip::{Answer, CELL, Coupled, Friction, Sweep, place_speed};
 use std::hint::black_box;
 use std::time::Instant;
 
 const RATE_HZ: f64 = 44_100.0;
-const BLOCK: usize = 64;
+const KINDS: [&str; 6] = ["nothing", "shared", "place", "slide", "rub", "rub-slide"];
+/// Motion of every mode at the place, kg^−½.
+const PHI: f64 = 0.3;
 
-fn best_ns(mut run: impl FnMut()) -> f64 {
-    let mut best = f64::INFINITY;
-    for _ in 0..400 {
-        let begun = Instant::now();
-        run();
-        best = best.min(begun.elapsed().as_nanos() as f64);
-    }
-    best
+type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
+
+struct Body {
+    sound: Bank,
+    speed: Bank,
+    answer: Answer,
+    coupled: Coupled,
+    gains: Vec<LaneGains>,
+    input: [f32; CELL],
+    position: u64,
 }
 
-fn main() {
-    let input: Vec<f32> = (0..BLOCK).map(|n| 1e-6 * (n as f32).sin()).collect();
-    for count in [32, 100, 128, 512] {
+fn bank(modes: &[Mode], options: &GroupOptions) -> Bank {
+    let groups: Box<[ModeGroup]> = design_groups(modes, RATE_HZ, options).collect::<Result<_, _>>().unwrap();
+    let states = vec![GroupState::REST; groups.len()].into();
+    ModalBank::new(Level::detect(), groups, states)
+}
+
+impl Body {
+    fn new(count: usize) -> Self {
         let mode = |i: usize| Mode {
             frequency_hz: 80.0 + 19_000.0 * i as f64 / count as f64,
             decay_per_s: 5.0,
@@ -32,66 +45,88 @@ fn main() {
             phase_rad: 1.0,
         };
         let modes: Vec<Mode> = (0..count).map(mode).collect();
-        let designed = design_groups(&modes, RATE_HZ, &GroupOptions::IMPULSE_RING);
-        let groups: Vec<_> = designed.collect::<Result<_, _>>().unwrap();
-        let gains = vec![LaneGains([0.5; 16]); groups.len()];
-        let time = |inputs: usize| {
-            let states = vec![GroupState::REST; groups.len()];
-            let mut bank = ModalBank::new(Kernel::detect(), &groups[..], states);
-            let placed = [Input { impulses: &input, gains: &gains }; 2];
-            let mut position = 0;
-            best_ns(|| {
-                for _ in 0..16 {
-                    let mut out = [0.0; BLOCK];
-                    match inputs {
-                        0 => bank.render(position, Inputs::One(&input), &mut out),
-                        n => bank.render(position, Inputs::Placed(&placed[..n]), &mut out),
-                    }
-                    position += BLOCK as u64;
-                    black_box(out);
-                }
-            }) / (16 * BLOCK * count) as f64
-        };
-        let [shared, one, two] = [0, 1, 2].map(time);
-        println!(
-            "{count} modes: shared {shared:.4} ns a mode and sample, a place {:.2}, sliding {:.2} of it; sliding over a place {:.2}",
-            one / shared,
-            two / shared,
-            two / one
-        );
+        let speeds: Vec<Mode> = modes.iter().map(|m| place_speed(m, PHI, RATE_HZ).unwrap()).collect();
+        let mut answer = Answer::RIGID;
+        for mode in &modes {
+            answer.add_mode(mode, PHI * PHI, RATE_HZ).unwrap();
+        }
+        let plain = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
+        Self {
+            sound: bank(&modes, &GroupOptions::IMPULSE_RING),
+            speed: bank(&speeds, &plain),
+            answer,
+            coupled: Coupled::begin(),
+            gains: vec![LaneGains([PHI as f32; 16]); count.div_ceil(16)],
+            input: std::array::from_fn(|n| 1e-6 * (n as f32).sin()),
+            position: 0,
+        }
+    }
+
+    /// A cell of 64 samples.
+    fn cell(&mut self, kind: &str) -> [f32; CELL] {
+        let mut out = [0.0; CELL];
+        let rubs = kind.starts_with("rub");
+        if rubs {
+            self.rub();
+        }
+        let placed = [Input { impulses: &self.input, gains: &self.gains }; 2];
+        match kind {
+            "nothing" => {}
+            "shared" => self.sound.render(self.position, Inputs::One(&self.input), &mut out),
+            "place" | "rub" => self.sound.render(self.position, Inputs::Placed(&placed[..1]), &mut out),
+            _ => self.sound.render(self.position, Inputs::Placed(&placed), &mut out),
+        }
+        self.position += CELL as u64;
+        out
+    }
+
+    /// The forces of a cell.
+    fn rub(&mut self) {
         let friction = Friction { mu_static: 0.8, mu_kinetic: 0.3, slip_speed_m_s: 0.02 };
-        let rows = |modes: &[Mode]| -> Vec<RubbedModes> {
-            modes.chunks(RubbedModes::LANES).map(|c| RubbedModes::new(c, RATE_HZ).unwrap()).collect()
-        };
-        let mut rubbed = rows(&modes);
-        let mut body = RubbedBody::new(&mut rubbed, RATE_HZ);
-        let mut state = RubState::default();
-        body.touch_at(&mut state, |_| 0.3);
-        let now = Sweep { sweep_m_s: 0.05, normal_force_n: 1.0, other_n_s: 0.0 };
-        let coupled = best_ns(|| {
-            for _ in 0..1024 {
-                black_box(body.tick(&mut state, &friction, &now));
-            }
-        }) / (1024 * count) as f64;
-        // The same modes driven one way: one pass of the plain delta form, sample by sample, its sum read out.
-        let (mut y, mut d) = (vec![0.0_f32; count], vec![0.0_f32; count]);
-        let one_way = best_ns(|| {
-            for n in 0..1024 {
-                let x = input[n % BLOCK];
-                let mut sums = [0.0_f32; 8];
-                for (y, d) in y.chunks_mut(8).zip(d.chunks_mut(8)) {
-                    for ((y, d), sum) in y.iter_mut().zip(d).zip(&mut sums) {
-                        *d = 0.9999 * *d - 0.01 * *y + 0.3 * x;
-                        *y += *d;
-                        *sum += 0.3 * *y;
-                    }
-                }
-                black_box(sums);
-            }
-        }) / (1024 * count) as f64;
+        let sweep = [Sweep { sweep_m_s: 0.05, normal_force_n: 1.0, other_n_s: 0.0 }; CELL];
+        self.coupled.next_cell();
+        self.speed.follow(&self.sound);
+        let (mut known, mut free, mut heard) = ([0.0; CELL], [0.0; CELL], [0.0; CELL]);
+        self.coupled.under_way(0, RATE_HZ, &mut known);
+        let inputs = [Input { impulses: &known, gains: &self.gains }];
+        self.speed.render(self.position, Inputs::Placed(&inputs), &mut free);
+        self.coupled.run(&self.answer, &friction, 0, &sweep, &free);
+        self.coupled.impulses(0, RATE_HZ, &mut heard);
+        self.input.iter_mut().zip(heard).for_each(|(to, x)| *to = x as f32);
+    }
+}
+
+fn best_ns(body: &mut Body, kind: &str) -> f64 {
+    let mut best = f64::INFINITY;
+    for _ in 0..400 {
+        let begun = Instant::now();
+        for _ in 0..16 {
+            black_box(body.cell(kind));
+        }
+        best = best.min(begun.elapsed().as_nanos() as f64 / (16 * CELL) as f64);
+    }
+    best
+}
+
+fn main() {
+    let mut arguments = std::env::args().skip(1);
+    if let (Some(kind), Some(count)) = (arguments.next(), arguments.next().and_then(|n| n.parse().ok())) {
+        assert!(KINDS.contains(&kind.as_str()), "{kind} is none of {KINDS:?}");
+        let mut body = Body::new(count);
+        for _ in 0..(RATE_HZ as usize / CELL) {
+            black_box(body.cell(&kind));
+        }
+        return;
+    }
+    for count in [16, 32, 100, 128, 512] {
+        let times = KINDS.map(|kind| best_ns(&mut Body::new(count), kind));
+        let [_, shared, place, slide, rub, rub_slide] = times;
         println!(
-            "    rubbed {coupled:.3} ns a mode and sample: {:.2} of the same modes one way",
-            coupled / one_way
+            "{count} modes: shared {shared:.1} ns a sample; a place {:.2} of it; a slide {:.2} of a place; a rub {:.2} of a place, {:.2} of a slide if it slides",
+            place / shared,
+            slide / place,
+            rub / place,
+            rub_slide / slide
         );
     }
 }

@@ -38,13 +38,13 @@
 mod cells;
 mod gains;
 mod lanes;
-mod simd;
 #[cfg(test)]
 mod tests;
 mod weights;
 
 use crate::gradient_noise_2d::PEAK_WAVELENGTH_CELLS;
 use crate::rng::Rng;
+use crate::simd::{Eight, Level, at_level};
 use cells::Offset;
 
 pub use weights::{OctaveWeights, Relief, growth};
@@ -71,17 +71,6 @@ pub struct NoisePath<'a> {
     pub footprint_m: &'a [f64],
 }
 
-/// The instruction set a [`FractalNoise`] runs on. All give the same bits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kernel {
-    /// What the compiler's target guarantees.
-    Portable,
-    /// 256-bit vectors.
-    Avx2,
-    /// 512-bit vectors.
-    Avx512,
-}
-
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Octave {
     cell_m: f32,
@@ -98,33 +87,13 @@ struct Octave {
 pub struct FractalNoise {
     octaves: [Octave; OCTAVES],
     rotations: [[f64; 2]; ROTATIONS],
-    kernel: Kernel,
-}
-
-impl Kernel {
-    /// The widest instruction set this machine has.
-    #[must_use]
-    pub fn detect() -> Self {
-        [Self::Avx512, Self::Avx2].into_iter().find(|k| k.is_available()).unwrap_or(Self::Portable)
-    }
-
-    /// Whether this machine can run it.
-    #[must_use]
-    pub fn is_available(self) -> bool {
-        simd::is_available(self)
-    }
+    level: Level,
 }
 
 impl FractalNoise {
     /// The field of a seed, on the widest instruction set at hand.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        Self::with_kernel(seed, Kernel::detect())
-    }
-
-    /// The same field on a chosen instruction set; on [`Kernel::Portable`] if this machine lacks it.
-    #[must_use]
-    pub fn with_kernel(seed: u64, kernel: Kernel) -> Self {
         let mut rng = Rng::new(seed);
         let mut octaves =
             [Octave { cell_m: 0.0, offset: [Offset::new(0); 2], key: 0, rotation: 0, index: 0 }; OCTAVES];
@@ -140,14 +109,19 @@ impl FractalNoise {
                 index: i as u32,
             };
         }
-        let kernel = if kernel.is_available() { kernel } else { Kernel::Portable };
-        Self { octaves, rotations: lanes::rotations(), kernel }
+        Self { octaves, rotations: lanes::rotations(), level: Level::detect() }
+    }
+
+    /// The same field on a chosen instruction set. All give the same bits.
+    #[must_use]
+    pub fn on(self, level: Level) -> Self {
+        Self { level, ..self }
     }
 
     /// The instruction set in use.
     #[must_use]
-    pub fn kernel(&self) -> Kernel {
-        self.kernel
+    pub fn level(&self) -> Level {
+        self.level
     }
 
     /// Exponent of the power spectrum for a perceptual roughness of 0–1 (Hasti §III-C).
@@ -165,7 +139,11 @@ impl FractalNoise {
         weights: &OctaveWeights,
         height_m: &mut [f64],
     ) {
-        simd::add(self, path, roughness, weights, height_m);
+        at_level!(
+            self.level,
+            s => lanes::add::<8, _>(Eight(s), self, path, roughness, weights, height_m),
+            wide s => lanes::add::<16, _>(crate::simd::Sixteen(s), self, path, roughness, weights, height_m)
+        );
     }
 }
 

@@ -20,7 +20,7 @@
 //! set gives the same bits. The variance is [`VARIANCE`] and the spectrum peaks at
 //! [`PEAK_WAVELENGTH_CELLS`] (both computed from the equation, `tests/independent/noise_spectrum.py`).
 
-use crate::vector::Vector;
+use crate::simd::Vector;
 
 /// Mean square of the noise.
 pub const VARIANCE: f64 = 0.092_94;
@@ -143,13 +143,16 @@ fn between<const N: usize, V: Vector<N>>(v: V, [a, b]: [V::Single; 2], f: V::Sin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::Portable;
+    use crate::simd::{BASE, Base, Eight};
     use std::vec::Vec;
+
+    const LANES: Eight<Base> = Eight(BASE);
 
     fn at(x: f64, y: f64, key: u32) -> f64 {
         let [x, y] = [x, y].map(|t| (t * 4_294_967_296.0) as i64 as u64);
-        let corners = corners(Portable, [(x >> 32) as u32], [(y >> 32) as u32], key);
-        f64::from(gradient_noise(Portable, &corners, [x, y].map(|t| [t as u32 ^ SIGN]))[0])
+        let corners =
+            corners(LANES, LANES.splat_word((x >> 32) as u32), LANES.splat_word((y >> 32) as u32), key);
+        f64::from(gradient_noise(LANES, &corners, [x, y].map(|t| LANES.splat_word(t as u32 ^ SIGN)))[0])
     }
 
     #[test]
@@ -190,7 +193,8 @@ mod tests {
         const N: usize = 128;
         for key in [1, 0x1234_5678, 0x8000_0000] {
             let sign = |x: usize, y: usize, axis: usize| {
-                1 - 2 * (corners(Portable, [x as u32], [y as u32], key).0[0][axis][0] >> 31) as i32
+                let [x, y] = [x, y].map(|cell| LANES.splat_word(cell as u32));
+                1 - 2 * (corners(LANES, x, y, key).0[0][axis][0] >> 31) as i32
             };
             let field = |axis| -> Vec<i32> { (0..N * N).map(|i| sign(i % N, i / N, axis)).collect() };
             let (a, b) = (field(0), field(1));

@@ -27,8 +27,9 @@
 //! 2⁵¹ cells, numbers in `f64` have no fraction left to speak of.
 
 use crate::rng::hash_u32;
+use crate::simd::Level;
 
-#[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
+#[cfg(target_arch = "x86_64")]
 mod simd;
 
 const PRIME: [u32; 3] = [0x9E37_79B1, 0x85EB_CA77, 0xC2B2_AE3D];
@@ -72,46 +73,11 @@ pub struct Noise3Batch<'a> {
     pub dz: &'a mut [f32],
 }
 
-/// Which instructions evaluate a batch. All give the same bits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kernel {
-    /// Any processor.
-    Portable,
-    /// 8 points at once.
-    Avx2,
-    /// 16 points at once.
-    Avx512,
-}
-
-impl Kernel {
-    /// The fastest this processor can run.
-    #[must_use]
-    pub fn detect() -> Self {
-        [Self::Avx512, Self::Avx2].into_iter().find(|k| k.is_available()).unwrap_or(Self::Portable)
-    }
-
-    /// Whether this processor can run it.
-    #[must_use]
-    pub fn is_available(self) -> bool {
-        match self {
-            Self::Portable => true,
-            #[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
-            Self::Avx2 => {
-                std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
-            }
-            #[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
-            Self::Avx512 => Self::Avx2.is_available() && std::arch::is_x86_feature_detected!("avx512f"),
-            #[cfg(not(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test))))]
-            Self::Avx2 | Self::Avx512 => false,
-        }
-    }
-}
-
 /// A noise lattice: a seed, and how batches are evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GradientNoise3d {
     seed: u32,
-    kernel: Kernel,
+    level: Level,
 }
 
 impl GradientNoise3d {
@@ -119,29 +85,28 @@ impl GradientNoise3d {
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let seed = hash_u32(seed as u32) ^ hash_u32((seed >> 32) as u32).rotate_left(16);
-        Self { seed, kernel: Kernel::detect() }
+        Self { seed, level: Level::detect() }
     }
 
-    /// The same lattice evaluated with other instructions; those the processor lacks are replaced
-    /// by the portable ones.
+    /// The same lattice evaluated with other instructions; the bits stay.
     #[must_use]
-    pub fn with_kernel(self, kernel: Kernel) -> Self {
-        Self { kernel: if kernel.is_available() { kernel } else { Kernel::Portable }, ..self }
+    pub fn on(self, level: Level) -> Self {
+        Self { level, ..self }
     }
 
     /// How batches are evaluated.
     #[must_use]
-    pub fn kernel(&self) -> Kernel {
-        self.kernel
+    pub fn level(&self) -> Level {
+        self.level
     }
 
     /// Value and gradient at one point, given in cells.
     #[inline]
     #[must_use]
     pub fn at(&self, cells: [f64; 3]) -> Noise3 {
-        #[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
-        if self.kernel != Kernel::Portable {
-            return simd::single(self.seed, cells[0], cells[1], cells[2]);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(noise) = simd::single(self.level, self.seed, cells) {
+            return noise;
         }
         self.portable(cells)
     }
@@ -190,6 +155,7 @@ impl GradientNoise3d {
         let n = [x.len(), y.len(), z.len(), out.value.len(), out.dx.len(), out.dy.len(), out.dz.len()]
             .into_iter()
             .fold(usize::MAX, usize::min);
+        #[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut))] // Vectors of points are x86 only.
         let mut points = Points {
             x: &x[..n],
             y: &y[..n],
@@ -199,27 +165,15 @@ impl GradientNoise3d {
             dy: &mut out.dy[..n],
             dz: &mut out.dz[..n],
         };
-        let done = self.vector_part(&mut points);
+        #[cfg(target_arch = "x86_64")]
+        let done = simd::run(self.level, self.seed, &mut points);
+        #[cfg(not(target_arch = "x86_64"))]
+        let done = 0;
         for i in done..n {
             let noise = self.at([points.x[i], points.y[i], points.z[i]]);
             points.value[i] = noise.value;
             [points.dx[i], points.dy[i], points.dz[i]] = noise.gradient;
         }
-    }
-
-    /// Evaluates whole vectors of points and returns how many points that were.
-    #[cfg(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test)))]
-    fn vector_part(&self, points: &mut Points<'_>) -> usize {
-        match self.kernel {
-            Kernel::Portable => 0,
-            Kernel::Avx2 => simd::run_avx2(self.seed, points),
-            Kernel::Avx512 => simd::run_avx512(self.seed, points),
-        }
-    }
-
-    #[cfg(not(all(any(target_arch = "x86_64", target_arch = "x86"), any(feature = "std", test))))]
-    fn vector_part(&self, _points: &mut Points<'_>) -> usize {
-        0
     }
 }
 

@@ -49,10 +49,10 @@ pub mod pair;
 pub mod radiation;
 pub mod rng;
 pub mod sensation;
+pub mod simd;
 pub mod stick_slip;
 pub mod tangential;
 pub mod trajectory;
-mod vector;
 pub mod vibration_points;
 
 pub use error::DesignError;

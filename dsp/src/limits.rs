@@ -93,6 +93,8 @@ pub const ROUGHNESS: Range = Range::new(0.0, 1.0, "0 to 1");
 pub const COMPLIANCE_M_N: Range = Range::new(0.0, 0.1, "0 to 0.1 m/N");
 /// Friction coefficient.
 pub const FRICTION: Range = Range::new(0.0, 10.0, "0 to 10");
+/// Speed of slipping that halves the difference of both friction coefficients.
+pub const SLIP_SPEED_M_S: Range = Range::new(1e-9, 10.0, "1e-9 to 10 m/s");
 /// Game time of a report with an exact clock, s.
 pub const TIME_S: Range = Range::new(0.0, 1e9, "finite, 0 to 1e9 s");
 /// Game seconds a second of audio.
@@ -148,6 +150,8 @@ pub mod material {
     pub const YOUNG_PA: Range = Range::new(1e3, 1e13, "1e3 to 1e13 Pa");
     /// Poisson ratio.
     pub const POISSON: Range = Range::new(0.0, 0.5, "0 to 0.5");
+    /// Mass of a body.
+    pub const MASS_KG: Range = Range::new(1e-6, 1e6, "1e-6 to 1e6 kg");
     /// Density.
     pub const DENSITY_KG_M3: Range = Range::new(1.0, 1e5, "1 to 1e5 kg/m³");
     /// Damping that is the same at every frequency.
@@ -217,6 +221,14 @@ pub mod sand {
     /// Where a layer begins.
     pub const LAYER_FROM_M: Range =
         Range::above(0.0, 1.0, "above 0, to 1 m, and deeper than the layer before it");
+    /// Place of a buried object along one side.
+    pub const BURIED_AT_M: Range = Range::new(0.0, 100.0, "0 to 100 m");
+    /// Depth of its top.
+    pub const BURIED_TOP_M: Range = Range::new(0.0, 0.45, "0 to 0.45 m");
+    /// Half its width.
+    pub const BURIED_HALF_M: Range = Range::new(1e-4, 1.0, "1e-4 to 1 m");
+    /// How much lower it is there.
+    pub const BURIED_HEIGHT_M: Range = Range::new(1e-5, 0.45, "1e-5 to 0.45 m");
     /// Radius of the tool.
     pub const TOOL_RADIUS_M: Range = Range::new(1e-4, 0.2, "1e-4 to 0.2 m");
     /// Texel of a tool's map.

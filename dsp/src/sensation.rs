@@ -11,12 +11,27 @@
 //! | \|W\| | [`Sensation::gain`] | 1 near 250 Hz, where a fingertip feels best; 1/100 is 40 dB less sensitive |
 //! | ω₀ … ω₃ | [`ZERO_HZ`], [`SECTIONS`] | fitted by us |
 //!
-//! Source: the threshold of Bolanowski, Gescheider, Verrillo and Checkosky 1988 (thenar, recalled to about 3 dB), its inverse fitted from
-//! 12 to 800 Hz by least squares: 0.9 dB at worst. The three sections are trapezoidal state-variable filters in `f64`, so a slow path
+//! Source: [`THRESHOLD_DB`], its inverse fitted from 12 to 800 Hz by least squares: 0.9 dB at worst. The three sections are trapezoidal state-variable filters in `f64`, so a slow path
 //! under a fast vibration costs no accuracy.
 
 use crate::DesignError;
 use core::f64::consts::PI;
+
+/// Detection threshold of a fingertip, (Hz, dB re 1 µm rms): Bolanowski, Gescheider, Verrillo and Checkosky 1988 (thenar, 2.9 cm²; peak
+/// values less 3 dB). **Recalled**, to about 3 dB.
+pub const THRESHOLD_DB: [(f64, f64); 11] = [
+    (10.0, 13.0),
+    (16.0, 10.0),
+    (25.0, 7.0),
+    (40.0, 2.0),
+    (63.0, -6.0),
+    (100.0, -15.0),
+    (160.0, -21.0),
+    (250.0, -24.0),
+    (400.0, -17.0),
+    (630.0, -4.0),
+    (1000.0, 14.0),
+];
 
 /// The double zero below which the threshold hardly changes any more, Hz.
 pub const ZERO_HZ: f64 = 23.073;
@@ -171,17 +186,8 @@ mod tests {
 
     #[test]
     fn it_is_the_inverse_of_the_published_threshold_to_a_decibel() {
-        // dB re 1 µm rms; the weight is 0 dB where it is least, −24.
-        let threshold = [
-            (16.0, 10.0),
-            (25.0, 7.0),
-            (40.0, 2.0),
-            (63.0, -6.0),
-            (100.0, -15.0),
-            (160.0, -21.0),
-            (250.0, -24.0),
-        ];
-        for (frequency_hz, db) in threshold.into_iter().chain([(400.0, -17.0), (630.0, -4.0)]) {
+        // The weight is 0 dB where the threshold is least, at −24 dB.
+        for (frequency_hz, db) in THRESHOLD_DB.into_iter().filter(|(hz, _)| (12.0..800.0).contains(hz)) {
             let ours = 20.0 * libm::log10(Sensation::gain(frequency_hz));
             assert!((ours + db + 24.0).abs() < 1.0, "{frequency_hz} Hz: {ours}");
         }

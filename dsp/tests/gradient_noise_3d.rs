@@ -1,8 +1,9 @@
 //! Gradient noise against its definition: an independent evaluation in `f64`, written from the
 //! formula and not from the kernel, and statistics of the field.
 
-use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Kernel, Noise3, Noise3Batch};
+use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3, Noise3Batch};
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::{Isa, Level};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -105,13 +106,13 @@ fn every_kernel_and_the_single_point_give_the_same_bits() {
     at.extend([[0.0; 3], [-1.0, -0.0, 5.0], [-1e-300, 1e-300, 0.5], [1e300, -1e18, 2_147_483_647.5]]);
     at.extend([[2_147_483_648.0, -2_147_483_648.0, -2_147_483_648.5], [0.999_999_999_9, -1e-9, 1e-9]]);
     let noise = GradientNoise3d::new(0xFEED_5EED_0000_0007);
-    let portable = noise.with_kernel(Kernel::Portable);
+    let portable = noise.on(Level::PORTABLE);
     let bits = |n: &Noise3| [n.value, n.gradient[0], n.gradient[1], n.gradient[2]].map(f32::to_bits);
-    for kernel in [Kernel::Portable, Kernel::Avx2, Kernel::Avx512] {
-        let noise = noise.with_kernel(kernel);
+    for level in Level::available() {
+        let noise = noise.on(level);
         for (sample, &p) in batch(&noise, &at).iter().zip(&at) {
-            assert_eq!(bits(sample), bits(&portable.at(p)), "{kernel:?} batch at {p:?}");
-            assert_eq!(bits(&noise.at(p)), bits(&portable.at(p)), "{kernel:?} at {p:?}");
+            assert_eq!(bits(sample), bits(&portable.at(p)), "{level:?} batch at {p:?}");
+            assert_eq!(bits(&noise.at(p)), bits(&portable.at(p)), "{level:?} at {p:?}");
         }
     }
 }
@@ -200,16 +201,16 @@ fn samples_of_a_path_have_the_numbers_of_single_points() {
         let at =
             |n: usize| [-3.2 + 0.72 * step * n as f64, 7.9 + 0.51 * step * n as f64, 0.47 * step * n as f64];
         let axis: [Vec<f64>; 3] = core::array::from_fn(|a| (0..500).map(|n| at(n)[a]).collect());
-        for kernel in [Kernel::Portable, Kernel::Avx2, Kernel::Avx512] {
-            let noise = GradientNoise3d::new(5).with_kernel(kernel);
+        for level in Level::available() {
+            let noise = GradientNoise3d::new(5).on(level);
             let mut out = [vec![0.0; 500], vec![0.0; 500], vec![0.0; 500], vec![0.0; 500]];
             let [value, dx, dy, dz] = &mut out;
             noise.batch(&axis[0], &axis[1], &axis[2], &mut Noise3Batch { value, dx, dy, dz });
-            let single = GradientNoise3d::new(5).with_kernel(Kernel::Portable);
+            let single = GradientNoise3d::new(5).on(Level::PORTABLE);
             let wanted: Vec<_> = (0..500).map(|n| single.at(at(n))).map(|n| (n.value, n.gradient)).collect();
             let [value, dx, dy, dz] = &out;
             let found: Vec<_> = (0..500).map(|n| (value[n], [dx[n], dy[n], dz[n]])).collect();
-            assert_eq!(found, wanted, "{kernel:?}");
+            assert_eq!(found, wanted, "{level:?}");
         }
     }
 }
@@ -219,11 +220,11 @@ fn samples_of_a_path_have_the_numbers_of_single_points() {
 /// differ too and a neighbour may share the core. It has five seconds to show it.
 #[test]
 fn a_point_takes_104_cycles_at_most_and_a_sample_of_an_avx2_batch_28() {
-    let noise = GradientNoise3d::new(1).with_kernel(Kernel::Avx2);
-    if cfg!(debug_assertions) || noise.kernel() == Kernel::Portable {
-        println!("skipped: only optimised builds with vector kernels have a bar");
+    let (false, Some(level)) = (cfg!(debug_assertions), Level::find(Isa::Avx2)) else {
+        println!("skipped: only optimised builds with AVX2 have a bar");
         return;
-    }
+    };
+    let noise = GradientNoise3d::new(1).on(level);
     let at = points(512, 1000.0, 3);
     let axis: [Vec<f64>; 3] = core::array::from_fn(|a| at.iter().map(|p| p[a]).collect());
     let mut out = [[0.0; 64]; 4];

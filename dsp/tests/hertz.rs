@@ -5,10 +5,11 @@ use asperity_dsp::hertz::{
     spread_force, take,
 };
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Inputs, Kernel, ModalBank, ReferenceMode, ReferenceState, design_group,
+    GroupOptions, GroupState, Inputs, ModalBank, ReferenceMode, ReferenceState, design_group,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::Level;
 use std::f64::consts::PI;
 
 const STEEL: Elastic = Elastic { young_pa: 200e9, poisson: 0.3 };
@@ -256,7 +257,7 @@ fn an_impact_is_equally_loud_at_every_rate() {
             let samples = (0.25 * rate) as usize;
             let (mut impulses, mut out) = (vec![0.0; samples], vec![0.0; samples]);
             take(&mut ring, 0, &mut impulses);
-            let mut bank = ModalBank::new(Kernel::detect(), [group], [GroupState::REST]);
+            let mut bank = ModalBank::new(Level::detect(), [group], [GroupState::REST]);
             bank.render(0, Inputs::One(&impulses), &mut out);
             levels.push(10.0 * (out.iter().map(|y| f64::from(*y).powi(2)).sum::<f64>() / rate).log10());
         }

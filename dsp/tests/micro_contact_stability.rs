@@ -1,9 +1,8 @@
 //! Hard cases: stiff, light, unloaded, jumping, stuck, hostile, and long.
 
-use asperity_dsp::micro_contact::{
-    ContactSample, ContactState, Integrator, LaneRow, Lanes, MicroContact, Probe,
-};
+use asperity_dsp::micro_contact::{ContactSample, ContactState, Integrator, MicroContact, Probe};
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::Level;
 use std::time::Instant;
 
 const RATES_HZ: [f64; 6] = [8_000.0, 22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0];
@@ -201,50 +200,13 @@ fn any_split_into_blocks_gives_the_same_bits() {
 }
 
 #[test]
-fn eight_lanes_give_the_bits_of_eight_single_contacts_even_with_hostile_inputs() {
-    let design = MicroContact::new(
-        &Probe { contact_stiffness_n_m: 5e4, force_exponent: 0.0, ..Probe::default() },
-        Integrator::SemiImplicitEuler,
-        44_100.0,
-    )
-    .unwrap();
-    let lanes = design.lanes().unwrap();
-    let mut rng = Rng::new(5);
-    let inputs: Vec<_> = (0..8).map(|_| rough(&mut rng, 3000)).collect();
-    let mut heights: Vec<Lanes> = (0..3000).map(|n| std::array::from_fn(|i| inputs[i].0[n])).collect();
-    let mut forces: Vec<Lanes> = (0..3000).map(|n| std::array::from_fn(|i| inputs[i].1[n])).collect();
-    (heights[1234][3], heights[2000][7], forces[2222][0]) = (f64::NAN, 0.9, f64::INFINITY);
-    let mut states: [ContactState; 8] = std::array::from_fn(|_| design.landing(0.0, 0.5, 0.1));
-    // Clocks out of step, as contacts that began at different times have.
-    run(&design, &mut states[2], &[0.0; 13], &[0.5; 13]);
-    let mut singles = states;
-    let mut rows = vec![LaneRow::default(); 3000];
-    let (first, second) = rows.split_at_mut(1001);
-    lanes.run(&mut states, &heights[..1001], &forces[..1001], first);
-    lanes.run(&mut states, &heights[1001..], &forces[1001..], second);
-    for (i, single) in singles.iter_mut().enumerate() {
-        let height: Vec<f64> = heights.iter().map(|h| h[i]).collect();
-        let force: Vec<f64> = forces.iter().map(|f| f[i]).collect();
-        for (row, wanted) in rows.iter().zip(run(&design, single, &height, &force)) {
-            let got = lanes.sample(row, i, wanted.height_m, wanted.normal_force_n);
-            assert_eq!(got, wanted, "contact {i}");
-        }
-        assert_eq!(*single, states[i]);
-        assert!(single.resets() <= 3);
-    }
-    let stiff = Probe { contact_stiffness_n_m: 5e5, ..Probe::default() };
-    assert!(MicroContact::new(&stiff, Integrator::SemiImplicitEuler, 44_100.0).unwrap().lanes().is_none());
-}
-
-#[test]
 fn the_portable_kernels_agree_with_the_wide_ones() {
     let (heights, forces) = rough(&mut Rng::new(6), 1000);
     for integrator in Integrator::ALL {
         let design = MicroContact::new(&Probe::default(), integrator, 44_100.0).unwrap();
         let mut states = [design.at_rest(0.0, 0.5); 2];
         let wide = run(&design, &mut states[0], &heights, &forces);
-        let mut portable = vec![ContactSample::default(); 1000];
-        design.run_portable(&mut states[1], &heights, &forces, &mut portable);
+        let portable = run(&design.on(Level::PORTABLE), &mut states[1], &heights, &forces);
         for (a, b) in wide.iter().zip(&portable) {
             assert!((a.pad_m - b.pad_m).abs() < 1e-12, "{integrator:?}: {a:?} {b:?}");
         }

@@ -1,19 +1,20 @@
 //! The modal bank against closed forms, against figures of scipy, and against its own reference.
 
 use asperity_dsp::modal_bank::{
-    Culling, GRID_SAMPLES, GroupOptions, GroupState, Input, Inputs, Isa, Kernel, LANES, LaneGains, ModalBank,
-    ModeGroup, ReferenceMode, ReferenceState, SLEEP_AMPLITUDE, audible, design_group, design_groups,
-    lane_gains, sort_by_decay,
+    Culling, GRID_SAMPLES, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
+    ReferenceMode, ReferenceState, SLEEP_AMPLITUDE, audible, design_group, design_groups, lane_gains,
+    sort_by_decay,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::{Isa, Level};
 use std::f64::consts::PI;
 
 const RATES_HZ: [f64; 5] = [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0];
 const PLAIN: GroupOptions = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
 
-fn kernels() -> Vec<Kernel> {
-    [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512].into_iter().filter_map(Kernel::find).collect()
+fn kernels() -> Vec<Level> {
+    Isa::ALL.into_iter().filter_map(Level::find).collect()
 }
 
 fn mode(frequency_hz: f64, decay_per_s: f64, amplitude: f64, phase_rad: f64) -> Mode {
@@ -36,13 +37,13 @@ fn body(count: usize, rng: &mut Rng) -> Vec<Mode> {
 }
 
 /// A bank at rest that rings on to the last bit.
-fn bank(kernel: Kernel, groups: &[ModeGroup]) -> ModalBank<&[ModeGroup], Vec<GroupState>> {
+fn bank(kernel: Level, groups: &[ModeGroup]) -> ModalBank<&[ModeGroup], Vec<GroupState>> {
     ModalBank::new(kernel, groups, vec![GroupState::REST; groups.len()]).sleeping_below(0.0)
 }
 
 /// Renders `impulses` from absolute sample `first` in blocks whose lengths `next` gives.
 fn render(
-    kernel: Kernel,
+    kernel: Level,
     groups: &[ModeGroup],
     impulses: &[f32],
     first: u64,
@@ -205,7 +206,7 @@ fn without_the_trim_the_decay_is_what_f32_can_store() {
     let group = design_group(&[m], 192_000.0, &untrimmed).unwrap();
     let mut impulses = vec![0.0; 960_000];
     impulses[0] = 1.0;
-    let y = render(Kernel::detect(), &[group], &impulses, 0, || 4096);
+    let y = render(Level::detect(), &[group], &impulses, 0, || 4096);
     let (_, t60) = pitch_and_t60_error(&y, &m, 192_000.0);
     assert!(t60.abs() > 3e-4 && t60.abs() < 1e-2, "{t60}");
 }
@@ -296,7 +297,7 @@ fn any_split_gives_the_same_bits_with_gained_inputs_too() {
 #[test]
 fn every_set_with_fused_arithmetic_gives_the_same_bits() {
     let mut rng = Rng::new(6);
-    let fused: Vec<Kernel> = kernels().into_iter().filter(|k| k.isa() != Isa::Portable).collect();
+    let fused: Vec<Level> = kernels().into_iter().filter(|k| k.isa() != Isa::Portable).collect();
     for count in [1, 16, 17, 100, 300] {
         let groups = design(&body(count, &mut rng), 48_000.0);
         let impulses: Vec<f32> = (0..3_000).map(|_| rng.normal() as f32).collect();
@@ -309,9 +310,9 @@ fn every_set_with_fused_arithmetic_gives_the_same_bits() {
 fn modes_at_or_above_nyquist_are_silent_and_those_below_are_not() {
     let silent = design(&[mode(22_050.0, 1.0, 1.0, 0.3), mode(30_000.0, 1.0, 1.0, 0.0)], 44_100.0);
     let impulses: Vec<f32> = (0..2000).map(|n| (n % 7) as f32).collect();
-    assert!(render(Kernel::detect(), &silent, &impulses, 0, || 64).iter().all(|&y| y == 0.0));
+    assert!(render(Level::detect(), &silent, &impulses, 0, || 64).iter().all(|&y| y == 0.0));
     let heard = design(&[mode(22_000.0, 100.0, 1.0, 0.0)], 44_100.0);
-    assert!(render(Kernel::detect(), &heard, &impulses, 0, || 64).iter().any(|&y| y.abs() > 1e-3));
+    assert!(render(Level::detect(), &heard, &impulses, 0, || 64).iter().any(|&y| y.abs() > 1e-3));
 }
 
 #[test]
@@ -321,7 +322,7 @@ fn an_impulse_is_equally_loud_at_every_rate() {
         let groups = design(&[mode(500.0, 20.0, 1.0, 0.0), mode(1_700.0, 40.0, 0.5, 0.4)], rate);
         let mut impulses = vec![0.0; (0.3 * rate) as usize];
         impulses[5] = 1.0;
-        let y = render(Kernel::detect(), &groups, &impulses, 0, || 64);
+        let y = render(Level::detect(), &groups, &impulses, 0, || 64);
         levels.push(10.0 * (y.iter().map(|y| f64::from(*y).powi(2)).sum::<f64>() / rate).log10());
     }
     assert!(levels.iter().all(|l| (l - levels[1]).abs() < 0.02), "{levels:?} dB");
@@ -395,7 +396,7 @@ fn gains_that_change_while_something_slides_are_two_inputs_that_cross_fade_witho
 #[test]
 fn a_bank_begins_as_its_states_are_and_forgets_them_when_it_is_silenced() {
     let groups = design(&body(40, &mut Rng::new(72)), 48_000.0);
-    let mut struck = ModalBank::new(Kernel::detect(), &groups[..], [GroupState::REST; 3]);
+    let mut struck = ModalBank::new(Level::detect(), &groups[..], [GroupState::REST; 3]);
     let mut impulses = [0.0; 64];
     impulses[5] = 1e-3;
     let (mut out, mut rest) = ([0.0; 64], [0.0; 64]);
@@ -415,10 +416,10 @@ fn a_bank_begins_as_its_states_are_and_forgets_them_when_it_is_silenced() {
 fn output_is_added_to_what_is_there_and_unequal_slices_do_no_harm() {
     let groups = design(&[mode(500.0, 20.0, 1.0, 0.5)], 44_100.0);
     let mut out = [1.0_f32; 8];
-    let mut bank = bank(Kernel::detect(), &groups);
+    let mut bank = bank(Level::detect(), &groups);
     bank.render(0, Inputs::One(&[0.0; 3]), &mut out);
     assert_eq!(out, [1.0; 8]);
-    let mut without_memory = ModalBank::new(Kernel::detect(), &groups[..], []);
+    let mut without_memory = ModalBank::new(Level::detect(), &groups[..], []);
     without_memory.render(0, Inputs::One(&[1.0; 8]), &mut out);
     bank.render(0, Inputs::Placed(&[]), &mut out);
     bank.render(0, Inputs::Placed(&[Input { impulses: &[1.0; 8], gains: &[] }]), &mut out);
@@ -439,9 +440,9 @@ fn a_body_that_has_rung_out_sleeps_exactly_and_wakes_with_the_next_impulse() {
     let mut impulses = vec![0.0_f32; samples];
     impulses[100] = 1e-2;
     impulses[samples - 1000] = 1e-2;
-    let whole = render(Kernel::detect(), &groups, &impulses, 7, || 64);
+    let whole = render(Level::detect(), &groups, &impulses, 7, || 64);
     let sleepy = |block: usize| {
-        let mut bank = ModalBank::new(Kernel::detect(), &groups[..], vec![GroupState::REST; groups.len()]);
+        let mut bank = ModalBank::new(Level::detect(), &groups[..], vec![GroupState::REST; groups.len()]);
         let (mut out, mut history) = (vec![0.0_f32; samples], vec![]);
         for at in (0..samples).step_by(block) {
             let to = (at + block).min(samples);
@@ -474,7 +475,7 @@ fn no_state_is_ever_denormal_while_a_body_rings_out() {
     // A bank a group: so that the quietest of them is seen.
     let states = vec![GroupState::REST; groups.len()];
     let alone = groups.iter().zip(states.chunks(1));
-    let mut banks: Vec<_> = alone.map(|(g, s)| ModalBank::new(Kernel::detect(), [*g], s.to_vec())).collect();
+    let mut banks: Vec<_> = alone.map(|(g, s)| ModalBank::new(Level::detect(), [*g], s.to_vec())).collect();
     let mut out = [0.0_f32; 64];
     for block in 0..20_000_u64 {
         let mut impulses = [0.0; 64];
@@ -496,7 +497,7 @@ fn no_state_is_ever_denormal_while_a_body_rings_out() {
 fn broken_states_are_put_to_rest() {
     let groups = design(&[mode(500.0, 1.0, 1.0, 0.5); 20], 44_100.0);
     for poison in [f32::NAN, f32::INFINITY, 1e38] {
-        let mut bank = bank(Kernel::detect(), &groups).sleeping_below(SLEEP_AMPLITUDE);
+        let mut bank = bank(Level::detect(), &groups).sleeping_below(SLEEP_AMPLITUDE);
         let mut out = [0.0; 64];
         let mut impulses = [0.0; 64];
         impulses[3] = poison;
@@ -514,7 +515,7 @@ fn retuning_every_grid_step_adds_no_energy_and_no_jump() {
         let moved: Vec<Mode> =
             base.iter().map(|m| Mode { frequency_hz: m.frequency_hz * factor, ..*m }).collect();
         let pair = [design(&base, 44_100.0)[0], design(&moved, 44_100.0)[0]];
-        let mut bank = ModalBank::new(Kernel::detect(), [pair[0]], [GroupState::REST]);
+        let mut bank = ModalBank::new(Level::detect(), [pair[0]], [GroupState::REST]);
         let mut impulses = [0.0; GRID_SAMPLES as usize];
         impulses[0] = 1.0;
         let mut out = [0.0; GRID_SAMPLES as usize];
@@ -562,7 +563,7 @@ fn a_retuned_mode_goes_on_at_its_phase_with_its_new_frequency() {
     let rate = 44_100.0;
     let (old, new) = (mode(700.0, 10.0, 0.9, 0.4), mode(1_000.0, 30.0, 0.3, -1.0));
     let pair = [design(&[old], rate)[0], design(&[new], rate)[0]];
-    let mut bank = ModalBank::new(Kernel::detect(), [pair[0]], [GroupState::REST]);
+    let mut bank = ModalBank::new(Level::detect(), [pair[0]], [GroupState::REST]);
     let mut impulses = [0.0; 500];
     impulses[0] = 1.0;
     let mut out = [0.0; 500];

@@ -2,8 +2,9 @@
 
 mod spectrum;
 
-use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath, OctaveWeights};
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::Level;
 use spectrum::power;
 
 const RATE_HZ: f64 = 44_100.0;
@@ -215,10 +216,10 @@ fn wild(len: usize) -> (Vec<[f64; 2]>, Vec<f64>, Vec<f64>) {
 #[test]
 fn blocks_and_instruction_sets_do_not_change_a_bit() {
     let (position_m, footprint_m, roughness) = wild(3000);
-    let whole = |kernel| {
+    let whole = |level| {
         let mut height = vec![1e-5; 3000];
         let path = NoisePath { position_m: &position_m, footprint_m: &footprint_m };
-        FractalNoise::with_kernel(7, kernel).add(
+        FractalNoise::new(7).on(level).add(
             &path,
             &roughness,
             &OctaveWeights::pinned(2e-6, 3e-3),
@@ -226,14 +227,10 @@ fn blocks_and_instruction_sets_do_not_change_a_bit() {
         );
         height
     };
-    let portable = whole(Kernel::Portable);
+    let portable = whole(Level::PORTABLE);
     assert!(portable.iter().all(|h| h.is_finite()));
-    for kernel in [Kernel::Avx2, Kernel::Avx512] {
-        if kernel.is_available() {
-            assert!(whole(kernel) == portable, "{kernel:?} differs");
-        } else {
-            println!("skipped: this machine has no {kernel:?}");
-        }
+    for level in Level::available() {
+        assert!(whole(level) == portable, "{level:?} differs");
     }
     let noise = FractalNoise::new(7);
     let mut rng = Rng::new(2);
@@ -281,13 +278,11 @@ fn cells_kept_from_sample_to_sample_do_not_change_a_bit() {
             }
             height
         };
-        for kernel in
-            [Kernel::Portable, Kernel::Avx2, Kernel::Avx512].into_iter().filter(|k| k.is_available())
-        {
-            let noise = FractalNoise::with_kernel(9, kernel);
+        for level in Level::available() {
+            let noise = FractalNoise::new(9).on(level);
             let alone = heights(&noise, 1);
             assert!(alone.iter().all(|h| h.is_finite()));
-            assert!(heights(&noise, LEN) == alone, "{kernel:?}, {step} m a sample");
+            assert!(heights(&noise, LEN) == alone, "{level:?}, {step} m a sample");
         }
     }
 }

@@ -1,11 +1,10 @@
 //! A strike through ring, bank and first samples against the equation: the integrated Hertz force convolved with the modes.
 
 use asperity_dsp::hertz::{HertzPulse, take};
-use asperity_dsp::modal_bank::{
-    FirstSamples, GroupOptions, GroupState, Inputs, Kernel, ModalBank, design_groups,
-};
+use asperity_dsp::modal_bank::{FirstSamples, GroupOptions, GroupState, Inputs, ModalBank, design_groups};
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::Level;
 use std::f64::consts::PI;
 
 const RATES_HZ: [f64; 5] = [22_050.0, 44_100.0, 48_000.0, 96_000.0, 192_000.0];
@@ -80,7 +79,7 @@ fn rendered(modes: &[Mode], contact_s: f64, onset: f64, rate_hz: f64, count: usi
     let groups = design_groups(modes, rate_hz, &GroupOptions::IMPULSE_RING);
     let groups = groups.collect::<Result<Vec<_>, _>>().unwrap();
     let states = vec![GroupState::REST; groups.len()];
-    let mut bank = ModalBank::new(Kernel::detect(), groups, states);
+    let mut bank = ModalBank::new(Level::detect(), groups, states);
     let first = FirstSamples::new(modes.iter().copied(), rate_hz).unwrap();
     let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: contact_s };
     let ring = (count + 512).next_power_of_two();

@@ -69,6 +69,11 @@ impl Device {
         given_j - std::f64::consts::PI * self.damping_n_s_m * turn * swing_m * swing_m
     }
 
+    /// Time in which a swing against a spring falls to 1/e, s: a force that is held for a tick comes half a tick late, which takes k T/2 of the damping.
+    pub fn fall_s(&self, stiffness_n_m: f64) -> f64 {
+        2.0 * self.mass_kg / (self.damping_n_s_m - 0.5 * stiffness_n_m / self.rate_hz)
+    }
+
     /// Whether it holds still in the end: its swing in the last quarter is no larger than some steps of its sensor.
     pub fn holds(&self, ticks: &[Tick]) -> bool {
         let last = &ticks[ticks.len() * 3 / 4..];

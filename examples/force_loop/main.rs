@@ -1,5 +1,5 @@
-//! A force-feedback device on sand, on a wall and on a soft cloth: a loop of 1, 2 and 5 kHz holds it still, and gives no more energy than
-//! it takes.
+//! A force-feedback device on sand, on a shell in the sand, on a wall and on a soft cloth: a loop of 1, 2 and 5 kHz holds it still, and gives
+//! no more energy than it takes.
 //!
 //! ```sh
 //! cargo run --release --example force_loop [FOLDER]     # default force_loop/
@@ -7,13 +7,15 @@
 //!
 //! The thread that drives a device asks [`Scene::tip_law`] once, and from then on turns the depth of its tip into a force without waiting
 //! for anything; the same depths go to the engine as reports, which makes what is felt of the grains, what is heard, and moves the sand.
-//! Writes sand.svg, wall.svg, cloth.svg, and prints how stiff a loop may be.
+//! Writes sand.svg, shell.svg, wall.svg, cloth.svg, prints how stiff a loop may be, and draws what a ball feels of a soft map (footprint.svg) and
+//! how much of moving sand a game has to draw (drawn.svg).
 
 mod device;
 mod picture;
+mod soft;
 
 use asperity::live::ports::{Force, ForceRow, Of};
-use asperity::texture::sand::{SandDesign, SandSource};
+use asperity::texture::sand::{Buried, SandDesign, SandSource};
 use asperity::{
     Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Scene, Surface, SurfaceId, TipLaw,
 };
@@ -37,23 +39,38 @@ fn device(rate_hz: f64, mass_kg: f64) -> Device {
     Device { mass_kg, damping_n_s_m: DAMPING_N_S_M, rate_hz, resolution_m: RESOLUTION_M }
 }
 
-/// How long the hand keeps still, s: half a kilogram rings for half a second in 2 N·s/m.
-const STILL_S: f64 = 5.0;
+/// How long the hand keeps still, s: against a wall of 1500 N/m a loop of 1 kHz leaves 1.25 of the device's 2 N·s/m, in which half a kilogram's
+/// swing falls to a third in 0.8 s.
+const STILL_S: f64 = 8.0;
+/// A flat shell under the tip, half as hard again as the sand: three times as hard is more than a loop of 1 kHz holds with half a kilogram.
+const SHELL: Buried =
+    Buried { at_m: [0.5 * SIDE_M; 2], top_m: 0.001, half_m: [0.01; 2], height_m: 0.001, hardness: 1.5 };
 
 /// A hand that leans on the tip with 2 N, and pushes to and fro in the end.
 fn hand_n(t: f64) -> f64 {
     if t < STILL_S { 2.0 } else { 2.0 + 1.2 * (std::f64::consts::TAU * 4.0 * (t - STILL_S)).sin() }
 }
 
-fn surfaces() -> Result<[(&'static str, Surface); 3], Box<dyn Error>> {
-    let design = SandDesign { width_m: SIDE_M, height_m: SIDE_M, cells: 256, ..SandDesign::default() };
-    let sand = Surface::new(SandSource::synchronous(&design, 1)?, SIDE_M, SIDE_M)?.wraps(false);
+/// A bed of sand with a shell in it, or without.
+fn sand(shell: Option<Buried>) -> Result<Surface, Box<dyn Error>> {
+    let mut design = SandDesign { width_m: SIDE_M, height_m: SIDE_M, cells: 256, ..SandDesign::default() };
+    design.law.buried[0] = shell;
+    Ok(Surface::new(SandSource::synchronous(&design, 1)?, SIDE_M, SIDE_M)?.wraps(false))
+}
+
+fn surfaces() -> Result<[(&'static str, Surface); 4], Box<dyn Error>> {
     let flat = || Surface::flat(SIDE_M, SIDE_M);
     Ok([
-        ("sand", sand),
+        ("sand", sand(None)?),
+        ("shell", sand(Some(SHELL))?),
         ("wall", flat()?.compliance_m_n(1.0 / WALL_N_M)),
         ("cloth", flat()?.compliance_m_n(2e-3)),
     ])
+}
+
+/// What the law answers to the tip in the middle of the surface, N upwards.
+fn carried_n(law: &TipLaw, depth_m: f64) -> f64 {
+    law.answer_at_n([0.5 * SIDE_M; 2], depth_m, [0.0; 2])[2]
 }
 
 /// The loop and the engine side by side: the loop's ticks, and the engine's rows of the same contact.
@@ -64,8 +81,8 @@ fn run(
     device: &Device,
 ) -> Result<(Vec<Tick>, Vec<ForceRow>), Box<dyn Error>> {
     let law = scene.tip_law(surface)?.ok_or("a hard surface")?;
-    let mut port = scene.open_port(Force { rate_hz: device.rate_hz, holds_s: 8.0 })?;
-    let ticks = device.push(0.004, hand_n, STILL_S + 1.0, |depth_m| law.answer_n(depth_m, [0.0; 2])[2]);
+    let mut port = scene.open_port(Force { rate_hz: device.rate_hz, holds_s: STILL_S + 4.0 })?;
+    let ticks = device.push(0.004, hand_n, STILL_S + 1.0, |depth_m| carried_n(&law, depth_m));
     let frames = renderer.sample_rate_hz() / device.rate_hz;
     let (mut haptic, mut audio) = (vec![0.0; 64], vec![0.0; 64]);
     for (index, tick) in ticks.iter().enumerate() {
@@ -133,7 +150,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "force_loop".into());
     let folder = Path::new(&folder);
     std::fs::create_dir_all(folder)?;
-    for index in 0..3 {
+    for index in 0..4 {
         let mut runs = Vec::new();
         let mut name = "";
         for rate_hz in RATES_HZ {
@@ -147,13 +164,14 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let device = device(rate_hz, mass_kg);
                 let (ticks, rows) = run(&mut scene, &mut renderer, surface, &device)?;
                 let still = device.holds(&ticks[..(STILL_S * rate_hz) as usize]);
-                let cycle_j = device.cycle_j(0.003, 0.002, 20.0, |d| law.answer_n(d, [0.0; 2])[2]);
+                let cycle_j = device.cycle_j(0.003, 0.002, 20.0, |d| carried_n(&law, d));
+                let stiffness_n_m = law.stiffness_at_n_m([0.5 * SIDE_M; 2], 0.002);
                 println!(
-                    "{name:6} {:1} kHz {mass_kg:4} kg: {:.0} N/m, {}, a cycle of 20 Hz gives {:+.3} mJ, \
-                     engine's rows {:.2} % apart",
+                    "{name:6} {:1} kHz {mass_kg:4} kg: {stiffness_n_m:.0} N/m, {} (a third of a swing is left after {:.2} s), \
+                     a cycle of 20 Hz gives {:+.3} mJ, engine's rows {:.2} % apart",
                     rate_hz / 1000.0,
-                    law.stiffness_n_m(0.002),
                     if still { "holds still" } else { "STILL SWINGS AT THE END" },
+                    device.fall_s(stiffness_n_m),
                     1e3 * cycle_j,
                     1e2 * apart(&ticks, &rows)
                 );
@@ -172,6 +190,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let row = MASSES_KG.map(|mass_kg| format!("{:>11.0}", stiffest_n_m(rate_hz, mass_kg)));
         println!("{:1} kHz    {} {:>10.0}", rate_hz / 1000.0, row.join(""), 2.0 * DAMPING_N_S_M * rate_hz);
     }
+    soft::draw(folder)?;
     println!("\nplots: {}", folder.display());
     Ok(())
 }

@@ -3,26 +3,11 @@
 //! The [`THRESHOLD_DB`] is that of a fingertip. Between its points it is linear in log f; below the first it is held, above the last it
 //! rises on by 40 dB an octave, which nobody has measured and nobody feels. Phases stay as they are.
 
+pub use asperity_dsp::sensation::THRESHOLD_DB;
 use asperity_fft::{FftPlanner, num_complex::Complex};
 
 /// Everything is compared at this rate, Hz.
 pub const RATE_HZ: f64 = 8000.0;
-
-/// Detection threshold of a fingertip, (Hz, dB re 1 µm rms): Bolanowski, Gescheider, Verrillo and Checkosky 1988 (thenar, 2.9 cm²; peak
-/// values less 3 dB). **Recalled**, to about 3 dB.
-pub const THRESHOLD_DB: [(f64, f64); 11] = [
-    (10.0, 13.0),
-    (16.0, 10.0),
-    (25.0, 7.0),
-    (40.0, 2.0),
-    (63.0, -6.0),
-    (100.0, -15.0),
-    (160.0, -21.0),
-    (250.0, -24.0),
-    (400.0, -17.0),
-    (630.0, -4.0),
-    (1000.0, 14.0),
-];
 
 /// How much of a displacement is felt, against 250 Hz where most is: 1 there, 0.01 where the threshold is 40 dB higher.
 #[must_use]

@@ -8,6 +8,7 @@ use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::Owner;
 use crate::prepared::body::{BodySlot, Spot, Terms};
+use crate::prepared::body_rub::RubAsked;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 
@@ -182,6 +183,11 @@ impl BodySeat {
         if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
             body.press(owner, place, probe);
         }
+    }
+
+    /// A contact rubs the body of that name; false where another one does, or nobody can. A body that has gone is rubbed in vain.
+    pub(crate) fn rub(&mut self, id: BodyId, asked: &RubAsked<'_>) -> bool {
+        self.current.as_mut().filter(|_| self.id == Some(id)).is_none_or(|body| body.rub(asked))
     }
 
     /// As [`touch`](Self::touch), at a place of its own.

@@ -25,12 +25,14 @@ use crate::model::config::Config;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
 use crate::model::strike_field::StrikePlace;
+use crate::model::surface::Surface;
 use crate::prepared::body::Spot;
+use crate::prepared::body_rub::RubAsked;
 use crate::prepared::probe::{PreparedProbe, row_latency};
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
-use asperity_dsp::modal_bank::{Isa, Kernel};
+use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::sand::{SandFigures, SandPicture, SandSource};
@@ -61,7 +63,7 @@ pub struct Renderer {
     buses: Vec<Bus>,
     blows: Blows,
     outlets: Outlets,
-    kernel: Kernel,
+    kernel: Level,
     governor: Governor,
     /// Groups of modes left out in the present stretch.
     groups_shed: usize,
@@ -79,7 +81,7 @@ pub struct Renderer {
 impl Renderer {
     pub(crate) fn new(
         config: &Config,
-        kernel: Kernel,
+        kernel: Level,
         probe: PreparedProbe,
         from_game: Receiver<Message>,
         to_game: Sender<Dead>,
@@ -274,7 +276,7 @@ impl Renderer {
             channel.sum[..n].fill(0.0);
         }
         let tap = &mut self.outlets.beside(tap);
-        let (mut collisions, mut shortened, mut resets, mut blows) = (0, 0, 0, 0);
+        let (mut collisions, mut shortened, mut resets, mut blows, mut crowded) = (0, 0, 0, 0, 0);
         for index in self.voices_used.iter() {
             let voice = &mut self.voices[index];
             if voice.phase == Phase::Free {
@@ -284,6 +286,10 @@ impl Renderer {
             let channel = voice.role.actuator.map(|channel| &mut self.channels[channel]);
             let output = channel.as_ref().map_or(&self.shared.idle_output, |channel| &channel.output);
             let stretch = Stretch { shared: &self.shared, output, position: self.position, n };
+            // Before it is rendered: how it presses at the end of a stretch would depend on where the blocks are cut.
+            let at_grid = self.position.is_multiple_of(MAX_BLOCK as u64);
+            let pressing =
+                seat.current().filter(|_| at_grid).and_then(|slot| voice.pressing(&self.shared, slot));
             voice.render(stretch, seat, &mut self.scratch, tap);
             let out = &self.scratch.out;
             collisions += out.collisions;
@@ -296,11 +302,21 @@ impl Renderer {
                 }
             }
             let touched = seat.current().and_then(|slot| Some((slot.surface.body?, slot)));
-            if let (Some((body, slot)), Some(place)) = (touched, self.placed[index])
-                && self.position.is_multiple_of(MAX_BLOCK as u64)
-                && let Some(probe) = voice.pressing(&self.shared, slot)
-            {
+            if let (Some((body, _)), Some(place), Some(probe)) = (touched, self.placed[index], pressing) {
                 self.bodies[body.index()].press(body, (index, voice.begun), &place, &probe);
+            }
+            if let (true, Some((body, slot))) = (out.rub.rubs, touched)
+                && let Some(friction) = slot.surface.rubs()
+            {
+                let asked = RubAsked {
+                    owner: (index, voice.begun),
+                    spot: rubbed(&slot.surface, self.placed[index], out.rub.along),
+                    friction,
+                    sweep_m_s: &out.rub.sweep_m_s[..n],
+                    normal_force_n: &out.rub.normal_force_n[..n],
+                };
+                let left_out = !self.bodies[body.index()].rub(body, &asked);
+                crowded += u64::from(left_out && at_grid);
             }
             if !out.excites {
                 continue;
@@ -325,6 +341,7 @@ impl Renderer {
         Counters::add(&self.counters.shortened_collisions, shortened);
         Counters::add(&self.counters.quarantined, resets);
         Counters::add(&self.counters.blows, blows);
+        Counters::add(&self.counters.rubs_crowded_out, crowded);
     }
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
@@ -358,9 +375,19 @@ impl Renderer {
     }
 }
 
+/// Where a contact rubs, and along what of the body.
+fn rubbed(surface: &Surface, place: Option<StrikePlace>, [u, v]: [f64; 2]) -> Spot {
+    let place = place.zip(surface.frame).map(|(place, frame)| {
+        let [along_u, along_v] = frame.axes();
+        let direction = std::array::from_fn(|i| (u * along_u[i] + v * along_v[i]) as f32);
+        StrikePlace { direction, ..place }
+    });
+    Spot { place, position: surface.strike_position }
+}
+
 /// A rise from 0 to 1 in `steps` steps, without step or corner.
 fn raised_cosine(steps: usize) -> Box<[f64]> {
-    let at = |step: usize| 0.5 - 0.5 * (std::f64::consts::PI * step as f64 / steps as f64).cos();
+    let at = |step: usize| 0.5 - 0.5 * libm::cos(std::f64::consts::PI * step as f64 / steps as f64);
     (0..=steps).map(at).collect()
 }
 

@@ -250,7 +250,11 @@ impl SurfaceSlot {
         out.compliance_m_n[..n].fill(0.0);
         out.answer.clear();
         surface.source.ride(noise.tip_radius_m);
-        surface.source.sample(path, out);
+        if surface.compliance_m_n > 0.0 && noise.tip_radius_m > 0.0 {
+            surface.sample_under(path, noise.tip_radius_m, out);
+        } else {
+            surface.source.sample(path, out);
+        }
         match &mut surface.roughness {
             Roughness::FromSource => {}
             Roughness::Constant(r) => out.roughness[..n].fill(*r),

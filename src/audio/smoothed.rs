@@ -21,7 +21,7 @@ pub(crate) struct Smoothed {
 impl Smoothed {
     /// A gain of 1.
     pub(crate) fn new(sample_rate_hz: f64) -> Self {
-        Self { now: 1.0, share: 1.0 - (-1.0 / (TIME_CONSTANT_S * sample_rate_hz)).exp() }
+        Self { now: 1.0, share: 1.0 - libm::exp(-1.0 / (TIME_CONSTANT_S * sample_rate_hz)) }
     }
 
     /// A gain that has been `gain` for ever.

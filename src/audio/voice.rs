@@ -153,7 +153,7 @@ impl Voice {
         }
         let probe = shared.probe(self.role.probe).micro_contact.probe();
         let stiffness_n_m = stiffness_n_m(probe, &slot.stroking.ground, force_n);
-        let contact_stiffness_n_m = ((4.0 * stiffness_n_m.log2()).round() / 4.0).exp2();
+        let contact_stiffness_n_m = libm::exp2((4.0 * libm::log2(stiffness_n_m)).round() / 4.0);
         Some(Probe { contact_stiffness_n_m, ..*probe })
     }
 
@@ -174,6 +174,7 @@ impl Voice {
         };
         let stretch = Stretch { n, ..stretch };
         scratch.out.silence(n..wanted);
+        scratch.out.rub.rubs = false;
         // First the touch, then the heights: a surface that gives way answers within the same grid
         // cell wherever it is cut into stretches. Who sleeps still touches, and wakes when the ground stirs.
         if at_grid {
@@ -210,7 +211,8 @@ impl Voice {
     ) {
         let Stretch { shared, output, position, n } = stretch;
         if at_grid {
-            self.exciters.press(self.loudness(shared, position, seat));
+            let velocity_m_s = self.path.last.velocity_m_s;
+            self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
         }
         let Some(slot) = seat.current() else { return };
         let Scratch { points, profile, rows, force, out, .. } = scratch;
@@ -250,7 +252,9 @@ impl Voice {
             self.skin.pass(&mut out.haptic[..n]);
         }
         let (reaction, sample_rate_hz) = (self.reaction, shared.sample_rate_hz);
-        self.exciters.run(&Excited { slot, probe, reaction, sample_rate_hz, position }, rows, force, out);
+        let by = Excited { slot, probe, reaction, sample_rate_hz, position };
+        self.exciters.run(&by, rows, force, out);
+        self.exciters.rub(&by, points, rows, out);
     }
 
     /// How much of the contact sounds: the more, the harder it is pressed and the closer it nestles to the ground.
@@ -314,6 +318,7 @@ impl Voice {
             && self.pad.is_settled(&row)
             && self.reaction.grain_rate_per_s == 0.0
             && !self.reaction.stirs
+            && !scratch.out.rub.rubs
             && self.exciters.are_still(scratch.out.impulse_n_s[n - 1], position + n as u64);
         if self.asleep {
             self.ac.settle(output);

@@ -46,7 +46,7 @@ mod tests {
     use crate::model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
     use crate::model::clock_mode::ClockMode;
     use asperity_dsp::micro_contact::Integrator;
-    use asperity_dsp::modal_bank::Isa;
+    use asperity_dsp::simd::Isa;
     use asperity_dsp::trajectory::PathMode;
 
     #[test]

@@ -235,6 +235,23 @@ impl ContactLog {
         self.lines.iter().enumerate().try_for_each(|(index, line)| line.write(index == 0, &mut out))
     }
 
+    /// Whether every event that is felt is felt on one of so many channels: on another it would be felt nowhere.
+    ///
+    /// # Errors
+    /// [`LogError::NoActuator`], the first.
+    pub fn check_actuators(&self, channels: usize) -> Result<(), LogError> {
+        let hand = |event: &LogEvent| match event {
+            LogEvent::Begin { touching, .. } => touching.hand.actuator,
+            LogEvent::Impact { hand, .. } => hand.actuator,
+            LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => None,
+        };
+        let missing = |line: &LogLine| {
+            let actuator = hand(&line.event).filter(|actuator| usize::from(*actuator) >= channels)?;
+            Some(LogError::NoActuator { t: line.t, actuator, channels })
+        };
+        self.lines.iter().find_map(missing).map_or(Ok(()), Err)
+    }
+
     /// Time of the last event, s; 0 for an empty log.
     #[must_use]
     pub fn end_s(&self) -> f64 {

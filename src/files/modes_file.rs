@@ -1,6 +1,8 @@
 //! Modes files, `NAME.modes.json`: the modes of one body, where they come from, and what its strike had besides.
 
+use super::shapes_sidecar::{shapes_from_bytes, shapes_to_bytes};
 use super::storage::{self, Disk, Files};
+use crate::model::click::Click;
 use crate::model::modal_model::{ModalModel, ModalModelError};
 use crate::model::mode_shapes::{ModeShapes, Unit};
 use crate::model::residual::Residual;
@@ -34,6 +36,11 @@ struct File {
     residual: Option<Residual>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     shapes: Option<ModeShapes>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    click: Option<Click>,
+    /// Name of the file that holds the shapes instead, beside this one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    shapes_beside: Option<String>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
@@ -68,7 +75,12 @@ impl ModalModel {
             }
             _ => ModalModelError::Unreadable { path: path.into(), source },
         })?;
-        Self::parse(&text).map_err(|error| match error {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let beside = |name: &str| match files.read(&folder.join(name)) {
+            Ok(bytes) => Ok(bytes),
+            Err(error) => Err(format!("cannot be read ({error}); put it beside the modes file")),
+        };
+        Self::parse_with(&text, &beside).map_err(|error| match error {
             ModalModelError::Malformed { message, .. } => {
                 ModalModelError::Malformed { path: path.into(), message }
             }
@@ -84,10 +96,31 @@ impl ModalModel {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn parse(text: &str) -> Result<Self, ModalModelError> {
+        Self::parse_with(text, &|_| {
+            Err("lies in a file of its own, so the modes file must be loaded by its path".into())
+        })
+    }
+
+    /// The same with whatever tells the bytes of a file beside it.
+    fn parse_with(
+        text: &str,
+        beside: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, ModalModelError> {
         let malformed = |message: String| ModalModelError::Malformed { path: "modes".into(), message };
-        let file: File = serde_json::from_str(text).map_err(|error| malformed(error.to_string()))?;
+        let mut file: File = serde_json::from_str(text).map_err(|error| malformed(error.to_string()))?;
         if file.format != FORMAT {
             return Err(malformed(format!("format is \"{}\"", file.format)));
+        }
+        if let Some(name) = &file.shapes_beside {
+            let told = |what: String| malformed(format!("shapes_beside \"{name}\": {what}"));
+            if file.shapes.is_some() {
+                return Err(told("stands beside shapes; write one of them".into()));
+            }
+            if Path::new(name).components().count() != 1 {
+                return Err(told("must be the name of a file in the same folder".into()));
+            }
+            let bytes = beside(name).map_err(told)?;
+            file.shapes = Some(shapes_from_bytes(&bytes, file.modes.len()).map_err(told)?);
         }
         match (&file.shapes, file.version) {
             (None, VERSION | VERSION_WITH_SHAPES) => {}
@@ -95,9 +128,9 @@ impl ModalModel {
             (Some(_), VERSION) => return Err(malformed("shapes stand in version 1; need version 2".into())),
             _ => return Err(malformed(format!("version is {}", file.version))),
         }
-        let File { source, impulse_n_s, modes, positions, residual, shapes, unit, .. } = file;
+        let File { source, impulse_n_s, modes, positions, residual, shapes, unit, click, .. } = file;
         let shapes = shapes.map(Arc::new);
-        let model = Self { source, impulse_n_s, modes, positions, residual, shapes, unit };
+        let model = Self { source, impulse_n_s, modes, positions, residual, shapes, unit, click };
         model.check()?;
         Ok(model)
     }
@@ -105,7 +138,20 @@ impl ModalModel {
     /// The text of the modes file, of version 2 where there are shapes; numbers round-trip.
     #[must_use]
     pub fn to_json(&self) -> String {
-        let file = File {
+        serde_json::to_string(&self.file()).unwrap_or_default()
+    }
+
+    /// The same with the shapes in a file of their own, `name` beside it: its text, and the bytes of that file. None where there are no shapes.
+    #[must_use]
+    pub fn to_json_beside(&self, name: &str) -> Option<(String, Vec<u8>)> {
+        let mut file = self.file();
+        let bytes = shapes_to_bytes(&file.shapes.take()?);
+        file.shapes_beside = Some(name.to_owned());
+        Some((serde_json::to_string(&file).unwrap_or_default(), bytes))
+    }
+
+    fn file(&self) -> File {
+        File {
             format: FORMAT.into(),
             version: if self.shapes.is_some() { VERSION_WITH_SHAPES } else { VERSION },
             source: self.source.clone(),
@@ -115,8 +161,9 @@ impl ModalModel {
             positions: self.positions.clone(),
             residual: self.residual.clone(),
             shapes: self.shapes.as_deref().cloned(),
-        };
-        serde_json::to_string(&file).unwrap_or_default()
+            click: self.click,
+            shapes_beside: None,
+        }
     }
 }
 

@@ -1,36 +1,16 @@
 //! The shapes in a modes file of version 2, for those who strike a body anywhere.
 
-use super::modes_file::VERSION_WITH_SHAPES;
-use super::storage::{self, Disk};
-use crate::model::modal_model::ModalModelError;
+use crate::model::modal_model::{ModalModel, ModalModelError};
 use crate::model::mode_shapes::{ModeShapes, Unit};
-use serde::Deserialize;
 use std::path::Path;
-
-#[derive(Deserialize)]
-struct File {
-    version: u32,
-    #[serde(default)]
-    unit: Unit,
-    modes: Vec<serde::de::IgnoredAny>,
-    #[serde(default)]
-    shapes: Option<ModeShapes>,
-}
+use std::sync::Arc;
 
 /// Reads the shapes of a modes file and its unit; none where it has none.
 ///
 /// # Errors
 /// When the file cannot be read or its shapes do not fit each other.
 pub fn load_shapes(path: impl AsRef<Path>) -> Result<Option<(ModeShapes, Unit)>, ModalModelError> {
-    let path = path.as_ref();
-    let text = storage::text(&Disk, path)
-        .map_err(|source| ModalModelError::Unreadable { path: path.into(), source })?;
-    parse_shapes(&text).map_err(|error| match error {
-        ModalModelError::Malformed { message, .. } => {
-            ModalModelError::Malformed { path: path.into(), message }
-        }
-        other => other,
-    })
+    ModalModel::load(path).map(shapes_of)
 }
 
 /// Reads the shapes of the text of a modes file and its unit; none where it has none.
@@ -38,24 +18,16 @@ pub fn load_shapes(path: impl AsRef<Path>) -> Result<Option<(ModeShapes, Unit)>,
 /// # Errors
 /// As [`load_shapes`].
 pub fn parse_shapes(text: &str) -> Result<Option<(ModeShapes, Unit)>, ModalModelError> {
-    let malformed = |message: String| ModalModelError::Malformed { path: "modes".into(), message };
-    let file: File = serde_json::from_str(text).map_err(|error| malformed(error.to_string()))?;
-    match file.shapes {
-        Some(_) if file.version != VERSION_WITH_SHAPES => {
-            Err(malformed(format!("shapes stand in version {}; need version 2", file.version)))
-        }
-        Some(shapes) => {
-            shapes.check(file.modes.len()).map_err(malformed)?;
-            Ok(Some((shapes, file.unit)))
-        }
-        None => Ok(None),
-    }
+    ModalModel::parse(text).map(shapes_of)
+}
+
+fn shapes_of(model: ModalModel) -> Option<(ModeShapes, Unit)> {
+    model.shapes.map(|shapes| (Arc::unwrap_or_clone(shapes), model.unit))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::modal_model::ModalModel;
 
     const TETRA: &str = r#"{"format":"asperity.modes","version":2,"unit":"relative",
         "modes":[{"frequency_hz":812.4,"decay_per_s":14.2,"amplitude":0.5,"phase_rad":1.5}],

@@ -123,7 +123,7 @@ pub struct Pixels {
 pub(crate) fn channel(files: &dyn Files, image: &Pixels) -> Result<ChannelImage, FileError> {
     let path = &image.path;
     let read = match files.picture(path) {
-        Some(picture) => picture.channel(image.channel),
+        Some(picture) => picture.map(image.channel),
         None => decoded(files, image),
     };
     read.map_err(|problem| match problem {
@@ -134,7 +134,7 @@ pub(crate) fn channel(files: &dyn Files, image: &Pixels) -> Result<ChannelImage,
 
 #[cfg(feature = "image")]
 fn decoded(files: &dyn Files, image: &Pixels) -> Result<ChannelImage, Problem> {
-    asperity_texture::image_io::read_channel(&files.read(&image.path).map_err(Problem::Io)?, image.channel)
+    asperity_texture::image_io::read_map(&files.read(&image.path).map_err(Problem::Io)?, image.channel)
 }
 
 #[cfg(not(feature = "image"))]

@@ -34,7 +34,7 @@ use crate::prepared::probe::PreparedProbe;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::limits;
 use asperity_dsp::micro_contact::Probe;
-use asperity_dsp::modal_bank::Kernel;
+use asperity_dsp::simd::Level;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::Setup;
 use asperity_texture::moving_picture::MovingPicture;
@@ -63,7 +63,7 @@ use std::sync::atomic::Ordering::Relaxed;
 pub struct Scene {
     pub(crate) config: Config,
     /// The instructions that bodies and probes are prepared for.
-    pub(crate) kernel: Kernel,
+    pub(crate) kernel: Level,
     pub(crate) clock: Clock,
     last_time_s: f64,
     pub(crate) surfaces: Places<KnownSurface>,
@@ -82,8 +82,15 @@ pub struct Scene {
     pub(crate) given: HashMap<BodyId, Body>,
     /// For [`Scene::why_silent`].
     reported: Reported,
-    /// What each contact touches.
-    touched: HashMap<ContactId, SurfaceId>,
+    /// What each contact touches, and the place in its body that its newest report told.
+    touched: HashMap<ContactId, Touched>,
+}
+
+/// What a contact touches.
+#[derive(Clone, Copy)]
+struct Touched {
+    surface: SurfaceId,
+    at_m: Option<[f64; 3]>,
 }
 
 /// What the game half remembers of a surface.
@@ -96,6 +103,8 @@ pub(crate) struct KnownSurface {
     place: Place,
     tip_law: Option<TipLaw>,
     body: Option<BodyId>,
+    /// Whether contacts on it stick and slip.
+    rubs: bool,
 }
 
 /// What the game half remembers of a body.
@@ -105,12 +114,21 @@ pub(crate) struct KnownBody {
     lowest_mode_hz: f64,
     /// Its surface, where that is known.
     field: Option<Arc<StrikeField>>,
+    /// Its mass is known.
+    weighs: bool,
+}
+
+impl KnownBody {
+    /// Whether its motion under a contact is known.
+    fn can_be_rubbed(&self) -> bool {
+        self.weighs || self.field.is_some()
+    }
 }
 
 impl Scene {
     pub(crate) fn new(
         config: Config,
-        kernel: Kernel,
+        kernel: Level,
         clock: Clock,
         to_audio: Sender<Message>,
         from_audio: Receiver<Dead>,
@@ -211,9 +229,18 @@ impl Scene {
         for radius_m in &self.tips_m {
             surface.source.prepare_tip(*radius_m);
         }
-        let silent =
-            KnownBody { material: Body::DEFAULT_MATERIAL, lowest_mode_hz: f64::INFINITY, field: None };
+        let silent = KnownBody {
+            material: Body::DEFAULT_MATERIAL,
+            lowest_mode_hz: f64::INFINITY,
+            field: None,
+            weighs: false,
+        };
         let body = surface.body.map_or(Ok(silent), |body| self.known_body(body))?;
+        let rubs = surface.rubs().is_some();
+        let placed = body.field.is_none() || surface.frame.is_some();
+        if rubs && !(body.can_be_rubbed() && placed) {
+            return Err(AddError::CannotRub);
+        }
         let stroking = self.stroking(&body)?;
         let config = &self.config;
         let period_m = surface.wrap_period_m();
@@ -235,7 +262,10 @@ impl Scene {
         });
         let surface =
             Box::new(SurfaceSlot { surface, trajectory, place_trajectory, stroking, overlay, period_m });
-        Ok((Message::SetSurface { id, surface }, KnownSurface { rings, picture, place, tip_law, body: on }))
+        Ok((
+            Message::SetSurface { id, surface },
+            KnownSurface { rings, picture, place, tip_law, body: on, rubs },
+        ))
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is

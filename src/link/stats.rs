@@ -62,6 +62,8 @@ counters! {
     micro_collisions,
     /// Blows of a probe that had left the ground: contact forces beyond thirty times what pressed.
     blows,
+    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64 samples: one at a time sticks and slips.
+    rubs_crowded_out,
     /// Events handed back because the queue was full.
     dropped,
     /// Moves that a newer event of the same contact made pointless before they were sent.

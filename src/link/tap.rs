@@ -51,6 +51,11 @@ pub trait Tap {
 
     /// Called once for each contact and stretch of samples, in order of time.
     fn contact(&mut self, block: &ContactBlock<'_>);
+
+    /// Asked by an offline render before each block, with the samples done and the samples wanted: `false` stops it. Nobody asks live.
+    fn goes_on(&mut self, _done: u64, _of: u64) -> bool {
+        true
+    }
 }
 
 /// Looks at nothing.

@@ -1,6 +1,7 @@
 //! Edits of a recording, made again.
 
 use super::maker::Maker;
+use super::maps::Maps;
 use crate::files::contact_log::{LogEdit, LogSurface, Names};
 use crate::files::scene_file::{MakeSource, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
@@ -93,7 +94,13 @@ impl Edits<'_> {
         if let Some(table) = &is.is {
             let entry =
                 SurfaceEntry::read(table.clone(), Path::new(is.folder.as_deref().unwrap_or_default()));
-            let maker = Maker { files: self.files, own: self.own, seed: scene.config().seed, workers: None };
+            let maker = Maker {
+                files: self.files,
+                maps: &Maps::default(),
+                own: self.own,
+                seed: scene.config().seed,
+                workers: None,
+            };
             return entry.and_then(|entry| maker.surface(&entry, is.material, names)).map_err(place);
         }
         let made = self.surfaces.as_mut().and_then(|make| make(name, names));

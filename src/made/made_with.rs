@@ -1,5 +1,6 @@
 //! Means: what every thing of a scene is made with.
 
+use super::maps::Maps;
 use crate::files::Files;
 use crate::files::scene_file::MakeSource;
 use asperity_texture::sand::SandWorker;
@@ -9,6 +10,8 @@ use std::cell::RefCell;
 #[derive(Clone, Copy)]
 pub(crate) struct Maker<'a> {
     pub files: &'a dyn Files,
+    /// Maps that were made for other things of the scene.
+    pub maps: &'a Maps,
     /// Makers of sources that the engine does not know.
     pub own: &'a [(&'a str, MakeSource)],
     /// For sources that name none.

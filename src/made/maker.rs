@@ -1,11 +1,12 @@
 //! From what a scene file says of bodies, surfaces and actuators to what the engine takes.
 
 pub(crate) use super::made_with::Maker;
+use super::maps::{MapOf, Values};
 use super::source::Ground;
 use crate::files::actuator_profile::ActuatorPreset;
 use crate::files::contact_log::{LogSurface, Names};
 use crate::files::scene_file::{ActuatorEntry, AudioEntry, BodyEntry, RoughnessEntry, Source, SurfaceEntry};
-use crate::files::{FileError, Files, storage};
+use crate::files::{FileError, Files};
 use crate::model::actuator::{ActuatorSettings, DeviceProfile};
 use crate::model::body::Body;
 use crate::model::material::Material;
@@ -13,7 +14,6 @@ use crate::model::modal_model::ModalModel;
 use crate::model::mode_shapes::Unit;
 use crate::model::surface::{Roughness, Surface};
 use asperity_texture::height_map::Extent;
-use asperity_texture::height_map::HeightMap;
 use asperity_texture::wrap::Wrap;
 use std::path::Path;
 
@@ -26,6 +26,10 @@ impl<'a> Maker<'a> {
             (None, Some((shape, size_m))) => shape.modes(&material, size_m).map_err(FileError::told)?,
             (None, None) => ModalModel::silent(),
         };
+        if entry.radiation {
+            let told = |error| FileError::told(error).within(format!("body \"{}\"", entry.name));
+            model = model.radiating(&material).map_err(told)?;
+        }
         if let Some(gain) = entry.residual {
             let residual = model.residual.take();
             model = model.with_residual(residual, gain).map_err(FileError::told)?;
@@ -41,7 +45,9 @@ impl<'a> Maker<'a> {
             let gain = found.filter(|gain| **gain > 0.0).unwrap_or(&1.0);
             model = model.with_gain(1.0 / (pascals * gain)).map_err(FileError::told)?;
         }
-        Ok(Body::new(model).of(material).on_bus(bus))
+        let stock_kg = || entry.stock.map(|(shape, size_m)| shape.mass_kg(&material, size_m));
+        let body = Body::new(model).of(material).on_bus(bus);
+        Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), ..body })
     }
 
     /// What all sources of a surface share.
@@ -88,6 +94,7 @@ impl<'a> Maker<'a> {
         if let Some(frame) = entry.frame {
             surface = surface.frame(frame);
         }
+        surface.stick_slip = entry.stick_slip;
         if let Some(friction) = entry.friction {
             surface = surface.friction(friction);
         }
@@ -108,11 +115,9 @@ impl<'a> Maker<'a> {
         Ok(match &entry.roughness {
             RoughnessEntry::Number(r) => r.map(Roughness::Constant),
             RoughnessEntry::Map { image, gloss } => {
-                let raster = storage::channel(self.files, image)?.raster;
-                let raster = if *gloss { raster.map(|gloss| 1.0 - gloss) } else { raster };
-                let map = HeightMap::new(&raster, extent, entry.wrap)
-                    .map_err(|error| FileError::told(error).within(image.path.display()))?;
-                Some(Roughness::Map(Box::new(map)))
+                let (image, invert, wrap) = (image.clone(), *gloss, entry.wrap);
+                let map = MapOf { image, values: Values::AsTheyAre, invert, extent, wrap };
+                Some(Roughness::Map(Box::new(self.maps.get(map, self.files)?)))
             }
         })
     }

@@ -3,4 +3,5 @@
 pub(crate) mod edit;
 mod made_with;
 pub(crate) mod maker;
+pub(crate) mod maps;
 pub(crate) mod source;

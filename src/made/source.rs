@@ -1,7 +1,9 @@
 //! Sources made of a scene file's words: heights that the engine samples.
 
 use super::made_with::Maker;
+use super::maps::{MapOf, Values};
 use crate::files::scene_file::{Brownian, Lattice as LatticeEntry, Sand, Source, ToolPicture};
+use crate::files::storage::Pixels;
 use crate::files::{FileError, storage};
 use crate::model::frame::SurfaceFrame;
 #[cfg(feature = "brownian")]
@@ -41,11 +43,8 @@ impl Ground<'_> {
                     .map_err(FileError::told)?,
             ),
             Source::Map { image, relief_m, invert } => {
-                let heights =
-                    upright(storage::channel(self.maker.files, image)?.debanded(self.wrap), *invert);
                 let extent = Extent { relief_m: *relief_m, ..self.extent };
-                let map = HeightMap::new(&heights, extent, self.wrap);
-                Box::new(map.map_err(|error| FileError::told(error).within(image.path.display()))?)
+                Box::new(self.map(image, *invert, extent)?)
             }
             Source::Solid { parameters, seed } => Box::new(self.solid(parameters, *seed)?),
             Source::Brownian(brownian) => self.brownian(brownian)?,
@@ -60,15 +59,20 @@ impl Ground<'_> {
                 Box::new(scale.map_err(|error| FileError::told(error).within("scale"))?)
             }
             Source::Mask { image, inside, outside } => {
-                let weights = storage::channel(self.maker.files, image)?.debanded(self.wrap);
-                let mask = HeightMap::new(&weights, self.extent, self.wrap)
-                    .map_err(|error| FileError::told(error).within(image.path.display()))?;
+                let mask = self.map(image, false, self.extent)?;
                 Box::new(Mask::new(Box::new(mask), self.source(inside)?, self.source(outside)?))
             }
             Source::Crossfade { from, to, at_s } => {
                 Box::new(Crossfade::new(self.source(from)?, self.source(to)?).at_s(*at_s))
             }
         })
+    }
+
+    /// Heights as a picture shows them.
+    fn map(self, image: &Pixels, invert: bool, extent: Extent) -> Result<HeightMap, FileError> {
+        let (image, wrap) = (image.clone(), self.wrap);
+        let of = MapOf { image, values: Values::Debanded, invert, extent, wrap };
+        self.maker.maps.get(of, self.maker.files)
     }
 
     /// Whether heights belong to places.

@@ -21,6 +21,7 @@ pub struct Body {
     pub(crate) material: Material,
     pub(crate) bus: usize,
     pub(crate) gain: f64,
+    pub(crate) mass_kg: Option<f64>,
 }
 
 impl Body {
@@ -30,7 +31,7 @@ impl Body {
     /// A body of PLA on bus 0.
     #[must_use]
     pub fn new(model: ModalModel) -> Self {
-        Self { model, material: Self::DEFAULT_MATERIAL, bus: 0, gain: 1.0 }
+        Self { model, material: Self::DEFAULT_MATERIAL, bus: 0, gain: 1.0, mass_kg: None }
     }
 
     /// Of another material, which decides how long impacts on it last.
@@ -49,6 +50,14 @@ impl Body {
 }
 
 impl Body {
+    /// Its mass: what has no [shapes](crate::ModeShapes) can be rubbed ([`Surface::stick_slip`](crate::Surface::stick_slip)) if this is known. Each of its
+    /// modes then moves as a string's of this mass where it swings most, and elsewhere as much less as the strike position says.
+    #[must_use]
+    pub fn mass_kg(mut self, mass_kg: f64) -> Self {
+        self.mass_kg = Some(mass_kg);
+        self
+    }
+
     /// Louder or softer than its modes say, linear, 0–1000; changed while it sounds by
     /// [`Scene::set_body_gain`](crate::Scene::set_body_gain).
     #[must_use]

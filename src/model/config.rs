@@ -8,7 +8,8 @@ use crate::model::inner_rate::InnerRate;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::output as limits;
 use asperity_dsp::micro_contact::{Integrator, Probe};
-use asperity_dsp::modal_bank::{Culling, Isa, Kernel};
+use asperity_dsp::modal_bank::Culling;
+use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::PathMode;
 use serde::{Deserialize, Serialize};
 
@@ -126,9 +127,9 @@ impl Config {
     ///
     /// # Errors
     /// When this processor does not have the one that is asked for.
-    pub(crate) fn kernel(&self) -> Result<Kernel, ConfigError> {
-        let Some(isa) = self.kernel else { return Ok(Kernel::detect()) };
-        Kernel::find(isa).ok_or(ConfigError::Kernel { isa: isa.name() })
+    pub(crate) fn kernel(&self) -> Result<Level, ConfigError> {
+        let Some(isa) = self.kernel else { return Ok(Level::detect()) };
+        Level::find(isa).ok_or(ConfigError::Kernel { isa: isa.name() })
     }
 
     pub(crate) fn check(&self) -> Result<(), ConfigError> {

@@ -3,7 +3,7 @@
 use crate::model::bad_value::BadValue;
 use crate::model::event::ContactEvent;
 use asperity_dsp::DesignError;
-use asperity_dsp::modal_bank::{Isa, Kernel};
+use asperity_dsp::simd::{Isa, Level};
 
 /// Why an engine cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -22,7 +22,7 @@ pub enum ConfigError {
 
 /// The instruction sets of this processor, separated by commas.
 fn known_kernels() -> String {
-    let here = Isa::ALL.into_iter().filter(|isa| Kernel::find(*isa).is_some());
+    let here = Isa::ALL.into_iter().filter(|isa| Level::find(*isa).is_some());
     here.map(Isa::name).collect::<Vec<_>>().join(", ")
 }
 
@@ -110,6 +110,11 @@ pub enum AddError {
     /// The surface never changes, so that there is nothing to be shown.
     #[error("surface: its source never changes, so that there is no moving picture of it; only sand has one")]
     NeverChanges,
+    /// Friction is to ring a body of which nobody knows how it moves.
+    #[error(
+        "excitation: friction sticks and slips with a body, so its motion must be known; put the surface on a body whose modes have shapes and give it a frame, or tell the body's mass_kg"
+    )]
+    CannotRub,
     /// What it refers to is not in this scene.
     #[error("{0}: is not in this scene; add it first")]
     Unknown(&'static str),

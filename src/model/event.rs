@@ -247,6 +247,18 @@ impl ContactEvent {
         self
     }
 
+    /// The same at the place in the body that another one tells.
+    pub(crate) fn at_place_of(mut self, told: &Self) -> Self {
+        if let (
+            Self::Begin { sample, .. } | Self::Moved { sample, .. },
+            Self::Begin { sample: told, .. } | Self::Moved { sample: told, .. },
+        ) = (&mut self, told)
+        {
+            sample.at_m = told.at_m;
+        }
+        self
+    }
+
     /// A contact lifts off.
     #[must_use]
     pub fn end(contact: ContactId) -> Self {

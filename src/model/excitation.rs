@@ -10,11 +10,14 @@ pub enum Exciter {
     Collisions,
     /// The alternating part of the contact force.
     Force,
+    /// Friction along the motion, which sticks and slips with the body in every sample: bowed and squealing things.
+    Friction,
 }
 
 impl Exciter {
     /// All there are, with the words that files use.
-    pub const ALL: [(&str, Self); 2] = [("collisions", Self::Collisions), ("force", Self::Force)];
+    pub const ALL: [(&str, Self); 3] =
+        [("collisions", Self::Collisions), ("force", Self::Force), ("friction", Self::Friction)];
 
     const fn bit(self) -> u8 {
         1 << self as u8
@@ -40,12 +43,18 @@ impl Excitation {
     pub const COLLISIONS: Self = Self(Exciter::Collisions.bit());
     /// The alternating contact force only.
     pub const FORCE: Self = Self(Exciter::Force.bit());
+    /// Friction only.
+    pub const FRICTION: Self = Self(Exciter::Friction.bit());
     /// Micro-collisions and force, the default.
     pub const BOTH: Self = Self(Self::COLLISIONS.0 | Self::FORCE.0);
 
     /// Words that files may use for a whole set.
-    pub(crate) const WORDS: [(&str, Self); 3] =
-        [("collisions", Self::COLLISIONS), ("force", Self::FORCE), ("both", Self::BOTH)];
+    pub(crate) const WORDS: [(&str, Self); 4] = [
+        ("collisions", Self::COLLISIONS),
+        ("force", Self::FORCE),
+        ("friction", Self::FRICTION),
+        ("both", Self::BOTH),
+    ];
 
     /// The same and one more.
     #[must_use]
@@ -85,7 +94,7 @@ impl<'de> Deserialize<'de> for Excitation {
         }
         let unknown = |word: &str| {
             serde::de::Error::custom(format!(
-                "\"{word}\" is unknown; must be collisions, force or both, or a list of collisions, force"
+                "\"{word}\" is unknown; must be collisions, force, friction or both, or a list of collisions, force, friction"
             ))
         };
         match Words::deserialize(deserializer)? {
@@ -107,7 +116,8 @@ mod tests {
 
     #[test]
     fn every_set_survives_the_way_through_text_and_the_old_words_stay() {
-        for set in [Excitation::NONE, Excitation::COLLISIONS, Excitation::FORCE, Excitation::BOTH] {
+        let all = Excitation::BOTH.with(Exciter::Friction);
+        for set in [Excitation::NONE, Excitation::COLLISIONS, Excitation::FORCE, Excitation::BOTH, all] {
             let text = serde_json::to_string(&set).unwrap();
             assert_eq!(serde_json::from_str::<Excitation>(&text).unwrap(), set, "{text}");
         }

@@ -76,6 +76,12 @@ impl SurfaceFrame {
         self.axes.map(|axis| velocity.dot(axis))
     }
 
+    /// The direction into the body: against u × v.
+    pub(crate) fn inward(&self) -> [f64; 3] {
+        let [u, v] = self.axes;
+        (-u.cross(v)).to_array()
+    }
+
     /// Where uv (0, 0) lies, m.
     #[must_use]
     pub fn origin_m(&self) -> [f64; 3] {

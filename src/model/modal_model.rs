@@ -4,6 +4,7 @@
 //! to an impulse of `impulse_n_s`; the engine scales linearly, so an impulse J sounds as
 //! y · J / `impulse_n_s` (Hasti §III-D).
 
+use crate::model::click::Click;
 use crate::model::material::Material;
 use crate::model::mode_shapes::{ModeShapes, Unit};
 use crate::model::residual::Residual;
@@ -43,6 +44,8 @@ pub struct ModalModel {
     pub shapes: Option<Arc<ModeShapes>>,
     /// What amplitudes and residual are.
     pub unit: Unit,
+    /// What a blow sounds like because it pushes the body as a whole.
+    pub click: Option<Click>,
 }
 
 /// Most strike positions a body may have, the first included.
@@ -102,6 +105,7 @@ impl ModalModel {
             residual: None,
             shapes: None,
             unit: Unit::Relative,
+            click: None,
         }
     }
 
@@ -117,6 +121,9 @@ impl ModalModel {
         }
         if let Some(residual) = &mut self.residual {
             residual.samples.iter_mut().for_each(|x| *x = (f64::from(*x) * gain) as f32);
+        }
+        if let Some(click) = &mut self.click {
+            click.gain *= gain;
         }
         self.check()?;
         Ok(self)
@@ -153,6 +160,10 @@ impl ModalModel {
             Arc::make_mut(shapes).scale(size);
         }
         self.residual = None;
+        if let Some(click) = &mut self.click {
+            let larger = size * size * size;
+            (click.volume_m3, click.mass_kg) = (click.volume_m3 * larger, click.mass_kg * larger);
+        }
         self.check()?;
         Ok(self)
     }
@@ -231,6 +242,7 @@ impl ModalModel {
             residual: self.residual.clone(),
             shapes: self.shapes.as_ref().map(|shapes| Arc::new(shapes.kept(&keep))),
             unit: self.unit,
+            click: self.click,
         }
     }
 
@@ -294,6 +306,9 @@ impl ModalModel {
             if let Some(bad) = amplitudes.iter().find(|a| !in_range(**a, -1e9, 1e9)) {
                 return Err(refuse(format!("positions[{p}]"), *bad, "finite, within ±1e9"));
             }
+        }
+        if let Some(Err((field, value, expected))) = self.click.as_ref().map(Click::check) {
+            return Err(refuse(field.into(), value, expected));
         }
         if let Some(Err((field, value, expected))) = self.residual.as_ref().map(Residual::check) {
             return Err(refuse(field.into(), value, expected));

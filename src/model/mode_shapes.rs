@@ -40,7 +40,7 @@ pub struct ModeShapes {
 impl ModeShapes {
     /// The same body `size` times as large: mass-normalised motion falls as its mass grows, and what it sounds like stays.
     pub(crate) fn scale(&mut self, size: f64) {
-        let heavier = size.powf(1.5);
+        let heavier = libm::pow(size, 1.5);
         self.points_m.iter_mut().flatten().for_each(|x| *x *= size);
         self.gains.iter_mut().for_each(|gain| *gain *= heavier);
         let motion = self.phi_per_sqrt_kg.iter_mut().flatten().flatten();

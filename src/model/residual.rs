@@ -79,7 +79,7 @@ impl Residual {
 /// Low-pass of `cutoff` (of the source's Nyquist frequency) within ± `reach` samples.
 fn kernel(x: f64, cutoff: f64, reach: f64) -> f64 {
     let angle = std::f64::consts::PI * cutoff * x;
-    let sinc = if angle.abs() < 1e-9 { 1.0 } else { angle.sin() / angle };
+    let sinc = if angle.abs() < 1e-9 { 1.0 } else { libm::sin(angle) / angle };
     let edge = (1.0 - (x / reach).powi(2)).max(0.0).sqrt();
     cutoff * sinc * bessel_i0(KAISER_BETA * edge) / bessel_i0(KAISER_BETA)
 }

@@ -30,6 +30,7 @@ use crate::model::modal_model::ModalModel;
 use crate::model::mode_shapes::Unit;
 use asperity_dsp::limits::material::SIZE_M;
 use asperity_dsp::mode::Mode;
+use libm::{cos, cosh, exp, sin, sinh};
 use std::f64::consts::{PI, TAU};
 
 /// Highest mode of a stock body, Hz: the end of hearing.
@@ -148,7 +149,8 @@ impl Body {
     /// # Errors
     /// As [`Stock::modes`].
     pub fn stock(shape: Stock, material: Material, size_m: f64) -> Result<Self, BadValue> {
-        Ok(Self::new(shape.modes(&material, size_m)?).of(material))
+        let modes = shape.modes(&material, size_m)?;
+        Ok(Self::new(modes).of(material).mass_kg(shape.mass_kg(&material, size_m)))
     }
 }
 
@@ -202,7 +204,7 @@ fn bending_root(n: usize) -> f64 {
     for _ in 0..4 {
         // cos x = 1 / cosh x, whose right side changes slowly.
         let side = if n.is_multiple_of(2) { 1.0 } else { -1.0 };
-        x = (n as f64 + 0.5) * PI - side * (1.0 / x.cosh()).asin();
+        x = (n as f64 + 0.5) * PI - side * libm::asin(1.0 / cosh(x));
     }
     x
 }
@@ -210,11 +212,11 @@ fn bending_root(n: usize) -> f64 {
 /// Shape of a free bar at x lengths from one end, its mean square 1.
 fn bending_shape(root: f64, x: f64) -> f64 {
     let z = root * x;
-    let span = root.sinh() - root.sin();
-    let sigma = (root.cosh() - root.cos()) / span;
+    let span = sinh(root) - sin(root);
+    let sigma = (cosh(root) - cos(root)) / span;
     // cosh z − σ sinh z without the difference of two large numbers.
-    let rest = (root.cos() - root.sin() - (-root).exp()) / span;
-    0.5 * (rest * z.exp() + (1.0 + sigma) * (-z).exp()) + z.cos() - sigma * z.sin()
+    let rest = (cos(root) - sin(root) - exp(-root)) / span;
+    0.5 * (rest * exp(z) + (1.0 + sigma) * exp(-z)) + cos(z) - sigma * sin(z)
 }
 
 fn bar(material: &Material, length_m: f64) -> Shape {
@@ -234,7 +236,7 @@ fn tube(material: &Material, length_m: f64) -> Shape {
         mass_kg: material.density_kg_m3 * length_m * section_m2,
         // What is outside; the inside radiates into itself.
         surface_m2: TAU * outer_m * length_m,
-        modes: slender(material, length_m, 0.5 * outer_m.hypot(inner_m), SHEAR.1),
+        modes: slender(material, length_m, 0.5 * libm::hypot(outer_m, inner_m), SHEAR.1),
     }
 }
 

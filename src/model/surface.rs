@@ -1,12 +1,14 @@
 //! A touchable surface: a source of heights, its size, its roughness and the body that it rings.
 
 use crate::model::bad_value::{BadValue, within};
-use crate::model::excitation::Excitation;
+use crate::model::excitation::{Excitation, Exciter};
 use crate::model::frame::SurfaceFrame;
 use crate::model::id::BodyId;
 use crate::model::material::Material;
 use asperity_dsp::limits;
-use asperity_texture::height_field::{Beyond, HeightField};
+use asperity_dsp::stick_slip::Friction;
+use asperity_texture::footprint::{self, footprint_radius_m};
+use asperity_texture::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
 use asperity_texture::height_map::{Extent, FRICTION, HeightMap, MapError};
 #[cfg(feature = "image")]
 use asperity_texture::image_io;
@@ -46,6 +48,10 @@ pub const EXCITER_RADIUS_M: f64 = 1e-3;
 /// What that bead is made of.
 pub const EXCITER_MATERIAL: Material = Material::NAIL;
 
+/// Friction of a surface that rubs its body and says nothing else: rosin on a bow's hair, to the order of what is published of it (static 0.8,
+/// falling to 0.3 within some centimetres a second). **Assumed.**
+pub const DEFAULT_STICK_SLIP: Friction = Friction { mu_static: 0.8, mu_kinetic: 0.3, slip_speed_m_s: 0.05 };
+
 /// A surface, ready to be added to a scene.
 pub struct Surface {
     pub(crate) source: Box<dyn HeightField>,
@@ -59,6 +65,7 @@ pub struct Surface {
     pub(crate) friction: Option<f64>,
     pub(crate) compliance_m_n: f64,
     pub(crate) excitation: Excitation,
+    pub(crate) stick_slip: Option<Friction>,
     pub(crate) strike_position: usize,
     pub(crate) frame: Option<SurfaceFrame>,
     /// What it was made from, as whoever made it wrote it down, so that a recording can say it again.
@@ -119,6 +126,7 @@ impl Surface {
             friction: None,
             compliance_m_n: 0.0,
             excitation: Excitation::default(),
+            stick_slip: None,
             strike_position: 0,
             frame: None,
             described: None,
@@ -135,8 +143,8 @@ impl Surface {
         roughness: impl AsRef<Path>,
         extent: Extent,
     ) -> Result<Self, SurfaceError> {
-        let heights = image_io::load_channel(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
-        let rough = image_io::load_channel(roughness, Channel::Luma)?.raster;
+        let heights = image_io::load_map(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
+        let rough = image_io::load_map(roughness, Channel::Luma)?.raster;
         let map = HeightMap::new(&heights, extent, Wrap::Repeat)?.with_roughness_map(&rough)?;
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
     }
@@ -147,7 +155,7 @@ impl Surface {
     /// As [`from_maps`](Self::from_maps).
     #[cfg(feature = "image")]
     pub fn from_displacement(displacement: impl AsRef<Path>, extent: Extent) -> Result<Self, SurfaceError> {
-        let heights = image_io::load_channel(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
+        let heights = image_io::load_map(displacement, Channel::Luma)?.debanded(Wrap::Repeat);
         let map = HeightMap::new(&heights, extent, Wrap::Repeat)?;
         Ok(Self::new(map, extent.width_m, extent.height_m)?)
     }
@@ -243,10 +251,20 @@ impl Surface {
     /// ```text
     /// d = C F        a tip that stands d below the untouched surface is carried with d / C
     /// ```
+    /// A probe with a round tip feels the mean of a map under it ([`asperity_texture::footprint`]).
     #[must_use]
     pub fn compliance_m_n(mut self, compliance_m_n: f64) -> Self {
         self.compliance_m_n = compliance_m_n;
         self
+    }
+
+    /// Its source as a ball feels it that stands in it, as deep as its compliance says.
+    pub(crate) fn sample_under(&mut self, path: &PathBlock<'_>, tip_radius_m: f64, out: &mut SurfaceBlock) {
+        let mut radius_m = [0.0; MAX_BLOCK];
+        for (i, radius_m) in radius_m.iter_mut().enumerate().take(path.len()) {
+            *radius_m = footprint_radius_m(tip_radius_m, self.compliance_m_n * path.pressed_n(i));
+        }
+        footprint::sample_under(&mut *self.source, path, &radius_m, out);
     }
 
     /// The law of its compliance.
@@ -270,6 +288,33 @@ impl Surface {
         self
     }
 
+    /// Contacts rub its body, which sticks and slips under them: a bow, a wet finger on glass, chalk. Beside whatever else
+    /// [excites](Self::excitation) it; one contact of a body at a time.
+    ///
+    /// The body's motion under the contact has to be known: it has [shapes](crate::ModeShapes) and the surface a [frame](Self::frame), or it has a
+    /// [mass](crate::Body::mass_kg).
+    ///
+    /// ```
+    /// use asperity::{Body, Config, Engine, Friction, Material, Stock, Surface};
+    ///
+    /// let Engine { mut scene, .. } = Config::default().build()?;
+    /// let glass = scene.add_body(Body::stock(Stock::Bowl, Material::GLASS, 0.08)?)?;
+    /// let wet = Friction { mu_static: 0.9, mu_kinetic: 0.4, slip_speed_m_s: 0.05 };
+    /// scene.add_surface(Surface::flat(0.25, 0.01)?.on(glass).stick_slip(wet))?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn stick_slip(mut self, friction: Friction) -> Self {
+        self.stick_slip = Some(friction);
+        self.excitation = self.excitation.with(Exciter::Friction);
+        self
+    }
+
+    /// What rubs its body; none where friction does not sound.
+    pub(crate) fn rubs(&self) -> Option<Friction> {
+        self.stick_slip.filter(|_| self.excitation.has(Exciter::Friction))
+    }
+
     /// Whether texture coordinates wrap at 0 and 1 (a repeating surface, the default): then a jump by
     /// a whole tile is no movement, and the same coordinates are the same place, lap after lap; a source that never
     /// repeats is cut into tiles without a seam. A source with an edge (a clamped map, sand) never wraps, a mirrored
@@ -280,13 +325,20 @@ impl Surface {
         self
     }
 
-    pub(crate) fn checked(self) -> Result<Self, BadValue> {
+    pub(crate) fn checked(mut self) -> Result<Self, BadValue> {
         within("micro_relief_m", self.micro_relief_m, limits::MICRO_RELIEF_M)?;
         within("outer_scale_m", self.outer_scale_m, limits::OUTER_SCALE_M)?;
         let reach_m = self.source.reach_m();
         within("relief_m", reach_m, limits::REACH_M)?;
         within("friction", self.friction.unwrap_or(0.0), limits::FRICTION)?;
         within("compliance_m_n", self.compliance_m_n, limits::COMPLIANCE_M_N)?;
+        if self.excitation.has(Exciter::Friction) {
+            let friction = *self.stick_slip.get_or_insert(DEFAULT_STICK_SLIP);
+            within("mu_static", friction.mu_static, limits::FRICTION)?;
+            let at_most = limits::Range::new(0.0, friction.mu_static, "0 to 10 and at most mu_static");
+            within("mu_kinetic", friction.mu_kinetic, at_most)?;
+            within("slip_speed_m_s", friction.slip_speed_m_s, limits::SLIP_SPEED_M_S)?;
+        }
         if let Roughness::Constant(r) = self.roughness {
             within("roughness", r, limits::ROUGHNESS)?;
         }

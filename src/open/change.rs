@@ -8,6 +8,7 @@ use crate::files::contact_log::Names;
 use crate::files::scene_file::{AudioEntry, BodyEntry, SceneFile, SurfaceEntry};
 use crate::game::scene::Scene;
 use crate::made::maker::Maker;
+use crate::made::maps::Maps;
 use crate::model::body::Body;
 use crate::model::surface::Surface;
 use asperity_texture::sand::SandWorker;
@@ -43,6 +44,7 @@ impl Scene {
         let workers = RefCell::default();
         let maker = Maker {
             files: overrides.files,
+            maps: &Maps::default(),
             own: overrides.own,
             seed: self.config().seed,
             workers: overrides.live.then_some(&workers),

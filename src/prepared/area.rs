@@ -18,7 +18,7 @@ const CLOSENESS: (f64, f64) = (0.25, 16.0);
 
 /// How much louder a contact is than at 1 N on a plane.
 pub(crate) fn loudness(force_n: f64) -> f64 {
-    within(force_n).cbrt()
+    libm::cbrt(within(force_n))
 }
 
 /// How much louder it is where the ground bends than on a plane; `hollow_m` says how much higher the ground lies at a reach.
@@ -26,7 +26,7 @@ pub(crate) fn nestling(tip_radius_m: f64, hollow_m: impl FnOnce(f64) -> f64) -> 
     let radius_m = if tip_radius_m > 0.0 { tip_radius_m } else { FINGERTIP_RADIUS_M };
     let reach_m = REACH * radius_m;
     let mean_curvature_per_m = 2.0 * hollow_m(reach_m) / (reach_m * reach_m);
-    (1.0 - radius_m * mean_curvature_per_m).clamp(CLOSENESS.0, CLOSENESS.1).cbrt().recip()
+    libm::cbrt((1.0 - radius_m * mean_curvature_per_m).clamp(CLOSENESS.0, CLOSENESS.1)).recip()
 }
 
 #[cfg(test)]

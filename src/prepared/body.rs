@@ -1,20 +1,27 @@
 //! A body, prepared for the audio half: its modal bank and the impulse rings that excite it.
 
+use crate::model::click::Click;
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
 use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
+use crate::prepared::body_rub::{BodyRub, RubAsked};
 use crate::prepared::bursts::Bursts;
 use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
-    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, Kernel, LaneGains, MissingSamples, ModalBank,
+    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, LaneGains, MissingSamples, ModalBank,
 };
 use asperity_dsp::mode::Mode;
+use asperity_dsp::simd::Level;
 use asperity_texture::height_field::MAX_BLOCK;
+
+/// What may strike the bank at once: the body's positions, its places, and what rubs it.
+const MOST_INPUTS: usize = MAX_POSITIONS + FIELD_INPUTS + 2;
+const _: () = assert!(MOST_INPUTS <= modal_bank::MAX_INPUTS);
 
 /// Levels of modes left out, from none.
 pub(crate) const MODE_LEVELS: usize = 5;
@@ -23,6 +30,9 @@ pub(crate) const MODE_LEVELS: usize = 5;
 pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
     groups - (groups * mode_level / MODE_LEVELS).min(groups.saturating_sub(1))
 }
+
+/// φ² times the mass where a mode of a body swings most: that of a string or a bar held at its ends. A plate has 4, a ball about 5.
+const ANTINODE: f64 = 2.0;
 
 /// Between what a stroke sends in a sample (1e-6) and a strike (1e-2), N·s: for the order of modes alone.
 const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
@@ -33,7 +43,11 @@ pub(crate) struct BodySlot {
     places: Vec<Place>,
     /// For a body that can be touched anywhere.
     field: Option<BodyField>,
+    /// For a body that can be rubbed, and the gains of its only position.
+    rub: Option<Box<BodyRub>>,
+    ones: Box<[LaneGains]>,
     bursts: Bursts,
+    click: Option<Click>,
     /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
     early: ImpulseRing<f32>,
 }
@@ -101,10 +115,12 @@ impl Place {
 }
 
 impl BodySlot {
-    /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz` stay silent.
+    /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz` stay silent. A body without shapes
+    /// can be rubbed if its mass is known.
     pub(crate) fn new(
         model: &ModalModel,
-        kernel: Kernel,
+        mass_kg: Option<f64>,
+        kernel: Level,
         output_rate_hz: f64,
         sample_rate_hz: f64,
     ) -> Result<Self, DesignError> {
@@ -134,7 +150,28 @@ impl BodySlot {
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
         let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
         let field = BodyField::new(model, &unit, &groups, sample_rate_hz)?;
-        Ok(Self { bank: ModalBank::new(kernel, groups, states), places, field, bursts, early })
+        let units = match (&field, mass_kg) {
+            (Some(field), _) => Some(field.unit_motion().into()),
+            (None, Some(mass_kg)) => Some(vec![(ANTINODE / mass_kg).sqrt(); plain.len()].into()),
+            (None, None) => None,
+        };
+        let at = |position: usize| {
+            modal_bank::lane_gains(modes.iter().map(|(_, shares)| shares[position])).collect()
+        };
+        let positions = (0..if field.is_some() { 0 } else { count }).map(at).collect();
+        let rub = units.map(|units| BodyRub::new(&plain, units, positions, kernel, sample_rate_hz));
+        let rub = rub.transpose()?.map(Box::new);
+        let ones = vec![LaneGains([1.0; modal_bank::LANES]); groups.len()].into();
+        Ok(Self {
+            bank: ModalBank::new(kernel, groups, states),
+            places,
+            field,
+            rub,
+            ones,
+            bursts,
+            click: model.click,
+            early,
+        })
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
@@ -165,6 +202,14 @@ impl BodySlot {
         };
         let (sample, offset) = (stamp.sample(), stamp.fraction());
         self.early.write(end, |early| missing.deposit(pulse, early, sample, offset, sample_rate_hz));
+        if let Some(click) = &self.click {
+            let samples = click.samples_of(pulse, sample_rate_hz);
+            if samples > 0 {
+                self.early.write(sample + samples, |early| {
+                    click.deposit(pulse, early, sample, offset, sample_rate_hz);
+                });
+            }
+        }
         // A burst is noise-like: the whole sample is near enough.
         self.bursts.strike(stamp.sample(), pulse.impulse_n_s);
     }
@@ -182,6 +227,12 @@ impl BodySlot {
         if let Some(field) = &mut self.field {
             field.press(owner, place, probe);
         }
+    }
+
+    /// A contact rubs during the present stretch; false where another one does, or none can.
+    pub(crate) fn rub(&mut self, asked: &RubAsked<'_>) -> bool {
+        let field = self.field.as_ref();
+        self.rub.as_mut().is_some_and(|rub| rub.ask(asked, field))
     }
 
     /// Adds what one contact sends during the present stretch.
@@ -204,6 +255,9 @@ impl BodySlot {
         if let Some(field) = &mut self.field {
             field.silence();
         }
+        if let Some(rub) = &mut self.rub {
+            rub.silence();
+        }
         self.bursts.silence();
         self.early.clear();
     }
@@ -215,22 +269,21 @@ impl BodySlot {
             && self.early.is_empty(position)
             && self.places.iter().all(|place| !place.touched && place.bus.is_empty(position))
             && self.field.as_ref().is_none_or(|field| field.is_silent(position))
+            && self.rub.as_ref().is_none_or(|rub| rub.is_idle())
     }
 
     /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck it.
     pub(crate) fn render(&mut self, terms: Terms, out: &mut [f32]) -> usize {
         let n = out.len();
         if self.is_silent(terms.position) {
-            if let Some(field) = &mut self.field {
-                field.end_stretch(terms.position, n, &mut self.bank);
-            }
+            self.end_stretch(terms.position, n);
             return 0;
         }
-        let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_POSITIONS + FIELD_INPUTS];
-        let mut count = 0;
         if let Some(field) = &mut self.field {
             field.gather(terms.position, n);
         }
+        let mut inputs = [Input { impulses: &[], gains: &[] }; MOST_INPUTS];
+        let mut count = 0;
         if let Some(field) = &self.field {
             field.inputs(terms.position, n, |input| {
                 inputs[count] = input;
@@ -246,17 +299,39 @@ impl BodySlot {
         }
         let groups = self.bank.groups();
         let driven = groups_at(terms.mode_level, groups);
+        if let Some(rub) = self.rub.as_deref_mut().filter(|rub| rub.rubs()) {
+            // Beside another input the only position of a body needs gains too.
+            let plain = inputs[..count].iter_mut().filter(|input| input.gains.is_empty());
+            plain.for_each(|input| input.gains = &self.ones);
+            rub.run(terms.position, n, driven, &self.bank, &inputs[..count]);
+        }
+        if let Some(rub) = self.rub.as_deref().filter(|rub| rub.rubs()) {
+            rub.inputs(n, |input| {
+                inputs[count] = input;
+                count += 1;
+            });
+        }
         let inputs = match inputs[..count] {
             [Input { impulses, gains: [] }] => Inputs::One(impulses),
             _ => Inputs::Placed(&inputs[..count]),
         };
         self.bank.render_leading(driven, terms.position, inputs, out);
-        if let Some(field) = &mut self.field {
-            field.end_stretch(terms.position, n, &mut self.bank);
-        }
+        self.end_stretch(terms.position, n);
         self.bursts.render(terms.position, out);
         self.begin_strikes(terms.position, out);
         groups - driven
+    }
+
+    /// The stretch has been rendered, or nothing rings in it.
+    fn end_stretch(&mut self, position: u64, n: usize) {
+        let retuned = self.field.as_mut().and_then(|field| field.end_stretch(position, n, &mut self.bank));
+        let Some(rub) = &mut self.rub else { return };
+        if let Some(group) = retuned
+            && let Some(modes) = self.field.as_ref().and_then(|field| field.modes_now(group))
+        {
+            rub.retune(group, modes);
+        }
+        rub.end_stretch(position + n as u64);
     }
 
     /// Adds what the bank leaves out of the first samples of strikes.

@@ -1,15 +1,14 @@
 //! Strikes and contacts anywhere on a body that has shapes: each has an input of its own into the modal bank, with the gains of its place.
 //!
-//! A contact that slides changes its gains: they glide to those of the place reported last, a step every cell of the absolute sample
-//! grid, and inside a cell along a straight line, which is the same impulses twice: fading out with the gains that were, fading in with
-//! those that come. So the bank hears no step, whatever the blocks.
+//! A contact that slides changes its gains without a step ([`Slider`]).
 
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
-use crate::prepared::holding::Holding;
+use crate::prepared::holding::{HeldModes, Holding};
 use crate::prepared::impulse_ring::ImpulseRing;
+use crate::prepared::slider::{self, Slider};
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
@@ -23,10 +22,6 @@ pub(crate) const SLIDERS: usize = 16;
 pub(crate) const STRIKES: usize = 8;
 /// Inputs that a field may have.
 pub(crate) const FIELD_INPUTS: usize = STRIKES + 2 * SLIDERS;
-/// How fast gains follow a contact, s: less than the time between two reports of an ordinary game.
-const GLIDE_S: f64 = 0.008;
-/// A gain nearer than this to where it goes is there.
-const ARRIVED: f32 = 1e-6;
 
 /// The shapes of a body, as the audio half owns them.
 pub(crate) struct BodyField {
@@ -51,20 +46,6 @@ struct Struck {
     input: [f32; MAX_BLOCK],
 }
 
-/// A contact.
-struct Slider {
-    owner: Option<Owner>,
-    place: StrikePlace,
-    /// At the beginning of the cell, at its end, and where they go.
-    gains: [Box<[LaneGains]>; 3],
-    arrived: bool,
-    touched: bool,
-    /// When it was touched last.
-    touched_at: u64,
-    contacts_n_s: [f64; MAX_BLOCK],
-    inputs: [[f32; MAX_BLOCK]; 2],
-}
-
 impl BodyField {
     /// For the modes of a bank: each with its number in the model and its amplitude for 1 N·s.
     pub(crate) fn new(
@@ -84,16 +65,6 @@ impl BodyField {
             bus: ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz),
             input: [0.0; MAX_BLOCK],
         };
-        let slider = || Slider {
-            owner: None,
-            place: StrikePlace::NOWHERE,
-            gains: [gains(), gains(), gains()],
-            arrived: true,
-            touched: false,
-            touched_at: 0,
-            contacts_n_s: [0.0; MAX_BLOCK],
-            inputs: [[0.0; MAX_BLOCK]; 2],
-        };
         let missing = modes.iter().map(|(_, mode)| MissingSamples::of(mode, sample_rate_hz));
         Ok(Some(Self {
             motion: motion.collect(),
@@ -101,8 +72,8 @@ impl BodyField {
             missing: missing.collect::<Result<_, _>>()?,
             holding: Holding::new(shapes, modes, groups, sample_rate_hz),
             strikes: (0..STRIKES).map(|_| struck()).collect(),
-            sliders: (0..SLIDERS).map(|_| slider()).collect(),
-            glide: (1.0 - (-(MAX_BLOCK as f64) / (GLIDE_S * sample_rate_hz)).exp()) as f32,
+            sliders: (0..SLIDERS).map(|_| Slider::new(groups.len())).collect(),
+            glide: slider::glide(sample_rate_hz),
             sample_rate_hz,
             position: 0,
         }))
@@ -141,21 +112,8 @@ impl BodyField {
         };
         let Some(index) = known.or_else(|| self.sliders.iter().position(idle)) else { return false };
         let slider = &mut self.sliders[index];
-        if known.is_none() || slider.place != *place {
-            slider.place = *place;
-            fill(&self.motion, self.points, place, &mut slider.gains[2]);
-            slider.arrived = known.is_none();
-        }
-        if known.is_none() {
-            slider.owner = Some(owner);
-            let [from, to, wanted] = &mut slider.gains;
-            from.copy_from_slice(wanted);
-            to.copy_from_slice(wanted);
-        }
-        slider.touched = true;
-        for (sum, x) in slider.contacts_n_s.iter_mut().zip(impulse_n_s) {
-            *sum += x;
-        }
+        slider.be_at(owner, place, |gains| fill(&self.motion, self.points, place, gains));
+        slider.add(impulse_n_s);
         true
     }
 
@@ -174,10 +132,7 @@ impl BodyField {
     /// Forgets what is on its way.
     pub(crate) fn silence(&mut self) {
         self.strikes.iter_mut().for_each(|struck| struck.bus.clear());
-        for slider in &mut self.sliders {
-            slider.contacts_n_s.fill(0.0);
-            slider.touched = false;
-        }
+        self.sliders.iter_mut().for_each(Slider::silence);
     }
 
     /// Takes the impulses of the next `n` samples.
@@ -187,14 +142,8 @@ impl BodyField {
             struck.bus.take(position, &mut struck.input[..n]);
         }
         let first = position as usize % MAX_BLOCK;
-        for slider in self.sliders.iter_mut().filter(|slider| slider.touched) {
-            let [out, into] = &mut slider.inputs;
-            for i in 0..n {
-                let x = std::mem::take(&mut slider.contacts_n_s[i]) as f32;
-                let part = (first + i + 1) as f32 / MAX_BLOCK as f32;
-                (out[i], into[i]) = if slider.arrived { (0.0, x) } else { (x * (1.0 - part), x * part) };
-            }
-        }
+        let sliding = self.sliders.iter_mut().filter(|slider| slider.touched);
+        sliding.for_each(|slider| slider.gather(first, n));
     }
 
     /// Hands over the inputs that were gathered; only what something reaches is mixed.
@@ -203,49 +152,35 @@ impl BodyField {
             add(Input { impulses: &struck.input[..n], gains: &struck.gains });
         }
         for slider in self.sliders.iter().filter(|slider| slider.touched) {
-            if !slider.arrived {
-                add(Input { impulses: &slider.inputs[0][..n], gains: &slider.gains[0] });
-            }
-            add(Input { impulses: &slider.inputs[1][..n], gains: &slider.gains[1] });
+            slider.inputs(n, &mut add);
         }
     }
 
-    /// The stretch has been rendered, or nothing rings in it; at the end of a cell gains go on.
-    pub(crate) fn end_stretch(&mut self, position: u64, n: usize, bank: &mut Bank) {
+    /// The stretch has been rendered, or nothing rings in it; at the end of a cell gains go on. A group of the bank whose modes have
+    /// changed, if one has.
+    pub(crate) fn end_stretch(&mut self, position: u64, n: usize, bank: &mut Bank) -> Option<usize> {
         self.position = position + n as u64;
         let at_grid = self.position.is_multiple_of(MAX_BLOCK as u64);
-        if at_grid {
-            self.holding.go_on(bank);
-        }
+        let retuned = if at_grid { self.holding.go_on(bank) } else { None };
         for slider in &mut self.sliders {
-            if std::mem::take(&mut slider.touched) {
-                slider.touched_at = self.position;
-            }
-            if at_grid && !slider.arrived {
-                slider.go_on(self.glide);
-            }
+            slider.end_stretch(self.position, self.glide);
         }
+        retuned
     }
-}
 
-impl Slider {
-    /// The gains of the next cell.
-    fn go_on(&mut self, glide: f32) {
-        let [from, to, wanted] = &mut self.gains;
-        from.copy_from_slice(to);
-        let mut farthest = 0.0_f32;
-        for (to, wanted) in to.iter_mut().zip(wanted.iter()) {
-            for (to, wanted) in to.0.iter_mut().zip(&wanted.0) {
-                let way = wanted - *to;
-                farthest = farthest.max(way.abs());
-                *to += glide * way;
-            }
-        }
-        if farthest < ARRIVED {
-            to.copy_from_slice(wanted);
-            from.copy_from_slice(wanted);
-            self.arrived = true;
-        }
+    /// The modes of a group as they are held at present.
+    pub(crate) fn modes_now(&self, group: usize) -> Option<HeldModes> {
+        self.holding.modes_now(group)
+    }
+
+    /// The gains of a place.
+    pub(crate) fn fill(&self, place: &StrikePlace, gains: &mut [LaneGains]) {
+        fill(&self.motion, self.points, place, gains);
+    }
+
+    /// Motion of each mode where its gain is 1, kg^−½.
+    pub(crate) fn unit_motion(&self) -> &[f64] {
+        self.holding.unit_motion()
     }
 }
 
@@ -262,7 +197,8 @@ mod tests {
     use super::*;
     use crate::model::mode_shapes::{ModeShapes, Unit};
     use crate::model::strike_field::StrikeField;
-    use asperity_dsp::modal_bank::{GroupOptions, GroupState, Kernel, ModalBank, design_groups};
+    use asperity_dsp::modal_bank::{GroupOptions, GroupState, ModalBank, design_groups};
+    use asperity_dsp::simd::Level;
     use std::f64::consts::PI;
 
     const RATE_HZ: f64 = 44_100.0;
@@ -304,7 +240,7 @@ mod tests {
         let groups: Box<[ModeGroup]> = groups.collect::<Result<_, _>>().unwrap();
         let mut field = BodyField::new(&model, &modes, &groups, RATE_HZ).unwrap().unwrap();
         let states: Box<[GroupState]> = vec![GroupState::REST; groups.len()].into();
-        let mut bank: Bank = ModalBank::new(Kernel::PORTABLE, groups, states);
+        let mut bank: Bank = ModalBank::new(Level::PORTABLE, groups, states);
         let (mut last, mut worst, mut place) = ([None; 6], 0.0_f32, None);
         for cell in 0..800_u64 {
             let position = cell * MAX_BLOCK as u64;

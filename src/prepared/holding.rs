@@ -38,6 +38,22 @@ pub(crate) struct Holding {
     sample_rate_hz: f64,
 }
 
+/// The modes of a group at present: the first `count` of them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HeldModes {
+    pub(crate) modes: [Mode; LANES],
+    pub(crate) count: usize,
+}
+
+impl HeldModes {
+    /// The first of these.
+    pub(crate) fn of(modes: &[Mode]) -> Self {
+        let silent = Mode { frequency_hz: 1.0, decay_per_s: 0.0, amplitude: 0.0, phase_rad: 0.0 };
+        let count = modes.len().min(LANES);
+        Self { modes: std::array::from_fn(|lane| modes.get(lane).copied().unwrap_or(silent)), count }
+    }
+}
+
 /// One contact that presses.
 struct Press {
     owner: Option<Owner>,
@@ -108,8 +124,8 @@ impl Holding {
         self.changed = true;
     }
 
-    /// At the end of a cell: who did not press has let go, and one group follows what has changed.
-    pub(crate) fn go_on(&mut self, bank: &mut Bank) {
+    /// At the end of a cell: who did not press has let go, and one group follows what has changed; which it is.
+    pub(crate) fn go_on(&mut self, bank: &mut Bank) -> Option<usize> {
         for press in &mut self.holds {
             if !std::mem::take(&mut press.here) && press.owner.take().is_some() {
                 self.changed = true;
@@ -118,29 +134,46 @@ impl Holding {
         if self.due.is_none() && self.changed {
             (self.due, self.changed) = (Some(0), false);
         }
-        let Some(index) = self.due else { return };
+        let index = self.due?;
         if let Some(group) = self.group(index) {
             bank.retune(index, &group);
         }
         self.due = Some(index + 1).filter(|next| *next < self.free.len());
+        Some(index)
+    }
+
+    /// Motion of each mode where its share in the field is 1, kg^−½.
+    pub(crate) fn unit_motion(&self) -> &[f64] {
+        &self.scale
     }
 
     /// A group as it is held; none where there is no such group.
     fn group(&self, index: usize) -> Option<ModeGroup> {
         let free = self.free.get(index)?;
-        if self.holds.iter().all(|press| press.owner.is_none()) {
+        if self.is_free() {
             return Some(*free);
         }
-        let first = index * LANES;
-        let modes = self.modes.get(first..)?;
-        let mut now = [Mode { frequency_hz: 1.0, decay_per_s: 0.0, amplitude: 0.0, phase_rad: 0.0 }; LANES];
-        let count = modes.len().min(LANES);
-        for (lane, mode) in modes.iter().take(LANES).enumerate() {
-            let pole = self.held(self.rank[first + lane])?;
-            now[lane] = Mode { decay_per_s: pole.decay_per_s, frequency_hz: pole.frequency_hz, ..*mode };
-        }
+        let HeldModes { modes, count } = self.modes_now(index)?;
         // Poles of a mode that was designed once can be designed again; otherwise it stays as it was.
-        design_group(&now[..count], self.sample_rate_hz, &GroupOptions::IMPULSE_RING).ok()
+        design_group(&modes[..count], self.sample_rate_hz, &GroupOptions::IMPULSE_RING).ok()
+    }
+
+    /// The modes of a group as they are held; none where there is no such group.
+    pub(crate) fn modes_now(&self, index: usize) -> Option<HeldModes> {
+        let first = index * LANES;
+        let mut now = HeldModes::of(self.modes.get(first..).filter(|modes| !modes.is_empty())?);
+        if !self.is_free() {
+            for lane in 0..now.count {
+                let Pole { decay_per_s, frequency_hz } = self.held(self.rank[first + lane])?;
+                now.modes[lane] = Mode { decay_per_s, frequency_hz, ..now.modes[lane] };
+            }
+        }
+        Some(now)
+    }
+
+    /// Whether nobody presses.
+    fn is_free(&self) -> bool {
+        self.holds.iter().all(|press| press.owner.is_none())
     }
 
     /// Where the mode of that rank is now.

@@ -168,8 +168,8 @@ fn room(power_m2: f64, rms_m: f64) -> f64 {
 fn gain(places: &[Place; 2], copy: [usize; 2]) -> f64 {
     let along = |axis: usize| match (copy[axis], places[axis].weight) {
         (0, 0.0) => 1.0,
-        (0, weight) => (FRAC_PI_2 * weight).cos(),
-        (_, weight) => (FRAC_PI_2 * weight).sin(),
+        (0, weight) => libm::cos(FRAC_PI_2 * weight),
+        (_, weight) => libm::sin(FRAC_PI_2 * weight),
     };
     along(0) * along(1)
 }

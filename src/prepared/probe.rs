@@ -5,7 +5,7 @@ use crate::prepared::stroking::restitution;
 use asperity_dsp::DesignError;
 use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe};
 use asperity_dsp::mobility::Mobility;
-use asperity_dsp::modal_bank::Kernel;
+use asperity_dsp::simd::Level;
 
 /// Everything a contact of this probe needs.
 #[derive(Debug, Clone)]
@@ -44,17 +44,16 @@ impl PreparedProbe {
         own: &Probe,
         integrator: Integrator,
         sample_rate_hz: f64,
-        kernel: Kernel,
+        kernel: Level,
     ) -> Result<Self, DesignError> {
-        let micro_contact =
-            MicroContact::new(probe, integrator, sample_rate_hz)?.portable(kernel == Kernel::PORTABLE);
+        let micro_contact = MicroContact::new(probe, integrator, sample_rate_hz)?.on(kernel);
         Ok(Self {
             waits: micro_contact.latency_samples() < row_latency(integrator),
             ladder: Ladder::new(&micro_contact, integrator, sample_rate_hz)?,
             micro_contact,
             mobility: Mobility::new(probe, sample_rate_hz)?,
             collision_mass_kg: probe.pad_mass_kg * (1.0 + restitution(probe)),
-            contact_time_ratio: (probe.pad_mass_kg / own.pad_mass_kg).powf(0.4),
+            contact_time_ratio: libm::pow(probe.pad_mass_kg / own.pad_mass_kg, 0.4),
         })
     }
 }

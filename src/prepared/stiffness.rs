@@ -46,13 +46,13 @@ impl Ground {
 /// The stiffness of a probe on its ground under a reported force, N/m.
 pub(crate) fn stiffness_n_m(probe: &Probe, ground: &Ground, force_n: f64) -> f64 {
     let force_n = within(force_n);
-    let own_n_m = probe.contact_stiffness_n_m * force_n.powf(probe.force_exponent);
+    let own_n_m = probe.contact_stiffness_n_m * libm::pow(force_n, probe.force_exponent);
     if ground.is_hard() {
         return own_n_m;
     }
     let radius_m = probe.tip_radius_m.max(LEAST_RADIUS_M);
-    let ground_n_m =
-        (6.0 * ground.modulus_pa * ground.modulus_pa * radius_m).cbrt() * force_n.powf(SOFT_EXPONENT);
+    let ground_n_m = libm::cbrt(6.0 * ground.modulus_pa * ground.modulus_pa * radius_m)
+        * libm::pow(force_n, SOFT_EXPONENT);
     own_n_m * ground_n_m / (own_n_m + ground_n_m)
 }
 
@@ -77,7 +77,7 @@ impl Ladder {
     ) -> Result<Self, DesignError> {
         let probe = *own.probe();
         let rung = |step: i32| {
-            let factor = (f64::from(step) / RUNGS_AN_OCTAVE as f64).exp2();
+            let factor = libm::exp2(f64::from(step) / RUNGS_AN_OCTAVE as f64);
             let contact_stiffness_n_m = (probe.contact_stiffness_n_m * factor).clamp(1.0, 1e9);
             MicroContact::new(&Probe { contact_stiffness_n_m, ..probe }, integrator, sample_rate_hz)
         };
@@ -96,7 +96,7 @@ impl Ladder {
 
     /// Makes `contact` the design of that stiffness, or of the nearest that the ladder has.
     pub(crate) fn set(&self, contact: &mut MicroContact, stiffness_n_m: f64) {
-        let height = RUNGS_AN_OCTAVE as f64 * (stiffness_n_m / self.lowest_n_m).log2();
+        let height = RUNGS_AN_OCTAVE as f64 * libm::log2(stiffness_n_m / self.lowest_n_m);
         let height = height.clamp(0.0, (self.rungs.len() - 1) as f64);
         let below = (height as usize).min(self.rungs.len().saturating_sub(2));
         let (Some(softer), Some(harder)) = (self.rungs.get(below), self.rungs.get(below + 1)) else {

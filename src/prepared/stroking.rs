@@ -49,7 +49,7 @@ impl Stroking {
 pub(crate) fn restitution(probe: &Probe) -> f64 {
     let critical = 2.0 * (probe.contact_stiffness_n_m * probe.pad_mass_kg).sqrt();
     let damping = (probe.pad_damping_n_s_m / critical).min(0.999);
-    (-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt()).exp()
+    libm::exp(-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt())
 }
 
 /// The elastic constants of a material.

@@ -7,6 +7,7 @@
 mod naive_sand;
 
 use asperity_dsp::DesignError;
+use asperity_dsp::simd::Level;
 use asperity_texture::sand::SandGrid;
 use asperity_texture::sand::erosion::{Erosion, SETTLED_DEG};
 use naive_sand::{NaiveSand, Share, random_fields};
@@ -38,7 +39,7 @@ fn naive(start: &[f64], n: usize, share: Share) -> (f64, (usize, Vec<f64>)) {
 fn ours(flat: &SandGrid, start: &[f64], portable: bool) -> Result<(f64, (usize, SandGrid)), DesignError> {
     let n = flat.columns();
     let erosion = Erosion::new(flat, TALUS_DEG)?;
-    let erosion = if portable { erosion.portable() } else { erosion };
+    let erosion = if portable { erosion.on(Level::PORTABLE) } else { erosion };
     Ok(fastest(3, (0, flat.clone()), || {
         let (mut grid, mut erosion) = (flat.clone(), erosion.clone());
         grid.fill(|x, y| start[y * n + x]);

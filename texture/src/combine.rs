@@ -71,6 +71,10 @@ impl HeightField for Sum {
         self.sources.iter().fold(WavelengthBand::EMPTY, |band, s| band.union(s.band()))
     }
 
+    fn is_read_beside(&self) -> bool {
+        self.sources.iter().all(|s| s.is_read_beside())
+    }
+
     fn reach_m(&self) -> f64 {
         self.sources.iter().map(|s| s.reach_m()).sum()
     }
@@ -171,6 +175,10 @@ impl HeightField for Scale {
 
     fn band(&self) -> WavelengthBand {
         self.source.band()
+    }
+
+    fn is_read_beside(&self) -> bool {
+        self.source.is_read_beside()
     }
 
     fn reach_m(&self) -> f64 {
@@ -279,6 +287,10 @@ impl HeightField for Crossfade {
 
     fn band(&self) -> WavelengthBand {
         self.sources[0].band().union(self.sources[1].band())
+    }
+
+    fn is_read_beside(&self) -> bool {
+        self.sources.iter().all(|s| s.is_read_beside())
     }
 
     fn reach_m(&self) -> f64 {

@@ -256,6 +256,12 @@ pub trait HeightField: Send + Sync {
     /// prepared is a point too.
     fn ride(&mut self, _radius_m: f64) {}
 
+    /// Whether its samples depend on nothing but their places, so that it may be read beside the path as well: what lies under a ball that stands
+    /// in soft ground ([`crate::footprint`]). A source made of others hands this on.
+    fn is_read_beside(&self) -> bool {
+        false
+    }
+
     /// How far from zero its heights can be, metres; 0 if the source cannot tell.
     fn reach_m(&self) -> f64 {
         0.0

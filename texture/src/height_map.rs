@@ -29,6 +29,7 @@ use crate::ridden::ridden;
 use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
 use extent::check;
+use std::sync::Arc;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
 /// Assumed; measured values range from 0.2 to above 1.
@@ -57,7 +58,7 @@ pub struct HeightMap {
     /// Largest height, either way.
     reach_m: f64,
     /// Where it has relief; none = nowhere.
-    local: Option<LocalRelief>,
+    local: Option<Arc<LocalRelief>>,
     friction: f64,
     /// What tips of some radii ride on, and the one that rides now.
     tips: Vec<(f64, Pyramid)>,
@@ -70,10 +71,10 @@ enum Roughness {
     Map(Pyramid),
 }
 
-/// A map at full size, half size, quarter size, …; empty for a map of one value.
+/// A map at full size, half size, quarter size, …; empty for a map of one value. Copies share it.
 #[derive(Debug, Clone)]
 struct Pyramid {
-    levels: Vec<Spline>,
+    levels: Arc<[Spline]>,
     constant: f64,
 }
 
@@ -89,8 +90,8 @@ impl HeightMap {
         let heights = heights.map(|v| v * extent.relief_m);
         let (low_m, high_m) = heights.range();
         let reach_m = high_m.abs().max(low_m.abs());
-        let local =
-            (low_m != high_m).then(|| LocalRelief::new(&heights, [extent.width_m, extent.height_m], wrap));
+        let local = (low_m != high_m)
+            .then(|| Arc::new(LocalRelief::new(&heights, [extent.width_m, extent.height_m], wrap)));
         let heights = Pyramid::new(&heights, extent, wrap);
         let band = match heights.levels.first() {
             None => WavelengthBand::EMPTY,
@@ -177,7 +178,7 @@ impl Pyramid {
         let constant = raster.values[0];
         let mut levels = Vec::new();
         if raster.values.iter().all(|&v| v == constant) {
-            return Self { levels, constant };
+            return Self { levels: levels.into(), constant };
         }
         let size = [extent.width_m, extent.height_m];
         levels.push(Spline::new(raster, size, wrap));
@@ -186,7 +187,7 @@ impl Pyramid {
             levels.push(Spline::new(&smaller, size, wrap));
             smaller = halve(&smaller, wrap);
         }
-        Self { levels, constant }
+        Self { levels: levels.into(), constant }
     }
 
     /// The map along a path, blurred to the footprints, and its slopes if `SLOPES`; no footprint is longer than `widest_m`.
@@ -302,6 +303,10 @@ impl HeightField for HeightMap {
         self.tip = self.tips.iter().position(|(known_m, _)| *known_m == radius_m);
     }
 
+    fn is_read_beside(&self) -> bool {
+        !self.heights.levels.is_empty()
+    }
+
     fn reach_m(&self) -> f64 {
         self.reach_m
     }
@@ -333,7 +338,8 @@ impl HeightField for HeightMap {
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let widest_m = widest_m(path.footprint_m);
-        let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
+        let mut places = Places::new();
+        let mut samples = Samples::EMPTY;
         let heights = self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map);
         if path.slopes {
             heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);

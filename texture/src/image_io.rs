@@ -57,6 +57,24 @@ pub fn read_channel(bytes: &[u8], channel: Channel) -> Result<ChannelImage, Prob
     picture(decode(Cursor::new(bytes), channel)?)?.channel(channel)
 }
 
+/// Reads one channel of a picture as a map of a surface ([`Picture::map`]), from the bytes of its file.
+///
+/// # Errors
+/// As [`load_channel`], and when it is a normal map.
+pub fn read_map(bytes: &[u8], channel: Channel) -> Result<ChannelImage, Problem> {
+    picture(decode(Cursor::new(bytes), channel)?)?.map(channel)
+}
+
+/// [`read_map`] of a file.
+///
+/// # Errors
+/// As [`read_map`].
+pub fn load_map(path: impl AsRef<Path>, channel: Channel) -> Result<ChannelImage, ImageError> {
+    let path = path.as_ref();
+    let read = open(path).and_then(|file| picture(decode(file, channel)?)?.map(channel));
+    read.map_err(|problem| ImageError { file: path.to_path_buf(), problem })
+}
+
 /// Writes values 0–1 (clamped) as a 16-bit grey PNG. The file appears under its name complete or not
 /// at all.
 ///

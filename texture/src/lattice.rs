@@ -59,7 +59,7 @@ impl Lattice {
         for &value in &cell.values {
             DesignError::check("cell.values", value, "finite heights in metres", |_| true)?;
         }
-        let (l1, l2) = (t1_m[0].hypot(t1_m[1]), t2_m[0].hypot(t2_m[1]));
+        let (l1, l2) = (libm::hypot(t1_m[0], t1_m[1]), libm::hypot(t2_m[0], t2_m[1]));
         limits::STEP_LENGTH_M.check("t1_m", l1)?;
         limits::STEP_LENGTH_M.check("t2_m", l2)?;
         let area = t1_m[0] * t2_m[1] - t1_m[1] * t2_m[0];
@@ -141,7 +141,7 @@ impl Lattice {
         if scale <= 1.0 {
             return self.spline(&self.levels[0], ab);
         }
-        let level = scale.log2().min(self.levels.len() as f64);
+        let level = libm::log2(scale).min(self.levels.len() as f64);
         let (low, share) = (level as usize, level - level.floor());
         let (h0, g0) = self.level(low, ab);
         if share == 0.0 {
@@ -251,6 +251,10 @@ pub(crate) fn prefilter(line: &mut [f64]) {
 impl HeightField for Lattice {
     fn band(&self) -> WavelengthBand {
         WavelengthBand { shortest_m: 2.0 * self.texel_m, longest_m: self.longest_m }
+    }
+
+    fn is_read_beside(&self) -> bool {
+        true
     }
 
     fn reach_m(&self) -> f64 {

@@ -9,9 +9,11 @@ pub mod answer;
 mod block;
 #[cfg(feature = "brownian")]
 pub mod brownian;
+pub mod changed_tiles;
 pub mod combine;
 pub mod exclusive;
 pub mod fade;
+pub mod footprint;
 pub mod force_rendering;
 pub mod height_field;
 pub mod height_map;

@@ -10,6 +10,7 @@
 //! A sequence lock a tile: a tile that changes while it is copied is taken the next time. The heights are made when a reader first asks,
 //! on its own thread; until then a picture costs its writer one look a frame.
 
+use crate::changed_tiles::ChangedTiles;
 use std::sync::atomic::{AtomicU32, Ordering, fence};
 use std::sync::{Arc, OnceLock};
 
@@ -106,10 +107,15 @@ impl MovingPicture {
     }
 
     /// Writes the tiles that differ from what the picture shows, of a surface whose cells lie at `height_m(column, row)`, m. Tells
-    /// how many were written. There is one writer; nothing is written before somebody looks.
-    pub fn write(&self, height_m: impl Fn(usize, usize) -> f32) -> usize {
+    /// how many were written. Only `changed` tiles are looked at, and those that were never shown; the marks are then taken away. There
+    /// is one writer; nothing is written before somebody looks.
+    pub fn write(&self, changed: &mut ChangedTiles, height_m: impl Fn(usize, usize) -> f32) -> usize {
         let Some(shown) = self.shown.get() else { return 0 };
-        (0..self.tiles()).filter(|&tile| self.write_tile(shown, tile, &height_m)).count()
+        let is_new = |tile: usize| shown.versions[tile].load(Ordering::Relaxed) == 0;
+        let looked_at = (0..self.tiles()).filter(|&tile| changed.is_marked(tile) || is_new(tile));
+        let written = looked_at.filter(|&tile| self.write_tile(shown, tile, &height_m)).count();
+        changed.clear();
+        written
     }
 
     fn write_tile(&self, shown: &Shown, tile: usize, height_m: &impl Fn(usize, usize) -> f32) -> bool {
@@ -197,6 +203,11 @@ mod tests {
         (MovingPicture::new(70, 40, 1e-3), vec![vec![0.05; 70]; 40])
     }
 
+    /// Everything may have changed.
+    fn all() -> ChangedTiles {
+        ChangedTiles::all(70, 40)
+    }
+
     /// What a reader makes of its tiles.
     fn draw(reader: &mut PictureReader, drawn: &mut [Vec<f32>]) -> usize {
         reader.changed(|tile| {
@@ -209,17 +220,33 @@ mod tests {
     #[test]
     fn only_tiles_that_changed_are_shown_and_they_are_what_was_written() {
         let (picture, mut heights) = picture();
-        assert_eq!(picture.write(|x, y| heights[y][x]), 0, "nobody looks");
+        assert_eq!(picture.write(&mut all(), |x, y| heights[y][x]), 0, "nobody looks");
         let mut reader = picture.reader();
         let mut drawn = vec![vec![0.0; 70]; 40];
-        assert_eq!((picture.write(|x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (6, 6));
+        assert_eq!((picture.write(&mut all(), |x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (6, 6));
         assert!(drawn == heights);
         heights[35][69] = 0.01;
         heights[0][31] = 0.02;
-        assert_eq!((picture.write(|x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (2, 2));
+        assert_eq!((picture.write(&mut all(), |x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (2, 2));
         assert!(drawn == heights);
-        assert_eq!((picture.write(|x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (0, 0));
+        assert_eq!((picture.write(&mut all(), |x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (0, 0));
         assert_eq!(reader.missed(), 0);
+    }
+
+    #[test]
+    fn what_nobody_marked_is_not_looked_at_but_what_was_never_shown_is() {
+        let (picture, mut heights) = picture();
+        let mut none = all();
+        none.clear();
+        let mut reader = picture.reader();
+        let mut drawn = vec![vec![0.0; 70]; 40];
+        assert_eq!((picture.write(&mut none, |x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (6, 6));
+        (heights[3][3], heights[35][69]) = (0.01, 0.02);
+        let mut one = none.clone();
+        one.mark([69, 69], [35, 35]);
+        assert_eq!((picture.write(&mut one, |x, y| heights[y][x]), draw(&mut reader, &mut drawn)), (1, 1));
+        assert_eq!((drawn[3][3], drawn[35][69]), (0.05, 0.02));
+        assert_eq!(one, none);
     }
 
     #[test]
@@ -228,7 +255,7 @@ mod tests {
         let (mut late, mut drawn) = (picture.reader(), vec![vec![0.0; 70]; 40]);
         for n in 0..10 {
             heights[3][3] = n as f32;
-            picture.write(|x, y| heights[y][x]);
+            picture.write(&mut all(), |x, y| heights[y][x]);
         }
         assert_eq!(draw(&mut late, &mut drawn), 6);
         assert!(drawn == heights);
@@ -244,7 +271,7 @@ mod tests {
         let shared = picture.clone();
         let writing = std::thread::spawn(move || {
             for n in 0..20_000 {
-                shared.write(|_, _| n as f32);
+                shared.write(&mut all(), |_, _| n as f32);
             }
         });
         let mut seen = 0;

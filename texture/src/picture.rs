@@ -2,6 +2,8 @@
 //!
 //! Nothing here decodes a file, so that a game that has its textures in memory already hands them over as they are.
 
+mod normals;
+
 use crate::deband::deband;
 use crate::raster::Raster;
 use crate::wrap::Wrap;
@@ -88,6 +90,17 @@ impl Picture {
             return Err(Problem::Samples { count, width, height });
         }
         Ok(Self { width: width as usize, height: height as usize, channels, samples })
+    }
+
+    /// One channel as a map of a surface: [`channel`](Self::channel), but the brightness of a normal map is no map of anything.
+    ///
+    /// # Errors
+    /// As [`channel`](Self::channel), and [`Problem::IsNormalMap`].
+    pub fn map(&self, channel: Channel) -> Result<ChannelImage, Problem> {
+        if channel == Channel::Luma && normals::is_normal_map(self) {
+            return Err(Problem::IsNormalMap);
+        }
+        self.channel(channel)
     }
 
     /// One channel as heights: integers as 0–1, floating point as it is.
@@ -208,6 +221,11 @@ pub enum Problem {
         /// Row.
         y: usize,
     },
+    /// Its pixels are directions.
+    #[error(
+        "is a normal map, not a map of heights; make heights of it (`asperity texture from-normals`), or name the channel that is meant"
+    )]
+    IsNormalMap,
     /// There is nothing in it.
     #[error("has no texels; at least 1 × 1 is needed")]
     Empty,

@@ -44,7 +44,7 @@ fn taps_of(i: usize, from: usize, to: usize, wrap: Wrap) -> Vec<(usize, f64)> {
 }
 
 fn sinc(t: f64) -> f64 {
-    if t == 0.0 { 1.0 } else { (PI * t).sin() / (PI * t) }
+    if t == 0.0 { 1.0 } else { libm::sin(PI * t) / (PI * t) }
 }
 
 #[cfg(test)]

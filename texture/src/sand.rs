@@ -12,6 +12,7 @@
 //! | [`tool`] | any tool by its lower height map: cutting and heaping |
 //! | [`erosion`] | sliding to the angle of repose, on active tiles only |
 //! | [`law`] | depth and force, drag, wetness, layers, grains |
+//! | [`buried`] | stones and shells in it |
 //! | [`simulation`] | contacts that drag tools, frame by frame |
 //! | [`patch`] | what the audio half sees: 64 × 64 heights around a contact |
 //! | `around` | the sand around a contact: its level, and what a patch shows of it |
@@ -21,9 +22,10 @@
 //!
 //! Source: Beneš, Dorjgotov, Arns & Bertoline, "Granular Material Interactive Manipulation" (2006).
 //! What we read differently or changed is said in each file. The authors' open points that are ours:
-//! arbitrary tools, correct volume, wetness, layers, and that sand is heard.
+//! arbitrary tools, correct volume, wetness, layers, stones and shells, and that sand is heard.
 
 mod around;
+pub mod buried;
 pub mod erosion;
 pub mod grid;
 mod hand_over;
@@ -35,6 +37,7 @@ pub mod source;
 pub mod tool;
 pub mod worker;
 
+pub use buried::{Buried, MAX_BURIED};
 pub use grid::{SandGrid, SandPicture};
 pub use law::{Layer, MAX_LAYERS, SandLaw};
 pub use simulation::{SandDesign, SandFigures, SandSimulation};

@@ -10,16 +10,18 @@
 
 mod cell;
 mod place;
-mod simd;
+#[cfg(test)]
+mod tests;
 mod vector;
 
 use crate::raster::Raster;
 use crate::wrap::Wrap;
+use asperity_dsp::simd::{Level, at_level};
 use cell::Cell;
 pub use cell::Samples;
 use place::Axis;
 pub use place::Places;
-use vector::{Rows, Vector};
+use vector::{Four, Rows, Vector};
 
 /// The pole of the prefilter, √3 − 2.
 const POLE: f64 = -0.267_949_192_431_122_7;
@@ -41,6 +43,7 @@ pub struct Spline {
     stride: usize,
     coefficients: Vec<f32>,
     axes: [Axis; 2],
+    level: Level,
 }
 
 impl Spline {
@@ -52,6 +55,7 @@ impl Spline {
             stride: both.width,
             coefficients: both.values.iter().map(|&c| c as f32).collect(),
             axes: [Axis::new(raster.width, extent_m[0], wrap), Axis::new(raster.height, extent_m[1], wrap)],
+            level: Level::detect(),
         }
     }
 
@@ -85,7 +89,11 @@ impl Spline {
         places: &mut Places,
         out: &mut Samples,
     ) {
-        simd::sample_block::<SLOPES>(self, position_m, places, out);
+        at_level!(
+            self.level,
+            s => self.sample_block_in_lanes::<4, _, _, SLOPES>(Four(s), Four(s), position_m, places, out),
+            wide s => self.sample_block_in_lanes::<8, _, _, SLOPES>(vector::Eight(s), Four(s), position_m, places, out)
+        );
     }
 
     /// [`Self::sample_block`], N positions side by side. A slow finger stays in a cell for many samples, whose

@@ -125,6 +125,10 @@ impl HeightField for Tiled {
         self.source.band()
     }
 
+    fn is_read_beside(&self) -> bool {
+        self.source.is_read_beside()
+    }
+
     fn reach_m(&self) -> f64 {
         self.source.reach_m()
     }

@@ -15,6 +15,10 @@ use crate::sand::SandLaw;
 const STICK_M_S: f64 = 1e-3;
 
 /// How a surface answers a depth.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a plain value that a device's thread copies once; boxing it would end that"
+)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TipLaw {
     /// Sand.
@@ -36,10 +40,30 @@ impl TipLaw {
             Self::Sand(law) => law.answer_n(depth_m, velocity_m_s),
             Self::Spring { compliance_m_n, friction } => {
                 let carried_n = depth_m.max(0.0) / compliance_m_n;
-                let slide = friction * carried_n / velocity_m_s[0].hypot(velocity_m_s[1]).max(STICK_M_S);
+                let slide =
+                    friction * carried_n / libm::hypot(velocity_m_s[0], velocity_m_s[1]).max(STICK_M_S);
                 [-slide * velocity_m_s[0], -slide * velocity_m_s[1], carried_n]
             }
         }
+    }
+
+    /// [`answer_n`](Self::answer_n) at a place of the untouched surface, metres: over the [stones and shells](crate::sand::buried) of sand too.
+    #[must_use]
+    pub fn answer_at_n(&self, position_m: [f64; 2], depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
+        match self {
+            Self::Sand(law) => law.answer_at_n(position_m, depth_m, velocity_m_s),
+            Self::Spring { .. } => self.answer_n(depth_m, velocity_m_s),
+        }
+    }
+
+    /// How much the force grows with the depth at a place of the untouched surface, N/m: [`stiffness_n_m`](Self::stiffness_n_m), and over a stone
+    /// the stone's.
+    #[must_use]
+    pub fn stiffness_at_n_m(&self, position_m: [f64; 2], depth_m: f64) -> f64 {
+        let step_m = 1e-6;
+        let depth_m = depth_m.max(step_m);
+        let carried_n = |depth_m: f64| self.answer_at_n(position_m, depth_m, [0.0; 2])[2];
+        (carried_n(depth_m + step_m) - carried_n(depth_m - step_m)) / (2.0 * step_m)
     }
 
     /// How much the force grows with the depth, N/m: what a loop of period T can hold with a device that damps with b is at most 2 b / T.

@@ -210,6 +210,23 @@ fn references_of_plateaus_and_of_black_and_white_are_met_in_bands_and_heights_an
 }
 
 #[test]
+fn terraces_are_met_by_the_original_s_own_arrangement() {
+    for (seed, steps, kept) in [(51, 3.0, 0.3), (52, 6.0, 0.5), (53, 12.0, 0.6)] {
+        let ground = fractal(256, 3.0, 1.0, seed);
+        let (low, high) = ground.range();
+        let terraces = ground.map(|z| (0.999_9 * steps * (z - low) / (high - low)).floor() / (steps - 1.0));
+        let made = made(&fractal(256, 2.6, 1.0, 60 + seed), &terraces, MetamerOptions::default().method);
+        let [ours, theirs] = [made.correlation_with_original, made.correlation_with_reference];
+        println!(
+            "{steps} heights: {:.4} left, {ours:.2} of the original, {theirs:.2} of the reference",
+            made.after.mean
+        );
+        assert!(made.after.mean <= 0.02 && made.after.heights <= 0.02, "{steps}");
+        assert!(made.borrowed == 0.0 && ours > kept && theirs.abs() < 0.2, "{steps}");
+    }
+}
+
+#[test]
 fn nothing_of_the_reference_s_arrangement_is_taken_where_the_original_s_will_do_or_none_may() {
     assert!(DEFAULTS.iter().all(|made| made.borrowed == 0.0));
     let original = fractal(256, 3.6, 1.0, 42);

@@ -4,6 +4,7 @@
 mod naive_sand;
 
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::Level;
 use asperity_texture::raster::Raster;
 use asperity_texture::sand::erosion::{Erosion, SETTLED_DEG};
 use asperity_texture::sand::simulation::Pose;
@@ -74,7 +75,7 @@ fn the_wide_pass_gives_the_same_sand_as_the_portable_one() {
     grid.fill(|_, _| 0.05 + 0.01 * rng.normal());
     let mut erosion = Erosion::new(&grid, TALUS_DEG).unwrap();
     erosion.activate_all();
-    let (mut other, mut portable) = (grid.clone(), erosion.clone().portable());
+    let (mut other, mut portable) = (grid.clone(), erosion.clone().on(Level::PORTABLE));
     for _ in 0..20 {
         assert_eq!(erosion.pass(&mut grid), portable.pass(&mut other));
         assert_eq!(grid, other);

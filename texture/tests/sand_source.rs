@@ -302,7 +302,7 @@ fn a_tip_is_carried_by_the_law_at_its_depth_below_the_sand_as_it_lies() {
 fn a_wider_tool_sinks_less_under_the_same_force() {
     let depth_m = |radius_m: f64| {
         let tool = Tool::Sphere { radius_m };
-        SandLaw::default().under(tool.bearing()).depth_m(3.005)
+        SandLaw::default().under(tool.bearing(), tool.tip_radius_m()).depth_m(3.005)
     };
     let depths = [0.0025, 0.005, 0.01, 0.015].map(depth_m);
     println!("{depths:?}");

@@ -3,6 +3,7 @@
 //! Writes the shipped scenes into a folder, fits the shipped recording, renders every scene through the
 //! very path of `asperity render --plot`, and writes an index that says what each file is.
 
+mod answering;
 mod demo_scene;
 mod gallery;
 mod index;

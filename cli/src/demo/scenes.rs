@@ -17,6 +17,7 @@ pub fn scenes() -> Vec<DemoScene> {
     scenes.push(struck());
     scenes.push(scraped());
     scenes.extend(super::gallery::scenes());
+    scenes.push(super::answering::scene());
     scenes
 }
 

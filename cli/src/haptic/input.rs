@@ -8,8 +8,8 @@ use asperity::files::scene_file::SceneFile;
 use asperity::offline;
 use asperity::open::Overrides;
 use asperity::{Engine, Quantity};
+use asperity_fit::recording::{RecordingError, Sound};
 use asperity_ports::{Clip, Device, ahap, haptic_file, hjif};
-use hound::SampleFormat;
 use std::path::Path;
 
 /// Longest file that is read as text, bytes.
@@ -36,7 +36,7 @@ pub fn read(path: &Path, channel: usize, _device: &Device) -> Result<Input, CliE
     let ending = name.rsplit('.').next().unwrap_or_default().to_lowercase();
     let told = |error: asperity_ports::PortError| CliError::told(error.within(path.display()));
     match ending.as_str() {
-        "wav" => wav(path, channel),
+        "wav" | "flac" | "ogg" => sound(path, channel),
         "toml" => scene(path, channel),
         "haptic" => {
             let read = haptic_file::parse(&text(path)?).map_err(told)?;
@@ -56,7 +56,7 @@ pub fn read(path: &Path, channel: usize, _device: &Device) -> Result<Input, CliE
         _ => Err(CliError::file(
             path,
             "is no format that is read",
-            "must end in .wav, .toml, .haptic, .ahap or .hjif",
+            "must end in .wav, .flac, .ogg, .toml, .haptic, .ahap or .hjif",
         )),
     }
 }
@@ -85,44 +85,24 @@ fn clip_of_ahap(path: &Path) -> Result<Input, CliError> {
     Ok(Input::Clip { clip: read.clip, told })
 }
 
-/// One channel of a WAV file.
-fn wav(path: &Path, channel: usize) -> Result<Input, CliError> {
-    let failed = |error: hound::Error| match error {
-        hound::Error::IoError(error) => CliError::read(path, &error),
-        other => CliError::file(
-            path,
-            format!("is no WAV file that is read ({other})"),
-            "must be PCM or 32-bit float",
+/// One channel of a sound file.
+fn sound(path: &Path, channel: usize) -> Result<Input, CliError> {
+    let sound = Sound::load(path, channel, asperity_ports::clip::LONGEST_S).map_err(|error| match error {
+        RecordingError::NoSuchChannel { name, wanted, last } => CliError::new(
+            "--channel",
+            format!("{wanted} is not in {name}"),
+            format!("must be below {}", last + 1),
         ),
-    };
-    let mut reader = hound::WavReader::open(path).map_err(failed)?;
-    let spec = reader.spec();
-    let channels = usize::from(spec.channels);
-    if channel >= channels {
-        let right = format!("must be below {channels}");
-        return Err(CliError::new("--channel", format!("{channel} is not in {}", path.display()), right));
-    }
-    let longest = (asperity_ports::clip::LONGEST_S * f64::from(spec.sample_rate)) as u64;
-    if u64::from(reader.duration()) > longest {
-        let what = format!("lasts {:.0} s", f64::from(reader.duration()) / f64::from(spec.sample_rate));
-        return Err(CliError::file(path, what, "must last at most an hour"));
-    }
-    let all: Result<Vec<f64>, hound::Error> = match spec.sample_format {
-        SampleFormat::Float => {
-            reader.samples::<f32>().skip(channel).step_by(channels).map(|x| x.map(f64::from)).collect()
-        }
-        SampleFormat::Int => {
-            let full = 2f64.powi(i32::from(spec.bits_per_sample) - 1);
-            let samples = reader.samples::<i32>().skip(channel).step_by(channels);
-            samples.map(|x| x.map(|x| f64::from(x) / full)).collect()
-        }
-    };
+        other => CliError::told(other),
+    })?;
+    let name = name_of(path);
+    let cut = format!("{name} ends before its header says: what is there was read");
     Ok(Input::Samples {
-        samples: all.map_err(failed)?,
-        rate_hz: f64::from(spec.sample_rate),
+        samples: sound.samples,
+        rate_hz: sound.sample_rate_hz,
         strokes_s: Vec::new(),
-        told: Vec::new(),
-        source: name_of(path),
+        told: if sound.truncated { vec![cut] } else { Vec::new() },
+        source: name,
     })
 }
 

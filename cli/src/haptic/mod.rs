@@ -25,7 +25,7 @@ const FAINT: f64 = 0.05;
 #[derive(Debug, Args)]
 pub struct Options {
     /// Samples of displacement, a scene with its contact log, or a clip
-    #[arg(value_name = "IN.(wav|toml|haptic|ahap|hjif)")]
+    #[arg(value_name = "IN.(wav|flac|ogg|toml|haptic|ahap|hjif)")]
     pub input: PathBuf,
     /// What to write: an envelope of two curves, a waveform in few points, or samples of what is left
     #[arg(short, long = "output", value_name = "OUT.(haptic|ahap|hjif|android.json|pcm.wav|wav)")]

@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 /// The extension, as of the draft's commit 2ea03a8 of 2026-08-22.
-const EXTENSION: &str = "KHR_audio_rigid_bodies";
+pub const EXTENSION: &str = "KHR_audio_rigid_bodies";
 /// Side of a surface whose node has no mesh, m.
 const PLAIN_SIDE_M: f64 = 0.1;
 /// Relief of a surface without a normal texture, m.

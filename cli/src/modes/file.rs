@@ -1,7 +1,7 @@
 //! The modes file of a solved body: format version 2, with shapes.
 
 use crate::error::CliError;
-use asperity::{ModeShapes, ShapeUnit};
+use asperity::{ModeShapes, ShapeUnit, shapes_to_bytes};
 use asperity_dsp::damping::Damping;
 use asperity_dsp::radiation::{EquivalentSphere, Surface};
 use asperity_shape::SolvedBody;
@@ -21,7 +21,11 @@ pub struct ModesFile {
     damping: FileDamping,
     /// The modes as the default place excites them.
     pub modes: Vec<FileMode>,
-    shapes: ModeShapes,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shapes: Option<ModeShapes>,
+    /// Name of the file that holds the shapes instead.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shapes_beside: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -113,8 +117,16 @@ impl ModesFile {
             unit: if radiation { ShapeUnit::PascalsAtOneMetre } else { ShapeUnit::Relative },
             damping: FileDamping { alpha_per_s, eta, beta_s },
             modes,
-            shapes,
+            shapes: Some(shapes),
+            shapes_beside: None,
         })
+    }
+
+    /// Moves the shapes into a file of that name; its bytes.
+    pub fn put_shapes_beside(&mut self, name: String) -> Option<Vec<u8>> {
+        let bytes = shapes_to_bytes(&self.shapes.take()?);
+        self.shapes_beside = Some(name);
+        Some(bytes)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
 use asperity_shape::Making;
 use file::ModesFile;
-pub use options::Options;
+pub use options::{Options, preset};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -53,13 +53,24 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     })
     .map_err(|error| CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) }))?;
     drop(progress);
-    let file = ModesFile::new(&mut body, &damping, options.radiation, &options.body)?;
+    let mut file = ModesFile::new(&mut body, &damping, options.radiation, &options.body)?;
     let mut outputs = Outputs::new();
     let text = serde_json::to_string(&file)
         .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;
     // What the engine would refuse is no body.
     asperity::ModalModel::parse(&text).map_err(CliError::told)?;
-    outputs.write(&options.output, text.as_bytes())?;
+    let beside = options.output.with_extension("shapes");
+    let name = beside.file_name().map(|name| name.to_string_lossy().into_owned());
+    let written = if let (true, Some(name)) = (options.shapes_beside, name) {
+        if let Some(bytes) = file.put_shapes_beside(name) {
+            outputs.write(&beside, &bytes)?;
+        }
+        serde_json::to_string(&file)
+            .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?
+    } else {
+        text
+    };
+    outputs.write(&options.output, written.as_bytes())?;
     if let Some(path) = &options.plot {
         let title = options.body.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         outputs.write(path, picture::svg(&title, &body, &damping, &file).as_bytes())?;

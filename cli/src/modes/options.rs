@@ -46,6 +46,9 @@ pub struct Options {
     /// How loud each mode is in the air at 1 m, in pascals, and what radiation takes from it; without this levels are relative
     #[arg(long)]
     pub radiation: bool,
+    /// Write the shapes into a file of their own, OUT.shapes, a fifth as large
+    #[arg(long)]
+    pub shapes_beside: bool,
     /// Every mode below this frequency, Hz
     #[arg(long, value_name = "HZ")]
     pub up_to: Option<f64>,
@@ -82,13 +85,7 @@ impl Options {
 
     /// What it is made of and how that damps.
     pub fn material(&self) -> Result<(Elastic, Damping), CliError> {
-        let preset = match &self.material {
-            None => None,
-            Some(name) => Some(Material::by_name(name).ok_or_else(|| {
-                let right = format!("must be one of {}", Material::names());
-                CliError::new("--material", format!("{name} is unknown"), right)
-            })?),
-        };
+        let preset = self.material.as_deref().map(preset).transpose()?;
         let missing = |option: &str| {
             let right = "give it, or --material NAME, which has all three";
             CliError::new(option, "is missing", right)
@@ -118,4 +115,12 @@ impl Options {
             CliError::file(path, "has no damped mode to learn from", "name the modes file of a recording")
         })
     }
+}
+
+/// The material that `--material` names.
+pub fn preset(name: &str) -> Result<Material, CliError> {
+    Material::by_name(name).ok_or_else(|| {
+        let right = format!("must be one of {}", Material::names());
+        CliError::new("--material", format!("{name} is unknown"), right)
+    })
 }

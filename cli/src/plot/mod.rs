@@ -138,6 +138,23 @@ impl Series {
     pub fn signal(samples: impl IntoIterator<Item = f64>, rate_hz: f64, start_s: f64) -> Self {
         Self::Uniform { start: start_s, step: 1.0 / rate_hz, y: samples.into_iter().collect() }
     }
+
+    /// A signal that holds each report's value until the next one, as the mean of `over_s` about each sample: without the stairs.
+    #[must_use]
+    pub fn of_reports(samples: &[f64], over_s: f64, rate_hz: f64, start_s: f64) -> Self {
+        let sums: Vec<f64> = std::iter::once(0.0)
+            .chain(samples.iter().scan(0.0, |sum, x| {
+                *sum += x;
+                Some(*sum)
+            }))
+            .collect();
+        let half = (0.5 * over_s * rate_hz) as usize;
+        let mean = |at: usize| {
+            let (first, end) = (at.saturating_sub(half), (at + half + 1).min(samples.len()));
+            (sums[end] - sums[first]) / (end - first) as f64
+        };
+        Self::signal((0..samples.len()).map(mean), rate_hz, start_s)
+    }
 }
 
 /// What a panel shows.
@@ -253,4 +270,20 @@ pub struct ColourBar {
     pub range: [f64; 2],
     /// Written above the bar.
     pub unit: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reports_that_are_held_are_drawn_as_the_ramp_they_stand_for() {
+        // 60 reports a second of a speed that grows by 1 a second, held at 6 kHz.
+        let held: Vec<f64> = (0..6000).map(|n| (n / 100) as f64 / 60.0).collect();
+        let Series::Uniform { y, .. } = Series::of_reports(&held, 1.0 / 60.0, 6000.0, 0.0) else { panic!() };
+        let steepest = y[200..5800].windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        // The reports themselves step by 100 times as much.
+        assert!(steepest < 2.1 / 6000.0, "{steepest}");
+        assert!((y[3000] - 0.5).abs() < 0.01);
+    }
 }

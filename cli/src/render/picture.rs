@@ -15,6 +15,8 @@ pub const DRAWN_CONTACTS: usize = 8;
 const NAMED_CONTACTS: usize = 3;
 /// Length of the enlarged instant, s.
 const ZOOM_S: f64 = 0.03;
+/// Between two reports of most games, s.
+const REPORT_S: f64 = 1.0 / 60.0;
 
 /// What one contact did, sample by sample.
 #[derive(Debug, Clone, Default)]
@@ -133,7 +135,7 @@ fn speed_panel(take: &Take<'_>) -> Panel {
         Axis::new("speed", "m/s").above_zero(highest(take, |c| &c.speed_m_s)),
     );
     for (contact, colour) in drawn(take) {
-        let data = Series::signal(contact.speed_m_s.iter().copied(), take.sample_rate_hz, contact.start_s);
+        let data = Series::of_reports(&contact.speed_m_s, REPORT_S, take.sample_rate_hz, contact.start_s);
         panel = panel.with(Layer::line("", colour, data));
     }
     panel

@@ -6,10 +6,11 @@ use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
 use asperity::Mode;
 use asperity_dsp::modal_bank::{
-    Culling, GroupOptions, GroupState, Inputs, Isa, Kernel, ModalBank, ModeGroup, ReferenceMode,
-    ReferenceState, SLEEP_AMPLITUDE, audible, design_groups, ringing_s, sort_by_decay,
+    Culling, GroupOptions, GroupState, Inputs, ModalBank, ModeGroup, ReferenceMode, ReferenceState,
+    SLEEP_AMPLITUDE, audible, design_groups, ringing_s, sort_by_decay,
 };
 use asperity_dsp::rng::Rng;
+use asperity_dsp::simd::{Isa, Level};
 
 const MODES: usize = 256;
 const SAMPLES: usize = 16_384;
@@ -52,7 +53,7 @@ fn designed(modes: &[Mode]) -> Result<Vec<ModeGroup>, CliError> {
 }
 
 /// The engine's bank, block by block, of which no mode ever sleeps.
-fn bank(groups: &[ModeGroup], kernel: Kernel, impulses: &[f32]) -> Vec<f32> {
+fn bank(groups: &[ModeGroup], kernel: Level, impulses: &[f32]) -> Vec<f32> {
     let states = vec![GroupState::REST; groups.len()];
     run(ModalBank::new(kernel, groups, states).sleeping_below(0.0), groups.len(), impulses)
 }
@@ -60,7 +61,7 @@ fn bank(groups: &[ModeGroup], kernel: Kernel, impulses: &[f32]) -> Vec<f32> {
 /// The same where the groups that have rung out sleep, and only the first `driven` hear what strikes.
 fn sleeping_bank(groups: &[ModeGroup], driven: usize, threshold: f32, impulses: &[f32]) -> Vec<f32> {
     let states = vec![GroupState::REST; groups.len()];
-    run(ModalBank::new(Kernel::detect(), groups, states).sleeping_below(threshold), driven, impulses)
+    run(ModalBank::new(Level::detect(), groups, states).sleeping_below(threshold), driven, impulses)
 }
 
 fn run(mut bank: ModalBank<&[ModeGroup], Vec<GroupState>>, driven: usize, impulses: &[f32]) -> Vec<f32> {
@@ -88,7 +89,7 @@ pub fn sleep_rows() -> Result<Vec<Row>, CliError> {
     let groups = designed(&modes)?;
     let mut impulses = strike();
     impulses.resize(SLEEP_SAMPLES, 0.0);
-    let reference: Vec<f64> = wide(bank(&groups, Kernel::detect(), &impulses)).collect();
+    let reference: Vec<f64> = wide(bank(&groups, Level::detect(), &impulses)).collect();
     let row = |choice: String, ns_per_strike: f64, found: Vec<f32>| Row {
         axis: "mode sleep",
         choice,
@@ -96,8 +97,8 @@ pub fn sleep_rows() -> Result<Vec<Row>, CliError> {
         error: relative_error(wide(found), &reference),
         reference: SLEEP_REFERENCE,
     };
-    let always = bank(&groups, Kernel::detect(), &impulses);
-    let mut rows = vec![row("never".to_owned(), ns(|| bank(&groups, Kernel::detect(), &impulses)), always)];
+    let always = bank(&groups, Level::detect(), &impulses);
+    let mut rows = vec![row("never".to_owned(), ns(|| bank(&groups, Level::detect(), &impulses)), always)];
     for level_db in [-160.0, -120.0, -100.0, -80.0, -60.0] {
         let threshold = 10f32.powf(level_db / 20.0);
         let note = if threshold == SLEEP_AMPLITUDE { " (the engine)" } else { "" };
@@ -156,7 +157,7 @@ pub fn struck_shedding_rows() -> Result<Vec<Row>, CliError> {
 pub fn culling_rows() -> Result<Vec<Row>, CliError> {
     let all = body();
     let impulses = strike();
-    let kernel = Kernel::detect();
+    let kernel = Level::detect();
     let reference: Vec<f64> = wide(bank(&designed(&all)?, kernel, &impulses)).collect();
     let cullings = [
         ("none", Culling { level_db: f64::INFINITY, masking: false, ..Culling::default() }),
@@ -249,8 +250,8 @@ pub fn format_rows() -> Result<Vec<Row>, CliError> {
         ),
     ];
     let groups = designed(&modes)?;
-    for isa in [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512] {
-        if let Some(kernel) = Kernel::find(isa) {
+    for isa in Isa::ALL {
+        if let Some(kernel) = Level::find(isa) {
             let run = || bank(&groups, kernel, &impulses);
             let error = relative_error(wide(run()), &reference);
             rows.push(row(format!("delta form, f32, {isa:?}"), ns(run), error));

@@ -3,7 +3,8 @@
 use super::{BLOCK, Row, SAMPLE_RATE_HZ};
 use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
-use asperity_dsp::fractal_noise::{FractalNoise, Kernel, NoisePath, OctaveWeights};
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
+use asperity_dsp::simd::Level;
 
 const SECONDS: f64 = 0.25;
 const RMS_AT_1_MM_M: f64 = 2e-6;
@@ -37,7 +38,7 @@ fn places(speed_m_s: f64) -> Vec<[f64; 2]> {
 /// Measures the axis.
 pub fn rows() -> Result<Vec<Row>, CliError> {
     let widest = FractalNoise::new(1);
-    let portable = FractalNoise::with_kernel(1, Kernel::Portable);
+    let portable = FractalNoise::new(1).on(Level::PORTABLE);
     let mut rows = Vec::new();
     let mut measure = |choice: String, noise: &FractalNoise, speed_m_s: f64, footprint_m: f64| {
         let places = places(speed_m_s);
@@ -50,7 +51,7 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
         rows.push(Row { axis: "noise octaves", choice, ns_per_sample, error, reference: REFERENCE });
     };
     measure("12 octaves, portable code".to_owned(), &portable, 0.1, 0.0);
-    measure(format!("12 octaves, {:?}", widest.kernel()), &widest, 0.1, 0.0);
+    measure(format!("12 octaves, {:?}", widest.level().isa()), &widest, 0.1, 0.0);
     for speed_m_s in [0.1, 0.3, 1.0, 3.0] {
         let choice = format!("by footprint at {speed_m_s} m/s");
         measure(choice, &widest, speed_m_s, speed_m_s / SAMPLE_RATE_HZ);

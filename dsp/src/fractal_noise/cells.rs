@@ -1,7 +1,7 @@
 //! Lattice coordinates of samples in fixed point: 32 bits of index and 32 of fraction.
 
 use crate::gradient_noise_2d::Corners;
-use crate::vector::Vector;
+use crate::simd::Vector;
 
 /// Adding and subtracting it rounds to a whole number, the same everywhere.
 const TO_WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
@@ -125,12 +125,13 @@ fn inner(bound: i64) -> f64 {
 mod tests {
     use super::super::LONGEST_CELL_M;
     use super::*;
-    use crate::vector::Portable;
+    use crate::simd::{BASE, Eight};
 
     #[test]
     fn fixed_point_keeps_every_place_to_four_picometres() {
         for u in [0.0, 0.25, -0.25, 1.0 / 3.0, -123_456.789, 8.5e6, -8.5e6 + 0.1] {
-            let fixed = cells(Portable, [u]).last(Portable);
+            let lanes = Eight(BASE);
+            let fixed = cells(lanes, lanes.splat_double(u)).last(lanes);
             assert!((fixed as f64 / 4_294_967_296.0 - u).abs() * LONGEST_CELL_M < 4e-12, "{u}: {fixed}");
         }
     }

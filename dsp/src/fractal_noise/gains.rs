@@ -1,6 +1,6 @@
 //! Gains of the octaves: polynomials of the roughness, and the fade with the footprint.
 
-use crate::vector::Vector;
+use crate::simd::Vector;
 
 /// r = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser one, within 1e-6.
 const OCTAVE_RATIO: [f32; 5] = [0.594_603_8, 0.309_091_63, 0.080_510_76, 0.013_454_678, 0.002_338_592];
@@ -68,13 +68,13 @@ pub(super) fn gains<const N: usize, V: Vector<N>>(v: V, roughness: V::Single) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::Portable;
+    use crate::simd::{BASE, Eight};
 
     #[test]
     fn the_polynomials_are_the_powers_they_stand_for() {
         for n in 0..=100 {
             let r = n as f32 / 100.0;
-            let of = |c| f64::from(polynomial(Portable, [r], c)[0]);
+            let of = |c| f64::from(polynomial(Eight(BASE), Eight(BASE).splat(r), c)[0]);
             let exact = libm::pow(2.0, -0.75 * (1.0 - f64::from(r)));
             assert!((of(&OCTAVE_RATIO) / exact - 1.0).abs() < 2e-6, "{r}");
             assert!((of(&INVERSE_OCTAVE_RATIO) * exact - 1.0).abs() < 2e-6, "{r}");
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn an_octave_fades_between_four_and_two_samples_a_cell() {
-        let weight = |samples| footprint_weight(Portable, [samples])[0];
+        let weight = |samples| footprint_weight(Eight(BASE), Eight(BASE).splat(samples))[0];
         assert_eq!((weight(1.9), weight(2.0), weight(f32::NAN)), (0.0, 0.0, 0.0));
         assert_eq!((weight(4.0), weight(1e9)), (1.0, 1.0));
         assert!((weight(3.0) - 0.5).abs() < 1e-6);

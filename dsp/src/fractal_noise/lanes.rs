@@ -6,7 +6,7 @@ use super::{
     FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, Octave, OctaveWeights, ROTATION_RAD, ROTATIONS,
 };
 use crate::gradient_noise_2d::{Corners, corners, gradient_noise};
-use crate::vector::Vector;
+use crate::simd::Vector;
 
 /// Positions are kept within ± this many metres, where fixed point keeps their order.
 const FARTHEST_M: f64 = 1e7;

@@ -5,44 +5,36 @@
 mod point;
 
 use super::{EDGES, MIX, PRIME, Points, ROOT_15, WHOLE};
-
-#[cfg(target_arch = "x86")]
-use core::arch::x86::*;
-#[cfg(target_arch = "x86_64")]
+use crate::simd::{Level, Token};
 use core::arch::x86_64::*;
 
-/// Evaluates the first multiple of 8 points; returns their number.
-pub(super) fn run_avx2(seed: u32, points: &mut Points<'_>) -> usize {
-    let whole = points.x.len() & !7;
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-        // SAFETY: the processor has AVX2 and FMA (checked above; the check is a cached load), and all slices
-        // of `Points` are equally long, so that `whole` points can be read and written.
-        unsafe { avx2::run(seed, points, whole) };
-        whole
-    } else {
-        0
+/// Evaluates as many of the first points as fill vectors; returns their number.
+pub(super) fn run(level: Level, seed: u32, points: &mut Points<'_>) -> usize {
+    let len = points.x.len();
+    match level.token() {
+        Token::Portable(_) => 0,
+        // SAFETY: the token stands for AVX2 and FMA, and all slices of `Points` are equally long, so that whole vectors of points can be
+        // read and written.
+        Token::Avx2(_) => unsafe {
+            avx2::run(seed, points, len & !7);
+            len & !7
+        },
+        // SAFETY: the token stands for AVX-512F; as above.
+        Token::Avx512(_) => unsafe {
+            avx512::run(seed, points, len & !15);
+            len & !15
+        },
     }
 }
 
-/// Evaluates the first multiple of 16 points; returns their number.
-pub(super) fn run_avx512(seed: u32, points: &mut Points<'_>) -> usize {
-    let whole = points.x.len() & !15;
-    if std::arch::is_x86_feature_detected!("avx512f") {
-        // SAFETY: the processor has AVX-512F (checked above; the check is a cached load), and all
-        // slices of `Points` are equally long, so that `whole` points can be read and written.
-        unsafe { avx512::run(seed, points, whole) };
-        whole
-    } else {
-        0
-    }
-}
-
-/// One point with its eight corners in the lanes of AVX2; call only when the kernel was detected.
+/// One point with its eight corners in the lanes of AVX2, where there is AVX2.
 #[inline]
-pub(super) fn single(seed: u32, x: f64, y: f64, z: f64) -> super::Noise3 {
-    // SAFETY: `GradientNoise3d` holds a vector kernel only when the processor has it, and every
-    // processor with AVX-512F has AVX2 and FMA.
-    unsafe { point::single(seed, x, y, z) }
+pub(super) fn single(level: Level, seed: u32, [x, y, z]: [f64; 3]) -> Option<super::Noise3> {
+    match level.token() {
+        Token::Portable(_) => None,
+        // SAFETY: either token stands for AVX2 and FMA.
+        Token::Avx2(_) | Token::Avx512(_) => Some(unsafe { point::single(seed, x, y, z) }),
+    }
 }
 
 /// The kernel, written once over the vector operations of the module it is expanded in.

@@ -125,7 +125,7 @@ fn edge(v: f64, step: f64) -> [f64; 4] {
 /// What a mean force over one step still needs to have passed the kernel sinc⁴: sinc³ as a symmetric filter
 /// of five taps about [`KERNEL_LATENCY`], equal to it up to θ⁴ (0.04 dB off at 10 kHz and 44.1 kHz, 0.07 dB at
 /// a quarter of any rate). The outer two taps undo the droop of the mean itself.
-const FORCE_TAPS: [f64; FORCE_HISTORY + 1] =
+pub const FORCE_TAPS: [f64; FORCE_HISTORY + 1] =
     [-7.0 / 1920.0, 67.0 / 480.0, 233.0 / 320.0, 67.0 / 480.0, -7.0 / 1920.0];
 
 /// Samples of force that [`spread_force`] looks back.

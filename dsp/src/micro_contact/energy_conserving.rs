@@ -58,13 +58,14 @@ impl EnergyConserving {
     #[inline(always)]
     pub fn run<Q: Quad>(
         &self,
+        quad: Q,
         design: &MicroContact,
         state: &mut ContactState,
         block: &CleanBlock,
         out: &mut [ContactSample],
     ) {
         let (mut h_old, mut f_old) = (state.heights_m[2], state.forces_n[1]);
-        let mut y = Q::load(&state.y);
+        let mut y = quad.load(&state.y);
         let mut before = state.y[0];
         for ((out, &height_m), &force_n) in out.iter_mut().zip(&block.height_m).zip(&block.force_n) {
             let rise = height_m - h_old;
@@ -72,14 +73,14 @@ impl EnergyConserving {
             let after = free.first();
             let contact_force_n = self.force(-before, -after);
             let onset = if before >= 0.0 && after < 0.0 { Some(self.onset(before, after)) } else { None };
-            y = Q::load(&self.free.push).times_plus(Q::splat(contact_force_n), free);
+            y = quad.load(&self.free.push).times_plus(quad.splat(contact_force_n), free);
             let gap_m = y.first();
             if !(gap_m <= design.leash_m && gap_m >= -MAX_PENETRATION_M) {
                 let mut lost = y.array();
                 if rescue(design, &mut lost, gap_m, force_n) {
                     state.resets = state.resets.saturating_add(1);
                 }
-                y = Q::load(&lost);
+                y = quad.load(&lost);
             }
             before = y.first();
             let [gap_m, stretch_m, pad_velocity_m_s, _] = y.array();

@@ -79,6 +79,7 @@ impl ExactEvent {
     #[inline(always)]
     pub fn run<Q: Quad>(
         &self,
+        quad: Q,
         design: &MicroContact,
         state: &mut ContactState,
         block: &CleanBlock,
@@ -86,7 +87,7 @@ impl ExactEvent {
     ) {
         let [mut h0, mut h1, mut h2] = state.heights_m;
         let [mut f1, mut f2] = state.forces_n;
-        let mut y = Q::load(&state.y);
+        let mut y = quad.load(&state.y);
         // Changes with events only, so that no map waits for a comparison.
         let mut pressed = state.y[0] < 0.0;
         for ((out, &h3), &f3) in out.iter_mut().zip(&block.height_m).zip(&block.force_n) {
@@ -100,7 +101,7 @@ impl ExactEvent {
             } else {
                 let step = self.walk(before, c, force);
                 (touched, onset) = (step.touched, step.onset);
-                y = Q::load(&step.y);
+                y = quad.load(&step.y);
                 pressed = y.first() < 0.0;
             }
             let after = y.array();
@@ -112,7 +113,7 @@ impl ExactEvent {
                 if rescue(design, &mut lost, after[0], f2) {
                     state.resets = state.resets.saturating_add(1);
                 }
-                y = Q::load(&lost);
+                y = quad.load(&lost);
                 pressed = lost[0] < 0.0;
             }
             let [gap_m, stretch_m, pad_velocity_m_s, _] = y.array();
@@ -145,7 +146,7 @@ impl ExactEvent {
         while now < ticks {
             let pressed = usize::from(y[0] < 0.0);
             level = level.max(self.coarsest[pressed].min(self.finest));
-            let mut next = self.regimes[pressed].maps[level].apply(Plain::load(&y), c, force_n).array();
+            let mut next = self.regimes[pressed].maps[level].apply(Plain(y), c, force_n).array();
             maps += 1;
             let event = usize::from(next[0] < 0.0) != pressed;
             if event && level < self.finest {

@@ -32,27 +32,27 @@ impl Map {
     #[inline(always)]
     pub fn apply<Q: Quad>(&self, y: Q, c: [f64; 3], force_n: f64) -> Q {
         let [_, _, _, _, slope, bend, twist, force] = &self.columns;
-        let inputs = Q::load(slope).mul(Q::splat(c[0]));
-        let inputs = Q::load(bend).times_plus(Q::splat(c[1]), inputs);
-        let inputs = Q::load(twist).times_plus(Q::splat(c[2]), inputs);
-        let inputs = Q::load(force).times_plus(Q::splat(force_n), inputs);
+        let inputs = y.load(slope).mul(y.splat(c[0]));
+        let inputs = y.load(bend).times_plus(y.splat(c[1]), inputs);
+        let inputs = y.load(twist).times_plus(y.splat(c[2]), inputs);
+        let inputs = y.load(force).times_plus(y.splat(force_n), inputs);
         self.apply_with(y, inputs)
     }
 
     /// The same for a straight profile: it rises by `rise_m` within the sample.
     #[inline(always)]
     pub fn apply_straight<Q: Quad>(&self, y: Q, rise_m: f64, force_n: f64) -> Q {
-        let inputs = Q::load(&self.columns[4]).mul(Q::splat(rise_m));
-        self.apply_with(y, Q::load(&self.columns[7]).times_plus(Q::splat(force_n), inputs))
+        let inputs = y.load(&self.columns[4]).mul(y.splat(rise_m));
+        self.apply_with(y, y.load(&self.columns[7]).times_plus(y.splat(force_n), inputs))
     }
 
     #[inline(always)]
     fn apply_with<Q: Quad>(&self, y: Q, inputs: Q) -> Q {
         let [gap, stretch, pad, finger, ..] = &self.columns;
-        let positions = Q::load(gap).times_plus(y.spread::<0>(), inputs);
-        let positions = Q::load(stretch).times_plus(y.spread::<1>(), positions);
-        let velocities = Q::load(pad).mul(y.spread::<2>());
-        let velocities = Q::load(finger).times_plus(y.spread::<3>(), velocities);
+        let positions = y.load(gap).times_plus(y.spread::<0>(), inputs);
+        let positions = y.load(stretch).times_plus(y.spread::<1>(), positions);
+        let velocities = y.load(pad).mul(y.spread::<2>());
+        let velocities = y.load(finger).times_plus(y.spread::<3>(), velocities);
         positions.add(velocities)
     }
 }
@@ -222,7 +222,7 @@ mod tests {
     const STEP_S: f64 = 1.0 / 44_100.0;
 
     fn apply(map: &Map, y: [f64; 4], c: [f64; 3], force_n: f64) -> [f64; 4] {
-        map.apply(Plain::load(&y), c, force_n).array()
+        map.apply(Plain(y), c, force_n).array()
     }
 
     #[test]

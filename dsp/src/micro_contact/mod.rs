@@ -37,12 +37,10 @@
 //! A row of Euler holds the force at the row's time (the mean over the step centred on it); the other
 //! two give the mean over the step that ends at the row.
 mod choice;
-mod dispatch;
 mod energy_conserving;
 mod exact_event;
 mod flow;
 mod guard;
-mod lanes;
 mod probe;
 mod quad;
 mod semi_implicit;
@@ -52,7 +50,6 @@ mod stiffening;
 pub use choice::{
     Choice, EULER_MAX_PHASE, EXACT_MAX_PHASE, EXACT_MAX_STIFFNESS_N_M, Integrator, SUBSTEP_MAX_PHASE,
 };
-pub use lanes::{EulerLanes, LANES, LaneRow, Lanes};
 pub use probe::{
     CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, FORCE_EXPONENT, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG,
     PAD_STIFFNESS_N_M, Probe, RIDGE_M,
@@ -61,10 +58,13 @@ pub use state::{ContactSample, ContactState, Onset};
 pub use stiffening::RUNGS_AN_OCTAVE;
 
 use crate::DesignError;
+use crate::simd::{Level, at_level};
 use energy_conserving::EnergyConserving;
 use exact_event::ExactEvent;
+use fearless_simd::SimdBase;
+use fearless_simd::f64x4;
 use guard::{CleanBlock, GRID};
-use quad::Quad;
+use quad::{Halves, Quad};
 use semi_implicit::SemiImplicit;
 
 /// A contact whose skin is nearer than this to its resting place is settled, m.
@@ -82,7 +82,7 @@ pub struct MicroContact {
     step_s: f64,
     leash_m: f64,
     scheme: Scheme,
-    portable: bool,
+    level: Level,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,14 +111,20 @@ impl MicroContact {
             Integrator::ExactEvent => Scheme::ExactEvent(ExactEvent::new(probe, step_s)),
             Integrator::EnergyConserving => Scheme::EnergyConserving(EnergyConserving::new(probe, step_s)),
         };
-        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme, portable: false })
+        Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme, level: Level::detect() })
     }
 
-    /// Whether products and sums round apart, as on every machine, or are fused where this one can: the last bits of a row
-    /// depend on it.
+    /// The same on a chosen instruction set. Whether products and sums round apart, as on [`Level::PORTABLE`], or together, as on all
+    /// others, shows in the last bits of a row.
     #[must_use]
-    pub fn portable(self, portable: bool) -> Self {
-        Self { portable, ..self }
+    pub fn on(self, level: Level) -> Self {
+        Self { level, ..self }
+    }
+
+    /// The instruction set in use.
+    #[must_use]
+    pub fn level(&self) -> Level {
+        self.level
     }
 
     /// The probe it was designed for.
@@ -228,31 +234,11 @@ impl MicroContact {
         normal_force_n: &[f64],
         out: &mut [ContactSample],
     ) {
-        if self.portable {
-            dispatch::run_portable(self, state, height_m, normal_force_n, out);
-        } else {
-            dispatch::run(self, state, height_m, normal_force_n, out);
-        }
-    }
-
-    /// [`Self::run`] without vectors wider than the crate was compiled for: the same bits where those do not fuse, slower.
-    pub fn run_portable(
-        &self,
-        state: &mut ContactState,
-        height_m: &[f64],
-        normal_force_n: &[f64],
-        out: &mut [ContactSample],
-    ) {
-        dispatch::run_portable(self, state, height_m, normal_force_n, out);
-    }
-
-    /// Eight contacts of this design at once; only where semi-implicit Euler runs in one step a sample.
-    #[must_use]
-    pub fn lanes(&self) -> Option<EulerLanes<'_>> {
-        match &self.scheme {
-            Scheme::SemiImplicit(scheme) if scheme.substeps == 1 => Some(EulerLanes { design: self, scheme }),
-            _ => None,
-        }
+        // Four numbers fill no wider vector.
+        at_level!(self.level.at_most_256_bits(), s => {
+            let (quad, halves): (f64x4<_>, _) = (SimdBase::splat(s, 0.0), Halves::zero(s));
+            self.run_blocks(quad, halves, state, height_m, normal_force_n, out);
+        });
     }
 
     /// Whether the contact, if this height and force stay, no longer moves by more than
@@ -292,6 +278,8 @@ impl MicroContact {
     #[inline(always)]
     fn run_blocks<Q: Quad, E: Quad>(
         &self,
+        quad: Q,
+        halves: E,
         state: &mut ContactState,
         mut height_m: &[f64],
         mut force_n: &[f64],
@@ -309,9 +297,9 @@ impl MicroContact {
             let (rows, later_rows) = out.split_at_mut(count);
             block.fill(state, heights, forces);
             match &self.scheme {
-                Scheme::SemiImplicit(scheme) => scheme.run::<E>(self, state, &block, rows),
-                Scheme::ExactEvent(scheme) => scheme.run::<Q>(self, state, &block, rows),
-                Scheme::EnergyConserving(scheme) => scheme.run::<Q>(self, state, &block, rows),
+                Scheme::SemiImplicit(scheme) => scheme.run(halves, self, state, &block, rows),
+                Scheme::ExactEvent(scheme) => scheme.run(quad, self, state, &block, rows),
+                Scheme::EnergyConserving(scheme) => scheme.run(quad, self, state, &block, rows),
             }
             state.clock = state.clock.wrapping_add(count as u32);
             if count == left {

@@ -50,32 +50,34 @@ impl SemiImplicit {
     /// what is known late is added last.
     #[inline(always)]
     fn advance<Q: Quad>(&self, d: f64, penetration: f64, y: Q, force_n: f64) -> Q {
-        let springs = Q::load(&self.force).times_plus(Q::splat(force_n), Q::load(&[d, 0.0, 0.0, 0.0]));
-        let springs = Q::load(&self.stretch).times_plus(y.spread::<1>(), springs);
-        let dampers = Q::load(&self.pad_velocity).mul(y.spread::<2>());
-        let dampers = Q::load(&self.finger_velocity).times_plus(y.spread::<3>(), dampers);
-        Q::load(&self.contact).times_plus(Q::splat(penetration), springs.add(dampers))
+        let springs = y.load(&self.force).times_plus(y.splat(force_n), y.load(&[d, 0.0, 0.0, 0.0]));
+        let springs = y.load(&self.stretch).times_plus(y.spread::<1>(), springs);
+        let dampers = y.load(&self.pad_velocity).mul(y.spread::<2>());
+        let dampers = y.load(&self.finger_velocity).times_plus(y.spread::<3>(), dampers);
+        y.load(&self.contact).times_plus(y.splat(penetration), springs.add(dampers))
     }
 
     /// Runs one clean block; row n describes input n.
     #[inline(always)]
     pub fn run<Q: Quad>(
         &self,
+        quad: Q,
         design: &MicroContact,
         state: &mut ContactState,
         block: &CleanBlock,
         out: &mut [ContactSample],
     ) {
         if self.substeps > 1 {
-            self.run_steps::<Q>(design, state, block, out, self.substeps);
+            self.run_steps(quad, design, state, block, out, self.substeps);
         } else {
-            self.run_steps::<Q>(design, state, block, out, 1);
+            self.run_steps(quad, design, state, block, out, 1);
         }
     }
 
     #[inline(always)]
     fn run_steps<Q: Quad>(
         &self,
+        quad: Q,
         design: &MicroContact,
         state: &mut ContactState,
         block: &CleanBlock,
@@ -84,7 +86,7 @@ impl SemiImplicit {
     ) {
         let share = 1.0 / substeps as f64;
         let (mut h_old, mut f_old) = (state.heights_m[2], state.forces_n[1]);
-        let (mut y, mut gap) = (Q::load(&state.y), state.gap_m);
+        let (mut y, mut gap) = (quad.load(&state.y), state.gap_m);
         for ((out, &height_m), &force_n) in out.iter_mut().zip(&block.height_m).zip(&block.force_n) {
             let rise = (height_m - h_old) * share;
             let (mut mean, mut onset) = (0.0, None);
@@ -121,7 +123,7 @@ impl SemiImplicit {
                     gap = lost[0];
                     state.resets = state.resets.saturating_add(1);
                 }
-                y = Q::load(&lost);
+                y = quad.load(&lost);
             }
             (h_old, f_old) = (height_m, force_n);
         }
@@ -130,11 +132,6 @@ impl SemiImplicit {
         state.forces_n = [f_old; 2];
         state.y = y.array();
         state.gap_m = gap;
-    }
-
-    /// The touch between gap `before` ≥ 0 and `now` < 0 of a plain step.
-    pub fn first_onset(&self, before: f64, now: f64) -> Onset {
-        Onset { offset: before / (before - now), closing_m_s: (before - now) * self.rate_hz }
     }
 
     #[inline(never)]

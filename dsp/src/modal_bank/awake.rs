@@ -1,8 +1,8 @@
 //! The groups that ring: the others cost nothing until they are struck again.
 
-use super::Kernel;
 use super::design::{GRID_SAMPLES, GroupState, ModeGroup};
 use super::job::{Input, MAX_INPUTS};
+use super::kernel::Kernel;
 
 /// How many leading groups ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -5,11 +5,13 @@
 //! ```
 //!
 //! Written plainly it is the loop of [`ReferenceMode`](super::ReferenceMode), one mode after the other; the bank renders the same 16 modes at a time, in the
-//! instructions that its [`Kernel`] stands for, and leaves out the groups that have rung out.
+//! instructions that its [`Level`] stands for, and leaves out the groups that have rung out.
 
 use super::awake::Awake;
 use super::design::{GroupState, LaneGains, ModeGroup};
-use super::{Input, Kernel, SLEEP_AMPLITUDE, retune, sleep};
+use super::kernel::Kernel;
+use super::{Input, SLEEP_AMPLITUDE, retune, sleep};
+use crate::simd::Level;
 
 /// What strikes a bank.
 #[derive(Debug, Clone, Copy)]
@@ -28,12 +30,13 @@ pub enum Inputs<'a> {
 /// Design is [`design_groups`](super::design_groups), state is [`GroupState`]; this runs them.
 ///
 /// ```
-/// use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, Kernel, ModalBank, design_groups};
+/// use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, design_groups};
 /// use asperity_dsp::mode::Mode;
+/// use asperity_dsp::simd::Level;
 ///
 /// let modes = [Mode { frequency_hz: 440.0, decay_per_s: 6.0, amplitude: 1.0, phase_rad: 0.0 }];
 /// let groups = design_groups(&modes, 48_000.0, &GroupOptions::default()).collect::<Result<Vec<_>, _>>()?;
-/// let mut bank = ModalBank::new(Kernel::detect(), &groups[..], [GroupState::REST]);
+/// let mut bank = ModalBank::new(Level::detect(), &groups[..], [GroupState::REST]);
 ///
 /// let mut impulses_n_s = [0.0; 128];
 /// impulses_n_s[0] = 1e-3;
@@ -57,10 +60,10 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
     /// A bank as its states say. Groups beyond the states are silent.
     ///
     /// Modes are best in falling order of [`ringing_s`](super::ringing_s), so that the groups that still ring are the first ones.
-    pub fn new(kernel: Kernel, groups: G, states: S) -> Self {
+    pub fn new(level: Level, groups: G, states: S) -> Self {
         let at_rest = states.as_ref().iter().rposition(|state| !state.is_at_rest());
         let awake = Awake::of(at_rest.map_or(0, |last| last + 1));
-        Self { kernel, groups, states, awake, threshold: SLEEP_AMPLITUDE }
+        Self { kernel: Kernel(level), groups, states, awake, threshold: SLEEP_AMPLITUDE }
     }
 
     /// A mode is put exactly to rest once its amplitude is below this, in units of the output; 0 lets it ring on to the last bit. Without it,
@@ -94,6 +97,19 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
         }
     }
 
+    /// Remembers what another bank of the same modes does: they may sound different, by other amplitudes and phases, and have the same states.
+    ///
+    /// At an absolute multiple of four samples: within a turn a bank keeps what its own outputs still have to hear.
+    pub fn follow<H, T: AsRef<[GroupState]>>(&mut self, other: &ModalBank<H, T>) {
+        let (rings, rang) = (other.awake.groups(), self.awake.groups());
+        let (to, from) = (self.states.as_mut(), other.states.as_ref());
+        for (to, from) in to.iter_mut().zip(from).take(rings) {
+            *to = *from;
+        }
+        to.iter_mut().take(rang).skip(rings).for_each(|state| *state = GroupState::REST);
+        self.awake = other.awake;
+    }
+
     /// Forgets all that rings.
     pub fn silence(&mut self) {
         self.states.as_mut().fill(GroupState::REST);
@@ -123,8 +139,8 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
     }
 
     /// The instructions it runs in.
-    pub fn kernel(&self) -> Kernel {
-        self.kernel
+    pub fn level(&self) -> Level {
+        self.kernel.0
     }
 }
 

@@ -8,8 +8,10 @@ use super::LANES;
 use super::design::{LaneGains, ModeGroup, OUT, TURN};
 use super::job::{Chunk, Input, Job, MAX_INPUTS};
 use super::sums::{Row, SUMS, outputs, sum_row};
-use super::vector::Vector;
+use super::vector::{Vector, len, load, load_placed, mul_add, store};
+use crate::simd::Set;
 use core::array::from_fn;
+use fearless_simd::SimdBase;
 
 pub(super) struct Direct {
     /// h₀…h₃ of each input, summed over the modes.
@@ -18,9 +20,9 @@ pub(super) struct Direct {
 
 impl Direct {
     /// # Safety
-    /// The processor has the instructions of V; there are gains of all groups for every input unless it is shared.
+    /// There are gains of all groups for every input unless it is shared.
     #[inline(always)]
-    pub unsafe fn new<V: Vector, const P: usize>(job: &Job<'_>) -> Self {
+    pub unsafe fn new<T: Set, const P: usize>(token: T, job: &Job<'_>) -> Self {
         let mut direct = Self { heard_as: [[0.0; TURN]; MAX_INPUTS] };
         if job.feed.shared {
             for group in job.groups {
@@ -32,7 +34,7 @@ impl Direct {
         }
         for (heard_as, input) in direct.heard_as.iter_mut().zip(job.feed.inputs) {
             // SAFETY: passed on from the caller.
-            *heard_as = unsafe { gained::<V, P>(job.groups, input.gains) };
+            *heard_as = unsafe { gained::<T, P>(token, job.groups, input.gains) };
         }
         direct
     }
@@ -130,24 +132,25 @@ fn later<const BY: usize>(sent: [f32; TURN]) -> [f32; TURN] {
 /// h₀…h₃ times the gains of an input, summed over the lanes.
 ///
 /// # Safety
-/// The processor has the instructions of V; there are gains of all groups.
+/// There are gains of all groups.
 #[inline(always)]
-unsafe fn gained<V: Vector, const P: usize>(groups: &[ModeGroup], gains: &[LaneGains]) -> [f32; TURN] {
+unsafe fn gained<T: Set, const P: usize>(token: T, groups: &[ModeGroup], gains: &[LaneGains]) -> [f32; TURN] {
     let mut rows = [Row([0.0; LANES]); 1 + SUMS];
     // SAFETY: every pointer goes to lane p · LEN, or where it lies, of an array of LANES = P · LEN values.
     unsafe {
         for p in 0..P {
-            let lane = p * V::LEN;
-            let mut sums = [V::splat(0.0); 1 + SUMS];
+            let lane = p * len::<T>();
+            let mut sums = [Vector::<T>::splat(token, 0.0); 1 + SUMS];
             for (group, gains) in groups.iter().zip(gains) {
-                let gains = V::load(gains.0.as_ptr().add(lane));
-                sums[SUMS] = V::load(group.now[0].as_ptr().add(lane)).mul_add(gains, sums[SUMS]);
+                let gains = load(token, gains.0.as_ptr().add(lane));
+                let now = load(token, group.now[0].as_ptr().add(lane));
+                sums[SUMS] = mul_add::<T>(now, gains, sums[SUMS]);
                 for (i, sum) in sums[..SUMS].iter_mut().enumerate() {
-                    *sum = V::load_placed(&group.hot, OUT + i, lane).mul_add(gains, *sum);
+                    *sum = mul_add::<T>(load_placed(token, &group.hot, OUT + i, lane), gains, *sum);
                 }
             }
             for (row, sum) in rows.iter_mut().zip(sums) {
-                sum.store(row.0.as_mut_ptr().add(lane));
+                store::<T>(sum, row.0.as_mut_ptr().add(lane));
             }
         }
     }

@@ -79,7 +79,6 @@ pub use design::{
 };
 pub use first_samples::{FirstSamples, MissingSamples};
 pub use job::{Input, MAX_INPUTS};
-pub use kernel::{Isa, Kernel};
 pub use reference::{ReferenceMode, ReferenceState};
 pub use sleep::{SLEEP_AMPLITUDE, ringing_s};
 

@@ -2,7 +2,10 @@
 
 use super::LANES;
 use super::design::TURN;
+use crate::simd::Set;
 use core::array::from_fn;
+use fearless_simd::f32x8;
+use fearless_simd::prelude::*;
 
 /// One number for each lane. Aligned, because a vector across two cache lines costs two.
 #[derive(Clone, Copy)]
@@ -24,12 +27,22 @@ pub(super) fn outputs([last, one, minus, two, first]: [f32; SUMS]) -> [f32; TURN
     [last + two + even, 2.0 * two + odd, 4.0 * two + even, 8.0 * two + odd + first]
 }
 
-/// The sum over all lanes of the outputs of a turn.
+/// The sum over all lanes of the outputs of a turn, each in the order of [`sum_row`]: eight lanes at a time, then neighbours.
+///
+/// Products with powers of two are exact, so that it does not matter whether they are rounded before the sum.
 #[inline(always)]
-pub(super) fn samples(turn: &TurnSums) -> [f32; TURN] {
-    let lane = |l: usize| outputs(from_fn(|i| turn.0[i].0[l] + turn.0[i].0[l + 8]));
-    let lanes: [_; LANES / 2] = from_fn(lane);
-    from_fn(|i| sum_halves(lanes.map(|outputs| outputs[i])))
+pub(super) fn samples<T: Set>(token: T, turn: &TurnSums) -> [f32; TURN] {
+    let half = |row: &Row, from: usize| f32x8::from_slice(token, &row.0[from..from + LANES / 2]);
+    let [last, one, minus, two, first] = from_fn(|i| half(&turn.0[i], 0) + half(&turn.0[i], LANES / 2));
+    let (even, odd) = (one + minus, one - minus);
+    let times = |factor: f32, plus| {
+        let factor = f32x8::splat(token, factor);
+        if T::FUSED { two.mul_add(factor, plus) } else { two * factor + plus }
+    };
+    let a = token.add_neighbours(last + two + even, times(2.0, odd));
+    let b = token.add_neighbours(times(4.0, even), times(8.0, odd) + first);
+    let (low, high) = token.add_neighbours(a, b).split();
+    (low + high).to_array()
 }
 
 /// The one order of summation: halves onto each other, then neighbours, then neighbours, then halves.
@@ -50,6 +63,7 @@ mod tests {
     use super::super::design::out_of;
     use super::*;
     use crate::rng::Rng;
+    use crate::simd::{Level, at_level};
 
     #[test]
     fn five_products_are_the_filter_of_two_taps() {
@@ -74,7 +88,8 @@ mod tests {
         let mut rng = Rng::new(6);
         let turn = TurnSums(from_fn(|_| Row(from_fn(|_| rng.normal() as f32))));
         let by_row = outputs(from_fn(|i| sum_row(&turn.0[i])));
-        for (of_lanes, of_rows) in samples(&turn).into_iter().zip(by_row) {
+        for (of_lanes, of_rows) in at_level!(Level::PORTABLE, s => samples(s, &turn)).into_iter().zip(by_row)
+        {
             assert!((of_lanes - of_rows).abs() < 1e-4, "{of_lanes} {of_rows}");
         }
     }

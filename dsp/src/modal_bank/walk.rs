@@ -5,8 +5,9 @@ use super::design::{GRID_SAMPLES, TURN};
 use super::direct::Direct;
 use super::job::{Chunk, Job, Part};
 use super::set::{ANY, SHARED, SHARED_FIRST, set};
-use super::sums::TurnSums;
-use super::vector::Vector;
+use super::sums::{self, TurnSums};
+use super::vector::{groups_at_once, len};
+use crate::simd::Set;
 use core::mem::MaybeUninit;
 
 /// Chunks never cross the grid, so they touch no more turns than this.
@@ -16,18 +17,19 @@ pub(super) const TURNS: usize = GRID_SAMPLES as usize / TURN;
 /// `MAX` groups are interleaved.
 ///
 /// # Safety
-/// The processor has the instructions of V; `out` is no longer than any input; there is at least one group, and
+/// `out` is no longer than any input; there is at least one group, and
 /// as many states, and gains of every input unless it is shared.
 #[inline(always)]
-pub(super) unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
+pub(super) unsafe fn walk<T: Set, const P: usize, const MAX: usize>(
+    token: T,
     first_sample: u64,
     job: &mut Job<'_>,
     out: &mut [f32],
 ) {
     let mut sums: [MaybeUninit<TurnSums>; TURNS] = [const { MaybeUninit::uninit() }; TURNS];
     let (mut at, samples) = (0, out.len());
-    // SAFETY: the caller has the instructions of V.
-    let direct = unsafe { Direct::new::<V, P>(job) };
+    // SAFETY: passed on from the caller.
+    let direct = unsafe { Direct::new::<T, P>(token, job) };
     while at < samples {
         let now = first_sample.wrapping_add(at as u64);
         let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
@@ -39,10 +41,10 @@ pub(super) unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
         // SAFETY: `at + len` is inside every input. The first set writes the sums of every turn, and there is one. So
         // they may be read as what they are, in the same memory.
         unsafe {
-            sets::<V, P, MAX>(job, chunk, &mut sums[..turns.len()]);
+            sets::<T, P, MAX>(token, job, chunk, &mut sums[..turns.len()]);
             let written = core::slice::from_raw_parts(sums.as_ptr().cast::<TurnSums>(), turns.len());
             for (turn, sums) in turns.iter_mut().zip(written) {
-                *turn = V::samples(sums);
+                *turn = sums::samples(token, sums);
             }
         }
         direct.add(job.feed.inputs, &mut job.states[0].carried, chunk, turns);
@@ -59,7 +61,8 @@ pub(super) unsafe fn walk<V: Vector, const P: usize, const MAX: usize>(
 /// # Safety
 /// As [`walk`]; `turns` are those the chunk touches.
 #[inline(always)]
-unsafe fn sets<V: Vector, const P: usize, const MAX: usize>(
+unsafe fn sets<T: Set, const P: usize, const MAX: usize>(
+    token: T,
     job: &mut Job<'_>,
     chunk: Chunk,
     turns: &mut [MaybeUninit<TurnSums>],
@@ -68,16 +71,16 @@ unsafe fn sets<V: Vector, const P: usize, const MAX: usize>(
     let mut from = 0;
     // Gained inputs need registers too.
     let most = if job.feed.shared { MAX } else { MAX.min(3) };
-    let mut left = count.div_ceil(most).max(count / V::GROUPS_AT_ONCE);
+    let mut left = count.div_ceil(most).max(count / groups_at_once::<T>());
     while left > 0 {
         let size = (count - from).div_ceil(left);
         // SAFETY: passed on from the caller; `from + size` is at most the number of groups.
         unsafe {
             match size {
-                1 => parts::<V, P, 1>(job, from, chunk, turns),
-                2 if MAX >= 2 => parts::<V, P, 2>(job, from, chunk, turns),
-                3 if MAX >= 3 => parts::<V, P, 3>(job, from, chunk, turns),
-                _ if MAX >= 4 => parts::<V, P, 4>(job, from, chunk, turns),
+                1 => parts::<T, P, 1>(token, job, from, chunk, turns),
+                2 if MAX >= 2 => parts::<T, P, 2>(token, job, from, chunk, turns),
+                3 if MAX >= 3 => parts::<T, P, 3>(token, job, from, chunk, turns),
+                _ if MAX >= 4 => parts::<T, P, 4>(token, job, from, chunk, turns),
                 _ => {}
             }
         }
@@ -94,28 +97,30 @@ const MOST_VECTORS: usize = 4;
 /// # Safety
 /// As [`sets`]; there are `S` groups from `from` on.
 #[inline(always)]
-unsafe fn parts<V: Vector, const P: usize, const S: usize>(
+unsafe fn parts<T: Set, const P: usize, const S: usize>(
+    token: T,
     job: &mut Job<'_>,
     from: usize,
     chunk: Chunk,
     turns: &mut [MaybeUninit<TurnSums>],
 ) {
-    // SAFETY: passed on from the caller; P · LEN lanes make a group.
+    // SAFETY: passed on from the caller; P · `len` lanes make a group.
     unsafe {
         if P * S <= MOST_VECTORS {
-            inputs::<V, P, S>(job, Part { from, lane: 0 }, chunk, turns);
+            inputs::<T, P, S>(token, job, Part { from, lane: 0 }, chunk, turns);
         } else {
             for p in 0..P {
-                inputs::<V, 1, S>(job, Part { from, lane: p * V::LEN }, chunk, turns);
+                inputs::<T, 1, S>(token, job, Part { from, lane: p * len::<T>() }, chunk, turns);
             }
         }
     }
 }
 
 /// # Safety
-/// As [`parts`]; there are `P` · LEN lanes from `part.lane` on.
+/// As [`parts`]; there are `P` · [`len`] lanes from `part.lane` on.
 #[inline(always)]
-unsafe fn inputs<V: Vector, const P: usize, const S: usize>(
+unsafe fn inputs<T: Set, const P: usize, const S: usize>(
+    token: T,
     job: &mut Job<'_>,
     part: Part,
     chunk: Chunk,
@@ -124,11 +129,13 @@ unsafe fn inputs<V: Vector, const P: usize, const S: usize>(
     // SAFETY: passed on from the caller.
     unsafe {
         match job.feed.inputs.len() {
-            _ if job.feed.shared && part.from == 0 => set::<V, P, S, SHARED_FIRST>(job, part, chunk, turns),
-            _ if job.feed.shared => set::<V, P, S, SHARED>(job, part, chunk, turns),
-            1 => set::<V, P, S, 1>(job, part, chunk, turns),
-            2 => set::<V, P, S, 2>(job, part, chunk, turns),
-            _ => set::<V, P, S, ANY>(job, part, chunk, turns),
+            _ if job.feed.shared && part.from == 0 => {
+                set::<T, P, S, SHARED_FIRST>(token, job, part, chunk, turns)
+            }
+            _ if job.feed.shared => set::<T, P, S, SHARED>(token, job, part, chunk, turns),
+            1 => set::<T, P, S, 1>(token, job, part, chunk, turns),
+            2 => set::<T, P, S, 2>(token, job, part, chunk, turns),
+            _ => set::<T, P, S, ANY>(token, job, part, chunk, turns),
         }
     }
 }

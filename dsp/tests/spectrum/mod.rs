@@ -43,6 +43,6 @@ pub fn power(signal: &[f64]) -> Vec<f64> {
     let mut re: Vec<f64> = signal.iter().enumerate().map(|(i, x)| (x - mean) * hann(i)).collect();
     let mut im = vec![0.0; n];
     fft(&mut re, &mut im);
-    let scale = 2.0 / (0.375 * (n * n) as f64);
+    let scale = 2.0 / (0.375 * (n as f64 * n as f64));
     (0..n / 2).map(|k| (re[k] * re[k] + im[k] * im[k]) * scale).collect()
 }

@@ -8,14 +8,18 @@
 //! | `sound_file`, `wav_file`, `packed_file` | WAV; FLAC, Ogg → frames |
 //! | `sound_format` | what a header says, and why a file is refused |
 //! | `whitened` | channel → what its past does not predict |
+//! | [`Sound`] | a channel of a file as it stands there |
 //! | [`onset`] | channel → strikes, and the best of them |
 
 pub mod onset;
 mod packed_file;
+mod sound;
 mod sound_file;
 mod sound_format;
 mod wav_file;
 mod whitened;
+
+pub use sound::Sound;
 
 use crate::recording::sound_file::SoundFile;
 use crate::recording::sound_format::Refusal;
@@ -87,6 +91,14 @@ pub enum RecordingError {
         name: String,
         /// Index of the first bad sample (frame).
         index: usize,
+    },
+    /// More than is read.
+    #[error("{path}: lasts longer than {longest_s} s; must last at most that", path = path.display())]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+        /// The most that is read, s.
+        longest_s: f64,
     },
     /// Too few samples to analyse.
     #[error("{name}: {samples} samples are too few; {FEWEST_SAMPLES} or more are needed")]

@@ -1,5 +1,6 @@
 //! What a voice hands on: what is felt of it, what it sends to the body, what was counted.
 
+use super::exciters::RubBlock;
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// What one voice adds to a stretch of samples.
@@ -7,6 +8,8 @@ pub(crate) struct VoiceBlock {
     /// m or m/s², as the actuator plays it.
     pub(crate) haptic: [f64; MAX_BLOCK],
     pub(crate) impulse_n_s: [f64; MAX_BLOCK],
+    /// What friction rubs the body with.
+    pub(crate) rub: RubBlock,
     /// Whether `impulse_n_s` is more than zeros.
     pub(crate) excites: bool,
     pub(crate) collisions: u64,
@@ -23,6 +26,7 @@ impl VoiceBlock {
         Self {
             haptic: [0.0; MAX_BLOCK],
             impulse_n_s: [0.0; MAX_BLOCK],
+            rub: RubBlock::STILL,
             excites: false,
             collisions: 0,
             blows: 0,
@@ -31,15 +35,17 @@ impl VoiceBlock {
         }
     }
 
-    /// Louder or softer, felt and heard.
+    /// Louder or softer, felt and heard; what rubs presses harder or less.
     pub(super) fn scale(&mut self, i: usize, gain: f64) {
         self.haptic[i] *= gain;
         self.impulse_n_s[i] *= gain;
+        self.rub.normal_force_n[i] *= gain;
     }
 
     /// Nothing felt and nothing heard of some samples.
     pub(super) fn silence(&mut self, samples: std::ops::Range<usize>) {
         self.haptic[samples.clone()].fill(0.0);
-        self.impulse_n_s[samples].fill(0.0);
+        self.impulse_n_s[samples.clone()].fill(0.0);
+        self.rub.normal_force_n[samples].fill(0.0);
     }
 }

@@ -53,7 +53,7 @@ impl Drag {
         let mut from_m = None;
         for (i, row) in rows.iter().enumerate() {
             let [u, v] = points[i].velocity_m_s;
-            let speed_m_s = u.hypot(v);
+            let speed_m_s = libm::hypot(u, v);
             let moves = (speed_m_s / SETTLING_M_S).min(1.0);
             let [slope_u, slope_v] = surface.gradient[i];
             let slope = (slope_u * u + slope_v * v) / speed_m_s.max(SETTLING_M_S);

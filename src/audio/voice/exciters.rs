@@ -3,24 +3,30 @@
 //! ```text
 //! collisions, grains → Hertz pulses → ring ┐
 //! alternating contact force ───────────────┴ × loudness → impulses, N·s
+//! friction ── speed and force along the motion → the body's own step
 //! ```
 //! Pulses and force meet sample by sample, not in the ring, so that the order of additions depends on no split into blocks.
 
 mod collisions;
 mod force;
+mod friction;
 mod grains;
 mod loudness;
 
 pub(super) use force::ForceRun;
+pub(crate) use friction::RubBlock;
 
 use super::PadSample;
+use super::PathPoint;
 use super::block::VoiceBlock;
+use crate::model::excitation::Exciter;
 use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_texture::height_field::Reaction;
 use collisions::Collisions;
 use force::ContactForce;
+use friction::Rubbing;
 use grains::Grains;
 use loudness::Loudness;
 
@@ -45,6 +51,7 @@ pub(super) struct Exciters {
     collisions: Collisions,
     grains: Grains,
     force: ContactForce,
+    rubbing: Rubbing,
     loudness: Loudness,
     /// Pulses on their way to the body.
     ring: ImpulseRing,
@@ -57,6 +64,7 @@ impl Exciters {
             collisions: Collisions::default(),
             grains: Grains::new(seed),
             force: ContactForce::default(),
+            rubbing: Rubbing::default(),
             loudness: Loudness::default(),
             ring: ImpulseRing::new(LONGEST_COLLISION_S, sample_rate_hz),
         }
@@ -67,15 +75,30 @@ impl Exciters {
         self.collisions = Collisions::default();
         self.grains = Grains::new(seed);
         self.force = ContactForce::default();
+        self.rubbing = Rubbing::default();
         self.loudness = Loudness::of(loudness);
         if !self.ring.is_empty(position) {
             self.ring.clear();
         }
     }
 
-    /// More of it sounds, or less: called at the steps of the absolute sample grid.
-    pub(super) fn press(&mut self, loudness: f64) {
+    /// More of it sounds, or less, and it moves elsewhere: called at the steps of the absolute sample grid.
+    pub(super) fn press(&mut self, loudness: f64, velocity_m_s: [f64; 2]) {
         self.loudness.set_out(loudness);
+        self.rubbing.turn(velocity_m_s);
+    }
+
+    /// What the body is rubbed with, where friction sounds.
+    pub(super) fn rub(
+        &mut self,
+        by: &Excited<'_>,
+        points: &[PathPoint],
+        rows: &[PadSample],
+        out: &mut VoiceBlock,
+    ) {
+        if by.slot.surface.excitation.has(Exciter::Friction) {
+            self.rubbing.run(points, rows, &mut out.rub);
+        }
     }
 
     /// Rows and the alternating force in; impulses, and what was counted, out.

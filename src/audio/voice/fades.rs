@@ -22,7 +22,7 @@ impl Rising {
         let top = 1.0 / f64::from(fade_samples);
         self.speed = (self.speed + 2.0 * top * top / TURN).min(top);
         self.phase = (self.phase + self.speed).clamp(0.0, 1.0);
-        0.5 - 0.5 * (std::f64::consts::PI * self.phase).cos()
+        0.5 - 0.5 * libm::cos(std::f64::consts::PI * self.phase)
     }
 }
 
@@ -55,7 +55,7 @@ impl Fades {
         let step = 1.0 / f64::from(shared.fade_samples());
         // Before the first faded sample nothing has happened yet.
         let faded = matches!(phase, Phase::Fading { left } if left < shared.fade_samples());
-        let phase = (1.0 - 2.0 * self.gain).clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
+        let phase = libm::acos((1.0 - 2.0 * self.gain).clamp(-1.0, 1.0)) / std::f64::consts::PI;
         self.rising = faded.then_some(Rising { phase, speed: -step });
         if faded {
             self.in_left = 0;

@@ -64,7 +64,7 @@ impl Tip {
         let AnswerAt { force_n, push_per_n, cap_n } = ground.answer;
         let velocity = point.velocity_m_s;
         // Below 1 mm/s friction grows linearly, so that a resting finger does not chatter.
-        let slide = ground.friction / velocity[0].hypot(velocity[1]).max(STICK_M_S);
+        let slide = ground.friction / libm::hypot(velocity[0], velocity[1]).max(STICK_M_S);
         let along =
             |a: usize| force_n[a] + pressed_n * (push_per_n[a] - ground.gradient[a] - slide * velocity[a]);
         capped([along(0), along(1), force_n[2] + pressed_n], cap_n)

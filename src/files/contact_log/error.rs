@@ -50,6 +50,21 @@ pub enum LogError {
     /// An edit where only events can be used.
     #[error("an edit of the scene; must be an event, or replayed by offline::render")]
     Edit,
+    /// A render that its tap has stopped.
+    #[error("stopped before its end; render again")]
+    Stopped,
+    /// A contact that would be felt on a channel which is not there.
+    #[error(
+        "actuator: actuator {actuator} at t = {t} s is not in the scene; must be below {channels}, the number of [[actuator]] tables"
+    )]
+    NoActuator {
+        /// Time of its line, s.
+        t: f64,
+        /// The channel.
+        actuator: u16,
+        /// How many there are.
+        channels: usize,
+    },
     /// An edit that cannot be made.
     #[error("t = {t} s: {problem}")]
     CannotEdit {

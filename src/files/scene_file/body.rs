@@ -19,8 +19,12 @@ pub struct BodyEntry {
     pub stock: Option<(Stock, f64)>,
     /// What it is made of; none = the engine's default.
     pub material: Option<Material>,
+    /// Whether its modes are as loud as their shapes radiate, in pascals at 1 m.
+    pub radiation: bool,
     /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
     pub residual: Option<f64>,
+    /// Its mass, kg; none = a stock body's own, or unknown.
+    pub mass_kg: Option<f64>,
     /// Name of the bus it plays on; none = the first.
     pub bus: Option<String>,
 }
@@ -35,11 +39,17 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         modes: fields.file("modes", folder)?,
         stock: read_stock(&mut fields)?,
         material: read_material(&mut fields)?,
+        radiation: fields.flag("radiation")?.unwrap_or(false),
         residual: fields.number(&parameters::body::RESIDUAL)?,
+        mass_kg: fields.number(&parameters::body::MASS_KG)?,
         bus: fields.text("bus")?,
     };
     if body.modes.is_some() && body.stock.is_some() {
         return Err(fields.refuse("stock", "stands beside modes", "write one of them"));
+    }
+    if body.radiation && body.modes.is_none() {
+        let right = "give modes with shapes, or leave it out; a stock body radiates already";
+        return Err(fields.refuse("radiation", "stands without modes", right));
     }
     fields.finish()?;
     Ok(body)

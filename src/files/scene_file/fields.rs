@@ -104,6 +104,11 @@ impl Fields {
         }
     }
 
+    /// A seed of random numbers.
+    pub fn seed(&mut self, of: &Parameter) -> Result<Option<u64>, FileError> {
+        self.whole(of.key, of.range.low as u64, of.range.high as u64)
+    }
+
     /// Text.
     pub fn text(&mut self, key: &'static str) -> Result<Option<String>, FileError> {
         match self.take(key) {
@@ -145,7 +150,8 @@ impl Fields {
     }
 
     /// Two numbers.
-    pub fn pair(&mut self, key: &'static str, allowed: Range) -> Result<Option<[f64; 2]>, FileError> {
+    pub fn pair(&mut self, of: &Parameter) -> Result<Option<[f64; 2]>, FileError> {
+        let (key, allowed) = (of.key, of.range);
         let Some(value) = self.take(key) else { return Ok(None) };
         let numbers: Option<Vec<f64>> =
             value.as_array().and_then(|items| items.iter().map(as_number).collect());
@@ -163,18 +169,18 @@ impl Fields {
     }
 
     /// A vector.
-    pub fn vector(&mut self, key: &'static str) -> Result<Option<[f64; 3]>, FileError> {
-        let Some(value) = self.take(key) else { return Ok(None) };
+    pub fn vector(&mut self, of: &Parameter) -> Result<Option<[f64; 3]>, FileError> {
+        let Some(value) = self.take(of.key) else { return Ok(None) };
         let numbers: Option<Vec<f64>> =
             value.as_array().and_then(|items| items.iter().map(as_number).collect());
         let vector = numbers.and_then(|numbers| numbers.try_into().ok());
-        vector.map(Some).ok_or_else(|| self.wrong_kind(key, &value, "three numbers, [x, y, z]"))
+        vector.map(Some).ok_or_else(|| self.wrong_kind(of.key, &value, "three numbers, [x, y, z]"))
     }
 
     /// One number, which is the third of a vector, or all three; each in its range.
     pub fn number_or_vector(&mut self, of: &Parameter) -> Result<Option<[f64; 3]>, FileError> {
         let vector = if self.is_list(of.key) {
-            self.vector(of.key)?
+            self.vector(of)?
         } else {
             self.number(of)?.map(|number| [0.0, 0.0, number])
         };

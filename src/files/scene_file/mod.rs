@@ -98,6 +98,20 @@ impl SurfaceEntry {
     }
 }
 
+impl BodyEntry {
+    /// Reads one table of `[[body]]` by itself.
+    pub(crate) fn read(table: toml::Table, folder: &Path) -> Result<Self, FileError> {
+        body::read(Fields::new(table, "body"), folder)
+    }
+}
+
+/// Reads one table of `[[probe]]` by itself.
+pub(crate) fn probe_of(table: toml::Table) -> Result<Probe, FileError> {
+    let mut fields = Fields::new(table, "probe");
+    fields.text("name")?;
+    read_probe(fields)
+}
+
 impl SceneFile {
     /// Reads and checks a scene file.
     ///
@@ -160,7 +174,7 @@ fn read(mut top: Fields, path: &Path) -> Result<SceneFile, FileError> {
     let scene = SceneFile {
         path: path.to_owned(),
         sample_rate_hz: top.number(&parameters::scene::SAMPLE_RATE_HZ)?,
-        seed: top.whole("seed", 0, u64::MAX)?,
+        seed: top.seed(&parameters::scene::SEED)?,
         contacts: top.file("contacts", folder)?,
         tail_s: top.number_or(&parameters::scene::TAIL_S, TAIL_S)?,
         bodies,

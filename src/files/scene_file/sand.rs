@@ -3,9 +3,9 @@
 use super::fields::Fields;
 use super::pixels::{Pixels, read_channel};
 use crate::files::FileError;
-use crate::parameters::{Parameter, layer, sand, tool};
+use crate::parameters::{Parameter, buried, layer, sand, tool};
 use asperity_dsp::limits::Range;
-use asperity_texture::sand::{Layer, MAX_LAYERS, SandDesign, SandLaw, Tool};
+use asperity_texture::sand::{Buried, Layer, MAX_BURIED, MAX_LAYERS, SandDesign, SandLaw, Tool};
 use std::path::Path;
 
 /// A bed of sand.
@@ -39,7 +39,8 @@ pub fn read(mut table: Fields, folder: &Path) -> Result<Sand, FileError> {
         layers: read_layers(&mut table)?,
         grain_m: table.number_or(&sand::GRAIN_M, default.law.grain_m)?,
         cap_n: table.number_or(&sand::CAP_N, default.law.cap_n)?,
-        bearing: default.law.bearing,
+        buried: read_buried(&mut table)?,
+        ..default.law
     };
     let (round, tool) = read_tool(&mut table, folder)?;
     let design = SandDesign {
@@ -71,6 +72,26 @@ fn read_layers(table: &mut Fields) -> Result<[Option<Layer>; MAX_LAYERS], FileEr
         above_m = from_m;
     }
     Ok(layers)
+}
+
+fn read_buried(table: &mut Fields) -> Result<[Option<Buried>; MAX_BURIED], FileError> {
+    let mut buried = [None; MAX_BURIED];
+    let written = table.tables("buried")?;
+    if written.len() > MAX_BURIED {
+        let what = format!("holds {}", written.len());
+        return Err(table.refuse("buried", what, format!("at most {MAX_BURIED} stones and shells")));
+    }
+    for (slot, mut written) in buried.iter_mut().zip(written) {
+        *slot = Some(Buried {
+            at_m: [written.needed_number(&buried::U_M)?, written.needed_number(&buried::V_M)?],
+            top_m: written.needed_number(&buried::TOP_M)?,
+            half_m: [written.needed_number(&buried::HALF_U_M)?, written.needed_number(&buried::HALF_V_M)?],
+            height_m: written.needed_number(&buried::HEIGHT_M)?,
+            hardness: written.needed_number(&buried::HARDNESS)?,
+        });
+        written.finish()?;
+    }
+    Ok(buried)
 }
 
 fn read_tool(table: &mut Fields, folder: &Path) -> Result<(Option<Tool>, Option<ToolPicture>), FileError> {

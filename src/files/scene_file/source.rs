@@ -8,7 +8,6 @@ use super::pixels::{Pixels, read_channel};
 use super::sand::{self, Sand};
 use crate::files::FileError;
 use crate::parameters::{self, solid};
-use asperity_dsp::limits;
 use asperity_texture::force_rendering::Rendering;
 use asperity_texture::picture::Channel;
 use asperity_texture::solid_materials::SolidMaterial;
@@ -208,7 +207,7 @@ fn read_solid_table(mut table: Fields) -> Result<Source, FileError> {
         [("x", ForceDirection::X), ("normal", ForceDirection::Normal), ("tangent", ForceDirection::Tangent)];
     let preset = table.needed_text("preset")?;
     let mut parameters = solid_preset(&table, "preset", &preset)?;
-    let seed = table.whole("seed", 0, u64::MAX)?;
+    let seed = table.seed(&solid::SEED)?;
     let [first, _] = &mut parameters.modules;
     first.octaves = table.count(&solid::OCTAVES)?.unwrap_or(first.octaves);
     for (to, of) in [
@@ -239,7 +238,7 @@ fn read_brownian(mut table: Fields) -> Result<Source, FileError> {
     let brownian = Brownian {
         hurst: table.needed_number(&parameters::brownian::HURST)?,
         rms_m: table.needed_number(&parameters::brownian::RMS_M)?,
-        seed: table.whole("seed", 0, u64::MAX)?,
+        seed: table.seed(&parameters::brownian::SEED)?,
         cells: table.whole("cells", 16, most)?,
         graph,
         force: table.word("force", &forces)?,
@@ -255,10 +254,9 @@ fn read_lattice(
     relief_m: f64,
     invert: bool,
 ) -> Result<Source, FileError> {
-    let step = limits::combined::STEP_M;
     let cell = table.needed_text("cell")?;
-    let t1_m = table.pair("t1_m", step)?.ok_or_else(|| table.missing("t1_m", "[0.01, 0.0]"))?;
-    let t2_m = table.pair("t2_m", step)?.ok_or_else(|| table.missing("t2_m", "[0.0, 0.01]"))?;
+    let t1_m = table.pair(&parameters::lattice::T1_M)?.ok_or_else(|| table.missing("t1_m", "[0.01, 0.0]"))?;
+    let t2_m = table.pair(&parameters::lattice::T2_M)?.ok_or_else(|| table.missing("t2_m", "[0.0, 0.01]"))?;
     let area = (t1_m[0] * t2_m[1] - t1_m[1] * t2_m[0]).abs();
     let longest = t1_m.iter().chain(&t2_m).fold(0.0_f64, |longest, length| longest.max(length.abs()));
     if area <= 1e-6 * longest * longest || longest < 1e-6 {

@@ -4,9 +4,11 @@ use super::fields::{Fields, as_number, shown};
 use super::pixels::{Pixels, read_channel};
 use super::source::{self, Source};
 use crate::files::FileError;
-use crate::model::excitation::Excitation;
+use crate::model::excitation::{Excitation, Exciter};
 use crate::model::frame::SurfaceFrame;
-use crate::parameters::surface as parameters;
+use crate::model::surface::DEFAULT_STICK_SLIP;
+use crate::parameters::{frame, surface as parameters};
+use asperity_dsp::stick_slip::Friction;
 use asperity_texture::wrap::Wrap;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -40,6 +42,8 @@ pub struct SurfaceEntry {
     pub excitation: Excitation,
     /// Where it lies in its body.
     pub frame: Option<SurfaceFrame>,
+    /// What contacts stick and slip with; none where friction is no exciter.
+    pub stick_slip: Option<Friction>,
     /// Coulomb friction coefficient, for the 3-D force; none = the source's.
     pub friction: Option<f64>,
     /// How far it gives way, m/N; none = as its source does.
@@ -67,6 +71,7 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
     let place = format!("{} \"{name}\"", fields.inner("").trim_end_matches(": "));
     fields.rename(place);
     let source = source::read(&mut fields, folder)?;
+    let excitation = read_excitation(&mut fields)?;
     let wraps = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
     let surface = SurfaceEntry {
         name,
@@ -80,7 +85,8 @@ pub(crate) fn read(mut fields: Fields, folder: &Path) -> Result<SurfaceEntry, Fi
         micro_relief_m: fields.number(&parameters::MICRO_RELIEF_M)?,
         outer_scale_m: fields.number(&parameters::OUTER_SCALE_M)?,
         wrap: fields.word("wrap", &wraps)?.unwrap_or_default(),
-        excitation: read_excitation(&mut fields)?,
+        excitation,
+        stick_slip: read_stick_slip(&mut fields, excitation)?,
         frame: read_frame(&mut fields)?,
         friction: fields.number(&parameters::FRICTION)?,
         compliance_m_n: fields.number(&parameters::COMPLIANCE_M_N)?,
@@ -94,17 +100,39 @@ fn read_excitation(fields: &mut Fields) -> Result<Excitation, FileError> {
     let Some(value) = fields.take("excitation") else { return Ok(Excitation::default()) };
     let what = format!("{} is refused", shown(&value));
     value.try_into().map_err(|_| {
-        let right = "must be collisions, force or both, or a list of collisions, force";
+        let right = "must be collisions, force, friction or both, or a list of collisions, force, friction";
         fields.refuse("excitation", what, right)
     })
+}
+
+/// The numbers of friction that rings the body.
+fn read_stick_slip(fields: &mut Fields, excitation: Excitation) -> Result<Option<Friction>, FileError> {
+    if !excitation.has(Exciter::Friction) {
+        for key in ["mu_static", "mu_kinetic", "slip_speed_m_s"] {
+            if fields.has(key) {
+                let right = "write excitation = [\"friction\"], alone or among others, or leave it out";
+                return Err(fields.refuse(key, "stands without friction among excitation", right));
+            }
+        }
+        return Ok(None);
+    }
+    let mu_static = fields.number_or(&parameters::MU_STATIC, DEFAULT_STICK_SLIP.mu_static)?;
+    let written = fields.number(&parameters::MU_KINETIC)?;
+    if let Some(mu) = written.filter(|mu| *mu > mu_static) {
+        let right = format!("must be at most mu_static, {mu_static}");
+        return Err(fields.refuse("mu_kinetic", format!("{mu} is refused"), right));
+    }
+    let mu_kinetic = written.unwrap_or(DEFAULT_STICK_SLIP.mu_kinetic.min(mu_static));
+    let slip_speed_m_s = fields.number_or(&parameters::SLIP_SPEED_M_S, DEFAULT_STICK_SLIP.slip_speed_m_s)?;
+    Ok(Some(Friction { mu_static, mu_kinetic, slip_speed_m_s }))
 }
 
 /// `[surface.frame]`; what is missing is the body's origin, its x and its y axis.
 fn read_frame(fields: &mut Fields) -> Result<Option<SurfaceFrame>, FileError> {
     let Some(mut fields) = fields.table("frame")? else { return Ok(None) };
-    let origin_m = fields.vector("origin_m")?.unwrap_or_default();
-    let u_axis = fields.vector("u_axis")?.unwrap_or([1.0, 0.0, 0.0]);
-    let v_axis = fields.vector("v_axis")?.unwrap_or([0.0, 1.0, 0.0]);
+    let origin_m = fields.vector(&frame::ORIGIN_M)?.unwrap_or_default();
+    let u_axis = fields.vector(&frame::U_AXIS)?.unwrap_or([1.0, 0.0, 0.0]);
+    let v_axis = fields.vector(&frame::V_AXIS)?.unwrap_or([0.0, 1.0, 0.0]);
     let place = fields.inner("");
     fields.finish()?;
     let told = |error| FileError::told(error).within(place.trim_end_matches([':', ' ', '.']));

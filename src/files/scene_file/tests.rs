@@ -121,12 +121,16 @@ fn sources_are_put_together_from_tables_like_a_surfaces_own() {
     assert!(matches!(*from, Source::Solid { parameters, .. } if parameters.modules[0].octaves == 3));
     let Source::Sand(sand) = source(
         "sand = { layers = [{ from_m = 0.002, hardness = 4 }, { from_m = 0.01, hardness = 0.5 }], \
+         buried = [{ u_m = 0.05, v_m = 0.03, top_m = 0.002, half_u_m = 0.008, half_v_m = 0.004, height_m = 0.003, hardness = 30 }], \
          tool = { map = \"bar.png\", width_m = 0.02, relief_m = 0.01 } }",
     ) else {
         panic!("not sand")
     };
     let layers = [(0.002, 4.0), (0.01, 0.5)].map(|(from_m, hardness)| Some(Layer { from_m, hardness }));
     assert_eq!(sand.design.law.layers, [layers[0], layers[1], None, None]);
+    let stone = sand.design.law.buried[0].unwrap();
+    assert_eq!((stone.at_m, stone.top_m, stone.half_m), ([0.05, 0.03], 0.002, [0.008, 0.004]));
+    assert_eq!((stone.height_m, stone.hardness, sand.design.law.buried[1]), (0.003, 30.0, None));
     assert_eq!(sand.tool.map(|tool| tool.width_m), Some(0.02));
 }
 
@@ -141,6 +145,10 @@ fn parts_of_a_source_are_refused_by_their_own_place() {
         ("crossfade = { from = {}, to = {} }", &["crossfade: at_s: is missing"]),
         ("brownian = { hurst = 0.5, rms_m = 1e-4, force = \"up\" }", &["brownian: force", "lateral"]),
         ("sand = { layers = [{ from_m = 0.0, hardness = 1 }] }", &["layers 1: from_m", "above 0"]),
+        (
+            "sand = { buried = [{ u_m = 0.1, v_m = 0.1, top_m = 0.0, half_u_m = 0.0 }] }",
+            &["buried 1: half_u_m", "1e-4"],
+        ),
         ("sand = { tool_radius_m = 0.01, tool = { map = \"a.png\" } }", &["tool: stands beside"]),
     ] {
         let refusal = refusal(&format!("{SURFACE}{line}"));

@@ -75,12 +75,17 @@ impl Scene {
         let gain = within("gain", body.gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
-        let body = Box::new(BodySlot::new(audible.as_ref().unwrap_or(model), self.kernel, rate, inner)?);
+        let mass_kg = body.mass_kg.map(|kg| within("mass_kg", kg, limits::material::MASS_KG)).transpose()?;
+        let rubs_on = self.surfaces.iter().any(|(_, known)| known.body == Some(id) && known.rubs);
+        let heard = audible.as_ref().unwrap_or(model);
+        let body = Box::new(BodySlot::new(heard, mass_kg, self.kernel, rate, inner)?);
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
-        let heard = audible.as_ref().unwrap_or(model);
         let field = heard.shapes.as_ref().map(|shapes| Arc::new(StrikeField::new(Arc::clone(shapes))));
-        let known = KnownBody { material, lowest_mode_hz, field };
+        let known = KnownBody { material, lowest_mode_hz, field, weighs: mass_kg.is_some() };
+        if rubs_on && !known.can_be_rubbed() {
+            return Err(AddError::CannotRub);
+        }
         let stroking = self.stroking(&known)?;
         Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
     }

@@ -41,8 +41,10 @@ impl Scene {
     }
 
     fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
+        let told = event;
         let event = self.checked(event)?;
         self.checked_time(time_s)?;
+        self.note_touch(&told);
         let position = self.counters.position.load(Relaxed);
         let stamped = self.clock.stamp(time_s, position);
         Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
@@ -55,7 +57,7 @@ impl Scene {
         self.reported.accept(&event, stamp, self.rings(&event));
         if let Some(recording) = &mut self.recording {
             recording.settle(position as f64 / self.config.inner_rate_hz());
-            recording.note(stamp.samples() / self.config.inner_rate_hz(), &event);
+            recording.note(stamp.samples() / self.config.inner_rate_hz(), &event.at_place_of(&told));
         }
         Ok(())
     }
@@ -217,26 +219,10 @@ impl Scene {
 
     fn send_contact(&mut self, stamp: Stamp, event: ContactEvent) -> Result<(), Refusal> {
         let place = self.touched(&event);
+        if let ContactEvent::End { contact } = &event {
+            self.touched.remove(contact);
+        }
         self.send_event(Message::Event { stamp, event, place })
-    }
-
-    /// Where a contact is on a body that has shapes, by the frame of its surface; none where one of them is missing.
-    fn touched(&mut self, event: &ContactEvent) -> Option<StrikePlace> {
-        let (contact, sample) = match event {
-            ContactEvent::Begin { contact, touching, sample } => {
-                self.touched.insert(*contact, touching.surface);
-                (contact, sample)
-            }
-            ContactEvent::Moved { contact, sample, .. } => (contact, sample),
-            ContactEvent::End { contact } => {
-                self.touched.remove(contact);
-                return None;
-            }
-            ContactEvent::Impact(_) => return None,
-        };
-        let known = self.surfaces.get(self.touched.get(contact)?.0)?;
-        let field = self.bodies.get(known.body?.0)?.field.as_ref()?;
-        field.place(known.place.frame?.point_m(sample.uv, known.place.size_m), None)
     }
 
     /// Where an impact hits a body that has shapes.

@@ -1,10 +1,12 @@
 //! What is touched: where a place of a body is on its surface, and how what gives way answers a depth.
 
-use super::Scene;
+use super::{Scene, Touched};
 use crate::model::contact_sample::Place;
 use crate::model::error::{AddError, Refusal};
-use crate::model::event::{ContactId, ContactSample};
+use crate::model::event::{ContactEvent, ContactId, ContactSample};
+use crate::model::frame::SurfaceFrame;
 use crate::model::id::SurfaceId;
+use crate::model::strike_field::StrikePlace;
 use asperity_texture::tip_law::TipLaw;
 
 impl Scene {
@@ -40,8 +42,41 @@ impl Scene {
         if sample.at_m.is_none() && sample.depth_m.is_none() {
             return Ok(sample);
         }
-        let known = self.touched.get(&contact).and_then(|surface| self.surfaces.get(surface.0));
+        let known = self.touched.get(&contact).and_then(|touched| self.surfaces.get(touched.surface.0));
         let nowhere = Place { frame: None, size_m: [1.0; 2], is_soft: false };
         sample.on(known.map_or(&nowhere, |known| &known.place))
+    }
+
+    /// Remembers what a contact touches, and where it says it is in the body.
+    pub(super) fn note_touch(&mut self, event: &ContactEvent) {
+        match event {
+            ContactEvent::Begin { contact, touching, sample } => {
+                let touched = Touched { surface: touching.surface, at_m: sample.at_m };
+                self.touched.insert(*contact, touched);
+            }
+            ContactEvent::Moved { contact, sample, .. } => {
+                if let Some(touched) = self.touched.get_mut(contact) {
+                    touched.at_m = sample.at_m;
+                }
+            }
+            ContactEvent::End { .. } | ContactEvent::Impact(_) => {}
+        }
+    }
+
+    /// Where a contact is on a body that has shapes: its own place counts before its surface's frame; none where both are missing.
+    pub(super) fn touched(&self, event: &ContactEvent) -> Option<StrikePlace> {
+        let (ContactEvent::Begin { contact, sample, .. } | ContactEvent::Moved { contact, sample, .. }) =
+            event
+        else {
+            return None;
+        };
+        let touched = self.touched.get(contact)?;
+        let known = self.surfaces.get(touched.surface.0)?;
+        let field = self.bodies.get(known.body?.0)?.field.as_ref()?;
+        let Place { frame, size_m, .. } = &known.place;
+        let in_frame = || Some(frame.as_ref()?.point_m(sample.uv, *size_m));
+        // A bow stands on what its frame says, which at the edge of a sheet is no part of the sheet.
+        let inward = frame.as_ref().filter(|_| known.rubs).map(SurfaceFrame::inward);
+        field.place(touched.at_m.or_else(in_frame)?, inward)
     }
 }

@@ -195,7 +195,7 @@ fn kernel(away: f64) -> f64 {
         return 0.0;
     }
     let x = std::f64::consts::TAU * CUTOFF * away;
-    let sinc = if x == 0.0 { 1.0 } else { x.sin() / x };
+    let sinc = if x == 0.0 { 1.0 } else { libm::sin(x) / x };
     sinc * bessel_i0(KAISER_BETA * (1.0 - reach * reach).sqrt()) / bessel_i0(KAISER_BETA)
 }
 

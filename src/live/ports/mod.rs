@@ -25,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod feed;
 mod force;
 mod force_rows;
 mod levels;
@@ -33,9 +34,10 @@ mod picture;
 mod points;
 
 pub use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
+pub use feed::Feed;
 pub use force::{Force, ForcePort};
 pub use force_rows::{ForceRow, ForceRows, LAG_TICKS, Of};
 pub use levels::{Levels, LevelsPort};
-pub use pcm::{Feed, Pcm, PcmPort};
+pub use pcm::{Pcm, PcmPort};
 pub use picture::{Picture, PicturePort};
 pub use points::{Point, PointSettings, Points, PointsPort, Tone};

@@ -1,20 +1,12 @@
 //! PCM port: the samples of a haptic channel or an audio bus, exactly as they leave the engine.
 
+use super::Feed;
 use crate::link::outlet::{Opened, Outlet, PortKind, PortSetup};
 use crate::link::overwriting::{Reader, Writer, ring};
 use crate::model::bad_value::within;
 use crate::model::error::AddError;
 use crate::model::event::Actuator;
 use asperity_dsp::limits;
-
-/// Which signal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Feed {
-    /// What drives an actuator.
-    Haptic(Actuator),
-    /// What a bus sounds like.
-    Bus(usize),
-}
 
 /// A port of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,15 +36,7 @@ impl PortKind for Pcm {
 
     fn open(self, setup: &PortSetup<'_>) -> Result<Opened<PcmPort>, AddError> {
         within("holds_s", self.holds_s, limits::output::PORT_HOLDS_S)?;
-        match self.from {
-            Feed::Haptic(Actuator(channel)) if usize::from(channel) >= setup.haptic_channels => {
-                return Err(AddError::Unknown("actuator"));
-            }
-            Feed::Bus(bus) if bus >= setup.audio_buses => {
-                return Err(AddError::UnknownBus { bus, buses: setup.audio_buses });
-            }
-            Feed::Haptic(_) | Feed::Bus(_) => {}
-        }
+        self.from.check(setup)?;
         let (writer, reader) = ring((self.holds_s * setup.sample_rate_hz).ceil() as usize, 1);
         let port = PcmPort { words: reader, sample_rate_hz: setup.sample_rate_hz, read: 0, chunk: [0; 256] };
         Ok(Opened { outlet: Some(Box::new(PcmOutlet { words: writer, from: self.from })), port })

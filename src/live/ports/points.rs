@@ -45,15 +45,7 @@ impl PortKind for Points {
 
     fn open(self, setup: &PortSetup<'_>) -> Result<Opened<PointsPort>, AddError> {
         within("holds_s", self.holds_s, limits::output::PORT_HOLDS_S)?;
-        match self.from {
-            Feed::Haptic(Actuator(channel)) if usize::from(channel) >= setup.haptic_channels => {
-                return Err(AddError::Unknown("actuator"));
-            }
-            Feed::Bus(bus) if bus >= setup.audio_buses => {
-                return Err(AddError::UnknownBus { bus, buses: setup.audio_buses });
-            }
-            Feed::Haptic(_) | Feed::Bus(_) => {}
-        }
+        self.from.check(setup)?;
         let design = PointDesign::new(self.settings, setup.sample_rate_hz)?;
         let rate_hz = design.rate_hz();
         let (writer, reader) = ring((self.holds_s * rate_hz).ceil() as usize, POINT_WORDS);

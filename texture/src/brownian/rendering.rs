@@ -217,7 +217,7 @@ impl BrownianPath {
 
     /// The slope of the graph laid along the direction of motion.
     fn slope_along(slope: f64, velocity: [f64; 2]) -> [f64; 2] {
-        let speed = velocity[0].hypot(velocity[1]);
+        let speed = libm::hypot(velocity[0], velocity[1]);
         if speed > 0.0 { velocity.map(|v| slope * v / speed) } else { [0.0; 2] }
     }
 

@@ -77,6 +77,10 @@ impl HeightField for Mask {
         self.inside.band().union(self.outside.band())
     }
 
+    fn is_read_beside(&self) -> bool {
+        self.inside.is_read_beside() && self.outside.is_read_beside()
+    }
+
     fn reach_m(&self) -> f64 {
         self.inside.reach_m().max(self.outside.reach_m())
     }

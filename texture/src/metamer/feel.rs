@@ -2,7 +2,7 @@
 
 use super::arrangement::correlation;
 use super::bands::{Parts, Scratch};
-use super::level::{Level, MOMENTUM, Task, add, on_grid};
+use super::level::{Gait, Level, Task, add, on_grid};
 use super::{BORROWED, Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, REACH, check_finite};
 use crate::borders::{Borders, SplitBorders};
 use crate::fft2::Fft2;
@@ -99,7 +99,7 @@ impl Feel {
             Method::SinglePass => self.single_pass(&ours.periodic)?,
             Method::Spectrum => with_amplitudes(&ours.periodic, &self.reference.periodic),
             Method::Iterated(asked) => {
-                let task = Task { passes: asked, parts: self.parts(seam.as_ref()), momentum: 0.0 };
+                let task = Task { passes: asked, parts: self.parts(seam.as_ref()), gait: Gait::Plain };
                 let made = self.iterate(&ours.periodic, seam.as_ref(), task, &mut progress);
                 (passes, borrowed) = (made.passes, made.borrowed);
                 made.image
@@ -162,7 +162,7 @@ impl Feel {
         Ok(pyramid.join(&split))
     }
 
-    /// Passes from the original, then with momentum, then from surfaces that have more and more of the reference's own
+    /// Passes from the original, then with a memory, then with momentum, then from surfaces that have more and more of the reference's own
     /// arrangement, until the result is near enough. Of large maps this is tried on a coarser grid.
     fn iterate(
         &mut self,
@@ -195,12 +195,14 @@ impl Feel {
             return made;
         }
         let begun = (made.borrowed, task);
-        let briskly = Task { momentum: MOMENTUM, ..task };
+        let [remembering, briskly] = [Gait::Remembering, Gait::Momentum].map(|gait| Task { gait, ..task });
+        // Terraces are slopes on the coarser grid: only the fine one asks for a memory.
+        let alone = (made.borrowed == 0.0 && task.gait == Gait::Plain).then_some((0.0, remembering));
         // What serves the coarser copy may not serve the surface itself, whose finest waves only it has.
         let most = self.options.borrow;
         let more = BORROWED.into_iter().filter(|&share| share > made.borrowed && share <= most);
         let more = more.step_by(2).map(|share| (share, briskly));
-        self.nearest(original, seam, std::iter::once(begun).chain(more))
+        self.nearest(original, seam, std::iter::once(begun).chain(alone).chain(more))
     }
 
     /// The nearest of what passes make of some starts, none of them tried after one that is near enough.
@@ -226,9 +228,10 @@ impl Feel {
 
     /// Shares to borrow and how to go on from there.
     fn tries(&self, gently: Task) -> Vec<(f64, Task)> {
-        let briskly = Task { momentum: MOMENTUM, ..gently };
+        let [remembering, briskly] = [Gait::Remembering, Gait::Momentum].map(|gait| Task { gait, ..gently });
         let shares = BORROWED.into_iter().filter(|share| *share <= self.options.borrow);
-        std::iter::once((0.0, gently)).chain(shares.map(|share| (share, briskly))).collect()
+        let alone = [(0.0, gently), (0.0, remembering)];
+        alone.into_iter().chain(shares.map(|share| (share, briskly))).collect()
     }
 
     fn settle(&mut self, start: Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {

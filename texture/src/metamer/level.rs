@@ -1,17 +1,23 @@
 //! Passes on one grid, after those on the grid twice as coarse.
 //!
 //! ```text
-//! x = y + s (A(y) − y) + m (y − y before)         y ← H(x)
+//! x ← y + s (A(y) − y) + m (y − y before) + k (x − y)         y ← H(x)
 //! ```
 //! | symbol | here |
 //! |---|---|
 //! | A | every sub-band takes the reference's histogram, all together take its spectral envelope |
 //! | H | the heights take the reference's histogram: last, so that plateaus stay flat and nothing leaves its range |
-//! | s, m | [`BAND_STEP`]; [`MOMENTUM`] or none |
+//! | s; m, k | [`BAND_STEP`]; of these two one at the most, by [`Gait`] |
 //!
 //! What a coarser grid has changed is added by its spectrum before the first pass here. So long waves, which on the fine
 //! grid move by a texel a pass, are at their place at a sixteenth of the work. Without momentum and coarser grids 50 passes
 //! leave 0.05–0.07 of σ on maps with plateaus (a walkway, a diamond plate), with them 20 leave 0.010–0.018.
+//!
+//! Of terraces H takes back every move that does not lift a place to the next height, so that passes without a memory come to rest where
+//! all moves are small. Term k keeps what was taken back until it suffices (the error feedback of V. Elser, "Phase retrieval by iterated
+//! projections", JOSA A 20, 2003, without its reflection, which left twice as much): of fractal ground cut to 3, 6 and 12 heights
+//! 0.018, 0.014 and 0.006 σ are left instead of 0.041, 0.041 and 0.032, and 0.5–0.8 of the original's arrangement, where before the
+//! reference had to lend all of its own.
 
 use super::bands::{Bands, Parts, Scratch};
 use crate::borders::{Borders, SplitBorders};
@@ -27,12 +33,17 @@ use asperity_dsp::DesignError;
 const BAND_STEP: f64 = 1.7;
 /// How much of a pass's move the next one repeats, where it must: surfaces without plateaus come near without, and momentum
 /// carries them away from the original's arrangement (correlation of the sub-bands 0.8–0.9 without, 0.4–0.6 with it).
-pub(super) const MOMENTUM: f64 = 0.8;
+const MOMENTUM: f64 = 0.8;
+/// How much of what the heights took back is still there a pass later. Source: ours, the best of 0.8, 0.9, 0.95 and 1 on terraces,
+/// islands and dots of two heights.
+const KEPT: f64 = 0.95;
 /// First passes that go no further than the change itself: only once the amplitudes are near the reference's does
 /// overshooting not turn the original's sub-bands over.
 const GENTLE_PASSES: usize = 2;
 /// Part of the passes, at the end, without momentum.
 const CALM_PART: usize = 4;
+/// Part of the passes, at the end, that keep nothing of what the heights took back.
+const FORGETFUL_PART: usize = 8;
 /// Most that imposing the envelope changes an amplitude in one pass.
 const MOST_GAIN: f64 = 2.0;
 /// Side of the grid, texels, that gets the passes asked for. Coarser ones get up to [`MOST_PASSES`] times as many, finer ones
@@ -65,8 +76,43 @@ pub(super) struct Task {
     /// Passes asked for.
     pub passes: usize,
     pub parts: Parts,
-    /// 0 or [`MOMENTUM`].
-    pub momentum: f64,
+    pub gait: Gait,
+}
+
+/// What a pass does beyond the change that matching the bands makes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Gait {
+    /// Nothing: this keeps the most of the original's arrangement.
+    Plain,
+    /// It goes on from where it would be had the heights taken nothing back ([`KEPT`]): for terraces.
+    Remembering,
+    /// It repeats part of the last move ([`MOMENTUM`]).
+    Momentum,
+}
+
+impl Gait {
+    /// This one, or nothing beyond the change in the passes that begin and end all of them: momentum would turn bands over while steps are
+    /// gentle, a memory of them does no harm.
+    fn in_pass(self, pass: usize, all: usize) -> Self {
+        let (first, last) = match self {
+            Self::Plain => (0, 0),
+            Self::Remembering => (0, all / FORGETFUL_PART),
+            Self::Momentum => (GENTLE_PASSES, all / CALM_PART),
+        };
+        if pass <= first || pass + last > all { Self::Plain } else { self }
+    }
+
+    /// What is added to a height, and what is carried to the next pass: the height before, or the one before the heights were matched.
+    fn add(self, value: f64, change: f64, carried: f64) -> (f64, f64) {
+        match self {
+            Self::Plain => (value + change, value),
+            Self::Momentum => (value + change + MOMENTUM * (value - carried), value),
+            Self::Remembering => {
+                let moved = value + change + KEPT * (carried - value);
+                (moved, moved)
+            }
+        }
+    }
 }
 
 impl Level {
@@ -135,7 +181,7 @@ impl Level {
         self.settle_coarser(image, seam, task, scratch);
         let passes = self.passes(task.passes);
         let power = self.power_of(task.parts);
-        let mut before = image.values.clone();
+        let mut carried = image.values.clone();
         let mut made = Vec::new();
         for pass in 1..=passes {
             let fine_bands = self.reduced.as_mut().filter(|_| pass + FULL_PASSES <= passes);
@@ -146,12 +192,9 @@ impl Level {
             }
             bands.pyramid.image(&scratch.sum, &mut made);
             let band_step = if pass <= GENTLE_PASSES { 1.0 } else { BAND_STEP };
-            let calm = pass <= GENTLE_PASSES || pass + passes / CALM_PART > passes;
-            let momentum = if calm { 0.0 } else { task.momentum };
-            for ((value, goal), before) in image.values.iter_mut().zip(&made).zip(&mut before) {
-                let moved = band_step * (goal - *value) + momentum * (*value - *before);
-                *before = *value;
-                *value += moved;
+            let gait = task.gait.in_pass(pass, passes);
+            for ((value, goal), carried) in image.values.iter_mut().zip(&made).zip(&mut carried) {
+                (*value, *carried) = gait.add(*value, band_step * (goal - *value), *carried);
             }
             self.match_heights(image, seam, scratch);
             if enough(self, image, scratch) {

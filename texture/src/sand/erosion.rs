@@ -28,7 +28,8 @@ mod row;
 use super::grid::{SandGrid, TILE, UNITS_PER_M};
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::sand as limits;
-use row::{Moved, Order, Rows, Steepness};
+use asperity_dsp::simd::Level;
+use row::{Moved, Order, Steepness, slide};
 
 /// Rows of a tile: the bits of a word.
 const TILE_ROWS: usize = u32::BITS as usize;
@@ -44,8 +45,10 @@ pub struct Erosion {
     /// Rows to be looked at in this pass, one bit a row, one word a tile.
     active: Vec<u32>,
     next: Vec<u32>,
+    /// Rows from or to which sand slid since anybody asked.
+    slid: Vec<u32>,
     pass: u32,
-    rows: Rows,
+    level: Level,
 }
 
 /// What moved in a tile, one bit a row.
@@ -76,8 +79,9 @@ impl Erosion {
             tile_rows,
             active: vec![0; tiles],
             next: vec![0; tiles],
+            slid: vec![0; tiles],
             pass: 0,
-            rows: Rows::detect(),
+            level: Level::detect(),
         })
     }
 
@@ -90,10 +94,10 @@ impl Erosion {
         Ok(())
     }
 
-    /// The same with the instructions every processor has: for tests, the sand is the same.
+    /// The same on a chosen instruction set; the sand is the same.
     #[must_use]
-    pub fn portable(self) -> Self {
-        Self { rows: Rows::Portable, ..self }
+    pub fn on(self, level: Level) -> Self {
+        Self { level, ..self }
     }
 
     /// Looks at everything in the next pass.
@@ -171,7 +175,7 @@ impl Erosion {
             left &= !bit;
             looked_at += 1;
             let at = grid.index(tx * TILE, first_row + row as usize);
-            let moved = self.rows.slide(grid, at, &self.steepness, order);
+            let moved = slide(self.level, grid, at, &self.steepness, order);
             if moved.any {
                 let (up, down) = (bit >> 1, if moved.below { bit << 1 } else { 0 });
                 // What comes next in this pass sees it now, what came before in the next pass.
@@ -182,9 +186,23 @@ impl Erosion {
             }
         }
         if slides.any != 0 {
+            self.slid[tile] |= slides.any;
             self.wake(tile, rows, &slides);
         }
         looked_at
+    }
+
+    /// Shows the rectangles of cells in which sand has slid since the last call, first and last column, first and last row; some may not
+    /// have changed.
+    pub fn slid(&mut self, mut see: impl FnMut([usize; 2], [usize; 2])) {
+        for (tile, rows) in self.slid.iter_mut().enumerate().filter(|(_, rows)| **rows != 0) {
+            let [x, y] = [tile % self.tile_columns * TILE, tile / self.tile_columns * TILE_ROWS];
+            let (first, last) =
+                (rows.trailing_zeros() as usize, TILE_ROWS - 1 - rows.leading_zeros() as usize);
+            // A row slides against the one below, and its last cell against the next tile's first.
+            see([x, x + TILE], [y + first, y + last + 1]);
+            *rows = 0;
+        }
     }
 
     /// Marks the rows that a tile's slides may have made too steep, in it and in the tiles around it.
@@ -225,7 +243,7 @@ impl Erosion {
 /// Differences of height at a talus angle and where it counts as too steep.
 fn steepness(grid: &SandGrid, talus_deg: f64) -> Result<Steepness, DesignError> {
     limits::TALUS_DEG.check("talus_deg", talus_deg)?;
-    let rise = |degrees: f64| degrees.to_radians().tan() * grid.cell_m() * UNITS_PER_M;
+    let rise = |degrees: f64| libm::tan(degrees.to_radians()) * grid.cell_m() * UNITS_PER_M;
     let (at, above) = (rise(talus_deg), rise(talus_deg + SETTLED_DEG) - rise(talus_deg));
     let over = |run: f64| {
         let limit = (at * run) as i32;

@@ -5,6 +5,7 @@
 //! F_f    = −k_f v |F_r|                                           along the surface
 //! |F_r + F_f| ≤ cap                                               what a device gives
 //! β      = A(3 mm) / A₀(3 mm)      A: area of the tool's print, A₀: that of the document's sphere of 5 mm
+//! over a buried object: `buried`
 //! layers: F_r(d) = ∫₀^d k_s k_c g(z) e^{k_c z} dz,  g = hardness of the layer at depth z
 //! ```
 //!
@@ -29,6 +30,7 @@
 //! no Coulomb friction beside F_f, and grains finer than a cell do not push a tool sideways: it rides on
 //! many of them at once.
 
+use super::buried::{Buried, MAX_BURIED, Met, first_met};
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::{Range, sand as limits};
 
@@ -81,6 +83,10 @@ pub struct SandLaw {
     pub cap_n: f64,
     /// β: how much more the tool is carried than a sphere of 5 mm. A bed of sand sets it by its [tool](super::Tool::bearing).
     pub bearing: f64,
+    /// Radius of the tool's underside, metres, 0 for a point; a bed of sand sets it by its [tool](super::Tool::tip_radius_m).
+    pub tip_radius_m: f64,
+    /// Stones and shells in it, unused ones `None`.
+    pub buried: [Option<Buried>; MAX_BURIED],
 }
 
 impl Default for SandLaw {
@@ -100,6 +106,8 @@ impl SandLaw {
         grain_m: GRAIN_M,
         cap_n: CAP_N,
         bearing: 1.0,
+        tip_radius_m: REFERENCE_RADIUS_M,
+        buried: [None; MAX_BURIED],
     };
 
     /// Refuses what has no force.
@@ -120,7 +128,7 @@ impl SandLaw {
             above = deeper.check("layers.from_m", layer.from_m)?;
             limits::HARDNESS.check("layers.hardness", layer.hardness)?;
         }
-        Ok(())
+        self.buried.iter().flatten().try_for_each(Buried::check)
     }
 
     /// Stiffness with wetness, under the tool.
@@ -154,7 +162,7 @@ impl SandLaw {
     /// Force that one layer adds between two depths.
     fn part_n(&self, top_m: f64, bottom_m: f64, hardness: f64) -> f64 {
         let k = self.exponent_per_m;
-        hardness * self.wet_stiffness_n() * (k * top_m).exp() * (k * (bottom_m - top_m)).exp_m1()
+        hardness * self.wet_stiffness_n() * libm::exp(k * top_m) * libm::expm1(k * (bottom_m - top_m))
     }
 
     /// Depth at which the sand carries a force, metres; 0 for none.
@@ -173,13 +181,59 @@ impl SandLaw {
             (top, hardness) = (layer.from_m, layer.hardness);
         }
         let k = self.exponent_per_m;
-        top + (left / (hardness * self.wet_stiffness_n() * (k * top).exp())).ln_1p() / k
+        top + libm::log1p(left / (hardness * self.wet_stiffness_n() * libm::exp(k * top))) / k
     }
 
-    /// The same law under another tool.
+    /// The same law under another tool, by its [bearing](super::Tool::bearing) and the [radius of its underside](super::Tool::tip_radius_m).
     #[must_use]
-    pub fn under(self, bearing: f64) -> Self {
-        Self { bearing, ..self }
+    pub fn under(self, bearing: f64, tip_radius_m: f64) -> Self {
+        Self { bearing, tip_radius_m, ..self }
+    }
+
+    /// What the tool meets below a place where the sand lies `above_m` over the untouched bed.
+    #[must_use]
+    pub fn met(&self, position_m: [f64; 2], above_m: f64) -> Option<Met> {
+        first_met(&self.buried, position_m, above_m, self.tip_radius_m)
+    }
+
+    /// [`force_n`](Self::force_n) over what is met.
+    #[must_use]
+    pub fn force_over_n(&self, met: Option<&Met>, depth_m: f64) -> f64 {
+        match met.filter(|met| depth_m > met.top_m) {
+            Some(met) => self.force_n(met.top_m) + self.part_n(met.top_m, depth_m, met.hardness),
+            None => self.force_n(depth_m),
+        }
+    }
+
+    /// [`depth_m`](Self::depth_m) over what is met.
+    #[must_use]
+    pub fn depth_over_m(&self, met: Option<&Met>, force_n: f64) -> f64 {
+        let Some(met) = met else { return self.depth_m(force_n) };
+        let carried_by_it_n = force_n - self.force_n(met.top_m);
+        if carried_by_it_n <= 0.0 {
+            return self.depth_m(force_n);
+        }
+        let k = self.exponent_per_m;
+        let stiff_n = met.hardness * self.wet_stiffness_n() * (k * met.top_m).exp();
+        met.top_m + (carried_by_it_n / stiff_n).ln_1p() / k
+    }
+
+    /// How much what is met pushes aside a tool that is carried with `force_n`, along u and v, for each newton.
+    #[must_use]
+    pub fn push_per_n(&self, met: Option<&Met>, force_n: f64) -> [f64; 2] {
+        let Some(met) = met.filter(|_| force_n > 0.0) else { return [0.0; 2] };
+        let share = (1.0 - self.force_n(met.top_m) / force_n).max(0.0);
+        met.slope.map(|slope| share * slope)
+    }
+
+    /// [`answer_n`](Self::answer_n) at a place of the untouched bed: over its stones and shells too.
+    #[must_use]
+    pub fn answer_at_n(&self, position_m: [f64; 2], depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
+        let met = self.met(position_m, 0.0);
+        let repulse_n = self.force_over_n(met.as_ref(), depth_m);
+        let (drag, push) = (self.drag_n(velocity_m_s, repulse_n), self.push_per_n(met.as_ref(), repulse_n));
+        let [u, v] = [0, 1].map(|a| drag[a] + repulse_n * push[a]);
+        capped([u, v, repulse_n], self.cap_n)
     }
 
     /// The force on a tool that stands `depth_m` deep and moves, N along u, v and out of the sand: what the document's loop
@@ -249,6 +303,39 @@ mod tests {
         // Twice as steep just inside a layer of twice the hardness.
         let slope = |d: f64| (law.force_n(d + 1e-7) - law.force_n(d - 1e-7)) / 2e-7;
         assert!((slope(0.002 + 1e-6) / slope(0.002 - 1e-6) - 4.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn over_a_stone_the_force_is_continuous_at_its_top_depth_inverts_it_and_its_flank_pushes_outwards() {
+        let stone =
+            Buried { at_m: [0.05; 2], top_m: 0.002, half_m: [0.008; 2], height_m: 0.004, hardness: 30.0 };
+        let law = SandLaw {
+            buried: [Some(stone); 8],
+            stiffness_n: 100.0,
+            exponent_per_m: 20.0,
+            ..SandLaw::default()
+        };
+        law.check().unwrap();
+        let at = [0.053, 0.049];
+        let met = law.met(at, 0.0);
+        let top_m = met.unwrap().top_m;
+        let force_n = |depth_m: f64| law.force_over_n(met.as_ref(), depth_m);
+        assert!((force_n(top_m + 1e-12) - force_n(top_m - 1e-12)).abs() < 1e-5);
+        let slope = |d: f64| (force_n(d + 1e-7) - force_n(d - 1e-7)) / 2e-7;
+        assert!((slope(top_m + 1e-6) / slope(top_m - 1e-6) / 30.0 - 1.0).abs() < 1e-2);
+        for step in 1..100 {
+            let depth_m = 1e-4 * f64::from(step);
+            assert!((law.depth_over_m(met.as_ref(), force_n(depth_m)) - depth_m).abs() < 1e-12);
+        }
+        let [u, v, z] = law.answer_at_n(at, top_m + 5e-5, [0.0; 2]);
+        let carried_by_it_n = z - law.force_n(top_m);
+        assert!(u > 0.0 && v < 0.0 && carried_by_it_n > 1.0);
+        assert!((u / carried_by_it_n - met.unwrap().slope[0]).abs() < 1e-12);
+        // Beside it, and above it, there is sand.
+        assert_eq!(law.answer_at_n([0.2, 0.2], 0.003, [0.1, 0.0]), law.answer_n(0.003, [0.1, 0.0]));
+        assert_eq!(law.answer_at_n(at, 0.5 * top_m, [0.1, 0.0]), law.answer_n(0.5 * top_m, [0.1, 0.0]));
+        let refused = SandLaw { buried: [Some(Buried { hardness: 0.0, ..stone }); 8], ..law }.check();
+        assert_eq!(refused.unwrap_err().field, "buried.hardness");
     }
 
     #[test]

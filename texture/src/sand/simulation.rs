@@ -16,6 +16,7 @@ use super::grid::{SandGrid, SandPicture, UNITS_PER_M, WALL};
 use super::law::SandLaw;
 pub use super::pose::{FRAMES_PER_S, Pose};
 use super::tool::{Press, Tool};
+use crate::changed_tiles::ChangedTiles;
 use crate::height_field::Setup;
 use crate::moving_picture::MovingPicture;
 use asperity_dsp::DesignError;
@@ -107,6 +108,8 @@ pub struct SandSimulation {
     print_m: f64,
     /// For whoever draws the sand.
     moving_picture: Arc<MovingPicture>,
+    /// What of it was not shown yet.
+    changed: ChangedTiles,
 }
 
 impl SandSimulation {
@@ -135,7 +138,7 @@ impl SandSimulation {
         let mut sand = Self {
             grid,
             erosion,
-            law: design.law.under(design.tool.bearing()),
+            law: design.law.under(design.tool.bearing(), design.tool.tip_radius_m()),
             dry_talus_deg: design.talus_deg,
             tool: design.tool.clone(),
             depth_m: design.depth_m,
@@ -145,6 +148,7 @@ impl SandSimulation {
             volume_before_units,
             print_m: 0.0,
             moving_picture: MovingPicture::new(columns, rows, cell_m),
+            changed: ChangedTiles::all(columns, rows),
         };
         sand.make_room(Setup::default().voices);
         Ok(sand)
@@ -169,6 +173,7 @@ impl SandSimulation {
     pub fn shape(&mut self, height_m: impl FnMut(usize, usize) -> f64) {
         self.grid.fill(height_m);
         self.volume_before_units = self.grid.volume_units();
+        self.changed.mark_all();
         self.erosion.activate_all();
     }
 
@@ -184,7 +189,7 @@ impl SandSimulation {
         {
             self.erosion.activate_all();
         }
-        self.law = law.under(self.tool.bearing());
+        self.law = law.under(self.tool.bearing(), self.tool.tip_radius_m());
     }
 
     /// The force law, under its tool.
@@ -234,8 +239,9 @@ impl SandSimulation {
         for contact in 0..self.tracks.len() {
             self.arrive(contact);
         }
-        let grid = &self.grid;
-        self.moving_picture.write(|column, row| grid.height_m(column, row) as f32);
+        let (grid, changed) = (&self.grid, &mut self.changed);
+        self.erosion.slid(|columns, rows| changed.mark(columns, rows));
+        self.moving_picture.write(changed, |column, row| grid.height_m(column, row) as f32);
     }
 
     /// The sand as it moves, written once a frame.

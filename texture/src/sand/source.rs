@@ -19,7 +19,7 @@
 //! that shows nothing new does not fade, and once none fades the sand does not stir under a resting
 //! contact, which may sleep.
 
-use super::around::{Around, level_around};
+use super::around::{Around, level_around, seen_level_m};
 use super::grid::SandPicture;
 use super::hand_over::{
     Link, Near, PATCHES_A_CONTACT, Slot, circulating, fade_samples, frame_samples, give_back, patches, rings,
@@ -109,7 +109,7 @@ impl SandSource {
             depth_m: design.depth_m,
             overview: Box::new(Patch::flat()),
             spare: Vec::new(),
-            law: Fade::new(design.law.under(design.tool.bearing())),
+            law: Fade::new(design.law.under(design.tool.bearing(), design.tool.tip_radius_m())),
             tool: design.tool.clone(),
             grains: SolidNoise::new(grains, seed)?,
             grain_relief: SurfaceBlock::default(),
@@ -233,24 +233,19 @@ impl SandSource {
         }
     }
 
-    /// The drag of the law in the place of what slopes and friction would push.
+    /// The drag of the law, and what a stone's flank pushes, in the place of what slopes and friction would push.
     fn answer(&self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        let law = self.law.target();
         for (i, velocity_m_s) in path.velocity_m_s.iter().enumerate().take(MAX_BLOCK) {
             let weights = self.law.weights(path.first_sample + i as u64);
             let drag_s_per_m: f64 =
                 weights.iter().zip(self.law.values()).map(|(w, l)| w * l.drag_s_per_m).sum();
-            let push_per_n = [0, 1].map(|a| out.gradient[i][a] - drag_s_per_m * velocity_m_s[a]);
-            let cap_n = self.law.target().cap_n;
-            out.answer.set(i, AnswerAt { push_per_n, cap_n, ..AnswerAt::NONE });
+            let met = law.met(path.position_m[i], out.height_m[i]);
+            let aside = law.push_per_n(met.as_ref(), path.pressed_n(i));
+            let push_per_n = [0, 1].map(|a| out.gradient[i][a] + aside[a] - drag_s_per_m * velocity_m_s[a]);
+            out.answer.set(i, AnswerAt { push_per_n, cap_n: law.cap_n, ..AnswerAt::NONE });
         }
     }
-}
-
-/// Level of the sand around a place as the simulation showed it last, metres above the bottom; none before it ran.
-fn seen_level_m(picture: &MovingPicture, position_m: [f64; 2], radius_m: f64) -> Option<f64> {
-    let here_m = picture.height_at(position_m)?;
-    let height_at = |at| picture.height_at(at).unwrap_or(here_m);
-    Some(level_around(picture.cell_m(), position_m, radius_m, height_at))
 }
 
 /// Where a touch is; a contact that has just landed says so itself.
@@ -315,7 +310,7 @@ impl HeightField for SandSource {
                 let mut sinks_m = 0.0;
                 for (weight, law) in self.law.weights(sample).iter().zip(self.law.values()) {
                     if *weight != 0.0 {
-                        sinks_m += weight * law.depth_m(pressed_n);
+                        sinks_m += weight * law.depth_over_m(law.met(at, height).as_ref(), pressed_n);
                     }
                 }
                 // The bottom of the bed carries what the sand does not.
@@ -335,8 +330,9 @@ impl HeightField for SandSource {
             Link::Elsewhere { .. } => seen_level_m(&self.moving_picture, position_m, radius_m),
         };
         // Before the simulation has run, the bed is untouched.
-        let level_m = level_m.map_or(0.0, |level_m| level_m - self.depth_m);
-        Some(self.law.target().force_n(depth_m + level_m))
+        let above_m = level_m.map_or(0.0, |level_m| level_m - self.depth_m);
+        let law = self.law.target();
+        Some(law.force_over_n(law.met(position_m, above_m).as_ref(), depth_m + above_m))
     }
 
     fn land(&mut self, touch: &Touch) {
@@ -349,13 +345,16 @@ impl HeightField for SandSource {
         match &self.link {
             Link::Here(simulation) => simulation.write_landing(&pose(touch), &mut slot.ground),
             Link::Elsewhere { .. } => {
-                let radius_m = self.tool.print_radius_m(self.law.target().depth_m(touch.normal_force_n));
+                let sinks_m = self.law.target().depth_m(touch.normal_force_n);
+                let radius_m = self.tool.print_radius_m(sinks_m);
                 match seen_level_m(&self.moving_picture, touch.position_m, radius_m) {
                     Some(level_m) => {
                         let (picture, pose) = (&self.moving_picture, &pose(touch));
                         let (cell_m, depth_m) = (picture.cell_m(), self.depth_m);
                         let cell_at = |at| picture.height_at(at).unwrap_or(level_m);
-                        Around { pose, radius_m, cell_m, depth_m }.write(level_m, cell_at, &mut slot.ground);
+                        let level_at = |at| level_around(cell_m, at, radius_m, cell_at);
+                        let around = Around { pose, radius_m, cell_m, depth_m, sinks_m };
+                        around.write(level_m, cell_at, level_at, &mut slot.ground);
                     }
                     // The simulation has not run yet.
                     None => slot.ground.clone_from(&self.overview),
@@ -372,7 +371,7 @@ impl HeightField for SandSource {
             .map(|slot| slot.turn_over(touch.sample, fade_samples(self.frame_samples), &mut self.spare));
         let (stirs, displaced_m2) = turned.unwrap_or((false, 0.0));
         let law = self.law.target();
-        let speed = touch.velocity_m_s[0].hypot(touch.velocity_m_s[1]);
+        let speed = libm::hypot(touch.velocity_m_s[0], touch.velocity_m_s[1]);
         let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
         Reaction { grain_rate_per_s, grain_impulse_n_s, stirs }
     }
@@ -383,7 +382,7 @@ impl HeightField for SandSource {
         if law.check().is_err() {
             return false;
         }
-        self.law.set(law.under(self.tool.bearing()), sample);
+        self.law.set(law.under(self.tool.bearing(), self.tool.tip_radius_m()), sample);
         match &mut self.link {
             Link::Here(simulation) => simulation.set_law(*law),
             // A full ring: five changes within a frame, of which the simulation misses one.

@@ -69,7 +69,9 @@ impl Tool {
     pub fn reach_m(&self) -> f64 {
         match self {
             Self::Sphere { radius_m } => *radius_m,
-            Self::LowerMap { map, texel_m } => 0.5 * texel_m * (map.width as f64).hypot(map.height as f64),
+            Self::LowerMap { map, texel_m } => {
+                0.5 * texel_m * libm::hypot(map.width as f64, map.height as f64)
+            }
         }
     }
 
@@ -86,6 +88,12 @@ impl Tool {
                 texel_m * (texels as f64 / core::f64::consts::PI).sqrt()
             }
         }
+    }
+
+    /// Radius of its underside about the contact, metres: what it is to a stone. A picture's is taken for a point.
+    #[must_use]
+    pub fn tip_radius_m(&self) -> f64 {
+        if let Self::Sphere { radius_m } = self { *radius_m } else { 0.0 }
     }
 
     /// How much more it is carried than the document's sphere, by the area of its print; see the [law](super::law).

@@ -85,7 +85,7 @@ impl SolidNoiseParameters {
         }
         let proportion = if self.proportional_to_contact { normal_force_n } else { 1.0 };
         let texture = (self.limit_n * texture * proportion).clamp(-self.cap_n, self.cap_n);
-        let speed = velocity_m_s[0].hypot(velocity_m_s[1]);
+        let speed = libm::hypot(velocity_m_s[0], velocity_m_s[1]);
         let direction = match self.direction {
             ForceDirection::X => [1.0, 0.0, 0.0],
             ForceDirection::Normal => [0.0, 0.0, 1.0],

@@ -5,9 +5,6 @@ use super::avx2::*;
 use super::{PRIME, ROOT_15, WHOLE};
 use crate::gradient_noise_3d::Noise3;
 
-#[cfg(target_arch = "x86")]
-use core::arch::x86::*;
-#[cfg(target_arch = "x86_64")]
 use core::arch::x86_64::*;
 
 /// One point, its eight corners in the eight lanes (lowest bit: x). The position comes in three

@@ -28,7 +28,7 @@ impl Way {
 
     fn length_m(&self) -> f64 {
         let [u, v] = self.span_m();
-        u.hypot(v)
+        libm::hypot(u, v)
     }
 }
 
@@ -67,13 +67,19 @@ impl SandSimulation {
             let follow = if way.landed && step == 1 {
                 1.0
             } else {
-                1.0 - (-length_m / steps as f64 / track.radius_m.max(self.grid.cell_m())).exp()
+                1.0 - libm::exp(-length_m / steps as f64 / track.radius_m.max(self.grid.cell_m()))
             };
             track.level_m += follow * (level - track.level_m);
-            let tip_m = track.level_m - way.depth_m;
+            let met = self.law.met(at, track.level_m - self.depth_m);
+            let depth_m = match &met {
+                Some(_) => self.law.depth_over_m(met.as_ref(), way.to.normal_force_n),
+                None => way.depth_m,
+            };
+            let tip_m = track.level_m - depth_m;
             let displaced = self.presses[contact].apply(&mut self.grid, &self.tool, at, tip_m, direction);
             if displaced.units > 0 {
                 self.erosion.activate(displaced.columns, displaced.rows);
+                self.changed.mark(displaced.columns, displaced.rows);
                 way.units += displaced.units;
             }
             track.pose = Some(Pose { position_m: at, ..way.to });

@@ -16,18 +16,21 @@ impl SandSimulation {
             self.write_overview(patch);
             return;
         };
-        self.around(&pose, track.radius_m).write(track.level_m, |at| self.cell_at(at), patch);
+        let level_at = |at| self.level_m(at, track.radius_m);
+        self.around(&pose, track.radius_m).write(track.level_m, |at| self.cell_at(at), level_at, patch);
         patch.displaced_m2 = track.displaced_m2;
     }
 
     /// Writes the sand that a contact lands on into a patch.
     pub fn write_landing(&self, pose: &Pose, patch: &mut Patch) {
         let (level_m, radius_m) = self.landing(pose);
-        self.around(pose, radius_m).write(level_m, |at| self.cell_at(at), patch);
+        let level_at = |at| self.level_m(at, radius_m);
+        self.around(pose, radius_m).write(level_m, |at| self.cell_at(at), level_at, patch);
     }
 
     fn around<'a>(&self, pose: &'a Pose, radius_m: f64) -> Around<'a> {
-        Around { pose, radius_m, cell_m: self.grid.cell_m(), depth_m: self.depth_m }
+        let sinks_m = self.law.depth_m(pose.normal_force_n);
+        Around { pose, radius_m, cell_m: self.grid.cell_m(), depth_m: self.depth_m, sinks_m }
     }
 
     /// Writes all the sand, coarsely, into a patch.

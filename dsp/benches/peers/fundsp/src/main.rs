@@ -7,7 +7,8 @@
 
 mod ring;
 
-use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, Isa, Kernel, ModalBank, design_group};
+use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, design_group};
+use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::mode::Mode;
 use fundsp::biquad::BiquadCoefs;
 use fundsp::biquad_bank::BiquadBank;
@@ -156,8 +157,8 @@ fn pitch(rate_hz: f64) {
         &(0..(ring::LENGTH_S * rate_hz) as usize).map(exact).collect::<Vec<_>>(),
     );
     let mode = Mode { frequency_hz: PITCH_HZ, decay_per_s: decay, amplitude: 1.0, phase_rad: 0.0 };
-    for isa in [Isa::Portable, Isa::Neon, Isa::Avx2, Isa::Avx512] {
-        let Some(kernel) = Kernel::find(isa) else { continue };
+    for isa in Isa::ALL {
+        let Some(kernel) = Level::find(isa) else { continue };
         let group =
             [design_group(&[mode], rate_hz, &GroupOptions::IMPULSE_RING).expect("a mode like any other")];
         let mut bank = ModalBank::new(kernel, group, [GroupState::REST]);

@@ -1,0 +1,101 @@
+//! Handles: what a program holds of a scene, a renderer, a port and a player.
+
+use crate::entry::enter;
+use crate::handle::Table;
+use asperity::files::contact_log::Names;
+use asperity::live::ports::{ForcePort, LevelsPort, PcmPort, PointsPort};
+use asperity::texture::sand::SandThread;
+use asperity::{Renderer, Scene};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The game's half of an engine: takes bodies, surfaces and events. One thread at a time.
+pub struct asp_scene {
+    _private: [u8; 0],
+}
+
+/// The audio half of an engine: renders. One thread at a time.
+pub struct asp_renderer {
+    _private: [u8; 0],
+}
+
+/// The reading end of a port: what leaves the engine, for any one thread.
+pub struct asp_port {
+    _private: [u8; 0],
+}
+
+/// An engine that plays on a sound card.
+pub struct asp_player {
+    _private: [u8; 0],
+}
+
+/// What a scene's handle names.
+pub(crate) struct SceneHalf {
+    pub(crate) scene: Scene,
+    pub(crate) names: Names,
+    /// Sand that is simulated on threads of its own; they end with the scene.
+    pub(crate) sand: Vec<SandThread>,
+    /// Whether sand that is added later is simulated so.
+    pub(crate) live: bool,
+}
+
+impl Drop for SceneHalf {
+    fn drop(&mut self) {
+        for sand in self.sand.drain(..) {
+            sand.stop();
+        }
+    }
+}
+
+/// What a renderer's handle names: a renderer, and memory for one stretch of every signal.
+pub(crate) struct AudioHalf {
+    /// Away only while it changes its rate.
+    pub(crate) renderer: Option<Renderer>,
+    pub(crate) haptic: Vec<Vec<f32>>,
+    pub(crate) audio: Vec<Vec<f32>>,
+    /// The tick of a mixer that was rendered last, so that two effects do not render one engine twice.
+    pub(crate) tick: Option<u64>,
+}
+
+/// What a port's handle names.
+#[expect(clippy::large_enum_variant, reason = "the table boxes it whole")]
+pub(crate) enum AnyPort {
+    Pcm(PcmPort),
+    Points(PointsPort),
+    Levels(LevelsPort),
+    Forces(ForcePort),
+}
+
+pub(crate) static SCENES: Table<SceneHalf> = Table::new(1, "scene");
+pub(crate) static RENDERERS: Table<AudioHalf> = Table::new(2, "renderer");
+pub(crate) static PORTS: Table<AnyPort> = Table::new(3, "port");
+pub(crate) static PLAYERS: Table<crate::player::Playing> = Table::new(4, "player");
+
+/// Frees what a handle names; what it leaves in a fault is not freed.
+fn free<T: Send>(table: &Table<T>, handle: usize) -> i32 {
+    enter(|| {
+        if handle == 0 {
+            return Ok(());
+        }
+        let value = table.remove(handle)?;
+        let _ = catch_unwind(AssertUnwindSafe(|| drop(value)));
+        Ok(())
+    })
+}
+
+/// Frees a scene; null is nothing. Its renderer and ports may live on: they ring out. Not on the audio thread.
+#[unsafe(no_mangle)]
+pub extern "C" fn asp_scene_free(scene: *mut asp_scene) -> i32 {
+    free(&SCENES, scene as usize)
+}
+
+/// Frees a renderer; null is nothing. Waits until no other thread renders with it. Not on the audio thread.
+#[unsafe(no_mangle)]
+pub extern "C" fn asp_renderer_free(renderer: *mut asp_renderer) -> i32 {
+    free(&RENDERERS, renderer as usize)
+}
+
+/// Closes a port; null is nothing.
+#[unsafe(no_mangle)]
+pub extern "C" fn asp_port_free(port: *mut asp_port) -> i32 {
+    free(&PORTS, port as usize)
+}

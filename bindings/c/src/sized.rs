@@ -1,0 +1,87 @@
+//! Sized structs: each begins with its own size, so that a program and a library of different ages understand each other.
+//!
+//! A struct only ever grows at its end. The library knows every size it has shipped: what a program's older struct lacks has its default,
+//! and a size that never was is refused instead of read.
+
+use crate::entry::aligned;
+use crate::status::{ASP_BAD_ARGUMENT, Failure};
+
+/// A struct that begins with its size.
+///
+/// # Safety
+/// The first field is the `u32` size, and every bit pattern of the others is a value.
+pub(crate) unsafe trait Sized32: Copy {
+    /// Its name in C.
+    const NAME: &'static str;
+    /// Every size it ever had, the last its present one.
+    const SHIPPED: &'static [u32];
+
+    /// Its size and its defaults.
+    fn initial() -> Self;
+}
+
+fn refused<T: Sized32>(size: u32) -> Failure {
+    let (name, own) = (T::NAME, size_of::<T>());
+    let right = format!("call {name}_init first, with the header of this library ({own} bytes)");
+    Failure::new(ASP_BAD_ARGUMENT, format!("{name}: struct_size: {size} is refused; {right}"))
+}
+
+/// Copies a program's struct, whatever its age.
+pub(crate) fn read<T: Sized32>(from: *const T, name: &str) -> Result<T, Failure> {
+    aligned(from, name)?;
+    // SAFETY: not null and aligned; the first field is a u32 in every age of the struct.
+    let size = unsafe { from.cast::<u32>().read() };
+    if !T::SHIPPED.contains(&size) {
+        return Err(refused::<T>(size));
+    }
+    let mut copy = T::initial();
+    // SAFETY: a size that was shipped is at most our own, and the program's struct has it.
+    unsafe {
+        std::ptr::copy_nonoverlapping(from.cast::<u8>(), (&raw mut copy).cast::<u8>(), size as usize);
+    }
+    Ok(copy)
+}
+
+/// Writes into a program's struct as much as it has room for.
+pub(crate) fn write<T: Sized32>(value: &T, to: *mut T, name: &str) -> Result<(), Failure> {
+    aligned(to, name)?;
+    // SAFETY: as in `read`.
+    let size = unsafe { to.cast::<u32>().read() };
+    if !T::SHIPPED.contains(&size) {
+        return Err(refused::<T>(size));
+    }
+    // SAFETY: as in `read`; the size in front stays the program's own.
+    unsafe {
+        std::ptr::copy_nonoverlapping(
+            std::ptr::from_ref(value).cast::<u8>().add(4),
+            to.cast::<u8>().add(4),
+            size as usize - 4,
+        );
+    }
+    Ok(())
+}
+
+/// Fills a struct that a program has just made.
+pub(crate) fn init<T: Sized32>(to: *mut T) {
+    if !to.is_null() && to.is_aligned() {
+        // SAFETY: not null and aligned; that it is a T is the caller's promise.
+        unsafe { to.write(T::initial()) };
+    }
+}
+
+/// Says how a struct of the header begins.
+macro_rules! sized {
+    ($type:ty, $name:literal, $($older:literal,)* |$size:ident| $initial:expr) => {
+        // SAFETY: `repr(C)`, the size comes first, and all fields are numbers and pointers.
+        unsafe impl $crate::sized::Sized32 for $type {
+            const NAME: &'static str = $name;
+            const SHIPPED: &'static [u32] = &[$($older,)* size_of::<Self>() as u32];
+
+            fn initial() -> Self {
+                let $size = size_of::<Self>() as u32;
+                $initial
+            }
+        }
+    };
+}
+pub(crate) use sized;

@@ -1,0 +1,184 @@
+//! Statistics: what the engine did so far, and why it is silent.
+
+use crate::entry::{array_mut, enter};
+use crate::handles::{SCENES, asp_scene};
+use crate::sized::{self, sized};
+use crate::status::{ASP_BAD_ARGUMENT, Failure};
+use crate::text;
+use std::ffi::c_char;
+
+/// Counts since the engine was built; `asp_stats_init` fills in the size.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct asp_stats {
+    /// Size of this struct, bytes.
+    pub struct_size: u32,
+    /// Share of the time budget that the last blocks took, as told by `asp_report_load`.
+    pub load: f32,
+    /// Samples rendered.
+    pub position: u64,
+    /// Events applied by the audio half.
+    pub events: u64,
+    /// Impacts among them.
+    pub impacts: u64,
+    /// Impacts whose contact would outlast 0.17 s and was shortened.
+    pub shortened: u64,
+    /// Micro-collisions that would outlast 0.04 s and were shortened.
+    pub shortened_collisions: u64,
+    /// Onsets of contact found by the micro-contact model.
+    pub micro_collisions: u64,
+    /// Blows of a probe that had left the ground.
+    pub blows: u64,
+    /// Events handed back because the queue was full.
+    pub dropped: u64,
+    /// Moves that a newer event made pointless before they were sent.
+    pub superseded: u64,
+    /// Events that named a contact nobody began, or whose voice was stolen.
+    pub orphaned: u64,
+    /// Contacts silenced because a more important one needed the voice.
+    pub stolen: u64,
+    /// Landings right after a lift-off at the same place, taken as one contact.
+    pub debounced: u64,
+    /// Contacts faded because nothing was heard of them.
+    pub lapsed: u64,
+    /// Contacts that were suddenly elsewhere.
+    pub jumps: u64,
+    /// Reports of no force.
+    pub unpressed: u64,
+    /// Events refused: bad numbers, unknown ids, time running backwards.
+    pub refused: u64,
+    /// Contacts reset on the audio half after their numbers went bad.
+    pub quarantined: u64,
+    /// Events that arrived after the sample they were stamped for.
+    pub late: u64,
+    /// Times the game clock was tied to the audio clock anew.
+    pub clock_jumps: u64,
+    /// Times the game was found to run at another pace.
+    pub clock_paces: u64,
+    /// How far ahead of the audio the latest event was stamped, samples.
+    pub ahead: u64,
+    /// Pieces of work left out because blocks ran late.
+    pub shed: u64,
+    /// Contacts sounding now.
+    pub contacts: u64,
+}
+
+sized!(asp_stats, "asp_stats", |struct_size| Self {
+    struct_size,
+    load: 0.0,
+    position: 0,
+    events: 0,
+    impacts: 0,
+    shortened: 0,
+    shortened_collisions: 0,
+    micro_collisions: 0,
+    blows: 0,
+    dropped: 0,
+    superseded: 0,
+    orphaned: 0,
+    stolen: 0,
+    debounced: 0,
+    lapsed: 0,
+    jumps: 0,
+    unpressed: 0,
+    refused: 0,
+    quarantined: 0,
+    late: 0,
+    clock_jumps: 0,
+    clock_paces: 0,
+    ahead: 0,
+    shed: 0,
+    contacts: 0,
+});
+
+impl asp_stats {
+    fn of(stats: &asperity::Stats) -> Self {
+        Self {
+            load: stats.load,
+            position: stats.position,
+            events: stats.events,
+            impacts: stats.impacts,
+            shortened: stats.shortened,
+            shortened_collisions: stats.shortened_collisions,
+            micro_collisions: stats.micro_collisions,
+            blows: stats.blows,
+            dropped: stats.dropped,
+            superseded: stats.superseded,
+            orphaned: stats.orphaned,
+            stolen: stats.stolen,
+            debounced: stats.debounced,
+            lapsed: stats.lapsed,
+            jumps: stats.jumps,
+            unpressed: stats.unpressed,
+            refused: stats.refused,
+            quarantined: stats.quarantined,
+            late: stats.late,
+            clock_jumps: stats.clock_jumps,
+            clock_paces: stats.clock_paces,
+            ahead: stats.ahead,
+            shed: stats.shed,
+            contacts: stats.contacts,
+            ..sized::Sized32::initial()
+        }
+    }
+}
+
+/// Most characters of a text that is asked for.
+const MAX_TEXT: usize = 1 << 20;
+
+/// Fills statistics with their size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_stats_init(stats: *mut asp_stats) {
+    sized::init(stats);
+}
+
+/// What the engine did so far.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_get_stats(scene: *mut asp_scene, stats: *mut asp_stats) -> i32 {
+    enter(|| sized::write(&asp_stats::of(&SCENES.hold(scene as usize)?.scene.stats()), stats, "stats"))
+}
+
+/// Peak level of each bus as a meter shows it, linear; buses beyond those of the scene are 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_bus_peaks(scene: *mut asp_scene, peaks: *mut f32, count: u32) -> i32 {
+    enter(|| {
+        let peaks = array_mut(peaks, count as usize, crate::config::ASP_MAX_BUSES as usize, "peaks")?;
+        let levels = SCENES.hold(scene as usize)?.scene.stats().bus_levels;
+        for (bus, peak) in peaks.iter_mut().enumerate() {
+            *peak = levels.get(bus).copied().unwrap_or(0.0);
+        }
+        Ok(())
+    })
+}
+
+/// What speaks against anything being heard or felt, a line a reason, the likeliest first; "" when nothing does. `size` is the room in
+/// `reasons`, bytes; what does not fit is cut.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_why_silent(scene: *mut asp_scene, reasons: *mut c_char, size: u32) -> i32 {
+    enter(|| {
+        if size == 0 {
+            return Err(Failure::new(
+                ASP_BAD_ARGUMENT,
+                "size: 0 is refused; give some room, 1000 for instance",
+            ));
+        }
+        let room = array_mut(reasons.cast::<u8>(), size as usize, MAX_TEXT, "reasons")?;
+        room[0] = 0;
+        let why = SCENES.hold(scene as usize)?.scene.why_silent();
+        let lines: Vec<String> = why.iter().map(ToString::to_string).collect();
+        text::copy(&lines.join("\n"), room);
+        Ok(())
+    })
+}
+
+/// Frees what the audio half no longer needs; adding and replacing do it too. `freed` (may be NULL) is how many things.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_collect(scene: *mut asp_scene, freed: *mut u32) -> i32 {
+    enter(|| {
+        let count = SCENES.hold(scene as usize)?.scene.collect();
+        if !freed.is_null() {
+            *crate::entry::out(freed, "freed")? = count as u32;
+        }
+        Ok(())
+    })
+}

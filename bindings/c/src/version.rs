@@ -1,0 +1,66 @@
+//! Version: of the library, and of the header that a program was compiled with.
+
+use crate::body::{asp_body, asp_mode};
+use crate::config::asp_config;
+use crate::entry::{array, enter};
+use crate::event::asp_event;
+use crate::files::asp_files;
+use crate::image::asp_image;
+use crate::player::{asp_player_config, asp_player_report};
+use crate::port::{asp_force, asp_point, asp_port_config};
+use crate::stats::asp_stats;
+use crate::status::{ASP_ABI_MISMATCH, Failure};
+use crate::surface::asp_surface;
+use std::mem::size_of;
+
+/// Version of the interface: a program that was compiled with another one is refused by `asp_check_abi`.
+pub const ASP_ABI: u32 = 1;
+
+/// How many structs the header has, in the order in which `asp_check_abi` takes their sizes.
+pub const ASP_STRUCTS: u32 = 13;
+
+const STRUCTS: [(&str, usize); ASP_STRUCTS as usize] = [
+    ("asp_config", size_of::<asp_config>()),
+    ("asp_files", size_of::<asp_files>()),
+    ("asp_image", size_of::<asp_image>()),
+    ("asp_mode", size_of::<asp_mode>()),
+    ("asp_body", size_of::<asp_body>()),
+    ("asp_surface", size_of::<asp_surface>()),
+    ("asp_event", size_of::<asp_event>()),
+    ("asp_stats", size_of::<asp_stats>()),
+    ("asp_port_config", size_of::<asp_port_config>()),
+    ("asp_point", size_of::<asp_point>()),
+    ("asp_force", size_of::<asp_force>()),
+    ("asp_player_config", size_of::<asp_player_config>()),
+    ("asp_player_report", size_of::<asp_player_report>()),
+];
+
+/// Version of the library: major · 65536 + minor · 256 + patch.
+#[unsafe(no_mangle)]
+pub extern "C" fn asp_version() -> u32 {
+    let part = |text: &str| text.parse::<u32>().unwrap_or(0);
+    part(env!("CARGO_PKG_VERSION_MAJOR")) << 16
+        | part(env!("CARGO_PKG_VERSION_MINOR")) << 8
+        | part(env!("CARGO_PKG_VERSION_PATCH"))
+}
+
+/// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`, `sizes` those of its structs in the order
+/// config, files, image, mode, body, surface, event, stats, port_config, point, force, player_config, player_report. One sentence
+/// instead of a crash where a library lies beside another one's header.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_check_abi(abi: u32, sizes: *const u32, count: u32) -> i32 {
+    enter(|| {
+        let right = "take header and library from the same release";
+        let mismatch = |what: String| Failure::new(ASP_ABI_MISMATCH, format!("asperity: {what}; {right}"));
+        if abi != ASP_ABI {
+            return Err(mismatch(format!("the header is of interface {abi}, the library of {ASP_ABI}")));
+        }
+        let sizes = array(sizes, count as usize, STRUCTS.len(), "sizes")?;
+        for (size, (name, own)) in sizes.iter().zip(STRUCTS) {
+            if *size as usize != own {
+                return Err(mismatch(format!("{name} has {size} bytes in the header, {own} in the library")));
+            }
+        }
+        Ok(())
+    })
+}

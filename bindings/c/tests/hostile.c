@@ -1,0 +1,432 @@
+/* What no program should do: null, sizes and counts that cannot be, stale ids, frees in any order, other threads. Each is answered with a
+ * status and a sentence, and what renders is silent. */
+#define _POSIX_C_SOURCE 200809L
+#include "common.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <time.h>
+
+/* A call is refused with a status, and with a sentence that holds a word. */
+#define REFUSED(call, with, word)                                                                                      \
+    do {                                                                                                               \
+        int32_t status_ = (call);                                                                                      \
+        const char *text_ = asp_last_error();                                                                          \
+        if (status_ != (with) || !strstr(text_, (word))) {                                                             \
+            fprintf(stderr, "%s:%d: %s gave %d, \"%s\"; must be %d and speak of \"%s\"\n", __FILE__, __LINE__, #call,  \
+                    (int)status_, text_, (int)(with), (word));                                                         \
+            exit(1);                                                                                                   \
+        }                                                                                                              \
+        refusals_++;                                                                                                   \
+    } while (0)
+static int refusals_;
+
+static asp_config exact(void) {
+    asp_config config;
+    asp_config_init(&config);
+    config.clock = ASP_CLOCK_EXACT;
+    return config;
+}
+
+static void build(asp_scene **scene, asp_renderer **renderer) {
+    asp_config config = exact();
+    MUST(asp_build(&config, scene, renderer) == ASP_OK);
+}
+
+static uint64_t bell(asp_scene *scene) {
+    asp_body body;
+    asp_body_init(&body);
+    body.stock = "bar", body.size_m = 0.2;
+    uint64_t id = 0;
+    MUST(asp_add_body(scene, &body, &id) == ASP_OK && id != 0);
+    return id;
+}
+
+static uint64_t plane(asp_scene *scene, uint64_t body) {
+    asp_surface surface;
+    asp_surface_init(&surface);
+    surface.width_m = surface.height_m = 0.1, surface.body = body;
+    uint64_t id = 0;
+    MUST(asp_add_surface(scene, &surface, &id) == ASP_OK && id != 0);
+    return id;
+}
+
+/* Every pointer of every call, null. */
+static void nulls(void) {
+    asp_scene *scene;
+    asp_renderer *renderer;
+    build(&scene, &renderer);
+    asp_config config = exact();
+    asp_body body;
+    asp_surface surface;
+    asp_event event;
+    asp_stats stats;
+    asp_port_config port;
+    asp_body_init(&body), asp_surface_init(&surface), asp_event_init(&event), asp_stats_init(&stats);
+    asp_port_config_init(&port);
+    asp_config_init(NULL), asp_files_init(NULL), asp_body_init(NULL), asp_surface_init(NULL), asp_event_init(NULL);
+    asp_stats_init(NULL), asp_port_config_init(NULL), asp_player_config_init(NULL), asp_player_report_init(NULL);
+    uint64_t id;
+    uint32_t number;
+    REFUSED(asp_check_abi(ASP_ABI, NULL, 3), ASP_BAD_ARGUMENT, "null");
+    REFUSED(asp_build(NULL, &scene, &renderer), ASP_BAD_ARGUMENT, "config");
+    REFUSED(asp_build(&config, NULL, &renderer), ASP_BAD_ARGUMENT, "scene");
+    REFUSED(asp_load(NULL, NULL, NULL, NULL, &scene, &renderer), ASP_BAD_ARGUMENT, "path");
+    build(&scene, &renderer);
+    REFUSED(asp_find(scene, ASP_BODY, NULL, &id), ASP_BAD_ARGUMENT, "name");
+    REFUSED(asp_find(scene, ASP_BODY, "x", NULL), ASP_BAD_ARGUMENT, "id");
+    REFUSED(asp_find(NULL, ASP_BODY, "x", &id), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_add_body(scene, NULL, &id), ASP_BAD_ARGUMENT, "body");
+    REFUSED(asp_add_body(scene, &body, NULL), ASP_BAD_ARGUMENT, "id");
+    REFUSED(asp_add_body(NULL, &body, &id), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_replace_body(scene, 1, NULL), ASP_BAD_ARGUMENT, "body");
+    REFUSED(asp_replace_body(NULL, 1, &body), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_remove_body(NULL, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_set_body_bus(NULL, 1, 0), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_set_body_gain(NULL, 1, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_add_surface(scene, NULL, &id), ASP_BAD_ARGUMENT, "surface");
+    REFUSED(asp_add_surface(scene, &surface, NULL), ASP_BAD_ARGUMENT, "id");
+    REFUSED(asp_add_surface(NULL, &surface, &id), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_replace_surface(NULL, 1, &surface), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_remove_surface(NULL, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_add_probe(scene, NULL, NULL, &id), ASP_BAD_ARGUMENT, "table");
+    REFUSED(asp_add_probe(NULL, "", NULL, &id), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_report(scene, 0, NULL, 1, sizeof event, NULL), ASP_BAD_ARGUMENT, "events");
+    REFUSED(asp_report(NULL, 0, &event, 1, sizeof event, NULL), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_read_log(scene, NULL, &event, NULL, 1, sizeof event, &number), ASP_BAD_ARGUMENT, "text");
+    REFUSED(asp_read_log(scene, "{\"t\":0,\"event\":\"end\",\"contact\":1}", &event, NULL, 1, sizeof event, &number),
+            ASP_BAD_ARGUMENT, "times_s");
+    REFUSED(asp_material(NULL, &number), ASP_BAD_ARGUMENT, "name");
+    REFUSED(asp_material("wood", NULL), ASP_BAD_ARGUMENT, "number");
+    REFUSED(asp_get_stats(scene, NULL), ASP_BAD_ARGUMENT, "stats");
+    REFUSED(asp_get_stats(NULL, &stats), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_bus_peaks(scene, NULL, 1), ASP_BAD_ARGUMENT, "peaks");
+    REFUSED(asp_why_silent(scene, NULL, 10), ASP_BAD_ARGUMENT, "reasons");
+    REFUSED(asp_collect(NULL, NULL), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_record_start(NULL), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_record_stop(NULL, NULL), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_open_port(scene, NULL, NULL), ASP_BAD_ARGUMENT, "config");
+    REFUSED(asp_open_port(scene, &port, NULL), ASP_BAD_ARGUMENT, "port");
+    REFUSED(asp_signals(NULL, NULL, NULL, NULL, NULL), ASP_BAD_HANDLE, "renderer");
+    REFUSED(asp_set_sample_rate(scene, NULL, 48000), ASP_BAD_HANDLE, "renderer");
+    REFUSED(asp_set_sample_rate(NULL, renderer, 48000), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_unity_slot(renderer, NULL), ASP_BAD_ARGUMENT, "slot");
+    REFUSED(asp_unity_slot(NULL, &number), ASP_BAD_HANDLE, "renderer");
+    REFUSED(asp_play(renderer, NULL, NULL), ASP_BAD_ARGUMENT, "player");
+    REFUSED(asp_get_player_report(NULL, NULL), ASP_BAD_HANDLE, "player");
+    REFUSED(asp_player_device(NULL, NULL, 1), ASP_BAD_ARGUMENT, "words");
+    REFUSED(asp_sink_bytes(NULL, NULL, 0), ASP_BAD_ARGUMENT, "sink");
+    REFUSED(asp_sink_picture(NULL, NULL), ASP_BAD_ARGUMENT, "sink");
+    REFUSED(asp_reset(NULL), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_set_time_scale(NULL, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_set_haptic_gain(NULL, 0, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_set_bus_gain(NULL, 0, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_set_muted(NULL, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_set_paused(NULL, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_fade_all(NULL), ASP_BAD_HANDLE, "scene");
+    asp_render(NULL, NULL, 0, NULL, 0, 64), asp_render(renderer, NULL, 1, NULL, 1, 64);
+    asp_render_interleaved(renderer, NULL, 2, 64, NULL), asp_render_interleaved(NULL, NULL, 2, 64, NULL);
+    asp_report_load(NULL, 0.5f), asp_port_levels(NULL, NULL, NULL);
+    MUST(asp_port_pcm(NULL, NULL, 5) == 0 && asp_port_points(NULL, NULL, 5) == 0 && asp_port_forces(NULL, NULL, 5) == 0);
+    MUST(asp_port_lost(NULL) == 0 && asp_player_stop(NULL, NULL) == ASP_OK && asp_port_free(NULL) == ASP_OK);
+    MUST(asp_scene_free(NULL) == ASP_OK && asp_renderer_free(NULL) == ASP_OK);
+    MUST(asp_report(scene, 0, NULL, 0, sizeof event, NULL) == ASP_OK && asp_last_error()[0] == 0);
+    MUST(asp_renderer_free(renderer) == ASP_OK && asp_scene_free(scene) == ASP_OK);
+}
+
+/* Sizes of 0, of 2^32 - 1 and of a younger header; counts without end. */
+static void sizes(void) {
+    asp_scene *scene;
+    asp_renderer *renderer;
+    build(&scene, &renderer);
+    const uint32_t wrong[] = {0, 1, 4, (uint32_t)sizeof(asp_event) - 1, (uint32_t)sizeof(asp_event) + 8, UINT32_MAX};
+    for (int i = 0; i < 6; i++) {
+        asp_config config = exact();
+        asp_body body;
+        asp_surface surface;
+        asp_event event = asp_end(1);
+        asp_stats stats;
+        asp_port_config port;
+        asp_player_config player;
+        asp_files files;
+        asp_scene *s;
+        asp_renderer *r;
+        asp_port *p;
+        asp_player *q;
+        uint64_t id;
+        asp_body_init(&body), asp_surface_init(&surface), asp_port_config_init(&port), asp_player_config_init(&player);
+        asp_files_init(&files);
+        config.struct_size = body.struct_size = surface.struct_size = port.struct_size = player.struct_size = wrong[i];
+        stats.struct_size = files.struct_size = wrong[i];
+        REFUSED(asp_build(&config, &s, &r), ASP_BAD_ARGUMENT, "struct_size");
+        REFUSED(asp_add_body(scene, &body, &id), ASP_BAD_ARGUMENT, "asp_body_init");
+        REFUSED(asp_add_surface(scene, &surface, &id), ASP_BAD_ARGUMENT, "struct_size");
+        REFUSED(asp_open_port(scene, &port, &p), ASP_BAD_ARGUMENT, "struct_size");
+        REFUSED(asp_play(renderer, &player, &q), ASP_BAD_ARGUMENT, "struct_size");
+        REFUSED(asp_get_stats(scene, &stats), ASP_BAD_ARGUMENT, "struct_size");
+        REFUSED(asp_load("x.toml", NULL, &files, NULL, &s, &r), ASP_BAD_ARGUMENT, "struct_size");
+        REFUSED(asp_report(scene, 0, &event, 1, wrong[i], NULL), ASP_BAD_ARGUMENT, "sizeof(asp_event)");
+        event.struct_size = wrong[i];
+        REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_BAD_ARGUMENT, "struct_size");
+        uint32_t bad[1] = {wrong[i]};
+        REFUSED(asp_check_abi(ASP_ABI, bad, 1), ASP_ABI_MISMATCH, "asp_config");
+    }
+    REFUSED(asp_check_abi(ASP_ABI + 1, NULL, 0), ASP_ABI_MISMATCH, "interface");
+    asp_event event = asp_end(1);
+    uint32_t taken = 7;
+    REFUSED(asp_report(scene, 0, &event, UINT32_MAX, sizeof event, &taken), ASP_BAD_ARGUMENT, "count");
+    MUST(taken == 0);
+    float sample = 3.0f, *planes[1] = {&sample};
+    asp_render(renderer, planes, UINT32_MAX, planes, UINT32_MAX, 1), asp_render(renderer, planes, 1, NULL, 0, UINT32_MAX);
+    asp_render_interleaved(renderer, &sample, UINT32_MAX, UINT32_MAX, NULL);
+    asp_render_interleaved(renderer, &sample, 1, UINT32_MAX, NULL), asp_render_interleaved(renderer, &sample, 0, 9, NULL);
+    MUST(sample == 3.0f);
+    char text[1] = {5};
+    REFUSED(asp_why_silent(scene, text, 0), ASP_BAD_ARGUMENT, "size");
+    MUST(asp_why_silent(scene, text, 1) == ASP_OK && text[0] == 0);
+    REFUSED(asp_bus_peaks(scene, &sample, UINT32_MAX), ASP_BAD_ARGUMENT, "64");
+    asp_body body;
+    asp_body_init(&body);
+    asp_mode mode = {500.0, 3.0, 1.0, 0.0};
+    uint64_t id;
+    body.modes = &mode, body.mode_count = UINT32_MAX;
+    REFUSED(asp_add_body(scene, &body, &id), ASP_BAD_ARGUMENT, "65536");
+    body.mode_count = 1, body.bus = UINT32_MAX;
+    REFUSED(asp_add_body(scene, &body, &id), ASP_UNKNOWN, "bus");
+    asp_surface surface;
+    asp_surface_init(&surface);
+    unsigned char grey[4] = {0, 255, 255, 0};
+    surface.width_m = surface.height_m = 0.1, surface.relief_m = 1e-4, surface.heights.samples = grey;
+    surface.heights.width = surface.heights.height = UINT32_MAX;
+    REFUSED(asp_add_surface(scene, &surface, &id), ASP_BAD_ARGUMENT, "heights");
+    surface.heights.width = surface.heights.height = 32768;
+    REFUSED(asp_add_surface(scene, &surface, &id), ASP_BAD_ARGUMENT, "2^26");
+    surface.heights.width = surface.heights.height = 2, surface.heights.channels = 9;
+    REFUSED(asp_add_surface(scene, &surface, &id), ASP_BAD_ARGUMENT, "channels");
+    surface.heights.channels = 1, surface.heights.stride_bytes = UINT64_MAX;
+    REFUSED(asp_add_surface(scene, &surface, &id), ASP_BAD_ARGUMENT, "stride_bytes");
+    surface.heights.stride_bytes = 0, surface.heights.format = 77;
+    REFUSED(asp_add_surface(scene, &surface, &id), ASP_BAD_ARGUMENT, "format");
+    surface.heights.format = ASP_U8, surface.wrap = 9;
+    REFUSED(asp_add_surface(scene, &surface, &id), ASP_BAD_ARGUMENT, "wrap");
+    surface.wrap = 0;
+    MUST(asp_add_surface(scene, &surface, &id) == ASP_OK);
+    MUST(asp_scene_free(scene) == ASP_OK && asp_renderer_free(renderer) == ASP_OK);
+}
+
+/* Ids of what is gone, ids that never were, numbers that nothing has; each sentence names its field. */
+static void ids_and_numbers(void) {
+    asp_scene *scene;
+    asp_renderer *renderer;
+    build(&scene, &renderer);
+    uint64_t body = bell(scene), surface = plane(scene, body), id;
+    MUST(asp_remove_surface(scene, surface) == ASP_OK && asp_remove_body(scene, body) == ASP_OK);
+    uint64_t body2 = bell(scene), surface2 = plane(scene, body2);
+    MUST(body2 != body && surface2 != surface);
+    const uint64_t gone[] = {0, body, 1, UINT64_MAX, UINT32_MAX};
+    for (int i = 0; i < 5; i++) {
+        asp_event event = asp_begin(1, gone[i] == body ? surface : gone[i], 0, 0.5, 0.5, 0.5);
+        REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_UNKNOWN, "surface");
+        event = asp_impact(gone[i], 1, 0.01, 0.005);
+        REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_UNKNOWN, "body");
+        REFUSED(asp_remove_body(scene, gone[i]), ASP_UNKNOWN, "body");
+        REFUSED(asp_set_body_gain(scene, gone[i], 1), ASP_UNKNOWN, "body");
+        REFUSED(asp_remove_surface(scene, gone[i] == body ? surface : gone[i]), ASP_UNKNOWN, "surface");
+    }
+    asp_event event = asp_begin(1, surface2, 5, 0.5, 0.5, 0.5);
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_UNKNOWN, "actuator");
+    event.actuator = -2;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_BAD_ARGUMENT, "actuator");
+    event.actuator = 0, event.probe = 12345;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_UNKNOWN, "probe");
+    event.probe = 0, event.normal_force_n = INFINITY;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "normal_force_n");
+    event.normal_force_n = 1, event.uv[0] = NAN;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "uv");
+    event.uv[0] = 0, event.kind = 9;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_BAD_ARGUMENT, "kind");
+    event.kind = ASP_BEGIN, event.depth_m = 0.001;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "depth_m");
+    event = asp_impact(body2, 1, 0.01, 0.005), event.striker = 99;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "material");
+    event.striker = ASP_MATERIAL_CUSTOM;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "young_pa");
+    REFUSED(asp_report(scene, NAN, NULL, 0, 0, NULL), ASP_BAD_ARGUMENT, "size");
+    event.striker = ASP_MATERIAL_WOOD;
+    REFUSED(asp_report(scene, NAN, &event, 1, sizeof event, NULL), ASP_REFUSED, "time_s");
+    asp_config config = exact();
+    asp_scene *s;
+    asp_renderer *r;
+    config.sample_rate_hz = 100;
+    REFUSED(asp_build(&config, &s, &r), ASP_REFUSED, "8000 to 384000");
+    config.sample_rate_hz = 0, config.haptic_channels = 65;
+    REFUSED(asp_build(&config, &s, &r), ASP_REFUSED, "haptic_channels");
+    config.haptic_channels = 0, config.more = "sampel = 1";
+    REFUSED(asp_build(&config, &s, &r), ASP_REFUSED, "sampel");
+    config.more = "actuators = [", config.kernel = 0;
+    REFUSED(asp_build(&config, &s, &r), ASP_REFUSED, "config");
+    config.more = "\xff\xfe";
+    REFUSED(asp_build(&config, &s, &r), ASP_BAD_ARGUMENT, "UTF-8");
+    config.more = NULL, config.clock = 7;
+    REFUSED(asp_build(&config, &s, &r), ASP_REFUSED, "clock");
+    config.clock = 0, config.kernel = 7;
+    REFUSED(asp_build(&config, &s, &r), ASP_REFUSED, "kernel");
+    REFUSED(asp_load("nowhere.toml", NULL, NULL, NULL, &s, &r), ASP_FILE, "nowhere.toml: no such file");
+    REFUSED(asp_load("here.toml", "[[body]]\n", NULL, NULL, &s, &r), ASP_FILE, "name");
+    REFUSED(asp_find(scene, ASP_BODY, "gong", &id), ASP_UNKNOWN, "gong");
+    REFUSED(asp_find(scene, 44, "gong", &id), ASP_BAD_ARGUMENT, "kind");
+    REFUSED(asp_set_haptic_gain(scene, 70000, 1), ASP_UNKNOWN, "channel");
+    REFUSED(asp_set_haptic_gain(scene, 0, NAN), ASP_REFUSED, "gain");
+    REFUSED(asp_set_bus_gain(scene, 5, 1), ASP_UNKNOWN, "bus");
+    REFUSED(asp_set_time_scale(scene, -1), ASP_REFUSED, "time_scale");
+    REFUSED(asp_set_sample_rate(scene, renderer, NAN), ASP_REFUSED, "sample_rate_hz");
+    asp_body wrong;
+    asp_body_init(&wrong);
+    wrong.stock = "cube", wrong.size_m = 1;
+    REFUSED(asp_add_body(scene, &wrong, &id), ASP_REFUSED, "cube");
+    wrong.stock = NULL, wrong.table = "bus = \"left\"";
+    REFUSED(asp_add_body(scene, &wrong, &id), ASP_REFUSED, "bus");
+    wrong.table = NULL, wrong.gain = NAN;
+    REFUSED(asp_add_body(scene, &wrong, &id), ASP_REFUSED, "gain");
+    wrong.gain = 1, wrong.modes_json = "{";
+    REFUSED(asp_add_body(scene, &wrong, &id), ASP_REFUSED, "modes");
+    asp_surface flat;
+    asp_surface_init(&flat);
+    REFUSED(asp_add_surface(scene, &flat, &id), ASP_REFUSED, "width_m");
+    flat.width_m = flat.height_m = 0.1, flat.body = body;
+    REFUSED(asp_add_surface(scene, &flat, &id), ASP_UNKNOWN, "body");
+    asp_port_config wanted;
+    asp_port *port;
+    asp_port_config_init(&wanted);
+    wanted.index = 3;
+    REFUSED(asp_open_port(scene, &wanted, &port), ASP_UNKNOWN, "actuator");
+    wanted.index = 0, wanted.holds_s = 1e9;
+    REFUSED(asp_open_port(scene, &wanted, &port), ASP_REFUSED, "holds_s");
+    wanted.kind = 9;
+    REFUSED(asp_open_port(scene, &wanted, &port), ASP_BAD_ARGUMENT, "kind");
+    MUST(asp_renderer_free(renderer) == ASP_OK && asp_scene_free(scene) == ASP_OK);
+}
+
+/* Handles of another kind, freed twice, freed in any order. */
+static void handles(void) {
+    for (int order = 0; order < 6; order++) {
+        asp_scene *scene;
+        asp_renderer *renderer;
+        asp_port *port;
+        build(&scene, &renderer);
+        asp_port_config wanted;
+        asp_port_config_init(&wanted);
+        MUST(asp_open_port(scene, &wanted, &port) == ASP_OK);
+        float out[128];
+        asp_render_interleaved(renderer, out, 2, 64, NULL);
+        static const char orders[6][4] = {"srp", "spr", "rsp", "rps", "psr", "prs"};
+        for (int i = 0; i < 3; i++) {
+            switch (orders[order][i]) {
+            case 's':
+                MUST(asp_scene_free(scene) == ASP_OK);
+                REFUSED(asp_scene_free(scene), ASP_BAD_HANDLE, "freed");
+                REFUSED(asp_reset(scene), ASP_BAD_HANDLE, "freed");
+                break;
+            case 'r':
+                MUST(asp_renderer_free(renderer) == ASP_OK);
+                REFUSED(asp_renderer_free(renderer), ASP_BAD_HANDLE, "freed");
+                out[0] = 1, asp_render_interleaved(renderer, out, 2, 64, NULL);
+                MUST(out[0] == 0);
+                break;
+            default:
+                MUST(asp_port_free(port) == ASP_OK);
+                REFUSED(asp_port_free(port), ASP_BAD_HANDLE, "freed");
+                MUST(asp_port_pcm(port, out, 128) == 0);
+            }
+            asp_render_interleaved(renderer, out, 2, 64, NULL);
+            asp_collect(scene, NULL);
+        }
+    }
+    asp_scene *scene;
+    asp_renderer *renderer;
+    build(&scene, &renderer);
+    long wild = 0;
+    REFUSED(asp_scene_free((asp_scene *)renderer), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_renderer_free((asp_renderer *)scene), ASP_BAD_HANDLE, "renderer");
+    REFUSED(asp_reset((asp_scene *)&wild), ASP_BAD_HANDLE, "scene");
+    asp_player_config player;
+    asp_player_config_init(&player);
+    asp_player *playing, *again;
+    player.silent = 1, player.block_frames = 70000;
+    REFUSED(asp_play(renderer, &player, &playing), ASP_BAD_ARGUMENT, "block_frames");
+    player.block_frames = 64, player.channels = "video=1";
+    REFUSED(asp_play(renderer, &player, &playing), ASP_REFUSED, "channels");
+    player.channels = NULL;
+    MUST(asp_play(renderer, &player, &playing) == ASP_OK);
+    REFUSED(asp_play(renderer, &player, &again), ASP_BAD_HANDLE, "renderer");
+    REFUSED(asp_renderer_free(renderer), ASP_BAD_HANDLE, "renderer");
+    struct timespec wait = {0, 60000000};
+    nanosleep(&wait, NULL);
+    MUST(asp_scene_free(scene) == ASP_OK);
+    asp_player_report report;
+    asp_player_report_init(&report);
+    MUST(asp_player_stop(playing, &report) == ASP_OK && report.callbacks > 0 && report.silent == 1);
+    REFUSED(asp_player_stop(playing, &report), ASP_BAD_HANDLE, "player");
+}
+
+static asp_scene *shared_scene;
+static asp_renderer *shared_renderer;
+static atomic_int odd, busy;
+
+static void *everything(void *seed) {
+    uint32_t random = (uint32_t)(size_t)seed;
+    float out[2 * 64];
+    for (int i = 0; i < 400; i++) {
+        random = random * 1664525u + 1013904223u;
+        int32_t status = ASP_OK;
+        uint64_t id;
+        asp_body body;
+        asp_body_init(&body);
+        switch (random >> 28) {
+        case 0:
+            status = asp_add_body(shared_scene, &body, &id);
+            break;
+        case 1:
+            status = asp_reset(shared_scene);
+            break;
+        case 2:
+            status = asp_collect(shared_scene, NULL);
+            break;
+        default:
+            asp_render_interleaved(shared_renderer, out, 2, 64, NULL);
+        }
+        if (status == ASP_BUSY) {
+            MUST(strstr(asp_last_error(), "one thread at a time"));
+            atomic_fetch_add(&busy, 1);
+        } else if (status != ASP_OK && status != ASP_FULL && status != ASP_BAD_HANDLE) {
+            atomic_fetch_add(&odd, 1);
+        }
+    }
+    return NULL;
+}
+
+/* Many threads with the same handles, which are freed under them. */
+static void threads(void) {
+    for (int round = 0; round < 10; round++) {
+        build(&shared_scene, &shared_renderer);
+        pthread_t all[6];
+        for (size_t i = 0; i < 6; i++)
+            MUST(pthread_create(&all[i], NULL, everything, (void *)(i + 1 + 6 * (size_t)round)) == 0);
+        if (round % 2) {
+            MUST(asp_scene_free(shared_scene) == ASP_OK);
+            MUST(asp_renderer_free(shared_renderer) == ASP_OK);
+        }
+        for (int i = 0; i < 6; i++)
+            MUST(pthread_join(all[i], NULL) == 0);
+        if (round % 2 == 0)
+            MUST(asp_renderer_free(shared_renderer) == ASP_OK && asp_scene_free(shared_scene) == ASP_OK);
+    }
+    MUST(atomic_load(&odd) == 0);
+}
+
+int main(void) {
+    nulls(), sizes(), ids_and_numbers(), handles(), threads();
+    printf("hostile: %d refusals, each with a status and a sentence; %d calls met a busy handle\n", refusals_, atomic_load(&busy));
+    return 0;
+}

@@ -1,0 +1,52 @@
+// A body that rings: what collisions with its collider sound like, and what a finger on it feels.
+using UnityEngine;
+
+namespace Asperity
+{
+    public sealed class AsperityBody : MonoBehaviour
+    {
+        [Tooltip("bar, tube, ring, plate, disc, bowl or block; empty where ModesJson is given")]
+        public string Stock = "plate";
+        [Tooltip("Longest side or diameter, m")]
+        public float SizeM = 0.3f;
+        public Material Made = Material.Wood;
+        [Tooltip("A .modes.json of a recording or a mesh, as a text asset")]
+        public TextAsset ModesJson;
+        [Tooltip("Keys of a scene file's [[surface]], TOML, for what it feels like")]
+        [TextArea] public string SurfaceTable = "";
+        [Tooltip("What texture coordinates 0 to 1 span, m")]
+        public float UvSizeM = 1f;
+        [Tooltip("Weaker collisions are not reported, N s")]
+        public float LeastImpulseNS = 1e-4f;
+
+        public ulong Body { get; private set; }
+        public ulong Surface { get; private set; }
+
+        void Start()
+        {
+            var world = AsperityWorld.Current;
+            if (world == null) { Debug.LogWarning("Asperity: no AsperityWorld in this scene; add one"); return; }
+            var body = new Body { SizeM = SizeM, Material = Made };
+            if (ModesJson != null) body.ModesJson = ModesJson.text; else body.Stock = Stock;
+            Body = world.Scene.Add(body);
+            Surface = world.Scene.Add(new Surface { WidthM = UvSizeM, HeightM = UvSizeM, Body = Body, Table = SurfaceTable });
+        }
+
+        void OnCollisionEnter(Collision collision)
+        {
+            float impulse = collision.impulse.magnitude;
+            if (AsperityWorld.Current == null || Body == 0 || impulse < LeastImpulseNS) return;
+            // The approach along the normal; a resting contact has none.
+            float speed = Mathf.Abs(Vector3.Dot(collision.relativeVelocity, collision.GetContact(0).normal));
+            if (speed > 0f) AsperityWorld.Current.Report(Event.Collision(Body, impulse, speed, 0.5));
+        }
+
+        void OnDestroy()
+        {
+            var world = AsperityWorld.Current;
+            if (world == null || world.Scene == null || Body == 0) return;
+            world.Scene.RemoveSurface(Surface);
+            world.Scene.RemoveBody(Body);
+        }
+    }
+}

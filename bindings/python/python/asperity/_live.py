@@ -1,0 +1,158 @@
+"""A scene that runs now: reports go in, blocks come out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from asperity import _native, contacts as _contacts
+from asperity._scene import SceneLike, sources
+
+
+class Renderer:
+    """The half of a callback: every call gives the samples that follow those before. Made by `Scene`."""
+
+    def __init__(self, native: _native.LiveRenderer) -> None:
+        self._native = native
+        # Bound once: a callback makes nothing new.
+        self._render_into = native.render_into
+
+    @property
+    def sr(self) -> float:
+        """Samples a second."""
+        return self._native.sr
+
+    @property
+    def haptic_channels(self) -> int:
+        """How many haptic channels there are."""
+        return self._native.haptic_channels
+
+    @property
+    def audio_buses(self) -> int:
+        """How many audio buses there are."""
+        return self._native.audio_buses
+
+    @property
+    def latency_samples(self) -> int:
+        """By how many samples every output lags behind the stamps of its events, beside the path's own filter."""
+        return self._native.latency_samples
+
+    @property
+    def position(self) -> int:
+        """Index of the next sample."""
+        return self._native.position()
+
+    def render(self, n: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
+        """The next `n` samples: audio (n,) or (buses, n), and haptic (channels, n), float32."""
+        audio, haptic = self._native.render(n)
+        return (audio[0] if len(audio) == 1 else audio), haptic
+
+    def channels(self, text: str) -> int:
+        """Says what goes where in `render_into`: "audio=0,1 haptic=2,3" (the default with as many haptics as there are); returns how
+        many channels a device must have. Raises ValueError where two signals share a channel."""
+        return self._native.set_channels(text)
+
+    def render_into(self, out: npt.NDArray[np.float32]) -> None:
+        """Fills float32 (frames, device channels), C-contiguous, in place; channels without a signal are silent.
+
+        Makes no Python object. Up to 1024 frames it keeps the GIL, because letting it go and taking it again may wait for longer than
+        the block lasts. Raises TypeError for another type, ValueError for another layout.
+        """
+        self._render_into(out)
+
+    def callback(self, outdata: npt.NDArray[np.float32], _frames: int, _time: object, _status: object) -> None:
+        """What `sounddevice.OutputStream(callback=...)` takes."""
+        self._render_into(outdata)
+
+
+class Scene:
+    """A scene that takes reports while `renderer` runs.
+
+    scene: as in `asperity.render`. sr: the device's rate, Hz. clock: "live" follows the game through pauses and late reports; "exact"
+    puts time t at sample t * sr, as an offline render does. A thread each for the scene and the renderer.
+
+    Raises ValueError or FileNotFoundError in the engine's words.
+    """
+
+    def __init__(
+        self,
+        scene: SceneLike,
+        *,
+        sr: float | None = None,
+        seed: int | None = None,
+        kernel: str | None = None,
+        integrator: str | None = None,
+        clock: str = "live",
+    ) -> None:
+        if clock not in ("live", "exact"):
+            raise ValueError(f'clock: "{clock}" is unknown; must be live or exact')
+        path, files = sources(scene)
+        self._native, half, self.full_scale, self.gain = _native.open(
+            path, files, sr=sr, seed=seed, kernel=kernel, integrator=integrator, live=clock == "live"
+        )
+        self.renderer = Renderer(half)
+
+    def report(self, t: float, event: Mapping[str, Any] | Sequence[Mapping[str, Any]]) -> None:
+        """Reports an event, or several, at game time `t` in seconds: dictionaries with "event" and the keys of the contact log.
+
+        Raises ValueError where the engine refuses one, in its words; those before it were taken.
+        """
+        several = [event] if isinstance(event, Mapping) else event
+        self._native.report(_contacts.lines({"t": t, **one} for one in several))
+
+    def report_all(self, contacts: _contacts.Contacts) -> None:
+        """Reports every row of a structured array at its own t."""
+        self._native.report(_contacts.to_jsonl(contacts))
+
+    def begin(
+        self, t: float, contact: int, surface: str, uv: Sequence[float], normal_force_n: float, actuator: int | None = 0, **keys: Any
+    ) -> None:
+        """A contact lands. Further keys: velocity_m_s, closing_m_s, probe, holder, gain, importance, at_m, depth_m."""
+        felt = {} if actuator is None else {"actuator": actuator}
+        told = {"contact": contact, "surface": surface, "uv": list(uv), "normal_force_n": normal_force_n}
+        self.report(t, {"event": "begin", **told, **felt, **keys})
+
+    def move(self, t: float, contact: int, uv: Sequence[float], normal_force_n: float, **keys: Any) -> None:
+        """A contact goes on. Further keys: velocity_m_s, gain, importance, at_m, depth_m."""
+        self.report(t, {"event": "move", "contact": contact, "uv": list(uv), "normal_force_n": normal_force_n, **keys})
+
+    def end(self, t: float, contact: int) -> None:
+        """A contact lifts off."""
+        self.report(t, {"event": "end", "contact": contact})
+
+    def impact(self, t: float, body: str, speed_m_s: float, mass_kg: float, radius_m: float, striker: str = "steel", **keys: Any) -> None:
+        """A rigid striker hits a body. Further keys: restitution, position, at_m, direction, other, holder, actuator, gain."""
+        told = {"body": body, "speed_m_s": speed_m_s, "mass_kg": mass_kg, "radius_m": radius_m, "striker": striker}
+        self.report(t, {"event": "impact", **told, **keys})
+
+    @property
+    def stats(self) -> dict[str, Any]:
+        """What the engine did so far."""
+        stats: dict[str, Any] = json.loads(self._native.stats())
+        return stats
+
+    @property
+    def surfaces(self) -> list[str]:
+        """Names of the surfaces."""
+        return self._native.names()[0]
+
+    @property
+    def bodies(self) -> list[str]:
+        """Names of the bodies."""
+        return self._native.names()[1]
+
+    def why_silent(self) -> list[str]:
+        """What speaks against anything being heard or felt, the likeliest first; empty when nothing does."""
+        return self._native.why_silent()
+
+    def reset(self) -> None:
+        """Game time begins anew."""
+        self._native.reset()
+
+    def mute(self, muted: bool = True) -> None:
+        """Everything fades, or comes back."""
+        self._native.set_muted(muted)

@@ -1,0 +1,247 @@
+"""Surfaces, contacts, and what is refused."""
+
+import json
+import warnings
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+
+def rms(x):
+    return float(np.sqrt(np.mean(np.square(x, dtype=np.float64))))
+
+
+def test_rougher_ground_is_felt_stronger_with_levels_that_are_written(heights_m):
+    actuators = [{"full_scale": 1e-4}]
+    felt = [
+        rms(asp.stroke(asp.Surface(k * heights_m, 0.14, micro_relief_m=0.0), duration=0.4, actuators=actuators).haptic)
+        for k in (0.1, 0.2)
+    ]
+    assert 1.8 < felt[1] / felt[0] < 2.2
+
+
+def test_a_grating_is_felt_at_speed_over_wavelength():
+    # 2 mm at 0.1 m/s: 50 Hz.
+    columns = np.arange(1024) * (0.128 / 1024)
+    heights_m = np.tile(2e-5 * np.sin(2 * np.pi * columns / 0.002), (8, 1))
+    surface = asp.Surface(heights_m, (0.128, 0.02), micro_relief_m=0.0)
+    take = asp.stroke(surface, speed=0.1, force=0.5, duration=1.0, tail_s=0.0, sr=8000)
+    spectrum = np.abs(np.fft.rfft(take.haptic[0, 2000:8000] * np.hanning(6000)))
+    assert abs(np.argmax(spectrum) * 8000 / 6000 - 50.0) < 1.5
+
+
+def test_every_source_sounds_and_is_felt(heights_m):
+    body = asp.Body.stock("plate", 0.14, "steel")
+    y, x = np.mgrid[:32, :32]
+    cell = 1e-4 * np.exp(-((x - 16) ** 2 + (y - 16) ** 2) / 20)
+    for surface in (
+        asp.Surface(heights_m, 0.14),
+        asp.Solid("granite"),
+        asp.Brownian(0.5, 1e-4),
+        asp.Lattice(cell, (0.004, 0.0), (0.0, 0.004)),
+    ):
+        take = asp.stroke(surface.on(body), duration=0.5)
+        assert rms(take.audio) > 1e-4 and rms(take.haptic) > 1e-4, surface
+        assert take.audio.dtype == take.haptic.dtype == np.float32
+    sand = asp.Sand(parameters={"cells": 128, "depth_m": 0.02})
+    take = asp.stroke(sand, duration=0.5, force=1.0)
+    assert rms(take.haptic) > 1e-5
+    bed = take.sand["surface"]
+    assert bed.shape == (128, 128) and 1e-4 < np.ptp(bed) < 0.05 and abs(bed.mean() - 0.02) < 2e-3
+
+
+@pytest.mark.filterwarnings("ignore:nothing is heard")
+def test_rows_of_an_array_run_from_top_to_bottom():
+    # Flat above, rough below: v = 0.25 is felt less than v = 0.75.
+    heights_m = np.zeros((128, 128))
+    heights_m[64:] = 1e-4 * np.random.default_rng(3).random((64, 128))
+    surface = asp.Surface(heights_m, 0.14, micro_relief_m=0.0)
+    high, low = (rms(asp.stroke(surface, start=(0.1, v), duration=0.4, actuators=[{"full_scale": 1e-4}]).haptic) for v in (0.25, 0.75))
+    assert low > 20 * high
+
+
+def test_one_number_is_a_width_and_texels_stay_square():
+    assert asp.Surface(np.zeros((50, 100)), 0.2).extent == (0.2, 0.1)
+
+
+def test_several_buses_and_actuators_have_an_axis(heights_m):
+    bodies = [asp.Body.stock("plate", 0.1, "steel", name=name) for name in ("left", "right")]
+    bodies = [asp.Body(None, b.material, b.name, {**b.keys, "bus": b.name}) for b in bodies]
+    scene = asp.SceneFile(
+        [asp.Surface(heights_m, 0.1, name="a").on(bodies[0]), asp.Surface(heights_m, 0.1, name="b").on(bodies[1])],
+        actuators=[{"output": "displacement"}, {"output": "acceleration"}],
+        audio=[{"name": "left"}, {"name": "right"}],
+        probe="stylus",
+    )
+    rows = asp.contacts.stroke(duration=0.3, extent=(0.1, 0.075), surface="a", actuator=1)
+    take = asp.render(scene, rows)
+    assert take.audio.shape[0] == 2 and take.haptic.shape[0] == 2
+    assert rms(take.audio[0]) > 1e-4 and rms(take.audio[1]) == 0.0
+    assert rms(take.haptic[1]) > 1e-4 and rms(take.haptic[0]) == 0.0
+    assert take.frames("both").shape == (take.haptic.shape[1], 4)
+    assert take.frames().flags.c_contiguous
+
+
+def test_contacts_come_back_from_a_log_as_they_were(tmp_path):
+    rows = asp.contacts.empty(4)
+    rows["t"] = [0.0, 1 / 3, 0.5, 0.7]
+    rows["event"] = ["begin", "move", "impact", "end"]
+    rows["contact"] = 2**63
+    rows["uv"][:2], rows["normal_force_n"][:2] = [[0.1, 0.2], [0.3, 0.1 + 0.2]], [0.5, 1 / 7]
+    rows["surface"][0], rows["actuator"][0], rows["body"][2] = "plate", 0, "tile"
+    for key, value in {"speed_m_s": 0.5, "mass_kg": 0.01, "radius_m": 0.005, "restitution": 0.7}.items():
+        rows[key][2] = value
+    rows["striker"][2] = "steel"
+    rows["contact"][2] = 0
+    asp.contacts.save(tmp_path / "log.jsonl", rows)
+    back = asp.contacts.load(tmp_path / "log.jsonl")
+    assert back.dtype == rows.dtype
+    for name in rows.dtype.names:
+        np.testing.assert_array_equal(back[name], rows[name], err_msg=name)
+
+
+def test_dictionaries_and_arrays_and_files_render_alike(heights_m, tmp_path):
+    surface = asp.Surface(heights_m, 0.14)
+    rows = asp.contacts.stroke(duration=0.2, extent=surface.extent)
+    asp.contacts.save(tmp_path / "log.jsonl", rows)
+    takes = [asp.render(surface, contacts) for contacts in (rows, asp.contacts.to_events(rows), tmp_path / "log.jsonl")]
+    assert len({take.haptic.tobytes() for take in takes}) == 1
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_greys_are_never_taken_for_metres(dtype):
+    greys = np.arange(64, dtype=dtype).reshape(8, 8)
+    with pytest.raises(ValueError, match="relief_m: is missing"):
+        asp.Surface(greys, 0.1)
+    with pytest.raises(ValueError, match="relief_m: stands beside heights in metres"):
+        asp.Surface(greys.astype(float), 0.1, relief_m=1e-3)
+    with pytest.raises(ValueError, match="must be float"):
+        asp.Surface(greys.astype(np.int64), 0.1, relief_m=1e-3)
+
+
+def refusals(heights_m, tmp_path):
+    """What is wrong, and a piece of the sentence that says so."""
+    surface = asp.Surface(heights_m, 0.14)
+    nan = heights_m.copy()
+    nan[3, 5] = np.nan
+    (tmp_path / "bad.toml").write_text("[[surface]]\nname = 3\n")
+    (tmp_path / "log.jsonl").write_text('{"t":0,"event":"begin","contakt":1}\n')
+    rows = asp.contacts.stroke(duration=0.1, extent=(0.1, 0.1))
+    return [
+        (lambda: asp.Surface(nan, 0.14), "heights: row 3, column 5 is nan"),
+        (lambda: asp.Surface(heights_m[0], 0.14), "must be (rows, columns)"),
+        (lambda: asp.stroke(asp.Surface(heights_m, 0.14, gloss=3)), "gloss"),
+        (lambda: asp.stroke(asp.Surface(heights_m, -0.14)), "width_m"),
+        (lambda: asp.stroke(asp.Surface(1e3 + 1e3 * heights_m, 0.14)), "scene.toml"),
+        (lambda: asp.stroke(asp.Surface(heights_m, float("nan"))), "surface.width_m: is not finite"),
+        (lambda: asp.stroke(asp.Solid("cheese")), '"cheese" is unknown; must be one of'),
+        (lambda: asp.stroke(surface, kernel="abacus"), "must be one of: portable"),
+        (lambda: asp.stroke(surface, sr=10), "sample_rate_hz"),
+        (lambda: asp.stroke(surface, duration=-1), "duration: -1 is refused"),
+        (lambda: asp.stroke(surface, probe="nose"), '"nose" is unknown'),
+        (lambda: asp.render(surface), "contacts: is missing"),
+        (lambda: asp.render(tmp_path / "bad.toml"), "name"),
+        (lambda: asp.render(surface, tmp_path / "log.jsonl"), "log.jsonl:1: contakt: unknown key"),
+        (lambda: asp.render(surface, [{"t": 0.0, "event": "move", "contact": 1, "uv": [np.inf, 0]}]), "event 1: uv: is not finite"),
+        (lambda: asp.render(surface, asp.contacts.stroke(extent=(1, 1), actuator=4)), "actuator 4"),
+        (lambda: asp.render(surface, asp.contacts.stroke(extent=(1, 1), surface="floor")), '"floor" is unknown; must be one of: surface'),
+        (lambda: asp.render(surface, rows, block=0), "block: 0 is refused"),
+        (lambda: asp.render(surface, rows, force=1e9), "force_rate"),
+        (lambda: asp.fit([0.0] * 1000, 44_100), "array"),
+        (lambda: asp.fit(np.ones(3), 44_100), "array"),
+        (lambda: asp.fit(np.ones(1000)), "sr: is missing"),
+        (lambda: asp.haptics.reduce([np.nan] * 100, 8000), "finite"),
+        (lambda: asp.texture.analyze(np.zeros((8, 8))), "64"),
+    ]
+
+
+def test_what_is_refused_is_told_in_one_sentence_with_what_would_be_right(heights_m, tmp_path):
+    for act, piece in refusals(heights_m, tmp_path):
+        with pytest.raises(ValueError) as refused:
+            act()
+        text = str(refused.value)
+        assert piece in text and "\n" not in text and len(text) > 20, text
+
+
+def test_a_missing_file_is_a_file_not_found_error(heights_m, tmp_path):
+    (tmp_path / "scene.toml").write_text('contacts = "gone.jsonl"\n[[body]]\nname = "b"\nmodes = "gone.modes.json"\n')
+    for act in (
+        lambda: asp.render(tmp_path / "nothing.toml"),
+        lambda: asp.render(tmp_path / "scene.toml"),
+        lambda: asp.stroke(asp.Surface(tmp_path / "gone.png", 0.1, relief_m=1e-3)),
+        lambda: asp.stroke(asp.Solid("granite").on(asp.Body(tmp_path / "gone.modes.json"))),
+        lambda: asp.render(asp.Solid("granite"), tmp_path / "gone.jsonl"),
+        lambda: asp.fit(tmp_path / "gone.wav"),
+        lambda: asp.texture.analyze(tmp_path / "gone.png"),
+        lambda: asp.haptics.reduce(np.zeros(100), 8000, device="gone.toml"),
+    ):
+        with pytest.raises(FileNotFoundError, match="gone|nothing"):
+            act()
+
+
+def test_refused_events_and_silence_are_warned_of(heights_m):
+    surface = asp.Surface(heights_m, 0.14)
+    rows = asp.contacts.stroke(duration=0.2, extent=surface.extent)
+    rows["normal_force_n"][3] = 1e9
+    with pytest.warns(asp.TouchWarning, match="1 of 13 events were refused, the first at t = 0.05 s: normal_force_n"):
+        asp.render(surface, rows)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        asp.render(surface, [{"t": 0.1, "event": "end", "contact": 1}])
+    assert any("nothing is heard or felt" in str(w.message) for w in told)
+
+
+def test_a_take_shows_itself_with_a_player_and_its_waves(heights_m):
+    take = asp.stroke(asp.Surface(heights_m, 0.14).on(asp.Body.stock("bar", 0.2, "steel")), duration=0.2)
+    html = take._repr_html_()
+    assert html.count("<polygon") == 2 and "data:audio/wav;base64,UklGR" in html
+    frequency, time, level = take.spectrogram("haptic", n_fft=512)
+    assert level.shape == (len(frequency), len(time)) and frequency[-1] == take.sr / 2
+    assert json.loads(json.dumps(take.stats))["refused"] == 0
+
+
+def test_a_full_scale_sine_has_0_db_in_the_spectrogram():
+    sine = np.sin(2 * np.pi * 1000 * np.arange(16_000) / 16_000).astype(np.float32)
+    take = asp.Take(sine, sine[None], 16_000.0, {})
+    frequency, _, level = take.spectrogram(n_fft=1600)
+    assert abs(level[:, 3].max()) < 0.05 and frequency[np.argmax(level[:, 3])] == 1000
+
+
+def test_a_fit_of_two_known_modes_finds_them_and_rings_as_a_body():
+    rate = 44_100
+    t = np.arange(rate) / rate
+    known = [(440.0, 6.0, 0.4), (1234.5, 12.0, 0.3)]
+    y = sum(a * np.exp(-d * t) * np.sin(2 * np.pi * f * t) for f, d, a in known)
+    y = np.concatenate([np.zeros(2000), y]) + 1e-5 * np.random.default_rng(1).standard_normal(rate + 2000)
+    fit = asp.fit(y, rate, impulse=0.02)
+    for f, d, a in known:
+        mode = fit.modes[np.argmin(np.abs(fit.modes["frequency_hz"] - f))]
+        assert abs(mode["frequency_hz"] - f) < 0.01 and abs(mode["decay_per_s"] - d) < 0.05 and abs(mode["amplitude"] - a) < 0.01
+    both = asp.fit(np.stack([0.1 * y, y]), rate, impulse=0.02)
+    assert np.array_equal(both.modes, fit.modes)
+    event = {"t": 0.0, "event": "impact", "body": "body", "speed_m_s": 0.5, "mass_kg": 0.01, "radius_m": 0.005, "striker": "steel"}
+    scene = asp.SceneFile(asp.Solid("granite"), bodies=[fit.body()])
+    take = asp.render(scene, [event])
+    spectrum = np.abs(np.fft.rfft(take.audio))
+    assert abs(np.argmax(spectrum) * take.sr / len(take.audio) - 440.0) < 2.0
+
+
+def test_a_normal_map_of_a_known_relief_gives_its_heights():
+    y, x = np.mgrid[:128, :128]
+    heights = 2.0 * np.sin(2 * np.pi * x / 32) * np.cos(2 * np.pi * y / 64)
+    dx, dy = np.gradient(heights, axis=1), np.gradient(heights, axis=0)
+    normal = np.stack([-dx, dy, np.ones_like(dx)], axis=-1)
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    found, told = asp.texture.from_normals(np.round(65_535 * (0.5 + 0.5 * normal)).astype(np.uint16), 1e-3, green="opengl")
+    error = found - found.mean() - 1e-3 * (heights - heights.mean())
+    assert rms(error) < 0.05 * rms(1e-3 * heights) and told["green"] == "opengl"
+
+
+def test_a_metamer_comes_nearer_to_the_feel_than_it_was():
+    rng = np.random.default_rng(5)
+    look, feel = rng.random((128, 128)), np.cumsum(rng.standard_normal((128, 128)), axis=0)
+    image, told = asp.texture.metamer(look, feel, iterations=10)
+    assert image.shape == look.shape and told["mean_after"] < 0.3 * told["mean_before"]
+    assert feel.min() - 1e-9 <= image.min() and image.max() <= feel.max() + 1e-9

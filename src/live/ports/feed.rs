@@ -1,0 +1,30 @@
+//! Feed: which signal of the engine a port listens to.
+
+use crate::link::outlet::PortSetup;
+use crate::model::error::AddError;
+use crate::model::event::Actuator;
+
+/// Which signal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Feed {
+    /// What drives an actuator.
+    Haptic(Actuator),
+    /// What a bus sounds like.
+    Bus(usize),
+}
+
+impl Feed {
+    /// # Errors
+    /// When the engine has no such signal.
+    pub(super) fn check(self, setup: &PortSetup<'_>) -> Result<(), AddError> {
+        match self {
+            Self::Haptic(Actuator(channel)) if usize::from(channel) >= setup.haptic_channels => {
+                Err(AddError::Unknown("actuator"))
+            }
+            Self::Bus(bus) if bus >= setup.audio_buses => {
+                Err(AddError::UnknownBus { bus, buses: setup.audio_buses })
+            }
+            Self::Haptic(_) | Self::Bus(_) => Ok(()),
+        }
+    }
+}

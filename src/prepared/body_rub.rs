@@ -1,0 +1,278 @@
+//! A rubbed body: one contact that sticks and slips on it, coupled with its modal bank in every sample (`dsp::stick_slip`).
+//!
+//! A second bank of the same modes, which sounds as the speed of the rubbed place, is run on the states that the body's own bank has at the
+//! beginning of a cell of the absolute sample grid; from its speeds follow the forces, which the body's bank then hears as it
+//! hears any other contact. Speeds are designed for the place a few groups a cell, so that no cell has much to do: a contact that
+//! begins rubs after [`SETTLE_CELLS`] cells at most, and one that slides is followed as fast.
+
+use crate::model::strike_field::StrikePlace;
+use crate::prepared::bank::{Bank, Owner};
+use crate::prepared::body::Spot;
+use crate::prepared::body_field::BodyField;
+use crate::prepared::holding::HeldModes;
+use crate::prepared::slider::{self, Slider};
+use asperity_dsp::DesignError;
+use asperity_dsp::modal_bank::{
+    GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, MAX_INPUTS, ModalBank, ModeGroup, design_group,
+};
+use asperity_dsp::mode::Mode;
+use asperity_dsp::simd::Level;
+use asperity_dsp::stick_slip::{Answer, CELL, Coupled, Friction, Sweep, place_speed};
+use asperity_texture::height_field::MAX_BLOCK;
+
+const _: () = assert!(CELL == MAX_BLOCK, "a stretch lies within one cell");
+
+/// Cells within which all groups are designed for another place.
+const SETTLE_CELLS: usize = 8;
+/// A gain nearer than this to the one that a group was designed for is the same.
+const SAME: f32 = 1e-4;
+/// The speed's modes hear the taps of a force and undo them themselves.
+const SPEED: GroupOptions = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
+/// Nothing rubs.
+const STILL: Sweep = Sweep { sweep_m_s: 0.0, normal_force_n: 0.0, other_n_s: 0.0 };
+
+/// What a contact rubs with during a stretch.
+pub(crate) struct RubAsked<'a> {
+    pub(crate) owner: Owner,
+    /// Where, and along what.
+    pub(crate) spot: Spot,
+    pub(crate) friction: Friction,
+    pub(crate) sweep_m_s: &'a [f64],
+    pub(crate) normal_force_n: &'a [f64],
+}
+
+/// How far it has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// Nobody rubs.
+    Idle,
+    /// The speeds are being designed.
+    Settling,
+    Rubs,
+}
+
+/// The rubbed place of a body.
+pub(crate) struct BodyRub {
+    /// As they are at present, group by group.
+    modes: Box<[HeldModes]>,
+    /// Motion of each mode where its gain is 1, kg^−½.
+    unit_per_sqrt_kg: Box<[f64]>,
+    /// Gains at the strike positions of a body without shapes.
+    positions: Box<[Box<[LaneGains]>]>,
+    speed: Bank,
+    /// The gains that each group of it was designed for, and whether its modes have changed since.
+    designed: Box<[LaneGains]>,
+    stale: Box<[bool]>,
+    answers: Box<[Answer]>,
+    /// Of the groups that hear anything, and how many those are.
+    answer: (Answer, usize),
+    coupled: Coupled,
+    slider: Slider,
+    glide: f32,
+    stage: Stage,
+    owner: Option<Owner>,
+    friction: Friction,
+    sweep: [Sweep; CELL],
+    /// Whether it was asked during the present stretch; cells since it was asked last.
+    asked: bool,
+    silent_cells: u32,
+    /// The group that is looked at next.
+    next: usize,
+    sample_rate_hz: f64,
+}
+
+impl BodyRub {
+    /// For the modes of a bank in their order, the motion of each where its gain is 1, and the gains at each strike position.
+    pub(crate) fn new(
+        modes: &[Mode],
+        unit_per_sqrt_kg: Box<[f64]>,
+        positions: Box<[Box<[LaneGains]>]>,
+        kernel: Level,
+        sample_rate_hz: f64,
+    ) -> Result<Self, DesignError> {
+        let groups = modes.len().div_ceil(LANES);
+        let held = modes.chunks(LANES).map(HeldModes::of).collect();
+        // What is designed on the game half is never refused on the audio half.
+        for mode in modes {
+            place_speed(mode, 1.0, sample_rate_hz)?;
+        }
+        let silent: Box<[ModeGroup]> = vec![ModeGroup::SILENT; groups].into();
+        let states: Box<[GroupState]> = vec![GroupState::REST; groups].into();
+        Ok(Self {
+            modes: held,
+            unit_per_sqrt_kg,
+            positions,
+            speed: ModalBank::new(kernel, silent, states).sleeping_below(0.0),
+            designed: vec![LaneGains([0.0; LANES]); groups].into(),
+            stale: vec![true; groups].into(),
+            answers: vec![Answer::RIGID; groups].into(),
+            answer: (Answer::RIGID, 0),
+            coupled: Coupled::begin(),
+            slider: Slider::new(groups),
+            glide: slider::glide(sample_rate_hz),
+            stage: Stage::Idle,
+            owner: None,
+            friction: Friction { mu_static: 0.0, mu_kinetic: 0.0, slip_speed_m_s: 1.0 },
+            sweep: [STILL; CELL],
+            asked: false,
+            silent_cells: 0,
+            next: 0,
+            sample_rate_hz,
+        })
+    }
+
+    /// A contact rubs during the present stretch; false where another one does.
+    pub(crate) fn ask(&mut self, asked: &RubAsked<'_>, field: Option<&BodyField>) -> bool {
+        if self.owner.is_some_and(|owner| owner != asked.owner) {
+            return false;
+        }
+        let place = asked.spot.place.unwrap_or(StrikePlace::NOWHERE);
+        let positions = &self.positions;
+        self.slider.be_at(asked.owner, &place, |gains| match field {
+            Some(field) => field.fill(&place, gains),
+            None => {
+                if let Some(at) = positions.get(asked.spot.position).or(positions.last()) {
+                    gains.copy_from_slice(at);
+                }
+            }
+        });
+        if self.owner.is_none() {
+            self.owner = Some(asked.owner);
+            self.stage = Stage::Settling;
+        }
+        self.friction = asked.friction;
+        self.asked = true;
+        let now = asked.sweep_m_s.iter().zip(asked.normal_force_n);
+        for (to, (sweep_m_s, normal_force_n)) in self.sweep.iter_mut().zip(now) {
+            *to = Sweep { sweep_m_s: *sweep_m_s, normal_force_n: *normal_force_n, other_n_s: 0.0 };
+        }
+        true
+    }
+
+    /// Whether it has to be run.
+    pub(crate) fn rubs(&self) -> bool {
+        self.stage == Stage::Rubs
+    }
+
+    /// Whether there is a contact, if only one that begins.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.stage == Stage::Idle
+    }
+
+    /// Forgets the contact.
+    pub(crate) fn silence(&mut self) {
+        self.slider.silence();
+        self.slider.owner = None;
+        (self.owner, self.stage, self.asked) = (None, Stage::Idle, false);
+    }
+
+    /// The forces of the next `n` samples from what strikes the body beside them, while its first `driven` groups hear anything.
+    pub(crate) fn run(&mut self, position: u64, n: usize, driven: usize, sound: &Bank, others: &[Input<'_>]) {
+        let first = position as usize % CELL;
+        if first == 0 {
+            self.coupled.next_cell();
+            self.speed.follow(sound);
+        }
+        if self.answer.1 != driven {
+            self.sum_answers(driven);
+        }
+        let (mut known, mut free) = ([0.0; CELL], [0.0; CELL]);
+        self.coupled.under_way(first, self.sample_rate_hz, &mut known[..n]);
+        let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_INPUTS];
+        inputs[0] = Input { impulses: &known[..n], gains: self.slider.gains() };
+        let count = (1 + others.len()).min(MAX_INPUTS);
+        inputs[1..count].copy_from_slice(&others[..count - 1]);
+        self.speed.render_leading(driven, position, Inputs::Placed(&inputs[..count]), &mut free[..n]);
+        self.coupled.run(&self.answer.0, &self.friction, first, &self.sweep[..n], &free[..n]);
+        let mut impulse_n_s = [0.0; CELL];
+        self.coupled.impulses(first, self.sample_rate_hz, &mut impulse_n_s[..n]);
+        self.slider.add(&impulse_n_s[..n]);
+        self.slider.gather(first, n);
+    }
+
+    /// Hands over the forces.
+    pub(crate) fn inputs<'a>(&'a self, n: usize, mut add: impl FnMut(Input<'a>)) {
+        self.slider.inputs(n, &mut add);
+    }
+
+    /// A group of the body has other modes from now on.
+    pub(crate) fn retune(&mut self, group: usize, modes: HeldModes) {
+        self.modes[group] = modes;
+        self.stale[group] = true;
+    }
+
+    /// The stretch up to `position` has been rendered: at the end of a cell some groups are designed for where it is by now.
+    pub(crate) fn end_stretch(&mut self, position: u64) {
+        self.slider.end_stretch(position, self.glide);
+        self.sweep = [STILL; CELL];
+        if std::mem::take(&mut self.asked) {
+            self.silent_cells = 0;
+        }
+        if !position.is_multiple_of(CELL as u64) || self.stage == Stage::Idle {
+            return;
+        }
+        self.silent_cells += 1;
+        // One cell more after the last, so that all of its force is heard.
+        if self.silent_cells > 2 {
+            return self.silence();
+        }
+        let settled = self.design_some();
+        if self.stage == Stage::Settling && settled {
+            (self.stage, self.coupled) = (Stage::Rubs, Coupled::begin());
+        }
+    }
+
+    /// Designs the next groups that need it; whether none is left.
+    fn design_some(&mut self) -> bool {
+        let groups = self.answers.len();
+        let most = groups.div_ceil(SETTLE_CELLS);
+        let mut designed = 0;
+        for _ in 0..groups {
+            let group = self.next;
+            if !self.is_designed(group) {
+                if designed == most {
+                    break;
+                }
+                self.design(group);
+                designed += 1;
+            }
+            self.next = (group + 1) % groups;
+        }
+        if designed > 0 {
+            self.sum_answers(self.answer.1.max(1));
+        }
+        (0..groups).all(|group| self.is_designed(group))
+    }
+
+    fn is_designed(&self, group: usize) -> bool {
+        let now = &self.slider.gains()[group].0;
+        let same = now.iter().zip(&self.designed[group].0).all(|(a, b)| (a - b).abs() <= SAME);
+        same && !self.stale[group]
+    }
+
+    fn design(&mut self, group: usize) {
+        let gains = self.slider.gains()[group];
+        let HeldModes { modes, count } = self.modes[group];
+        let units = self.unit_per_sqrt_kg.get(group * LANES..).unwrap_or_default();
+        let (mut speeds, mut answer) = (modes, Answer::RIGID);
+        for (lane, (mode, unit)) in modes[..count].iter().zip(units).enumerate() {
+            let share = f64::from(gains.0[lane]);
+            // What enters has the gain of its place already.
+            let speed = place_speed(mode, share * unit * unit, self.sample_rate_hz);
+            let answers = answer.add_mode(mode, share * share * unit * unit, self.sample_rate_hz);
+            // Modes that could be designed once always can.
+            let (Ok(speed), Ok(())) = (speed, answers) else { return };
+            speeds[lane] = speed;
+        }
+        let Ok(designed) = design_group(&speeds[..count], self.sample_rate_hz, &SPEED) else { return };
+        self.speed.retune(group, &designed);
+        self.answers[group] = answer;
+        (self.designed[group], self.stale[group]) = (gains, false);
+    }
+
+    fn sum_answers(&mut self, driven: usize) {
+        let mut sum = Answer::RIGID;
+        self.answers.iter().take(driven).for_each(|answer| sum.add(answer));
+        self.answer = (sum, driven);
+    }
+}
