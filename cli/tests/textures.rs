@@ -118,9 +118,9 @@ fn the_distances_told_are_those_of_the_file_whatever_the_method_and_the_referenc
             warned.contains("arrangement is left"),
             "{more:?}: {kept} {warned}"
         );
-        if more.is_empty() {
-            assert!(number(&made, "borrowed") > 0.0 && taken > 0.5 && taken > kept, "{kept} {taken}");
-        }
+        // What has the feel of a grid and keeps nothing of the look is the grid itself, where it was or somewhere else.
+        let is_told = number(&made, "borrowed") == 0.0 || (taken > 0.5 && taken > kept);
+        assert!(!more.is_empty() || (kept < 0.3 && is_told), "{kept} {taken} {made}");
     }
     let (low, high) = grey(&scene, "both.png").range();
     assert_eq!((low, high), (0.0, 1.0));

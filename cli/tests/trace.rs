@@ -198,12 +198,15 @@ fn sand_again(design: &SandDesign, rows: &[Row]) -> Vec<f64> {
     let mut out = SurfaceBlock::default();
     let mut heights = Vec::new();
     for (k, block) in rows.chunks(MAX_BLOCK).enumerate() {
-        let before = rows[(k * MAX_BLOCK).max(1) - 1];
+        let first = (k * MAX_BLOCK).max(1);
+        let before = rows[first - 1];
+        // The bed is told the path's own velocity, by which it looks ahead of the finger.
+        let of_path = [0, 1].map(|a| (rows[first].position_m[a] - before.position_m[a]) * RATE_HZ);
         sand.react(&Touch {
             contact: 0,
             sample: block[0].sample,
             position_m: before.position_m,
-            velocity_m_s,
+            velocity_m_s: of_path,
             normal_force_n: before.normal_force_n,
         });
         let position_m: Vec<_> = block.iter().map(|row| row.position_m).collect();
