@@ -196,8 +196,11 @@ impl Coupled {
         struck_m_s: &[f32],
     ) {
         let (next_m_s_n, mut moved_m_s) = (self.next_m_s_n, self.moved_m_s);
+        let mut known_m_s = self.known_m_s.get(first).copied().unwrap_or(0.0);
         for (at, (sweep, struck_m_s)) in (first..CELL).zip(sweep.iter().zip(struck_m_s)) {
-            let behind_m_s = sweep.sweep_m_s - (self.known_m_s[at] + f64::from(*struck_m_s));
+            let behind_m_s = sweep.sweep_m_s - (known_m_s + f64::from(*struck_m_s));
+            // Read before this sample's force is added to what lies beside it, or it would wait for that.
+            known_m_s = self.known_m_s.get(at + 1).copied().unwrap_or(0.0);
             let pressed_n = sweep.normal_force_n;
             let force_n;
             [force_n, moved_m_s] =
