@@ -54,6 +54,8 @@ pub const BEARING_DEPTH_M: f64 = 0.003;
 pub const REFERENCE_RADIUS_M: f64 = 0.005;
 /// No sand carries more, N: a depth or an exponent beyond all sand keeps a direction, which infinity does not.
 const MOST_N: f64 = 1e9;
+/// Nothing is buried farther away, m; beyond, and at places that are no numbers, there is sand alone.
+const FARTHEST_M: f64 = 1e6;
 /// Nothing drags faster, m/s.
 const FASTEST_M_S: f64 = 1e6;
 /// Most layers.
@@ -236,7 +238,7 @@ impl SandLaw {
     /// [`answer_n`](Self::answer_n) at a place of the untouched bed: over its stones and shells too.
     #[must_use]
     pub fn answer_at_n(&self, position_m: [f64; 2], depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
-        if !position_m.iter().all(|x| x.is_finite()) {
+        if !position_m.iter().all(|x| x.abs() <= FARTHEST_M) {
             return self.answer_n(depth_m, velocity_m_s);
         }
         let met = self.met(position_m, 0.0);
