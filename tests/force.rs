@@ -240,6 +240,154 @@ fn a_tip_above_the_sand_feels_nothing_and_one_that_dips_in_feels_its_way_down() 
     assert!((most / law.force_n(0.004) - 1.0).abs() < 0.03, "{most} N");
 }
 
+/// Depths as games report them: a tip that comes down steeply at a random instant, wanders, leaves, and comes again.
+fn depths_of_a_game(rng: &mut Rng, seconds: f64) -> impl Fn(f64) -> f64 + use<> {
+    let strokes: Vec<[f64; 4]> = (0..(4.0 * seconds) as usize)
+        .map(|_| {
+            let depth_m = 0.002 + 0.038 * rng.uniform();
+            [0.05 + 0.07 * rng.uniform(), depth_m, 0.003 * rng.uniform(), 20.0 * rng.uniform()]
+        })
+        .collect();
+    move |t: f64| {
+        let [down_s, depth_m, wanders_m, hz] = strokes[((4.0 * t) as usize).min(strokes.len() - 1)];
+        let within_s = t - 0.25 * (4.0 * t).floor();
+        if within_s < down_s || within_s > 0.22 { -0.08 } else { depth_m + wanders_m * (hz * t).sin() }
+    }
+}
+
+#[test]
+fn rows_of_steep_landings_that_a_game_reports_keep_to_the_cap_and_to_0_n_in_the_air() {
+    let mut rng = Rng::new(2931);
+    let (mut most_n, mut landings, mut in_the_air) = (0.0_f64, 0, 0);
+    for game in 0..24 {
+        let reports_hz = 30.0 + 60.0 * rng.uniform();
+        let rows_hz = [1000.0, 2000.0, 5000.0][game % 3];
+        let cap_n = [20.0, 12.0][game % 2];
+        let per_s = [0, 1].map(|_| 8.0 * rng.normal());
+        let depth_m = depths_of_a_game(&mut rng, 2.0);
+        let stroke = Stroke { sample_rate_hz: 44_100.0, rows_hz, reports_hz, seconds: 2.0 };
+        let felt = stroke.run(sand(SandLaw { cap_n, ..SandLaw::default() }), |t| {
+            let uv = per_s.map(|turn| 0.5 + 0.2 * (turn * t).sin());
+            let velocity = per_s.map(|turn| 0.2 * SIDE_M * turn * (turn * t).cos());
+            ContactSample::at_depth(uv, depth_m(t)).sliding(velocity)
+        });
+        let report_s = |t: f64| (t * reports_hz).floor() / reports_hz;
+        let mut above_s = f64::NEG_INFINITY;
+        for row in &felt.told {
+            let size_n = row.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
+            assert!(size_n <= cap_n * (1.0 + 1e-12), "game {game}, tick {}: {size_n} of {cap_n} N", row.tick);
+            most_n = most_n.max(size_n / cap_n);
+            let t = row.tick as f64 / rows_hz;
+            // A report counts from the sample on in which it falls, and heaps stand higher than the untouched sand.
+            if depth_m(report_s(t)).max(depth_m(report_s(t + 1.0 / 44_100.0))) > -0.04 {
+                landings += usize::from(above_s > f64::NEG_INFINITY);
+                above_s = f64::NEG_INFINITY;
+                continue;
+            }
+            above_s = if above_s.is_finite() { above_s } else { t };
+            // A row still hears what ended 4 ticks ago; before a landing it hears nothing.
+            if t > above_s + 5.0 / rows_hz {
+                in_the_air += 1;
+                assert_eq!(row.force_n, [0.0; 3], "game {game}, {t} s, since {above_s}");
+            }
+        }
+    }
+    println!("{landings} landings, {in_the_air} rows in the air; at most {most_n:.4} of the cap");
+    assert!(landings > 100 && in_the_air > 10_000 && most_n > 0.999);
+}
+
+/// A sensor that now and then tells what it should not: no number, infinity, a jump, the last value again.
+fn seen_m(depth_m: f64, last_m: f64, rng: &mut Rng) -> f64 {
+    match (200.0 * rng.uniform()) as u32 {
+        0 => f64::NAN,
+        1 => [f64::INFINITY, f64::NEG_INFINITY][usize::from(rng.uniform() < 0.5)],
+        2 => depth_m + 0.2 * (rng.uniform() - 0.5),
+        3 => 1e300,
+        4..=8 => last_m,
+        _ => depth_m,
+    }
+}
+
+#[test]
+fn twenty_loops_that_nobody_prepared_get_finite_forces_within_the_cap_and_end_within_what_a_hand_gave() {
+    let mut rng = Rng::new(1224);
+    for case in 0..20 {
+        let between = |low: f64, high: f64, rng: &mut Rng| low * (high / low).powf(rng.uniform());
+        let (mass_kg, rate_hz) = (between(0.02, 1.0, &mut rng), between(1000.0, 5000.0, &mut rng).round());
+        let damping_n_s_m = between(1.0, 10.0, &mut rng);
+        let limit_n_m = 2.0 * damping_n_s_m * rate_hz;
+        // As stiff as the limit allows, and far softer.
+        let stiffness_n_m = limit_n_m * between(0.02, 0.9, &mut rng);
+        let cap_n = between(5.0, 50.0, &mut rng);
+        let is_sand = case % 2 == 0;
+        let surface = if is_sand {
+            let law = SandLaw {
+                stiffness_n: stiffness_n_m,
+                drag_s_per_m: between(1.0, 1e3, &mut rng),
+                wetness: 0.0,
+                cap_n,
+                ..SandLaw::default()
+            };
+            sand(law)
+        } else {
+            let flat = Surface::flat(SIDE_M, SIDE_M).unwrap().friction(2.0 * rng.uniform());
+            flat.compliance_m_n((1.0 / stiffness_n_m).min(0.1))
+        };
+        let sample_rate_hz = [22_050.0, 44_100.0, 48_000.0, 96_000.0][case % 4];
+        let Engine { mut scene, mut renderer, .. } =
+            Config { sample_rate_hz, ..Config::default() }.build().unwrap();
+        let id = scene.add_surface(surface).unwrap();
+        let law = scene.tip_law(id).unwrap().unwrap();
+        let mut port = scene.open_port(Force { rate_hz, holds_s: 2.0 }).unwrap();
+        let (mut x, mut v, mut last_m, mut refused, mut begun) = (-0.01 * rng.uniform(), 0.0, 0.0, 0, false);
+        let (mut haptic, mut audio) = ([0.0f32; 64], [0.0f32; 64]);
+        let ticks = rate_hz as u32;
+        for tick in 0..ticks {
+            let t = f64::from(tick) / rate_hz;
+            let told_m = seen_m(x, last_m, &mut rng);
+            let speed = [0.4 * (9.0 * t).sin(), 0.3 * rng.normal()];
+            // A cap keeps the direction: what drags as hard as it can does not carry as well.
+            let across = if is_sand { [0.0; 2] } else { speed };
+            let force_n = law.answer_at_n([0.1, 0.1], told_m, across);
+            assert!(force_n.iter().all(|f| f.is_finite()), "case {case}: {told_m} m: {force_n:?}");
+            // The device limits what it is given, as any does.
+            let given_n = force_n[2].min(cap_n);
+            v += (2.0 - given_n - damping_n_s_m * v) / mass_kg / rate_hz;
+            x += v / rate_hz;
+            last_m = told_m;
+            let sample = ContactSample::at_depth([0.5 + 0.1 * (9.0 * t).cos(), 0.5], told_m).sliding(speed);
+            let event = if begun {
+                ContactEvent::moved(ContactId(1), sample)
+            } else {
+                ContactEvent::begin(ContactId(1), id, Actuator(0), sample)
+            };
+            let taken = scene.report(t, event).is_ok();
+            assert_eq!(
+                taken,
+                told_m.is_finite() && told_m < 1.0 && told_m > -1000.0,
+                "case {case}: {told_m}"
+            );
+            (begun, refused) = (begun || taken, refused + u32::from(!taken));
+            while (renderer.position() as f64) < t * sample_rate_hz {
+                renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+                assert!(haptic.iter().chain(&audio).all(|y| y.is_finite()));
+            }
+        }
+        let rows: Vec<ForceRow> = std::iter::from_fn(|| port.read()).collect();
+        let size_n = |row: &ForceRow| row.force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
+        let most_n = rows.iter().map(size_n).fold(0.0, f64::max);
+        println!(
+            "case {case}: {mass_kg:.2} kg, {rate_hz} Hz, {stiffness_n_m:.0} N/m: {refused} refused, rows to {most_n:.1} N, ends at {:.2} mm, {v:.3} m/s",
+            1e3 * x
+        );
+        assert!(refused > 0 && rows.len() as f64 > 0.9 * rate_hz && most_n.is_finite());
+        assert!(!is_sand || most_n <= cap_n * (1.0 + 1e-12), "case {case}: {most_n} of {cap_n} N");
+        // A hand of 2 N falls at 2 N / b at most and stands at 2 N / k; what glitches throw away dies down.
+        assert!(x.abs() < 0.01 + 8.0 / stiffness_n_m + cap_n / damping_n_s_m * 0.05, "case {case}: {x} m");
+        assert!(v.abs() <= cap_n / damping_n_s_m, "case {case}: {v} m/s");
+    }
+}
+
 #[test]
 fn a_soft_map_is_a_spring_and_a_hard_one_refuses_a_depth_with_the_reason() {
     let extent = Extent { width_m: SIDE_M, height_m: SIDE_M, relief_m: 1e-4 };

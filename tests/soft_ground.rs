@@ -183,7 +183,7 @@ fn share_felt(count: usize, tip_radius_m: f64, compliance_m_n: f64, force_n: f64
 
 #[test]
 fn a_ball_on_a_soft_map_feels_the_mean_of_the_relief_under_it_as_the_closed_form_says() {
-    let (mut near, mut worst) = (0.0_f64, 0.0_f64);
+    let mut worst = 0.0_f64;
     for (tip_radius_m, compliance_m_n, force_n) in
         [(1e-3, 1e-4, 0.5), (1e-3, 1e-3, 0.3), (5e-4, 3e-4, 0.4), (4e-3, 5e-4, 1.0)]
     {
@@ -194,11 +194,9 @@ fn a_ball_on_a_soft_map_feels_the_mean_of_the_relief_under_it_as_the_closed_form
             let kappa = core::f64::consts::TAU * footprint_radius_m(tip_radius_m, depth_m) / wave_m;
             let wanted = (8.0 * bessel_j2(kappa) / (kappa * kappa)).abs();
             println!("r {tip_radius_m}, {depth_m:.1e} m deep, kappa {kappa:.2}: {found:.4}, law {wanted:.4}");
-            let off = (found - wanted).abs();
-            worst = worst.max(off);
-            near = if kappa < 6.4 { near.max(off) } else { near };
+            worst = worst.max((found - wanted).abs());
         }
     }
-    println!("{near:.4} near, {worst:.4} at most");
-    assert!(near < 0.01 && worst < 0.02, "{near}, {worst}");
+    println!("{worst:.4} of the wave at most");
+    assert!(worst <= 0.01, "{worst}");
 }

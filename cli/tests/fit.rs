@@ -214,6 +214,97 @@ fn several_strikes_become_strike_positions_of_one_body() {
     assert_eq!(modes(folder, "body.strike1.modes.json").len(), 5);
 }
 
+/// Sides of a plate held at its edges, m, and the places where it is struck.
+const PLATE_M: [f64; 2] = [0.4, 0.3];
+const STRUCK_M: [[f64; 2]; 4] = [[0.07, 0.05], [0.16, 0.06], [0.06, 0.13], [0.18, 0.12]];
+
+/// The first nine shapes of that plate: orders along both sides.
+fn plate_shape(mode: usize, [x, y]: [f64; 2]) -> f64 {
+    let [a, b] = [1 + mode % 3, 1 + mode / 3].map(|n| n as f64 * std::f64::consts::PI);
+    (a * x / PLATE_M[0]).sin() * (b * y / PLATE_M[1]).sin()
+}
+
+fn plate_hz(mode: usize) -> f64 {
+    let [a, b] = [1 + mode % 3, 1 + mode / 3].map(|n| n as f64);
+    210.0 * (a * a + 1.7 * b * b)
+}
+
+/// A modes file of version 2 with these shapes, computed `stiffer` times as high; `shape` says whose each mode has.
+fn plate_file(path: &Path, stiffer: f64, shape: impl Fn(usize) -> usize) {
+    let [columns, rows] = [21, 16];
+    let point = |n: usize| [n % columns, n / columns];
+    let at = |n: usize| {
+        let [i, j] = point(n);
+        [PLATE_M[0] * i as f64 / (columns - 1) as f64, PLATE_M[1] * j as f64 / (rows - 1) as f64]
+    };
+    let points: Vec<[f64; 3]> = (0..columns * rows).map(|n| [at(n)[0], at(n)[1], 0.0]).collect();
+    let cells = (0..columns * rows).filter(|n| point(*n)[0] + 1 < columns && point(*n)[1] + 1 < rows);
+    let triangles: Vec<[usize; 3]> =
+        cells.flat_map(|n| [[n, n + 1, n + columns + 1], [n, n + columns + 1, n + columns]]).collect();
+    let phi = |m: usize| -> Vec<[f64; 3]> {
+        (0..columns * rows).map(|n| [0.0, 0.0, plate_shape(shape(m), at(n))]).collect()
+    };
+    let mode = |m: usize| serde_json::json!({"frequency_hz": stiffer * plate_hz(m), "decay_per_s": 8.0, "amplitude": 0.1, "phase_rad": 1.5});
+    let file = serde_json::json!({
+        "format": "asperity.modes", "version": 2, "impulse_n_s": 1.0, "unit": "relative",
+        "modes": (0..9).map(mode).collect::<Vec<_>>(),
+        "shapes": {"points_m": points, "triangles": triangles, "gains": vec![1.0; 9],
+            "phi_per_sqrt_kg": (0..9).map(phi).collect::<Vec<_>>(), "struck_point": 30},
+    });
+    std::fs::write(path, file.to_string()).unwrap();
+}
+
+#[test]
+fn strikes_on_a_plate_with_shapes_are_assigned_to_their_places_and_another_body_is_told_from_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (strike, at) in STRUCK_M.iter().enumerate() {
+        let hard = 1.0 - 0.15 * strike as f64;
+        let sample = |n: usize| {
+            let t = n as f64 / f64::from(RATE_HZ);
+            let mode = |m: usize| {
+                let decay = (-(6.0 + m as f64) * t).exp();
+                hard * 0.1 * plate_shape(m, *at) * decay * (std::f64::consts::TAU * plate_hz(m) * t).sin()
+            };
+            (0..9).map(mode).sum::<f64>()
+        };
+        let mut samples = vec![0.0; 4410];
+        samples.extend((0..2 * RATE_HZ as usize).map(sample));
+        write(&folder.join(format!("{strike}.wav")), &noisy(samples, 1e-4));
+    }
+    plate_file(&folder.join("plate.modes.json"), 1.04, |m| m);
+    plate_file(&folder.join("other.modes.json"), 1.04, |m| (4 * m + 3) % 9);
+    let merged = ["0.wav", "-o", "body.modes.json", "--merge", "1.wav", "2.wav", "3.wav"];
+    let placed = |mesh: &str| fit(folder, &[&merged[..], &["--mesh", mesh]].concat())["places"].clone();
+    let found = placed("plate.modes.json");
+    let body = std::fs::read(folder.join("body.modes.json")).unwrap();
+    println!("{found}");
+    assert_eq!(found["modes"], 9);
+    assert!((found["frequency_factor"].as_f64().unwrap() * 1.04 - 1.0).abs() < 0.005);
+    for (strike, at) in found["strikes"].as_array().unwrap().iter().zip(STRUCK_M) {
+        // A plate's four quarters are alike.
+        let found = [0, 1].map(|axis| strike["at_m"][axis].as_f64().unwrap());
+        let off = [0, 1].map(|a| found[a].min(PLATE_M[a] - found[a]) - at[a]);
+        assert!(off[0].hypot(off[1]) < 0.025, "{strike} for {at:?}");
+    }
+    let (own, other) =
+        (found["r_squared"].as_f64().unwrap(), placed("other.modes.json")["r_squared"].clone());
+    println!("R² {own:.4}, with other shapes {other}");
+    assert!(own > 0.97 && other.as_f64().unwrap() < 0.9 * own);
+    // The check changes nothing in what is written.
+    fit(folder, &merged);
+    assert!(body == std::fs::read(folder.join("body.modes.json")).unwrap());
+    let refused = |mesh: &str, parts: &[&str]| {
+        let all = [&["fit"], &merged[..], &["--mesh", mesh]].concat();
+        assert_refused(&asperity(folder, &all), parts);
+    };
+    refused("body.modes.json", &["body.modes.json", "no mode shapes", "version 2"]);
+    plate_file(&folder.join("high.modes.json"), 60.0, |m| m);
+    refused("high.modes.json", &["high.modes.json", "in the recordings"]);
+    let alone = asperity(folder, &["fit", "0.wav", "-o", "x.modes.json", "--mesh", "plate.modes.json"]);
+    assert_eq!(alone.status.code(), Some(2));
+}
+
 #[test]
 fn tables_of_other_programs_become_bodies_that_the_engine_reads() {
     let folder = tempfile::tempdir().unwrap();

@@ -54,6 +54,57 @@ fn a_mesh_becomes_a_body_that_the_engine_plays_and_can_be_struck_anywhere() {
 }
 
 #[test]
+fn shapes_beside_the_modes_file_are_the_shapes_within_it_and_a_scene_renders_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("bar.obj"), BAR).unwrap();
+    let made = |more: &[&str]| {
+        let all = [&["modes", "bar.obj", "--material", "steel", "--max-modes", "6"], more].concat();
+        let output = asperity(at, &all);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    made(&["-o", "within.modes.json"]);
+    made(&["-o", "beside.modes.json", "--shapes-beside"]);
+    let sidecar = at.join("beside.modes.shapes");
+    assert!(std::fs::read(&sidecar).unwrap().starts_with(b"ASPSHAP1"));
+    let text = std::fs::read_to_string(at.join("beside.modes.json")).unwrap();
+    assert!(text.contains("\"shapes_beside\":\"beside.modes.shapes\"") && !text.contains("phi_per_sqrt_kg"));
+    let load = |name: &str| asperity::ModalModel::load(at.join(name)).unwrap();
+    assert!(load("beside.modes.json") == load("within.modes.json"));
+    made(&["-o", "packed.modes.json", "--shapes-glb"]);
+    assert!(std::fs::read(at.join("packed.modes.glb")).unwrap().starts_with(b"glTF"));
+    // Places are single precision there, and nothing else is.
+    let (packed, mut wanted) = (load("packed.modes.json"), load("within.modes.json"));
+    let mut shapes = wanted.shapes.as_deref().unwrap().clone();
+    shapes.points_m.iter_mut().flatten().for_each(|x| *x = f64::from(*x as f32));
+    wanted.shapes = Some(shapes.into());
+    assert!(packed == wanted);
+    let render = |name: &str| {
+        let scene = format!(
+            "contacts = \"hits.jsonl\"\n[[body]]\nname = \"bar\"\nmodes = \"{name}.modes.json\"\n[[actuator]]\noutput = \"displacement\"\n"
+        );
+        std::fs::write(at.join(format!("{name}.toml")), scene).unwrap();
+        let output = asperity(at, &["render", &format!("{name}.toml"), "-o", name]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read(at.join(format!("{name}.audio.wav"))).unwrap()
+    };
+    let hit = |t: f64, x: f64| {
+        format!(
+            "{{\"t\":{t},\"event\":\"impact\",\"body\":\"bar\",\"speed_m_s\":0.8,\"mass_kg\":0.01,\"radius_m\":0.005,\"striker\":\"steel\",\"at_m\":[{x},0.01,0.01]}}\n"
+        )
+    };
+    std::fs::write(at.join("hits.jsonl"), hit(0.0, 0.002) + &hit(0.4, 0.031)).unwrap();
+    assert!(render("beside") == render("within"));
+    assert_eq!(render("packed").len(), render("within").len());
+    std::fs::remove_file(sidecar).unwrap();
+    let output = asperity(at, &["render", "beside.toml", "-o", "again"]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), told.lines().count()), (Some(1), 1), "{told}");
+    assert!(told.contains("shapes_beside") && told.contains("beside.modes.shapes"), "{told}");
+    assert!(!at.join("again.audio.wav").exists());
+}
+
+#[test]
 fn with_radiation_levels_are_pascals_and_low_bending_modes_are_far_below_a_breathing_body() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

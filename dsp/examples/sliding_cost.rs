@@ -5,7 +5,8 @@
 //! counter: `valgrind --tool=callgrind target/release/examples/sliding_cost rub 100`; the kind `nothing` is what has to be taken off.
 
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank, ModeGroup, design_groups,
+    AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
+    design_groups,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -14,7 +15,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 const RATE_HZ: f64 = 44_100.0;
-const KINDS: [&str; 6] = ["nothing", "shared", "place", "slide", "rub", "rub-slide"];
+const KINDS: [&str; 7] = ["nothing", "shared", "place", "slide", "rub", "rub-slide", "ahead"];
 /// Motion of every mode at the place, kg^−½.
 const PHI: f64 = 0.3;
 
@@ -22,7 +23,7 @@ type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
 
 struct Body {
     sound: Bank,
-    speed: Bank,
+    ahead: Vec<AheadGroup>,
     answer: Answer,
     coupled: Coupled,
     gains: Vec<LaneGains>,
@@ -47,15 +48,13 @@ impl Body {
         let modes: Vec<Mode> = (0..count).map(mode).collect();
         let speeds: Vec<Mode> = modes.iter().map(|m| place_speed(m, PHI, RATE_HZ).unwrap()).collect();
         let mut answer = Answer::RIGID;
-        for mode in &modes {
-            answer.add_mode(mode, PHI * PHI, RATE_HZ).unwrap();
-        }
-        let plain = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
+        let squares: Vec<(Mode, f64)> = modes.iter().map(|mode| (*mode, PHI * PHI)).collect();
+        answer.add_modes(Level::detect(), &squares, RATE_HZ).unwrap();
         Self {
             sound: bank(&modes, &GroupOptions::IMPULSE_RING),
-            speed: bank(&speeds, &plain),
+            ahead: speeds.chunks(LANES).map(|speeds| AheadGroup::design(speeds, RATE_HZ).unwrap()).collect(),
             answer,
-            coupled: Coupled::begin(),
+            coupled: Coupled::begin(Level::detect()),
             gains: vec![LaneGains([PHI as f32; 16]); count.div_ceil(16)],
             input: std::array::from_fn(|n| 1e-6 * (n as f32).sin()),
             position: 0,
@@ -72,6 +71,7 @@ impl Body {
         let placed = [Input { impulses: &self.input, gains: &self.gains }; 2];
         match kind {
             "nothing" => {}
+            "ahead" => self.sound.ahead(&self.ahead, &mut out),
             "shared" => self.sound.render(self.position, Inputs::One(&self.input), &mut out),
             "place" | "rub" => self.sound.render(self.position, Inputs::Placed(&placed[..1]), &mut out),
             _ => self.sound.render(self.position, Inputs::Placed(&placed), &mut out),
@@ -84,13 +84,10 @@ impl Body {
     fn rub(&mut self) {
         let friction = Friction { mu_static: 0.8, mu_kinetic: 0.3, slip_speed_m_s: 0.02 };
         let sweep = [Sweep { sweep_m_s: 0.05, normal_force_n: 1.0, other_n_s: 0.0 }; CELL];
-        self.coupled.next_cell();
-        self.speed.follow(&self.sound);
-        let (mut known, mut free, mut heard) = ([0.0; CELL], [0.0; CELL], [0.0; CELL]);
-        self.coupled.under_way(0, RATE_HZ, &mut known);
-        let inputs = [Input { impulses: &known, gains: &self.gains }];
-        self.speed.render(self.position, Inputs::Placed(&inputs), &mut free);
-        self.coupled.run(&self.answer, &friction, 0, &sweep, &free);
+        let (mut free, mut heard) = ([0.0; CELL], [0.0; CELL]);
+        self.sound.ahead(&self.ahead, &mut free);
+        self.coupled.next_cell(&self.answer, &free);
+        self.coupled.run(&friction, 0, &sweep, &[0.0; CELL]);
         self.coupled.impulses(0, RATE_HZ, &mut heard);
         self.input.iter_mut().zip(heard).for_each(|(to, x)| *to = x as f32);
     }
@@ -119,14 +116,21 @@ fn main() {
         return;
     }
     for count in [16, 32, 100, 128, 512] {
-        let times = KINDS.map(|kind| best_ns(&mut Body::new(count), kind));
-        let [_, shared, place, slide, rub, rub_slide] = times;
+        let times = KINDS.map(|kind| {
+            let mut body = Body::new(count);
+            // What tells the free motion has to ring.
+            body.cell("place");
+            best_ns(&mut body, kind)
+        });
+        let [_, shared, place, slide, rub, rub_slide, ahead] = times;
         println!(
-            "{count} modes: shared {shared:.1} ns a sample; a place {:.2} of it; a slide {:.2} of a place; a rub {:.2} of a place, {:.2} of a slide if it slides",
+            "{count} modes: shared {shared:.1} ns a sample; a place {:.2} of it; a slide {:.2} of a place; a rub {:.2} of a place, {:.2} of a slide if it slides; of a rub {:.1} ns are the free motion and {:.1} ns the forces",
             place / shared,
             slide / place,
             rub / place,
-            rub_slide / slide
+            rub_slide / slide,
+            ahead,
+            rub - place - ahead
         );
     }
 }

@@ -1,7 +1,8 @@
 //! A rub coupled with a whole modal bank: against the plain step, the closed form, its energy, and any cut into blocks.
 
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank, ModeGroup, design_groups, lane_gains,
+    AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
+    design_groups, lane_gains,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -11,13 +12,12 @@ use asperity_dsp::stick_slip::{
 };
 use std::f64::consts::{PI, TAU};
 
-const PLAIN: GroupOptions = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
 type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
 
 /// A body that is rubbed at one place: its modes, and φ of each there.
 struct Rubbed {
     sound: Bank,
-    speed: Bank,
+    ahead: Vec<AheadGroup>,
     answer: Answer,
     gains: Vec<LaneGains>,
     coupled: Coupled,
@@ -25,47 +25,40 @@ struct Rubbed {
     rate_hz: f64,
 }
 
-fn bank(modes: &[Mode], rate_hz: f64, options: &GroupOptions, kernel: Level) -> Bank {
-    let groups: Box<[ModeGroup]> = design_groups(modes, rate_hz, options).collect::<Result<_, _>>().unwrap();
-    let states = vec![GroupState::REST; groups.len()].into();
-    ModalBank::new(kernel, groups, states)
-}
-
 impl Rubbed {
     fn new(modes: &[(Mode, f64)], rate_hz: f64) -> Self {
+        let level = Level::detect();
         let sound: Vec<Mode> = modes.iter().map(|(mode, _)| *mode).collect();
         // What enters has the gain φ, so what is looked at has φ too: half of the product each.
         let speed: Vec<Mode> =
             modes.iter().map(|(mode, phi)| place_speed(mode, *phi, rate_hz).unwrap()).collect();
+        let squares: Vec<(Mode, f64)> = modes.iter().map(|(mode, phi)| (*mode, phi * phi)).collect();
         let mut answer = Answer::RIGID;
-        for (mode, phi) in modes {
-            answer.add_mode(mode, phi * phi, rate_hz).unwrap();
-        }
+        answer.add_modes(level, &squares, rate_hz).unwrap();
+        let groups: Box<[ModeGroup]> =
+            design_groups(&sound, rate_hz, &GroupOptions::IMPULSE_RING).collect::<Result<_, _>>().unwrap();
+        let states = vec![GroupState::REST; groups.len()].into();
         Self {
-            sound: bank(&sound, rate_hz, &GroupOptions::IMPULSE_RING, Level::detect()),
-            speed: bank(&speed, rate_hz, &PLAIN, Level::detect()),
+            sound: ModalBank::new(level, groups, states),
+            ahead: speed.chunks(LANES).map(|speeds| AheadGroup::design(speeds, rate_hz).unwrap()).collect(),
             answer,
             gains: lane_gains(modes.iter().map(|(_, phi)| *phi as f32)).collect(),
-            coupled: Coupled::begin(),
+            coupled: Coupled::begin(level),
             position: 0,
             rate_hz,
         }
     }
 
-    /// The next samples, within one cell: forces, the sound, and the free speed.
+    /// The next samples, within one cell: forces and the sound.
     fn run(&mut self, friction: &Friction, sweep: &[Sweep]) -> (Vec<f64>, Vec<f32>) {
         let n = sweep.len();
         let first = self.position as usize % CELL;
         if first == 0 {
-            self.coupled.next_cell();
-            self.speed.follow(&self.sound);
+            let mut free = [0.0; CELL];
+            self.sound.ahead(&self.ahead, &mut free);
+            self.coupled.next_cell(&self.answer, &free);
         }
-        let mut known = vec![0.0; n];
-        self.coupled.under_way(first, self.rate_hz, &mut known);
-        let mut free = vec![0.0; n];
-        let input = [Input { impulses: &known, gains: &self.gains }];
-        self.speed.render(self.position, Inputs::Placed(&input), &mut free);
-        let forces = self.coupled.run(&self.answer, friction, first, sweep, &free).to_vec();
+        let forces = self.coupled.run(friction, first, sweep, &[0.0; CELL]).to_vec();
         let mut impulses = vec![0.0; n];
         self.coupled.impulses(first, self.rate_hz, &mut impulses);
         let impulses: Vec<f32> = impulses.iter().map(|x| *x as f32).collect();
@@ -268,9 +261,56 @@ fn any_cut_into_blocks_rubs_the_same_bits() {
 #[test]
 fn modes_above_half_of_the_rate_do_not_yield_and_impossible_ones_are_refused() {
     let mut answer = Answer::RIGID;
-    answer.add_mode(&mode(30_000.0, 1.0), 1.0, 44_100.0).unwrap();
+    let mut add = |mode: Mode| answer.add_modes(Level::detect(), &[(mode, 1.0)], 44_100.0);
+    add(mode(30_000.0, 1.0)).unwrap();
+    assert_eq!(add(mode(100.0, -1.0)).unwrap_err().field, "decay_per_s");
     assert_eq!(answer, Answer::RIGID);
     assert_eq!(place_speed(&mode(30_000.0, 1.0), 1.0, 44_100.0).unwrap().amplitude, 0.0);
     assert_eq!(place_speed(&mode(-1.0, 1.0), 1.0, 44_100.0).unwrap_err().field, "frequency_hz");
-    assert_eq!(answer.add_mode(&mode(100.0, -1.0), 1.0, 44_100.0).unwrap_err().field, "decay_per_s");
+    assert_eq!(AheadGroup::design(&[mode(30_000.0, 1.0)], 44_100.0).unwrap(), AheadGroup::SILENT);
+    assert_eq!(AheadGroup::design(&[mode(100.0, -1.0)], 44_100.0).unwrap_err().field, "decay_per_s");
+}
+
+#[test]
+fn what_a_bank_says_ahead_is_what_another_bank_of_its_modes_sounds_like_afterwards() {
+    let mut rng = Rng::new(17);
+    for level in Level::available() {
+        for (count, rate_hz) in [(3, 44_100.0), (50, 22_050.0), (200, 192_000.0)] {
+            let random = |_| Mode {
+                frequency_hz: 20.0 * 800.0_f64.powf(rng.uniform()),
+                decay_per_s: 3.0 * 100.0_f64.powf(rng.uniform()),
+                amplitude: 1.0,
+                phase_rad: 0.7,
+            };
+            let modes: Vec<Mode> = (0..count).map(random).collect();
+            let heard: Vec<Mode> = modes
+                .iter()
+                .map(|m| Mode { amplitude: rng.normal(), phase_rad: TAU * rng.uniform(), ..*m })
+                .collect();
+            let bank = |modes: &[Mode]| {
+                let groups: Box<[ModeGroup]> = design_groups(modes, rate_hz, &GroupOptions::default())
+                    .collect::<Result<_, _>>()
+                    .unwrap();
+                let states = vec![GroupState::REST; groups.len()].into_boxed_slice();
+                ModalBank::new(level, groups, states).sleeping_below(0.0)
+            };
+            let (mut sound, mut other) = (bank(&modes), bank(&heard));
+            let ahead: Vec<AheadGroup> =
+                heard.chunks(LANES).map(|modes| AheadGroup::design(modes, rate_hz).unwrap()).collect();
+            let struck: Vec<f32> = (0..3 * CELL).map(|_| rng.normal() as f32).collect();
+            sound.render(0, Inputs::One(&struck), &mut [0.0; 3 * CELL]);
+            other.render(0, Inputs::One(&struck), &mut [0.0; 3 * CELL]);
+            let (mut told, mut found) = ([0.0; CELL], [0.0; CELL]);
+            sound.ahead(&ahead, &mut told);
+            other.render(3 * CELL as u64, Inputs::One(&[0.0; CELL]), &mut found);
+            let most = found.iter().fold(0.0_f32, |most, y| most.max(y.abs()));
+            let worst = told.iter().zip(&found).fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
+            println!(
+                "{} {count} modes at {rate_hz} Hz: {:.1e} of the peak apart",
+                level.isa().name(),
+                worst / most
+            );
+            assert!(worst <= 1e-5 * most, "{worst} of {most}");
+        }
+    }
 }

@@ -7,12 +7,23 @@
 //!
 //! The thread that drives a device asks [`Scene::tip_law`] once, and from then on turns the depth of its tip into a force without waiting
 //! for anything; the same depths go to the engine as reports, which makes what is felt of the grains, what is heard, and moves the sand.
-//! Writes sand.svg, shell.svg, wall.svg, cloth.svg, prints how stiff a loop may be, and draws what a ball feels of a soft map (footprint.svg) and
-//! how much of moving sand a game has to draw (drawn.svg).
+//! Writes sand.svg, shell.svg, wall.svg, cloth.svg, prints and draws how stiff a loop may be (stiffest.svg), and what else stands behind a force:
+//!
+//! | picture | what |
+//! |---|---|
+//! | materials.svg | rows of the seven solid materials against their law |
+//! | one_block.svg | a cube and a sphere cut from one block of granite |
+//! | sand_law.svg | sand's force over depth and its drag over speed against equations 1 and 3; a landing |
+//! | furrow.svg | the furrow of a finger at 0.5 m/s |
+//! | readers.svg | three readers of one hand's force, of which one stalls |
+//! | footprint.svg | what a ball feels of a soft map |
+//! | drawn.svg | how much of moving sand a game has to draw |
 
 mod device;
 mod picture;
+mod sand;
 mod soft;
+mod solid;
 
 use asperity::live::ports::{Force, ForceRow, Of};
 use asperity::texture::sand::{Buried, SandDesign, SandSource};
@@ -121,9 +132,9 @@ fn plot(folder: &Path, name: &str, runs: &[(f64, Vec<Tick>)]) -> Result<(), Box<
     };
     let title = format!("{name}: 0.15 kg dropped from 4 mm, leaned on with 2 N, then pushed to and fro");
     let panels = [
-        ("depth of the tip, mm", curves(|tick| 1e3 * tick.depth_m)),
-        ("force of the loop, N", curves(|tick| tick.force_n)),
-        ("energy given less taken, mJ", curves(|tick| 1e3 * tick.given_j)),
+        ("depth of the tip, mm", "s", curves(|tick| 1e3 * tick.depth_m)),
+        ("force of the loop, N", "s", curves(|tick| tick.force_n)),
+        ("energy given less taken, mJ", "s", curves(|tick| 1e3 * tick.given_j)),
     ];
     std::fs::write(folder.join(format!("{name}.svg")), svg(&title, &panels))?;
     Ok(())
@@ -186,10 +197,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         "\nstiffest spring that holds still, N/m, with {DAMPING_N_S_M} N·s/m (2 b / T is what never gives energy)"
     );
     println!("rate     {}    2 b / T", MASSES_KG.map(|mass_kg| format!("{mass_kg:>8} kg")).join(""));
-    for rate_hz in RATES_HZ {
-        let row = MASSES_KG.map(|mass_kg| format!("{:>11.0}", stiffest_n_m(rate_hz, mass_kg)));
-        println!("{:1} kHz    {} {:>10.0}", rate_hz / 1000.0, row.join(""), 2.0 * DAMPING_N_S_M * rate_hz);
+    let mut curves = Vec::new();
+    for (rate_hz, colour) in RATES_HZ.into_iter().zip(COLOURS) {
+        let stiffest = MASSES_KG.map(|mass_kg| [mass_kg, stiffest_n_m(rate_hz, mass_kg)]);
+        let row = stiffest.map(|[_, stiffness_n_m]| format!("{stiffness_n_m:>11.0}"));
+        let never_n_m = 2.0 * DAMPING_N_S_M * rate_hz;
+        println!("{:1} kHz    {} {never_n_m:>10.0}", rate_hz / 1000.0, row.join(""));
+        let curve = |name, points| Curve { name, colour, points };
+        curves.push(curve(format!("{} kHz", rate_hz / 1000.0), stiffest.to_vec()));
+        curves.push(curve("2 b / T".into(), MASSES_KG.map(|mass_kg| [mass_kg, never_n_m]).to_vec()));
     }
+    let title = "stiffest spring that holds still, by mass and rate of the loop";
+    std::fs::write(folder.join("stiffest.svg"), svg(title, &[("N/m", "kg", curves)]))?;
+    solid::draw(folder)?;
+    sand::draw(folder)?;
     soft::draw(folder)?;
     println!("\nplots: {}", folder.display());
     Ok(())

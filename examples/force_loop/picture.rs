@@ -1,4 +1,4 @@
-//! Curves over time in an SVG: two panels, one over the other.
+//! Curves in an SVG: panels, one over the other.
 
 use std::fmt::Write;
 
@@ -12,22 +12,22 @@ pub struct Curve {
 const SIZE: [f64; 2] = [860.0, 250.0];
 const LEFT: f64 = 70.0;
 
-/// The whole picture: a title, then panels with what stands on their axis.
-pub fn svg(title: &str, panels: &[(&str, Vec<Curve>)]) -> String {
+/// The whole picture: a title, then panels with what stands on their axis, and the unit along.
+pub fn svg(title: &str, panels: &[(&str, &str, Vec<Curve>)]) -> String {
     let height = 60.0 + (SIZE[1] + 50.0) * panels.len() as f64;
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1080\" height=\"{height}\" font-family=\"sans-serif\" \
          font-size=\"13\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>\
          <text x=\"{LEFT}\" y=\"28\" font-size=\"17\">{title}</text>"
     );
-    for (index, (axis, curves)) in panels.iter().enumerate() {
+    for (index, (axis, unit, curves)) in panels.iter().enumerate() {
         let top = 50.0 + (SIZE[1] + 50.0) * index as f64;
-        panel(&mut out, top, axis, curves).expect("a string takes everything");
+        panel(&mut out, top, [axis, unit], curves).expect("a string takes everything");
     }
     out + "</svg>\n"
 }
 
-fn panel(out: &mut String, top: f64, axis: &str, curves: &[Curve]) -> std::fmt::Result {
+fn panel(out: &mut String, top: f64, [axis, unit]: [&str; 2], curves: &[Curve]) -> std::fmt::Result {
     let range = |a: usize| {
         let all = curves.iter().flat_map(|curve| &curve.points).map(|point| point[a]);
         let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
@@ -49,7 +49,7 @@ fn panel(out: &mut String, top: f64, axis: &str, curves: &[Curve]) -> std::fmt::
         let [x, y] = at([x0 + t * width, y0 + t * height]);
         write!(
             out,
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.2}</text><text x=\"{x}\" y=\"{}\" text-anchor=\"middle\">{:.2} s</text>",
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:.2}</text><text x=\"{x}\" y=\"{}\" text-anchor=\"middle\">{:.2} {unit}</text>",
             LEFT - 6.0,
             y + 4.0,
             y0 + t * height,

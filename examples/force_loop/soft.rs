@@ -40,10 +40,7 @@ pub fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
         felt.push(curve("closed form", colours[1], law));
     }
     let title = "a ball of 1 mm on a soft map: share of a wave that it feels, against waves a millimetre";
-    std::fs::write(
-        folder.join("footprint.svg"),
-        svg(title, &[("felt of felt by a point (1/mm along)", felt)]),
-    )?;
+    std::fs::write(folder.join("footprint.svg"), svg(title, &[("felt of felt by a point", "/mm", felt)]))?;
     println!("\nsoft map: off the closed form by at most {:.2} % of the wave", 1e2 * worst);
     let (tiles, missing) = tiles_drawn();
     println!(
@@ -53,7 +50,7 @@ pub fn draw(folder: &Path) -> Result<(), Box<dyn Error>> {
     let title = "a finger writes for 5 s and leaves: tiles of 32 × 32 cells that a game draws, of 256";
     std::fs::write(
         folder.join("drawn.svg"),
-        svg(title, &[("tiles a frame", vec![curve("drawn", "#1b6ca8", tiles)])]),
+        svg(title, &[("tiles a frame", "s", vec![curve("drawn", "#1b6ca8", tiles)])]),
     )?;
     Ok(())
 }

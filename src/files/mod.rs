@@ -7,6 +7,7 @@ mod file_error;
 pub mod modes_file;
 pub mod scene_file;
 pub(crate) mod shapes_file;
+mod shapes_glb;
 pub(crate) mod shapes_sidecar;
 pub(crate) mod storage;
 pub mod wav;

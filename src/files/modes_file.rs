@@ -1,6 +1,6 @@
 //! Modes files, `NAME.modes.json`: the modes of one body, where they come from, and what its strike had besides.
 
-use super::shapes_sidecar::{shapes_from_bytes, shapes_to_bytes};
+use super::shapes_sidecar::{shapes_from_bytes, shapes_to_file};
 use super::storage::{self, Disk, Files};
 use crate::model::click::Click;
 use crate::model::modal_model::{ModalModel, ModalModelError};
@@ -141,11 +141,12 @@ impl ModalModel {
         serde_json::to_string(&self.file()).unwrap_or_default()
     }
 
-    /// The same with the shapes in a file of their own, `name` beside it: its text, and the bytes of that file. None where there are no shapes.
+    /// The same with the shapes in a file of their own, `name` beside it (a glTF document where it ends in `.glb`): its text, and the bytes of that
+    /// file. None where there are no shapes.
     #[must_use]
     pub fn to_json_beside(&self, name: &str) -> Option<(String, Vec<u8>)> {
         let mut file = self.file();
-        let bytes = shapes_to_bytes(&file.shapes.take()?);
+        let bytes = shapes_to_file(&file.shapes.take()?, name);
         file.shapes_beside = Some(name.to_owned());
         Some((serde_json::to_string(&file).unwrap_or_default(), bytes))
     }

@@ -9,8 +9,9 @@
 //! | 8 × modes | `gains`: `f64` |
 //! | 12 × points × modes | `phi_per_sqrt_kg`: x, y, z as `f32`, mode after mode, so that fewer modes are a prefix |
 //!
-//! Little-endian throughout.
+//! Little-endian throughout. What begins with `glTF` is a [glTF document](super::shapes_glb) with the same numbers.
 
+use super::shapes_glb::{self, shapes_from_glb, shapes_to_glb};
 use crate::model::mode_shapes::ModeShapes;
 
 const MAGIC: &[u8; 8] = b"ASPSHAP1";
@@ -29,14 +30,25 @@ pub fn shapes_to_bytes(shapes: &ModeShapes) -> Vec<u8> {
     bytes
 }
 
+/// Writes shapes as the ending of the file's name says: a glTF document for `.glb`.
+#[must_use]
+pub fn shapes_to_file(shapes: &ModeShapes, name: &str) -> Vec<u8> {
+    if name.to_ascii_lowercase().ends_with(".glb") { shapes_to_glb(shapes) } else { shapes_to_bytes(shapes) }
+}
+
 /// Reads shapes for so many modes.
 ///
 /// # Errors
 /// What is wrong with the file.
 pub fn shapes_from_bytes(bytes: &[u8], modes: usize) -> Result<ModeShapes, String> {
+    if bytes.starts_with(shapes_glb::MAGIC) {
+        let shapes = shapes_from_glb(bytes, modes)?;
+        shapes.check(modes)?;
+        return Ok(shapes);
+    }
     let mut rest = Rest(bytes);
     if rest.take::<8>() != Some(*MAGIC) {
-        return Err("is no file of shapes; it must begin with ASPSHAP1".to_owned());
+        return Err("is no file of shapes; it must begin with ASPSHAP1 or be a .glb".to_owned());
     }
     let short = || "is cut off; write it again".to_owned();
     let mut count = || rest.u32().map(|n| n as usize).ok_or_else(short);
@@ -123,6 +135,14 @@ mod tests {
         files.add("bodies/mug.shapes", bytes);
         assert_eq!(ModalModel::load_from(&files, "bodies/mug.modes.json").unwrap(), model);
         assert!(files.read(std::path::Path::new("bodies/mug.shapes")).is_ok());
+        // As glTF places are single precision, and nothing else is.
+        let (glb_text, glb) = model.to_json_beside("mug.glb").unwrap();
+        files.add("bodies/glb.modes.json", glb_text);
+        files.add("bodies/mug.glb", glb);
+        let read = ModalModel::load_from(&files, "bodies/glb.modes.json").unwrap();
+        let mut wanted = model.shapes.as_deref().unwrap().clone();
+        wanted.points_m.iter_mut().flatten().for_each(|x| *x = f64::from(*x as f32));
+        assert_eq!((read.shapes.as_deref(), &read.modes), (Some(&wanted), &model.modes));
         // Text alone does not say where its shapes are.
         let alone = ModalModel::parse(&text).unwrap_err().to_string();
         assert!(alone.contains("mug.shapes"), "{alone}");

@@ -27,6 +27,8 @@ pub struct ContactBlock<'a> {
     pub impulse_n_s: &'a [f64],
     /// 3-D force on the finger, N: along u, v and out of the surface.
     pub force_n: &'a [[f64; 3]],
+    /// What the device behind the surface gives at most, N; infinite where nobody says. `force_n` keeps to it, and what is made of it has to.
+    pub cap_n: &'a [f64],
 }
 
 /// Receives what contacts do.

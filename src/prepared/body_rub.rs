@@ -1,8 +1,8 @@
 //! A rubbed body: one contact that sticks and slips on it, coupled with its modal bank in every sample (`dsp::stick_slip`).
 //!
-//! A second bank of the same modes, which sounds as the speed of the rubbed place, is run on the states that the body's own bank has at the
-//! beginning of a cell of the absolute sample grid; from its speeds follow the forces, which the body's bank then hears as it
-//! hears any other contact. Speeds are designed for the place a few groups a cell, so that no cell has much to do: a contact that
+//! The body's own bank tells, at the beginning of a cell of the absolute sample grid, how the rubbed place will move by itself; a second bank of
+//! the same modes, which sounds as the speed of that place, tells what strikes the body within the cell beside, and sleeps when nothing does.
+//! From both follow the forces, which the body's bank then hears as it hears any other contact. Speeds are designed for the place a few groups a cell, so that no cell has much to do: a contact that
 //! begins rubs after [`SETTLE_CELLS`] cells at most, and one that slides is followed as fast.
 
 use crate::model::strike_field::StrikePlace;
@@ -13,7 +13,7 @@ use crate::prepared::holding::HeldModes;
 use crate::prepared::slider::{self, Slider};
 use asperity_dsp::DesignError;
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, MAX_INPUTS, ModalBank, ModeGroup, design_group,
+    AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup, design_group,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -59,7 +59,9 @@ pub(crate) struct BodyRub {
     unit_per_sqrt_kg: Box<[f64]>,
     /// Gains at the strike positions of a body without shapes.
     positions: Box<[Box<[LaneGains]>]>,
-    speed: Bank,
+    /// The speed of the rubbed place: of the body by itself, and because of what strikes it within a cell.
+    ahead: Box<[AheadGroup]>,
+    struck: Bank,
     /// The gains that each group of it was designed for, and whether its modes have changed since.
     designed: Box<[LaneGains]>,
     stale: Box<[bool]>,
@@ -102,12 +104,13 @@ impl BodyRub {
             modes: held,
             unit_per_sqrt_kg,
             positions,
-            speed: ModalBank::new(kernel, silent, states).sleeping_below(0.0),
+            ahead: vec![AheadGroup::SILENT; groups].into(),
+            struck: ModalBank::new(kernel, silent, states).sleeping_below(0.0),
             designed: vec![LaneGains([0.0; LANES]); groups].into(),
             stale: vec![true; groups].into(),
             answers: vec![Answer::RIGID; groups].into(),
             answer: (Answer::RIGID, 0),
-            coupled: Coupled::begin(),
+            coupled: Coupled::begin(kernel),
             slider: Slider::new(groups),
             glide: slider::glide(sample_rate_hz),
             stage: Stage::Idle,
@@ -170,20 +173,19 @@ impl BodyRub {
     pub(crate) fn run(&mut self, position: u64, n: usize, driven: usize, sound: &Bank, others: &[Input<'_>]) {
         let first = position as usize % CELL;
         if first == 0 {
-            self.coupled.next_cell();
-            self.speed.follow(sound);
+            if self.answer.1 != driven {
+                self.sum_answers(driven);
+            }
+            let mut free_m_s = [0.0; CELL];
+            sound.ahead(&self.ahead, &mut free_m_s);
+            self.coupled.next_cell(&self.answer.0, &free_m_s);
+            if self.struck.awake() > 0 {
+                self.struck.silence();
+            }
         }
-        if self.answer.1 != driven {
-            self.sum_answers(driven);
-        }
-        let (mut known, mut free) = ([0.0; CELL], [0.0; CELL]);
-        self.coupled.under_way(first, self.sample_rate_hz, &mut known[..n]);
-        let mut inputs = [Input { impulses: &[], gains: &[] }; MAX_INPUTS];
-        inputs[0] = Input { impulses: &known[..n], gains: self.slider.gains() };
-        let count = (1 + others.len()).min(MAX_INPUTS);
-        inputs[1..count].copy_from_slice(&others[..count - 1]);
-        self.speed.render_leading(driven, position, Inputs::Placed(&inputs[..count]), &mut free[..n]);
-        self.coupled.run(&self.answer.0, &self.friction, first, &self.sweep[..n], &free[..n]);
+        let mut struck_m_s = [0.0; CELL];
+        self.struck.render_leading(driven, position, Inputs::Placed(others), &mut struck_m_s[..n]);
+        self.coupled.run(&self.friction, first, &self.sweep[..n], &struck_m_s[..n]);
         let mut impulse_n_s = [0.0; CELL];
         self.coupled.impulses(first, self.sample_rate_hz, &mut impulse_n_s[..n]);
         self.slider.add(&impulse_n_s[..n]);
@@ -218,7 +220,7 @@ impl BodyRub {
         }
         let settled = self.design_some();
         if self.stage == Stage::Settling && settled {
-            (self.stage, self.coupled) = (Stage::Rubs, Coupled::begin());
+            (self.stage, self.coupled) = (Stage::Rubs, Coupled::begin(self.struck.level()));
         }
     }
 
@@ -254,18 +256,23 @@ impl BodyRub {
         let gains = self.slider.gains()[group];
         let HeldModes { modes, count } = self.modes[group];
         let units = self.unit_per_sqrt_kg.get(group * LANES..).unwrap_or_default();
-        let (mut speeds, mut answer) = (modes, Answer::RIGID);
+        let (mut speeds, mut moves) = (modes, modes.map(|mode| (mode, 0.0)));
         for (lane, (mode, unit)) in modes[..count].iter().zip(units).enumerate() {
             let share = f64::from(gains.0[lane]);
+            moves[lane].1 = share * share * unit * unit;
             // What enters has the gain of its place already.
             let speed = place_speed(mode, share * unit * unit, self.sample_rate_hz);
-            let answers = answer.add_mode(mode, share * share * unit * unit, self.sample_rate_hz);
             // Modes that could be designed once always can.
-            let (Ok(speed), Ok(())) = (speed, answers) else { return };
+            let Ok(speed) = speed else { return };
             speeds[lane] = speed;
         }
-        let Ok(designed) = design_group(&speeds[..count], self.sample_rate_hz, &SPEED) else { return };
-        self.speed.retune(group, &designed);
+        let (rate_hz, level, mut answer) = (self.sample_rate_hz, self.struck.level(), Answer::RIGID);
+        let answers = answer.add_modes(level, &moves[..count], rate_hz);
+        let struck = design_group(&speeds[..count], rate_hz, &SPEED);
+        let ahead = AheadGroup::design(&speeds[..count], rate_hz);
+        let (Ok(()), Ok(struck), Ok(ahead)) = (answers, struck, ahead) else { return };
+        self.struck.retune(group, &struck);
+        self.ahead[group] = ahead;
         self.answers[group] = answer;
         (self.designed[group], self.stale[group]) = (gains, false);
     }

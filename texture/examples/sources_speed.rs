@@ -1,17 +1,25 @@
-//! Prints nanoseconds per sample of every surface, and milliseconds per frame of sand.
+//! Prints nanoseconds per sample of every surface, of a map under a point and under a ball in soft ground, and milliseconds per frame of sand.
 
+use asperity_texture::footprint::sample_under;
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
+use asperity_texture::height_map::{Extent, HeightMap};
 use asperity_texture::lattice::Lattice;
 use asperity_texture::raster::Raster;
 use asperity_texture::sand::simulation::Pose;
 use asperity_texture::sand::{SandDesign, SandSimulation, SandSource};
 use asperity_texture::solid_materials::SolidMaterial;
 use asperity_texture::solid_noise::SolidNoise;
+use asperity_texture::wrap::Wrap;
 use std::hint::black_box;
 use std::time::Instant;
 
 /// Best of many blocks, ns a sample.
 fn block_ns(source: &mut dyn HeightField) -> f64 {
+    ns_of(true, |path, out| source.sample(path, out))
+}
+
+/// The same of whatever samples, with slopes or without.
+fn ns_of(slopes: bool, mut sample: impl FnMut(&PathBlock<'_>, &mut SurfaceBlock)) -> f64 {
     let mut out = SurfaceBlock::default();
     let mut best = f64::INFINITY;
     for block in 0..5000_u64 {
@@ -24,10 +32,10 @@ fn block_ns(source: &mut dyn HeightField) -> f64 {
             normal_force_n: &[],
             first_sample: 64 * block,
             contact: 0,
-            slopes: true,
+            slopes,
         };
         let clock = Instant::now();
-        source.sample(black_box(&path), &mut out);
+        sample(black_box(&path), &mut out);
         best = best.min(clock.elapsed().as_secs_f64());
         black_box(&out);
     }
@@ -43,6 +51,18 @@ fn main() {
     let cell = Raster::from_fn(64, 64, |x, y| 1e-5 * (x * y % 7) as f64);
     if let Ok(mut source) = Lattice::new(&cell, [0.01, 0.0], [0.003, 0.01]) {
         println!("lattice            {:6.1} ns a sample", block_ns(&mut source));
+    }
+    let heights = Raster::from_fn(1024, 1024, |x, y| ((x * 7 + y * 13) % 31) as f64 / 31.0);
+    let extent = Extent { width_m: 0.14, height_m: 0.14, relief_m: 1e-3 };
+    if let Ok(mut map) = HeightMap::new(&heights, extent, Wrap::Repeat) {
+        println!("map, a point       {:6.1} ns a sample", ns_of(false, |path, out| map.sample(path, out)));
+        for radius_m in [1e-4, 1e-3, 3e-3] {
+            let ns = |map: &mut HeightMap, slopes| {
+                ns_of(slopes, |path, out| sample_under(map, path, &[radius_m; MAX_BLOCK], out))
+            };
+            let (heard, pushed) = (ns(&mut map, false), ns(&mut map, true));
+            println!("map, a ball {radius_m} m wide in it {heard:6.1} ns a sample, with slopes {pushed:6.1}");
+        }
     }
     if let Ok(mut source) = SandSource::synchronous(&SandDesign::default(), 1) {
         println!("sand               {:6.1} ns a sample", block_ns(&mut source));

@@ -13,6 +13,8 @@ use crate::sand::SandLaw;
 
 /// Below this speed friction grows linearly, so that a resting tip does not chatter, m/s.
 const STICK_M_S: f64 = 1e-3;
+/// No spring carries more, N.
+const MOST_N: f64 = 1e9;
 
 /// How a surface answers a depth.
 #[expect(
@@ -33,16 +35,17 @@ pub enum TipLaw {
 }
 
 impl TipLaw {
-    /// Force on the tip along u, v and out of the surface, N; none above the surface.
+    /// Force on the tip along u, v and out of the surface, N; none above the surface, and none of a depth that is no number. Always finite.
     #[must_use]
     pub fn answer_n(&self, depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
         match self {
             Self::Sand(law) => law.answer_n(depth_m, velocity_m_s),
             Self::Spring { compliance_m_n, friction } => {
-                let carried_n = depth_m.max(0.0) / compliance_m_n;
-                let slide =
-                    friction * carried_n / libm::hypot(velocity_m_s[0], velocity_m_s[1]).max(STICK_M_S);
-                [-slide * velocity_m_s[0], -slide * velocity_m_s[1], carried_n]
+                // In this order what is no number carries nothing.
+                let carried_n = (depth_m.max(0.0) / compliance_m_n).min(MOST_N);
+                let [u, v] = velocity_m_s.map(|v| if v.is_finite() { v } else { 0.0 });
+                let slide = friction * carried_n / libm::hypot(u, v).max(STICK_M_S);
+                [-slide * u, -slide * v, carried_n]
             }
         }
     }
@@ -83,6 +86,7 @@ impl TipLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sand::Buried;
 
     #[test]
     fn sand_answers_with_the_document_s_two_equations() {
@@ -106,5 +110,35 @@ mod tests {
         assert_eq!(law.answer_n(0.004, [0.3, -0.4]), [-0.6, 0.8, 2.0]);
         assert_eq!(law.answer_n(-0.004, [0.3, -0.4])[2], 0.0);
         assert_eq!(law.stiffness_n_m(0.0), 500.0);
+    }
+
+    #[test]
+    fn a_sensor_that_tells_rubbish_gets_a_finite_force_and_none_from_what_is_no_number() {
+        let mut steep =
+            SandLaw { exponent_per_m: 1e4, stiffness_n: 1e6, drag_s_per_m: 1e4, ..SandLaw::default() };
+        let stone =
+            Buried { at_m: [0.05; 2], top_m: 0.002, half_m: [0.008; 2], height_m: 0.004, hardness: 1e3 };
+        steep.buried[0] = Some(stone);
+        let spring = TipLaw::Spring { compliance_m_n: 1e-12, friction: 10.0 };
+        let rubbish = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300, 5e-324, 0.45, 1e3, -0.0];
+        for law in [TipLaw::Sand(SandLaw::default()), TipLaw::Sand(steep), spring] {
+            for depth_m in rubbish {
+                for v in rubbish {
+                    for x in rubbish {
+                        let told =
+                            [law.answer_n(depth_m, [v, 0.1]), law.answer_at_n([x, 0.05], depth_m, [0.1, v])];
+                        for force_n in told {
+                            assert!(force_n.iter().all(|f| f.is_finite()), "{depth_m} {v} {x}: {force_n:?}");
+                            let size_n = libm::hypot(libm::hypot(force_n[0], force_n[1]), force_n[2]);
+                            assert!(!matches!(law, TipLaw::Sand(_)) || size_n <= 20.0 + 1e-9, "{size_n}");
+                            assert!(
+                                depth_m > 0.0 || force_n.iter().all(|f| *f == 0.0),
+                                "{depth_m}: {force_n:?}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
     }
 }

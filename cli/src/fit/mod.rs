@@ -5,11 +5,13 @@
 //! | [`import`] | tables of other programs, in the recording's place |
 //! | [`modes_file`] | `NAME.modes.json` with standard deviations and the residual's summary |
 //! | [`picture`] | waves and spectrograms of recording, struck body and what is left |
+//! | [`places`] | where the merged strikes were made on a body with shapes |
 //! | [`report`] | what `--json` and the terminal say |
 
 mod import;
 mod modes_file;
 mod picture;
+mod places;
 mod report;
 
 pub use report::Report;
@@ -20,11 +22,12 @@ use crate::progress::Progress;
 use crate::wav;
 use asperity_dsp::mode::Mode;
 use asperity_fit::after::scaling::{DampingLaw, scale_size, transfer_damping};
-use asperity_fit::after::strikes::merge;
+use asperity_fit::after::strikes::{Merged, merge};
 use asperity_fit::after::table;
 use asperity_fit::body::residual::Burst;
 use asperity_fit::{ChannelChoice, Fit, FitOptions, Recording};
 use clap::Args;
+use places::PlacesReport;
 use report::TableReport;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -75,6 +78,10 @@ pub struct Options {
     /// written as OUT.strikeN.modes.json with the common frequencies
     #[arg(long, value_name = "STRIKE.wav", num_args = 1..)]
     pub merge: Vec<PathBuf>,
+    /// With --merge: the struck body with its mode shapes (a modes file of version 2); tells at which place each strike was made and how
+    /// much of their difference that explains. Nothing else changes
+    #[arg(long, value_name = "BODY.modes.json", requires = "merge")]
+    pub mesh: Option<PathBuf>,
     /// Write what the modes do not explain
     #[arg(long, value_name = "OUT.wav")]
     pub residual: Option<PathBuf>,
@@ -125,6 +132,7 @@ impl Options {
             scale_size: None,
             material: None,
             merge: Vec::new(),
+            mesh: None,
             residual: None,
             resynthesis: None,
             plot: None,
@@ -177,11 +185,16 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     let mut outputs = Outputs::new();
     let plain: Vec<Mode> = fit.modes.iter().map(asperity_fit::FittedMode::mode).collect();
     let burst = options.burst_ms.map(|ms| fit.burst(1e-3 * ms));
+    let mut places = None;
     if options.merge.is_empty() {
         let body = modes_file::Body::fitted(&fit, &changed(&plain), options.impulse).with_burst(burst);
         modes_file::write(&mut outputs, &options.output, &body)?;
     } else {
-        write_strikes(&mut outputs, options, channel, &recording, &fit, burst, &changed)?;
+        let merged = write_strikes(&mut outputs, options, channel, &recording, &fit, burst, &changed)?;
+        let recordings: Vec<&Path> =
+            std::iter::once(&options.recording).chain(&options.merge).map(PathBuf::as_path).collect();
+        let mesh = options.mesh.as_deref();
+        places = mesh.map(|mesh| PlacesReport::new(mesh, &merged, &recordings)).transpose()?;
     }
     if let Some(path) = &options.csv {
         outputs.write(path, table::to_csv(&fit.modes).as_bytes())?;
@@ -196,7 +209,7 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
         outputs.write(path, picture::svg(&recording, &fit).as_bytes())?;
     }
     outputs.commit()?;
-    Ok(Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()))
+    Ok(Report { places, ..Report::new(&fit, DampingLaw::of(&plain), started.elapsed().as_secs_f64()) })
 }
 
 /// Modes of another size or material, as the options say.
@@ -332,7 +345,7 @@ fn write_strikes(
     fit: &Fit,
     burst: Option<Burst>,
     changed: &dyn Fn(&[Mode]) -> Vec<Mode>,
-) -> Result<(), CliError> {
+) -> Result<Merged, CliError> {
     let others = options
         .merge
         .iter()
@@ -352,7 +365,7 @@ fn write_strikes(
         let body = modes_file::Body::plain(&strikes[s].1.source, &changed(modes), options.impulse);
         modes_file::write(outputs, &path, &body)?;
     }
-    Ok(())
+    Ok(merged)
 }
 
 fn write_samples(outputs: &mut Outputs, path: &Path, samples: &[f64], rate_hz: f64) -> Result<(), CliError> {

@@ -1,6 +1,7 @@
 //! The report of a fit, as JSON for programs and as lines for people.
 
 use super::Options;
+use super::places::PlacesReport;
 use crate::error::CliError;
 use crate::output;
 use asperity_dsp::mode::Mode;
@@ -45,6 +46,9 @@ pub struct Report {
     pub attack_residual_db: f64,
     /// The five modes with most energy: `[frequency_hz, decay_per_s, amplitude]`.
     pub strongest: Vec<[f64; 3]>,
+    /// With `--mesh`: where the strikes were made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub places: Option<PlacesReport>,
 }
 
 impl Report {
@@ -71,6 +75,7 @@ impl Report {
                 .take(5)
                 .map(|m| [m.frequency_hz, m.decay_per_s, m.amplitude])
                 .collect(),
+            places: None,
         }
     }
 
@@ -92,6 +97,9 @@ impl Report {
         }
         for warning in &self.warnings {
             output::say(&format!("  warning: {warning}"));
+        }
+        for line in self.places.iter().flat_map(PlacesReport::lines) {
+            output::say(&format!("  {line}"));
         }
         Ok(())
     }

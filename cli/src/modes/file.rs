@@ -1,7 +1,7 @@
 //! The modes file of a solved body: format version 2, with shapes.
 
 use crate::error::CliError;
-use asperity::{ModeShapes, ShapeUnit, shapes_to_bytes};
+use asperity::{ModeShapes, ShapeUnit, shapes_to_file};
 use asperity_dsp::damping::Damping;
 use asperity_dsp::radiation::{EquivalentSphere, Surface};
 use asperity_shape::SolvedBody;
@@ -124,7 +124,7 @@ impl ModesFile {
 
     /// Moves the shapes into a file of that name; its bytes.
     pub fn put_shapes_beside(&mut self, name: String) -> Option<Vec<u8>> {
-        let bytes = shapes_to_bytes(&self.shapes.take()?);
+        let bytes = shapes_to_file(&self.shapes.take()?, &name);
         self.shapes_beside = Some(name);
         Some(bytes)
     }

@@ -59,9 +59,9 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;
     // What the engine would refuse is no body.
     asperity::ModalModel::parse(&text).map_err(CliError::told)?;
-    let beside = options.output.with_extension("shapes");
+    let beside = options.output.with_extension(if options.shapes_glb { "glb" } else { "shapes" });
     let name = beside.file_name().map(|name| name.to_string_lossy().into_owned());
-    let written = if let (true, Some(name)) = (options.shapes_beside, name) {
+    let written = if let (true, Some(name)) = (options.shapes_beside || options.shapes_glb, name) {
         if let Some(bytes) = file.put_shapes_beside(name) {
             outputs.write(&beside, &bytes)?;
         }

@@ -49,6 +49,9 @@ pub struct Options {
     /// Write the shapes into a file of their own, OUT.shapes, a fifth as large
     #[arg(long)]
     pub shapes_beside: bool,
+    /// Write the shapes into a glTF document of their own, OUT.glb, that viewers of meshes open
+    #[arg(long, conflicts_with = "shapes_beside")]
+    pub shapes_glb: bool,
     /// Every mode below this frequency, Hz
     #[arg(long, value_name = "HZ")]
     pub up_to: Option<f64>,

@@ -7,8 +7,9 @@
 //! Written plainly it is the loop of [`ReferenceMode`](super::ReferenceMode), one mode after the other; the bank renders the same 16 modes at a time, in the
 //! instructions that its [`Level`] stands for, and leaves out the groups that have rung out.
 
+use super::ahead::{self, AheadGroup};
 use super::awake::Awake;
-use super::design::{GroupState, LaneGains, ModeGroup};
+use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
 use super::kernel::Kernel;
 use super::{Input, SLEEP_AMPLITUDE, retune, sleep};
 use crate::simd::Level;
@@ -97,17 +98,13 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
         }
     }
 
-    /// Remembers what another bank of the same modes does: they may sound different, by other amplitudes and phases, and have the same states.
+    /// What the coming 64 samples would be if nothing struck the bank, as `groups` hear its modes ([`AheadGroup`]): groups beyond them are not
+    /// heard.
     ///
-    /// At an absolute multiple of four samples: within a turn a bank keeps what its own outputs still have to hear.
-    pub fn follow<H, T: AsRef<[GroupState]>>(&mut self, other: &ModalBank<H, T>) {
-        let (rings, rang) = (other.awake.groups(), self.awake.groups());
-        let (to, from) = (self.states.as_mut(), other.states.as_ref());
-        for (to, from) in to.iter_mut().zip(from).take(rings) {
-            *to = *from;
-        }
-        to.iter_mut().take(rang).skip(rings).for_each(|state| *state = GroupState::REST);
-        self.awake = other.awake;
+    /// At an absolute multiple of [`GRID_SAMPLES`](super::GRID_SAMPLES), where states are as exact as they get.
+    pub fn ahead(&self, groups: &[AheadGroup], out: &mut [f32; GRID_SAMPLES as usize]) {
+        let awake = self.awake().min(groups.len());
+        ahead::ahead(self.level(), &groups[..awake], &self.states.as_ref()[..awake], out);
     }
 
     /// Forgets all that rings.

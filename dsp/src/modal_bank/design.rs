@@ -154,11 +154,9 @@ impl ModeGroup {
     fn set_lane(&mut self, lane: usize, pole: &Pole, options: &GroupOptions) {
         let radius = libm::exp(-pole.decay);
         let (sin, cos) = (libm::sin(pole.theta), libm::cos(pole.theta));
-        let (gap, half) = (-libm::expm1(-pole.decay), libm::sin(0.5 * pole.theta));
-        let m = gap * gap + 4.0 * radius * half * half;
-        let g = 1.0 - (m - libm::expm1(-2.0 * pole.decay));
         let (b0, b1) = pole.numerator();
-        let next = [[1.0, -m], [1.0, g]];
+        let next = free_step(pole);
+        let [_, [_, g]] = next;
         let step = square(next);
         let now = [b0, b0 * g + b1];
         // Rows of (v, w): the output in each sample of the turn and the next. What is times v is h₁, h₂, …
@@ -216,13 +214,21 @@ pub(super) fn out_of([h1, h2, h3, h4, h5]: [f64; 5]) -> [f64; 5] {
 }
 
 /// Rows of a linear map of (v, w).
-type Matrix = [[f64; 2]; 2];
+pub(super) type Matrix = [[f64; 2]; 2];
 
 fn product<const N: usize>(left: [[f64; 2]; N], right: Matrix) -> [[f64; 2]; N] {
     left.map(|row| [0, 1].map(|i| row[0] * right[0][i] + row[1] * right[1][i]))
 }
 
-fn square(x: Matrix) -> Matrix {
+/// One sample of free motion.
+pub(super) fn free_step(pole: &Pole) -> Matrix {
+    let radius = libm::exp(-pole.decay);
+    let (gap, half) = (-libm::expm1(-pole.decay), libm::sin(0.5 * pole.theta));
+    let m = gap * gap + 4.0 * radius * half * half;
+    [[1.0, -m], [1.0, 1.0 - (m - libm::expm1(-2.0 * pole.decay))]]
+}
+
+pub(super) fn square(x: Matrix) -> Matrix {
     product(x, x)
 }
 

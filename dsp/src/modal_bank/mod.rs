@@ -53,9 +53,11 @@
 //! for every instruction set with a fused multiply-add. In an `f32` that rings out, denormal numbers
 //! would slow the bank a hundredfold; each lane is zeroed long before, below [`SLEEP_AMPLITUDE`].
 //!
-//! [`ModalBank`] is its face: the modes and their memory, which instructions run them, and what sleeps. [`Culling`] says which modes are worth it,
+//! [`ModalBank`] is its face: the modes and their memory, which instructions run them, and what sleeps. [`AheadGroup`] tells what they will do by
+//! themselves, [`Culling`] says which modes are worth it,
 //! [`FirstSamples`] what the impulse ring takes from the beginning of a strike.
 
+mod ahead;
 mod awake;
 mod bank;
 mod culling;
@@ -72,6 +74,7 @@ mod sums;
 mod vector;
 mod walk;
 
+pub use ahead::AheadGroup;
 pub use bank::{Inputs, ModalBank, lane_gains};
 pub use culling::{Culling, audible};
 pub use design::{

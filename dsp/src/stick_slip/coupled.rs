@@ -1,33 +1,39 @@
 //! Rub of a whole modal bank: the closed-form step of every sample, with the modes run a cell of 64 samples at a time.
 //!
 //! ```text
-//! v*[n] = ṽ[n] + Σ_m g[n − m] F[m]            m: the samples of the cell before n
-//! g[j] = Σ φ_k² Im(zʲ (z − 1)) / ω            z = R e^(iθ)            F[n] from v*[n] and g[0], as in the [module](super)
+//! v*[n] = ṽ[n] + Σ_i f_i U[n − i] + Σ_m g[n − m] F[m]       m: the samples of the cell before n
+//! U[j] = Σ φ_k² Im(q_k zʲ) / ω      q = (z − 1) / Σ_t c_t z^−t      z = R e^(iθ)
+//! g[j] = Σ_t c_t U[j − t]  = Σ φ_k² Im(zʲ (z − 1)) / ω               F[n] from v*[n] and g[0], as in the [module](super)
 //! ```
 //!
 //! | symbol | here |
 //! |---|---|
-//! | ṽ | what a bank of [`place_speed`] modes says from the states of the cell's beginning: everything but this cell's forces |
-//! | g | [`Answer`], m/s a newton |
+//! | ṽ | what a [`place_speed`] output of the bank says ahead of the cell ([`ModalBank::ahead`](crate::modal_bank::ModalBank::ahead)): the free motion |
+//! | c_t | the five taps through which a bank hears a force ([`FORCE_TAPS`]) |
+//! | f_i | what the bank still has to hear in the cell's sample i of the forces before it |
+//! | U, g | [`Answer`], m/s a newton |
 //! | F | [`Coupled::run`] |
 //!
 //! The modes are linear, so what a force does within its own cell is a sum over its few samples, and what it does later is in the states once the
-//! bank has heard it. So the bank runs in its own instructions, twice: once for the speed of the place, on a copy of its states, and once with the
-//! forces, for the sound. The sum is the plain step's to rounding ([`RubbedBody`](super::RubbedBody)): nothing is a sample late and nothing is
+//! bank has heard it. So the bank is rendered once, with the forces, for the sound; before that it tells the free motion of the cell, and a force,
+//! once it is known, is added to the speeds of all later samples of the cell at once: what a sample has to wait for is the one product
+//! with the force before it. The sum is the plain step's to rounding ([`RubbedBody`](super::RubbedBody)): nothing is a sample late and nothing is
 //! iterated.
-//!
-//! The bank hears forces through five taps ([`FORCE_TAPS`](crate::hertz::FORCE_TAPS)); the speed's modes undo them exactly, and what is missing
-//! of their first four samples is added from [`Answer`].
 
 use super::{Friction, RubState, Sweep};
 use crate::DesignError;
 use crate::hertz::{FORCE_HISTORY, FORCE_TAPS};
 use crate::mode::Mode;
+use crate::simd::{Level, Set, at_level};
 use core::array::from_fn;
 use core::f64::consts::PI;
 
 /// Samples of a cell; cells begin at absolute multiples of it.
 pub const CELL: usize = crate::modal_bank::GRID_SAMPLES as usize;
+/// Modes side by side while an answer is designed.
+const LANES: usize = 16;
+/// Speeds side by side.
+const CHUNK: usize = 8;
 
 /// A mode that sounds as the speed of a rubbed place, m/s, when it hears impulses of N·s along the motion through the taps of a force.
 /// `motion` is the product of its motions where it is pushed and where it is looked at, 1/kg.
@@ -46,66 +52,100 @@ pub fn place_speed(mode: &Mode, motion: f64, sample_rate_hz: f64) -> Result<Mode
 /// How a rubbed place answers a force of one sample, m/s a newton.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Answer {
-    /// g, the latest lag first: a sum over past forces runs along both.
-    own: [f64; CELL],
-    /// What the bank lacks of it in the first samples, where the force is of the cell before.
-    lacks: [f64; FORCE_HISTORY],
+    /// U, from a lag of −4 samples on.
+    tapped: [f64; FORCE_HISTORY + CELL],
 }
 
 impl Answer {
     /// Nothing moves.
-    pub const RIGID: Self = Self { own: [0.0; CELL], lacks: [0.0; FORCE_HISTORY] };
+    pub const RIGID: Self = Self { tapped: [0.0; FORCE_HISTORY + CELL] };
 
-    /// Adds a mode that moves with `motion` 1/kg ([`place_speed`]).
+    /// Adds modes, each of which moves with `motion` 1/kg ([`place_speed`]).
     ///
     /// # Errors
     /// As [`place_speed`].
-    pub fn add_mode(&mut self, mode: &Mode, motion: f64, sample_rate_hz: f64) -> Result<(), DesignError> {
-        let Some(pole) = Pole::new(mode, sample_rate_hz)? else { return Ok(()) };
-        let scale = motion / pole.omega;
-        // Im(zʲ (z − 1)), and the same of the mode that undoes the taps.
-        let (mut now, mut tapped) = (pole.speed, over(pole.speed, pole.taps()));
-        let mut heard = [0.0; FORCE_HISTORY];
-        for lag in 0..CELL {
-            self.own[CELL - 1 - lag] += scale * now[1];
-            if lag < FORCE_HISTORY {
-                heard[lag] = tapped[1];
-                let risen: f64 = (0..=lag).map(|tap| FORCE_TAPS[tap] * heard[lag - tap]).sum();
-                self.lacks[lag] += scale * (now[1] - risen);
+    pub fn add_modes(
+        &mut self,
+        level: Level,
+        modes: &[(Mode, f64)],
+        sample_rate_hz: f64,
+    ) -> Result<(), DesignError> {
+        for modes in modes.chunks(LANES) {
+            let (mut now, mut z) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
+            for (lane, (mode, motion)) in modes.iter().enumerate() {
+                let Some(pole) = Pole::new(mode, sample_rate_hz)? else { continue };
+                let scale = motion / pole.omega;
+                let back = (0..FORCE_HISTORY).fold(pole.taps(), |back, _| times(back, pole.z));
+                let first = over(pole.speed, back);
+                for part in 0..2 {
+                    (now[part][lane], z[part][lane]) = (scale * first[part], pole.z[part]);
+                }
             }
-            (now, tapped) = (times(now, pole.z), times(tapped, pole.z));
+            at_level!(level, _token => turn(&mut now, &z, &mut self.tapped));
         }
         Ok(())
     }
 
     /// Adds what other modes answer.
     pub fn add(&mut self, other: &Self) {
-        self.own.iter_mut().zip(&other.own).for_each(|(sum, x)| *sum += x);
-        self.lacks.iter_mut().zip(&other.lacks).for_each(|(sum, x)| *sum += x);
+        self.tapped.iter_mut().zip(&other.tapped).for_each(|(sum, x)| *sum += x);
     }
 
-    /// g at lag 0: what a place moves with in the sample of the force itself.
-    #[must_use]
-    pub fn mobility_m_s_n(&self) -> f64 {
-        self.own[CELL - 1]
+    /// g.
+    #[inline(always)]
+    fn own(&self) -> [f64; CELL] {
+        let mut own = [0.0; CELL];
+        for (tap, share) in FORCE_TAPS.into_iter().enumerate() {
+            let tapped = &self.tapped[FORCE_HISTORY - tap..];
+            own.iter_mut().zip(tapped).for_each(|(sum, u)| *sum += share * u);
+        }
+        own
     }
 }
 
-/// A rubbing contact of a bank: whether it sticks, and its forces so far.
+/// Adds the imaginary parts of some numbers that turn by z from sample to sample.
+#[inline(always)]
+fn turn(now: &mut [[f64; LANES]; 2], z: &[[f64; LANES]; 2], sums: &mut [f64]) {
+    for sum in sums {
+        let [a, b] = *now;
+        // Side by side.
+        let eight: [f64; 8] = from_fn(|l| b[l] + b[l + 8]);
+        let four: [f64; 4] = from_fn(|l| eight[l] + eight[l + 4]);
+        *sum += (four[0] + four[2]) + (four[1] + four[3]);
+        now[0] = from_fn(|l| a[l] * z[0][l] - b[l] * z[1][l]);
+        now[1] = from_fn(|l| a[l] * z[1][l] + b[l] * z[0][l]);
+    }
+}
+
+/// A rubbing contact of a bank: whether it sticks, its forces so far, and what they will move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coupled {
+    level: Level,
     state: RubState,
-    /// Of the present cell, N.
-    force_n: [f64; CELL],
-    /// The last of the cell before.
-    before_n: [f64; FORCE_HISTORY],
+    /// The last forces of the cell before, then those of the present one, N.
+    force_n: [f64; FORCE_HISTORY + CELL],
+    /// How the place moves in the present cell with all that is known, but for the sample just before: it comes with the sample itself, m/s.
+    known_m_s: [f64; CELL],
+    /// g at a lag of 1, and what it makes of the sample just before.
+    next_m_s_n: f64,
+    moved_m_s: f64,
+    /// As many zeros as a cell has samples, then g from lag 0 on, with zeros there and at 1.
+    later_m_s_n: [f64; 2 * CELL],
 }
 
 impl Coupled {
     /// Nothing has rubbed yet.
     #[must_use]
-    pub fn begin() -> Self {
-        Self { state: RubState::default(), force_n: [0.0; CELL], before_n: [0.0; FORCE_HISTORY] }
+    pub fn begin(level: Level) -> Self {
+        Self {
+            level,
+            state: RubState::default(),
+            force_n: [0.0; FORCE_HISTORY + CELL],
+            known_m_s: [0.0; CELL],
+            next_m_s_n: 0.0,
+            moved_m_s: 0.0,
+            later_m_s_n: [0.0; 2 * CELL],
+        }
     }
 
     /// Whether it sticks at present.
@@ -114,57 +154,82 @@ impl Coupled {
         self.state.sticks
     }
 
-    /// Another cell begins.
-    pub fn next_cell(&mut self) {
-        self.before_n.copy_from_slice(&self.force_n[CELL - FORCE_HISTORY..]);
-        self.force_n = [0.0; CELL];
+    /// Another cell begins: how its place answers, and `free_m_s`, what the bank says of it ahead.
+    pub fn next_cell(&mut self, answer: &Answer, free_m_s: &[f32; CELL]) {
+        at_level!(self.level, _token => self.next_cell_in(answer, free_m_s));
     }
 
-    /// What the bank still has to hear of the forces before the cell, sample by sample from `first` of the cell on, N·s: to be rendered before
-    /// [`run`](Self::run).
-    pub fn under_way(&self, first: usize, sample_rate_hz: f64, impulse_n_s: &mut [f32]) {
-        for (i, out) in impulse_n_s.iter_mut().enumerate() {
-            let older =
-                (first + i + 1..=FORCE_HISTORY).map(|tap| FORCE_TAPS[tap] * self.past(first + i, tap));
-            *out = (older.sum::<f64>() / sample_rate_hz) as f32;
+    #[inline(always)]
+    fn next_cell_in(&mut self, answer: &Answer, free_m_s: &[f32; CELL]) {
+        let own = answer.own();
+        self.state.yields(own[0]);
+        (self.next_m_s_n, self.moved_m_s) = (own[1], 0.0);
+        self.later_m_s_n[CELL..].copy_from_slice(&own);
+        self.later_m_s_n[CELL..CELL + 2].fill(0.0);
+        self.force_n.copy_within(CELL.., 0);
+        self.force_n[FORCE_HISTORY..].fill(0.0);
+        self.known_m_s = free_m_s.map(f64::from);
+        for at in 0..FORCE_HISTORY {
+            let unheard_n: f64 = (at + 1..=FORCE_HISTORY)
+                .map(|tap| FORCE_TAPS[tap] * self.force_n[FORCE_HISTORY + at - tap])
+                .sum();
+            let answers = &answer.tapped[FORCE_HISTORY - at..];
+            self.known_m_s.iter_mut().zip(answers).for_each(|(sum, u)| *sum += unheard_n * u);
         }
     }
 
-    /// The forces of the coming samples, N, from sample `first` of the cell on: `free_m_s` is ṽ, `sweep` what rubs. Lengths: as far as the
-    /// shortest reaches, within the cell.
-    pub fn run(
+    /// The forces of the coming samples, N, from sample `first` of the cell on: `sweep` is what rubs, `struck_m_s` how the place moves because of what
+    /// has struck the bank since the cell began. Lengths: as far as the shortest reaches, within the cell.
+    pub fn run(&mut self, friction: &Friction, first: usize, sweep: &[Sweep], struck_m_s: &[f32]) -> &[f64] {
+        let n = sweep.len().min(struck_m_s.len()).min(CELL.saturating_sub(first));
+        at_level!(self.level, token => self.run_in(token, friction, first, &sweep[..n], struck_m_s));
+        &self.force_n[FORCE_HISTORY + first..FORCE_HISTORY + first + n]
+    }
+
+    #[inline(always)]
+    fn run_in<T: Set>(
         &mut self,
-        answer: &Answer,
+        token: T,
         friction: &Friction,
         first: usize,
         sweep: &[Sweep],
-        free_m_s: &[f32],
-    ) -> &[f64] {
-        let n = sweep.len().min(free_m_s.len()).min(CELL.saturating_sub(first));
-        self.state.mobility_m_s_n = answer.mobility_m_s_n();
-        for (at, (sweep, free_m_s)) in (first..first + n).zip(sweep.iter().zip(free_m_s)) {
-            let own = dot(&answer.own[CELL - 1 - at..], &self.force_n[..at]);
-            let lacks: f64 = (at + 1..FORCE_HISTORY).map(|lag| answer.lacks[lag] * self.past(at, lag)).sum();
-            let free_m_s = f64::from(*free_m_s) + own + lacks;
-            self.force_n[at] = self.state.solve(friction, sweep, free_m_s);
+        struck_m_s: &[f32],
+    ) {
+        let (next_m_s_n, mut moved_m_s) = (self.next_m_s_n, self.moved_m_s);
+        let mut known_m_s = self.known_m_s.get(first).copied().unwrap_or(0.0);
+        for (at, (sweep, struck_m_s)) in (first..CELL).zip(sweep.iter().zip(struck_m_s)) {
+            let behind_m_s = sweep.sweep_m_s - (known_m_s + f64::from(*struck_m_s));
+            // Read before this sample's force is added to what lies beside it, or it would wait for that.
+            known_m_s = self.known_m_s.get(at + 1).copied().unwrap_or(0.0);
+            let pressed_n = sweep.normal_force_n;
+            let force_n;
+            [force_n, moved_m_s] =
+                self.state.solve(token, friction, pressed_n, behind_m_s - moved_m_s, next_m_s_n);
+            self.force_n[FORCE_HISTORY + at] = force_n;
+            self.moves_later(at, force_n);
         }
-        &self.force_n[first..first + n]
+        self.moved_m_s = moved_m_s;
+    }
+
+    /// Adds what the force of sample `at` moves from the sample after the next on.
+    #[inline(always)]
+    fn moves_later(&mut self, at: usize, force_n: f64) {
+        let from = (at + 2) / CHUNK;
+        let answers = self.later_m_s_n[CELL + CHUNK * from - at..].as_chunks::<CHUNK>().0;
+        let known = self.known_m_s.as_chunks_mut::<CHUNK>().0;
+        for (known, answer) in known[from.min(CELL / CHUNK)..].iter_mut().zip(answers) {
+            *known = from_fn(|i| known[i] + force_n * answer[i]);
+        }
     }
 
     /// What the bank hears of the forces so far, from sample `first` of the cell on, N·s.
     pub fn impulses(&self, first: usize, sample_rate_hz: f64, impulse_n_s: &mut [f64]) {
-        for (i, out) in impulse_n_s.iter_mut().enumerate() {
-            let at = first + i;
-            let heard = |tap: usize| {
-                FORCE_TAPS[tap] * if tap <= at { self.force_n[at - tap] } else { self.past(at, tap) }
-            };
-            *out = (0..=FORCE_HISTORY).map(heard).sum::<f64>() / sample_rate_hz;
+        let step_s = 1.0 / sample_rate_hz;
+        impulse_n_s.fill(0.0);
+        for (tap, share) in FORCE_TAPS.into_iter().enumerate() {
+            let forces_n = self.force_n.get(FORCE_HISTORY + first - tap..).unwrap_or_default();
+            impulse_n_s.iter_mut().zip(forces_n).for_each(|(sum, force_n)| *sum += share * step_s * force_n);
         }
-    }
-
-    /// The force `lag` samples before sample `at` of the cell, which lies in the cell before.
-    fn past(&self, at: usize, lag: usize) -> f64 {
-        self.before_n[FORCE_HISTORY + at - lag]
     }
 }
 
@@ -211,20 +276,4 @@ fn times([a, b]: Complex, [c, d]: Complex) -> Complex {
 fn over([a, b]: Complex, [c, d]: Complex) -> Complex {
     let square = c * c + d * d;
     [(a * c + b * d) / square, (b * c - a * d) / square]
-}
-
-/// Σ x y as far as `y` reaches, four at a time; its order depends on the length alone.
-fn dot(x: &[f64], y: &[f64]) -> f64 {
-    let (x, y) = (x.chunks(4), y.chunks(4));
-    let mut sums = [0.0; 4];
-    for (x, y) in x.zip(y) {
-        match (x, y) {
-            ([a, b, c, d], [e, f, g, h]) => {
-                let products = [a * e, b * f, c * g, d * h];
-                sums = from_fn(|i| sums[i] + products[i]);
-            }
-            _ => x.iter().zip(y).zip(&mut sums).for_each(|((x, y), sum)| *sum += x * y),
-        }
-    }
-    sums.iter().sum()
 }

@@ -42,6 +42,9 @@ pub use plain::{RubbedBody, RubbedModes};
 
 use crate::DesignError;
 use crate::limits::{self, Range};
+use crate::simd::Set;
+use fearless_simd::f64x2;
+use fearless_simd::prelude::*;
 
 /// What a rubbing pair is like.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,9 +76,13 @@ pub struct RubState {
     sticks: bool,
     /// The force of the last sample, N.
     last_n: f64,
-    /// g, m/s a newton.
+    /// g, m/s a newton, and 1/g; 0 of a place that does not yield.
     mobility_m_s_n: f64,
+    stiffness_n_s_m: f64,
 }
+
+/// Share of the speeds at hand below which a place yields next to nothing.
+const LITTLE: f64 = 1e-6;
 
 /// One sample of a rubbing contact.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -106,57 +113,84 @@ impl RubState {
         self.sticks
     }
 
-    /// The friction force of a sample in which the place would move with `free_m_s` if nothing rubbed it.
-    #[inline]
-    fn solve(&mut self, friction: &Friction, now: &Sweep, free_m_s: f64) -> f64 {
-        let pressed_n = now.normal_force_n.max(0.0);
-        let behind_m_s = now.sweep_m_s - free_m_s;
-        let (w, g) = (behind_m_s.abs(), self.mobility_m_s_n);
-        let held_n = g * friction.mu_static * pressed_n;
-        let slip_m_s = if self.sticks && w <= held_n { None } else { slip_m_s(friction, g * pressed_n, w) };
-        let size_n = match slip_m_s {
-            // From the curve, not from the speeds: where nothing yields their difference says nothing.
-            Some(u) => {
-                let weaker = (friction.mu_static - friction.mu_kinetic) / (1.0 + u / friction.slip_speed_m_s);
-                let slides_n = pressed_n * (friction.mu_kinetic + weaker);
-                let held = if self.sticks {
-                    self.held_share(friction.mu_static * pressed_n, behind_m_s)
-                } else {
-                    0.0
-                };
-                (slides_n + held * (friction.mu_static * pressed_n - slides_n)).max(0.0)
-            }
-            None if g > 0.0 => w / g,
-            None => 0.0,
-        };
-        self.sticks = slip_m_s.is_none();
-        self.last_n = libm::copysign(size_n, behind_m_s);
-        self.last_n
+    /// The place yields so far to a newton, m/s.
+    fn yields(&mut self, mobility_m_s_n: f64) {
+        self.mobility_m_s_n = mobility_m_s_n;
+        self.stiffness_n_s_m = if mobility_m_s_n > 0.0 { 1.0 / mobility_m_s_n } else { 0.0 };
+    }
+
+    /// The friction force of a sample in which the place would lag `behind_m_s` behind what rubs if nothing rubbed it, and how that moves the place
+    /// in the next sample, which answers a newton with `next_m_s_n`.
+    ///
+    /// The next sample waits for the second and for nothing else, so it is made of the root at once, beside the force.
+    #[inline(always)]
+    fn solve<T: Set>(
+        &mut self,
+        token: T,
+        friction: &Friction,
+        normal_force_n: f64,
+        behind_m_s: f64,
+        next_m_s_n: f64,
+    ) -> [f64; 2] {
+        let pressed_n = normal_force_n.max(0.0);
+        let w = behind_m_s.abs();
+        let yields_m_s = self.mobility_m_s_n * pressed_n;
+        let held_m_s = yields_m_s * friction.mu_static;
+        if self.sticks && w <= held_m_s {
+            return self.keep(behind_m_s * self.stiffness_n_s_m, next_m_s_n);
+        }
+        let slow = friction.slip_speed_m_s;
+        let slides_m_s = slow + yields_m_s * friction.mu_kinetic;
+        // Of u² + b u + c = 0 the larger root is (root − b) / 2; b² − 4 c is a square in w.
+        let b = slides_m_s - w;
+        let linear = 4.0 * slow - 2.0 * slides_m_s;
+        let constant = slides_m_s * slides_m_s - 4.0 * slow * held_m_s;
+        let square = fused(token, w, w + linear, constant);
+        let root = libm::sqrt(square.max(0.0));
+        if square < 0.0 || root <= b {
+            self.sticks = true;
+            return self.keep(behind_m_s * self.stiffness_n_s_m, next_m_s_n);
+        }
+        let sticks = core::mem::take(&mut self.sticks);
+        if !sticks && held_m_s > LITTLE * (w + slow) {
+            // What the place was held back by, w − u.
+            let [size, own] = [w + slides_m_s, (0.5 * self.stiffness_n_s_m).copysign(behind_m_s)];
+            let of = |factor: f64| fused(token, -root, factor, size * factor);
+            self.last_n = of(own);
+            return [self.last_n, of(own * next_m_s_n)];
+        }
+        // Where next to nothing yields that difference says nothing, but the curve does.
+        let u = if b > 0.0 { 2.0 * slow * (w - held_m_s) / (b + root) } else { 0.5 * (root - b) };
+        let weaker = (friction.mu_static - friction.mu_kinetic) / (1.0 + u / slow);
+        let (slides_n, most_n) = (pressed_n * (friction.mu_kinetic + weaker), pressed_n * friction.mu_static);
+        let held = if sticks { self.held_share(most_n, behind_m_s) } else { 0.0 };
+        self.keep((slides_n + held * (most_n - slides_n)).max(0.0).copysign(behind_m_s), next_m_s_n)
+    }
+
+    /// A force, and how it moves the place in the next sample.
+    #[inline(always)]
+    fn keep(&mut self, force_n: f64, next_m_s_n: f64) -> [f64; 2] {
+        self.last_n = force_n;
+        [force_n, force_n * next_m_s_n]
     }
 
     /// Share of a sample during which it still stuck, −½ to ½: while it sticks the force of sample n is the one needed at that instant and acts for
     /// half a sample before and after it. It grew along a straight line and let go at `most_n`; if that was before this sample's
     /// share began, the last force acted too long by so much.
     fn held_share(&self, most_n: f64, behind_m_s: f64) -> f64 {
-        let needed_n = behind_m_s.abs() / self.mobility_m_s_n;
-        let last_n = libm::copysign(1.0, behind_m_s) * self.last_n;
+        let needed_n = behind_m_s.abs() * self.stiffness_n_s_m;
+        let last_n = 1.0_f64.copysign(behind_m_s) * self.last_n;
         let share = (most_n - last_n) / (needed_n - last_n);
         if (0.0..=1.0).contains(&share) && last_n >= 0.0 { share - 0.5 } else { 0.0 }
     }
 }
 
-/// The speed with which it slips, if it does: the larger root of the quadratic.
-#[inline]
-fn slip_m_s(friction: &Friction, yields_m_s: f64, w: f64) -> Option<f64> {
-    let slow = friction.slip_speed_m_s;
-    let b = slow - w + yields_m_s * friction.mu_kinetic;
-    let c = (yields_m_s * friction.mu_static - w) * slow;
-    let square = b * b - 4.0 * c;
-    if square < 0.0 {
-        return None;
+/// a · b + c; one rounding where the processor has it.
+#[inline(always)]
+fn fused<T: Set>(token: T, a: f64, b: f64, c: f64) -> f64 {
+    if !T::FUSED {
+        return a * b + c;
     }
-    let root = libm::sqrt(square);
-    // The stable form of (−b + root) / 2.
-    let u = if b > 0.0 { -2.0 * c / (b + root) } else { 0.5 * (root - b) };
-    (u > 0.0).then_some(u)
+    let [a, b, c] = [a, b, c].map(|x| f64x2::splat(token, x));
+    a.mul_add(b, c)[0]
 }

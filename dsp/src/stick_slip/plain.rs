@@ -6,6 +6,7 @@
 use super::{Friction, Rub, RubState, Sweep};
 use crate::DesignError;
 use crate::mode::Mode;
+use crate::simd::BASE;
 use core::f64::consts::PI;
 
 /// Modes of one lane row: what the loops are unrolled for.
@@ -92,7 +93,7 @@ impl<'a> RubbedBody<'a> {
                 sum += f64::from(phi * modes.pushed[lane]);
             }
         }
-        state.mobility_m_s_n = sum / self.step_s;
+        state.yields(sum / self.step_s);
     }
 
     /// One sample. `friction` may change from sample to sample.
@@ -101,7 +102,7 @@ impl<'a> RubbedBody<'a> {
         let free_m_s = self.free_step() / self.step_s;
         let other_n = now.other_n_s / self.step_s;
         let free_m_s = free_m_s + state.mobility_m_s_n * other_n;
-        let force_n = state.solve(friction, now, free_m_s);
+        let [force_n, _] = state.solve(BASE, friction, now.normal_force_n, now.sweep_m_s - free_m_s, 0.0);
         self.push((force_n + other_n) as f32);
         Rub { force_n, body_m_s: free_m_s + state.mobility_m_s_n * force_n, sticks: state.sticks }
     }

@@ -33,6 +33,11 @@ impl Ground {
     pub(super) fn at(surface: &SurfaceBlock, i: usize) -> Self {
         Self { gradient: surface.gradient[i], friction: surface.friction[i], answer: surface.answer.at(i) }
     }
+
+    /// What the device behind it gives at most, N.
+    pub(super) fn cap_n(&self) -> f64 {
+        self.answer.cap_n
+    }
 }
 
 impl Default for Ground {

@@ -18,6 +18,7 @@ pub(super) struct Shown {
     rows: [PadSample; MAX_BLOCK],
     impulse_n_s: [f64; MAX_BLOCK],
     force_n: [[f64; 3]; MAX_BLOCK],
+    cap_n: [f64; MAX_BLOCK],
 }
 
 /// What one contact has done in a stretch.
@@ -47,6 +48,7 @@ impl Shown {
             rows: [PadSample::default(); MAX_BLOCK],
             impulse_n_s: [0.0; MAX_BLOCK],
             force_n: [[0.0; 3]; MAX_BLOCK],
+            cap_n: [0.0; MAX_BLOCK],
         }
     }
 
@@ -83,6 +85,7 @@ impl Shown {
             let before = done.asleep || i < latency;
             let ground = if before { tip.ground } else { Ground::at(&done.profile.surface, i - latency) };
             self.force_n[count] = tip.force_n(&point, &done.rows[i], &ground);
+            self.cap_n[count] = ground.cap_n();
             count += 1;
         }
         if !done.asleep && n > 0 {
@@ -98,6 +101,7 @@ impl Shown {
             contact_samples: &self.rows[..count],
             impulse_n_s: &self.impulse_n_s[..count],
             force_n: &self.force_n[..count],
+            cap_n: &self.cap_n[..count],
         });
     }
 }

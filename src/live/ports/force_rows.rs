@@ -4,15 +4,20 @@
 //! row(k, contact) = Σ h(τ − k) F(τ) / Σ h(τ − k)        τ: time of a sample in ticks, |τ − k| < 4
 //! h(x)            = sinc(2 c x) · Kaiser(x / 4; β = 5)    c = 0.45 cycles a tick
 //! row(k, hand)    = Σ over the contacts that the hand's actuator feels
+//! |row|          ≤ cap        the lowest of what a row is made of; row = 0 before a touch out of the air
 //! ```
 //!
 //! A row is the force at its tick's own instant: flat within 0.3 % up to a quarter of the rate, 50 dB down from 0.66 of it on. (A mean over
 //! the tick lets 900 Hz through a 1 kHz output at −19 dB, as 100 Hz, and speaks of the middle of the tick.) It is complete
 //! 4 ticks later. The weights of what a contact has told are brought to 1, so that a constant force is itself from the first row to the last.
+//!
+//! A filter with a steep edge swings about a jump of the force, by up to 9 % of it, before it as after it. Two limits come after it therefore: a
+//! row is no larger than what the device gives, and one that lies before a touch is exactly 0 N.
 
 use crate::link::tap::ContactBlock;
 use crate::model::event::{Actuator, ContactId};
 use asperity_texture::height_field::MAX_BLOCK;
+use asperity_texture::sand::law::capped;
 
 /// Half the length of h, ticks: how far rows lag behind what is rendered.
 pub const LAG_TICKS: u64 = 4;
@@ -65,19 +70,43 @@ struct Track {
     rows: Box<[OpenRow]>,
     /// The first that is open, and one past the last that lies within the contact.
     open: [u64; 2],
+    /// When something pressed last, ticks; none = not yet.
+    pressed_at: Option<f64>,
 }
 
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct OpenRow {
     /// Whether the contact was there at this tick.
     is_told: bool,
+    /// Nothing has pressed for as long as a row reaches, and what presses next comes after this tick.
+    is_before_touch: bool,
     weight: f64,
     sum_n: [f64; 3],
+    /// Of all samples in it the lowest.
+    cap_n: f64,
 }
 
 impl OpenRow {
+    const EMPTY: Self =
+        Self { is_told: false, is_before_touch: false, weight: 0.0, sum_n: [0.0; 3], cap_n: f64::INFINITY };
+
     fn force_n(&self) -> [f64; 3] {
-        self.sum_n.map(|sum_n| sum_n / self.weight)
+        if self.is_before_touch {
+            return [0.0; 3];
+        }
+        capped(self.sum_n.map(|sum_n| sum_n / self.weight), self.cap_n)
+    }
+}
+
+impl Track {
+    /// Something presses at `now`, of which the ticks from `from` on hear.
+    fn press(&mut self, now: f64, from: u64, mask: u64) {
+        let touches = self.pressed_at.is_none_or(|pressed_at| now - pressed_at > LAG_TICKS as f64);
+        self.pressed_at = Some(now);
+        if touches {
+            let before = (from..).take_while(|tick| (*tick as f64) < now);
+            before.for_each(|tick| self.rows[(tick & mask) as usize].is_before_touch = true);
+        }
     }
 }
 
@@ -89,7 +118,7 @@ impl ForceRows {
         // Closed at least once a block; what is told meanwhile reaches 4 ticks either way.
         let told = (2.0 * MAX_BLOCK as f64 * ticks_a_sample).ceil() as u64;
         let span = (2 * LAG_TICKS + told + 4).next_power_of_two();
-        let rows = || vec![OpenRow::default(); span as usize].into_boxed_slice();
+        let rows = || vec![OpenRow::EMPTY; span as usize].into_boxed_slice();
         let kernel = (0..=LAG_TICKS as usize * STEPS + 1).map(|i| kernel(i as f64 / STEPS as f64)).collect();
         let mut spare = Vec::with_capacity(contacts + 1);
         spare.extend((0..contacts).map(|_| rows()));
@@ -124,13 +153,17 @@ impl ForceRows {
         for tick in first_tick..end_tick {
             track.rows[(tick & mask) as usize].is_told = true;
         }
-        for (sample, force_n) in (block.first_sample..).zip(block.force_n) {
+        for ((sample, force_n), cap_n) in (block.first_sample..).zip(block.force_n).zip(block.cap_n) {
             let now = self.ticks(sample);
             let from = (now as u64 + 1).saturating_sub(LAG_TICKS).max(self.tracks[index].open[0]);
+            if *force_n != [0.0; 3] {
+                self.tracks[index].press(now, from, mask);
+            }
             for tick in from..=now as u64 + LAG_TICKS {
                 let weight = self.weight(now - tick as f64);
                 let row = &mut self.tracks[index].rows[(tick & mask) as usize];
                 row.weight += weight;
+                row.cap_n = row.cap_n.min(*cap_n);
                 row.sum_n = std::array::from_fn(|axis| row.sum_n[axis] + weight * force_n[axis]);
             }
         }
@@ -141,9 +174,14 @@ impl ForceRows {
         let found = self.tracks.binary_search_by_key(&block.contact, |track| track.contact);
         found.unwrap_or_else(|index| {
             let rows = self.spare.pop();
-            let rows =
-                rows.unwrap_or_else(|| vec![OpenRow::default(); self.span as usize].into_boxed_slice());
-            let track = Track { contact: block.contact, actuator: block.actuator, rows, open: [0; 2] };
+            let rows = rows.unwrap_or_else(|| vec![OpenRow::EMPTY; self.span as usize].into_boxed_slice());
+            let track = Track {
+                contact: block.contact,
+                actuator: block.actuator,
+                rows,
+                open: [0; 2],
+                pressed_at: None,
+            };
             self.tracks.insert(index, track);
             index
         })
@@ -171,18 +209,20 @@ impl ForceRows {
             if told().take(index).any(|track| felt_by_hand(&track)) {
                 continue;
             }
-            let forces_n = told().skip(index).filter(felt_by_hand).map(|track| track.rows[at].force_n());
+            let rows = || told().skip(index).filter(felt_by_hand).map(|track| &track.rows[at]);
+            let forces_n = rows().map(OpenRow::force_n);
             let force_n = forces_n.fold([0.0; 3], |a, b| std::array::from_fn(|axis| a[axis] + b[axis]));
-            row(ForceRow { tick, of: Of::Hand(hand), force_n });
+            let cap_n = rows().fold(f64::INFINITY, |cap_n, row| cap_n.min(row.cap_n));
+            row(ForceRow { tick, of: Of::Hand(hand), force_n: capped(force_n, cap_n) });
         }
         for track in self.tracks.iter_mut().filter(|track| track.open[0] == tick) {
-            track.rows[at] = OpenRow::default();
+            track.rows[at] = OpenRow::EMPTY;
             track.open[0] += 1;
         }
         while let Some(over) = self.tracks.iter().position(|track| track.open[0] >= track.open[1]) {
             let mut rows = self.tracks.remove(over).rows;
             // Ticks beyond its end were begun as well.
-            rows.fill(OpenRow::default());
+            rows.fill(OpenRow::EMPTY);
             self.spare.push(rows);
         }
     }
@@ -215,11 +255,21 @@ mod tests {
 
     /// Rows of one contact that is pushed with `force` of time.
     fn rows(rate_hz: f64, sample_rate_hz: f64, force: impl Fn(f64) -> f64) -> Vec<ForceRow> {
+        pushed(rate_hz, sample_rate_hz, f64::INFINITY, |t| [force(t), 0.0, 1.0])
+    }
+
+    /// The same with all three forces, which a cap limits.
+    fn pushed(
+        rate_hz: f64,
+        sample_rate_hz: f64,
+        cap_n: f64,
+        force: impl Fn(f64) -> [f64; 3],
+    ) -> Vec<ForceRow> {
         let mut rows = ForceRows::new(rate_hz, sample_rate_hz, 2);
         let mut told = Vec::new();
         let mut first_sample = 0;
         while first_sample < (0.5 * sample_rate_hz) as u64 {
-            let at = |i: usize| [force((first_sample + i as u64) as f64 / sample_rate_hz), 0.0, 1.0];
+            let at = |i: usize| force((first_sample + i as u64) as f64 / sample_rate_hz);
             let force_n: Vec<[f64; 3]> = (0..64).map(at).collect();
             rows.close(first_sample, |row| told.push(row));
             rows.add(&ContactBlock {
@@ -232,6 +282,7 @@ mod tests {
                 contact_samples: &[],
                 impulse_n_s: &[],
                 force_n: &force_n,
+                cap_n: &[cap_n; 64],
             });
             first_sample += 64;
         }
@@ -269,5 +320,55 @@ mod tests {
                 (row.force_n[0] - 0.25).abs() < 1e-12 && (row.force_n[2] - 1.0).abs() < 1e-12
             }));
         }
+    }
+
+    #[test]
+    fn no_row_beside_a_jump_is_beyond_the_cap_and_none_before_a_touch_is_other_than_0_n() {
+        for (rate_hz, sample_rate_hz) in [(1000.0, 44_100.0), (5000.0, 22_050.0), (2000.0, 96_000.0)] {
+            // It comes down at 0.1 s on what gives 20 N at most, and leaves from 0.3 to 0.4 s.
+            let down = |t: f64| (0.1..0.3).contains(&t) || t >= 0.4;
+            let told =
+                pushed(rate_hz, sample_rate_hz, 20.0, |t| if down(t) { [12.0, 0.0, 16.0] } else { [0.0; 3] });
+            let size_n = |row: &ForceRow| row.force_n[0].hypot(row.force_n[2]);
+            let most_n = told.iter().map(size_n).fold(0.0, f64::max);
+            assert!((20.0 - 1e-12..=20.0 + 1e-12).contains(&most_n), "{most_n} N");
+            let time_s = |row: &ForceRow| row.tick as f64 / rate_hz;
+            let in_the_air = |row: &&ForceRow| {
+                let t = time_s(row);
+                t < 0.1 || (0.3 + 4.0 / rate_hz..0.4).contains(&t)
+            };
+            assert!(told.iter().filter(in_the_air).count() as f64 > 0.18 * rate_hz);
+            assert!(told.iter().filter(in_the_air).all(|row| row.force_n == [0.0; 3]));
+            // What touches is told at once.
+            let touch = told.iter().find(|row| time_s(row) >= 0.1 + 1.0 / rate_hz).unwrap();
+            assert!(size_n(touch) > 15.0, "{touch:?}");
+        }
+    }
+
+    #[test]
+    fn what_a_hand_feels_of_several_contacts_is_no_more_than_its_device_gives() {
+        let mut rows = ForceRows::new(1000.0, 44_100.0, 2);
+        let mut told = Vec::new();
+        for cell in 0..40 {
+            for contact in 0..2 {
+                rows.add(&ContactBlock {
+                    first_sample: 64 * cell,
+                    contact: ContactId(contact),
+                    actuator: Some(Actuator(3)),
+                    position_m: &[],
+                    uv: &[],
+                    velocity_m_s: &[],
+                    contact_samples: &[],
+                    impulse_n_s: &[],
+                    force_n: &[[0.0, 0.0, 15.0]; 64],
+                    cap_n: &[20.0; 64],
+                });
+            }
+            rows.close(64 * (cell + 1), |row| told.push(row));
+        }
+        let of = |of: Of| told.iter().filter(move |row| row.of == of);
+        assert!(of(Of::Contact(ContactId(1))).all(|row| (row.force_n[2] - 15.0).abs() < 1e-12));
+        assert!(of(Of::Hand(Actuator(3))).count() > 20);
+        assert!(of(Of::Hand(Actuator(3))).all(|row| (row.force_n[2] - 20.0).abs() < 1e-12));
     }
 }

@@ -52,6 +52,12 @@ pub const CAP_N: f64 = 20.0;
 pub const BEARING_DEPTH_M: f64 = 0.003;
 /// The document's tool, metres.
 pub const REFERENCE_RADIUS_M: f64 = 0.005;
+/// No sand carries more, N: a depth or an exponent beyond all sand keeps a direction, which infinity does not.
+const MOST_N: f64 = 1e9;
+/// Nothing is buried farther away, m; beyond, and at places that are no numbers, there is sand alone.
+const FARTHEST_M: f64 = 1e6;
+/// Nothing drags faster, m/s.
+const FASTEST_M_S: f64 = 1e6;
 /// Most layers.
 pub const MAX_LAYERS: usize = 4;
 
@@ -145,7 +151,8 @@ impl SandLaw {
     /// Repulse force at a depth, N; 0 above the surface.
     #[must_use]
     pub fn force_n(&self, depth_m: f64) -> f64 {
-        if depth_m <= 0.0 {
+        // What is no number stands nowhere.
+        if depth_m.is_nan() || depth_m <= 0.0 {
             return 0.0;
         }
         let (mut force, mut top, mut hardness) = (0.0, 0.0, 1.0);
@@ -156,7 +163,7 @@ impl SandLaw {
             force += self.part_n(top, layer.from_m, hardness);
             (top, hardness) = (layer.from_m, layer.hardness);
         }
-        force + self.part_n(top, depth_m, hardness)
+        (force + self.part_n(top, depth_m, hardness)).min(MOST_N)
     }
 
     /// Force that one layer adds between two depths.
@@ -200,7 +207,9 @@ impl SandLaw {
     #[must_use]
     pub fn force_over_n(&self, met: Option<&Met>, depth_m: f64) -> f64 {
         match met.filter(|met| depth_m > met.top_m) {
-            Some(met) => self.force_n(met.top_m) + self.part_n(met.top_m, depth_m, met.hardness),
+            Some(met) => {
+                (self.force_n(met.top_m) + self.part_n(met.top_m, depth_m, met.hardness)).min(MOST_N)
+            }
             None => self.force_n(depth_m),
         }
     }
@@ -229,6 +238,9 @@ impl SandLaw {
     /// [`answer_n`](Self::answer_n) at a place of the untouched bed: over its stones and shells too.
     #[must_use]
     pub fn answer_at_n(&self, position_m: [f64; 2], depth_m: f64, velocity_m_s: [f64; 2]) -> [f64; 3] {
+        if !position_m.iter().all(|x| x.abs() <= FARTHEST_M) {
+            return self.answer_n(depth_m, velocity_m_s);
+        }
         let met = self.met(position_m, 0.0);
         let repulse_n = self.force_over_n(met.as_ref(), depth_m);
         let (drag, push) = (self.drag_n(velocity_m_s, repulse_n), self.push_per_n(met.as_ref(), repulse_n));
@@ -248,7 +260,9 @@ impl SandLaw {
     /// Drag on a tool that the sand carries with `force_n`, N.
     #[must_use]
     pub fn drag_n(&self, velocity_m_s: [f64; 2], force_n: f64) -> [f64; 2] {
-        velocity_m_s.map(|v| -self.drag_s_per_m * v * force_n.abs())
+        let drag_n = |v: f64| -self.drag_s_per_m * v * force_n.abs();
+        // What is no number is no movement; the fastest is far beyond what a cap leaves.
+        velocity_m_s.map(|v| if v.is_nan() { 0.0 } else { drag_n(v.clamp(-FASTEST_M_S, FASTEST_M_S)) })
     }
 
     /// Impacts among grains: their rate (1/s) and mean momentum (N·s), when a tool displaces
