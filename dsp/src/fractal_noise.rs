@@ -139,10 +139,22 @@ impl FractalNoise {
         weights: &OctaveWeights,
         height_m: &mut [f64],
     ) {
+        self.add_each(path, roughness, &[weights], &mut [height_m]);
+    }
+
+    /// [`Self::add`] along one path for several sets of weights at once, each with heights of its own: the octaves are worked out once, the
+    /// bits are the same.
+    pub fn add_each<const W: usize>(
+        &self,
+        path: &NoisePath<'_>,
+        roughness: &[f64],
+        sets: &[&OctaveWeights; W],
+        heights_m: &mut [&mut [f64]; W],
+    ) {
         at_level!(
             self.level,
-            s => lanes::add::<8, _>(Eight(s), self, path, roughness, weights, height_m),
-            wide s => lanes::add::<16, _>(crate::simd::Sixteen(s), self, path, roughness, weights, height_m)
+            s => lanes::add::<8, W, _>(Eight(s), self, path, roughness, sets, heights_m),
+            wide s => lanes::add::<16, W, _>(crate::simd::Sixteen(s), self, path, roughness, sets, heights_m)
         );
     }
 }

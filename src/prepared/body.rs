@@ -22,6 +22,8 @@ use asperity_texture::height_field::MAX_BLOCK;
 /// What may strike the bank at once: the body's positions, its places, and what rubs it.
 const MOST_INPUTS: usize = MAX_POSITIONS + FIELD_INPUTS + 2;
 const _: () = assert!(MOST_INPUTS <= modal_bank::MAX_INPUTS);
+/// What strikes most bodies at once; a table for more costs as much as some samples of a short block.
+const FEW_INPUTS: usize = 4;
 
 /// Levels of modes left out, from none.
 pub(crate) const MODE_LEVELS: usize = 5;
@@ -279,10 +281,23 @@ impl BodySlot {
             self.end_stretch(terms.position, n);
             return 0;
         }
+        let rung = if self.field.is_none() && self.places.len() + 2 <= FEW_INPUTS {
+            self.ring::<FEW_INPUTS>(terms, out)
+        } else {
+            self.ring::<MOST_INPUTS>(terms, out)
+        };
+        self.bursts.render(terms.position, out);
+        self.begin_strikes(terms.position, out);
+        rung
+    }
+
+    /// Adds what the bank answers to at most `MOST` inputs; how many groups of modes heard nothing.
+    fn ring<const MOST: usize>(&mut self, terms: Terms, out: &mut [f32]) -> usize {
+        let n = out.len();
         if let Some(field) = &mut self.field {
             field.gather(terms.position, n);
         }
-        let mut inputs = [Input { impulses: &[], gains: &[] }; MOST_INPUTS];
+        let mut inputs = [Input { impulses: &[], gains: &[] }; MOST];
         let mut count = 0;
         if let Some(field) = &self.field {
             field.inputs(terms.position, n, |input| {
@@ -317,8 +332,6 @@ impl BodySlot {
         };
         self.bank.render_leading(driven, terms.position, inputs, out);
         self.end_stretch(terms.position, n);
-        self.bursts.render(terms.position, out);
-        self.begin_strikes(terms.position, out);
         groups - driven
     }
 

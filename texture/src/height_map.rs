@@ -63,6 +63,26 @@ pub struct HeightMap {
     /// What tips of some radii ride on, and the one that rides now.
     tips: Vec<(f64, Pyramid)>,
     tip: Option<usize>,
+    beside: Box<Beside>,
+}
+
+/// What a block is worked out in; it holds nothing between two blocks.
+#[derive(Debug)]
+struct Beside {
+    places: Places,
+    samples: Samples,
+}
+
+impl Beside {
+    fn new() -> Box<Self> {
+        Box::new(Self { places: Places::new(), samples: Samples::EMPTY })
+    }
+}
+
+impl Clone for Beside {
+    fn clone(&self) -> Self {
+        *Self::new()
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -112,6 +132,7 @@ impl HeightMap {
             friction: FRICTION,
             tips: Vec::new(),
             tip: None,
+            beside: Beside::new(),
         })
     }
 
@@ -312,9 +333,8 @@ impl HeightField for HeightMap {
     }
 
     fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        let Some(local) = &self.local else { return };
-        for (position_m, power_m2) in position_m.iter().zip(power_m2) {
-            *power_m2 += local.at(*position_m);
+        if let Some(local) = &self.local {
+            local.add_along(position_m, power_m2);
         }
     }
 
@@ -337,31 +357,31 @@ impl HeightField for HeightMap {
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        let widest_m = widest_m(path.footprint_m);
-        let mut places = Places::new();
-        let mut samples = Samples::EMPTY;
+        let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
+        let Beside { places, samples } = &mut *self.beside;
+        places.forget();
         let heights = self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map);
         if path.slopes {
-            heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
-            let slopes = samples.slope_u.iter().zip(&samples.slope_v);
+            heights.sample_block::<true>(path, widest_m, places, samples);
+            let slopes = samples.slope_u.iter().zip(&samples.slope_v).take(n);
             for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
                 *gradient = [*u, *v];
             }
         } else {
-            heights.sample_block::<false>(path, widest_m, &mut places, &mut samples);
+            heights.sample_block::<false>(path, widest_m, places, samples);
         }
-        out.height_m.copy_from_slice(&samples.value[..MAX_BLOCK]);
+        out.height_m[..n].copy_from_slice(&samples.value[..n]);
         match &self.roughness {
-            Roughness::Constant(roughness) => out.roughness[..path.len()].fill(*roughness),
+            Roughness::Constant(roughness) => out.roughness[..n].fill(*roughness),
             Roughness::Map(map) => {
-                map.sample_block::<false>(path, widest_m, &mut places, &mut samples);
-                for (roughness, value) in out.roughness.iter_mut().zip(&samples.value) {
+                map.sample_block::<false>(path, widest_m, places, samples);
+                for (roughness, value) in out.roughness[..n].iter_mut().zip(&samples.value) {
                     *roughness = value.clamp(0.0, 1.0);
                 }
             }
         }
-        out.friction[..path.len()].fill(self.friction);
-        out.compliance_m_n[..path.len()].fill(0.0);
+        out.friction[..n].fill(self.friction);
+        out.compliance_m_n[..n].fill(0.0);
         out.answer.clear();
     }
 }

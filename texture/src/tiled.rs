@@ -50,11 +50,27 @@ impl TileAxis {
         if !self.length_m.is_finite() {
             return Place { at_m: position_m, ..Place::default() };
         }
-        let at_m = position_m - self.length_m * (position_m / self.length_m).floor();
+        let at_m = position_m - self.length_m * floor(position_m / self.length_m);
         let t = ((at_m - (self.length_m - self.blend_m)) / self.blend_m).clamp(0.0, 1.0);
         let weight = t * t * t * (10.0 + t * (6.0 * t - 15.0));
         let slope_per_m = 30.0 * t * t * (1.0 - t) * (1.0 - t) / self.blend_m;
         Place { at_m, weight, slope_per_m }
+    }
+}
+
+/// Largest whole number not above x. `f64::floor` is a library call on plain x86-64.
+#[inline]
+fn floor(x: f64) -> f64 {
+    // Beyond 2⁵¹ a number has no fraction worth a tile, and a cast may not hold it.
+    if !(x.abs() < 2_251_799_813_685_248.0) {
+        return x.floor();
+    }
+    let whole = x as i64 as f64;
+    match whole.partial_cmp(&x) {
+        Some(std::cmp::Ordering::Greater) => whole - 1.0,
+        // A zero keeps its sign.
+        Some(std::cmp::Ordering::Equal) => x,
+        _ => whole,
     }
 }
 
@@ -264,6 +280,17 @@ mod tests {
             slopes.extend_from_slice(&out.gradient[..n]);
         }
         (heights, slopes)
+    }
+
+    #[test]
+    fn whole_numbers_below_are_those_of_the_library_to_the_bit() {
+        let some =
+            [0.0, -0.0, 0.5, -0.5, 1.0, -1.0, 0.999_999_999_999_999_9, -1e-300, 7.25, -7.25, 1e15, -1e15];
+        let wild = [2e15, 2.3e15, 4.6e15, -4.6e15, 1e300, f64::INFINITY, f64::NEG_INFINITY];
+        for x in some.into_iter().chain(wild).chain((0..2000).map(|n| 0.37 * f64::from(n) - 370.0)) {
+            assert_eq!(floor(x).to_bits(), x.floor().to_bits(), "{x}");
+        }
+        assert!(floor(f64::NAN).is_nan());
     }
 
     #[test]
