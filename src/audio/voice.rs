@@ -24,6 +24,7 @@ mod skin;
 mod tip;
 mod watching;
 
+pub(crate) use block::VoiceBlock;
 pub(crate) use events::EMPTY_FORCE_N;
 pub(crate) use role::Role;
 pub(crate) use scratch::Scratch;
@@ -97,6 +98,15 @@ pub(crate) struct Voice {
 impl Voice {
     /// A voice that nobody uses; `slot` is its place in the renderer. Allocates.
     pub(crate) fn free(slot: usize, shared: &Shared) -> Self {
+        Self::idle(slot, shared, shared.sample_rate_hz)
+    }
+
+    /// What stands in the place of a voice that another thread renders: it is never rendered itself, and small. Allocates.
+    pub(crate) fn stand_in(shared: &Shared) -> Self {
+        Self::idle(0, shared, 0.0)
+    }
+
+    fn idle(slot: usize, shared: &Shared, sample_rate_hz: f64) -> Self {
         Self {
             contact: ContactId(0),
             surface: 0,
@@ -115,18 +125,23 @@ impl Voice {
             path: Path::idle(&shared.idle_path),
             tip: Tip::default(),
             pad: Pad::idle(&shared.own_probe),
-            drag: Drag::idle(shared.sample_rate_hz),
+            drag: Drag::idle(sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
             skin: ContactSkin::default(),
-            exciters: Exciters::idle(slot as u64, shared.sample_rate_hz),
+            exciters: Exciters::idle(slot as u64, sample_rate_hz),
             blows: Blows::default(),
-            fades: Fades::idle(shared.sample_rate_hz),
+            fades: Fades::idle(sample_rate_hz),
         }
     }
 
     /// A report tells what carries its tip, or that it is pressed.
     pub(crate) fn carry(&mut self, sample: &ContactSample) {
         self.tip.carry(sample);
+    }
+
+    /// Whether there is anything to render but rest.
+    pub(crate) fn works(&self) -> bool {
+        self.phase != Phase::Free && !self.asleep
     }
 
     /// Something changed under a resting contact.
