@@ -39,6 +39,7 @@ use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use ac_coupling::{AcCoupling, ForceCoupling};
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
+use asperity_dsp::fractal_noise::NoiseCells;
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
@@ -85,6 +86,8 @@ pub(crate) struct Voice {
     /// Sent to the body since the last row that was shown, N·s.
     unshown_n_s: f64,
     path: Path,
+    /// Where in the micro-relief it is.
+    cells: NoiseCells,
     tip: Tip,
     pad: Pad,
     drag: Drag,
@@ -123,6 +126,7 @@ impl Voice {
             reaction: Reaction::default(),
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
+            cells: NoiseCells::default(),
             tip: Tip::default(),
             pad: Pad::idle(&shared.own_probe),
             drag: Drag::idle(sample_rate_hz),
@@ -243,7 +247,8 @@ impl Voice {
             }
         }
         self.path.run(slot, points, &mut profile.at_m);
-        profile.run(seat, self.along(shared, position, slopes || dragged), points);
+        let along = self.along(shared, position, slopes || dragged);
+        profile.run(seat, along, points, &mut self.cells);
         out.resets = self.pad.run(probe.waits, &profile.surface.height_m[..n], &profile.force_n[..n], rows);
 
         out.blows = self.blows.count(rows);

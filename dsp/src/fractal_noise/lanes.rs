@@ -1,6 +1,6 @@
 //! The noise of N samples side by side.
 
-use super::cells::{Bounds, Cells, LastCell, cells};
+use super::cells::{Bounds, Cells, KnownCell, LastCell, cells};
 use super::gains::{Gains, footprint_weight, gains, polynomial, within_0_1};
 use super::{
     FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, Octave, OctaveWeights, ROTATION_RAD, ROTATIONS,
@@ -245,6 +245,7 @@ pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
     roughness: &[f64],
     sets: &[&OctaveWeights; W],
     heights_m: &mut [&mut [f64]; W],
+    known: &mut [KnownCell; OCTAVES],
 ) {
     let (positions, positions_left) = path.position_m.as_chunks::<N>();
     let (footprints, footprints_left) = path.footprint_m.as_chunks::<N>();
@@ -252,10 +253,13 @@ pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
     let mut coarsest = [OCTAVES; W];
     let mut whole = usize::MAX;
     for ((coarsest, weights), heights_m) in coarsest.iter_mut().zip(sets).zip(heights_m.iter()) {
-        *coarsest = (0..OCTAVES).find(|octave| weights.counts(*octave)).unwrap_or(OCTAVES);
+        *coarsest = weights.coarsest;
         whole = whole.min(heights_m.len() / N);
     }
-    let mut last = [LastCell::none(v); OCTAVES];
+    let mut last = [LastCell::of(v, &KnownCell::NONE); OCTAVES];
+    for (last, known) in last.iter_mut().zip(known.iter()) {
+        *last = LastCell::of(v, known);
+    }
     let mut rough = Rough::new(v, sets, v.splat(f32::NAN));
     let inputs = positions.iter().zip(footprints).zip(roughness).take(whole);
     for (n, ((position, footprint), roughness)) in inputs.enumerate() {
@@ -267,26 +271,28 @@ pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
             }
         }
     }
-    if positions_left.is_empty() {
-        return;
-    }
-    let lanes = Lanes::new(
-        v,
-        noise,
-        &padded(positions_left, [0.0; 2]),
-        &padded(footprints_left, 0.0),
-        &padded(roughness_left, 0.0),
-        sets,
-        &mut rough,
-    );
-    let sums = lanes.sums(noise, &rough.weights, &coarsest, &mut last);
-    for (sum, heights_m) in sums.into_iter().zip(heights_m.iter_mut()) {
-        let heights_left = heights_m.as_chunks_mut::<N>().1;
-        let mut out = padded(heights_left, 0.0);
-        v.add_to(sum, &mut out);
-        for (height, out) in heights_left.iter_mut().zip(out) {
-            *height = out;
+    if !positions_left.is_empty() {
+        let lanes = Lanes::new(
+            v,
+            noise,
+            &padded(positions_left, [0.0; 2]),
+            &padded(footprints_left, 0.0),
+            &padded(roughness_left, 0.0),
+            sets,
+            &mut rough,
+        );
+        let sums = lanes.sums(noise, &rough.weights, &coarsest, &mut last);
+        for (sum, heights_m) in sums.into_iter().zip(heights_m.iter_mut()) {
+            let heights_left = heights_m.as_chunks_mut::<N>().1;
+            let mut out = padded(heights_left, 0.0);
+            v.add_to(sum, &mut out);
+            for (height, out) in heights_left.iter_mut().zip(out) {
+                *height = out;
+            }
         }
+    }
+    for (last, known) in last.iter().zip(known) {
+        *known = last.known(v);
     }
 }
 
