@@ -51,6 +51,7 @@ pub struct Renderer {
     timeout_samples: u64,
     max_contacts: usize,
     /// Boxed, so that they change hands without being copied.
+    #[allow(clippy::vec_box, reason = "see above")]
     voices: Vec<Box<Voice>>,
     /// Where each voice is on a body that has shapes.
     placed: Vec<Option<StrikePlace>>,

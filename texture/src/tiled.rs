@@ -89,7 +89,8 @@ impl TileAxis {
 #[inline]
 fn floor(x: f64) -> f64 {
     // Beyond 2⁵¹ a number has no fraction worth a tile, and a cast may not hold it.
-    if !(x.abs() < 2_251_799_813_685_248.0) {
+    let has_fraction = x.abs() < 2_251_799_813_685_248.0;
+    if !has_fraction {
         return x.floor();
     }
     let whole = x as i64 as f64;

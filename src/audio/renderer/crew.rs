@@ -6,6 +6,7 @@
 //! bits are those of one thread, whoever ran what.
 //!
 //! *When.* Only where there are at least two jobs, and work enough that handing it over (about 1 µs) pays.
+#![allow(clippy::vec_box, reason = "boxes change hands, what is in them does not move")]
 
 use super::outputs::HapticChannel;
 use super::voices::At;

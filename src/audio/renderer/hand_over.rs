@@ -2,7 +2,7 @@
 
 use super::Renderer;
 use super::contacts::SilentContact;
-use crate::audio::voice::{Phase, Voice};
+use crate::audio::voice::Phase;
 use crate::link::message::Message;
 use crate::link::stats::Counters;
 use crate::model::id::SurfaceId;
@@ -37,8 +37,8 @@ impl Renderer {
                 edit => self.apply(edit),
             }
         }
-        let sounding = |voice: &&Box<Voice>| voice.phase == Phase::Sounding;
-        let touching = self.voices.iter().filter(sounding).map(|voice| SilentContact::of(voice));
+        let touching = self.voices.iter().filter(|voice| voice.phase == Phase::Sounding);
+        let touching = touching.map(|voice| SilentContact::of(voice));
         let contacts = self.silent.iter().copied().chain(touching).collect();
         HandedOver {
             contacts,
