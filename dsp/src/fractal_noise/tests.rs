@@ -1,5 +1,6 @@
 use super::*;
 use crate::simd::Isa;
+use std::vec;
 
 #[test]
 fn roughness_maps_to_the_exponents_of_the_paper() {
