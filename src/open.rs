@@ -38,6 +38,8 @@ pub struct Overrides<'a> {
     pub path: Option<PathMode>,
     /// Instruction set of the kernels whose last bits depend on it.
     pub kernel: Option<Isa>,
+    /// Threads that render at once; 1 unless told otherwise ([`Config::threads`](field@crate::Config::threads)).
+    pub threads: Option<usize>,
     /// How game time becomes samples; exactly unless told otherwise, for a render or a replay. A game that opens a scene and runs now takes
     /// [`ClockMode::LIVE`].
     pub clock: Option<ClockMode>,
@@ -59,6 +61,7 @@ impl Default for Overrides<'_> {
             integrator: None,
             path: None,
             kernel: None,
+            threads: None,
             clock: None,
             live: false,
             own: &[],
@@ -180,6 +183,7 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Resul
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: file.probe,
         kernel: overrides.kernel,
+        threads: overrides.threads.unwrap_or(1),
         clock: overrides.clock.unwrap_or(default.clock),
         actuators: actuators.collect::<Result<_, _>>()?,
         audio: file

@@ -81,7 +81,8 @@ impl Scene {
         let (to_audio, from_game) = ring::channel(config.queue_capacity);
         let (to_game, from_audio) =
             ring::channel(2 * (config.max_surfaces + config.max_bodies) + config.max_ports);
-        let mut renderer = Renderer::new(config, kernel, probe, from_game, to_game, self.counters.clone())?;
+        let mut renderer = Renderer::new(config, kernel, probe, from_game, to_game, self.counters.clone())
+            .map_err(design)?;
         for (place, probe) in self.probes.iter() {
             renderer.install(self.prepared_probe(ProbeId(place), probe)?);
         }
@@ -126,5 +127,6 @@ fn design(error: ConfigError) -> AddError {
     match error {
         ConfigError::Design(error) => AddError::Design(error),
         ConfigError::Kernel { .. } => AddError::Unknown("kernel"),
+        ConfigError::Threads { .. } => AddError::Unknown("threads"),
     }
 }

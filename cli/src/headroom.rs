@@ -1,6 +1,6 @@
 //! `asperity headroom`: how many fingers and modes fit on this machine.
 //!
-//! One thread. A scene is rendered in blocks of 64 frames with events at 60 Hz, as a game drives it, and
+//! One thread unless told otherwise. A scene is rendered in blocks of 64 frames with events at 60 Hz, as a game drives it, and
 //! every block is timed; the kernels are timed alone in many short repetitions. Every figure is the median of its blocks or
 //! repetitions, with the range of the middle eight tenths beside it.
 
@@ -30,12 +30,16 @@ pub struct Options {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+    /// Most threads that render a scene at once
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub threads: u8,
 }
 
 #[derive(Debug, Serialize)]
 struct Report {
     sample_rate_hz: f64,
     block_frames: usize,
+    threads: u8,
     cpu: String,
     instruction_set: String,
     /// How every figure is taken.
@@ -44,6 +48,7 @@ struct Report {
     modal_bank: Vec<BankRow>,
     contact: Vec<ContactRow>,
     growth: Vec<GrowthRow>,
+    short_blocks: Vec<ShortBlockRow>,
 }
 
 #[derive(Debug, Serialize)]
@@ -76,6 +81,16 @@ struct ContactRow {
     ns_per_sample_p90: f64,
 }
 
+/// What a short block costs a sample.
+#[derive(Debug, Serialize)]
+struct ShortBlockRow {
+    name: &'static str,
+    block_frames: usize,
+    ns_per_sample: f64,
+    /// Against blocks of 64 frames, in turn with them: the median of the pairs.
+    times_that_of_64: f64,
+}
+
 /// How the cost of a whole scene grows.
 #[derive(Debug, Serialize)]
 struct GrowthRow {
@@ -86,9 +101,11 @@ struct GrowthRow {
     ns_per_sample_each: f64,
 }
 
-const SCENES: [(&str, Load); 11] = [
+const SCENES: [(&str, Load); 13] = [
     ("nothing touched", Load { contacts: 0, bodies: 1, modes_per_body: 100, lift: false }),
     ("one finger, silent plate", Load { contacts: 1, bodies: 1, modes_per_body: 0, lift: false }),
+    ("1 finger, silent plates", Load { contacts: 1, bodies: 1, modes_per_body: 0, lift: false }),
+    ("64 fingers, silent plates", Load { contacts: 64, bodies: 64, modes_per_body: 0, lift: false }),
     ("one finger, one body", Load { contacts: 1, bodies: 1, modes_per_body: 100, lift: false }),
     ("ten fingers on ten bodies", Load { contacts: 10, bodies: 10, modes_per_body: 100, lift: false }),
     ("ten bodies rung out", Load { contacts: 10, bodies: 10, modes_per_body: 100, lift: true }),
@@ -108,10 +125,10 @@ const ESTIMATE: &str =
 /// # Errors
 /// When the engine refuses a scene made for measuring.
 pub fn run(options: &Options) -> Result<(), CliError> {
-    let mut progress = Progress::new("measuring", (SCENES.len() + BANKS.len() + 4) as u64);
+    let mut progress = Progress::new("measuring", (SCENES.len() + BANKS.len() + 5) as u64);
     let mut scenes = Vec::new();
     for (name, load) in SCENES {
-        scenes.push(scene(name, load)?);
+        scenes.push(scene(name, load, options.threads)?);
         progress.advance(1);
     }
     let mut modal_bank = Vec::new();
@@ -126,10 +143,13 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     let growth = growth()?;
     progress.advance(1);
+    let short_blocks = short_blocks()?;
+    progress.advance(1);
     drop(progress);
     let report = Report {
         sample_rate_hz: SAMPLE_RATE_HZ,
         block_frames: BLOCK_FRAMES,
+        threads: options.threads,
         cpu: cpu_name(),
         instruction_set: format!("{:?}", Level::detect().isa()),
         estimate: ESTIMATE,
@@ -137,6 +157,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         modal_bank,
         contact,
         growth,
+        short_blocks,
     };
     if options.json {
         return output::say_json(&report);
@@ -149,8 +170,9 @@ fn refused(error: impl std::fmt::Display) -> CliError {
     CliError::told(error).within("headroom")
 }
 
-fn scene(name: &str, load: Load) -> Result<SceneRow, CliError> {
-    let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
+fn scene(name: &str, load: Load, threads: u8) -> Result<SceneRow, CliError> {
+    let config =
+        Config { sample_rate_hz: SAMPLE_RATE_HZ, threads: usize::from(threads), ..Config::default() };
     let mut bench =
         Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))?;
     let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
@@ -195,6 +217,43 @@ fn growth() -> Result<Vec<GrowthRow>, CliError> {
     for count in [16, 64, 256, 1024, 4096] {
         let ns = block_ns(load(count))? - without;
         rows.push(GrowthRow { axis: "modes", count, ns_per_sample_each: ns / count as f64 });
+    }
+    Ok(rows)
+}
+
+/// Frames of the shortest blocks that sound cards ask for.
+const SHORT_FRAMES: usize = 16;
+/// Frames rendered at a time, of either kind.
+const TURN_FRAMES: usize = 256;
+
+/// Blocks of [`SHORT_FRAMES`] in turn with blocks of [`BLOCK_FRAMES`] of the same scene, so that both see the same machine.
+fn short_blocks() -> Result<Vec<ShortBlockRow>, CliError> {
+    let mut rows = Vec::new();
+    let scenes = [("one finger, silent plate", 1, 1, 0), ("ten fingers on ten bodies", 10, 10, 100)];
+    for (name, contacts, bodies, modes_per_body) in scenes {
+        let load = Load { contacts, bodies, modes_per_body, lift: false };
+        let bench = || {
+            let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
+            Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))
+        };
+        let (mut short, mut long) = (bench()?, bench()?);
+        let turn = |bench: &mut Bench, frames: usize| {
+            let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
+            let (haptic, audio) = (&mut haptic[..frames], &mut audio[..frames]);
+            let times_s = (0..TURN_FRAMES / frames).map(|_| bench.block(haptic, audio));
+            times_s.sum::<f64>() * 1e9 / TURN_FRAMES as f64
+        };
+        let turns = (2.0 * GROWTH_S * SAMPLE_RATE_HZ) as usize / TURN_FRAMES;
+        let pairs: Vec<[f64; 2]> = (0..turns)
+            .map(|_| [turn(&mut short, SHORT_FRAMES), turn(&mut long, BLOCK_FRAMES)])
+            .skip(turns / 8)
+            .collect();
+        let times = Timing::of(pairs.iter().map(|[short, long]| short / long).collect()).median;
+        let median_ns = |which: usize| Timing::of(pairs.iter().map(|pair| pair[which]).collect()).median;
+        for (which, block_frames, times_that_of_64) in [(0, SHORT_FRAMES, times), (1, BLOCK_FRAMES, 1.0)] {
+            let ns_per_sample = median_ns(which);
+            rows.push(ShortBlockRow { name, block_frames, ns_per_sample, times_that_of_64 });
+        }
     }
     Ok(rows)
 }
@@ -268,10 +327,15 @@ fn contact_alone(integrator: Integrator) -> Result<ContactRow, CliError> {
 fn table(report: &Report) -> String {
     use std::fmt::Write;
     let mut text = format!(
-        "{} ({}), one thread, {} Hz, blocks of {} frames ({:.0} µs)\n\
+        "{} ({}), {}, {} Hz, blocks of {} frames ({:.0} µs)\n\
          every figure is the median of its blocks; the range is that of the middle eight tenths\n\n",
         report.cpu,
         report.instruction_set,
+        if report.threads == 1 {
+            "one thread".to_owned()
+        } else {
+            format!("scenes on {} threads", report.threads)
+        },
         report.sample_rate_hz,
         report.block_frames,
         report.block_frames as f64 / report.sample_rate_hz * 1e6
@@ -316,6 +380,12 @@ fn table(report: &Report) -> String {
             let change = 100.0 * (row.ns_per_sample_each / first - 1.0);
             let _ = writeln!(text, "{:<34}{:>22.3}{change:>+12.1} %", row.count, row.ns_per_sample_each);
         }
+    }
+    let _ =
+        writeln!(text, "\n{:<28}{:>9}{:>19}{:>18}", "short blocks", "frames", "ns a sample", "× that of 64");
+    for row in &report.short_blocks {
+        let (frames, ns) = (row.block_frames, row.ns_per_sample);
+        let _ = writeln!(text, "{:<28}{frames:>9}{ns:>19.1}{:>18.2}", row.name, row.times_that_of_64);
     }
     text.trim_end().to_owned()
 }

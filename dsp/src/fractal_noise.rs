@@ -45,7 +45,7 @@ mod weights;
 use crate::gradient_noise_2d::PEAK_WAVELENGTH_CELLS;
 use crate::rng::Rng;
 use crate::simd::{Eight, Level, at_level};
-use cells::Offset;
+use cells::{KnownCell, Offset};
 
 pub use weights::{OctaveWeights, Relief, growth};
 
@@ -69,6 +69,20 @@ pub struct NoisePath<'a> {
     pub position_m: &'a [[f64; 2]],
     /// Distance travelled between two samples, metres.
     pub footprint_m: &'a [f64],
+}
+
+/// The cells of the slow octaves that a path was last in: a short block need not look for them again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseCells {
+    /// Keys of the field that they are of.
+    field: Option<(u32, u32)>,
+    known: [KnownCell; OCTAVES],
+}
+
+impl Default for NoiseCells {
+    fn default() -> Self {
+        Self { field: None, known: [KnownCell::NONE; OCTAVES] }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,10 +153,28 @@ impl FractalNoise {
         weights: &OctaveWeights,
         height_m: &mut [f64],
     ) {
+        self.add_each(path, roughness, &[weights], &mut [height_m], &mut NoiseCells::default());
+    }
+
+    /// [`Self::add`] along one path for several sets of weights at once, each with heights of its own: the octaves are worked out once, the
+    /// bits are the same. `cells` are those that the path before was in, best of the same contact; they save time and change no bit.
+    pub fn add_each<const W: usize>(
+        &self,
+        path: &NoisePath<'_>,
+        roughness: &[f64],
+        sets: &[&OctaveWeights; W],
+        heights_m: &mut [&mut [f64]; W],
+        cells: &mut NoiseCells,
+    ) {
+        let field = (self.octaves[0].key, self.octaves[1].key);
+        if cells.field != Some(field) {
+            *cells = NoiseCells { field: Some(field), ..NoiseCells::default() };
+        }
+        let known = &mut cells.known;
         at_level!(
             self.level,
-            s => lanes::add::<8, _>(Eight(s), self, path, roughness, weights, height_m),
-            wide s => lanes::add::<16, _>(crate::simd::Sixteen(s), self, path, roughness, weights, height_m)
+            s => lanes::add::<8, W, _>(Eight(s), self, path, roughness, sets, heights_m, known),
+            wide s => lanes::add::<16, W, _>(crate::simd::Sixteen(s), self, path, roughness, sets, heights_m, known)
         );
     }
 }

@@ -66,10 +66,24 @@ pub(crate) fn corners<const N: usize, V: Vector<N>>(
 }
 
 impl<W: Copy> Corners<W> {
-    /// No cell.
+    /// The same cell in all lanes.
     #[inline(always)]
-    pub(crate) fn none<const N: usize, V: Vector<N, Word = W>>(v: V) -> Self {
-        Self([[v.splat_word(0); 2]; 4])
+    pub(crate) fn splat<const N: usize, V: Vector<N, Word = W>>(v: V, cell: &[[u32; 2]; 4]) -> Self {
+        let mut corners = Self([[v.splat_word(0); 2]; 4]);
+        for (corner, [x, y]) in corners.0.iter_mut().zip(cell) {
+            *corner = [v.splat_word(*x), v.splat_word(*y)];
+        }
+        corners
+    }
+
+    /// The cell of the last lane.
+    #[inline(always)]
+    pub(crate) fn last<const N: usize, V: Vector<N, Word = W>>(&self, v: V) -> [[u32; 2]; 4] {
+        let mut cell = [[0; 2]; 4];
+        for (cell, [x, y]) in cell.iter_mut().zip(self.0) {
+            *cell = [v.last(x), v.last(y)];
+        }
+        cell
     }
 
     /// The cell of the last lane in all lanes.

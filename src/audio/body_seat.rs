@@ -198,9 +198,28 @@ impl BodySeat {
     }
 
     /// Adds the sound of the next `out.len()` samples to `out` and returns how many groups of modes were
-    /// left out.
-    pub(crate) fn render(&mut self, terms: Terms, out: &mut [f32]) -> usize {
-        self.current.as_mut().map_or(0, |body| body.render(terms, out))
+    /// left out. `rung` is what the bank has sounded like and left out, where another thread has rung it already.
+    pub(crate) fn render(&mut self, terms: Terms, rung: Option<(&[f32], usize)>, out: &mut [f32]) -> usize {
+        let Some(body) = &mut self.current else { return 0 };
+        let Some((sound, left_out)) = rung else { return body.render(terms, out) };
+        out.iter_mut().zip(sound).for_each(|(sum, x)| *sum += x);
+        body.add_strikes(terms.position, out);
+        left_out
+    }
+
+    /// Modes of the body that must be rung from `position` on; 0 where it is silent.
+    pub(crate) fn modes_that_ring(&self, position: u64) -> usize {
+        self.current.as_ref().map_or(0, |body| body.modes_that_ring(position))
+    }
+
+    /// Lends the body for a while; nothing may happen to it until it is [taken back](Self::take_back).
+    pub(crate) fn lend(&mut self) -> Option<Box<BodySlot>> {
+        self.current.take()
+    }
+
+    /// The body is here again.
+    pub(crate) fn take_back(&mut self, body: Option<Box<BodySlot>>) {
+        self.current = body;
     }
 
     /// Renders each body that rings out to `tail` and hands it to its bus.

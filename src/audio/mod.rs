@@ -5,6 +5,7 @@ pub(crate) mod body_seat;
 pub(crate) mod governor;
 pub(crate) mod occupied;
 pub(crate) mod outlets;
+mod pool;
 pub(crate) mod renderer;
 pub(crate) mod seat;
 pub(crate) mod smoothed;

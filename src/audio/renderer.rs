@@ -5,9 +5,11 @@
 //! [`MAX_BLOCK`] samples, never relative to the caller's blocks, so any split renders the same bits.
 
 mod contacts;
+mod crew;
 mod hand_over;
 mod messages;
 mod outputs;
+mod voices;
 
 use crate::audio::blows::Blows;
 use crate::audio::body_seat::BodySeat;
@@ -16,20 +18,17 @@ use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::Seat;
 use crate::audio::smoothed::Smoothed;
-use crate::audio::voice::{Phase, Scratch, Shared, Stretch, Voice};
+use crate::audio::voice::{Phase, Scratch, Shared, Voice};
 use crate::link::message::{Dead, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::Counters;
 use crate::link::tap::{NoTap, Tap};
 use crate::model::config::Config;
+use crate::model::error::ConfigError;
 use crate::model::id::SurfaceId;
 use crate::model::inner_rate::InnerRate;
 use crate::model::strike_field::StrikePlace;
-use crate::model::surface::Surface;
-use crate::prepared::body::Spot;
-use crate::prepared::body_rub::RubAsked;
 use crate::prepared::probe::{PreparedProbe, row_latency};
-use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::simd::{Isa, Level};
@@ -37,6 +36,7 @@ use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::sand::{SandFigures, SandPicture, SandSource};
 use contacts::SilentContact;
+use crew::Crew;
 use outputs::{Bus, HapticChannel, Mix};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -46,10 +46,13 @@ pub struct Renderer {
     position: u64,
     /// Resets of the game's time so far.
     resets: u64,
-    shared: Shared,
+    /// Threads read it while they render; between two stretches nobody else holds it.
+    shared: Arc<Shared>,
     timeout_samples: u64,
     max_contacts: usize,
-    voices: Vec<Voice>,
+    /// Boxed, so that they change hands without being copied.
+    #[allow(clippy::vec_box, reason = "see above")]
+    voices: Vec<Box<Voice>>,
     /// Where each voice is on a body that has shapes.
     placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
@@ -74,6 +77,8 @@ pub struct Renderer {
     paused: bool,
     /// On its way to silence or back.
     master: Smoothed,
+    /// Other threads, where there are any.
+    crew: Option<Crew>,
     scratch: Box<Scratch>,
     mix: Box<Mix>,
 }
@@ -86,7 +91,7 @@ impl Renderer {
         from_game: Receiver<Message>,
         to_game: Sender<Dead>,
         counters: Arc<Counters>,
-    ) -> Result<Self, DesignError> {
+    ) -> Result<Self, ConfigError> {
         let rate = config.inner_rate_hz();
         let row_latency = row_latency(config.integrator);
         let inner = InnerRate::new(config.sample_rate_hz, row_latency);
@@ -103,12 +108,16 @@ impl Renderer {
             fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
         };
         let voices = config.voices();
+        let sizes = (voices, config.max_surfaces, config.max_bodies);
+        let crew = (config.threads > 1).then(|| Crew::new(config.threads, sizes, &shared)).transpose();
+        let crew =
+            crew.map_err(|error| ConfigError::Threads { threads: config.threads, error: error.kind() })?;
         Ok(Self {
             position: 0,
             resets: 0,
             timeout_samples: (config.contact_timeout_s * rate) as u64,
             max_contacts: config.max_contacts,
-            voices: (0..voices).map(|slot| Voice::free(slot, &shared)).collect(),
+            voices: (0..voices).map(|slot| Box::new(Voice::free(slot, &shared))).collect(),
             placed: vec![None; voices],
             voices_used: Occupied::new(voices),
             seats_used: Occupied::new(config.max_surfaces),
@@ -133,9 +142,10 @@ impl Renderer {
             muted: false,
             paused: false,
             master: Smoothed::new(rate),
+            crew,
             scratch: Scratch::new(),
             mix: Mix::new(),
-            shared,
+            shared: Arc::new(shared),
         })
     }
 
@@ -187,10 +197,19 @@ impl Renderer {
     pub fn report_load(&mut self, load: f32) {
         self.counters.set_load(load);
         self.governor.hear(load, self.position, self.sounding_count());
-        self.shared.noise_octaves_gone = self.governor.octaves_gone();
+        let octaves_gone = self.governor.octaves_gone();
+        self.change_shared(|shared| shared.noise_octaves_gone = octaves_gone);
         if self.sounding_count() > self.contact_limit() {
             Counters::add(&self.counters.shed, 1);
             self.silence_least();
+        }
+    }
+
+    /// Changes what all voices need.
+    fn change_shared(&mut self, change: impl FnOnce(&mut Shared)) {
+        // Every job has given its share of it back before it came home, so this is always the only one.
+        if let Some(shared) = Arc::get_mut(&mut self.shared) {
+            change(shared);
         }
     }
 
@@ -271,79 +290,6 @@ impl Renderer {
         found
     }
 
-    fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
-        for channel in &mut self.channels {
-            channel.sum[..n].fill(0.0);
-        }
-        let tap = &mut self.outlets.beside(tap);
-        let (mut collisions, mut shortened, mut resets, mut blows, mut crowded) = (0, 0, 0, 0, 0);
-        for index in self.voices_used.iter() {
-            let voice = &mut self.voices[index];
-            if voice.phase == Phase::Free {
-                continue;
-            }
-            let seat = &mut self.seats[voice.surface];
-            let channel = voice.role.actuator.map(|channel| &mut self.channels[channel]);
-            let output = channel.as_ref().map_or(&self.shared.idle_output, |channel| &channel.output);
-            let stretch = Stretch { shared: &self.shared, output, position: self.position, n };
-            // Before it is rendered: how it presses at the end of a stretch would depend on where the blocks are cut.
-            let at_grid = self.position.is_multiple_of(MAX_BLOCK as u64);
-            let pressing =
-                seat.current().filter(|_| at_grid).and_then(|slot| voice.pressing(&self.shared, slot));
-            voice.render(stretch, seat, &mut self.scratch, tap);
-            let out = &self.scratch.out;
-            collisions += out.collisions;
-            shortened += out.shortened;
-            resets += out.resets;
-            blows += out.blows;
-            if let Some(channel) = channel {
-                for (sum, x) in channel.sum[..n].iter_mut().zip(&out.haptic) {
-                    *sum += x;
-                }
-            }
-            let touched = seat.current().and_then(|slot| Some((slot.surface.body?, slot)));
-            if let (Some((body, _)), Some(place), Some(probe)) = (touched, self.placed[index], pressing) {
-                self.bodies[body.index()].press(body, (index, voice.begun), &place, &probe);
-            }
-            if let (true, Some((body, slot))) = (out.rub.rubs, touched)
-                && let Some(friction) = slot.surface.rubs()
-            {
-                let asked = RubAsked {
-                    owner: (index, voice.begun),
-                    spot: rubbed(&slot.surface, self.placed[index], out.rub.along),
-                    friction,
-                    sweep_m_s: &out.rub.sweep_m_s[..n],
-                    normal_force_n: &out.rub.normal_force_n[..n],
-                };
-                let left_out = !self.bodies[body.index()].rub(body, &asked);
-                crowded += u64::from(left_out && at_grid);
-            }
-            if !out.excites {
-                continue;
-            }
-            if let Some(holder) = voice.role.holder {
-                self.bodies[holder.index()].touch(holder, 0, &out.impulse_n_s[..n], -1.0);
-            }
-            let surface = seat.current().map(|slot| &slot.surface);
-            if let Some((body, position)) = surface.and_then(|s| Some((s.body?, s.strike_position))) {
-                let (owner, spot) = ((index, voice.begun), Spot { place: self.placed[index], position });
-                self.bodies[body.index()].touch_at(body, owner, &spot, &out.impulse_n_s[..n]);
-            }
-        }
-        let channels = &mut self.channels;
-        self.blows.render(&self.shared, self.position, n, |channel, output, moves| {
-            let HapticChannel { output: design, sum, .. } = &mut channels[channel];
-            for (sum, [pad_m, pad_m_s]) in sum.iter_mut().zip(moves) {
-                *sum += output.tick(design, *pad_m, *pad_m_s);
-            }
-        });
-        Counters::add(&self.counters.micro_collisions, collisions);
-        Counters::add(&self.counters.shortened_collisions, shortened);
-        Counters::add(&self.counters.quarantined, resets);
-        Counters::add(&self.counters.blows, blows);
-        Counters::add(&self.counters.rubs_crowded_out, crowded);
-    }
-
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
     fn tidy(&mut self) {
         self.show_levels();
@@ -373,16 +319,6 @@ impl Renderer {
         Counters::add(&self.counters.shed, self.groups_shed as u64 + octaves);
         self.counters.contacts.store(sounding, Relaxed);
     }
-}
-
-/// Where a contact rubs, and along what of the body.
-fn rubbed(surface: &Surface, place: Option<StrikePlace>, [u, v]: [f64; 2]) -> Spot {
-    let place = place.zip(surface.frame).map(|(place, frame)| {
-        let [along_u, along_v] = frame.axes();
-        let direction = std::array::from_fn(|i| (u * along_u[i] + v * along_v[i]) as f32);
-        StrikePlace { direction, ..place }
-    });
-    Spot { place, position: surface.strike_position }
 }
 
 /// A rise from 0 to 1 in `steps` steps, without step or corner.

@@ -10,7 +10,7 @@ use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
-use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, NoiseCells, NoisePath};
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
 use std::any::Any;
@@ -39,6 +39,8 @@ pub(crate) struct Noise<'a> {
     pub(crate) footprint_m: &'a [f64],
     /// Radius of the sphere that rides there, m; 0 is a point.
     pub(crate) tip_radius_m: f64,
+    /// Where the contact was last.
+    pub(crate) cells: &'a mut NoiseCells,
 }
 
 /// What setting a surface means for the contacts on it.
@@ -138,7 +140,7 @@ impl Seat {
     pub(crate) fn sample(
         &mut self,
         path: &PathBlock<'_>,
-        noise: &Noise<'_>,
+        noise: &mut Noise<'_>,
         out: &mut SurfaceBlock,
         rough: &mut SurfaceBlock,
     ) {
@@ -238,7 +240,7 @@ impl SurfaceSlot {
     fn sample(
         &mut self,
         path: &PathBlock<'_>,
-        noise: &Noise<'_>,
+        noise: &mut Noise<'_>,
         out: &mut SurfaceBlock,
         rough: &mut SurfaceBlock,
     ) {
@@ -283,6 +285,7 @@ impl SurfaceSlot {
                 &out.roughness[..n],
                 &local_power_m2[..n],
                 &mut out.height_m[..n],
+                noise.cells,
             );
         }
     }

@@ -24,6 +24,7 @@ mod skin;
 mod tip;
 mod watching;
 
+pub(crate) use block::VoiceBlock;
 pub(crate) use events::EMPTY_FORCE_N;
 pub(crate) use role::Role;
 pub(crate) use scratch::Scratch;
@@ -38,6 +39,7 @@ use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use ac_coupling::{AcCoupling, ForceCoupling};
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
+use asperity_dsp::fractal_noise::NoiseCells;
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
@@ -84,6 +86,8 @@ pub(crate) struct Voice {
     /// Sent to the body since the last row that was shown, N·s.
     unshown_n_s: f64,
     path: Path,
+    /// Where in the micro-relief it is.
+    cells: NoiseCells,
     tip: Tip,
     pad: Pad,
     drag: Drag,
@@ -97,6 +101,15 @@ pub(crate) struct Voice {
 impl Voice {
     /// A voice that nobody uses; `slot` is its place in the renderer. Allocates.
     pub(crate) fn free(slot: usize, shared: &Shared) -> Self {
+        Self::idle(slot, shared, shared.sample_rate_hz)
+    }
+
+    /// What stands in the place of a voice that another thread renders: it is never rendered itself, and small. Allocates.
+    pub(crate) fn stand_in(shared: &Shared) -> Self {
+        Self::idle(0, shared, 0.0)
+    }
+
+    fn idle(slot: usize, shared: &Shared, sample_rate_hz: f64) -> Self {
         Self {
             contact: ContactId(0),
             surface: 0,
@@ -113,20 +126,26 @@ impl Voice {
             reaction: Reaction::default(),
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
+            cells: NoiseCells::default(),
             tip: Tip::default(),
             pad: Pad::idle(&shared.own_probe),
-            drag: Drag::idle(shared.sample_rate_hz),
+            drag: Drag::idle(sample_rate_hz),
             ac: AcCoupling::idle(&shared.idle_output),
             skin: ContactSkin::default(),
-            exciters: Exciters::idle(slot as u64, shared.sample_rate_hz),
+            exciters: Exciters::idle(slot as u64, sample_rate_hz),
             blows: Blows::default(),
-            fades: Fades::idle(shared.sample_rate_hz),
+            fades: Fades::idle(sample_rate_hz),
         }
     }
 
     /// A report tells what carries its tip, or that it is pressed.
     pub(crate) fn carry(&mut self, sample: &ContactSample) {
         self.tip.carry(sample);
+    }
+
+    /// Whether there is anything to render but rest.
+    pub(crate) fn works(&self) -> bool {
+        self.phase != Phase::Free && !self.asleep
     }
 
     /// Something changed under a resting contact.
@@ -228,7 +247,8 @@ impl Voice {
             }
         }
         self.path.run(slot, points, &mut profile.at_m);
-        profile.run(seat, self.along(shared, position, slopes || dragged), points);
+        let along = self.along(shared, position, slopes || dragged);
+        profile.run(seat, along, points, &mut self.cells);
         out.resets = self.pad.run(probe.waits, &profile.surface.height_m[..n], &profile.force_n[..n], rows);
 
         out.blows = self.blows.count(rows);

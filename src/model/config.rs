@@ -72,6 +72,11 @@ pub struct Config {
     /// Instruction set of the kernels whose last bits depend on it, the modal bank and the contact model: [`Isa::Portable`] gives the
     /// same bits on every processor. `None`: the fastest that this processor has.
     pub kernel: Option<Isa>,
+    /// Most threads that render at once, the one that calls [`Renderer::render`](crate::Renderer::render) among them; 1–64, default 1: no
+    /// other is ever started. With more, surfaces with their contacts, and bodies, are dealt to threads that live as long as the renderer; the
+    /// bits are those of one thread. Pays from a few bodies of a thousand modes or a dozen contacts on surfaces of their own. The system
+    /// schedules them as any thread: on a machine that is busy with other things, leave them out.
+    pub threads: usize,
 }
 
 impl Default for Config {
@@ -96,6 +101,7 @@ impl Default for Config {
             culling: Some(Culling::NEGLIGIBLE),
             shed_load: true,
             kernel: None,
+            threads: 1,
         }
     }
 }
@@ -166,6 +172,7 @@ impl Config {
         count("max_ports", self.max_ports, 4096, "1–4096 ports")?;
         count("max_surfaces", self.max_surfaces, 65_536, "1–65536 surfaces")?;
         count("max_bodies", self.max_bodies, 65_536, "1–65536 bodies")?;
+        count("threads", self.threads, 64, "1–64 threads")?;
         count("queue_capacity", self.queue_capacity, 1 << 24, "1–16777216 events")
     }
 }

@@ -18,6 +18,16 @@ pub enum ConfigError {
         /// The instruction set asked for.
         isa: &'static str,
     },
+    /// The system gives no further threads.
+    #[error(
+        "threads: the system gives no {threads} threads ({error}); must be fewer, 1 renders on the calling thread alone"
+    )]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// What the system says.
+        error: std::io::ErrorKind,
+    },
 }
 
 /// The instruction sets of this processor, separated by commas.

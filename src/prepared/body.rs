@@ -22,6 +22,8 @@ use asperity_texture::height_field::MAX_BLOCK;
 /// What may strike the bank at once: the body's positions, its places, and what rubs it.
 const MOST_INPUTS: usize = MAX_POSITIONS + FIELD_INPUTS + 2;
 const _: () = assert!(MOST_INPUTS <= modal_bank::MAX_INPUTS);
+/// What strikes most bodies at once; a table for more costs as much as some samples of a short block.
+const FEW_INPUTS: usize = 4;
 
 /// Levels of modes left out, from none.
 pub(crate) const MODE_LEVELS: usize = 5;
@@ -274,15 +276,42 @@ impl BodySlot {
 
     /// Adds the body's sound to `out` and returns how many groups of modes did not hear what struck it.
     pub(crate) fn render(&mut self, terms: Terms, out: &mut [f32]) -> usize {
-        let n = out.len();
+        let left_out = self.ring(terms, out);
+        self.add_strikes(terms.position, out);
+        left_out
+    }
+
+    /// Modes that must be rung from `position` on; 0 where it is silent.
+    pub(crate) fn modes_that_ring(&self, position: u64) -> usize {
+        if self.is_silent(position) { 0 } else { modal_bank::LANES * self.bank.groups().max(1) }
+    }
+
+    /// [`render`](Self::render) without the first samples of strikes ([`add_strikes`](Self::add_strikes)): nearly all of the work.
+    pub(crate) fn ring(&mut self, terms: Terms, out: &mut [f32]) -> usize {
         if self.is_silent(terms.position) {
-            self.end_stretch(terms.position, n);
+            self.end_stretch(terms.position, out.len());
             return 0;
         }
+        if self.field.is_none() && self.places.len() + 2 <= FEW_INPUTS {
+            self.ring_inputs::<FEW_INPUTS>(terms, out)
+        } else {
+            self.ring_inputs::<MOST_INPUTS>(terms, out)
+        }
+    }
+
+    /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first samples of strikes.
+    pub(crate) fn add_strikes(&mut self, position: u64, out: &mut [f32]) {
+        self.bursts.render(position, out);
+        self.begin_strikes(position, out);
+    }
+
+    /// Adds what the bank answers to at most `MOST` inputs; how many groups of modes heard nothing.
+    fn ring_inputs<const MOST: usize>(&mut self, terms: Terms, out: &mut [f32]) -> usize {
+        let n = out.len();
         if let Some(field) = &mut self.field {
             field.gather(terms.position, n);
         }
-        let mut inputs = [Input { impulses: &[], gains: &[] }; MOST_INPUTS];
+        let mut inputs = [Input { impulses: &[], gains: &[] }; MOST];
         let mut count = 0;
         if let Some(field) = &self.field {
             field.inputs(terms.position, n, |input| {
@@ -317,8 +346,6 @@ impl BodySlot {
         };
         self.bank.render_leading(driven, terms.position, inputs, out);
         self.end_stretch(terms.position, n);
-        self.bursts.render(terms.position, out);
-        self.begin_strikes(terms.position, out);
         groups - driven
     }
 

@@ -13,7 +13,9 @@
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
 //! power: sine and cosine, because the two are unrelated.
 
-use asperity_dsp::fractal_noise::{FractalNoise, LONGEST_CELL_M, NoisePath, OctaveWeights, Relief, growth};
+use asperity_dsp::fractal_noise::{
+    FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
+};
 use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::tiled::{Place, TileAxis};
 use std::f64::consts::FRAC_PI_2;
@@ -25,6 +27,8 @@ pub(crate) struct Overlay {
     /// The noise is added only below this wavelength, m.
     longest_m: f64,
     rms_m: f64,
+    /// Rms at an [`ORDINARY`] roughness.
+    ordinary_m: f64,
     outer_scale_m: f64,
     /// For tips that have ridden here, and which rides now.
     tips: [Tip; TIPS],
@@ -56,7 +60,8 @@ impl Overlay {
         let axes = period_m.map(|length_m| TileAxis::new(length_m, LONGEST_CELL_M));
         let nobody = OctaveWeights::pinned(0.0, f64::INFINITY);
         let tips = [Tip { radius_m: f64::NAN, below: nobody, all: nobody }; TIPS];
-        let mut overlay = Self { axes, longest_m, rms_m, outer_scale_m, tips, now: 0, next: 0 };
+        let ordinary_m = rms_m * growth(ORDINARY);
+        let mut overlay = Self { axes, longest_m, rms_m, ordinary_m, outer_scale_m, tips, now: 0, next: 0 };
         overlay.tune(0.0);
         overlay
     }
@@ -92,23 +97,28 @@ impl Overlay {
         roughness: &[f64],
         local_power_m2: &[f64],
         height_m: &mut [f64],
+        cells: &mut NoiseCells,
     ) {
-        let ordinary_m = self.rms_m * growth(ORDINARY);
-        let all = |power_m2: &f64| room(*power_m2, ordinary_m);
         let Tip { below, all: whole, .. } = &self.tips[self.now];
-        if self.longest_m.is_infinite() || local_power_m2.iter().all(|power| all(power) == 1.0) {
-            return self.add_below(field, path, roughness, whole, height_m);
+        let mut shares = [1.0; MAX_BLOCK];
+        let shares = &mut shares[..height_m.len().min(MAX_BLOCK)];
+        if self.longest_m.is_finite() {
+            for (share, power_m2) in shares.iter_mut().zip(local_power_m2) {
+                *share = room(*power_m2, self.ordinary_m);
+            }
         }
-        if local_power_m2.iter().all(|power| all(power) == 0.0) {
-            return self.add_below(field, path, roughness, below, height_m);
+        if shares.iter().all(|share| *share == 1.0) {
+            return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
+        }
+        if shares.iter().all(|share| *share == 0.0) {
+            return self.add_tile(field, path, roughness, &[below], [height_m], cells);
         }
         let (mut below_m, mut all_m) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
-        let n = height_m.len().min(MAX_BLOCK);
-        self.add_below(field, path, roughness, below, &mut below_m[..n]);
-        self.add_below(field, path, roughness, whole, &mut all_m[..n]);
-        for (i, height_m) in height_m.iter_mut().enumerate() {
-            let share = all(&local_power_m2[i]);
-            *height_m += (1.0 - share) * below_m[i] + share * all_m[i];
+        let n = shares.len();
+        let parts_m = [&mut below_m[..n], &mut all_m[..n]];
+        self.add_tile(field, path, roughness, &[below, whole], parts_m, cells);
+        for (i, (height_m, share)) in height_m.iter_mut().zip(shares).enumerate() {
+            *height_m += (1.0 - *share) * below_m[i] + *share * all_m[i];
         }
     }
 
@@ -117,44 +127,54 @@ impl Overlay {
         self.longest_m.is_finite()
     }
 
-    /// Adds the tile's noise, weighed.
-    fn add_below(
+    /// Adds the tile's noise, weighed by each set of weights to heights of its own.
+    fn add_tile<const W: usize>(
         &self,
         field: &FractalNoise,
         path: &NoisePath<'_>,
         roughness: &[f64],
-        weights: &OctaveWeights,
-        height_m: &mut [f64],
+        weights: &[&OctaveWeights; W],
+        mut heights_m: [&mut [f64]; W],
+        cells: &mut NoiseCells,
     ) {
-        let n = height_m.len().min(MAX_BLOCK);
-        let mut places = [[Place::default(); 2]; MAX_BLOCK];
+        let walked_m = path.position_m;
+        let n = walked_m.len().min(MAX_BLOCK);
         let mut position_m = [[0.0; 2]; MAX_BLOCK];
         let mut meets = [false; 2];
-        for (path_m, (places, position_m)) in
-            path.position_m.iter().zip(places.iter_mut().zip(&mut position_m)).take(n)
-        {
-            *places = [self.axes[0].place(path_m[0]), self.axes[1].place(path_m[1])];
-            *position_m = places.map(|place| place.at_m);
-            meets = [meets[0] || places[0].weight > 0.0, meets[1] || places[1].weight > 0.0];
+        let mut turns = [0.0; 2];
+        for (at_m, path_m) in position_m.iter_mut().zip(walked_m) {
+            let u = self.axes[0].place_after(path_m[0], &mut turns[0]);
+            let v = self.axes[1].place_after(path_m[1], &mut turns[1]);
+            *at_m = [u.at_m, v.at_m];
+            meets = [meets[0] | (u.weight > 0.0), meets[1] | (v.weight > 0.0)];
         }
         if meets == [false; 2] {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            return field.add(&path, roughness, weights, height_m);
+            return field.add_each(&path, roughness, weights, &mut heights_m, cells);
         }
         for copy in COPIES.into_iter().filter(|copy| (0..2).all(|axis| copy[axis] == 0 || meets[axis])) {
-            for (position_m, places) in position_m[..n].iter_mut().zip(&places) {
-                *position_m = [0, 1].map(|axis: usize| {
+            for (at_m, path_m) in position_m.iter_mut().zip(walked_m) {
+                let places = self.places(path_m);
+                *at_m = [0, 1].map(|axis: usize| {
                     let back_m = if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 };
                     places[axis].at_m - back_m
                 });
             }
-            let mut part_m = [0.0; MAX_BLOCK];
+            let mut parts_m = [[0.0; MAX_BLOCK]; W];
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            field.add(&path, roughness, weights, &mut part_m[..n]);
-            for ((height_m, part_m), places) in height_m.iter_mut().zip(&part_m).zip(&places) {
-                *height_m += gain(places, copy) * part_m;
+            let mut into_m = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
+            field.add_each(&path, roughness, weights, &mut into_m, cells);
+            for (i, path_m) in walked_m.iter().enumerate().take(n) {
+                let gain = gain(&self.places(path_m), copy);
+                for (height_m, part_m) in heights_m.iter_mut().zip(&parts_m) {
+                    height_m[i] += gain * part_m[i];
+                }
             }
         }
+    }
+
+    fn places(&self, [u_m, v_m]: &[f64; 2]) -> [Place; 2] {
+        [self.axes[0].place(*u_m), self.axes[1].place(*v_m)]
     }
 }
 

@@ -32,8 +32,13 @@ pub struct RandomGame {
 impl RandomGame {
     /// A game that is the same for the same seed, with fewer voices than fingers and a short time-out.
     pub fn new(seed: u64) -> (Self, Renderer) {
+        Self::with(seed, Config::default())
+    }
+
+    /// The same in an engine of another kind.
+    pub fn with(seed: u64, config: Config) -> (Self, Renderer) {
         let audio = vec![AudioBus::default(); 2];
-        let config = Config { max_contacts: 6, contact_timeout_s: 0.05, audio, ..Config::default() };
+        let config = Config { max_contacts: 6, contact_timeout_s: 0.05, audio, ..config };
         let asperity::Engine { mut scene, renderer, .. } = config.build().unwrap();
         let bodies = [scene.add_body(clicking_bar()).unwrap(), scene.add_body(bar()).unwrap()];
         let surfaces = [

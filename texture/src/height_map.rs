@@ -15,6 +15,7 @@
 //! the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid as well, so
 //! that a seamless map has no seam.
 
+mod beside;
 mod extent;
 
 pub use extent::{Extent, MapError};
@@ -28,6 +29,7 @@ use crate::resample::halve;
 use crate::ridden::ridden;
 use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
+use beside::{Beside, Blend};
 use extent::check;
 use std::sync::Arc;
 
@@ -63,6 +65,7 @@ pub struct HeightMap {
     /// What tips of some radii ride on, and the one that rides now.
     tips: Vec<(f64, Pyramid)>,
     tip: Option<usize>,
+    beside: Box<Beside>,
 }
 
 #[derive(Debug, Clone)]
@@ -112,6 +115,7 @@ impl HeightMap {
             friction: FRICTION,
             tips: Vec::new(),
             tip: None,
+            beside: Beside::new(),
         })
     }
 
@@ -197,6 +201,7 @@ impl Pyramid {
         widest_m: f64,
         places: &mut Places,
         out: &mut Samples,
+        between: &mut Blend,
     ) {
         let Some(finest) = self.levels.first() else { return out.fill(self.constant) };
         if is_sharp(widest_m, finest.texels_per_metre()) {
@@ -211,7 +216,7 @@ impl Pyramid {
             let level = blur[start].0;
             let same = blur[start..path.len()].iter().take_while(|blur| blur.0 == level).count();
             let run = start..start + same;
-            self.blend_block::<SLOPES>(level, &path.position_m[run.clone()], &blur[run], start, out);
+            self.blend_block::<SLOPES>(level, &path.position_m[run.clone()], &blur[run], start, out, between);
             start += same;
         }
     }
@@ -239,11 +244,15 @@ impl Pyramid {
         blur: &[(usize, f64)],
         start: usize,
         out: &mut Samples,
+        Blend { places, finer, coarser }: &mut Blend,
     ) {
-        let (mut finer, mut coarser) = (Samples::EMPTY, Samples::EMPTY);
-        self.levels[level].sample_block::<SLOPES>(position_m, &mut Places::new(), &mut finer);
+        places.forget();
+        self.levels[level].sample_block::<SLOPES>(position_m, places, finer);
         if let Some(next) = self.levels.get(level + 1) {
-            next.sample_block::<SLOPES>(position_m, &mut Places::new(), &mut coarser);
+            places.forget();
+            next.sample_block::<SLOPES>(position_m, places, coarser);
+        } else {
+            coarser.fill(0.0);
         }
         for (n, (_, blend)) in blur.iter().enumerate() {
             let mix = |a: f64, b: f64| a + blend * (b - a);
@@ -312,9 +321,8 @@ impl HeightField for HeightMap {
     }
 
     fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        let Some(local) = &self.local else { return };
-        for (position_m, power_m2) in position_m.iter().zip(power_m2) {
-            *power_m2 += local.at(*position_m);
+        if let Some(local) = &self.local {
+            local.add_along(position_m, power_m2);
         }
     }
 
@@ -337,31 +345,31 @@ impl HeightField for HeightMap {
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        let widest_m = widest_m(path.footprint_m);
-        let mut places = Places::new();
-        let mut samples = Samples::EMPTY;
+        let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
+        let Beside { places, samples, blend } = &mut *self.beside;
+        places.forget();
         let heights = self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map);
         if path.slopes {
-            heights.sample_block::<true>(path, widest_m, &mut places, &mut samples);
-            let slopes = samples.slope_u.iter().zip(&samples.slope_v);
+            heights.sample_block::<true>(path, widest_m, places, samples, blend);
+            let slopes = samples.slope_u.iter().zip(&samples.slope_v).take(n);
             for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
                 *gradient = [*u, *v];
             }
         } else {
-            heights.sample_block::<false>(path, widest_m, &mut places, &mut samples);
+            heights.sample_block::<false>(path, widest_m, places, samples, blend);
         }
-        out.height_m.copy_from_slice(&samples.value[..MAX_BLOCK]);
+        out.height_m[..n].copy_from_slice(&samples.value[..n]);
         match &self.roughness {
-            Roughness::Constant(roughness) => out.roughness[..path.len()].fill(*roughness),
+            Roughness::Constant(roughness) => out.roughness[..n].fill(*roughness),
             Roughness::Map(map) => {
-                map.sample_block::<false>(path, widest_m, &mut places, &mut samples);
-                for (roughness, value) in out.roughness.iter_mut().zip(&samples.value) {
+                map.sample_block::<false>(path, widest_m, places, samples, blend);
+                for (roughness, value) in out.roughness[..n].iter_mut().zip(&samples.value) {
                     *roughness = value.clamp(0.0, 1.0);
                 }
             }
         }
-        out.friction[..path.len()].fill(self.friction);
-        out.compliance_m_n[..path.len()].fill(0.0);
+        out.friction[..n].fill(self.friction);
+        out.compliance_m_n[..n].fill(0.0);
         out.answer.clear();
     }
 }

@@ -40,16 +40,45 @@ impl LocalRelief {
         Self { power_m2, cells_per_m: [width as f64 / size_m[0], height as f64 / size_m[1]], wrap }
     }
 
-    /// P at a place, m²: between the four nearest cells.
-    pub fn at(&self, position_m: [f64; 2]) -> f64 {
+    /// Adds P at each place, m²: between the four nearest cells, which a finger shares for many samples.
+    pub fn add_along(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        let mut corners = Corners { left: f64::NAN, top: f64::NAN, rows_m2: [[0.0; 2]; 2] };
+        for ([u_m, v_m], power_m2) in position_m.iter().zip(power_m2) {
+            let [x, y] = [u_m * self.cells_per_m[0] - 0.5, v_m * self.cells_per_m[1] - 0.5];
+            if !corners.hold(x, y) {
+                corners = self.corners(x, y);
+            }
+            *power_m2 += corners.between(x, y);
+        }
+    }
+
+    fn corners(&self, x: f64, y: f64) -> Corners {
         let Raster { width, height, ref values } = self.power_m2;
-        let [x, y] = [0, 1].map(|axis| position_m[axis] * self.cells_per_m[axis] - 0.5);
         let (left, top) = (x.floor(), y.floor());
-        let (fx, fy) = (x - left, y - top);
         let column = |step: i64| self.wrap.index(left as i64 + step, width);
         let row = |step: i64| self.wrap.index(top as i64 + step, height) * width;
-        let between = |row: usize| values[row + column(0)] * (1.0 - fx) + values[row + column(1)] * fx;
-        between(row(0)) * (1.0 - fy) + between(row(1)) * fy
+        let pair = |row: usize| [values[row + column(0)], values[row + column(1)]];
+        Corners { left, top, rows_m2: [pair(row(0)), pair(row(1))] }
+    }
+}
+
+/// The four cells about a place, by rows, and where the first of them is.
+struct Corners {
+    left: f64,
+    top: f64,
+    rows_m2: [[f64; 2]; 2],
+}
+
+impl Corners {
+    /// Whether a place lies between them.
+    fn hold(&self, x: f64, y: f64) -> bool {
+        x >= self.left && x < self.left + 1.0 && y >= self.top && y < self.top + 1.0
+    }
+
+    fn between(&self, x: f64, y: f64) -> f64 {
+        let (fx, fy) = (x - self.left, y - self.top);
+        let [first, second] = self.rows_m2.map(|[left, right]| left * (1.0 - fx) + right * fx);
+        first * (1.0 - fy) + second * fy
     }
 }
 
@@ -89,6 +118,31 @@ fn add_lag(heights: &Raster, lag: usize, wrap: Wrap, power: &mut [f64], cells: [
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    impl LocalRelief {
+        fn at(&self, position_m: [f64; 2]) -> f64 {
+            let mut power_m2 = [0.0];
+            self.add_along(&[position_m], &mut power_m2);
+            power_m2[0]
+        }
+    }
+
+    #[test]
+    fn a_cell_that_is_kept_changes_no_bit() {
+        let ridge = picture(256, |x, y| 4e-3 * (-((x - y) / 1e-3).powi(2)).exp());
+        let way: Vec<[f64; 2]> = (0..4000)
+            .map(|n| {
+                let turn = f64::from(n) * 0.01;
+                [-0.05 + 1e-4 * f64::from(n), 0.07 + 0.03 * turn.sin()]
+            })
+            .chain([[f64::NAN, 0.0], [0.07, 0.07], [1e30, 0.07], [0.07, 0.07]])
+            .collect();
+        let mut along = vec![0.0; way.len()];
+        ridge.add_along(&way, &mut along);
+        for (at, power_m2) in way.iter().zip(along) {
+            assert_eq!(power_m2.to_bits(), ridge.at(*at).to_bits(), "{at:?}");
+        }
+    }
 
     fn picture(n: usize, height_m: impl Fn(f64, f64) -> f64) -> LocalRelief {
         let at = |i: usize| (i as f64 + 0.5) / n as f64 * 0.14;

@@ -27,6 +27,9 @@ pub struct Place {
     pub slope_per_m: f64,
 }
 
+/// How near to a tile's edge, against all lengths at hand, rounding might have a say: far more than it has.
+const EDGE: f64 = 1e-12;
+
 /// One axis of a tile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TileAxis {
@@ -50,11 +53,52 @@ impl TileAxis {
         if !self.length_m.is_finite() {
             return Place { at_m: position_m, ..Place::default() };
         }
-        let at_m = position_m - self.length_m * (position_m / self.length_m).floor();
+        self.inside(position_m - self.length_m * floor(position_m / self.length_m))
+    }
+
+    /// [`Self::place`], to the bit, of one of many places in a row: `turn` is the number of the tile that the one before lay in.
+    #[inline]
+    #[must_use]
+    pub fn place_after(&self, position_m: f64, turn: &mut f64) -> Place {
+        if !self.length_m.is_finite() {
+            return Place { at_m: position_m, ..Place::default() };
+        }
+        let at_m = position_m - self.length_m * *turn;
+        // Well inside a tile no rounding makes it another one.
+        let edge_m = EDGE * (self.length_m + position_m.abs());
+        if at_m > edge_m && at_m < self.length_m - edge_m {
+            return self.inside(at_m);
+        }
+        *turn = floor(position_m / self.length_m);
+        self.inside(position_m - self.length_m * *turn)
+    }
+
+    #[inline]
+    fn inside(&self, at_m: f64) -> Place {
+        if at_m <= self.length_m - self.blend_m {
+            return Place { at_m, ..Place::default() };
+        }
         let t = ((at_m - (self.length_m - self.blend_m)) / self.blend_m).clamp(0.0, 1.0);
         let weight = t * t * t * (10.0 + t * (6.0 * t - 15.0));
         let slope_per_m = 30.0 * t * t * (1.0 - t) * (1.0 - t) / self.blend_m;
         Place { at_m, weight, slope_per_m }
+    }
+}
+
+/// Largest whole number not above x. `f64::floor` is a library call on plain x86-64.
+#[inline]
+fn floor(x: f64) -> f64 {
+    // Beyond 2⁵¹ a number has no fraction worth a tile, and a cast may not hold it.
+    let has_fraction = x.abs() < 2_251_799_813_685_248.0;
+    if !has_fraction {
+        return x.floor();
+    }
+    let whole = x as i64 as f64;
+    match whole.partial_cmp(&x) {
+        Some(std::cmp::Ordering::Greater) => whole - 1.0,
+        // A zero keeps its sign.
+        Some(std::cmp::Ordering::Equal) => x,
+        _ => whole,
     }
 }
 
@@ -264,6 +308,40 @@ mod tests {
             slopes.extend_from_slice(&out.gradient[..n]);
         }
         (heights, slopes)
+    }
+
+    #[test]
+    fn places_in_a_row_are_those_of_each_alone_to_the_bit() {
+        for axis in
+            [TileAxis::new(0.14, 0.016), TileAxis::new(1.0 / 3.0, 0.1), TileAxis::new(f64::INFINITY, 0.1)]
+        {
+            let mut turn = 0.0;
+            let way = (0..40_000).map(|n| -0.8 + 5.3e-5 * f64::from(n));
+            let edges = (-9..9).flat_map(|n| {
+                let edge = f64::from(n) * axis.length_m;
+                [edge.next_down(), edge, edge.next_up(), -edge, 1e9 * edge]
+            });
+            for x in way.chain(edges).chain([f64::NAN, 1e300, 0.07, -0.0, f64::INFINITY, 0.01]) {
+                let (after, alone) = (axis.place_after(x, &mut turn), axis.place(x));
+                let bits = |p: Place| [p.at_m, p.weight, p.slope_per_m].map(f64::to_bits);
+                assert!(
+                    bits(after) == bits(alone) || x.is_nan() || x.is_infinite(),
+                    "{x}: {after:?} {alone:?}"
+                );
+                assert_eq!(after.at_m.is_nan(), alone.at_m.is_nan());
+            }
+        }
+    }
+
+    #[test]
+    fn whole_numbers_below_are_those_of_the_library_to_the_bit() {
+        let some =
+            [0.0, -0.0, 0.5, -0.5, 1.0, -1.0, 0.999_999_999_999_999_9, -1e-300, 7.25, -7.25, 1e15, -1e15];
+        let wild = [2e15, 2.3e15, 4.6e15, -4.6e15, 1e300, f64::INFINITY, f64::NEG_INFINITY];
+        for x in some.into_iter().chain(wild).chain((0..2000).map(|n| 0.37 * f64::from(n) - 370.0)) {
+            assert_eq!(floor(x).to_bits(), x.floor().to_bits(), "{x}");
+        }
+        assert!(floor(f64::NAN).is_nan());
     }
 
     #[test]

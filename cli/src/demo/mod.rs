@@ -94,6 +94,7 @@ fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
         integrator: None,
         path: None,
         kernel: None,
+        threads: 1,
         trace: false,
         force: false,
         force_rate: 1000.0,

@@ -59,6 +59,9 @@ pub struct Options {
     /// Instruction set of the kernels whose last bits depend on it: portable gives the same files on every processor
     #[arg(long, value_name = "NAME", value_parser = kernels())]
     pub kernel: Option<Isa>,
+    /// Most threads that render at once; the files are the same
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub threads: u8,
     /// Write STEM.trace.csv, one row a sample and contact
     #[arg(long)]
     pub trace: bool,
@@ -157,6 +160,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
         integrator: options.integrator,
         path: options.path,
         kernel: options.kernel,
+        threads: Some(usize::from(options.threads)),
         ..Overrides::default()
     };
     let built = Engine::from_scene(&file, &overrides)?;

@@ -289,6 +289,7 @@ mod tests {
             force: false,
             force_rate: 1000.0,
             kernel: None,
+            threads: 1,
             port: None,
             plot: false,
             json: false,

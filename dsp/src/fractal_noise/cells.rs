@@ -82,11 +82,27 @@ pub(super) struct LastCell<W> {
     pub(super) corners: Corners<W>,
 }
 
-impl<W: Copy> LastCell<W> {
+/// A [`LastCell`] between two calls, whatever their vectors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct KnownCell {
+    bounds: Bounds,
+    corners: [[u32; 2]; 4],
+}
+
+impl KnownCell {
     /// No cell: nothing is inside.
+    pub(super) const NONE: Self = Self { bounds: [f64::INFINITY; 4], corners: [[0; 2]; 4] };
+}
+
+impl<W: Copy> LastCell<W> {
     #[inline(always)]
-    pub(super) fn none<const N: usize, V: Vector<N, Word = W>>(v: V) -> Self {
-        Self { bounds: [f64::INFINITY; 4], corners: Corners::none(v) }
+    pub(super) fn of<const N: usize, V: Vector<N, Word = W>>(v: V, known: &KnownCell) -> Self {
+        Self { bounds: known.bounds, corners: Corners::splat(v, &known.corners) }
+    }
+
+    #[inline(always)]
+    pub(super) fn known<const N: usize, V: Vector<N, Word = W>>(&self, v: V) -> KnownCell {
+        KnownCell { bounds: self.bounds, corners: self.corners.last(v) }
     }
 
     #[inline(always)]

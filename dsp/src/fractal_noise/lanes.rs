@@ -1,6 +1,6 @@
 //! The noise of N samples side by side.
 
-use super::cells::{Bounds, Cells, LastCell, cells};
+use super::cells::{Bounds, Cells, KnownCell, LastCell, cells};
 use super::gains::{Gains, footprint_weight, gains, polynomial, within_0_1};
 use super::{
     FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, Octave, OctaveWeights, ROTATION_RAD, ROTATIONS,
@@ -28,18 +28,25 @@ struct Lattice<W> {
 
 /// What the roughness of N samples says, kept until it is another.
 #[derive(Clone, Copy)]
-struct Rough<F> {
+struct Rough<F, const W: usize> {
     roughness: F,
     gains: Gains<F>,
-    /// Weights of the octaves.
-    weights: [F; OCTAVES],
+    /// Weights of the octaves, by set.
+    weights: [[F; OCTAVES]; W],
 }
 
-impl<F: Copy> Rough<F> {
+impl<F: Copy, const W: usize> Rough<F, W> {
+    /// Plain loops: what goes through `map` is compiled without the instruction set, a call for each operation.
     #[inline(always)]
-    fn new<const N: usize, V: Vector<N, Single = F>>(v: V, weights: &OctaveWeights, roughness: F) -> Self {
+    fn new<const N: usize, V: Vector<N, Single = F>>(v: V, sets: &[&OctaveWeights; W], roughness: F) -> Self {
         let within = within_0_1(v, roughness);
-        Self { roughness, gains: gains(v, roughness), weights: weights.of.map(|c| polynomial(v, within, &c)) }
+        let mut weights = [[v.splat(0.0); OCTAVES]; W];
+        for (weights, set) in weights.iter_mut().zip(sets) {
+            for (weight, c) in weights.iter_mut().zip(&set.of) {
+                *weight = polynomial(v, within, c);
+            }
+        }
+        Self { roughness, gains: gains(v, roughness), weights }
     }
 }
 
@@ -57,14 +64,14 @@ struct Lanes<const N: usize, V: Vector<N>> {
 
 impl<const N: usize, V: Vector<N>> Lanes<N, V> {
     #[inline(always)]
-    fn new(
+    fn new<const W: usize>(
         v: V,
         noise: &FractalNoise,
         position_m: &[[f64; 2]; N],
         footprint_m: &[f64; N],
         roughness: &[f64; N],
-        weights: &OctaveWeights,
-        rough: &mut Rough<V::Single>,
+        sets: &[&OctaveWeights; W],
+        rough: &mut Rough<V::Single, W>,
     ) -> Self {
         let [x, y] = v.load_points(position_m);
         let (x, y) = (within_reach(v, x), within_reach(v, y));
@@ -81,7 +88,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         let (shortest_footprint_m, longest_footprint_m) = v.extremes(footprint);
         let roughness = v.load(roughness);
         if !v.equal(roughness, rough.roughness) {
-            *rough = Rough::new(v, weights, roughness);
+            *rough = Rough::new(v, sets, roughness);
         }
         let slow = slow_octaves(noise, way_m(position_m));
         Self {
@@ -95,24 +102,28 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         }
     }
 
-    /// Sum of all octaves, from the finest to the coarsest.
+    /// Sums of all octaves, from the finest to the coarsest of each set of weights; every octave is worked out once for all sets.
     #[inline(always)]
-    fn sum(
+    fn sums<const W: usize>(
         &self,
         noise: &FractalNoise,
-        weights: &[V::Single; OCTAVES],
-        coarsest: usize,
+        weights: &[[V::Single; OCTAVES]; W],
+        coarsest: &[usize; W],
         last: &mut [LastCell<V::Word>; OCTAVES],
-    ) -> V::Single {
+    ) -> [V::Single; W] {
         let v = self.v;
         let one = v.splat(1.0);
-        let mut sum = v.splat(0.0);
+        let mut sums = [v.splat(0.0); W];
+        let mut end = OCTAVES;
+        for coarsest in coarsest {
+            end = end.min(*coarsest);
+        }
         let mut gain = self.gains.finest;
         let mut finer = v.splat(0.0); // footprint weight of the next finer octave
         let mut all_finer = false; // … is exactly 1 everywhere
         let mut i = OCTAVES;
         // The finest octaves: some fade, one stands in for finer ones, cells change every few samples.
-        while i > coarsest {
+        while i > end {
             let cell_m = noise.octaves[i - 1].cell_m;
             let whole = cell_m >= WHOLE * self.longest_footprint_m;
             if whole && all_finer && i <= self.slow {
@@ -125,29 +136,39 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
                 weight = footprint_weight(v, v.mul(v.splat(cell_m), self.samples_per_metre));
             }
             if !gone {
-                let mut scale = weights[i];
-                if !(whole && all_finer) {
+                let fades = !(whole && all_finer);
+                let mut fade = one;
+                if fades {
                     let boost = v.add(one, v.mul(self.gains.tail_boost, v.sub(one, finer)));
-                    scale = v.mul(scale, v.mul(weight, boost));
+                    fade = v.mul(weight, boost);
                 }
                 let value = if i < self.slow {
                     self.slow_octave(noise, i, &mut last[i])
                 } else {
                     self.octave(noise, i)
                 };
-                sum = v.add(sum, v.mul(v.mul(gain, scale), value));
+                for ((sum, weights), coarsest) in sums.iter_mut().zip(weights).zip(coarsest) {
+                    if i >= *coarsest {
+                        let scale = if fades { v.mul(weights[i], fade) } else { weights[i] };
+                        *sum = v.add(*sum, v.mul(v.mul(gain, scale), value));
+                    }
+                }
             }
             gain = v.mul(gain, self.gains.coarser);
             finer = weight;
             all_finer = whole;
         }
-        while i > coarsest {
+        while i > end {
             i -= 1;
             let value = self.slow_octave(noise, i, &mut last[i]);
-            sum = v.add(sum, v.mul(v.mul(gain, weights[i]), value));
+            for ((sum, weights), coarsest) in sums.iter_mut().zip(weights).zip(coarsest) {
+                if i >= *coarsest {
+                    *sum = v.add(*sum, v.mul(v.mul(gain, weights[i]), value));
+                }
+            }
             gain = v.mul(gain, self.gains.coarser);
         }
-        sum
+        sums
     }
 
     /// One octave at every sample.
@@ -215,44 +236,63 @@ fn within_reach<const N: usize, V: Vector<N>>(v: V, x: V::Double) -> V::Double {
     v.min_double(v.max_double(x, v.splat_double(-FARTHEST_M)), v.splat_double(FARTHEST_M))
 }
 
-/// Adds the noise along a path to `height_m`, N samples at a time.
+/// Adds the noise along a path to the heights of each set of weights, N samples at a time.
 #[inline(always)]
-pub(super) fn add<const N: usize, V: Vector<N>>(
+pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
     v: V,
     noise: &FractalNoise,
     path: &NoisePath<'_>,
     roughness: &[f64],
-    weights: &OctaveWeights,
-    height_m: &mut [f64],
+    sets: &[&OctaveWeights; W],
+    heights_m: &mut [&mut [f64]; W],
+    known: &mut [KnownCell; OCTAVES],
 ) {
     let (positions, positions_left) = path.position_m.as_chunks::<N>();
     let (footprints, footprints_left) = path.footprint_m.as_chunks::<N>();
     let (roughness, roughness_left) = roughness.as_chunks::<N>();
-    let (heights, heights_left) = height_m.as_chunks_mut::<N>();
-    let coarsest = (0..OCTAVES).find(|octave| weights.counts(*octave)).unwrap_or(OCTAVES);
-    let mut last = [LastCell::none(v); OCTAVES];
-    let mut rough = Rough::new(v, weights, v.splat(f32::NAN));
-    let inputs = positions.iter().zip(footprints).zip(roughness);
-    for (((position, footprint), roughness), height) in inputs.zip(heights) {
-        let lanes = Lanes::new(v, noise, position, footprint, roughness, weights, &mut rough);
-        v.add_to(lanes.sum(noise, &rough.weights, coarsest, &mut last), height);
+    let mut coarsest = [OCTAVES; W];
+    let mut whole = usize::MAX;
+    for ((coarsest, weights), heights_m) in coarsest.iter_mut().zip(sets).zip(heights_m.iter()) {
+        *coarsest = weights.coarsest;
+        whole = whole.min(heights_m.len() / N);
     }
-    if heights_left.is_empty() {
-        return;
+    let mut last = [LastCell::of(v, &KnownCell::NONE); OCTAVES];
+    for (last, known) in last.iter_mut().zip(known.iter()) {
+        *last = LastCell::of(v, known);
     }
-    let lanes = Lanes::new(
-        v,
-        noise,
-        &padded(positions_left, [0.0; 2]),
-        &padded(footprints_left, 0.0),
-        &padded(roughness_left, 0.0),
-        weights,
-        &mut rough,
-    );
-    let mut out = padded(heights_left, 0.0);
-    v.add_to(lanes.sum(noise, &rough.weights, coarsest, &mut last), &mut out);
-    for (height, out) in heights_left.iter_mut().zip(out) {
-        *height = out;
+    let mut rough = Rough::new(v, sets, v.splat(f32::NAN));
+    let inputs = positions.iter().zip(footprints).zip(roughness).take(whole);
+    for (n, ((position, footprint), roughness)) in inputs.enumerate() {
+        let lanes = Lanes::new(v, noise, position, footprint, roughness, sets, &mut rough);
+        let sums = lanes.sums(noise, &rough.weights, &coarsest, &mut last);
+        for (sum, heights_m) in sums.into_iter().zip(heights_m.iter_mut()) {
+            if let Some(heights_m) = heights_m.as_chunks_mut::<N>().0.get_mut(n) {
+                v.add_to(sum, heights_m);
+            }
+        }
+    }
+    if !positions_left.is_empty() {
+        let lanes = Lanes::new(
+            v,
+            noise,
+            &padded(positions_left, [0.0; 2]),
+            &padded(footprints_left, 0.0),
+            &padded(roughness_left, 0.0),
+            sets,
+            &mut rough,
+        );
+        let sums = lanes.sums(noise, &rough.weights, &coarsest, &mut last);
+        for (sum, heights_m) in sums.into_iter().zip(heights_m.iter_mut()) {
+            let heights_left = heights_m.as_chunks_mut::<N>().1;
+            let mut out = padded(heights_left, 0.0);
+            v.add_to(sum, &mut out);
+            for (height, out) in heights_left.iter_mut().zip(out) {
+                *height = out;
+            }
+        }
+    }
+    for (last, known) in last.iter().zip(known) {
+        *known = last.known(v);
     }
 }
 

@@ -1,4 +1,6 @@
 use super::*;
+use crate::simd::Isa;
+use std::vec;
 
 #[test]
 fn roughness_maps_to_the_exponents_of_the_paper() {
@@ -11,4 +13,62 @@ fn roughness_maps_to_the_exponents_of_the_paper() {
 fn a_field_is_its_seed() {
     assert_eq!(FractalNoise::new(4), FractalNoise::new(4));
     assert_ne!(FractalNoise::new(4), FractalNoise::new(4 + (1 << 40)));
+}
+
+#[test]
+fn remembered_cells_and_sets_that_share_a_walk_change_no_bit_on_any_level_wherever_the_path_is_cut() {
+    let relief = |longest_wavelength_m| Relief {
+        rms_at_1mm_m: 2e-6,
+        outer_scale_m: 0.01,
+        tip_radius_m: 5e-4,
+        longest_wavelength_m,
+    };
+    let sets = [OctaveWeights::new(&relief(6e-4)), OctaveWeights::new(&relief(f64::INFINITY))];
+    let mut rng = Rng::new(31);
+    let (mut at, mut position_m, mut footprint_m, mut roughness) = ([0.1, 0.2], vec![], vec![], vec![]);
+    for n in 0..4096 {
+        // Slow, fast, and now and then somewhere else.
+        let step_m = if n % 1500 < 900 { 2e-6 } else { 2e-5 };
+        at = if n % 700 == 699 {
+            [rng.uniform(), -rng.uniform()]
+        } else {
+            [at[0] + step_m, at[1] - 0.3 * step_m]
+        };
+        position_m.push(at);
+        footprint_m.push(1.05 * step_m);
+        roughness.push(if n < 2000 { 0.4 } else { rng.uniform() });
+    }
+    for isa in Isa::ALL {
+        let Some(level) = Level::find(isa) else { continue };
+        let (field, other) = (FractalNoise::new(7).on(level), FractalNoise::new(8).on(level));
+        let path = |from: usize, to: usize| NoisePath {
+            position_m: &position_m[from..to],
+            footprint_m: &footprint_m[from..to],
+        };
+        let alone = sets.map(|weights| {
+            let mut height_m = vec![0.0; 4096];
+            field.add(&path(0, 4096), &roughness, &weights, &mut height_m);
+            height_m
+        });
+        let (mut cells, mut at) = (NoiseCells::default(), 0);
+        while at < 4096 {
+            let end = (at + 1 + rng.next_u32() as usize % 70).min(4096);
+            let (mut under_m, mut all_m) = (vec![0.0; end - at], vec![0.0; end - at]);
+            let [under, all] = &sets;
+            let mut heights_m = [&mut under_m[..], &mut all_m[..]];
+            field.add_each(&path(at, end), &roughness[at..end], &[under, all], &mut heights_m, &mut cells);
+            assert!(under_m == alone[0][at..end] && all_m == alone[1][at..end], "{isa:?}, {at}..{end}");
+            if at % 5 == 0 {
+                // Another field's cells are not taken for this one's.
+                other.add_each(
+                    &path(at, end),
+                    &roughness[at..end],
+                    &[all],
+                    &mut [&mut all_m[..]],
+                    &mut cells,
+                );
+            }
+            at = end;
+        }
+    }
 }

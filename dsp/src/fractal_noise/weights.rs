@@ -57,6 +57,8 @@ pub fn growth(roughness: f64) -> f64 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OctaveWeights {
     pub(super) of: [[f32; TERMS]; OCTAVES],
+    /// The first octave that is there at all; [`OCTAVES`] for none.
+    pub(super) coarsest: usize,
 }
 
 impl OctaveWeights {
@@ -65,7 +67,7 @@ impl OctaveWeights {
     pub fn pinned(rms_at_1mm_m: f64, longest_wavelength_m: f64) -> Self {
         let of =
             |cell_m| [band_weight(cell_m, longest_wavelength_m) * rms_at_1mm_m as f32, 0.0, 0.0, 0.0, 0.0];
-        Self { of: cells_m().map(of) }
+        Self::of(cells_m().map(of))
     }
 
     /// Of a surface, for a tip.
@@ -76,12 +78,12 @@ impl OctaveWeights {
             let at = |roughness| band * relief.share(PEAK_WAVELENGTH_CELLS * cell_m, roughness);
             polynomial([0.0, 0.25, 0.5, 0.75, 1.0].map(at)).map(|c| (c * relief.rms_at_1mm_m) as f32)
         };
-        Self { of: cells_m().map(of) }
+        Self::of(cells_m().map(of))
     }
 
-    /// Whether an octave is there at all.
-    pub(super) fn counts(&self, octave: usize) -> bool {
-        self.of[octave] != [0.0; TERMS]
+    fn of(of: [[f32; TERMS]; OCTAVES]) -> Self {
+        let coarsest = of.iter().position(|weight| *weight != [0.0; TERMS]).unwrap_or(OCTAVES);
+        Self { of, coarsest }
     }
 }
 

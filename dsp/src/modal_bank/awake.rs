@@ -4,6 +4,9 @@ use super::design::{GRID_SAMPLES, GroupState, ModeGroup};
 use super::job::{Input, MAX_INPUTS};
 use super::kernel::Kernel;
 
+/// Inputs of an ordinary call.
+const FEW_INPUTS: usize = 4;
+
 /// How many leading groups ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Awake {
@@ -31,9 +34,25 @@ impl Awake {
         shared: bool,
         out: &mut [f32],
     ) {
+        // A table for all inputs costs as much as some samples of a short block.
+        if inputs.len() <= FEW_INPUTS {
+            self.run_inputs::<FEW_INPUTS>(bank, first_sample, inputs, shared, out);
+        } else {
+            self.run_inputs::<MAX_INPUTS>(bank, first_sample, inputs, shared, out);
+        }
+    }
+
+    fn run_inputs<const MOST: usize>(
+        &mut self,
+        bank: Bank<'_>,
+        first_sample: u64,
+        inputs: &[Input<'_>],
+        shared: bool,
+        out: &mut [f32],
+    ) {
         let Bank { kernel, groups, states, driven, threshold } = bank;
-        let mut heard = [Input { impulses: &[], gains: &[] }; MAX_INPUTS];
-        let heard = &mut heard[..inputs.len().min(MAX_INPUTS)];
+        let mut heard = [Input { impulses: &[], gains: &[] }; MOST];
+        let heard = &mut heard[..inputs.len().min(MOST)];
         let samples = inputs.iter().fold(out.len(), |n, input| n.min(input.impulses.len()));
         let driven = driven.min(groups.len()).min(states.len());
         let mut at = 0;

@@ -287,6 +287,6 @@ impl Renderer {
     }
 }
 
-fn sounding(voices: &[Voice], contact: ContactId) -> Option<usize> {
+fn sounding(voices: &[Box<Voice>], contact: ContactId) -> Option<usize> {
     voices.iter().position(|voice| voice.contact == contact && voice.phase == Phase::Sounding)
 }

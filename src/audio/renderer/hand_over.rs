@@ -37,8 +37,8 @@ impl Renderer {
                 edit => self.apply(edit),
             }
         }
-        let sounding = |voice: &&crate::audio::voice::Voice| voice.phase == Phase::Sounding;
-        let touching = self.voices.iter().filter(sounding).map(SilentContact::of);
+        let touching = self.voices.iter().filter(|voice| voice.phase == Phase::Sounding);
+        let touching = touching.map(|voice| SilentContact::of(voice));
         let contacts = self.silent.iter().copied().chain(touching).collect();
         HandedOver {
             contacts,

@@ -2,7 +2,7 @@
 
 use super::Renderer;
 use crate::audio::seat::Change;
-use crate::audio::voice::{Phase, Voice};
+use crate::audio::voice::Phase;
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::id::SurfaceId;
@@ -78,7 +78,9 @@ impl Renderer {
                     self.feel(felt, &pulse, stamp);
                 }
             }
-            Message::AddProbe { index, probe } => self.shared.probes[index] = Some(probe),
+            Message::AddProbe { index, probe } => {
+                self.change_shared(|shared| shared.probes[index] = Some(probe));
+            }
             Message::SetSurface { id, surface } => self.set_surface(id, surface),
             Message::ChangeSurface { slot, change } => {
                 if !self.seats[slot].change(&*change, self.position) {
@@ -87,7 +89,7 @@ impl Renderer {
                 // There is room: the message waited for it.
                 let _ = self.to_game.send(Dead::Change(change));
                 // A resting finger feels the change.
-                self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(Voice::wake);
+                self.voices.iter_mut().filter(|voice| voice.surface == slot).for_each(|voice| voice.wake());
             }
             Message::RemoveSurface { slot } => {
                 self.seats[slot].remove();

@@ -192,13 +192,17 @@ impl Renderer {
             bus.sum[..n].fill(0.0);
         }
         let terms = Terms { position: self.position, mode_level: self.governor.mode_level() };
+        if let Some(crew) = &mut self.crew {
+            crew.ring_bodies(terms, n, (&mut self.bodies, &self.bodies_used), &mut self.scratch);
+        }
         let mut shed = 0;
-        for body in self.bodies_used.iter() {
-            let body = &mut self.bodies[body];
+        for index in self.bodies_used.iter() {
+            let rung = self.crew.as_mut().and_then(|crew| crew.take_body(index));
+            let body = &mut self.bodies[index];
             if !body.is_plain() {
                 let sound = &mut self.mix.body[..n];
                 sound.fill(0.0);
-                shed += body.render(terms, sound);
+                shed += body.render(terms, rung, sound);
                 body.scale(sound);
                 let (from, to) = body.between();
                 for (i, x) in sound.iter().enumerate() {
@@ -207,13 +211,16 @@ impl Renderer {
                     self.buses[to].sum[i] += weight * x;
                 }
             } else {
-                shed += body.render(terms, &mut self.buses[body.bus()].sum[..n]);
+                shed += body.render(terms, rung, &mut self.buses[body.bus()].sum[..n]);
             }
             body.render_leaving(terms, &mut self.mix.body[..n], |bus, sound| {
                 for (sum, x) in self.buses[bus].sum.iter_mut().zip(sound) {
                     *sum += x;
                 }
             });
+        }
+        if let Some(crew) = &mut self.crew {
+            crew.put_bodies_back();
         }
         self.groups_shed = shed;
         for (index, bus) in self.buses.iter_mut().enumerate() {

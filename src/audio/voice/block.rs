@@ -22,7 +22,7 @@ pub(crate) struct VoiceBlock {
 
 impl VoiceBlock {
     /// Nothing.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             haptic: [0.0; MAX_BLOCK],
             impulse_n_s: [0.0; MAX_BLOCK],

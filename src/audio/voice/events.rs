@@ -55,7 +55,8 @@ impl Voice {
         self.drag.press(force_n);
         if lands {
             let points = std::slice::from_ref(&self.path.last);
-            scratch.profile.run(seat, self.along(shared, position, false), points);
+            let along = self.along(shared, position, false);
+            scratch.profile.run(seat, along, points, &mut self.cells);
             let height_m = scratch.profile.surface.height_m[0];
             // It touches at the stamp; without delay it would one sample before the voice's first.
             self.pad.land(height_m, force_n, sample.closing_m_s, 1.0 + stamp.fraction());
@@ -89,7 +90,7 @@ impl Voice {
 
     /// The profile behind the contact, a point every `stride` samples.
     fn lay_behind(
-        &self,
+        &mut self,
         stride: usize,
         shared: &Shared,
         position: u64,
@@ -97,11 +98,12 @@ impl Voice {
         scratch: &mut Scratch,
     ) {
         self.path.lay_behind(stride, shared.sample_rate_hz, &mut scratch.points);
-        scratch.profile.run(seat, self.along(shared, position, false), &scratch.points);
+        let along = self.along(shared, position, false);
+        scratch.profile.run(seat, along, &scratch.points, &mut self.cells);
     }
 
     /// How the profile has risen, m/s, and bent, m/s², during the last [`TREND_S`]: the parabola nearest to it.
-    fn trend(&self, shared: &Shared, position: u64, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
+    fn trend(&mut self, shared: &Shared, position: u64, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
         let stride = ((TREND_S * shared.sample_rate_hz) as usize / MAX_BLOCK).max(1);
         self.lay_behind(stride, shared, position, seat, scratch);
         let step_s = stride as f64 / shared.sample_rate_hz;

@@ -2,6 +2,7 @@
 
 use super::shared::Shared;
 use crate::audio::seat::{Noise, Seat};
+use asperity_dsp::fractal_noise::NoiseCells;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
 
@@ -54,8 +55,14 @@ impl Profile {
         }
     }
 
-    /// Height of each point and the force that presses there.
-    pub(super) fn run(&mut self, seat: &mut Seat, along: Along<'_>, points: &[PathPoint]) {
+    /// Height of each point and the force that presses there. `cells` are those of the contact: they change no bit.
+    pub(super) fn run(
+        &mut self,
+        seat: &mut Seat,
+        along: Along<'_>,
+        points: &[PathPoint],
+        cells: &mut NoiseCells,
+    ) {
         let n = points.len();
         self.lay_out(along.shared, points);
         let path = PathBlock {
@@ -67,15 +74,16 @@ impl Profile {
             contact: along.contact,
             slopes: along.slopes,
         };
-        let noise = Noise {
+        let mut noise = Noise {
             field: &along.shared.noise,
             footprint_m: &self.noise_footprint_m[..n],
             tip_radius_m: along.tip_radius_m,
+            cells,
         };
         if along.in_body {
             seat.lie_at(&self.at_m[..n]);
         }
-        seat.sample(&path, &noise, &mut self.surface, &mut self.rough);
+        seat.sample(&path, &mut noise, &mut self.surface, &mut self.rough);
         // A surface that gives way lies lower by as much as the force presses it in.
         let surface = &mut self.surface;
         let give = surface.compliance_m_n[..n].iter().zip(&self.force_n);

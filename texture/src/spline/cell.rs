@@ -4,6 +4,7 @@ use super::place::{AxisPlaces, ROOM};
 use super::vector::{Rows, Vector};
 
 /// Values and slopes of a block, each on its own so that lanes fill vectors.
+#[derive(Debug)]
 pub struct Samples {
     /// Values of the map.
     pub value: [f64; ROOM],

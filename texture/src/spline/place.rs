@@ -32,6 +32,7 @@ pub(super) struct Place {
 }
 
 /// [`Place`]s of a block along one axis, each number on its own so that lanes fill vectors.
+#[derive(Debug)]
 pub(super) struct AxisPlaces {
     texel: [f64; ROOM],
     fraction: [f64; ROOM],
@@ -39,6 +40,7 @@ pub(super) struct AxisPlaces {
 }
 
 /// Where the positions of a block lie; found once for all maps of one grid.
+#[derive(Debug)]
 pub struct Places {
     /// The grid that they were found for.
     axes: Option<[Axis; 2]>,
@@ -51,6 +53,11 @@ impl Places {
     /// None yet.
     pub const fn new() -> Self {
         Self { axes: None, len: 0, columns: AxisPlaces::EMPTY, rows: AxisPlaces::EMPTY }
+    }
+
+    /// The next positions are others.
+    pub fn forget(&mut self) {
+        self.axes = None;
     }
 
     /// Finds the places of positions, up to [`MAX_BLOCK`] of them, unless they are those of this grid already.

@@ -1,0 +1,231 @@
+//! A worker pool that the audio thread can use: jobs go out, every thread takes the next one, all come home.
+//!
+//! ```text
+//! audio thread   jobs → waiting ─┬─ runs some itself ─┬→ home, in any order
+//! helpers                        └─ run the others ───┘
+//! ```
+//! A job owns what it works on, so who runs it changes nothing but the time: whoever adds results up does so in an order of its own.
+//!
+//! *No lock.* Both queues are lock-free rings made at the start. A helper looks for work [`LOOKS`] times, then sleeps; the audio thread wakes a
+//! sleeping one by `unpark`, which marks it and, if it sleeps, asks the system to wake it: nobody is waited for. What no helper has taken by
+//! the time that the audio thread is done with its own job it runs itself, so that a helper that wakes late costs nothing. All it ever waits for
+//! is a job that a helper is in the middle of; after [`LOOKS`] looks it offers its processor, in case the helper has none.
+
+use crossbeam_queue::ArrayQueue;
+use std::any::Any;
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::Ordering::{Relaxed, SeqCst};
+use std::sync::atomic::{AtomicBool, fence};
+use std::thread::{Builder, JoinHandle, park, yield_now};
+
+/// How often a thread that has nothing to do looks again before it sleeps: some 20–50 µs, longer than from one job of a block to the next.
+const LOOKS: u32 = 1024;
+
+/// Something that any thread can do.
+pub(crate) trait Job: Send + 'static {
+    /// Memory that each thread has for it.
+    type Room: Send + 'static;
+
+    /// Does it.
+    fn run(&mut self, room: &mut Self::Room);
+}
+
+/// Threads beside the one that owns this.
+pub(crate) struct Pool<J> {
+    queues: Arc<Queues<J>>,
+    helpers: Vec<JoinHandle<()>>,
+}
+
+struct Queues<J> {
+    waiting: ArrayQueue<J>,
+    done: ArrayQueue<Result<J, Box<dyn Any + Send>>>,
+    ends: AtomicBool,
+    /// Which helpers sleep, or are about to.
+    asleep: Box<[AtomicBool]>,
+}
+
+impl<J: Job> Pool<J> {
+    /// Starts a helper for each room, for at most `most` jobs at a time. Allocates.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub(crate) fn new(rooms: Vec<J::Room>, most: usize) -> io::Result<Self> {
+        let queues = Arc::new(Queues {
+            waiting: ArrayQueue::new(most.max(1)),
+            done: ArrayQueue::new(most.max(1)),
+            ends: AtomicBool::new(false),
+            asleep: rooms.iter().map(|_| AtomicBool::new(false)).collect(),
+        });
+        let mut pool = Self { queues, helpers: Vec::with_capacity(rooms.len()) };
+        for (index, mut room) in rooms.into_iter().enumerate() {
+            let queues = pool.queues.clone();
+            let helper = Builder::new().name(format!("asperity-{}", index + 1));
+            // If one cannot be had, those there are end with the pool.
+            pool.helpers.push(helper.spawn(move || queues.help(index, &mut room))?);
+        }
+        Ok(pool)
+    }
+
+    /// Runs all jobs, the last of them first, on all threads; they come back in any order.
+    pub(crate) fn run(&mut self, jobs: &mut Vec<J>, room: &mut J::Room) {
+        let (mut out, mut kept) = (0_usize, None);
+        while let Some(job) = jobs.pop() {
+            if let Err(job) = self.queues.waiting.push(job) {
+                // More than were announced.
+                kept = Some(job);
+                break;
+            }
+            out += 1;
+        }
+        // One job is for this thread.
+        self.wake(out.saturating_sub(1));
+        let mut at_home = usize::from(kept.is_some()) + jobs.len();
+        if let Some(job) = kept {
+            jobs.push(job);
+        }
+        jobs.iter_mut().for_each(|job| job.run(room));
+        let wanted = at_home + out;
+        let mut looks = 0;
+        while at_home < wanted {
+            if let Some(mut job) = self.queues.waiting.pop() {
+                job.run(room);
+                jobs.push(job);
+            } else if let Some(done) = self.queues.done.pop() {
+                match done {
+                    Ok(job) => jobs.push(job),
+                    // As if it had been run here.
+                    Err(panic) => resume_unwind(panic),
+                }
+            } else {
+                look_again(&mut looks);
+                continue;
+            }
+            at_home += 1;
+            looks = 0;
+        }
+    }
+
+    /// Wakes helpers that sleep, as many as there is work for.
+    fn wake(&self, wanted: usize) {
+        // Either a helper that falls asleep sees the jobs, or its mark is seen here.
+        fence(SeqCst);
+        for (helper, asleep) in self.helpers.iter().zip(&self.queues.asleep).take(wanted) {
+            if asleep.load(SeqCst) {
+                helper.thread().unpark();
+            }
+        }
+    }
+}
+
+impl<J: Job> Queues<J> {
+    /// What a helper does all its life.
+    fn help(&self, index: usize, room: &mut J::Room) {
+        let mut looks = 0;
+        while !self.ends.load(Relaxed) {
+            if let Some(job) = self.waiting.pop() {
+                looks = 0;
+                self.finish(job, room);
+            } else if looks < LOOKS {
+                looks += 1;
+                std::hint::spin_loop();
+            } else {
+                self.sleep(index);
+                looks = 0;
+            }
+        }
+    }
+
+    fn finish(&self, mut job: J, room: &mut J::Room) {
+        let done = catch_unwind(AssertUnwindSafe(|| job.run(room))).map(|()| job);
+        // There is room for all that were sent out.
+        let _ = self.done.push(done);
+    }
+
+    fn sleep(&self, index: usize) {
+        self.asleep[index].store(true, SeqCst);
+        fence(SeqCst);
+        if self.waiting.is_empty() && !self.ends.load(SeqCst) {
+            park();
+        }
+        self.asleep[index].store(false, SeqCst);
+    }
+}
+
+/// Waits a moment for a helper that is in the middle of a job.
+fn look_again(looks: &mut u32) {
+    if *looks < LOOKS {
+        *looks += 1;
+        std::hint::spin_loop();
+    } else {
+        yield_now();
+    }
+}
+
+impl<J> Drop for Pool<J> {
+    fn drop(&mut self) {
+        self.queues.ends.store(true, SeqCst);
+        for helper in self.helpers.drain(..) {
+            helper.thread().unpark();
+            // It does not panic: what its jobs throw is caught and handed over.
+            let _ = helper.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Count {
+        from: u64,
+        sum: u64,
+        fails: bool,
+    }
+
+    impl Job for Count {
+        type Room = u64;
+
+        fn run(&mut self, room: &mut u64) {
+            assert!(!self.fails, "a job fails");
+            self.sum = (self.from..self.from + 1000).sum();
+            *room += 1;
+        }
+    }
+
+    fn jobs(count: u64) -> Vec<Count> {
+        (0..count).map(|from| Count { from, sum: 0, fails: false }).collect()
+    }
+
+    #[test]
+    fn all_jobs_come_home_done_whoever_runs_them_and_however_often_helpers_have_slept() {
+        for helpers in [0, 1, 2, 7] {
+            let mut pool = Pool::new(vec![0; helpers], 16).unwrap();
+            let mut room = 0;
+            for round in 0..300_u64 {
+                let count = round % 21;
+                let mut jobs = jobs(count);
+                pool.run(&mut jobs, &mut room);
+                jobs.sort_by_key(|job| job.from);
+                assert_eq!(jobs.len() as u64, count, "{helpers} helpers, round {round}");
+                for (from, job) in (0..).zip(&jobs) {
+                    assert_eq!((job.from, job.sum), (from, (from..from + 1000).sum()));
+                }
+                if round % 50 == 0 {
+                    std::thread::sleep(std::time::Duration::from_millis(2));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_job_that_panics_panics_where_the_jobs_come_home_and_helpers_end_all_the_same() {
+        let mut pool = Pool::new(vec![0, 0], 16).unwrap();
+        let mut failing = jobs(8);
+        failing[0].fails = true;
+        let told = catch_unwind(AssertUnwindSafe(|| pool.run(&mut failing, &mut 0)));
+        assert!(told.is_err());
+        drop(pool);
+    }
+}
