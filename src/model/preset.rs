@@ -2,7 +2,7 @@
 //!
 //! | preset | contact | inner samples a sample | modes |
 //! |---|---|---|---|
-//! | `fast` | semi-implicit Euler, damper centred | 1 | those that a published masking model hides are left out |
+//! | `fast` | energy-conserving | 1 | those that a published masking model hides are left out |
 //! | `default` | exact between events | 1 | all within 120 dB of the loudest |
 //! | `accurate` | exact between events | 8 | all |
 //!
@@ -40,7 +40,7 @@ impl Preset {
         match self {
             Self::Fast => Settled {
                 name: "fast",
-                integrator: Integrator::SemiImplicitEuler,
+                integrator: Integrator::EnergyConserving,
                 oversampling: 1,
                 culling: Some(Culling { level_db: 80.0, masking: true, loudest_db_spl: 80.0 }),
             },

@@ -12,7 +12,7 @@ use super::SAMPLE_RATE_HZ;
 use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, plate, take};
 use super::resampled::{after_the_lead_in, between};
 use crate::error::CliError;
-use crate::measure::relative_error;
+use crate::measure::{Timing, relative_error};
 use asperity::files::contact_log::ContactLog;
 use asperity::{Integrator, Preset as EnginePreset};
 use serde::Serialize;
@@ -117,10 +117,9 @@ fn rung(impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
     out
 }
 
-/// By how much what a preset is heard of is behind, s: its forces are means over the inner sample that ends at a row, or is centred on it.
-fn late_s(take: &Take, chain: &Chain) -> f64 {
-    let euler = chain.preset == EnginePreset::Fast && chain.integrator.is_none();
-    if euler { 0.0 } else { 0.5 / take.inner_rate_hz }
+/// By how much what a preset is heard of is behind, s: its forces are means over the inner sample that ends at a row.
+fn late_s(take: &Take) -> f64 {
+    0.5 / take.inner_rate_hz
 }
 
 /// Power of a difference over the alternating power of the reference.
@@ -143,11 +142,8 @@ fn stages(
         with_exact_contact(EnginePreset::Accurate),
     ];
     let takes = chains.iter().map(|chain| take(case, seed, chain, None)).collect::<Result<Vec<_>, _>>()?;
-    let own: Vec<[Vec<f64>; 2]> = takes
-        .iter()
-        .zip(&chains)
-        .map(|(take, chain)| [reference.felt.clone(), reference.heard(late_s(take, chain))])
-        .collect();
+    let own: Vec<[Vec<f64>; 2]> =
+        takes.iter().map(|take| [reference.felt.clone(), reference.heard(late_s(take))]).collect();
     // What differs from the reference at each one's own time.
     let error = |which: usize, signal: Signal, heard: usize| -> Vec<f64> {
         takes[which].signal(signal).iter().zip(&own[which][heard]).map(|(x, r)| x - r).collect()
@@ -193,7 +189,8 @@ pub fn presets() -> Result<Vec<Preset>, CliError> {
     }
     EnginePreset::ALL
         .into_iter()
-        .map(|preset| {
+        .zip(ns_per_sample()?)
+        .map(|(preset, ns_per_sample)| {
             let (mut sums, mut cases, mut worst_db) = ([0.0; 3], Vec::new(), f64::NEG_INFINITY);
             for (case, seed, contractive, reference) in &grounds {
                 let [felt, heard] = stages(case, *seed, preset, reference)?;
@@ -210,7 +207,7 @@ pub fn presets() -> Result<Vec<Preset>, CliError> {
             Ok(Preset {
                 preset: preset.name(),
                 error_db: worst_db,
-                ns_per_sample: ns_per_sample(preset)?,
+                ns_per_sample,
                 stages: STAGES.into_iter().zip(sums.map(|sum| sum / all)).collect(),
                 cases,
             })
@@ -218,17 +215,17 @@ pub fn presets() -> Result<Vec<Preset>, CliError> {
         .collect()
 }
 
-/// The whole renderer, one contact: the median over the cases, rendered a few times each.
-fn ns_per_sample(preset: EnginePreset) -> Result<f64, CliError> {
-    let chain = Chain { preset, ..Chain::default() };
-    let mut times = Vec::new();
-    for case in &CASES {
-        let mut best = f64::INFINITY;
-        for _ in 0..3 {
-            let take = take(case, 1, &chain, None)?;
-            best = best.min(take.processing_s * 1e9 / take.audio.len() as f64);
+/// The whole renderer, one contact, of each preset: the median over the cases of the best of some rounds, in turns.
+fn ns_per_sample() -> Result<Vec<f64>, CliError> {
+    const ROUNDS: usize = 5;
+    let mut best = vec![vec![f64::INFINITY; CASES.len()]; EnginePreset::ALL.len()];
+    for _ in 0..ROUNDS {
+        for (of, case) in CASES.iter().enumerate() {
+            for (best, preset) in best.iter_mut().zip(EnginePreset::ALL) {
+                let take = take(case, 1, &Chain { preset, ..Chain::default() }, None)?;
+                best[of] = best[of].min(take.processing_s * 1e9 / take.audio.len() as f64);
+            }
         }
-        times.push(best);
     }
-    Ok(crate::measure::Timing::of(times).median)
+    Ok(best.into_iter().map(|best| Timing::of(best).median).collect())
 }

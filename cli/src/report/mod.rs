@@ -6,6 +6,7 @@
 mod blocks;
 mod cases;
 mod end_to_end;
+mod from_reports;
 mod integrator;
 mod map_filter;
 mod modes;
@@ -121,6 +122,7 @@ struct Report {
     sample_rate_hz: f64,
     rows: Vec<Row>,
     end_to_end: Vec<end_to_end::Preset>,
+    from_reports: Vec<from_reports::Stroke>,
     stability: Vec<stability::Cell>,
 }
 
@@ -153,10 +155,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         progress.advance(1);
     }
     let end_to_end = end_to_end::presets()?;
+    let from_reports = from_reports::strokes()?;
     progress.advance(1);
     let stability = stability::cells()?;
     drop(progress);
-    let report = Report { cpu: cpu_name(), sample_rate_hz: SAMPLE_RATE_HZ, rows, end_to_end, stability };
+    let report =
+        Report { cpu: cpu_name(), sample_rate_hz: SAMPLE_RATE_HZ, rows, end_to_end, from_reports, stability };
     let json = serde_json::to_string_pretty(&report).map_err(CliError::told)?;
     let mut outputs = Outputs::new();
     let path = |name: &str| options.output.join(name);
@@ -166,6 +170,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         write::svg(&report.cpu, &report.rows, &report.end_to_end).as_bytes(),
     )?;
     let text = write::markdown(&report.cpu, &report.rows, &report.end_to_end)
+        + &write::strokes_table(&report.from_reports)
         + &stability_picture::markdown(&report.stability);
     outputs.write(&path("speed_vs_error.md"), text.as_bytes())?;
     outputs.write(&path("stability.svg"), stability_picture::svg(&report.stability).as_bytes())?;

@@ -2,6 +2,7 @@
 
 use super::Row;
 use super::end_to_end::Preset;
+use super::from_reports::Stroke;
 use crate::plot::{Axis, Figure, Layer, Panel, Series, palette};
 use std::fmt::Write;
 
@@ -94,11 +95,15 @@ fn overview(rows: &[Row], presets: &[Preset]) -> Panel {
         };
     let names = presets.iter().map(|preset| preset.preset.to_owned()).collect();
     Panel::new(
-        "what the engine's presets cost and how far they are from the whole chain in f64 at 16 times the rate",
+        "the engine at a glance",
         Axis::log("error", "").range(low / 3.0, high * 6.0),
         Axis::log("time a sample, one contact", "s").range(fast / 2.0, slow * 2.0),
     )
-    .with(Layer::line("presets, whole chain, worst of the contractive cases", palette::IMPACT, Series::Points(whole.clone())))
+    .with(Layer::line(
+        "presets against the whole chain in f64 at 16 times the rate",
+        palette::IMPACT,
+        Series::Points(whole.clone()),
+    ))
     .with(dots("", palette::IMPACT, whole, 8.0, names))
     .with(dots(
         "integrators alone, geometric mean of all cases",
@@ -161,6 +166,21 @@ fn presets_table(presets: &[Preset]) -> String {
         let _ = write!(text, " {} |", shares.join(", "));
     }
     text + "\n"
+}
+
+/// What sparse reports cost.
+#[must_use]
+pub fn strokes_table(strokes: &[Stroke]) -> String {
+    let mut text = "\n## from 60 reports a second\n\nReference: the same hand, reported 2000 times a second. Waveforms, and the median \
+                    difference of third-octave levels in frames of 100 ms; felt / heard.\n\n| ground | path | waveform | levels |\n|---|---|--:|--:|\n"
+        .to_owned();
+    for Stroke { name, path, felt_db, heard_db, felt_levels_db, heard_levels_db } in strokes {
+        let _ = writeln!(
+            text,
+            "| {name} | {path} | {felt_db:.1} / {heard_db:.1} dB | {felt_levels_db:.2} / {heard_levels_db:.2} dB |"
+        );
+    }
+    text
 }
 
 /// One table an axis.

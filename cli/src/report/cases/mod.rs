@@ -74,6 +74,23 @@ pub const CASES: [Case; 6] = [
     Case { name: "light", ground: Ground::Rough(0.5), speed_m_s: 0.1, force_n: 0.05 },
 ];
 
+/// What a real hand strokes, reported 60 times a second: two gratings, and a rough plate.
+pub const FROM_REPORTS: [Case; 3] = [
+    Case {
+        name: "grating of 2 mm",
+        ground: Ground::Waves { periods: (70, 70), count: 1, amplitude_m: 2e-5 },
+        speed_m_s: 0.1,
+        force_n: 0.5,
+    },
+    Case {
+        name: "grating of 7 mm",
+        ground: Ground::Waves { periods: (20, 20), count: 1, amplitude_m: 1e-4 },
+        speed_m_s: 0.1,
+        force_n: 0.5,
+    },
+    Case { name: "rough plate", ground: Ground::Rough(0.5), speed_m_s: 0.1, force_n: 0.5 },
+];
+
 impl Ground {
     /// Roughness of the overlay; none where a map is all there is.
     fn roughness(self) -> Option<f64> {
