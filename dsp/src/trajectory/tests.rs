@@ -131,7 +131,7 @@ fn a_contact_nobody_refreshes_glides_less_than_a_tenth_of_a_second_and_rests() {
 
 #[test]
 fn stillness_is_found_and_ends_with_the_next_move() {
-    for mode in [PathMode::Extrapolate, PathMode::Hold, PathMode::Hermite, PathMode::BandLimited] {
+    for mode in [PathMode::Extrapolate, PathMode::Hold, PathMode::Hermite] {
         let design = design(mode);
         let mut path = Trajectory::begin(&design, &event(0, 0.02, Some(0.1)));
         path.moved(&design, &event(735, 0.02, Some(0.0)));
@@ -344,39 +344,6 @@ fn ripple_and_lag_are_the_same_at_every_rate_though_stamps_fall_between_samples(
             }
         }
     }
-}
-
-#[test]
-fn a_band_limited_path_follows_a_straight_stroke_as_late_as_dead_reckoning_and_does_not_mind_jitter() {
-    let design = design(PathMode::BandLimited);
-    for (jitter, report) in [(0.0, true), (0.2, true), (0.2, false)] {
-        let points = render(&design, &steady(2, jitter, 0.0, 0.0, report), 132_500);
-        for (n, point) in points.iter().enumerate().skip(22_050).take(110_000) {
-            let lag_s = n as f64 / RATE_HZ - point.position_m[0] / 0.1;
-            assert!((lag_s - design.lag_s()).abs() < 1e-4, "jitter {jitter}, sample {n}: {lag_s}");
-        }
-        assert!(ripple(&points) < 2e-3, "jitter {jitter}, {report}: {}", ripple(&points));
-    }
-}
-
-#[test]
-fn a_band_limited_path_that_nobody_refreshes_glides_out_and_one_that_is_stopped_stops() {
-    let design = design(PathMode::BandLimited);
-    let mut events = steady(1, 0.0, 0.0, 0.0, true);
-    events.truncate(60);
-    let last = events[59];
-    let points = render(&design, &events, last.sample + 44_100);
-    assert_eq!(points.last().unwrap().velocity_m_s, [0.0; 2]);
-    let glide_m = points.last().unwrap().position_m[0] - last.position_m[0];
-    assert!((0.0..0.012).contains(&glide_m), "glided {glide_m}");
-    for n in 1..60u64 {
-        events.push(PathEvent { sample: last.sample + n * 735, velocity_m_s: Some([0.0; 2]), ..last });
-    }
-    let points = render(&design, &events, last.sample + 60 * 735);
-    let end = points.last().unwrap();
-    assert!((end.position_m[0] - last.position_m[0]).abs() < 1e-6, "{end:?}");
-    let fastest = points.iter().fold(0.0f64, |most, point| most.max(point.velocity_m_s[0].abs()));
-    assert!(fastest < 0.13, "{fastest}");
 }
 
 #[test]
