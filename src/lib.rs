@@ -117,6 +117,7 @@ pub use model::id::{BodyId, ProbeId, SurfaceId};
 pub use model::material::{Material, MaterialPreset};
 pub use model::modal_model::{MAX_POSITIONS, ModalModel, ModalModelError};
 pub use model::mode_shapes::{ModeShapes, Unit as ShapeUnit};
+pub use model::preset::Preset;
 pub use model::probe::{PROBE_PRESETS, probe_by_name};
 pub use model::residual::{LONGEST_S as LONGEST_RESIDUAL_S, Residual};
 pub use model::stock::Stock;

@@ -13,6 +13,7 @@ use crate::made::maps::Maps;
 use crate::model::bus::AudioBus;
 use crate::model::clock_mode::ClockMode;
 use crate::model::config::Config;
+use crate::model::preset::Preset;
 use asperity_dsp::micro_contact::Integrator;
 use asperity_dsp::simd::Isa;
 use asperity_dsp::trajectory::PathMode;
@@ -32,6 +33,10 @@ pub struct Overrides<'a> {
     pub sample_rate_hz: Option<f64>,
     /// Seed of every random number.
     pub seed: Option<u64>,
+    /// How exact the engine is; the fields below count more.
+    pub preset: Preset,
+    /// Inner samples where there would be one ([`Config::oversampling`]).
+    pub oversampling: Option<usize>,
     /// Integrator of the contact model.
     pub integrator: Option<Integrator>,
     /// How sparse positions become a path.
@@ -58,6 +63,8 @@ impl Default for Overrides<'_> {
             files: &Disk,
             sample_rate_hz: None,
             seed: None,
+            preset: Preset::Default,
+            oversampling: None,
             integrator: None,
             path: None,
             kernel: None,
@@ -107,7 +114,10 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
             config.audio.iter_mut().for_each(|bus| bus.limit = false);
             config
         };
-        assemble(file, &Overrides { live: false, clock: None, ..*overrides }, &maps, levels, plain)
+        // Levels are a scene's, however exactly it is rendered.
+        let trial =
+            Overrides { live: false, clock: None, preset: Preset::Default, oversampling: None, ..*overrides };
+        assemble(file, &trial, &maps, levels, plain)
     };
     let levels = levels::resolve(file, &calibrated(file, overrides)?, trial)?;
     let mut engine = assemble(file, overrides, &maps, &levels, |config| config)?;
@@ -172,13 +182,14 @@ fn assemble(
 }
 
 fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Result<Config, FileError> {
-    let default = Config::default();
+    let default = Config::default().preset(overrides.preset);
     let actuators = file.actuators.iter().zip(&levels.full_scale);
     let actuators =
         actuators.map(|(entry, full_scale)| maker::actuator(overrides.files, entry, *full_scale, &file.path));
     Ok(Config {
         sample_rate_hz: overrides.sample_rate_hz.or(file.sample_rate_hz).unwrap_or(default.sample_rate_hz),
         seed: overrides.seed.or(file.seed).unwrap_or(default.seed),
+        oversampling: overrides.oversampling.unwrap_or(default.oversampling),
         path: overrides.path.unwrap_or(default.path),
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: file.probe,

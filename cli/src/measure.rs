@@ -1,6 +1,7 @@
 //! Timing on machines that do other things too: many repetitions, each shorter than a time slice; their median, and the range of
 //! the middle eight tenths. A mean counts what else the machine did, a minimum what it never does twice.
 
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 /// Length of one repetition: long against the clock, short against a time slice.
@@ -62,6 +63,12 @@ pub fn ns_spread(items: usize, mut work: impl FnMut()) -> Timing {
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let index = (share * sorted.len() as f64) as usize;
     sorted.get(index.min(sorted.len().saturating_sub(1))).copied().unwrap_or(0.0)
+}
+
+/// Seconds since this was first asked.
+pub fn seconds() -> f64 {
+    static BEGAN: OnceLock<Instant> = OnceLock::new();
+    BEGAN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
 /// What the machine calls its processor.

@@ -105,6 +105,10 @@ impl<T: Tap> Tap for Beside<'_, T> {
         self.outlets.watching || self.tap.is_watching()
     }
 
+    fn wants_inner_samples(&self) -> bool {
+        !self.outlets.watching && self.tap.wants_inner_samples()
+    }
+
     fn contact(&mut self, block: &ContactBlock<'_>) {
         if self.tap.is_watching() {
             self.tap.contact(block);

@@ -94,10 +94,11 @@ impl Renderer {
     ) -> Result<Self, ConfigError> {
         let rate = config.inner_rate_hz();
         let row_latency = row_latency(config.integrator);
-        let inner = InnerRate::new(config.sample_rate_hz, row_latency);
+        let inner = InnerRate::new(config.inner_samples(), row_latency);
         let shared = Shared {
             sample_rate_hz: rate,
             inner,
+            slow_step: (MAX_BLOCK * config.oversampling) as u64,
             idle_path: TrajectoryDesign::new(config.path, config.path_cutoff_hz, rate, [f64::INFINITY; 2])?,
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
             own_probe: probe,

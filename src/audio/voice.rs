@@ -203,7 +203,7 @@ impl Voice {
         if self.asleep {
             self.rest(n, scratch);
         } else {
-            self.slide(stretch, at_grid, tap.is_watching(), seat, scratch);
+            self.slide(stretch, tap.is_watching(), seat, scratch);
         }
         self.phase = self.fades.run(self.phase, self.role.gain, stretch.shared, n, &mut scratch.out);
         // A contact that has jumped is shown where it is, and not where it fades.
@@ -220,16 +220,10 @@ impl Voice {
     }
 
     /// The signal path, from reports to what is felt and what strikes the body.
-    fn slide(
-        &mut self,
-        stretch: Stretch<'_>,
-        at_grid: bool,
-        slopes: bool,
-        seat: &mut Seat,
-        scratch: &mut Scratch,
-    ) {
+    fn slide(&mut self, stretch: Stretch<'_>, slopes: bool, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, position, n } = stretch;
-        if at_grid {
+        let at_slow_step = position.is_multiple_of(shared.slow_step);
+        if at_slow_step {
             let velocity_m_s = self.path.last.velocity_m_s;
             self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
         }
@@ -238,7 +232,7 @@ impl Voice {
         let (points, rows) = (&mut points[..n], &mut rows[..n]);
         let probe = shared.probe(self.role.probe);
         let dragged = output.quantity() == Quantity::Tangential;
-        if at_grid {
+        if at_slow_step {
             self.pad.stiffen(probe, slot.stroking.ground, self.path.last.normal_force_n);
             if dragged {
                 self.drag.press(self.path.last.normal_force_n);
@@ -272,7 +266,8 @@ impl Voice {
             self.skin.pass(&mut out.haptic[..n]);
         }
         let (reaction, sample_rate_hz) = (self.reaction, shared.sample_rate_hz);
-        let by = Excited { slot, probe, reaction, sample_rate_hz, position };
+        let slow_step = shared.slow_step;
+        let by = Excited { slot, probe, reaction, sample_rate_hz, slow_step, position };
         self.exciters.run(&by, rows, force, out);
         self.exciters.rub(&by, points, rows, out);
     }

@@ -24,7 +24,6 @@ use crate::model::contact_sample::Place;
 use crate::model::error::AddError;
 use crate::model::event::{Actuator, ContactEvent, ContactId};
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
-use crate::model::inner_rate::InnerRate;
 use crate::model::material::Material;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikeField;
@@ -380,7 +379,7 @@ impl Scene {
     #[must_use]
     pub fn stats(&self) -> Stats {
         let stats = self.counters.snapshot();
-        Stats { position: stats.position / InnerRate::samples(self.config.sample_rate_hz) as u64, ..stats }
+        Stats { position: stats.position / self.config.inner_samples() as u64, ..stats }
     }
 
     fn known_surface(&self, id: SurfaceId) -> Result<&KnownSurface, AddError> {

@@ -51,6 +51,12 @@ pub trait Tap {
         true
     }
 
+    /// Whether samples are shown at the rate inside ([`Config::inner_rate_hz`](crate::Config::inner_rate_hz)), and not only those that leave;
+    /// [`ContactBlock::first_sample`] then counts inner samples. While a port watches too, it gets what it expects and this is no.
+    fn wants_inner_samples(&self) -> bool {
+        false
+    }
+
     /// Called once for each contact and stretch of samples, in order of time.
     fn contact(&mut self, block: &ContactBlock<'_>);
 

@@ -13,6 +13,9 @@ use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::PathMode;
 use serde::{Deserialize, Serialize};
 
+/// Most inner samples for each that leaves, besides those of low rates.
+const MAX_OVERSAMPLING: usize = 16;
+
 /// How an engine is built. `Config::default()` is one finger, one actuator, 44.1 kHz, rendered offline;
 /// [`Config::live`] is the same for a game that runs now.
 ///
@@ -31,6 +34,9 @@ use serde::{Deserialize, Serialize};
 pub struct Config {
     /// Rate of every output, Hz; 8–384 kHz, default 44.1 kHz.
     pub sample_rate_hz: f64,
+    /// Inner samples where there would be one: 1–16, default 1. What a sample is too coarse for (the contact between its samples,
+    /// the force as the body hears it) errs the less, and everything but the outputs costs so many times as much.
+    pub oversampling: usize,
     /// Seed of the micro-noise: the same seed feels the same at the same place. Default 1.
     pub seed: u64,
     /// How sparse contact positions become a path.
@@ -83,6 +89,7 @@ impl Default for Config {
     fn default() -> Self {
         Self {
             sample_rate_hz: 44_100.0,
+            oversampling: 1,
             seed: 1,
             path: PathMode::default(),
             path_cutoff_hz: 30.0,
@@ -114,12 +121,17 @@ impl Config {
         Self { sample_rate_hz, clock: ClockMode::LIVE, ..Self::default() }
     }
 
-    /// Rate at which the engine runs inside, Hz: the smallest multiple of [`Self::sample_rate_hz`] from 44.1 kHz on, so that what
+    /// Rate at which the engine runs inside, Hz: [`Self::oversampling`] times the smallest multiple of [`Self::sample_rate_hz`] from 44.1 kHz on, so that what
     /// a stroke sounds and feels like does not depend on the rate of the outputs. Sources that keep time (sand, scales and
     /// crossfades that change) are made for this rate.
     #[must_use]
     pub fn inner_rate_hz(&self) -> f64 {
-        self.sample_rate_hz * InnerRate::samples(self.sample_rate_hz) as f64
+        self.sample_rate_hz * self.inner_samples() as f64
+    }
+
+    /// Inner samples for each that leaves.
+    pub(crate) fn inner_samples(&self) -> usize {
+        InnerRate::samples(self.sample_rate_hz) * self.oversampling.max(1)
     }
 
     /// Contacts that can be rendered at the same time: as many again as half of [`Self::max_contacts`], at least 8, let those that were stolen or
@@ -165,6 +177,7 @@ impl Config {
         let count = |field, value: usize, most: usize, expected| {
             DesignError::check(field, value as f64, expected, |v| v >= 1.0 && v <= most as f64).map(|_| ())
         };
+        count("oversampling", self.oversampling, MAX_OVERSAMPLING, "1–16 inner samples a sample")?;
         count("actuators", self.actuators.len(), 1024, "1–1024 channels")?;
         count("audio", self.audio.len(), MAX_BUSES, "1–64 buses")?;
         count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;

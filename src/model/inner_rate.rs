@@ -4,7 +4,8 @@
 //! computed at 22.05 kHz finds other collisions than at 44.1, and half of the micro-relief is beyond its reach. So at lower rates the
 //! whole engine runs at the smallest multiple from 44.1 kHz on, and one of so many inner samples leaves. Nothing has to be filtered out
 //! before: bodies have no modes above half of the rate outside, and a sampled displacement is what it was; of an acceleration the mean of
-//! the inner samples leaves, which is the change of velocity over the outer one. No latency is added: the look-ahead of the contact
+//! the inner samples leaves, which is the change of velocity over the outer one. [`Config::oversampling`](crate::Config::oversampling)
+//! multiplies what is so found, for renders that are to be more exact than the outputs' rate allows. No latency is added: the look-ahead of the contact
 //! model is one inner sample, and another inner sample is at hand where there are several.
 
 /// Lowest rate inside, Hz.
@@ -25,9 +26,8 @@ impl InnerRate {
         ((LOWEST_INNER_HZ / sample_rate_hz - 1e-9).ceil() as usize).max(1)
     }
 
-    /// For outputs at `sample_rate_hz` whose inner samples lag by `latency_samples`.
-    pub(crate) fn new(sample_rate_hz: f64, latency_samples: usize) -> Self {
-        let every = Self::samples(sample_rate_hz);
+    /// `every` inner samples for each that leaves, which lag by `latency_samples`.
+    pub(crate) fn new(every: usize, latency_samples: usize) -> Self {
         Self { every, at: latency_samples.min(every - 1) }
     }
 
@@ -108,7 +108,7 @@ mod tests {
     fn what_leaves_does_not_depend_on_how_it_is_cut() {
         let inner: Vec<f32> = (0..60).map(|k| k as f32).collect();
         for (rate_hz, latency) in [(22_050.0, 1), (22_050.0, 0), (16e3, 1), (8e3, 1), (44_100.0, 1)] {
-            let rate = InnerRate::new(rate_hz, latency);
+            let rate = InnerRate::new(InnerRate::samples(rate_hz), latency);
             let all = |cuts: &[usize]| {
                 let (mut picked, mut means) = (vec![0.0; 60 / rate.every], vec![0.0; 60 / rate.every]);
                 let (mut shown, mut shown_means, mut mean) = (Vec::new(), Vec::new(), 0.0);

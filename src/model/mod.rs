@@ -19,6 +19,7 @@ pub(crate) mod levels;
 pub(crate) mod material;
 pub(crate) mod modal_model;
 pub(crate) mod mode_shapes;
+pub(crate) mod preset;
 pub(crate) mod probe;
 pub(crate) mod radiating;
 pub(crate) mod residual;

@@ -16,6 +16,7 @@ use crate::fit;
 use crate::output::{self, Outputs, ensure_folder};
 use crate::progress::Progress;
 use crate::render;
+use asperity::Preset;
 use clap::Args;
 use demo_scene::DemoScene;
 use std::path::{Path, PathBuf};
@@ -91,6 +92,7 @@ fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
         rate: None,
         block: 256,
         seed: None,
+        preset: Preset::Default,
         integrator: None,
         path: None,
         kernel: None,

@@ -16,7 +16,7 @@ use asperity::files::scene_file::SceneFile;
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
-use asperity::{Integrator, Isa, PathMode, Quantity, SurfaceId};
+use asperity::{Integrator, Isa, PathMode, Preset, Quantity, SurfaceId};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
@@ -24,8 +24,7 @@ use recorder::Recorder;
 use report::report;
 pub use report::{Report, SandReport};
 use std::path::PathBuf;
-use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Renders longer than this show a progress bar even when nothing else watches the contacts, s.
 const LONG_S: f64 = 60.0;
@@ -50,6 +49,9 @@ pub struct Options {
     /// Seed of every random number, whatever the scene says
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// How exact the engine is, from the fastest on: fast, default, accurate; the options below count more
+    #[arg(long, value_name = "NAME", value_parser = presets(), default_value = "default")]
+    pub preset: Preset,
     /// How the contact model is integrated
     #[arg(long, value_name = "NAME", value_parser = integrators())]
     pub integrator: Option<Integrator>,
@@ -102,16 +104,24 @@ fn integrators() -> impl TypedValueParser<Value = Integrator> {
         .map(|name| Integrator::from_name(&name).unwrap_or_default())
 }
 
+fn presets() -> impl TypedValueParser<Value = Preset> {
+    PossibleValuesParser::new(Preset::ALL.map(Preset::name))
+        .map(|name| Preset::from_name(&name).unwrap_or_default())
+}
+
 fn kernels() -> impl TypedValueParser<Value = Isa> {
     PossibleValuesParser::new(Isa::ALL.map(Isa::name))
         .map(|name| Isa::from_name(&name).unwrap_or(Isa::Portable))
 }
 
 fn paths() -> impl TypedValueParser<Value = PathMode> {
-    PossibleValuesParser::new(["extrapolate", "hold", "hermite"]).map(|name| match name.as_str() {
-        "hold" => PathMode::Hold,
-        "hermite" => PathMode::Hermite,
-        _ => PathMode::Extrapolate,
+    PossibleValuesParser::new(["extrapolate", "hold", "hermite", "band-limited"]).map(|name| {
+        match name.as_str() {
+            "hold" => PathMode::Hold,
+            "hermite" => PathMode::Hermite,
+            "band-limited" => PathMode::BandLimited,
+            _ => PathMode::Extrapolate,
+        }
     })
 }
 
@@ -157,6 +167,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let overrides = Overrides {
         sample_rate_hz: options.rate,
         seed: options.seed,
+        preset: options.preset,
         integrator: options.integrator,
         path: options.path,
         kernel: options.kernel,
@@ -275,7 +286,7 @@ fn play(
     let settings = offline::Options {
         block_frames: usize::from(options.block),
         tail_s: file.tail_s,
-        clock_s: Some(seconds),
+        clock_s: Some(crate::measure::seconds),
     };
     let Engine { scene, renderer, names, .. } = built;
     let at = |error| {
@@ -298,12 +309,6 @@ fn play(
         ContactCurve { label: format!("{} on {}", contact.0, surface.unwrap_or("?")), ..curve }
     });
     Ok((render, labelled.collect(), watching))
-}
-
-/// Seconds since this was first asked.
-fn seconds() -> f64 {
-    static BEGAN: OnceLock<Instant> = OnceLock::new();
-    BEGAN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
 /// The engine promises finite samples; a promise that a WAV file depends on is checked.

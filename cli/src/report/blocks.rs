@@ -33,13 +33,12 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
             for _ in 1..ROUNDS {
                 times_s.extend(render(block)?.1);
             }
-            Ok(Row {
-                axis: "block size",
-                choice: format!("{block} frames"),
-                ns_per_sample: Timing::of(times_s).median * 1e9 / block as f64,
-                error: relative_error(audio.into_iter().map(f64::from), &reference),
-                reference: REFERENCE,
-            })
+            Ok(Row::of(
+                ("block size", format!("{block} frames")),
+                Timing::of(times_s).median * 1e9 / block as f64,
+                relative_error(audio.into_iter().map(f64::from), &reference),
+                REFERENCE,
+            ))
         })
         .collect()
 }

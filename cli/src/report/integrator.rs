@@ -1,111 +1,134 @@
-//! Integrators of the contact model.
+//! Integrators of the contact model, on the named cases.
+//!
+//! The reference is the engine itself at eight times the rate with exact events, which differs from an independent re-integration by
+//! less than a tenth of any error stated here (`cli/tests/report.rs` re-integrates profiles of other seeds with a Runge–Kutta scheme
+//! of its own). A row's force is a mean over a sample, and so is that of the reference: of the sample that ends at the row, or, for the
+//! Euler schemes, is centred on it.
 
-use super::{BLOCK, Row, SAMPLE_RATE_HZ, refused};
+use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, take};
+use super::resampled::{after_the_lead_in, between};
+use super::{BLOCK, CaseError, Row, SAMPLE_RATE_HZ, refused};
 use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
-use asperity::{Integrator, Probe};
+use asperity::{Integrator, Preset, Probe};
 use asperity_dsp::micro_contact::{ContactSample, MicroContact};
-use asperity_dsp::rng::Rng;
-use std::f64::consts::PI;
 
 /// The reference runs this much faster.
-const OVERSAMPLING: usize = 64;
-const SECONDS: f64 = 0.4;
-const FORCE_N: f64 = 0.5;
-const REFERENCE: &str = "exact-event at 64 times the rate on the same band-limited profile, pad displacement, \
-                         geometric mean of four profiles";
+const OVERSAMPLING: usize = 8;
+const REFERENCE: &str = "exact-event at 8 times the rate over the same ground, profiles of four seeds a case, which an independent \
+                         Runge–Kutta integration confirms; lag taken out of what is heard";
 
-/// Lines of a profile: amplitude in m, frequency in Hz, phase.
-type Lines = Vec<[f64; 3]>;
-
-/// A smooth grating, one that throws the pad off, rough ground, and ridges with overtones.
-fn profiles() -> Vec<Lines> {
-    let mut rng = Rng::new(11);
-    let mut noise = |rms_m: f64, top_hz: f64, slope: f64| -> Lines {
-        let count = 60;
-        let mut lines: Lines = (0..count)
-            .map(|i| {
-                let frequency =
-                    20.0 * (top_hz / 20.0).powf((f64::from(i) + rng.uniform()) / f64::from(count));
-                [frequency.powf(-slope / 2.0 + 0.5), frequency, 2.0 * PI * rng.uniform()]
-            })
-            .collect();
-        let rms = (lines.iter().map(|line| line[0] * line[0] / 2.0).sum::<f64>()).sqrt();
-        lines.iter_mut().for_each(|line| line[0] *= rms_m / rms);
-        lines
-    };
-    let ridges =
-        (1..12).map(|k| [4e-5 / f64::from(k), 60.0 * f64::from(k), 0.3 * f64::from(k * k)]).collect();
-    vec![
-        vec![[5e-5, 80.0, 0.0]],
-        vec![[1.5e-4, 120.0, 0.4], [2e-5, 417.0, 1.0]],
-        noise(2e-5, 3_000.0, 1.5),
-        ridges,
-    ]
+/// Whether a row's force is the mean over the sample that is centred on it.
+fn is_centred(integrator: Integrator) -> bool {
+    matches!(integrator, Integrator::SemiImplicitEuler | Integrator::SemiImplicitEulerExplicitDamper)
 }
 
-fn heights(lines: &Lines, rate_hz: f64, count: usize) -> Vec<f64> {
-    (0..count)
-        .map(|n| {
-            let t = n as f64 / rate_hz;
-            lines.iter().map(|[a, f, phase]| a * ((2.0 * PI * f * t + phase).sin() - phase.sin())).sum()
-        })
-        .collect()
+/// A reference as a row of each quantity at the coarse rate.
+struct Reference {
+    pad_m: Vec<f64>,
+    /// Means over the sample that ends at the row, and is centred on it.
+    force_n: [Vec<f64>; 2],
+    felt: Vec<f64>,
+    /// The same two.
+    heard: [Vec<f64>; 2],
 }
 
-/// The pad at each input sample, latency undone.
-fn pad(model: &MicroContact, height_m: &[f64]) -> Vec<f64> {
-    let force_n = [FORCE_N; BLOCK];
-    let mut rows = vec![ContactSample::default(); height_m.len()];
-    let mut state = model.at_rest(height_m[0], FORCE_N);
-    for begin in (0..height_m.len()).step_by(BLOCK) {
-        let part = begin..(begin + BLOCK).min(height_m.len());
-        let length = part.len();
-        model.run(&mut state, &height_m[part.clone()], &force_n[..length], &mut rows[part]);
+impl Reference {
+    fn new(fine: &Take) -> Self {
+        let count = fine.audio.len() / OVERSAMPLING;
+        let each = |signal: &[f64]| signal.iter().step_by(OVERSAMPLING).copied().collect();
+        // The fine row m holds the mean over the fine step that ends there.
+        let mean = |ahead: usize| {
+            (0..count)
+                .map(|n| {
+                    let end = (n * OVERSAMPLING + ahead + 1).min(fine.force_n.len());
+                    let begin = end.saturating_sub(OVERSAMPLING);
+                    fine.force_n[begin..end].iter().sum::<f64>() / OVERSAMPLING as f64
+                })
+                .collect()
+        };
+        // What rings is as late as the force: half a step of its own where that ends at the row.
+        let heard = |late: f64| {
+            let late = late - 0.5;
+            (0..count).map(|n| between(&fine.audio, (n * OVERSAMPLING) as f64 - late)).collect()
+        };
+        Self {
+            pad_m: each(&fine.pad_m),
+            force_n: [mean(0), mean(OVERSAMPLING / 2)],
+            felt: each(&fine.haptic),
+            heard: [heard(0.5 * OVERSAMPLING as f64), heard(0.0)],
+        }
     }
-    rows[model.latency_samples()..].iter().map(|row| row.pad_m).collect()
+
+    /// Errors of a render: displacement, force, output.
+    fn errors(&self, take: &Take, integrator: Integrator) -> [f64; 3] {
+        let which = usize::from(is_centred(integrator));
+        let error = |signal, reference: &[f64]| {
+            let all = after_the_lead_in(reference.len(), SAMPLE_RATE_HZ);
+            relative_error(take.signal(signal)[all.clone()].iter().copied(), &reference[all])
+        };
+        let felt = error(Signal::Felt, &self.felt);
+        let heard = error(Signal::Heard, &self.heard[which]);
+        [
+            error(Signal::Displacement, &self.pad_m),
+            error(Signal::ContactForce, &self.force_n[which]),
+            felt.max(heard),
+        ]
+    }
+}
+
+/// References of every case and seed.
+fn references() -> Result<Vec<Vec<Reference>>, CliError> {
+    let rate_hz = Some(SAMPLE_RATE_HZ * OVERSAMPLING as f64);
+    let fine = Chain { rate_hz, preset: Preset::Default, ..Chain::default() };
+    let of = |case: &Case| SEEDS.map(|seed| Ok(Reference::new(&take(case, seed, &fine, None)?))).collect();
+    CASES.iter().map(of).collect()
+}
+
+/// Root mean square over the seeds of each of three errors.
+fn rms(errors: &[[f64; 3]]) -> [f64; 3] {
+    [0, 1, 2].map(|which| {
+        (errors.iter().map(|error| error[which].powi(2)).sum::<f64>() / errors.len() as f64).sqrt()
+    })
 }
 
 /// Measures the axis.
 pub fn rows() -> Result<Vec<Row>, CliError> {
-    let probe = Probe::default();
-    let count = (SECONDS * SAMPLE_RATE_HZ) as usize;
-    let fine_hz = SAMPLE_RATE_HZ * OVERSAMPLING as f64;
-    let fine = MicroContact::new(&probe, Integrator::ExactEvent, fine_hz).map_err(refused)?;
-    let profiles = profiles();
-    let references: Vec<Vec<f64>> = profiles
-        .iter()
-        .map(|lines| pad(&fine, &heights(lines, fine_hz, count * OVERSAMPLING)))
-        .map(|pads| pads.into_iter().step_by(OVERSAMPLING).collect())
-        .collect();
-    let coarse: Vec<Vec<f64>> = profiles.iter().map(|lines| heights(lines, SAMPLE_RATE_HZ, count)).collect();
-    Integrator::ALL
-        .into_iter()
-        .map(|integrator| {
-            let model = MicroContact::new(&probe, integrator, SAMPLE_RATE_HZ).map_err(refused)?;
-            let mut logarithm = 0.0;
-            for (height_m, reference) in coarse.iter().zip(&references) {
-                let pads = pad(&model, height_m);
-                let common = pads.len().min(reference.len());
-                let error = relative_error(pads[..common].iter().copied(), &reference[..common]);
-                logarithm += error.max(1e-16).ln() / coarse.len() as f64;
+    let references = references()?;
+    let row = |integrator: Integrator| {
+        let chain = Chain { integrator: Some(integrator), ..Chain::default() };
+        let (mut cases, mut profiles) = (Vec::new(), Vec::new());
+        for (case, references) in CASES.iter().zip(&references) {
+            let takes = SEEDS.map(|seed| take(case, seed, &chain, None)).collect::<Result<Vec<_>, _>>()?;
+            let errors: Vec<[f64; 3]> = takes
+                .iter()
+                .zip(references)
+                .map(|(take, reference)| reference.errors(take, integrator))
+                .collect();
+            let [displacement, contact_force, output] = rms(&errors);
+            cases.push(CaseError { name: case.name, displacement, contact_force, output });
+            let all = after_the_lead_in(takes[0].height_m.len(), SAMPLE_RATE_HZ);
+            profiles.push((case.force_n, takes[0].height_m[all].to_vec()));
+        }
+        let ns = ns_per_sample(integrator, &profiles)?;
+        Ok(Row::on_cases(("integrator", integrator.name()), ns, cases, REFERENCE))
+    };
+    Integrator::ALL.into_iter().map(row).collect()
+}
+
+/// The contact model alone over the profiles of every case.
+fn ns_per_sample(integrator: Integrator, profiles: &[(f64, Vec<f64>)]) -> Result<f64, CliError> {
+    let probe = Probe { force_exponent: 0.0, ..Probe::default() };
+    let model = MicroContact::new(&probe, integrator, SAMPLE_RATE_HZ).map_err(refused)?;
+    let mut rows = [ContactSample::default(); BLOCK];
+    let count = profiles.iter().map(|(_, heights)| heights.len()).sum();
+    Ok(ns_per_item(count, || {
+        for (force_n, heights) in profiles {
+            let (force_n, mut state) = ([*force_n; BLOCK], model.at_rest(heights[0], *force_n));
+            for heights in heights.chunks(BLOCK) {
+                model.run(&mut state, heights, &force_n[..heights.len()], &mut rows);
+                std::hint::black_box(&rows);
             }
-            let all: Vec<f64> = coarse.concat();
-            let (force_n, mut rows) = ([FORCE_N; BLOCK], [ContactSample::default(); BLOCK]);
-            let mut state = model.at_rest(all[0], FORCE_N);
-            let ns_per_sample = ns_per_item(all.len(), || {
-                for heights in all.chunks(BLOCK) {
-                    model.run(&mut state, heights, &force_n[..heights.len()], &mut rows);
-                    std::hint::black_box(&rows);
-                }
-            });
-            Ok(Row {
-                axis: "integrator",
-                choice: integrator.name().to_owned(),
-                ns_per_sample,
-                error: logarithm.exp(),
-                reference: REFERENCE,
-            })
-        })
-        .collect()
+        }
+    }))
 }

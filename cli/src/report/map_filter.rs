@@ -101,12 +101,8 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
     let course = course();
     let exact: Vec<f64> = course.position_m.iter().map(|place| height(place[0])).collect();
     let reference: Vec<f64> = rates(&exact).collect();
-    let row = |choice: &str, heights: &[f64], ns_per_sample: f64| Row {
-        axis: "map filter",
-        choice: choice.to_owned(),
-        ns_per_sample,
-        error: relative_error(rates(heights), &reference),
-        reference: REFERENCE,
+    let row = |choice: &str, heights: &[f64], ns_per_sample: f64| {
+        Row::of(("map filter", choice), ns_per_sample, relative_error(rates(heights), &reference), REFERENCE)
     };
     let mut rows = Vec::new();
     for (choice, baseline) in

@@ -4,11 +4,15 @@
 //! error is the rms of the difference over the alternating rms of the reference.
 
 mod blocks;
+mod cases;
+mod end_to_end;
+mod from_reports;
 mod integrator;
 mod map_filter;
 mod modes;
 mod noise;
 mod path;
+mod resampled;
 mod stability;
 mod stability_picture;
 mod write;
@@ -17,6 +21,7 @@ use crate::error::CliError;
 use crate::measure::cpu_name;
 use crate::output::{self, Outputs, ensure_folder};
 use crate::progress::Progress;
+use cases::{CASES, SEEDS};
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -46,10 +51,69 @@ pub struct Row {
     pub choice: String,
     /// Cost.
     pub ns_per_sample: f64,
-    /// Rms of the difference over the alternating rms of the reference.
+    /// Rms of the difference over the alternating rms of the reference: the worst of all cases.
     pub error: f64,
     /// What it is compared with.
     pub reference: &'static str,
+    /// The error on each named case, where a choice has them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cases: Vec<CaseError>,
+    /// The same as `error`.
+    pub worst: f64,
+    /// Over all cases and quantities.
+    pub geometric_mean: f64,
+    /// How far what comes out is behind the reports, ms; of a path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub latency_ms: Option<f64>,
+}
+
+/// A choice on a named case ([`cases`]).
+#[derive(Debug, Clone, Serialize)]
+pub struct CaseError {
+    /// Of the case.
+    pub name: &'static str,
+    /// Of the pad's displacement.
+    pub displacement: f64,
+    /// Of the contact force.
+    pub contact_force: f64,
+    /// Of what leaves the engine: the worse of felt and heard.
+    pub output: f64,
+}
+
+impl Row {
+    /// A choice with one error.
+    fn of(
+        (axis, choice): (&'static str, impl Into<String>),
+        ns_per_sample: f64,
+        error: f64,
+        reference: &'static str,
+    ) -> Self {
+        Self {
+            axis,
+            choice: choice.into(),
+            ns_per_sample,
+            error,
+            reference,
+            cases: Vec::new(),
+            worst: error,
+            geometric_mean: error,
+            latency_ms: None,
+        }
+    }
+
+    /// A choice with its errors on the named cases.
+    fn on_cases(
+        (axis, choice): (&'static str, impl Into<String>),
+        ns_per_sample: f64,
+        cases: Vec<CaseError>,
+        reference: &'static str,
+    ) -> Self {
+        let errors = || cases.iter().flat_map(|case| [case.displacement, case.contact_force, case.output]);
+        let worst = errors().fold(0.0, f64::max);
+        let mean = errors().map(|error| error.max(1e-16).ln()).sum::<f64>() / errors().count().max(1) as f64;
+        let row = Self::of((axis, choice), ns_per_sample, worst, reference);
+        Self { cases, geometric_mean: mean.exp(), ..row }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -57,6 +121,8 @@ struct Report {
     cpu: String,
     sample_rate_hz: f64,
     rows: Vec<Row>,
+    end_to_end: Vec<end_to_end::Preset>,
+    from_reports: Vec<from_reports::Stroke>,
     stability: Vec<stability::Cell>,
 }
 
@@ -82,23 +148,42 @@ const AXES: [Axis; 10] = [
 /// When the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     ensure_folder(&options.output)?;
-    let mut progress = Progress::new("measuring", AXES.len() as u64 + 1);
+    let mut progress = Progress::new("measuring", AXES.len() as u64 + 2);
     let mut rows = Vec::new();
     for axis in AXES {
         rows.extend(axis()?);
         progress.advance(1);
     }
+    let end_to_end = end_to_end::presets()?;
+    let from_reports = from_reports::strokes()?;
+    progress.advance(1);
     let stability = stability::cells()?;
     drop(progress);
-    let report = Report { cpu: cpu_name(), sample_rate_hz: SAMPLE_RATE_HZ, rows, stability };
+    let report =
+        Report { cpu: cpu_name(), sample_rate_hz: SAMPLE_RATE_HZ, rows, end_to_end, from_reports, stability };
     let json = serde_json::to_string_pretty(&report).map_err(CliError::told)?;
     let mut outputs = Outputs::new();
     let path = |name: &str| options.output.join(name);
     outputs.write(&path("speed_vs_error.json"), json.as_bytes())?;
-    outputs.write(&path("speed_vs_error.svg"), write::svg(&report.cpu, &report.rows).as_bytes())?;
-    let text = write::markdown(&report.cpu, &report.rows) + &stability_picture::markdown(&report.stability);
+    outputs.write(
+        &path("speed_vs_error.svg"),
+        write::svg(&report.cpu, &report.rows, &report.end_to_end).as_bytes(),
+    )?;
+    let text = write::markdown(&report.cpu, &report.rows, &report.end_to_end)
+        + &write::strokes_table(&report.from_reports)
+        + &stability_picture::markdown(&report.stability);
     outputs.write(&path("speed_vs_error.md"), text.as_bytes())?;
     outputs.write(&path("stability.svg"), stability_picture::svg(&report.stability).as_bytes())?;
+    let folder = path("cases");
+    ensure_folder(&folder)?;
+    for case in &CASES {
+        for (name, bytes) in cases::files(case, *SEEDS.start())? {
+            // The body is the same in all of them.
+            if case.name == CASES[0].name || !name.ends_with("modes.json") {
+                outputs.write(&folder.join(name), &bytes)?;
+            }
+        }
+    }
     let files = outputs.commit()?;
     if options.json {
         return output::say_json(&report);

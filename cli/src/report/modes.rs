@@ -90,12 +90,13 @@ pub fn sleep_rows() -> Result<Vec<Row>, CliError> {
     let mut impulses = strike();
     impulses.resize(SLEEP_SAMPLES, 0.0);
     let reference: Vec<f64> = wide(bank(&groups, Level::detect(), &impulses)).collect();
-    let row = |choice: String, ns_per_strike: f64, found: Vec<f32>| Row {
-        axis: "mode sleep",
-        choice,
-        ns_per_sample: ns_per_strike * SAMPLES as f64 / SLEEP_SAMPLES as f64,
-        error: relative_error(wide(found), &reference),
-        reference: SLEEP_REFERENCE,
+    let row = |choice: String, ns_per_strike: f64, found: Vec<f32>| {
+        Row::of(
+            ("mode sleep", choice),
+            ns_per_strike * SAMPLES as f64 / SLEEP_SAMPLES as f64,
+            relative_error(wide(found), &reference),
+            SLEEP_REFERENCE,
+        )
     };
     let always = bank(&groups, Level::detect(), &impulses);
     let mut rows = vec![row("never".to_owned(), ns(|| bank(&groups, Level::detect(), &impulses)), always)];
@@ -118,13 +119,12 @@ pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
     let reference: Vec<f64> = wide(run(groups.len())).collect();
     let rows = (0..5).map(|level| {
         let driven = groups.len() - groups.len() * level / 5;
-        Row {
-            axis: "load shedding",
-            choice: format!("level {level}: {driven} of {} groups", groups.len()),
-            ns_per_sample: ns(|| run(driven)),
-            error: relative_error(wide(run(driven)), &reference),
-            reference: SHEDDING_REFERENCE,
-        }
+        Row::of(
+            ("load shedding", format!("level {level}: {driven} of {} groups", groups.len())),
+            ns(|| run(driven)),
+            relative_error(wide(run(driven)), &reference),
+            SHEDDING_REFERENCE,
+        )
     });
     Ok(rows.collect())
 }
@@ -142,13 +142,15 @@ pub fn struck_shedding_rows() -> Result<Vec<Row>, CliError> {
         let driven = groups.len() - groups.len() * level / 5;
         let found: Vec<f64> = wide(run(driven)).collect();
         let louder_db = 10.0 * (power(&found) / power(&reference)).log10();
-        Row {
-            axis: "load shedding, a strike",
-            choice: format!("level {level}: {driven} of {} groups, {louder_db:+.1} dB", groups.len()),
-            ns_per_sample: ns(|| run(driven)),
-            error: relative_error(found, &reference),
-            reference: STRUCK_SHEDDING_REFERENCE,
-        }
+        Row::of(
+            (
+                "load shedding, a strike",
+                format!("level {level}: {driven} of {} groups, {louder_db:+.1} dB", groups.len()),
+            ),
+            ns(|| run(driven)),
+            relative_error(found, &reference),
+            STRUCK_SHEDDING_REFERENCE,
+        )
     });
     Ok(rows.collect())
 }
@@ -175,13 +177,12 @@ pub fn culling_rows() -> Result<Vec<Row>, CliError> {
                 all.iter().zip(&keep).filter(|(_, keep)| **keep).map(|(mode, _)| *mode).collect();
             let groups = designed(&kept)?;
             let found = bank(&groups, kernel, &impulses);
-            Ok(Row {
-                axis: "mode culling",
-                choice: format!("{name}: {count} of {MODES} modes"),
-                ns_per_sample: ns(|| bank(&groups, kernel, &impulses)),
-                error: relative_error(wide(found), &reference),
-                reference: CULLING_REFERENCE,
-            })
+            Ok(Row::of(
+                ("mode culling", format!("{name}: {count} of {MODES} modes")),
+                ns(|| bank(&groups, kernel, &impulses)),
+                relative_error(wide(found), &reference),
+                CULLING_REFERENCE,
+            ))
         })
         .collect()
 }
@@ -226,12 +227,8 @@ pub fn format_rows() -> Result<Vec<Row>, CliError> {
         .collect::<Result<Vec<_>, _>>()
         .map_err(refused)?;
     let reference = direct_f64(&filters, &impulses);
-    let row = |choice: String, ns_per_sample: f64, error: f64| Row {
-        axis: "number format",
-        choice,
-        ns_per_sample,
-        error,
-        reference: FORMAT_REFERENCE,
+    let row = |choice: String, ns_per_sample: f64, error: f64| {
+        Row::of(("number format", choice), ns_per_sample, error, FORMAT_REFERENCE)
     };
     let mut rows = vec![
         row(

@@ -48,7 +48,7 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
             std::hint::black_box(heights(noise, &places, footprint_m));
         });
         let error = relative_error(found, &reference);
-        rows.push(Row { axis: "noise octaves", choice, ns_per_sample, error, reference: REFERENCE });
+        rows.push(Row::of(("noise octaves", choice), ns_per_sample, error, REFERENCE));
     };
     measure("12 octaves, portable code".to_owned(), &portable, 0.1, 0.0);
     measure(format!("12 octaves, {:?}", widest.level().isa()), &widest, 0.1, 0.0);

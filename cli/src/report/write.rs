@@ -1,6 +1,8 @@
 //! The report as a picture and as a table.
 
 use super::Row;
+use super::end_to_end::Preset;
+use super::from_reports::Stroke;
 use crate::plot::{Axis, Figure, Layer, Panel, Series, palette};
 use std::fmt::Write;
 
@@ -67,14 +69,62 @@ fn panel(axis: &str, rows: &[&Row]) -> Panel {
     })
 }
 
+/// The engine at a glance: its presets, from reports to what leaves it, over the integrators alone.
+fn overview(rows: &[Row], presets: &[Preset]) -> Panel {
+    let whole: Vec<[f64; 2]> = presets
+        .iter()
+        .map(|preset| [10f64.powf(preset.error_db / 20.0), preset.ns_per_sample * 1e-9])
+        .collect();
+    let integrators: Vec<&Row> = rows.iter().filter(|row| row.axis == "integrator").collect();
+    let alone = |error: fn(&Row) -> f64| -> Vec<[f64; 2]> {
+        integrators.iter().map(|row| [error(row).max(FLOOR), row.ns_per_sample * 1e-9]).collect()
+    };
+    let all = || whole.iter().copied().chain(alone(|row| row.worst)).chain(alone(|row| row.geometric_mean));
+    let ends = |of: usize| {
+        let values = all().map(|point| point[of]);
+        (values.clone().fold(f64::INFINITY, f64::min), values.fold(0.0, f64::max))
+    };
+    let ((low, high), (fast, slow)) = (ends(0), ends(1));
+    let dots =
+        |label: &str, colour: &str, points: Vec<[f64; 2]>, radius: f64, names: Vec<String>| Layer::Dots {
+            label: label.to_owned(),
+            colour: colour.to_owned(),
+            points,
+            radius_px: vec![radius],
+            names,
+        };
+    let names = presets.iter().map(|preset| preset.preset.to_owned()).collect();
+    Panel::new(
+        "the engine at a glance",
+        Axis::log("error", "").range(low / 3.0, high * 6.0),
+        Axis::log("time a sample, one contact", "s").range(fast / 2.0, slow * 2.0),
+    )
+    .with(Layer::line(
+        "presets against the whole chain in f64 at 16 times the rate",
+        palette::IMPACT,
+        Series::Points(whole.clone()),
+    ))
+    .with(dots("", palette::IMPACT, whole, 8.0, names))
+    .with(dots(
+        "integrators alone, geometric mean of all cases",
+        palette::PAD,
+        alone(|row| row.geometric_mean),
+        5.0,
+        integrators.iter().map(|row| row.choice.clone()).collect(),
+    ))
+}
+
 /// One panel an axis, its Pareto front drawn in.
 #[must_use]
-pub fn svg(cpu: &str, rows: &[Row]) -> String {
+pub fn svg(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
     let mut figure = Figure::new("Speed against error")
         .subtitle(format!(
             "one thread of {cpu}; error = rms of the difference over the reference's alternating rms"
         ))
         .subtitle("lower left is better; errors of exactly zero are drawn at 10⁻⁸");
+    if !presets.is_empty() {
+        figure.row(420.0, [overview(rows, presets)]);
+    }
     let mut panels: Vec<Panel> = axes(rows).iter().map(|(axis, members)| panel(axis, members)).collect();
     while !panels.is_empty() {
         let rest = panels.split_off(panels.len().min(2));
@@ -93,12 +143,53 @@ fn note(row: &Row) -> &'static str {
     }
 }
 
+/// The presets, and what each case costs them.
+fn presets_table(presets: &[Preset]) -> String {
+    let Some(first) = presets.first() else { return String::new() };
+    let mut text = "\n## end to end\n\nReference: the whole chain in f64 at 16 times the rate, from the same path; dB, felt / heard. Where a case is \
+                    *chaotic* no waveform can be compared, and it does not count.\n\n| preset | ns a sample | error | "
+        .to_owned();
+    for case in &first.cases {
+        let note = if case.contractive { "" } else { " (*chaotic*)" };
+        let _ = write!(text, "{}{note} | ", case.name);
+    }
+    text += "share of the stages |\n|---|--:|--:|";
+    text += &"---|".repeat(first.cases.len() + 1);
+    for preset in presets {
+        let _ =
+            write!(text, "\n| {} | {:.0} | {:.1} dB |", preset.preset, preset.ns_per_sample, preset.error_db);
+        for case in &preset.cases {
+            let _ = write!(text, " {:.0} / {:.0} |", case.felt_db, case.heard_db);
+        }
+        let shares: Vec<String> =
+            preset.stages.iter().map(|(stage, share)| format!("{stage} {:.1} %", 100.0 * share)).collect();
+        let _ = write!(text, " {} |", shares.join(", "));
+    }
+    text + "\n"
+}
+
+/// What sparse reports cost.
+#[must_use]
+pub fn strokes_table(strokes: &[Stroke]) -> String {
+    let mut text = "\n## from 60 reports a second\n\nReference: the same hand, reported 2000 times a second. Waveforms, and the median \
+                    difference of third-octave levels in frames of 100 ms; felt / heard.\n\n| ground | path | waveform | levels |\n|---|---|--:|--:|\n"
+        .to_owned();
+    for Stroke { name, path, felt_db, heard_db, felt_levels_db, heard_levels_db } in strokes {
+        let _ = writeln!(
+            text,
+            "| {name} | {path} | {felt_db:.1} / {heard_db:.1} dB | {felt_levels_db:.2} / {heard_levels_db:.2} dB |"
+        );
+    }
+    text
+}
+
 /// One table an axis.
 #[must_use]
-pub fn markdown(cpu: &str, rows: &[Row]) -> String {
+pub fn markdown(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
     let mut text = format!(
         "# Speed against error\n\nOne thread of {cpu}. Error: rms of the difference over the alternating rms of the reference.\n"
     );
+    text += &presets_table(presets);
     for (axis, members) in axes(rows) {
         let reference = members.first().map_or("", |row| row.reference);
         let _ = write!(
@@ -126,7 +217,7 @@ mod tests {
     use super::*;
 
     fn row(choice: &str, ns_per_sample: f64, error: f64) -> Row {
-        Row { axis: "test", choice: choice.to_owned(), ns_per_sample, error, reference: "truth" }
+        Row::of(("test", choice), ns_per_sample, error, "truth")
     }
 
     #[test]
@@ -139,11 +230,11 @@ mod tests {
 
     #[test]
     fn the_table_has_a_row_for_every_choice() {
-        let text = markdown("cpu", &[row("a", 10.0, 0.0), row("b", 5.0, 1e-3)]);
+        let text = markdown("cpu", &[row("a", 10.0, 0.0), row("b", 5.0, 1e-3)], &[]);
         assert!(
             text.contains("| a | 10.00 | 0.00e0 | exact |")
                 && text.contains("| b | 5.00 | 1.00e-3 | -60.0 |")
         );
-        assert!(svg("cpu", &[row("a", 10.0, 0.0)]).contains("test"));
+        assert!(svg("cpu", &[row("a", 10.0, 0.0)], &[]).contains("test"));
     }
 }

@@ -283,6 +283,7 @@ mod tests {
             rate: None,
             block: 256,
             seed: None,
+            preset: asperity::Preset::Default,
             integrator: None,
             path: None,
             trace: false,

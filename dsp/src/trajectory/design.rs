@@ -18,6 +18,8 @@ pub enum PathMode {
     Hold,
     /// Cubic interpolation between events, [`HERMITE_DELAY_S`] late.
     Hermite,
+    /// The most likely band-limited motion given the last reports, no later than [`PathMode::Extrapolate`]: the module `band_limited`.
+    BandLimited,
 }
 
 /// What all paths at one sample rate share.
@@ -73,7 +75,7 @@ impl TrajectoryDesign {
     #[must_use]
     pub fn lag_s(&self) -> f64 {
         let extra = match self.mode {
-            PathMode::Extrapolate | PathMode::Hold => 0.0,
+            PathMode::Extrapolate | PathMode::Hold | PathMode::BandLimited => 0.0,
             PathMode::Hermite => self.hermite_delay_samples as f64 * self.sample_period_s,
         };
         self.filter.group_delay_s() + extra

@@ -108,7 +108,7 @@ impl Trajectory {
             Distance::Small => self.catch_up.go_on_beside(velocity),
         }
         let rejoins = matches!(distance, Distance::MadeUp(_));
-        self.go_on(design, event, &seen, velocity, rejoins);
+        self.go_on(design, event, &seen, (velocity, reported), rejoins);
         Moved::Followed
     }
 
@@ -136,7 +136,7 @@ impl Trajectory {
         design: &TrajectoryDesign,
         event: &PathEvent,
         seen: &Seen,
-        velocity: [f64; 2],
+        (velocity, reported): ([f64; 2], Option<[f64; 2]>),
         rejoins: bool,
     ) {
         let back = carried_back(design, velocity, event.fraction);
@@ -154,6 +154,10 @@ impl Trajectory {
             PathMode::Hermite => {
                 let belief = self.reckoning.belief(design);
                 self.history.push(design, event.sample, belief, velocity, force_n);
+            }
+            PathMode::BandLimited => {
+                let (belief, samples) = (self.reckoning.belief(design), (self.sample, event.sample));
+                self.estimate.push(design, samples, belief, reported, rejoins);
             }
             PathMode::Extrapolate | PathMode::Hold => {}
         }
@@ -178,6 +182,7 @@ impl Trajectory {
     fn may_part(&self, design: &TrajectoryDesign, late: bool, velocity: [f64; 2]) -> bool {
         match design.mode {
             PathMode::Extrapolate => late || velocity == [0.0; 2],
+            PathMode::BandLimited => late,
             PathMode::Hermite => late,
             PathMode::Hold => false,
         }
@@ -193,7 +198,7 @@ impl Trajectory {
     /// Whether the path has begun to lose belief in a movement for want of reports.
     fn is_late(&self, design: &TrajectoryDesign, event: &PathEvent, gap_s: f64) -> bool {
         let read_late_s = match design.mode {
-            PathMode::Extrapolate | PathMode::Hold => 0.0,
+            PathMode::Extrapolate | PathMode::Hold | PathMode::BandLimited => 0.0,
             PathMode::Hermite => design.hermite_delay_samples as f64 * design.sample_period_s,
         };
         let until = self.sample.max(event.sample);

@@ -226,7 +226,7 @@ fn a_million_periods_away_the_velocity_is_as_smooth() {
 
 #[test]
 fn any_split_into_blocks_gives_the_same_bits() {
-    for mode in [PathMode::Extrapolate, PathMode::Hold, PathMode::Hermite] {
+    for mode in [PathMode::Extrapolate, PathMode::Hold, PathMode::Hermite, PathMode::BandLimited] {
         let design = design(mode);
         let mut events = steady(3, 0.2, 50e-6, 0.02, true);
         events.drain(100..120); // long enough to glide out
@@ -263,7 +263,7 @@ fn force_follows_smoothly_and_never_pulls() {
 
 #[test]
 fn a_held_force_stays_until_the_next_event() {
-    for mode in [PathMode::Extrapolate, PathMode::Hold, PathMode::Hermite] {
+    for mode in [PathMode::Extrapolate, PathMode::Hold, PathMode::Hermite, PathMode::BandLimited] {
         let design = design(mode);
         let mut path = Trajectory::begin(&design, &event(0, 0.0, Some(0.1)));
         path.moved(&design, &PathEvent { normal_force_n: 0.0, ..event(0, 0.0, Some(0.1)) });
@@ -343,5 +343,17 @@ fn ripple_and_lag_are_the_same_at_every_rate_though_stamps_fall_between_samples(
                 assert!((lag_s - design.lag_s()).abs() < 1e-4, "{mode:?}, {rate_hz} Hz: lag {lag_s}");
             }
         }
+    }
+}
+
+#[test]
+fn a_band_limited_path_has_no_step_in_place_or_velocity_at_a_noisy_report() {
+    let design = design(PathMode::BandLimited);
+    let points = render(&design, &steady(4, 0.2, 50e-6, 0.02, true), 132_500);
+    for pair in points.windows(2) {
+        let step = pair[1].position_m[0] - pair[0].position_m[0];
+        assert!(step.abs() < 0.2 / RATE_HZ, "{step}");
+        let turn = pair[1].velocity_m_s[0] - pair[0].velocity_m_s[0];
+        assert!(turn.abs() < 2e-3, "{turn}");
     }
 }

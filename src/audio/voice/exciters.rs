@@ -42,6 +42,8 @@ pub(super) struct Excited<'a> {
     pub(super) probe: &'a PreparedProbe,
     pub(super) reaction: Reaction,
     pub(super) sample_rate_hz: f64,
+    /// Steps in which loudness is worked out, samples.
+    pub(super) slow_step: u64,
     /// Absolute index of the first sample.
     pub(super) position: u64,
 }
@@ -123,7 +125,7 @@ impl Exciters {
         let impulse_n_s = &mut out.impulse_n_s[..rows.len()];
         self.empty_ring(by.position, impulse_n_s);
         self.force.add(force, impulse_n_s);
-        self.loudness.weigh(by.position, impulse_n_s);
+        self.loudness.weigh(by.position, by.slow_step, impulse_n_s);
         (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
     }
 

@@ -13,6 +13,8 @@ pub(crate) struct Shared {
     /// Inside; which of these samples leave says `inner`.
     pub(crate) sample_rate_hz: f64,
     pub(crate) inner: InnerRate,
+    /// Steps in which slow things are worked out, inner samples: as long in time however much the engine oversamples.
+    pub(crate) slow_step: u64,
     /// The engine's own probe, and those that were added.
     pub(crate) own_probe: PreparedProbe,
     pub(crate) probes: Vec<Option<Box<PreparedProbe>>>,

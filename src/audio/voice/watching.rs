@@ -66,15 +66,17 @@ impl Shown {
         let [width_m, height_m] = done.size_m;
         let latency = shared.row_latency;
         let (mut count, mut first_sample) = (0, 0);
+        let all = tap.wants_inner_samples();
+        let every = if all { 1 } else { shared.inner.every as u64 };
         for i in 0..n {
             let sample = position + i as u64;
             *unshown_n_s += done.impulse_n_s[i];
             // The first rows of a contact would describe instants before it began.
-            if !shared.inner.leaves(sample) || sample < done.begun + latency as u64 {
+            if !(all || shared.inner.leaves(sample)) || sample < done.begun + latency as u64 {
                 continue;
             }
             if count == 0 {
-                first_sample = (sample - latency as u64) / shared.inner.every as u64;
+                first_sample = (sample - latency as u64) / every;
             }
             let point = if i >= latency { done.points[i - latency] } else { done.last_point };
             self.position_m[count] = point.position_m;

@@ -3,8 +3,6 @@
 //! It is worked out at the steps of the absolute sample grid, so that it depends on no split into blocks, and goes along a straight line
 //! between two of them.
 
-use asperity_texture::height_field::MAX_BLOCK;
-
 /// How loud a contact is.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Loudness {
@@ -23,12 +21,12 @@ impl Loudness {
         self.ends = [self.ends[1], loudness];
     }
 
-    /// Weighs what the contact sends to the body.
-    pub(super) fn weigh(&self, position: u64, impulse_n_s: &mut [f64]) {
+    /// Weighs what the contact sends to the body; `slow_step` samples lie between two steps of the grid.
+    pub(super) fn weigh(&self, position: u64, slow_step: u64, impulse_n_s: &mut [f64]) {
         let [from, to] = self.ends;
-        let first = position as usize % MAX_BLOCK;
+        let first = (position % slow_step) as usize;
         for (i, impulse_n_s) in impulse_n_s.iter_mut().enumerate() {
-            let part = (first + i + 1) as f64 / MAX_BLOCK as f64;
+            let part = (first + i + 1) as f64 / slow_step as f64;
             *impulse_n_s *= from + part * (to - from);
         }
     }

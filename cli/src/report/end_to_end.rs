@@ -1,0 +1,231 @@
+//! From path to ear and finger: each engine preset against the whole chain in f64 at 16 times the rate, and how much of its error each
+//! stage makes.
+//!
+//! ```text
+//! E = preset − reference = (preset − A) + (A − B) + (B − reference)
+//! A: the preset, its contact exact at 16 times the rate     B: the same with every mode     reference: B's impulses into a bank in f64
+//! ```
+//! A stage's share is the power of its difference over the sum of all three, so that shares sum to 1. The path is the same everywhere: a
+//! straight stroke, of which reports tell the truth. What sparse reports of a real one cost stands in [`super::from_reports`].
+
+use super::SAMPLE_RATE_HZ;
+use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, plate, take};
+use super::resampled::{after_the_lead_in, between};
+use crate::error::CliError;
+use crate::measure::{Timing, relative_error};
+use asperity::files::contact_log::ContactLog;
+use asperity::{Integrator, Preset as EnginePreset};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// The reference's inner samples over the engine's.
+const INNER: usize = 16;
+/// How many samples an impulse of the tap is later than the force that it is: the kernel is two samples long on each side, and a mean
+/// over a step belongs half a step before its end.
+const LATE_SAMPLES: f64 = 2.5;
+/// The stages, from the contact on.
+const STAGES: [&str; 3] = ["contact", "modes left out", "number format of the bank"];
+/// A case is contractive where a path moved by 1e-12 m is felt and heard the same within this, dB.
+const CONTRACTIVE_DB: f64 = -80.0;
+
+/// A preset.
+#[derive(Debug, Clone, Serialize)]
+pub struct Preset {
+    /// As it is called on the command line.
+    pub preset: &'static str,
+    /// The worst contractive case, felt or heard, dB.
+    pub error_db: f64,
+    /// One contact on a body of nine modes, all cases.
+    pub ns_per_sample: f64,
+    /// What each stage adds to the error's power.
+    pub stages: BTreeMap<&'static str, f64>,
+    /// Every case by itself.
+    pub cases: Vec<CaseLevel>,
+}
+
+/// A preset on a case.
+#[derive(Debug, Clone, Serialize)]
+pub struct CaseLevel {
+    /// Of the case.
+    pub name: &'static str,
+    /// Whether it forgets how it came to where it is; elsewhere waveforms cannot be compared.
+    pub contractive: bool,
+    /// dB.
+    pub felt_db: f64,
+    /// dB.
+    pub heard_db: f64,
+}
+
+/// The chain of a preset with an exact contact at 16 times the rate.
+fn with_exact_contact(preset: EnginePreset) -> Chain {
+    let integrator = Some(Integrator::ExactEvent);
+    Chain { preset, integrator, oversampling: Some(INNER), ..Chain::default() }
+}
+
+/// What leaves the reference.
+pub struct Reference {
+    /// At the engine's samples.
+    pub felt: Vec<f64>,
+    /// At the inner ones.
+    heard: Vec<f64>,
+}
+
+impl Reference {
+    /// Renders it.
+    ///
+    /// # Errors
+    /// Never but by a defect.
+    pub fn new(case: &Case, seed: u64, log: Option<&ContactLog>) -> Result<Self, CliError> {
+        let chain = Chain { inner_rows: true, ..with_exact_contact(EnginePreset::Accurate) };
+        let Take { haptic, impulse_n_s, inner_rate_hz, .. } = take(case, seed, &chain, log)?;
+        Ok(Self { felt: haptic, heard: rung(&impulse_n_s, inner_rate_hz) })
+    }
+
+    /// What is heard at each of the engine's samples, so much later, s.
+    pub fn heard(&self, later_s: f64) -> Vec<f64> {
+        let later = later_s * SAMPLE_RATE_HZ * INNER as f64;
+        (0..self.heard.len() / INNER).map(|n| between(&self.heard, (n * INNER) as f64 - later)).collect()
+    }
+}
+
+/// A body under impulses as the tap tells them, in f64 and closed form.
+///
+/// An impulse is what the force was in the step that ends at its sample, [`LATE_SAMPLES`] late and spread by a cubic B-spline: the
+/// engine's banks undo the spline and its delay, and so does this one.
+fn rung(impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
+    let model = plate();
+    let mut out = vec![0.0; impulse_n_s.len()];
+    for mode in &model.modes {
+        let (decay, angle) = (mode.decay_per_s / rate_hz, TAU * mode.frequency_hz / rate_hz);
+        let spline = ((0.5 * angle).sin() / (0.5 * angle)).powi(4);
+        let gain = mode.amplitude / model.impulse_n_s / spline;
+        let turn = |samples: f64, [re, im]: [f64; 2]| {
+            let (keep, (sin, cos)) = ((-samples * decay).exp(), (samples * angle).sin_cos());
+            [keep * (re * cos - im * sin), keep * (re * sin + im * cos)]
+        };
+        let (one, ahead) = (turn(1.0, [1.0, 0.0]), turn(LATE_SAMPLES, [1.0, 0.0]));
+        let by = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * c - b * d, a * d + b * c];
+        let mut state = [0.0; 2];
+        for (y, impulse) in out.iter_mut().zip(impulse_n_s) {
+            state = by(state, one);
+            state[0] += impulse;
+            let [re, im] = by(state, ahead);
+            *y += gain * (im * mode.phase_rad.cos() + re * mode.phase_rad.sin());
+        }
+    }
+    out
+}
+
+/// By how much what a preset is heard of is behind, s: its forces are means over the inner sample that ends at a row.
+fn late_s(take: &Take) -> f64 {
+    0.5 / take.inner_rate_hz
+}
+
+/// Power of a difference over the alternating power of the reference.
+fn apart(a: &[f64], b: &[f64], reference: &[f64]) -> f64 {
+    let all = after_the_lead_in(reference.len(), SAMPLE_RATE_HZ);
+    let difference: Vec<f64> = a.iter().zip(b).zip(reference).map(|((a, b), r)| a - b + r).collect();
+    relative_error(difference[all.clone()].iter().copied(), &reference[all]).powi(2)
+}
+
+/// A preset's render of a profile, stage by stage as the head of this file says.
+fn stages(
+    case: &Case,
+    seed: u64,
+    preset: EnginePreset,
+    reference: &Reference,
+) -> Result<[[f64; 4]; 2], CliError> {
+    let chains = [
+        Chain { preset, ..Chain::default() },
+        with_exact_contact(preset),
+        with_exact_contact(EnginePreset::Accurate),
+    ];
+    let takes = chains.iter().map(|chain| take(case, seed, chain, None)).collect::<Result<Vec<_>, _>>()?;
+    let own: Vec<[Vec<f64>; 2]> =
+        takes.iter().map(|take| [reference.felt.clone(), reference.heard(late_s(take))]).collect();
+    // What differs from the reference at each one's own time.
+    let error = |which: usize, signal: Signal, heard: usize| -> Vec<f64> {
+        takes[which].signal(signal).iter().zip(&own[which][heard]).map(|(x, r)| x - r).collect()
+    };
+    Ok([(Signal::Felt, 0), (Signal::Heard, 1)].map(|(signal, heard)| {
+        let truth = &own[0][heard];
+        let errors: Vec<Vec<f64>> = (0..3).map(|which| error(which, signal, heard)).collect();
+        let none = vec![0.0; truth.len()];
+        [
+            apart(&errors[0], &none, truth),
+            apart(&errors[0], &errors[1], truth),
+            apart(&errors[1], &errors[2], truth),
+            apart(&errors[2], &none, truth),
+        ]
+    }))
+}
+
+/// Whether a path moved by a picometre is felt and heard the same.
+fn is_contractive(case: &Case, seed: u64) -> Result<bool, CliError> {
+    let chain = Chain::default();
+    let (mut moved, here) = (case.log(), take(case, seed, &chain, None)?);
+    super::cases::move_along(&mut moved, 1e-12);
+    let there = take(case, seed, &chain, Some(&moved))?;
+    let most = 10f64.powf(0.1 * CONTRACTIVE_DB);
+    Ok([Signal::Felt, Signal::Heard]
+        .into_iter()
+        .all(|signal| apart(here.signal(signal), there.signal(signal), here.signal(signal)) < most))
+}
+
+fn decibels(power: f64) -> f64 {
+    10.0 * power.max(1e-30).log10()
+}
+
+/// Measures every preset.
+///
+/// # Errors
+/// Never but by a defect.
+pub fn presets() -> Result<Vec<Preset>, CliError> {
+    let mut grounds = Vec::new();
+    for case in &CASES {
+        let seed = *SEEDS.start();
+        grounds.push((case, seed, is_contractive(case, seed)?, Reference::new(case, seed, None)?));
+    }
+    EnginePreset::ALL
+        .into_iter()
+        .zip(ns_per_sample()?)
+        .map(|(preset, ns_per_sample)| {
+            let (mut sums, mut cases, mut worst_db) = ([0.0; 3], Vec::new(), f64::NEG_INFINITY);
+            for (case, seed, contractive, reference) in &grounds {
+                let [felt, heard] = stages(case, *seed, preset, reference)?;
+                let (felt_db, heard_db) = (decibels(felt[0]), decibels(heard[0]));
+                if *contractive {
+                    worst_db = worst_db.max(felt_db).max(heard_db);
+                    for (sum, which) in sums.iter_mut().zip(1..) {
+                        *sum += felt[which] + heard[which];
+                    }
+                }
+                cases.push(CaseLevel { name: case.name, contractive: *contractive, felt_db, heard_db });
+            }
+            let all: f64 = sums.iter().sum();
+            Ok(Preset {
+                preset: preset.name(),
+                error_db: worst_db,
+                ns_per_sample,
+                stages: STAGES.into_iter().zip(sums.map(|sum| sum / all)).collect(),
+                cases,
+            })
+        })
+        .collect()
+}
+
+/// The whole renderer, one contact, of each preset: the median over the cases of the best of some rounds, in turns.
+fn ns_per_sample() -> Result<Vec<f64>, CliError> {
+    const ROUNDS: usize = 5;
+    let mut best = vec![vec![f64::INFINITY; CASES.len()]; EnginePreset::ALL.len()];
+    for _ in 0..ROUNDS {
+        for (of, case) in CASES.iter().enumerate() {
+            for (best, preset) in best.iter_mut().zip(EnginePreset::ALL) {
+                let take = take(case, 1, &Chain { preset, ..Chain::default() }, None)?;
+                best[of] = best[of].min(take.processing_s * 1e9 / take.audio.len() as f64);
+            }
+        }
+    }
+    Ok(best.into_iter().map(|best| Timing::of(best).median).collect())
+}

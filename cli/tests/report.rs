@@ -1,0 +1,275 @@
+//! `asperity report` from outside: its tables, its scenes, and its errors against an integration that shares no code with the engine.
+
+mod support;
+
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use support::{asperity, told};
+
+const CASES: [&str; 6] = ["smooth", "rough", "bouncing", "steep", "fast", "light"];
+/// Seeds that the report does not draw its profiles from.
+const UNSEEN: [u64; 4] = [101, 102, 103, 104];
+const RATE_HZ: f64 = 44_100.0;
+/// Of the heights that are integrated over.
+const FINE: usize = 8;
+
+/// The report, made once for all tests.
+fn report() -> (&'static Path, &'static Value) {
+    static MADE: OnceLock<(tempfile::TempDir, Value)> = OnceLock::new();
+    let (folder, report) = MADE.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (status, _, err) = told(&asperity(folder.path(), &["report", "-o", "."]));
+        assert_eq!((status, err.as_str()), (0, ""));
+        let text = fs::read_to_string(folder.path().join("speed_vs_error.json")).unwrap();
+        (folder, serde_json::from_str(&text).unwrap())
+    });
+    (folder.path(), report)
+}
+
+fn rows(axis: &str) -> Vec<&'static Value> {
+    report().1["rows"].as_array().unwrap().iter().filter(|row| row["axis"] == axis).collect()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("no number: {value}"))
+}
+
+#[test]
+fn every_integrator_has_its_error_on_every_named_case() {
+    let integrators = rows("integrator");
+    assert_eq!(integrators.len(), 4);
+    for row in integrators {
+        let cases = row["cases"].as_array().unwrap();
+        let names: Vec<&str> = cases.iter().map(|case| case["name"].as_str().unwrap()).collect();
+        assert_eq!(names, CASES);
+        let errors: Vec<f64> = cases
+            .iter()
+            .flat_map(|case| ["displacement", "contact_force", "output"].map(|of| number(&case[of])))
+            .collect();
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        let mean = (errors.iter().map(|error| error.ln()).sum::<f64>() / errors.len() as f64).exp();
+        assert_eq!([number(&row["error"]), number(&row["worst"])], [worst; 2]);
+        assert!((number(&row["geometric_mean"]) / mean - 1.0).abs() < 1e-9);
+        println!("{}: worst {worst:.2e}, geometric mean {mean:.2e}", row["choice"]);
+        for case in cases {
+            println!("    {case}");
+        }
+    }
+}
+
+#[test]
+fn every_case_is_a_scene_that_renders() {
+    let folder = report().0.join("cases");
+    for name in CASES {
+        let stem = format!("{name}.out");
+        let (status, out, err) =
+            told(&asperity(&folder, &["render", &format!("{name}.toml"), "-o", &stem, "--json"]));
+        assert_eq!((status, err.as_str()), (0, ""), "{name}");
+        let render: Value = serde_json::from_str(&out).unwrap();
+        assert!(number(&render["audio_peak"]) > 0.0 && number(&render["haptic_peak"][0]) > 0.0, "{name}");
+    }
+}
+
+/// A column of a trace.
+struct Trace {
+    begin: usize,
+    height_m: Vec<f64>,
+    pad_m: Vec<f64>,
+    force_n: Vec<f64>,
+}
+
+fn trace(folder: &Path, scene: &str, more: &[&str], rate_hz: f64) -> Trace {
+    let mut arguments = vec!["render", scene, "-o", "take", "--trace"];
+    arguments.extend(more);
+    let (status, _, err) = told(&asperity(folder, &arguments));
+    assert_eq!((status, err.as_str()), (0, ""));
+    let text = fs::read_to_string(folder.join("take.trace.csv")).unwrap();
+    let mut trace = Trace { begin: 0, height_m: Vec::new(), pad_m: Vec::new(), force_n: Vec::new() };
+    for (index, line) in text.lines().skip(1).enumerate() {
+        let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
+        if index == 0 {
+            trace.begin = (fields[0] * rate_hz).round() as usize;
+        }
+        trace.height_m.push(fields[4]);
+        trace.pad_m.push(fields[6]);
+        trace.force_n.push(fields[9]);
+    }
+    trace
+}
+
+/// The fingertip of the cases: m_s, k_s, b_s, m_f, k_m.
+const PROBE: [f64; 5] = [0.15e-3, 1000.0, 2.0, 0.02, 2e5];
+
+/// Rates of change of pad and finger, places and speeds.
+fn rates([x, v, y, w]: [f64; 4], height_m: f64, force_n: f64) -> [f64; 4] {
+    let [pad_kg, spring, damper, finger_kg, stiffness] = PROBE;
+    let between = spring * (x - y) + damper * (v - w);
+    let contact = stiffness * (height_m - x).max(0.0);
+    [v, (contact - between) / pad_kg, w, (between - force_n) / finger_kg]
+}
+
+/// A cubic through four heights, between the second and the third.
+fn cubic(h: &[f64], x: f64) -> f64 {
+    let [a, b, c, d] = [h[0], h[1], h[2], h[3]];
+    b + 0.5 * x * (c - a + x * (2.0 * a - 5.0 * b + 4.0 * c - d + x * (3.0 * (b - c) + d - a)))
+}
+
+/// Pad displacement and mean contact force of each fine step (the mean belongs to the step that ends there), by the classical
+/// Runge–Kutta scheme in four steps each.
+fn integrated(heights_m: &[f64], force_n: f64) -> (Vec<f64>, Vec<f64>) {
+    const STEPS: usize = 4;
+    let h = 1.0 / (RATE_HZ * (FINE * STEPS) as f64);
+    let rest = heights_m[1] - force_n / PROBE[4];
+    let mut state = [rest, 0.0, rest - force_n / PROBE[1], 0.0];
+    let (mut pads, mut means) = (vec![rest; 2], vec![force_n; 2]);
+    let add = |a: [f64; 4], b: [f64; 4], s: f64| [0, 1, 2, 3].map(|i| a[i] + s * b[i]);
+    for four in heights_m.windows(4) {
+        let mut sum = 0.0;
+        for step in 0..STEPS {
+            let at = |part: f64| cubic(four, (step as f64 + part) / STEPS as f64);
+            let [h0, h1, h2] = [at(0.0), at(0.5), at(1.0)];
+            let k1 = rates(state, h0, force_n);
+            let k2 = rates(add(state, k1, 0.5 * h), h1, force_n);
+            let k3 = rates(add(state, k2, 0.5 * h), h1, force_n);
+            let k4 = rates(add(state, k3, h), h2, force_n);
+            let push = |state: [f64; 4], height: f64| PROBE[4] * (height - state[0]).max(0.0);
+            sum += push(state, h0);
+            let middle = push(add(state, k2, 0.5 * h), h1);
+            for i in 0..4 {
+                state[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+            }
+            sum += 4.0 * middle + push(state, h2);
+        }
+        pads.push(state[0]);
+        means.push(sum / (6 * STEPS) as f64);
+    }
+    (pads, means)
+}
+
+/// Rms of the difference over the alternating rms of the reference.
+fn relative_error(found: &[f64], reference: &[f64]) -> f64 {
+    let mean = reference.iter().sum::<f64>() / reference.len() as f64;
+    let apart: f64 = found.iter().zip(reference).map(|(a, b)| (a - b).powi(2)).sum();
+    let all: f64 = reference.iter().map(|r| (r - mean).powi(2)).sum();
+    (apart / all).sqrt()
+}
+
+/// A folder with a case's scene on ground of another seed.
+fn unseen(case: &str, seed: u64) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let from = report().0.join("cases");
+    for name in ["plate.modes.json".to_owned(), format!("{case}.jsonl"), format!("{case}.toml")] {
+        fs::copy(from.join(&name), folder.path().join(&name)).unwrap();
+    }
+    // Numbers from a seed, 0 to 1.
+    let mut state = seed;
+    let mut uniform = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let height: Option<Box<dyn Fn(f64) -> f64>> = match case {
+        "smooth" => {
+            let waves: Vec<[f64; 2]> =
+                (0..3).map(|_| [47.0 + (93.0 * uniform()).round(), uniform()]).collect();
+            Some(Box::new(move |x| {
+                0.5 + waves.iter().map(|[n, phase]| (TAU * (n * x + phase)).sin()).sum::<f64>() / 6.0
+            }))
+        }
+        "bouncing" => {
+            let (periods, phase) = (124.0 + (32.0 * uniform()).round(), uniform());
+            Some(Box::new(move |x| 0.5 + 0.5 * (TAU * (periods * x + phase)).sin()))
+        }
+        "steep" => {
+            let (teeth, phase) = (25.0 + (6.0 * uniform()).round(), uniform());
+            Some(Box::new(move |x| {
+                let along = (teeth * x + phase).fract();
+                if along < 0.94 { along / 0.94 } else { (1.0 - along) / 0.06 }
+            }))
+        }
+        _ => None,
+    };
+    if let Some(height) = height {
+        let grey =
+            |x: u32, _| image::Luma([(height((f64::from(x) + 0.5) / 2048.0) * 65_535.0).round() as u16]);
+        image::ImageBuffer::from_fn(2048, 4, grey).save(folder.path().join(format!("{case}.png"))).unwrap();
+    }
+    let path = folder.path().to_owned();
+    (folder, path)
+}
+
+#[test]
+fn stated_errors_hold_within_a_factor_of_two_on_unseen_profiles_by_an_independent_integration() {
+    let mut wrong = Vec::new();
+    for case in CASES {
+        let scene = format!("{case}.toml");
+        let integrators = rows("integrator");
+        let mut squares = vec![[0.0; 2]; integrators.len()];
+        for seed in UNSEEN {
+            let (_keep, folder) = unseen(case, seed);
+            let seed = seed.to_string();
+            let fine_hz = RATE_HZ * FINE as f64;
+            let fine = trace(&folder, &scene, &["--seed", &seed, "--rate", &fine_hz.to_string()], fine_hz);
+            let log = fs::read_to_string(folder.join(format!("{case}.jsonl"))).unwrap();
+            let first: Value = serde_json::from_str(log.lines().next().unwrap()).unwrap();
+            let (pads, means) = integrated(&fine.height_m, number(&first["normal_force_n"]));
+            for (row, squares) in integrators.iter().zip(&mut squares) {
+                let choice = row["choice"].as_str().unwrap();
+                let own = trace(&folder, &scene, &["--seed", &seed, "--integrator", choice], RATE_HZ);
+                let ahead = if choice.starts_with("semi-implicit") { FINE / 2 } else { 0 };
+                let (mut pad_m, mut force_n) = (Vec::new(), Vec::new());
+                let compared = (0.1 * RATE_HZ) as usize..(0.4 * RATE_HZ) as usize;
+                for n in compared.clone() {
+                    let at = (own.begin + n) * FINE - fine.begin;
+                    pad_m.push(pads[at]);
+                    let end = at + ahead + 1;
+                    force_n.push(means[end - FINE..end].iter().sum::<f64>() / FINE as f64);
+                }
+                squares[0] += relative_error(&own.pad_m[compared.clone()], &pad_m).powi(2);
+                squares[1] += relative_error(&own.force_n[compared], &force_n).powi(2);
+            }
+        }
+        for (row, squares) in integrators.iter().zip(&squares) {
+            let stated =
+                row["cases"].as_array().unwrap().iter().find(|stated| stated["name"] == case).unwrap();
+            for (of, square) in ["displacement", "contact_force"].into_iter().zip(squares) {
+                let (found, stated) = ((square / UNSEEN.len() as f64).sqrt(), number(&stated[of]));
+                let ratio = found / stated;
+                println!(
+                    "{case}, {}, {of}: stated {stated:.2e}, found {found:.2e}, {ratio:.2}",
+                    row["choice"]
+                );
+                if !(0.5..=2.0).contains(&ratio) {
+                    wrong.push(format!("{case}, {}, {of}: {ratio:.2}", row["choice"]));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn presets_err_less_the_more_they_cost_and_tell_which_stage_errs() {
+    let presets = report().1["end_to_end"].as_array().unwrap();
+    let names: Vec<&str> = presets.iter().map(|preset| preset["preset"].as_str().unwrap()).collect();
+    assert_eq!(names, ["fast", "default", "accurate"]);
+    for preset in presets {
+        println!("{preset:#}");
+        let sum: f64 = preset["stages"].as_object().unwrap().values().map(number).sum();
+        assert!((sum - 1.0).abs() < 1e-9, "{preset}");
+        assert!(number(&preset["ns_per_sample"]) > 0.0);
+    }
+    let error_db = |which: usize| number(&presets[which]["error_db"]);
+    assert!(error_db(2) < error_db(1) - 15.0 && error_db(1) < error_db(0));
+    // What each is felt and heard as where the pad stays on smooth ground, and where it is thrown off it.
+    for (preset, felt_db, heard_db) in [(1, -55.0, -30.0), (2, -85.0, -70.0)] {
+        for name in ["smooth", "bouncing"] {
+            let cases = presets[preset]["cases"].as_array().unwrap();
+            let case = cases.iter().find(|case| case["name"] == name).unwrap();
+            assert!(case["contractive"] == true && number(&case["felt_db"]) <= felt_db, "{case}");
+            assert!(number(&case["heard_db"]) <= heard_db, "{case}");
+        }
+    }
+}
