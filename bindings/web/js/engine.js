@@ -122,7 +122,6 @@ export class Engine {
     this.put(encode(scene));
     this.check(this.wasm.asp_open(rate, live ? 1 : 0));
     this.know(JSON.parse(decode(this.answer())));
-    this.wasm.asp_forget_files();
     return this.told;
   }
 
@@ -134,7 +133,6 @@ export class Engine {
     this.check(this.wasm.asp_apply());
     const { done, waiting, names } = JSON.parse(decode(this.answer()));
     this.know({ ...this.told, ...names });
-    this.wasm.asp_forget_files();
     return { done, waiting };
   }
 
@@ -273,6 +271,7 @@ export function prepare(module, { scene, rate, live = true, record = true, level
   const picture = watch === null ? null : engine.openPicture(watch);
   if (levels > 0 && told.haptic_channels > 0) engine.openLevels(0, levels);
   if (record) engine.record();
+  engine.wasm.asp_forget_files();
   return { image: engine.image(), told, relief: heights, picture, record };
 }
 
