@@ -17,6 +17,9 @@ const THINGS = {
 const PAGE = 65536;
 const COMMANDS = { mute: 0, pause: 1, resume: 2, fadeAll: 3, reset: 4, audioGain: 5, hapticGain: 6, timeScale: 7 };
 export const SCOPE_NUMBERS = 16;
+/** Bytes of a WAV file before its samples, and what says that they are floating point. */
+const HEADER = 68;
+const FLOAT_GUID = [3, 0, 0, 0, 0, 0, 16, 0, 128, 0, 0, 170, 0, 56, 155, 113];
 
 /** UTF-8 by hand: an AudioWorklet has no TextEncoder. */
 export function encode(text) {
@@ -216,13 +219,27 @@ export class Engine {
     return this.answer();
   }
 
-  /** Renders a whole log and closes the scene: two WAV files as bytes. */
+  /**
+   * Renders a whole log, as `asperity render` does: `{ audio, haptic, rate }`, a Float32Array for each bus and each actuator. The engine was opened
+   * with exact times, and is used up.
+   */
   renderLog(log) {
-    this.put(encode(log));
-    this.check(this.wasm.asp_render_log());
-    const audio = this.answer();
-    this.wasm.asp_haptic_wav();
-    return { audio, haptic: this.answer() };
+    const lines = typeof log === 'string' ? parseLog(log) : log;
+    const { sample_rate_hz: rate, latency_samples: late, buses, haptic_channels, tail_s } = this.told;
+    const total = Math.ceil(((lines.at(-1)?.t ?? 0) + Math.max(0, tail_s)) * rate) + late;
+    const signals = (count) => Array.from({ length: count }, () => new Float32Array(total));
+    const [audio, haptic] = [signals(buses), signals(haptic_channels)];
+    let next = 0;
+    for (let at = 0; at < total; ) {
+      const frames = Math.min(512, total - at);
+      // Where a block ends changes no sample; what happens within it has to be known before.
+      while (next < lines.length && lines[next].t * rate < at + frames) this.report(lines[next].t, lines[next++]);
+      this.render(frames);
+      audio.forEach((signal, index) => signal.set(this.audio(index, frames), at));
+      haptic.forEach((signal, index) => signal.set(this.haptic(index, frames), at));
+      at += frames;
+    }
+    return { audio: audio.map((signal) => signal.subarray(late)), haptic: haptic.map((signal) => signal.subarray(late)), rate };
   }
 
   stats() {
@@ -275,9 +292,51 @@ export function prepare(module, { scene, rate, live = true, record = true, level
   return { image: engine.image(), told, relief: heights, picture, record };
 }
 
-/** A log and its scene, rendered: two WAV files as bytes, with the bits of `asperity render --kernel portable`. For a worker. */
+/** A log and its scene, rendered into two WAV files as bytes, those of `asperity render --kernel portable`. For a worker. */
 export function renderLog(module, { scene, log, rate = 0, files, pictures }) {
   const engine = new Engine(module);
   engine.open(scene, { rate, files, pictures });
-  return engine.renderLog(log);
+  const render = engine.renderLog(log);
+  return { audio: wav(render.audio, render.rate), haptic: wav(render.haptic, render.rate) };
+}
+
+/** The lines of a contact log; a line that is none is refused by its number. */
+export function parseLog(text) {
+  const lines = [];
+  text.split('\n').forEach((line, index) => {
+    if (line.trim() === '') return;
+    let read;
+    try {
+      read = JSON.parse(line);
+    } catch {
+      throw new Error(`log:${index + 1}: is no JSON; must be one event a line`);
+    }
+    if (read.event === undefined && read.version === 1) return;
+    if (!(read.t >= (lines.at(-1)?.t ?? 0) && read.t <= 86400)) {
+      throw new Error(`log:${index + 1}: t: ${read.t} is refused; must not run backwards and be at most a day`);
+    }
+    lines.push(read);
+  });
+  return lines;
+}
+
+/** A WAV file of 32-bit floating point, byte for byte as the program writes it. */
+export function wav(channels, rate) {
+  const [count, frames] = [channels.length, channels[0]?.length ?? 0];
+  const bytes = new Uint8Array(HEADER + 4 * count * frames);
+  const view = new DataView(bytes.buffer);
+  const text = (at, word) => [...word].forEach((letter, i) => view.setUint8(at + i, letter.charCodeAt(0)));
+  const data = 4 * count * frames;
+  text(0, 'RIFF');
+  view.setUint32(4, HEADER - 8 + data, true);
+  text(8, 'WAVEfmt ');
+  // Extensible, because 32-bit floating point in many channels is only that.
+  [40, 0xfffe | (count << 16), rate, 4 * count * rate, (4 * count) | (32 << 16), 22 | (32 << 16), 2 ** Math.min(count, 18) - 1]
+    .forEach((word, i) => view.setUint32(16 + 4 * i, word, true));
+  FLOAT_GUID.forEach((byte, i) => view.setUint8(44 + i, byte));
+  text(60, 'data');
+  view.setUint32(64, data, true);
+  const samples = new Float32Array(bytes.buffer, HEADER);
+  for (let c = 0; c < count; c++) for (let i = 0; i < frames; i++) samples[i * count + c] = channels[c][i];
+  return bytes;
 }

@@ -59,28 +59,28 @@ export const SURFACES = [
     size_m: [0.028, 0.007], wavelength_m: 0.007, draw: pictures.sawtooth,
     body: 'stock = "disc"\nsize_m = 0.14\nmaterial = "pla"',
     surface: map('displacement = "MAP"\nrelief_m = 0.001\nroughness = 0.5\nwidth_m = 0.028\nheight_m = 0.007'),
-    fullScale: 0.001, gain: 5, blow: STEEL, colour: between([38, 92, 122], [120, 190, 214]), shine: 0.5,
+    fullScale: 0.002, gain: 0.12, blow: STEEL, colour: between([38, 92, 122], [120, 190, 214]), shine: 0.5,
   },
   {
     id: 'bumps', name: 'Bumps', note: 'Round bumps on a 7 mm grid: the rhythm rises with your speed.',
     size_m: [0.007, 0.007], wavelength_m: 0.007, draw: pictures.bump,
     body: 'stock = "disc"\nsize_m = 0.14\nmaterial = "plastic"',
     surface: map('displacement = "MAP"\nrelief_m = 0.001\nroughness = 0.5\nwidth_m = 0.007\nheight_m = 0.007'),
-    fullScale: 0.001, gain: 5, blow: STEEL, colour: between([150, 62, 48], [236, 148, 110]), shine: 0.6,
+    fullScale: 0.002, gain: 0.1, blow: STEEL, colour: between([150, 62, 48], [236, 148, 110]), shine: 0.6,
   },
   {
     id: 'halves', name: 'Matte and shiny', note: 'No relief at all: the bright stripes are rough, the dark ones smooth.',
     size_m: [0.08, 0.01], draw: pictures.halves, isRoughness: true,
     body: 'stock = "disc"\nsize_m = 0.14\nmaterial = "pla"',
     surface: (name) => `roughness = "${name}.roughness.png"\nwidth_m = 0.08\nheight_m = 0.01`,
-    fullScale: 3e-4, gain: 5, blow: STEEL, colour: between([24, 26, 34], [126, 128, 138]), shine: 0.9, steep: 0,
+    fullScale: 5e-4, gain: 0.045, blow: STEEL, colour: between([24, 26, 34], [126, 128, 138]), shine: 0.9, steep: 0,
   },
   {
     id: 'brick', name: 'Brick', note: 'Bricks of a doll’s house, 64 mm long, with mortar between.',
     size_m: [0.128, 0.128], draw: pictures.brick,
     body: 'stock = "block"\nsize_m = 0.21\nmaterial = "brick"',
     surface: map('displacement = "MAP"\nrelief_m = 0.003\nroughness = 0.9\nwidth_m = 0.128\nheight_m = 0.128'),
-    fullScale: 0.001, gain: 5, blow: STEEL, shine: 0.05,
+    fullScale: 0.004, gain: 1.3, blow: STEEL, shine: 0.05,
     colour: (h, u, v) => {
       const { brick, inside } = pictures.brickAt(u, v);
       const tint = ((brick[0] * 7 + brick[1] * 5) % 6) * 7;
@@ -92,14 +92,14 @@ export const SURFACES = [
     size_m: [0.012, 0.012], wavelength_m: 0.003, draw: pictures.weave,
     body: 'stock = "plate"\nsize_m = 0.3\nmaterial = "softwood"',
     surface: map('displacement = "MAP"\nrelief_m = 0.0004\nroughness = 0.8\nwidth_m = 0.012\nheight_m = 0.012'),
-    fullScale: 3e-4, gain: 5, blow: WOOD, colour: between([66, 70, 104], [196, 194, 206]), shine: 0.02,
+    fullScale: 5e-4, gain: 0.08, blow: WOOD, colour: between([66, 70, 104], [196, 194, 206]), shine: 0.02,
   },
   {
     id: 'granite', name: 'Granite', note: 'Solid noise, cut anywhere: no two places are the same.',
     size_m: [0.14, 0.14],
     body: 'stock = "block"\nsize_m = 0.2\nmaterial = "stone"',
     surface: () => 'solid = "granite"\nwidth_m = 0.14\nheight_m = 0.14',
-    fullScale: 1e-4, gain: 5, blow: STEEL, shine: 0.35,
+    fullScale: 1.5e-4, gain: 40, blow: STEEL, shine: 0.35,
     colour: (h, u, v) => {
       const grain = pictures.fractal(u, v, [64, 64], 3, 21);
       return grain < 0.36 ? [46, 44, 46] : grain > 0.6 ? [214, 196, 188] : between([126, 118, 118], [176, 166, 162])(h);
@@ -110,31 +110,31 @@ export const SURFACES = [
     size_m: [0.14, 0.14],
     body: 'stock = "bar"\nsize_m = 0.4\nmaterial = "wood"',
     surface: () => 'solid = "wood"\nwidth_m = 0.14\nheight_m = 0.14',
-    fullScale: 1e-4, gain: 5, blow: WOOD, colour: between([92, 54, 28], [214, 156, 96]), shine: 0.2,
+    fullScale: 5e-5, gain: 25, blow: WOOD, colour: between([92, 54, 28], [214, 156, 96]), shine: 0.2,
   },
   {
     id: 'sand', name: 'Sand', note: 'It keeps your furrow. Press hard, write something.',
     size_m: [0.3, 0.3], clamps: true, watch: true,
-    body: '# Sand damps: nothing rings under it.',
+    body: 'stock = "plate"\nsize_m = 0.3\nmaterial = "softwood"',
     surface: () => `sand = { cells = 256, depth_m = 0.03, talus_deg = 32.0, stiffness_n = 60.0, exponent_per_m = 20.0, tool_radius_m = 0.008 }
 width_m = 0.3
 height_m = 0.3
 wrap = "clamp"`,
-    fullScale: 2e-4, gain: 5, colour: between([190, 146, 92], [240, 208, 156]), shine: 0,
+    fullScale: 2e-4, gain: 3, colour: between([190, 146, 92], [240, 208, 156]), shine: 0,
   },
   {
     id: 'gravel', name: 'Gravel', note: 'Stones under a stick.',
     size_m: [0.14, 0.14], probe: STICK,
     body: 'stock = "block"\nsize_m = 0.12\nmaterial = "stone"',
     surface: () => 'solid = "gravel"\nwidth_m = 0.14\nheight_m = 0.14',
-    fullScale: 0.001, gain: 2, blow: STEEL, colour: between([84, 82, 84], [186, 182, 174]), shine: 0.15,
+    fullScale: 0.001, gain: 8, blow: STEEL, colour: between([84, 82, 84], [186, 182, 174]), shine: 0.15,
   },
   {
     id: 'bell', name: 'Bell', note: 'Ribs on a brass bowl: scrape them with a stick, or strike the bowl.',
     size_m: [0.016, 0.001], wavelength_m: 0.004, draw: pictures.ribs, probe: STICK,
     body: 'stock = "bowl"\nsize_m = 0.14\nmaterial = "brass"',
     surface: map('displacement = "MAP"\nrelief_m = 0.0006\nroughness = 0.4\nwidth_m = 0.016\nheight_m = 0.001'),
-    fullScale: 0.001, gain: 1, tail: 3, blow: STEEL, colour: between([128, 92, 30], [248, 214, 122]), shine: 1,
+    fullScale: 0.003, gain: 0.045, tail: 3, blow: STEEL, colour: between([128, 92, 30], [248, 214, 122]), shine: 1,
   },
 ];
 

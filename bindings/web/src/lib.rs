@@ -7,7 +7,7 @@
 //! | [`session`] | opens a scene, changes it, closes it |
 //! | [`events`] | reports what touches what |
 //! | [`blocks`] | renders, and looks at the contacts while they are rendered |
-//! | [`record`] | takes the contact log, renders one into WAV files |
+//! | [`record`] | takes the contact log of what was reported |
 //! | [`ports`] | two levels for motors that rumble, the picture of a surface that changes |
 //!
 //! Everything lies in the instance's linear memory, and nothing of it in a global or a table: a copy of the memory is a copy of the engine. So

@@ -95,11 +95,6 @@ pub(crate) fn if_open(work: impl FnOnce(&mut Session)) {
     SESSION.with_borrow_mut(|session| session.as_mut().map(work));
 }
 
-/// Takes the engine out.
-pub(crate) fn take() -> Result<Session, String> {
-    SESSION.take().ok_or_else(|| "no scene is open; open one before".into())
-}
-
 fn names(file: &SceneFile) -> serde_json::Value {
     json!({
         "surfaces": file.surfaces.iter().map(|entry| {
