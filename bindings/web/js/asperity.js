@@ -1,7 +1,7 @@
 // asperity in a web page: touch becomes sound and vibration, in an AudioWorklet.
-import { Engine, decode, prepare, renderLog } from './engine.js';
+import { Engine, decode, parseLog, prepare, renderLog } from './engine.js';
 
-export { Engine, prepare, renderLog };
+export { Engine, parseLog, prepare, renderLog };
 
 const WASM = new URL('./asperity.wasm', import.meta.url);
 const WORKLET = new URL('./worklet.js', import.meta.url);
@@ -33,11 +33,12 @@ export function addWorklet(context, url = WORKLET) {
 
 /**
  * An engine that plays in `context`. `options`: `scene` (the text of a scene file), `files` and `pictures` that it names, or `prepared` (what
- * `prepare` has answered in a worker); `log` (lines of a contact log to play by themselves, with exact times); `wasm` (where the engine lies).
+ * `prepare` has answered in a worker); `log` (a contact log to play by itself, with exact times); `wasm` (where the engine lies).
  */
 export async function createEngine(context, options = {}) {
   const { bytes, module } = await load(options.wasm);
   const live = options.log === undefined;
+  const log = typeof options.log === 'string' ? parseLog(options.log) : options.log;
   const prepared = options.prepared ?? prepare(module, { rate: context.sampleRate, live, ...options });
   await addWorklet(context, options.worklet);
   const haptic = Math.max(1, prepared.told.haptic_channels);
@@ -45,7 +46,7 @@ export async function createEngine(context, options = {}) {
     numberOfInputs: 0,
     numberOfOutputs: 2,
     outputChannelCount: [prepared.told.buses > 1 ? prepared.told.buses : 2, haptic],
-    processorOptions: { wasm: bytes, prepared, log: options.log },
+    processorOptions: { wasm: bytes, prepared, log },
   });
   return new WebEngine(context, node, prepared, options);
 }

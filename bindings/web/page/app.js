@@ -3,7 +3,7 @@ import { createEngine, load } from './asperity.js';
 import { Feel } from './feel.js';
 import { Hand } from './hand.js';
 import { PIXELS_A_METRE, Picture, RELIEF_TEXELS, lookOf, thumbnail } from './look.js';
-import { ofImage } from './pictures.js';
+import { fractal, ofImage } from './pictures.js';
 import { archive, download } from './save.js';
 import { Strips, length } from './strips.js';
 import { RATE_HZ, SURFACES, ownSurface, sceneOf } from './surfaces.js';
@@ -76,6 +76,13 @@ function flat({ picture: { columns, rows } }) {
   return { width: columns, height: rows, heights: new Float32Array(columns * rows) };
 }
 
+/** Some ground for the button of a surface whose own heights only the engine knows. */
+function stand() {
+  const side = 64;
+  const height = (_, i) => 1e-3 * fractal((i % side) / side, Math.floor(i / side) / side, [6, 6], 3, 9);
+  return { width: side, height: side, heights: Float32Array.from({ length: side * side }, height) };
+}
+
 function button(surface) {
   const button = document.createElement('button');
   Object.assign(button, { type: 'button', textContent: surface.name, title: surface.note });
@@ -87,7 +94,7 @@ function button(surface) {
   button.addEventListener('click', () => choose(surface).catch(refuse));
   $('surfaces').append(button);
   // Drawn when nothing else is to do.
-  const draw = () => thumbnail(canvas, lookOf(surface, surface.draw ? null : { width: 8, height: 8, heights: Float32Array.from({ length: 64 }, (_, i) => (i * 37) % 11) }));
+  const draw = () => thumbnail(canvas, lookOf(surface, surface.draw ? null : stand()));
   (window.requestIdleCallback ?? setTimeout)(draw);
   return button;
 }

@@ -2,6 +2,10 @@
 
 /** How often a finger that rests is reported, ms; the engine lets one go of which it has not heard for 250 ms. */
 const RESTING_MS = 60;
+/** Shortest time between two reports of a finger, s: a mouse of 1000 Hz says nothing that 250 Hz does not. */
+const SHORTEST_S = 0.004;
+/** Over how long a speed is taken, s: a pixel in a millisecond is no speed. */
+const SPEED_OVER_S = 0.05;
 /** A press that moved less, CSS pixels, and lasted less, ms, was a tap: it strikes too. */
 const TAP = { pixels: 5, ms: 180 };
 /** Speed of a finger led by keys, m/s, and with Shift. */
@@ -86,7 +90,7 @@ export class Hand {
   }
 
   land(name, at, t, pressure = null) {
-    const finger = { contact: ++this.contacts, at, t, since: t, still: t, way: 0, pressure };
+    const finger = { contact: ++this.contacts, at, t, since: t, still: t, way: 0, pressure, path: [[t, ...at]] };
     this.fingers.set(name, finger);
     this.show();
     this.page.report([{ t, event: 'begin', contact: finger.contact, surface: 'surface', actuator: 0, closing_m_s: CLOSING_M_S, ...this.sample(finger, t) }], Date.now());
@@ -96,9 +100,23 @@ export class Hand {
     const step = Math.hypot(at[0] - finger.at[0], at[1] - finger.at[1]);
     if (step > 1) finger.still = t;
     finger.way += step;
-    [finger.at, finger.t] = [at, Math.max(t, finger.t)];
-    this.page.report([{ t: finger.t, event: 'move', contact: finger.contact, ...this.sample(finger, t) }]);
+    finger.at = at;
+    // What comes late, or on the heels of another report, waits for the next one.
+    if (t - finger.t < SHORTEST_S) return;
+    finger.t = t;
+    finger.path.push([t, ...at]);
+    while (finger.path.length > 2 && t - finger.path[1][0] > SPEED_OVER_S) finger.path.shift();
+    this.page.report([{ t, event: 'move', contact: finger.contact, velocity_m_s: this.velocity(finger), ...this.sample(finger, t) }]);
     this.show();
+  }
+
+  /** Along u and v, m/s: the straight line through the last places that fits them best. */
+  velocity({ path }) {
+    const n = path.length;
+    const mean = [0, 1, 2].map((k) => path.reduce((sum, row) => sum + row[k], 0) / n);
+    const along = (k) => path.reduce((sum, row) => sum + (row[0] - mean[0]) * (row[k] - mean[k]), 0);
+    const spread = along(0);
+    return spread > 0 ? [along(1), along(2)].map((sum) => sum / spread / this.pixelsAMetre) : [0, 0];
   }
 
   lift(name, t) {

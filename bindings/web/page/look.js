@@ -61,7 +61,7 @@ export function lookOf(surface, relief) {
     ? { width: picture.width, height: picture.height, heights: Float32Array.from(picture.samples, () => 0) }
     : { width: picture.width, height: picture.height, heights: Float32Array.from(picture.samples, (s) => s / 65535) });
   const metres = [surface.size_m[0] / grid.width, surface.size_m[1] / grid.height];
-  const gain = surface.watch ? 3 : surface.isRoughness ? 0 : STEEPNESS / steepness(grid, metres);
+  const gain = surface.watch && grid.width > 64 ? 3 : surface.isRoughness ? 0 : STEEPNESS / steepness(grid, metres);
   let [low, high] = [Infinity, -Infinity];
   for (const h of grid.heights) [low, high] = [Math.min(low, h), Math.max(high, h)];
   const colours = new Uint8Array(4 * grid.width * grid.height);
@@ -81,7 +81,7 @@ export function thumbnail(canvas, look) {
   const context = canvas.getContext('2d');
   const image = context.createImageData(52, 52);
   const { grid, normals, colours, surface } = look;
-  const span = Math.min(0.03, surface.size_m[0] * 2);
+  const span = surface.draw ? Math.min(0.03, surface.size_m[0] * 2) : surface.size_m[0] * 0.8;
   for (let y = 0, i = 0; y < 52; y++) {
     for (let x = 0; x < 52; x++, i++) {
       const [u, v] = [(x / 52) * span / surface.size_m[0], (y / 52) * span / surface.size_m[1]];

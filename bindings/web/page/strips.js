@@ -80,7 +80,7 @@ export class Strips {
       const bin = Math.min(bins - 1, Math.round((hz / (column.rate / 2)) * bins));
       const level = (column.spectrum[bin] - FLOOR_DB) / -FLOOR_DB;
       if (level <= 0.02) continue;
-      context.globalAlpha = Math.min(1, level * 1.25) ** 1.5;
+      context.globalAlpha = Math.min(1, level * 1.5) ** 1.3;
       context.fillRect(x, lines[2] + y, step, 2);
     }
     context.globalAlpha = 1;
@@ -97,7 +97,7 @@ export class Strips {
     [['relief', this.spans[0], inks.relief, 12], ['skin', this.spans[1], inks.skin, height * 0.24 + 12], ['sound, — v/λ', null, inks.heard, height * 0.48 + 12]].forEach(([name, span, ink, y]) => {
       const text = span === null ? name : `${name} ±${length(span)}`;
       context.fillStyle = inks.strip;
-      context.fillRect(3, y - 10, context.measureText(text).width + 6, 13);
+      context.fillRect(0, y - 10, context.measureText(text).width + 12, 13);
       context.fillStyle = ink;
       context.fillText(text, 6, y);
     });
