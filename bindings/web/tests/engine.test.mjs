@@ -80,15 +80,16 @@ function share(modes, fingers, percentile) {
         engine.report(t, { ...event, contact, uv: [0.1 + 0.7 * t, 0.1 + 0.15 * contact], normal_force_n: 0.6 });
       }
     }
-    const began = process.hrtime.bigint();
+    const began = process.cpuUsage();
     engine.render(128);
-    took.push(Number(process.hrtime.bigint() - began) / 1e9 / (128 / 48000));
+    const { user, system } = process.cpuUsage(began);
+    took.push((user + system) / 1e6 / (128 / 48000));
   }
   took.splice(0, 300);
   return took.sort((a, b) => a - b)[Math.floor(took.length * percentile)];
 }
 
-// What another program takes of the processor meanwhile is not the engine's: the best of some runs counts.
+// Processor time, and the best of some runs: what other programs of this machine take meanwhile is not the engine's.
 for (const [modes, fingers, most] of [[100, 1, 0.25], [256, 5, 0.6]]) {
   test(`a block of ${fingers} fingers on ${modes} modes takes at most ${100 * most} % of its time in 99 of 100`, (t) => {
     const runs = Array.from({ length: 4 }, () => share(modes, fingers, 0.99));
@@ -137,7 +138,7 @@ test('what is wrong is said in words, and the engine goes on', () => {
   assert.throws(() => engine.stats(), /no scene is open/);
   assert.throws(() => engine.open('[[surface]]\nname = 3'), /name/);
   assert.throws(() => engine.open('\u0000\u{1F600}'), /scene\.toml/);
-  assert.throws(() => engine.open('[[surface]]\nname = "a"\ndisplacement = "gone.png"\nwidth_m = 1.0\nheight_m = 1.0'), /gone\.png/);
+  assert.throws(() => engine.open('[[surface]]\nname = "a"\ndisplacement = "gone.png"\nrelief_m = 1e-3\nwidth_m = 1.0\nheight_m = 1.0'), /gone\.png/);
   assert.throws(() => engine.addPicture('p.png', { width: 4, height: 4, samples: new Uint8Array(3) }), /p\.png/);
   assert.throws(() => engine.addPicture('p.png', { width: 4e9, height: 4e9, samples: new Uint16Array(2) }), /p\.png/);
   engine.open(sceneOf(SURFACES[5], 'x').text, { rate: 48000 });
