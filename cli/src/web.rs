@@ -101,7 +101,9 @@ mod carried {
         let _ = match (request.method(), file) {
             (Method::Get | Method::Head, Some((name, content))) => {
                 let response = Response::from_data(*content);
-                request.respond(header("Content-Type", kind(name)).into_iter().fold(response, Response::with_header))
+                request.respond(
+                    header("Content-Type", kind(name)).into_iter().fold(response, Response::with_header),
+                )
             }
             (Method::Get | Method::Head, None) => {
                 request.respond(Response::from_string("no such file").with_status_code(404))

@@ -44,7 +44,7 @@ export class Hand {
   down(event) {
     if (event.button > 0) return;
     event.preventDefault();
-    this.canvas.focus({ preventScroll: true });
+    this.canvas.focus({ preventScroll: true, focusVisible: false });
     try { this.canvas.setPointerCapture(event.pointerId); } catch { /* A pointer that is gone already. */ }
     const at = this.place(event);
     this.page.touched();

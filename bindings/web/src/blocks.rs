@@ -57,7 +57,8 @@ impl Tap for Scope {
             (numbers[3], numbers[4]) = (numbers[3].min(skin_m), numbers[4].max(skin_m));
             numbers[9] = sample.normal_force_n as f32;
         }
-        if let (Some([u_m, v_m]), Some([u_m_s, v_m_s])) = (block.position_m.last(), block.velocity_m_s.last()) {
+        if let (Some([u_m, v_m]), Some([u_m_s, v_m_s])) = (block.position_m.last(), block.velocity_m_s.last())
+        {
             (numbers[5], numbers[6]) = (*u_m as f32, *v_m as f32);
             (numbers[7], numbers[8]) = (*u_m_s as f32, *v_m_s as f32);
         }

@@ -2,9 +2,7 @@
 
 use crate::exchange::done;
 use crate::session::{self, Session};
-use asperity::{
-    Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, Material, Touching,
-};
+use asperity::{Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact, Material, Touching};
 use std::cell::RefCell;
 
 /// Numbers of a row.
@@ -94,7 +92,10 @@ impl Row {
         let Some(number) = self.told(at) else { return Ok(None) };
         // A number beyond the list, or none, is no index of it.
         let thing = things.get(number as usize).filter(|_| number >= 0.0 && number.fract() == 0.0);
-        thing.copied().map(Some).ok_or_else(|| format!("{kind}: {number} is unknown; must be one of {}", things.len()))
+        thing
+            .copied()
+            .map(Some)
+            .ok_or_else(|| format!("{kind}: {number} is unknown; must be one of {}", things.len()))
     }
 
     fn needed<Id: Copy>(&self, at: usize, kind: &str, things: &[Id]) -> Result<Id, String> {
@@ -128,7 +129,9 @@ impl Row {
             3.0 => ContactEvent::end(self.contact()?),
             4.0 => ContactEvent::Impact(self.impact(session)?),
             other => {
-                return Err(format!("event: {other} is refused; must be begin, move, end or impact (1 to 4)"));
+                return Err(format!(
+                    "event: {other} is refused; must be begin, move, end or impact (1 to 4)"
+                ));
             }
         })
     }

@@ -72,13 +72,13 @@ impl Session {
     fn apply(&mut self, text: &str) -> Result<String, FileError> {
         let after = SceneFile::parse(text, Path::new(SCENE))?;
         let changes = crate::files::with(|files| {
-            let overrides =
-                Overrides { files, kernel: Some(Isa::Portable), ..Overrides::default() };
+            let overrides = Overrides { files, kernel: Some(Isa::Portable), ..Overrides::default() };
             self.scene.apply(&mut self.names, &self.file, &after, &overrides)
         })?;
         self.file = after;
         self.number();
-        Ok(json!({ "done": changes.done, "waiting": changes.waiting, "names": names(&self.file) }).to_string())
+        Ok(json!({ "done": changes.done, "waiting": changes.waiting, "names": names(&self.file) })
+            .to_string())
     }
 }
 
@@ -124,9 +124,8 @@ fn told(file: &SceneFile, engine: &Engine) -> serde_json::Value {
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_open(rate_hz: f64, live: u32) -> u32 {
     SESSION.take();
-    let opened = inbox_text().and_then(|text| {
-        Session::open(&text, rate_hz, live != 0).map_err(|error| error.to_string())
-    });
+    let opened = inbox_text()
+        .and_then(|text| Session::open(&text, rate_hz, live != 0).map_err(|error| error.to_string()));
     done(opened.map(|session| SESSION.set(Some(session))))
 }
 
@@ -140,7 +139,8 @@ pub extern "C" fn asp_close() {
 /// as JSON. It makes what is new, so on an audio thread it costs a gap unless that is small.
 #[unsafe(no_mangle)]
 pub extern "C" fn asp_apply() -> u32 {
-    let applied = inbox_text().and_then(|text| with(|session| session.apply(&text).map_err(|error| error.to_string())));
+    let applied =
+        inbox_text().and_then(|text| with(|session| session.apply(&text).map_err(|error| error.to_string())));
     done(applied.map(answer))
 }
 
