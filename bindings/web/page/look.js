@@ -3,7 +3,7 @@
 /** CSS pixels a metre: about what a screen has, so that things are about as large as they are. */
 export const PIXELS_A_METRE = 6500;
 /** The same number of texels for every picture that is not a map of its own. */
-export const RELIEF_TEXELS = 384;
+export const RELIEF_TEXELS = 512;
 /** Mean steepness that every surface is drawn with, whatever it is. */
 const STEEPNESS = 0.32;
 
@@ -81,7 +81,7 @@ export function thumbnail(canvas, look) {
   const context = canvas.getContext('2d');
   const image = context.createImageData(52, 52);
   const { grid, normals, colours, surface } = look;
-  const span = surface.draw ? Math.min(0.03, surface.size_m[0] * 2) : surface.size_m[0] * 0.8;
+  const span = surface.draw ? Math.min(0.03, surface.size_m[0] * 2) : surface.size_m[0] * 0.5;
   for (let y = 0, i = 0; y < 52; y++) {
     for (let x = 0; x < 52; x++, i++) {
       const [u, v] = [(x / 52) * span / surface.size_m[0], (y / 52) * span / surface.size_m[1]];

@@ -96,20 +96,20 @@ export const SURFACES = [
   },
   {
     id: 'granite', name: 'Granite', note: 'Solid noise, cut anywhere: no two places are the same.',
-    size_m: [0.14, 0.14],
+    size_m: [0.3, 0.3],
     body: 'stock = "block"\nsize_m = 0.2\nmaterial = "stone"',
-    surface: () => 'solid = "granite"\nwidth_m = 0.14\nheight_m = 0.14',
+    surface: () => 'solid = "granite"\nwidth_m = 0.3\nheight_m = 0.3',
     fullScale: 1.5e-4, gain: 40, blow: STEEL, shine: 0.35,
     colour: (h, u, v) => {
-      const grain = pictures.fractal(u, v, [64, 64], 3, 21);
+      const grain = pictures.fractal(u, v, [128, 128], 3, 21);
       return grain < 0.36 ? [46, 44, 46] : grain > 0.6 ? [214, 196, 188] : between([126, 118, 118], [176, 166, 162])(h);
     },
   },
   {
     id: 'wood', name: 'Wood', note: 'Along the grain it is quiet, across it sings.',
-    size_m: [0.14, 0.14],
+    size_m: [0.3, 0.3],
     body: 'stock = "bar"\nsize_m = 0.4\nmaterial = "wood"',
-    surface: () => 'solid = "wood"\nwidth_m = 0.14\nheight_m = 0.14',
+    surface: () => 'solid = "wood"\nwidth_m = 0.3\nheight_m = 0.3',
     fullScale: 5e-5, gain: 25, blow: WOOD, colour: between([92, 54, 28], [214, 156, 96]), shine: 0.2,
   },
   {
@@ -124,9 +124,9 @@ wrap = "clamp"`,
   },
   {
     id: 'gravel', name: 'Gravel', note: 'Stones under a stick.',
-    size_m: [0.14, 0.14], probe: STICK,
+    size_m: [0.3, 0.3], probe: STICK,
     body: 'stock = "block"\nsize_m = 0.12\nmaterial = "stone"',
-    surface: () => 'solid = "gravel"\nwidth_m = 0.14\nheight_m = 0.14',
+    surface: () => 'solid = "gravel"\nwidth_m = 0.3\nheight_m = 0.3',
     fullScale: 0.001, gain: 8, blow: STEEL, colour: between([84, 82, 84], [186, 182, 174]), shine: 0.15,
   },
   {

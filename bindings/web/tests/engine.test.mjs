@@ -156,7 +156,10 @@ test('what is wrong is said in words, and the engine goes on', () => {
   assert.throws(() => parseLog('{"t":1}\nnonsense'), /log:2/);
   assert.throws(() => parseLog('{"t":1,"event":"end","contact":1}\n{"t":0,"event":"end","contact":1}'), /backwards/);
   engine.report(0, good);
-  engine.render(1024);
+  for (let n = 1; n < 10; n++) {
+    engine.report(n / 50, { event: 'move', contact: 1, uv: [n / 100, 0], normal_force_n: 1 });
+    engine.render(1024);
+  }
   assert.ok(engine.haptic(0, 1024).some((x) => x !== 0));
 });
 
