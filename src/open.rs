@@ -223,7 +223,17 @@ fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides
 /// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the heights
 /// do not belong to places, or the source cannot be made.
 pub fn relief(entry: &SurfaceEntry, seed: Option<u64>, longest: usize) -> Option<Raster> {
+    relief_from(&Disk, entry, seed, longest)
+}
+
+/// [`relief`], from wherever the files lie.
+pub fn relief_from(
+    files: &dyn Files,
+    entry: &SurfaceEntry,
+    seed: Option<u64>,
+    longest: usize,
+) -> Option<Raster> {
     let seed = seed.unwrap_or(Config::default().seed);
-    let maker = Maker { files: &Disk, maps: &Maps::default(), own: &[], seed, workers: None };
+    let maker = Maker { files, maps: &Maps::default(), own: &[], seed, workers: None };
     maker.ground(entry).relief(&entry.source, longest)
 }

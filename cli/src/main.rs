@@ -37,6 +37,7 @@ mod report;
 mod scene_log;
 mod texture;
 mod wav;
+mod web;
 
 use clap::{Parser, Subcommand, error::ErrorKind};
 use error::CliError;
@@ -66,6 +67,7 @@ enum Verb {
     Texture(texture::Verb),
     Headroom(headroom::Options),
     Report(report::Options),
+    Web(web::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -81,6 +83,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Texture(verb) => texture::run(verb),
         Verb::Headroom(options) => headroom::run(&options),
         Verb::Report(options) => report::run(&options),
+        Verb::Web(options) => web::run(&options),
     }
 }
 

@@ -1,0 +1,351 @@
+// The page: puts surface, hand, engine, strips, files and buttons together.
+import { createEngine, load } from './asperity.js';
+import { Feel } from './feel.js';
+import { Hand } from './hand.js';
+import { PIXELS_A_METRE, Picture, RELIEF_TEXELS, lookOf, thumbnail } from './look.js';
+import { fractal, ofImage } from './pictures.js';
+import { archive, download } from './save.js';
+import { Strips, length } from './strips.js';
+import { RATE_HZ, SURFACES, ownSurface, sceneOf } from './surfaces.js';
+
+const $ = (id) => document.getElementById(id);
+/** Levels of the haptic channel a second, for motors. */
+const LEVELS_HZ = 30;
+/** A take longer than this begins anew when no finger touches, lines of its log. */
+const LONGEST_TAKE = 20000;
+const MOST_FILE_BYTES = 64 << 20;
+
+const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
+const asked = new Map();
+worker.onmessage = ({ data: { id, answer, error } }) => {
+  const { resolve, reject } = asked.get(id);
+  asked.delete(id);
+  if (error === undefined) resolve(answer);
+  else reject(new Error(error));
+};
+
+/** Lets the worker make or render something. */
+async function ask(work) {
+  const { module } = await load();
+  const id = (ask.count = (ask.count ?? 0) + 1);
+  worker.postMessage({ id, module, ...work });
+  return new Promise((resolve, reject) => asked.set(id, { resolve, reject }));
+}
+
+const picture = new Picture($('surface'));
+const strips = new Strips($('strips'));
+const feel = new Feel($('feel'));
+const state = { surface: null, engine: null, context: null, muted: false, tool: 'stroke', modes: undefined, frames: 0, speed: 0, force: 0, hints: 0 };
+let spectrum = new Float32Array(2048).fill(-200);
+
+/** Says something, for eyes and for screen readers; an empty sentence goes. */
+function say(sentence, seconds = 6) {
+  $('status').textContent = sentence;
+  clearTimeout(say.timer);
+  say.timer = setTimeout(() => { $('status').textContent = ''; }, seconds * 1000);
+}
+
+// ---- Surfaces ----
+
+/** What the engine is made of for a surface, made by the worker. */
+function make(surface, modes) {
+  const { text, pictures, files } = sceneOf(surface, surface.id, modes);
+  const relief = surface.draw ? 0 : RELIEF_TEXELS;
+  return ask({ make: { scene: text, pictures, files, rate: RATE_HZ, levels: LEVELS_HZ, relief, watch: surface.watch ? 'surface' : null } });
+}
+
+/** Another surface: under the fingers without a click. */
+async function choose(surface, modes) {
+  const turn = (choose.turn = (choose.turn ?? 0) + 1);
+  const prepared = await make(surface, modes);
+  if (turn !== choose.turn) return;
+  hand.release();
+  const isNew = state.surface !== surface;
+  [state.surface, state.modes, state.relief] = [surface, modes, prepared.relief];
+  if (isNew || surface.watch) picture.show(lookOf(surface, surface.watch ? flat(prepared) : prepared.relief));
+  $('note').textContent = surface.note;
+  $('surface').setAttribute('aria-label', `Surface: ${surface.name}. Arrow keys stroke, Space hits.`);
+  for (const button of $('surfaces').children) button.setAttribute('aria-pressed', String(button.dataset.id === surface.id));
+  if (state.engine) await state.engine.take({ prepared });
+  else state.prepared = prepared;
+  $('surfaces').dataset.ready = surface.id;
+}
+
+/** A bed of sand before anything has touched it. */
+function flat({ picture: { columns, rows } }) {
+  return { width: columns, height: rows, heights: new Float32Array(columns * rows) };
+}
+
+/** Some ground for the button of a surface whose own heights only the engine knows. */
+function stand() {
+  const side = 64;
+  const height = (_, i) => 1e-3 * fractal((i % side) / side, Math.floor(i / side) / side, [6, 6], 3, 9);
+  return { width: side, height: side, heights: Float32Array.from({ length: side * side }, height) };
+}
+
+function button(surface) {
+  const button = document.createElement('button');
+  Object.assign(button, { type: 'button', textContent: surface.name, title: surface.note });
+  button.dataset.id = surface.id;
+  button.setAttribute('aria-pressed', 'false');
+  const canvas = document.createElement('canvas');
+  canvas.setAttribute('aria-hidden', 'true');
+  button.prepend(canvas);
+  button.addEventListener('click', () => choose(surface).catch(refuse));
+  $('surfaces').append(button);
+  // Drawn when nothing else is to do.
+  const draw = () => thumbnail(canvas, lookOf(surface, surface.draw ? null : stand()));
+  (window.requestIdleCallback ?? setTimeout)(draw);
+  return button;
+}
+
+// ---- Sound ----
+
+/** Sound begins with the first touch, as browsers want it. */
+async function begin() {
+  const context = new AudioContext({ sampleRate: RATE_HZ, latencyHint: 'interactive' });
+  state.context = context;
+  context.onstatechange = () => { if (context.state === 'interrupted') say('The sound was interrupted; touch to go on.'); };
+  const { prepared } = state.prepared ? state : { prepared: await make(state.surface) };
+  const engine = await createEngine(context, { prepared });
+  state.prepared = null;
+  const volume = new GainNode(context);
+  const analyser = new AnalyserNode(context, { fftSize: 4096, smoothingTimeConstant: 0.2 });
+  engine.connect(volume).connect(analyser);
+  volume.connect(context.destination);
+  spectrum = new Float32Array(analyser.frequencyBinCount);
+  Object.assign(state, { volume, analyser });
+  engine.addEventListener('frame', ({ detail }) => frame(detail));
+  engine.addEventListener('refused', ({ detail }) => say(`Not played: ${detail.refused}`));
+  engine.addEventListener('error', ({ detail }) => refuse(detail));
+  engine.addEventListener('heard', ({ detail }) => { state.latency_ms = detail.at - detail.heard; });
+  feel.tell(context);
+  $('wide').disabled = context.destination.maxChannelCount < 4;
+  mute(state.muted);
+  await context.resume();
+  state.engine = engine;
+  hand.again();
+}
+
+function touched() {
+  $('hint').classList.add('gone');
+  if (!state.context) begin().catch(refuse);
+  else if (state.context.state !== 'running') state.context.resume().catch(() => {});
+}
+
+/** What the audio thread tells 60 times a second. */
+function frame({ rows, levels, tiles }) {
+  state.analyser?.getFloatFrequencyData(spectrum);
+  strips.add(rows, spectrum, RATE_HZ, state.surface.wavelength_m);
+  feel.feel(levels, state.muted);
+  if (tiles && state.surface.watch) picture.change(tiles);
+  const last = rows.length - 16;
+  [state.speed, state.force, state.touching] = last >= 0 ? [Math.hypot(rows[last + 7], rows[last + 8]), rows[last + 9], rows[last] > 0] : [0, 0, false];
+  state.frames++;
+}
+
+function readout() {
+  const { speed, surface, touching } = state;
+  const wave = surface?.wavelength_m;
+  const hz = touching && wave && speed > 0.005 ? ` · v/λ = ${Math.round(speed / wave)} Hz` : '';
+  $('readout').textContent = touching ? `${Math.round(speed * 1000)} mm/s · ${state.force.toFixed(1)} N${hz}` : '';
+}
+
+function mute(muted) {
+  state.muted = muted;
+  $('mute').setAttribute('aria-pressed', String(muted));
+  $('mute').textContent = muted ? 'Muted' : 'Mute';
+  state.volume?.gain.setTargetAtTime(muted ? 0 : 1, state.context.currentTime, 0.01);
+}
+
+/** The waveform itself on channels 3 and 4, for a device that has them. */
+function wide(on) {
+  const { context, engine, volume } = state;
+  if (!context) return;
+  volume.disconnect();
+  engine.node.disconnect();
+  engine.connect(volume).connect(state.analyser);
+  context.destination.channelCount = on ? 4 : 2;
+  if (!on) { volume.connect(context.destination); return; }
+  const [split, merge] = [new ChannelSplitterNode(context, { numberOfOutputs: 2 }), new ChannelMergerNode(context, { numberOfInputs: 4 })];
+  volume.connect(split);
+  for (const side of [0, 1]) split.connect(merge, side, side);
+  for (const side of [2, 3]) engine.node.connect(merge, 1, side);
+  merge.connect(context.destination);
+}
+
+// ---- The hand ----
+
+const waiting = [];
+const hand = new Hand($('surface'), {
+  picture,
+  touched,
+  force: () => Number($('force').value),
+  blow: () => Number($('blow').value),
+  tool: () => state.tool,
+  press,
+  report(events, stamp) {
+    if (!state.engine) { waiting.push(...events); return; }
+    state.engine.node.port.postMessage({ do: 'events', events, stamp });
+    cut();
+  },
+  strike([x, y], speed_m_s) {
+    const blow = state.surface.blow ?? { striker: 'wood', mass_kg: 0.02, radius_m: 0.012, restitution: 0.3 };
+    this.report([{ t: performance.now() / 1000, event: 'impact', body: 'body', speed_m_s, position: Math.floor((x + y) / 90) % 3, actuator: 0, ...blow }], Date.now());
+    picture.touches.set('blow', [x, y, 34]);
+    picture.dirty = true;
+    setTimeout(() => { picture.touches.delete('blow'); picture.dirty = true; }, 120);
+  },
+}, PIXELS_A_METRE);
+
+/** What was reported before there was sound: fingers that still touch land now, blows strike now. */
+hand.again = () => {
+  const t = performance.now() / 1000;
+  const blows = waiting.splice(0).filter((event) => event.event === 'impact').slice(-1);
+  const lands = [...hand.fingers.values()].map((finger) => ({ event: 'begin', contact: finger.contact, surface: 'surface', actuator: 0, closing_m_s: 0.04, ...hand.sample(finger, t) }));
+  if (blows.length + lands.length > 0) state.engine.report(...[...blows, ...lands].map((event) => ({ ...event, t })));
+};
+
+/** A take that has grown long begins anew once nothing touches. */
+function cut() {
+  if (state.cutting || hand.fingers.size > 0 || state.engine.lines.length < LONGEST_TAKE / 30) return;
+  state.cutting = true;
+  choose(state.surface, state.modes).catch(refuse).finally(() => { state.cutting = false; });
+}
+
+function press(step) {
+  $('force').value = Number($('force').value) + step;
+  show();
+}
+
+function tool(name) {
+  state.tool = name;
+  for (const id of ['stroke', 'hit']) $(id).setAttribute('aria-pressed', String(id === name));
+}
+
+function show() {
+  $('force-out').textContent = `${Number($('force').value).toFixed(1)} N`;
+  $('blow-out').textContent = `${Number($('blow').value).toFixed(1)} m/s`;
+}
+
+// ---- Files and links ----
+
+/** A sentence about what went wrong; the engine goes on. */
+function refuse(error) {
+  say(error.message, 12);
+}
+
+async function save() {
+  if (!state.engine) throw new Error('Nothing was played yet: stroke the surface, then save.');
+  const name = `asperity-${state.surface.id}`;
+  const log = await state.engine.log();
+  if (log === '') throw new Error('Nothing was played yet: stroke the surface, then save.');
+  const { text, pictures, files } = sceneOf(state.surface, name, state.modes);
+  const { audio, haptic } = await ask({ render: { scene: text, log, pictures, files } });
+  download(await archive(name, { scene: text, log, pictures, files, audio, haptic }), `${name}.zip`);
+  say('Saved: the WAV, and the contact log and scene that make it again.');
+}
+
+function link() {
+  const words = new URLSearchParams({ s: state.surface.id, force: $('force').value, blow: $('blow').value, tool: state.tool });
+  return `${location.origin}${location.pathname}#${words}`;
+}
+
+async function share() {
+  if (state.surface.isOwn) throw new Error('A picture of your own is not in a link: save it instead.');
+  history.replaceState(null, '', link());
+  try {
+    await navigator.clipboard.writeText(link());
+    say('The link is copied.');
+  } catch {
+    say('The link is in the address bar: copy it from there.');
+  }
+}
+
+/** What a link says; what it says wrongly is told and left out. */
+function opened() {
+  const words = new URLSearchParams(location.hash.slice(1, 400));
+  const wrong = [];
+  for (const [key, value] of words) {
+    if (key === 's') { if (!SURFACES.some(({ id }) => id === value)) wrong.push(`surface “${value.slice(0, 30)}” is unknown`); }
+    else if (key === 'force' || key === 'blow') {
+      const { min, max } = $(key);
+      const number = Number(value);
+      if (value !== '' && number >= Number(min) && number <= Number(max)) $(key).value = value;
+      else wrong.push(`${key} “${value.slice(0, 30)}” must be ${min} to ${max}`);
+    } else if (key === 'tool') { if (value === 'hit' || value === 'stroke') tool(value); else wrong.push(`tool “${value.slice(0, 30)}” must be stroke or hit`); }
+    else wrong.push(`“${key.slice(0, 30)}” is unknown`);
+  }
+  if (wrong.length > 0) say(`In the link: ${wrong.slice(0, 3).join('; ')}.`, 12);
+  show();
+  return SURFACES.find(({ id }) => id === words.get('s')) ?? SURFACES[0];
+}
+
+/** A picture becomes a surface, a file of modes the body. */
+async function take(file) {
+  if (file.size > MOST_FILE_BYTES) throw new Error(`${file.name}: has ${Math.round(file.size / 1e6)} MB; must be at most 64 MB.`);
+  if (/\.json$/i.test(file.name)) {
+    const modes = await file.text();
+    await choose(state.surface, modes);
+    say(`${file.name} rings now.`);
+    return;
+  }
+  if (/\.(wav|flac|ogg|mp3)$/i.test(file.name) || file.type.startsWith('audio/')) {
+    throw new Error(`${file.name}: a recorded hit becomes a body by “asperity fit ${file.name} -o hit.modes.json”; drop that file here.`);
+  }
+  let image;
+  try {
+    image = await createImageBitmap(file);
+  } catch {
+    throw new Error(`${file.name}: is no picture that this browser reads; must be PNG, JPEG, WebP or the like, or a .modes.json.`);
+  }
+  const surface = ownSurface(ofImage(image));
+  image.close();
+  [...$('surfaces').children].find((child) => child.dataset.id === 'own')?.remove();
+  const made = button(surface);
+  await choose(surface);
+  made.scrollIntoView({ block: 'nearest' });
+  say(`${file.name}: what is bright is high, 1 mm.`);
+}
+
+// ---- The rest ----
+
+function keys(event) {
+  if (event.ctrlKey || event.metaKey || event.altKey || event.target instanceof HTMLInputElement) return;
+  if (/^\d$/.test(event.key)) { const at = (Number(event.key) + 9) % 10; if (SURFACES[at]) choose(SURFACES[at]).catch(refuse); }
+  else if (event.key === '+' || event.key === '=') press(0.1);
+  else if (event.key === '-') press(-0.1);
+  else if (event.key === 'm' || event.key === 'M') mute(!state.muted);
+  else if (event.key === 'Escape') $('more').open = false;
+}
+
+function paint() {
+  picture.draw();
+  strips.draw();
+  readout();
+  requestAnimationFrame(paint);
+}
+
+$('mute').addEventListener('click', () => mute(!state.muted));
+$('stroke').addEventListener('click', () => tool('stroke'));
+$('hit').addEventListener('click', () => tool('hit'));
+$('save').addEventListener('click', () => save().catch(refuse));
+$('share').addEventListener('click', () => share().catch(refuse));
+$('own').addEventListener('click', () => $('file').click());
+$('file').addEventListener('change', () => { const [file] = $('file').files; $('file').value = ''; if (file) take(file).catch(refuse); });
+$('wide').addEventListener('change', () => wide($('wide').checked));
+for (const id of ['force', 'blow']) $(id).addEventListener('input', show);
+addEventListener('keydown', keys);
+addEventListener('dragover', (event) => event.preventDefault());
+addEventListener('drop', (event) => { event.preventDefault(); const [file] = event.dataTransfer.files; if (file) take(file).catch(refuse); });
+addEventListener('hashchange', () => choose(opened()).catch(refuse));
+navigator.mediaDevices?.addEventListener?.('devicechange', () => state.context && feel.tell(state.context));
+new ResizeObserver(() => { picture.dirty = true; if (picture.look && !picture.gl) picture.showFlat(picture.look); }).observe($('surface'));
+$('scale').firstElementChild.textContent = length(0.01);
+$('scale').firstElementChild.style.width = `${0.01 * PIXELS_A_METRE}px`;
+
+SURFACES.forEach(button);
+choose(opened()).catch(refuse);
+paint();
+// For whoever looks inside, and for the tests.
+window.asperity = { state, choose, hand, picture, strips, surfaces: SURFACES };

@@ -1,0 +1,60 @@
+// A static host on the loopback address, and a headless Chromium that looks at it.
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
+import { existsSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { extname, join, normalize } from 'node:path';
+import { gzipSync } from 'node:zlib';
+
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm' };
+const { chromium } = createRequire(`${process.env.WORK ?? process.cwd()}/node_modules/`)('playwright-core');
+
+/** Serves a folder; tells how many bytes it has sent, gzipped. */
+export async function host(folder) {
+  const sent = { bytes: 0, paths: [] };
+  const server = createServer(async (request, response) => {
+    const path = normalize(decodeURIComponent(new URL(request.url, 'http://host').pathname)).replace(/\/$/, '/index.html');
+    try {
+      const body = gzipSync(await readFile(join(folder, path)), { level: 9 });
+      sent.bytes += body.length;
+      sent.paths.push(path);
+      response.writeHead(200, { 'content-type': TYPES[extname(path)] ?? 'application/octet-stream', 'content-encoding': 'gzip' });
+      response.end(body);
+    } catch {
+      response.writeHead(404).end();
+    }
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return { url: `http://127.0.0.1:${server.address().port}`, sent, close: () => server.close() };
+}
+
+export function browser() {
+  const executablePath = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find((path) => existsSync(path));
+  return chromium.launch({
+    executablePath,
+    args: ['--no-sandbox', '--autoplay-policy=no-user-gesture-required', '--enable-precise-memory-info', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
+}
+
+/** A page that notes every error and every request to somebody else. */
+export async function open(chromium, url, options = {}) {
+  const context = await chromium.newContext({ viewport: { width: 1024, height: 720 }, acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  const wrong = [];
+  page.on('console', (message) => { if (message.type() === 'error') wrong.push(message.text()); });
+  page.on('pageerror', (error) => wrong.push(error.message));
+  page.on('request', (request) => { if (!/^(http:\/\/127\.0\.0\.1|data:|blob:)/.test(request.url())) wrong.push(`asks ${request.url()}`); });
+  await page.goto(url);
+  return { context, page, wrong };
+}
+
+/** A drag of the mouse along places, `ms` from one to the next. */
+export async function drag(page, places, ms = 16) {
+  await page.mouse.move(...places[0]);
+  await page.mouse.down();
+  for (const place of places.slice(1)) {
+    await page.mouse.move(...place);
+    await page.waitForTimeout(ms);
+  }
+  await page.mouse.up();
+}

@@ -1,0 +1,274 @@
+// The page in a real browser.
+import assert from 'node:assert/strict';
+import { mkdirSync, readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { SURFACES, sceneOf } from '../page/surfaces.js';
+import { png } from '../page/save.js';
+import { browser, drag, host, open } from './host.mjs';
+import { DIST, render, samples, seeded, stroke, text, unzip } from './native.mjs';
+
+const require = createRequire(`${process.env.WORK}/node_modules/`);
+const PICTURES = join(process.env.WORK, 'pictures');
+mkdirSync(PICTURES, { recursive: true });
+let [server, chromium] = [];
+before(async () => { [server, chromium] = [await host(join(DIST, 'page')), await browser()]; });
+after(async () => { await chromium?.close(); server?.close(); });
+
+const ready = (page, id) => page.waitForFunction((wanted) => {
+  const { ready } = document.getElementById('surfaces').dataset;
+  return wanted ? ready === wanted : ready;
+}, id, { timeout: 60000 });
+const line = (y, count = 40, from = 200, step = 10) => Array.from({ length: count }, (_, i) => [from + step * i, y]);
+const stats = (page) => page.evaluate(async () => (await window.asperity.state.engine.stats()));
+/** The page, and sound that has begun. */
+async function sounding(options, hash = '') {
+  const opened = await open(chromium, server.url + hash, options);
+  await ready(opened.page);
+  await drag(opened.page, line(250, 6));
+  await opened.page.waitForFunction(() => window.asperity.state.engine && window.asperity.state.frames > 3, null, { timeout: 30000 });
+  return opened;
+}
+
+test('sound begins within a second of the first touch, with no error and no request to anybody else', async (t) => {
+  const { context, page, wrong } = await open(chromium, server.url);
+  await ready(page);
+  await page.evaluate(() => {
+    const { state } = window.asperity;
+    window.first = new Promise((resolve) => {
+      document.getElementById('surface').addEventListener('pointerdown', () => { window.began = performance.now(); }, { once: true, capture: true });
+      const look = () => {
+        const heard = state.analyser && (() => { const x = new Float32Array(1024); state.analyser.getFloatTimeDomainData(x); return x.some((s) => Math.abs(s) > 1e-5); })();
+        if (heard) resolve(performance.now() - window.began);
+        else setTimeout(look, 4);
+      };
+      look();
+    });
+  });
+  await drag(page, line(250, 60));
+  const took = await page.evaluate(() => window.first);
+  t.diagnostic(`${took.toFixed(0)} ms`);
+  assert.ok(took < 1000, `${took} ms`);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('a scripted stroke rendered by an OfflineAudioContext has the same digest twice, and the bits of the program', async () => {
+  const { context, page, wrong } = await open(chromium, server.url);
+  const surface = SURFACES.find(({ id }) => id === 'bell');
+  const { text: scene, pictures } = sceneOf(surface, 'x');
+  const log = text(stroke(surface));
+  const plain = Object.fromEntries(Object.entries(pictures).map(([name, { width, height, samples: s }]) => [name, { width, height, samples: [...s] }]));
+  const frames = 3 * 48000;
+  const once = () => page.evaluate(async ({ scene, log, plain, frames }) => {
+    const { createEngine } = await import('./asperity.js');
+    const pictures = Object.fromEntries(Object.entries(plain).map(([name, p]) => [name, { ...p, samples: Uint16Array.from(p.samples) }]));
+    const offline = new OfflineAudioContext({ numberOfChannels: 2, length: frames, sampleRate: 48000 });
+    const engine = await createEngine(offline, { scene, pictures, log });
+    engine.connect(offline.destination);
+    const buffer = await offline.startRendering();
+    const left = buffer.getChannelData(0);
+    const digest = await crypto.subtle.digest('SHA-256', left);
+    const bytes = new Uint8Array(left.buffer);
+    let binary = '';
+    for (let i = 0; i < bytes.length; i += 8192) binary += String.fromCharCode(...bytes.subarray(i, i + 8192));
+    return { digest: [...new Uint8Array(digest)].join(), late: engine.told.latency_samples, samples: btoa(binary) };
+  }, { scene, log, plain, frames });
+  const [first, second] = [await once(), await once()];
+  assert.equal(first.digest, second.digest);
+  const beside = { 'x.toml': scene, 'x.jsonl': log };
+  for (const [name, picture] of Object.entries(pictures)) beside[name] = await png(picture);
+  const native = samples(render(beside, 'x.toml').audio);
+  const ours = new Float32Array(Uint8Array.from(Buffer.from(first.samples, 'base64')).buffer);
+  const count = Math.min(native.length, ours.length - first.late);
+  assert.ok(count > 48000 && native.some((x) => Math.abs(x) > 0.01));
+  assert.equal(native.subarray(0, count).findIndex((x, i) => x !== ours[i + first.late]), -1);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('what is saved is rendered by the program to the same file, byte for byte', async () => {
+  const { context, page, wrong } = await sounding();
+  for (const id of ['sawtooth', 'sand', 'bell']) {
+    await page.click(`[data-id=${id}]`);
+    await ready(page, id);
+    await drag(page, line(260, 30));
+    await page.mouse.click(400, 300);
+    await drag(page, line(300, 20).reverse());
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save')]);
+    const files = unzip(readFileSync(await download.path()));
+    const name = `asperity-${id}`;
+    const native = render(files, `${name}.toml`);
+    assert.ok(native.audio.equals(files[`${name}.wav`]), `${id}: audio differs`);
+    assert.ok(native.haptic.equals(files[`${name}.haptic.wav`]), `${id}: haptic differs`);
+    assert.ok(samples(native.audio).some((x) => Math.abs(x) > 1e-4), `${id} is silent`);
+  }
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('a touch reaches the samples within a block and 10 ms', async (t) => {
+  const { context, page } = await sounding();
+  const times = [];
+  for (let i = 0; i < 40; i++) {
+    await page.evaluate(() => { window.asperity.state.latency_ms = undefined; });
+    await page.mouse.move(300 + 8 * i, 260);
+    await page.mouse.down();
+    times.push(await (await page.waitForFunction(() => window.asperity.state.latency_ms, null, { polling: 5, timeout: 5000 }).catch(() => null))?.jsonValue() ?? 0);
+    await page.mouse.move(310 + 8 * i, 262);
+    await page.mouse.up();
+    await page.waitForTimeout(30);
+  }
+  times.sort((a, b) => a - b);
+  const { stats: { ahead } } = await stats(page);
+  t.diagnostic(`median ${times[20]} ms, nine of ten ${times[36]} ms; the last stamp lay ${(ahead / 48).toFixed(1)} ms ahead`);
+  assert.ok(times[20] <= 128 / 48 + 10, `${times}`);
+  await context.close();
+});
+
+test('a frozen page, a hidden one and another size leave no contact behind and no error', async () => {
+  const { context, page, wrong } = await sounding();
+  await page.mouse.move(300, 250);
+  await page.mouse.down();
+  await page.mouse.move(330, 250);
+  await page.evaluate(() => { const until = performance.now() + 200; while (performance.now() < until); });
+  await page.mouse.move(360, 250);
+  await page.waitForTimeout(200);
+  assert.equal((await stats(page)).stats.contacts, 1);
+  // Hidden: the finger is let go, whatever the mouse does.
+  await page.evaluate(() => { Object.defineProperty(document, 'hidden', { value: true, configurable: true }); document.dispatchEvent(new Event('visibilitychange')); });
+  await page.waitForTimeout(700);
+  assert.equal((await stats(page)).stats.contacts, 0);
+  await page.evaluate(() => { delete document.hidden; document.dispatchEvent(new Event('visibilitychange')); });
+  await page.mouse.up();
+  for (const [width, height] of [[390, 700], [1600, 900], [320, 400], [1024, 720]]) {
+    await page.setViewportSize({ width, height });
+    await drag(page, line(150, 8, 60));
+  }
+  await page.waitForTimeout(400);
+  const after = await stats(page);
+  assert.deepEqual([after.stats.contacts, after.stats.refused, wrong.length], [0, 0, 0], wrong.join());
+  // The sound device goes and comes back.
+  await page.evaluate(async () => { await window.asperity.state.context.suspend(); navigator.mediaDevices?.dispatchEvent(new Event('devicechange')); });
+  await drag(page, line(150, 12));
+  assert.equal(await page.evaluate(() => window.asperity.state.context.state), 'running');
+  await context.close();
+});
+
+test('everything is reached and done by the keyboard alone', async () => {
+  const { context, page, wrong } = await open(chromium, server.url);
+  await ready(page);
+  await page.keyboard.press('Tab');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'mute');
+  const reached = new Set();
+  await page.evaluate(() => { document.getElementById('more').open = true; });
+  for (let i = 0; i < 40; i++) {
+    reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.dataset.id || document.activeElement.tagName));
+    await page.keyboard.press('Tab');
+  }
+  for (const id of ['mute', 'stroke', 'hit', 'SUMMARY', 'force', 'blow', 'save', 'share', 'own', 'surface', ...SURFACES.map((s) => s.id)]) assert.ok(reached.has(id), `${id} is not reached: ${[...reached]}`);
+  await page.evaluate(() => { document.getElementById('more').open = false; });
+  await page.focus('#surface');
+  await page.keyboard.down('ArrowRight');
+  await page.waitForFunction(() => window.asperity.state.touching && window.asperity.state.speed > 0.02, null, { timeout: 20000 });
+  await page.keyboard.up('ArrowRight');
+  await page.keyboard.press('Space');
+  await page.waitForFunction(async () => (await window.asperity.state.engine.stats()).stats.impacts > 0, null, { timeout: 10000 });
+  await page.keyboard.press('6');
+  await ready(page, 'granite');
+  await page.keyboard.press('m');
+  assert.equal(await page.getAttribute('#mute', 'aria-pressed'), 'true');
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('axe-core finds nothing serious, light and dark, shut and open', async (t) => {
+  const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+  for (const colorScheme of ['light', 'dark']) {
+    const { context, page } = await open(chromium, server.url, { colorScheme });
+    await ready(page);
+    await page.evaluate(axe);
+    for (const isOpen of [false, true]) {
+      await page.evaluate((is) => { document.getElementById('more').open = is; }, isOpen);
+      const { violations } = await page.evaluate(() => window.axe.run());
+      const serious = violations.filter(({ impact }) => ['serious', 'critical'].includes(impact));
+      t.diagnostic(`${colorScheme}: ${violations.map(({ id, impact }) => `${id} (${impact})`).join(', ') || 'nothing'}`);
+      assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes.map((n) => n.html)}`), []);
+    }
+    await context.close();
+  }
+});
+
+test('pictures of the page', async () => {
+  for (const colorScheme of ['light', 'dark']) {
+    for (const [width, height, id] of [[390, 844, 'bumps'], [1024, 768, 'brick'], [1920, 1080, 'granite']]) {
+      const { context, page } = await sounding({ colorScheme, viewport: { width, height } }, `/#s=${id}`);
+      await drag(page, line(250, 30, 40, 8));
+      await page.mouse.move(200, 300);
+      await page.mouse.down();
+      for (const place of line(300, 12, 120, 6)) { await page.mouse.move(...place); await page.waitForTimeout(20); }
+      await page.screenshot({ path: join(PICTURES, `${width}-${colorScheme}.png`) });
+      await page.mouse.up();
+      const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+      assert.ok(wide <= width, `${wide} of ${width}`);
+      await context.close();
+    }
+  }
+});
+
+test('hostile links and files are answered in words, and the engine goes on', async () => {
+  const { context, page, wrong } = await sounding({}, '/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe');
+  assert.match(await page.textContent('#status'), /unknown/);
+  const drop = async (name, type, bytes) => {
+    await page.setInputFiles('#file', { name, mimeType: type, buffer: Buffer.from(bytes) });
+    await page.waitForFunction(() => document.getElementById('status').textContent !== '', null, { timeout: 30000 });
+    const words = await page.textContent('#status');
+    await page.evaluate(() => { document.getElementById('status').textContent = ''; });
+    return words;
+  };
+  const random = seeded(5);
+  const noise = Uint8Array.from({ length: 5000 }, () => 256 * random());
+  assert.match(await drop('noise.png', 'image/png', noise), /no picture/);
+  assert.match(await drop('half.png', 'image/png', (await png({ width: 9, height: 9, samples: new Uint16Array(81) })).subarray(0, 60)), /no picture/);
+  assert.match(await drop('hit.wav', 'audio/wav', noise), /asperity fit/);
+  assert.match(await drop('x.modes.json', 'application/json', '{"format":"other"}'), /modes/);
+  assert.match(await drop('y.modes.json', 'application/json', '['.repeat(100000)), /modes/);
+  assert.match(await drop('bomb.svg', 'image/svg+xml', '<svg xmlns="http://www.w3.org/2000/svg"/>'), /./);
+  const good = await png({ width: 64, height: 64, samples: Uint16Array.from({ length: 4096 }, (_, i) => (i % 9) * 7000) });
+  assert.match(await drop('mine.png', 'image/png', good), /bright is high/);
+  await ready(page, 'own');
+  await drag(page, line(250, 20));
+  const { stats: after } = await stats(page);
+  assert.ok(after.events > 5 && after.refused === 0);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('minutes of random play leave the memory flat, nothing stuck, no error', async (t) => {
+  const { context, page, wrong } = await sounding();
+  const random = seeded(9);
+  const minutes = Number(process.env.ASPERITY_WEB_PLAY_MINUTES ?? 3);
+  const until = Date.now() + minutes * 60000;
+  const ids = SURFACES.map(({ id }) => id);
+  const memory = () => page.evaluate(async () => { globalThis.gc?.(); const s = await window.asperity.state.engine.stats(); return [performance.memory.usedJSHeapSize, s.memory]; });
+  const sizes = [];
+  for (let round = 0; Date.now() < until; round++) {
+    const at = () => [40 + 900 * random(), 80 + 350 * random()];
+    if (round % 12 === 11) await page.click(`[data-id=${ids[Math.floor(random() * ids.length)]}]`);
+    else if (round % 12 === 5) await page.keyboard.press('Space');
+    else await drag(page, Array.from({ length: 12 }, at), 8);
+    if (round % 40 === 39) sizes.push((await memory())[0]);
+  }
+  await page.click('[data-id=sawtooth]');
+  await ready(page, 'sawtooth');
+  await page.waitForTimeout(1000);
+  const [heap, engine] = await memory();
+  t.diagnostic(`page ${sizes.map((bytes) => (bytes / 1e6).toFixed(0)).join(' ')} → ${(heap / 1e6).toFixed(0)} MB, engine ${(engine / 1e6).toFixed(1)} MB`);
+  assert.ok(heap < 150e6 && engine < 30e6);
+  const after = await stats(page);
+  assert.deepEqual([after.stats.contacts, after.stats.refused], [0, 0]);
+  assert.equal(await page.evaluate(() => window.asperity.hand.fingers.size), 0);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});

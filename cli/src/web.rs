@@ -1,0 +1,129 @@
+//! `asperity web [-o DIR] [--open]`: the page on which anybody strokes a texture and hears it.
+//!
+//! The page is static: any host serves what `-o` writes. `--open` serves it from the program itself, on the loopback address only, because
+//! browsers run no engine from a file. Its files are put into the program when that is built with the feature `web`, from where
+//! `bindings/web/build` has staged them.
+
+use crate::error::CliError;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Write the page on which textures are stroked and heard in a browser, or serve it on this machine
+#[derive(Debug, Args)]
+pub struct Options {
+    /// Folder to write the page to; any static host serves it
+    #[arg(short, long = "output", value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Serve the page on the loopback address, until the program is ended, and print where; also what happens without -o
+    #[arg(long)]
+    pub open: bool,
+    /// Port to serve on; 0 = one that is free
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub port: u16,
+}
+
+/// Name and content of each file, staged by `bindings/web/build`.
+#[cfg(feature = "web")]
+const PAGE: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/page.rs"));
+#[cfg(not(feature = "web"))]
+const PAGE: &[(&str, &[u8])] = &[];
+
+/// Runs the verb.
+///
+/// # Errors
+/// When the program was built without the page, the folder cannot be written, or the port is taken.
+pub fn run(options: &Options) -> Result<(), CliError> {
+    if PAGE.is_empty() {
+        return Err(CliError::new(
+            "asperity web",
+            "this program was built without the page",
+            "run bindings/web/build, then cargo build --release -p asperity-cli --features web",
+        ));
+    }
+    carried::run(options)
+}
+
+#[cfg(not(feature = "web"))]
+mod carried {
+    use super::{CliError, Options};
+
+    /// There is no page, and that was said.
+    pub fn run(_: &Options) -> Result<(), CliError> {
+        Ok(())
+    }
+}
+
+#[cfg(feature = "web")]
+mod carried {
+    use super::{CliError, Options, PAGE};
+    use crate::output::{self, Outputs};
+    use std::fs;
+    use std::path::Path;
+    use tiny_http::{Header, Method, Request, Response, Server};
+
+    pub fn run(options: &Options) -> Result<(), CliError> {
+        if let Some(folder) = &options.output {
+            write(folder)?;
+        }
+        if options.open || options.output.is_none() {
+            serve(options.port)?;
+        }
+        Ok(())
+    }
+
+    fn write(folder: &Path) -> Result<(), CliError> {
+        fs::create_dir_all(folder).map_err(|error| CliError::write(folder, &error))?;
+        let mut outputs = Outputs::new();
+        for (name, content) in PAGE {
+            outputs.write(&folder.join(name), content)?;
+        }
+        outputs.commit()?;
+        output::say(&format!("wrote {}", folder.join("index.html").display()));
+        Ok(())
+    }
+
+    fn serve(port: u16) -> Result<(), CliError> {
+        let server = Server::http(("127.0.0.1", port)).map_err(|error| {
+            CliError::new("--port", format!("{port} cannot be served on ({error})"), "give another one, or 0")
+        })?;
+        output::say(&format!("serving http://{}/ until ended (Ctrl-C)", server.server_addr()));
+        for request in server.incoming_requests() {
+            answer(request);
+        }
+        Ok(())
+    }
+
+    /// Whoever hangs up meanwhile is not missed.
+    fn answer(request: Request) {
+        let path = request.url().split(['?', '#']).next().unwrap_or_default().trim_start_matches('/');
+        let wanted = if path.is_empty() { "index.html" } else { path };
+        let file = PAGE.iter().find(|(name, _)| *name == wanted);
+        let _ = match (request.method(), file) {
+            (Method::Get | Method::Head, Some((name, content))) => {
+                let response = Response::from_data(*content);
+                request.respond(
+                    header("Content-Type", kind(name)).into_iter().fold(response, Response::with_header),
+                )
+            }
+            (Method::Get | Method::Head, None) => {
+                request.respond(Response::from_string("no such file").with_status_code(404))
+            }
+            _ => request.respond(Response::from_string("only GET").with_status_code(405)),
+        };
+    }
+
+    fn header(name: &str, value: &str) -> Option<Header> {
+        Header::from_bytes(name, value).ok()
+    }
+
+    /// What a file is, by its ending; browsers insist on it for scripts and engines.
+    fn kind(name: &str) -> &'static str {
+        match name.rsplit_once('.').map_or("", |(_, ending)| ending) {
+            "html" => "text/html; charset=utf-8",
+            "js" => "text/javascript; charset=utf-8",
+            "css" => "text/css; charset=utf-8",
+            "wasm" => "application/wasm",
+            _ => "application/octet-stream",
+        }
+    }
+}
