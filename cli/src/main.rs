@@ -16,6 +16,7 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+mod batch;
 mod bench_scene;
 mod csv;
 mod demo;
@@ -66,6 +67,7 @@ enum Verb {
     Texture(texture::Verb),
     Headroom(headroom::Options),
     Report(report::Options),
+    Batch(batch::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -81,6 +83,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Texture(verb) => texture::run(verb),
         Verb::Headroom(options) => headroom::run(&options),
         Verb::Report(options) => report::run(&options),
+        Verb::Batch(options) => batch::run(&options),
     }
 }
 
