@@ -50,7 +50,8 @@ pub fn flac16(samples: &[f32], rate_hz: f64) -> Result<(Vec<u8>, u64), String> {
     let clipped = samples.iter().filter(|sample| sample.abs() > 1.0).count() as u64;
     let whole: Vec<i32> =
         samples.iter().map(|sample| (sample.clamp(-1.0, 1.0) * 32_767.0).round() as i32).collect();
-    let config = flacenc::config::Encoder::default().into_verified().map_err(|(_, error)| error.to_string())?;
+    let config =
+        flacenc::config::Encoder::default().into_verified().map_err(|(_, error)| error.to_string())?;
     let source = MemSource::from_samples(&whole, 1, 16, rate_hz as usize);
     let stream =
         flacenc::encode_with_fixed_block_size(&config, source, BLOCK).map_err(|error| error.to_string())?;

@@ -99,7 +99,10 @@ impl DataSet {
             (Some(error), _) | (None, Err(error)) => return Err(error),
             (None, Ok(())) => {}
         }
-        whole_file::write(&self.folder.join(manifest::sum_name(&name)), format!("{sum}  {name}\n").as_bytes())?;
+        whole_file::write(
+            &self.folder.join(manifest::sum_name(&name)),
+            format!("{sum}  {name}\n").as_bytes(),
+        )?;
         Ok(Outcome::Made { clipped })
     }
 
@@ -110,7 +113,12 @@ impl DataSet {
     pub fn write_manifest(&self) -> Result<Manifest, FileError> {
         let count = self.choices.len();
         let splits = match self.spec.says.split.by {
-            SplitBy::Surface => self.choices.iter().enumerate().map(|(i, choice)| (choice.name.clone(), split(&self.spec, i, count, 0).to_owned())).collect(),
+            SplitBy::Surface => self
+                .choices
+                .iter()
+                .enumerate()
+                .map(|(i, choice)| (choice.name.clone(), split(&self.spec, i, count, 0).to_owned()))
+                .collect(),
             SplitBy::Stroke => Default::default(),
         };
         let mut manifest = Manifest::new(&self.spec, &self.build, self.levels, splits);
@@ -151,7 +159,8 @@ impl DataSet {
         });
         match output.format {
             Format::Parquet => {
-                let mut shard = parquet_file::Shard::begin(out, &self.build, output.audio.codec, &more).map_err(disk)?;
+                let mut shard =
+                    parquet_file::Shard::begin(out, &self.build, output.audio.codec, &more).map_err(disk)?;
                 for record in records {
                     shard.add(record.map_err(Failure::Refused)?).map_err(disk)?;
                 }
@@ -173,8 +182,15 @@ impl DataSet {
     /// When a draw is out of its range, or the scene cannot be rendered.
     pub fn record(&self, number: u64) -> Result<Record, FileError> {
         let stroke = Stroke::drawn(&self.spec, &self.choices, Some(self.levels), number, &self.folder)?;
-        let render = rendered(&stroke.scene, &stroke.contacts, self.spec.kernel(), &stroke.id, &self.folder, &self.maps)
-            .map_err(|error| error.within(format!("{}: stroke {number}", self.spec.path.display())))?;
+        let render = rendered(
+            &stroke.scene,
+            &stroke.contacts,
+            self.spec.kernel(),
+            &stroke.id,
+            &self.folder,
+            &self.maps,
+        )
+        .map_err(|error| error.within(format!("{}: stroke {number}", self.spec.path.display())))?;
         let samples = Samples::of(&stroke.id, &render, &self.spec.says.output)?;
         Ok(Record { stroke, samples })
     }
@@ -199,7 +215,11 @@ fn disk(error: parquet::errors::ParquetError) -> Failure {
 fn same_build(path: &Path, ours: &Build, theirs: &Build) -> Result<(), FileError> {
     match ours.differs(theirs) {
         None => Ok(()),
-        Some(what) => Err(FileError::file(path, format!("is of another build: {what}"), "choose another folder, or the build that began this one")),
+        Some(what) => Err(FileError::file(
+            path,
+            format!("is of another build: {what}"),
+            "choose another folder, or the build that began this one",
+        )),
     }
 }
 
@@ -209,7 +229,10 @@ pub(crate) fn build_of(path: &Path) -> Result<(Build, u64), FileError> {
 }
 
 /// Some records of a shard.
-pub(crate) fn records(path: &Path, wanted: &dyn Fn(u64) -> bool) -> Result<Vec<parquet_file::Kept>, FileError> {
+pub(crate) fn records(
+    path: &Path,
+    wanted: &dyn Fn(u64) -> bool,
+) -> Result<Vec<parquet_file::Kept>, FileError> {
     if is_tar(path) { webdataset::records(path, wanted) } else { parquet_file::records(path, wanted) }
 }
 

@@ -27,7 +27,8 @@ pub fn drawn(written: &Value, field: &str, draws: Draws) -> Result<Value, FileEr
             None => Ok(Value::Table(drawn_table(table, field, draws)?)),
         },
         Value::Array(values) => {
-            let each = values.iter().enumerate().map(|(i, value)| drawn(value, &format!("{field}[{i}]"), draws));
+            let each =
+                values.iter().enumerate().map(|(i, value)| drawn(value, &format!("{field}[{i}]"), draws));
             Ok(Value::Array(each.collect::<Result<_, _>>()?))
         }
         plain => Ok(plain.clone()),
@@ -39,7 +40,8 @@ pub fn drawn(written: &Value, field: &str, draws: Draws) -> Result<Value, FileEr
 /// # Errors
 /// As [`drawn`].
 pub fn drawn_table(table: &Table, field: &str, draws: Draws) -> Result<Table, FileError> {
-    let of = |(key, value): (&String, &Value)| Ok((key.clone(), drawn(value, &format!("{field}.{key}"), draws)?));
+    let of =
+        |(key, value): (&String, &Value)| Ok((key.clone(), drawn(value, &format!("{field}.{key}"), draws)?));
     table.iter().map(of).collect()
 }
 
@@ -68,7 +70,11 @@ impl<'a> Kind<'a> {
                 let [mean, deviation] = two(of, &format!("{field}.normal"))?;
                 if deviation < 0.0 {
                     let right = "a deviation of 0 or more, [mean, deviation]";
-                    return Err(FileError::new(format!("{field}.normal"), format!("{deviation} is refused"), right));
+                    return Err(FileError::new(
+                        format!("{field}.normal"),
+                        format!("{deviation} is refused"),
+                        right,
+                    ));
                 }
                 let within = table.get("within").map(|value| ordered(value, &format!("{field}.within")));
                 let within = within.transpose()?.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
@@ -77,7 +83,11 @@ impl<'a> Kind<'a> {
             _ => match of.as_array() {
                 Some(values) if !values.is_empty() => Self::Choice(values),
                 _ => {
-                    return Err(FileError::new(format!("{field}.choice"), "is no list of values", "write choice = [\"a\", \"b\"]"));
+                    return Err(FileError::new(
+                        format!("{field}.choice"),
+                        "is no list of values",
+                        "write choice = [\"a\", \"b\"]",
+                    ));
                 }
             },
         };
@@ -124,12 +134,20 @@ fn two(value: &Value, field: &str) -> Result<[f64; 2], FileError> {
 
 fn ordered(value: &Value, field: &str) -> Result<[f64; 2], FileError> {
     let [a, b] = two(value, field)?;
-    if a <= b { Ok([a, b]) } else { Err(FileError::new(field, format!("[{a}, {b}] is refused"), "the lower number comes first")) }
+    if a <= b {
+        Ok([a, b])
+    } else {
+        Err(FileError::new(field, format!("[{a}, {b}] is refused"), "the lower number comes first"))
+    }
 }
 
 fn positive(value: &Value, field: &str) -> Result<[f64; 2], FileError> {
     let [a, b] = ordered(value, field)?;
-    if a > 0.0 { Ok([a, b]) } else { Err(FileError::new(field, format!("{a} is refused"), "both must be above 0")) }
+    if a > 0.0 {
+        Ok([a, b])
+    } else {
+        Err(FileError::new(field, format!("{a} is refused"), "both must be above 0"))
+    }
 }
 
 #[cfg(test)]
@@ -155,7 +173,10 @@ mod tests {
     #[test]
     fn distributions_have_their_means_and_deviations() {
         let (mean, deviation) = moments(&many("{ uniform = [2, 4] }"));
-        assert!((mean - 3.0).abs() < 0.013 && (deviation - 2.0 / 12f64.sqrt()).abs() < 0.01, "{mean} {deviation}");
+        assert!(
+            (mean - 3.0).abs() < 0.013 && (deviation - 2.0 / 12f64.sqrt()).abs() < 0.01,
+            "{mean} {deviation}"
+        );
         let (mean, deviation) = moments(&many("{ normal = [0.6, 0.2] }"));
         assert!((mean - 0.6).abs() < 0.005 && (deviation - 0.2).abs() < 0.004, "{mean} {deviation}");
         // The mean of a log-uniform number is (b − a)/ln(b/a).
@@ -167,7 +188,8 @@ mod tests {
 
     #[test]
     fn choices_hold_values_tables_and_distributions() {
-        let written = value("{ choice = [\"pen\", { solid = \"granite\", magnitude = { uniform = [1, 2] } }, 3] }");
+        let written =
+            value("{ choice = [\"pen\", { solid = \"granite\", magnitude = { uniform = [1, 2] } }, 3] }");
         let mut seen = [0; 3];
         for stroke in 0..3000 {
             match drawn(&written, "x", Draws { seed: 5, stroke }).unwrap() {

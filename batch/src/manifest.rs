@@ -122,8 +122,13 @@ impl Manifest {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(FileError::read(&path, &error)),
         };
-        let manifest: Self = serde_json::from_slice(&bytes)
-            .map_err(|error| FileError::file(&path, format!("is no manifest ({error})"), "remove it; the next run writes it anew"))?;
+        let manifest: Self = serde_json::from_slice(&bytes).map_err(|error| {
+            FileError::file(
+                &path,
+                format!("is no manifest ({error})"),
+                "remove it; the next run writes it anew",
+            )
+        })?;
         if manifest.format != FORMAT {
             let what = format!("has format {}", manifest.format);
             return Err(FileError::file(&path, what, format!("this program reads format {FORMAT}")));
@@ -142,7 +147,8 @@ impl Manifest {
         let _ = held.lock();
         self.shards = listed(folder, self.strokes, self.per_shard)?;
         let path = folder.join(NAME);
-        let mut text = serde_json::to_string_pretty(self).map_err(|error| FileError::told(error).within(path.display()))?;
+        let mut text = serde_json::to_string_pretty(self)
+            .map_err(|error| FileError::told(error).within(path.display()))?;
         text.push('\n');
         whole_file::write(&path, text.as_bytes())
     }

@@ -47,7 +47,8 @@ impl<W: Write + Send> Shard<W> {
     pub fn begin(out: W, build: &Build, codec: Codec, more: &[(&str, String)]) -> Result<Self, ParquetError> {
         let schema = parse_message_type(&schema(codec))?;
         let mut metadata = vec![KeyValue::new(BUILD.to_owned(), serde_json::to_string(build).ok())];
-        metadata.extend(more.iter().map(|(key, value)| KeyValue::new(format!("asperity.{key}"), value.clone())));
+        metadata
+            .extend(more.iter().map(|(key, value)| KeyValue::new(format!("asperity.{key}"), value.clone())));
         let properties = WriterProperties::builder()
             .set_created_by(format!("asperity {}", build.version))
             .set_compression(Compression::UNCOMPRESSED)
@@ -125,18 +126,30 @@ fn schema(codec: Codec) -> String {
 
 type Group<'a, W> = SerializedRowGroupWriter<'a, W>;
 
-fn bytes<W: Write + Send>(group: &mut Group<'_, W>, rows: &[Record], of: impl Fn(&Record) -> &[u8]) -> Result<(), ParquetError> {
+fn bytes<W: Write + Send>(
+    group: &mut Group<'_, W>,
+    rows: &[Record],
+    of: impl Fn(&Record) -> &[u8],
+) -> Result<(), ParquetError> {
     let values: Vec<ByteArray> = rows.iter().map(|row| ByteArray::from(of(row).to_vec())).collect();
     let mut column = next(group)?;
     column.typed::<ByteArrayType>().write_batch(&values, None, None)?;
     column.close()
 }
 
-fn texts<W: Write + Send>(group: &mut Group<'_, W>, rows: &[Record], of: impl Fn(&Record) -> &str) -> Result<(), ParquetError> {
+fn texts<W: Write + Send>(
+    group: &mut Group<'_, W>,
+    rows: &[Record],
+    of: impl Fn(&Record) -> &str,
+) -> Result<(), ParquetError> {
     bytes(group, rows, |row| of(row).as_bytes())
 }
 
-fn numbers<W: Write + Send>(group: &mut Group<'_, W>, rows: &[Record], of: impl Fn(&Record) -> f64) -> Result<(), ParquetError> {
+fn numbers<W: Write + Send>(
+    group: &mut Group<'_, W>,
+    rows: &[Record],
+    of: impl Fn(&Record) -> f64,
+) -> Result<(), ParquetError> {
     let values: Vec<f64> = rows.iter().map(of).collect();
     let mut column = next(group)?;
     column.typed::<DoubleType>().write_batch(&values, None, None)?;
@@ -144,7 +157,11 @@ fn numbers<W: Write + Send>(group: &mut Group<'_, W>, rows: &[Record], of: impl 
 }
 
 /// Lists are written as one column of samples, with the places where a row begins: repetition 0. Definition 0 is an empty list.
-fn lists<W: Write + Send>(group: &mut Group<'_, W>, rows: &[Record], of: impl Fn(&Record) -> &[f32]) -> Result<(), ParquetError> {
+fn lists<W: Write + Send>(
+    group: &mut Group<'_, W>,
+    rows: &[Record],
+    of: impl Fn(&Record) -> &[f32],
+) -> Result<(), ParquetError> {
     let mut column = next(group)?;
     for row in rows {
         let samples = of(row);
@@ -161,13 +178,16 @@ fn lists<W: Write + Send>(group: &mut Group<'_, W>, rows: &[Record], of: impl Fn
 fn next<'a, W: Write + Send>(
     group: &'a mut Group<'_, W>,
 ) -> Result<parquet::file::writer::SerializedColumnWriter<'a>, ParquetError> {
-    group.next_column()?.ok_or_else(|| ParquetError::General("the schema has fewer columns than a record".into()))
+    group
+        .next_column()?
+        .ok_or_else(|| ParquetError::General("the schema has fewer columns than a record".into()))
 }
 
 fn reader(path: &Path) -> Result<SerializedFileReader<File>, FileError> {
     let file = File::open(path).map_err(|error| FileError::read(path, &error))?;
-    SerializedFileReader::new(file)
-        .map_err(|error| FileError::file(path, format!("is no whole Parquet file ({error})"), "remove it and make it again"))
+    SerializedFileReader::new(file).map_err(|error| {
+        FileError::file(path, format!("is no whole Parquet file ({error})"), "remove it and make it again")
+    })
 }
 
 /// What made a shard, and how many strokes it holds.
@@ -179,7 +199,8 @@ pub fn build_of(path: &Path) -> Result<(Build, u64), FileError> {
     let metadata = reader.metadata().file_metadata();
     let build = metadata.key_value_metadata().into_iter().flatten().find(|entry| entry.key == BUILD);
     let build = build.and_then(|entry| serde_json::from_str(entry.value.as_deref()?).ok());
-    let build = build.ok_or_else(|| FileError::file(path, "does not say what made it", "remove it and make it again"))?;
+    let build = build
+        .ok_or_else(|| FileError::file(path, "does not say what made it", "remove it and make it again"))?;
     Ok((build, metadata.num_rows().unsigned_abs()))
 }
 
@@ -202,7 +223,9 @@ pub struct Kept {
 /// When it is no whole shard of ours.
 pub fn records(path: &Path, wanted: &dyn Fn(u64) -> bool) -> Result<Vec<Kept>, FileError> {
     let reader = reader(path)?;
-    let broken = |error: ParquetError| FileError::file(path, format!("cannot be read ({error})"), "remove it and make it again");
+    let broken = |error: ParquetError| {
+        FileError::file(path, format!("cannot be read ({error})"), "remove it and make it again")
+    };
     let rows = reader.get_row_iter(None).map_err(broken)?;
     let mut kept = Vec::new();
     for (number, row) in rows.enumerate() {
@@ -215,7 +238,8 @@ pub fn records(path: &Path, wanted: &dyn Fn(u64) -> bool) -> Result<Vec<Kept>, F
 }
 
 fn kept_of(row: &parquet::record::Row) -> Result<Kept, ParquetError> {
-    let place = |name: &str| row.get_column_iter().position(|(column, _)| column == name).unwrap_or(usize::MAX);
+    let place =
+        |name: &str| row.get_column_iter().position(|(column, _)| column == name).unwrap_or(usize::MAX);
     let text = |name: &str| row.get_string(place(name)).cloned();
     let samples = |name: &str| -> Result<Vec<f32>, ParquetError> {
         let list = row.get_list(place(name))?;

@@ -79,8 +79,11 @@ impl Motion {
                     at_m: None,
                     depth_m: None,
                 };
-                let event =
-                    if report == 0 { LogEvent::begin(0, surface, 0, sample) } else { LogEvent::moved(0, sample) };
+                let event = if report == 0 {
+                    LogEvent::begin(0, surface, 0, sample)
+                } else {
+                    LogEvent::moved(0, sample)
+                };
                 LogLine { t, event }
             })
             .collect();
@@ -206,7 +209,8 @@ mod tests {
                 let [x, y] = sample.velocity_m_s.unwrap();
                 (x * x + y * y).sqrt()
             };
-            let speeds: Vec<f64> = samples(shape, 0.02, stroke).iter().map(|(_, sample)| speed(sample)).collect();
+            let speeds: Vec<f64> =
+                samples(shape, 0.02, stroke).iter().map(|(_, sample)| speed(sample)).collect();
             let highest = speeds.iter().fold(0.0_f64, |a, b| a.max(*b));
             assert!((highest - 0.02).abs() < 1e-9, "{highest}");
             if shape != Shape::BackAndForth {

@@ -47,7 +47,11 @@ impl Samples {
             Codec::F32 => (Sound::F32(audio.clone()), 0),
             Codec::Flac16 => {
                 let (bytes, clipped) = flac16(audio, output.audio.rate_hz).map_err(|error| {
-                    FileError::new(id, format!("cannot be written as FLAC ({error})"), "write codec = \"f32\"")
+                    FileError::new(
+                        id,
+                        format!("cannot be written as FLAC ({error})"),
+                        "write codec = \"f32\"",
+                    )
                 })?;
                 (Sound::Flac(bytes), clipped)
             }
@@ -59,7 +63,9 @@ impl Samples {
     /// Whether two hold the same bits.
     #[must_use]
     pub fn same_bits(&self, other: &Self) -> bool {
-        let same = |a: &[f32], b: &[f32]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits());
+        let same = |a: &[f32], b: &[f32]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+        };
         let sounds = match (&self.audio, &other.audio) {
             (Sound::F32(a), Sound::F32(b)) => same(a, b),
             (a, b) => a == b,

@@ -246,13 +246,19 @@ impl Spec {
     /// As [`Self::load`].
     pub fn parse(text: String, path: &Path) -> Result<Self, FileError> {
         let says: Says = toml::from_str(&text).map_err(|error| {
-            let at = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
+            let at =
+                error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
             let message = error.message().lines().collect::<Vec<_>>().join(" ");
-            FileError::file(path, format!("line {at}: {message}"), "docs/formats.md has the keys of a specification")
+            FileError::file(
+                path,
+                format!("line {at}: {message}"),
+                "docs/formats.md has the keys of a specification",
+            )
         })?;
         let mut spec = Self { path: path.to_owned(), text, says };
         if spec.says.name.is_empty() {
-            spec.says.name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+            spec.says.name =
+                path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         }
         spec.check().map_err(|error| error.within(path.display()))?;
         Ok(spec)
@@ -282,7 +288,11 @@ impl Spec {
         whole("per_shard", says.per_shard, MOST_PER_SHARD)?;
         if Isa::from_name(&says.kernel).is_none() {
             let names = Isa::ALL.map(Isa::name).join(", ");
-            return Err(FileError::new("kernel", format!("\"{}\" is unknown", says.kernel), format!("must be one of {names}")));
+            return Err(FileError::new(
+                "kernel",
+                format!("\"{}\" is unknown", says.kernel),
+                format!("must be one of {names}"),
+            ));
         }
         if says.surface.choice.is_empty() {
             let right = "write choice = [\"maps/*.toml\", { solid = \"granite\" }]";
@@ -290,21 +300,35 @@ impl Spec {
         }
         let rates = asperity::limits::output::SAMPLE_RATE_HZ;
         number("output.audio.rate_hz", says.output.audio.rate_hz, [8000.0, 384_000.0], rates.words)?;
-        number("output.haptic.rate_hz", says.output.haptic.rate_hz, [100.0, says.output.audio.rate_hz], "must be 100 Hz to the rate of the audio")?;
+        number(
+            "output.haptic.rate_hz",
+            says.output.haptic.rate_hz,
+            [100.0, says.output.audio.rate_hz],
+            "must be 100 Hz to the rate of the audio",
+        )?;
         number("output.tail_s", says.output.tail_s, [0.0, 60.0], "must be 0 to 60 s")?;
         let known = ["displacement", "acceleration", "tangential"];
         if !known.contains(&says.output.haptic.output.as_str()) {
             let what = format!("\"{}\" is unknown", says.output.haptic.output);
-            return Err(FileError::new("output.haptic.output", what, format!("must be one of {}", known.join(", "))));
+            return Err(FileError::new(
+                "output.haptic.output",
+                what,
+                format!("must be one of {}", known.join(", ")),
+            ));
         }
         says.output.audio.codec.check(says.output.audio.rate_hz)?;
-        let shares = [("train", says.split.train), ("validation", says.split.validation), ("test", says.split.test)];
+        let shares =
+            [("train", says.split.train), ("validation", says.split.validation), ("test", says.split.test)];
         for (name, share) in shares {
             number(&format!("split.{name}"), share, [0.0, 1.0], "must be 0 to 1")?;
         }
         let sum: f64 = shares.iter().map(|(_, share)| share).sum();
         if (sum - 1.0).abs() > 1e-6 {
-            return Err(FileError::new("split", format!("the shares add up to {sum}"), "they must add up to 1"));
+            return Err(FileError::new(
+                "split",
+                format!("the shares add up to {sum}"),
+                "they must add up to 1",
+            ));
         }
         Ok(())
     }

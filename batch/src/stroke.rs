@@ -5,12 +5,12 @@ use crate::draw::Draws;
 use crate::path::{Motion, Shape};
 use crate::spec::{Output, Spec};
 use crate::surfaces::{Choice, split};
+use asperity::Engine;
 use asperity::files::FileError;
 use asperity::files::contact_log::ContactLog;
 use asperity::files::scene_file::SceneFile;
 use asperity::offline::{self, Options, Render};
 use asperity::open::{Maps, Overrides};
-use asperity::Engine;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -91,14 +91,20 @@ pub fn rendered(
     let overrides = Overrides { kernel: Some(spec_kernel), maps: Some(maps), ..Overrides::default() };
     let Engine { scene, renderer, names, .. } = Engine::from_scene(&file, &overrides)?;
     let options = Options { tail_s: file.tail_s, ..Options::default() };
-    offline::render(scene, renderer, &log, &names, &options).map_err(|error| FileError::told(error).within(id))
+    offline::render(scene, renderer, &log, &names, &options)
+        .map_err(|error| FileError::told(error).within(id))
 }
 
 /// The levels of a data set: as its specification says, and where it is silent those that the level policy finds for its first choice.
 ///
 /// # Errors
 /// When that scene cannot be opened.
-pub fn data_levels(spec: &Spec, choices: &[Choice], folder: &Path, maps: &Maps) -> Result<DataLevels, FileError> {
+pub fn data_levels(
+    spec: &Spec,
+    choices: &[Choice],
+    folder: &Path,
+    maps: &Maps,
+) -> Result<DataLevels, FileError> {
     let (haptic, audio) = (&spec.says.output.haptic, &spec.says.output.audio);
     if let (Some(full_scale), Some(gain)) = (haptic.full_scale, audio.gain) {
         return Ok(DataLevels { full_scale, gain });
@@ -121,12 +127,16 @@ fn motion(spec: &Spec, draws: Draws) -> Result<Motion, FileError> {
         let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
         match number {
             Some(number) if (low..=high).contains(&number) => Ok(number),
-            Some(number) => Err(FileError::new(field, format!("{number} is refused"), format!("must be {low} to {high}"))),
+            Some(number) => {
+                Err(FileError::new(field, format!("{number} is refused"), format!("must be {low} to {high}")))
+            }
             None => Err(FileError::new(field, "is no number", "write a number or a distribution of numbers")),
         }
     };
     let shape = drawn(&finger.path, "finger.path", draws)?;
-    let shape = shape.as_str().ok_or_else(|| FileError::new("finger.path", "is no text", "must be line, arc or back-and-forth"))?;
+    let shape = shape
+        .as_str()
+        .ok_or_else(|| FileError::new("finger.path", "is no text", "must be line, arc or back-and-forth"))?;
     Ok(Motion {
         shape: Shape::from_name(shape)?,
         speed_m_s: number("speed_m_s", &finger.speed_m_s, [0.0, 10.0])?,

@@ -69,12 +69,20 @@ fn matching(pattern: &Path) -> Result<Vec<PathBuf>, FileError> {
     let entries = fs::read_dir(folder).map_err(|error| FileError::read(folder, &error))?;
     let fits = |path: &PathBuf| {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        name.len() >= front.len() + back.len() && name.starts_with(front) && name.ends_with(back) && path.is_file()
+        name.len() >= front.len() + back.len()
+            && name.starts_with(front)
+            && name.ends_with(back)
+            && path.is_file()
     };
-    let mut paths: Vec<PathBuf> = entries.filter_map(Result::ok).map(|entry| entry.path()).filter(fits).collect();
+    let mut paths: Vec<PathBuf> =
+        entries.filter_map(Result::ok).map(|entry| entry.path()).filter(fits).collect();
     paths.sort();
     if paths.is_empty() {
-        return Err(FileError::file(pattern, "no file is called so", "a name with * must stand for at least one scene file"));
+        return Err(FileError::file(
+            pattern,
+            "no file is called so",
+            "a name with * must stand for at least one scene file",
+        ));
     }
     Ok(paths)
 }
@@ -93,7 +101,9 @@ fn from_scene(path: &Path, folder: &Path) -> Result<Choice, FileError> {
 
 fn from_table(table: &Table, home: &Path, folder: &Path, field: &str) -> Result<Choice, FileError> {
     let text = |key: &str| table.get(key).and_then(Value::as_str).map(str::to_owned);
-    let name = text("name").or_else(|| text("solid")).unwrap_or_else(|| field.replace(['[', ']'], "-").trim_end_matches('-').replace("surface.choice", "surface"));
+    let name = text("name").or_else(|| text("solid")).unwrap_or_else(|| {
+        field.replace(['[', ']'], "-").trim_end_matches('-').replace("surface.choice", "surface")
+    });
     let mut surface = table.clone();
     surface.insert("name".into(), Value::String(name.clone()));
     for side in ["width_m", "height_m"] {
@@ -121,7 +131,9 @@ fn without_distributions(table: &mut Table) {
     for value in table.iter_mut().map(|(_, value)| value) {
         match value {
             Value::Table(inner) => without_distributions(inner),
-            Value::Array(values) => values.iter_mut().filter_map(Value::as_table_mut).for_each(without_distributions),
+            Value::Array(values) => {
+                values.iter_mut().filter_map(Value::as_table_mut).for_each(without_distributions)
+            }
             _ => {}
         }
     }
@@ -178,7 +190,8 @@ fn shapes_beside(bytes: &[u8]) -> Option<String> {
 pub fn split(spec: &Spec, surface: usize, surfaces: usize, stroke: u64) -> &'static str {
     let place = match spec.says.split.by {
         SplitBy::Surface => {
-            let key = |i: usize| crate::draw::Draws { seed: spec.says.seed, stroke: i as u64 }.bits("split", 0)[0];
+            let key =
+                |i: usize| crate::draw::Draws { seed: spec.says.seed, stroke: i as u64 }.bits("split", 0)[0];
             let before = (0..surfaces).filter(|i| (key(*i), *i) < (key(surface), surface)).count();
             (before as f64 + 0.5) / surfaces as f64
         }

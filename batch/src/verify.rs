@@ -27,11 +27,19 @@ pub struct Verified {
 /// The first shard that is bad, in one line.
 pub fn verify(folder: &Path, share: f64, mut progress: impl FnMut()) -> Result<Verified, FileError> {
     let manifest = Manifest::load(folder)?.ok_or_else(|| {
-        FileError::file(&folder.join(NAME), "no such file", "name the folder of a data set that asperity batch made")
+        FileError::file(
+            &folder.join(NAME),
+            "no such file",
+            "name the folder of a data set that asperity batch made",
+        )
     })?;
     let spec = Spec::load(&folder.join("spec.toml"))?;
     if spec.sha256() != manifest.build.spec_sha256 {
-        return Err(FileError::file(&spec.path, "is not what made this data set", "put the specification's copy back"));
+        return Err(FileError::file(
+            &spec.path,
+            "is not what made this data set",
+            "put the specification's copy back",
+        ));
     }
     let maps = Maps::default();
     let mut found = Verified { missing: spec.shards() - manifest.shards.len() as u64, ..Verified::default() };
@@ -52,13 +60,22 @@ pub fn verify(folder: &Path, share: f64, mut progress: impl FnMut()) -> Result<V
 
 fn again(path: &Path, spec: &Spec, share: f64, folder: &Path, maps: &Maps) -> Result<u64, FileError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let index: u64 = name.trim_start_matches("shard-").split('.').next().and_then(|digits| digits.parse().ok()).unwrap_or(0);
+    let index: u64 = name
+        .trim_start_matches("shard-")
+        .split('.')
+        .next()
+        .and_then(|digits| digits.parse().ok())
+        .unwrap_or(0);
     let first = index * spec.says.per_shard;
     let kept = records(path, &|row| is_sampled(spec.says.seed, first + row, share))?;
     for record in &kept {
         if !same(record, spec, folder, maps)? {
             let what = format!("stroke {} renders to other samples than it holds", record.id);
-            return Err(FileError::file(path, what, "use the build that made it, or remove it and run asperity batch again"));
+            return Err(FileError::file(
+                path,
+                what,
+                "use the build that made it, or remove it and run asperity batch again",
+            ));
         }
     }
     Ok(kept.len() as u64)

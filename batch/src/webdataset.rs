@@ -99,8 +99,13 @@ fn samples_of(bytes: &[u8]) -> Option<Vec<f32>> {
 type Files = BTreeMap<String, Vec<u8>>;
 
 /// Calls `each` with the number and the files of every stroke of a shard, by what stands after the id.
-fn for_each(path: &Path, mut each: impl FnMut(u64, &str, Files) -> Result<(), FileError>) -> Result<u64, FileError> {
-    let broken = |error: io::Error| FileError::file(path, format!("is no whole tar file ({error})"), "remove it and make it again");
+fn for_each(
+    path: &Path,
+    mut each: impl FnMut(u64, &str, Files) -> Result<(), FileError>,
+) -> Result<u64, FileError> {
+    let broken = |error: io::Error| {
+        FileError::file(path, format!("is no whole tar file ({error})"), "remove it and make it again")
+    };
     let file = File::open(path).map_err(|error| FileError::read(path, &error))?;
     let mut archive = tar::Archive::new(io::BufReader::with_capacity(1 << 18, file));
     let (mut number, mut id, mut files) = (0, String::new(), Files::new());
@@ -137,7 +142,8 @@ pub fn build_of(path: &Path) -> Result<(Build, u64), FileError> {
         }
         Ok(())
     })?;
-    let build = build.ok_or_else(|| FileError::file(path, "does not say what made it", "remove it and make it again"))?;
+    let build = build
+        .ok_or_else(|| FileError::file(path, "does not say what made it", "remove it and make it again"))?;
     Ok((build, count))
 }
 
@@ -150,7 +156,9 @@ pub fn records(path: &Path, wanted: &dyn Fn(u64) -> bool) -> Result<Vec<Kept>, F
     for_each(path, |number, id, files| {
         if wanted(number) {
             let record = kept_of(id, files);
-            kept.push(record.ok_or_else(|| FileError::file(path, format!("stroke {id} is not whole"), "remove it and make it again"))?);
+            kept.push(record.ok_or_else(|| {
+                FileError::file(path, format!("stroke {id} is not whole"), "remove it and make it again")
+            })?);
         }
         Ok(())
     })?;

@@ -9,7 +9,10 @@ use std::path::Path;
 ///
 /// # Errors
 /// When the folder cannot be written or the disk is full; then nothing is left behind.
-pub fn write_with(path: &Path, fill: impl FnOnce(BufWriter<File>) -> io::Result<()>) -> Result<(), FileError> {
+pub fn write_with(
+    path: &Path,
+    fill: impl FnOnce(BufWriter<File>) -> io::Result<()>,
+) -> Result<(), FileError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let temporary = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
     let written = File::create(&temporary)

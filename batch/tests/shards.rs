@@ -16,7 +16,7 @@ choice = [{ solid = "granite" }, { name = "plate", roughness = { uniform = [0, 1
 [body]
 stock = "plate"
 size_m = { uniform = [0.1, 0.3] }
-material = { choice = ["ceramic", "oak"] }
+material = { choice = ["ceramic", "wood"] }
 [finger]
 speed_m_s = { log_uniform = [0.02, 0.3] }
 force_n = { normal = [0.6, 0.2], within = [0.1, 2] }
@@ -48,7 +48,8 @@ fn make(set: &DataSet, shards: impl IntoIterator<Item = u64>) {
 fn bytes(folder: &TempDir, name: &str) -> Vec<Vec<u8>> {
     ["shard-000000", "shard-000001", "shard-000002"]
         .map(|shard| {
-            let file = |extension: &str| fs::read(folder.path().join(name).join(format!("{shard}.{extension}")));
+            let file =
+                |extension: &str| fs::read(folder.path().join(name).join(format!("{shard}.{extension}")));
             file("parquet").or_else(|_| file("tar")).unwrap()
         })
         .to_vec()
@@ -64,10 +65,15 @@ fn shards_have_the_same_bytes_in_any_order_and_after_a_killed_run() {
         assert_eq!(bytes(&folder, "one"), bytes(&folder, "other"));
         // A run that was killed left a shard cut off, one without its hash, and half a file beside.
         let one = folder.path().join("one");
-        let named = |shard: &str| one.join(format!("{shard}.{}", if format == "parquet" { "parquet" } else { "tar" }));
+        let named = |shard: &str| {
+            one.join(format!("{shard}.{}", if format == "parquet" { "parquet" } else { "tar" }))
+        };
         let whole = fs::read(named("shard-000001")).unwrap();
         fs::write(named("shard-000001"), &whole[..whole.len() / 2]).unwrap();
-        fs::remove_file(one.join(format!("{}.sha256", named("shard-000002").file_name().unwrap().to_string_lossy()))).unwrap();
+        fs::remove_file(
+            one.join(format!("{}.sha256", named("shard-000002").file_name().unwrap().to_string_lossy())),
+        )
+        .unwrap();
         fs::write(one.join(".shard-000001.part"), b"half").unwrap();
         let again = set(&folder, &text, "one").unwrap();
         assert_eq!(again.shard(0, || ()).unwrap(), Outcome::Kept);
@@ -179,13 +185,17 @@ fn wrong_specifications_are_refused_in_one_line_and_leave_no_shard() {
         let folder = tempfile::tempdir().unwrap();
         let text = SPEC.replace(from, to);
         assert_ne!(text, SPEC);
-        let made = set(&folder, &text, "set").and_then(|set| (0..3).try_for_each(|index| set.shard(index, || ()).map(drop)));
+        let made = set(&folder, &text, "set")
+            .and_then(|set| (0..3).try_for_each(|index| set.shard(index, || ()).map(drop)));
         let error = made.err().unwrap_or_else(|| panic!("{to} was accepted")).to_string();
         assert!(error.contains(part) && !error.contains('\n'), "{to}: {error}");
         let left = fs::read_dir(folder.path().join("set")).into_iter().flatten().filter_map(Result::ok);
         let shards = left.filter(|entry| entry.file_name().to_string_lossy().contains("shard-"));
         // Shards before the refused stroke stand whole; nothing half-written does.
-        assert!(shards.map(|entry| entry.file_name()).all(|name| !name.to_string_lossy().ends_with(".part")), "{to}");
+        assert!(
+            shards.map(|entry| entry.file_name()).all(|name| !name.to_string_lossy().ends_with(".part")),
+            "{to}"
+        );
     }
 }
 

@@ -108,7 +108,8 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
     let share = options.shard.or_else(|| share_of_slurm(|name| std::env::var(name).ok()));
     let share = share.unwrap_or(Share { index: 0, of: 1 });
     let mine: Vec<u64> = (share.index..set.spec().shards()).step_by(share.of as usize).collect();
-    let strokes: u64 = mine.iter().map(|index| says.per_shard.min(says.strokes - index * says.per_shard)).sum();
+    let strokes: u64 =
+        mine.iter().map(|index| says.per_shard.min(says.strokes - index * says.per_shard)).sum();
     let mut progress = Progress::new("strokes", strokes);
     let mut report = Report {
         made: 0,
@@ -192,9 +193,12 @@ mod tests {
     #[test]
     fn an_array_task_of_slurm_is_a_share() {
         let of = |pairs: &'static [(&str, &str)]| {
-            share_of_slurm(|name| pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned()))
+            share_of_slurm(|name| {
+                pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
+            })
         };
-        let all = &[("SLURM_ARRAY_TASK_ID", "5"), ("SLURM_ARRAY_TASK_COUNT", "8"), ("SLURM_ARRAY_TASK_MIN", "1")];
+        let all =
+            &[("SLURM_ARRAY_TASK_ID", "5"), ("SLURM_ARRAY_TASK_COUNT", "8"), ("SLURM_ARRAY_TASK_MIN", "1")];
         assert_eq!(of(all), Some(Share { index: 4, of: 8 }));
         assert_eq!(of(&[("SLURM_ARRAY_TASK_ID", "5")]), None);
         assert_eq!(of(&[]), None);
