@@ -9,7 +9,7 @@ use crate::files::scene_file::{AudioEntry, MakeSource, SceneFile, SurfaceEntry};
 use crate::files::{Disk, FileError, Files};
 pub use crate::made::edit::{Edits, MakeSurface};
 use crate::made::maker::{self, Maker};
-use crate::made::maps::Maps;
+pub use crate::made::maps::Maps;
 use crate::model::bus::AudioBus;
 use crate::model::clock_mode::ClockMode;
 use crate::model::config::Config;
@@ -55,6 +55,9 @@ pub struct Overrides<'a> {
     /// For [`Scene::apply`](crate::Scene::apply): files that hold something else than before, though the scene names them alike. What is made
     /// from them is made anew.
     pub touched: &'a [PathBuf],
+    /// Maps that were made already: scenes that are opened with the same ones, one after the other, read, decode and filter a picture once.
+    /// A picture that changes meanwhile is not read again.
+    pub maps: Option<&'a Maps>,
 }
 
 impl Default for Overrides<'_> {
@@ -73,6 +76,7 @@ impl Default for Overrides<'_> {
             live: false,
             own: &[],
             touched: &[],
+            maps: None,
         }
     }
 }
@@ -105,7 +109,8 @@ impl Engine {
 }
 
 fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileError> {
-    let maps = Maps::default();
+    let own = Maps::default();
+    let maps = overrides.maps.unwrap_or(&own);
     let trial = |levels: &Levels| {
         let plain = |mut config: Config| {
             for actuator in &mut config.actuators {
@@ -117,10 +122,10 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
         // Levels are a scene's, however exactly it is rendered.
         let trial =
             Overrides { live: false, clock: None, preset: Preset::Default, oversampling: None, ..*overrides };
-        assemble(file, &trial, &maps, levels, plain)
+        assemble(file, &trial, maps, levels, plain)
     };
     let levels = levels::resolve(file, &calibrated(file, overrides)?, trial)?;
-    let mut engine = assemble(file, overrides, &maps, &levels, |config| config)?;
+    let mut engine = assemble(file, overrides, maps, &levels, |config| config)?;
     engine.levels = levels;
     Ok(engine)
 }

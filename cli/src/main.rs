@@ -16,6 +16,7 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+mod batch;
 mod bench_scene;
 mod csv;
 mod demo;
@@ -68,6 +69,7 @@ enum Verb {
     Headroom(headroom::Options),
     Report(report::Options),
     Web(web::Options),
+    Batch(batch::Options),
 }
 
 fn run(verb: Verb) -> Result<(), CliError> {
@@ -84,6 +86,7 @@ fn run(verb: Verb) -> Result<(), CliError> {
         Verb::Headroom(options) => headroom::run(&options),
         Verb::Report(options) => report::run(&options),
         Verb::Web(options) => web::run(&options),
+        Verb::Batch(options) => batch::run(&options),
     }
 }
 

@@ -52,11 +52,11 @@ impl Values {
 
 /// The maps that were made so far.
 #[derive(Default)]
-pub(crate) struct Maps(RefCell<Vec<(MapOf, HeightMap)>>);
+pub struct Maps(RefCell<Vec<(MapOf, HeightMap)>>);
 
 impl Maps {
     /// The map of that description.
-    pub fn get(&self, of: MapOf, files: &dyn Files) -> Result<HeightMap, FileError> {
+    pub(crate) fn get(&self, of: MapOf, files: &dyn Files) -> Result<HeightMap, FileError> {
         if let Some((_, map)) = self.0.borrow().iter().find(|(made, _)| *made == of) {
             return Ok(map.clone());
         }

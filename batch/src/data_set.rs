@@ -1,0 +1,277 @@
+//! Data set: its shards made, kept and listed.
+
+use crate::build::Build;
+use crate::draw::Draws;
+use crate::manifest::{self, Manifest};
+use crate::record::{Record, Samples};
+use crate::spec::{Format, Spec, SplitBy, hex};
+use crate::stroke::{DataLevels, Stroke, data_levels, rendered};
+use crate::surfaces::{Choice, choices, split};
+use crate::{parquet_file, webdataset, whole_file};
+use asperity::files::FileError;
+use asperity::open::Maps;
+use sha2::{Digest, Sha256};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// A data set that is being made.
+pub struct DataSet {
+    spec: Spec,
+    folder: PathBuf,
+    choices: Vec<Choice>,
+    levels: DataLevels,
+    build: Build,
+    maps: Maps,
+}
+
+/// What became of a shard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// It was made.
+    Made {
+        /// Samples of the sound that 16 bits have cut off.
+        clipped: u64,
+    },
+    /// It was there, whole and of this build.
+    Kept,
+}
+
+impl DataSet {
+    /// Opens a folder for a specification: copies what the surfaces are made of, finds the levels.
+    ///
+    /// # Errors
+    /// When a surface cannot be used, the folder cannot be written, or holds shards of another build.
+    pub fn open(spec: Spec, folder: &Path) -> Result<Self, FileError> {
+        fs::create_dir_all(folder).map_err(|error| FileError::write(folder, &error))?;
+        let build = Build::of(&spec);
+        if let Some(there) = Manifest::load(folder)? {
+            same_build(&folder.join(manifest::NAME), &build, &there.build)?;
+        }
+        let choices = choices(&spec, folder).map_err(|error| error.within(spec.path.display()))?;
+        let maps = Maps::default();
+        let levels = data_levels(&spec, &choices, folder, &maps)?;
+        whole_file::write_once(&folder.join("spec.toml"), spec.text.as_bytes())?;
+        Ok(Self { spec, folder: folder.to_owned(), choices, levels, build, maps })
+    }
+
+    /// What it is made of.
+    #[must_use]
+    pub fn spec(&self) -> &Spec {
+        &self.spec
+    }
+
+    /// The file of a shard.
+    #[must_use]
+    pub fn file(&self, index: u64) -> String {
+        format!("shard-{index:06}.{}", self.spec.says.output.format.extension())
+    }
+
+    /// Makes a shard, unless it is there. `progress` is told after each stroke.
+    ///
+    /// # Errors
+    /// When a stroke is refused, the disk is full, or the shard that is there is of another build.
+    pub fn shard(&self, index: u64, mut progress: impl FnMut()) -> Result<Outcome, FileError> {
+        let name = self.file(index);
+        let path = self.folder.join(&name);
+        let per_shard = self.spec.says.per_shard;
+        let (first, last) = (index * per_shard, self.spec.says.strokes.min((index + 1) * per_shard));
+        if self.is_there(&path, last - first)? {
+            (first..last).for_each(|_| progress());
+            return Ok(Outcome::Kept);
+        }
+        let mut clipped = 0;
+        let mut sum = String::new();
+        let mut refused = None;
+        let written = whole_file::write_with(&path, |file| {
+            let mut out = Summed { out: file, sum: Sha256::new() };
+            let made = self.write(&mut out, first..last, &mut clipped, &mut progress);
+            sum = hex(&out.sum.finalize_reset());
+            made.map_err(|failure| match failure {
+                Failure::Disk(error) => error,
+                Failure::Refused(error) => {
+                    refused = Some(error);
+                    io::ErrorKind::Other.into()
+                }
+            })
+        });
+        match (refused, written) {
+            (Some(error), _) | (None, Err(error)) => return Err(error),
+            (None, Ok(())) => {}
+        }
+        whole_file::write(
+            &self.folder.join(manifest::sum_name(&name)),
+            format!("{sum}  {name}\n").as_bytes(),
+        )?;
+        Ok(Outcome::Made { clipped })
+    }
+
+    /// Writes the manifest with every shard that is there.
+    ///
+    /// # Errors
+    /// When the folder cannot be read or written.
+    pub fn write_manifest(&self) -> Result<Manifest, FileError> {
+        let count = self.choices.len();
+        let splits = match self.spec.says.split.by {
+            SplitBy::Surface => self
+                .choices
+                .iter()
+                .enumerate()
+                .map(|(i, choice)| (choice.name.clone(), split(&self.spec, i, count, 0).to_owned()))
+                .collect(),
+            SplitBy::Stroke => Default::default(),
+        };
+        let mut manifest = Manifest::new(&self.spec, &self.build, self.levels, splits);
+        manifest.write(&self.folder)?;
+        Ok(manifest)
+    }
+
+    /// Whether a shard is there whole. One that was cut off is made again; one of another build is an error.
+    fn is_there(&self, path: &Path, strokes: u64) -> Result<bool, FileError> {
+        if !path.exists() {
+            return Ok(false);
+        }
+        let Ok((build, held)) = build_of(path) else { return Ok(false) };
+        same_build(path, &self.build, &build)?;
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let sum = fs::read_to_string(path.with_file_name(manifest::sum_name(&name))).unwrap_or_default();
+        Ok(held == strokes && sum.split_whitespace().next() == Some(sha256_of(path)?.as_str()))
+    }
+
+    fn write(
+        &self,
+        out: &mut (impl Write + Send),
+        strokes: std::ops::Range<u64>,
+        clipped: &mut u64,
+        progress: &mut impl FnMut(),
+    ) -> Result<(), Failure> {
+        let output = &self.spec.says.output;
+        let more = [
+            ("audio_rate_hz", output.audio.rate_hz.to_string()),
+            ("haptic_rate_hz", output.haptic.rate_hz.to_string()),
+            ("haptic_full_scale", self.levels.full_scale.to_string()),
+            ("audio_gain", self.levels.gain.to_string()),
+        ];
+        let records = strokes.map(|number| {
+            let record = self.record(number);
+            progress();
+            record.inspect(|record| *clipped += record.samples.clipped)
+        });
+        match output.format {
+            Format::Parquet => {
+                let mut shard =
+                    parquet_file::Shard::begin(out, &self.build, output.audio.codec, &more).map_err(disk)?;
+                for record in records {
+                    shard.add(record.map_err(Failure::Refused)?).map_err(disk)?;
+                }
+                shard.finish().map_err(disk)?.flush().map_err(Failure::Disk)
+            }
+            Format::WebDataset => {
+                let mut shard = webdataset::Shard::begin(out, &self.build, &more);
+                for record in records {
+                    shard.add(&record.map_err(Failure::Refused)?).map_err(Failure::Disk)?;
+                }
+                shard.finish().and_then(Write::flush).map_err(Failure::Disk)
+            }
+        }
+    }
+
+    /// The record of a stroke.
+    ///
+    /// # Errors
+    /// When a draw is out of its range, or the scene cannot be rendered.
+    pub fn record(&self, number: u64) -> Result<Record, FileError> {
+        let stroke = Stroke::drawn(&self.spec, &self.choices, Some(self.levels), number, &self.folder)?;
+        let render = rendered(
+            &stroke.scene,
+            &stroke.contacts,
+            self.spec.kernel(),
+            &stroke.id,
+            &self.folder,
+            &self.maps,
+        )
+        .map_err(|error| error.within(format!("{}: stroke {number}", self.spec.path.display())))?;
+        let samples = Samples::of(&stroke.id, &render, &self.spec.says.output)?;
+        Ok(Record { stroke, samples })
+    }
+}
+
+/// Why a shard was not written.
+enum Failure {
+    Disk(io::Error),
+    Refused(FileError),
+}
+
+fn disk(error: parquet::errors::ParquetError) -> Failure {
+    match error {
+        parquet::errors::ParquetError::External(inner) => match inner.downcast::<io::Error>() {
+            Ok(error) => Failure::Disk(*error),
+            Err(inner) => Failure::Disk(io::Error::other(inner.to_string())),
+        },
+        other => Failure::Disk(io::Error::other(other.to_string())),
+    }
+}
+
+fn same_build(path: &Path, ours: &Build, theirs: &Build) -> Result<(), FileError> {
+    match ours.differs(theirs) {
+        None => Ok(()),
+        Some(what) => Err(FileError::file(
+            path,
+            format!("is of another build: {what}"),
+            "choose another folder, or the build that began this one",
+        )),
+    }
+}
+
+/// What made a shard, and how many strokes it holds.
+pub(crate) fn build_of(path: &Path) -> Result<(Build, u64), FileError> {
+    if is_tar(path) { webdataset::build_of(path) } else { parquet_file::build_of(path) }
+}
+
+/// Some records of a shard.
+pub(crate) fn records(
+    path: &Path,
+    wanted: &dyn Fn(u64) -> bool,
+) -> Result<Vec<parquet_file::Kept>, FileError> {
+    if is_tar(path) { webdataset::records(path, wanted) } else { parquet_file::records(path, wanted) }
+}
+
+fn is_tar(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "tar")
+}
+
+/// SHA-256 of a file.
+pub(crate) fn sha256_of(path: &Path) -> Result<String, FileError> {
+    let mut file = File::open(path).map_err(|error| FileError::read(path, &error))?;
+    let (mut sum, mut buffer) = (Sha256::new(), vec![0; 1 << 18]);
+    loop {
+        let read = file.read(&mut buffer).map_err(|error| FileError::read(path, &error))?;
+        if read == 0 {
+            return Ok(hex(&sum.finalize()));
+        }
+        sum.update(&buffer[..read]);
+    }
+}
+
+/// Sums what it writes.
+struct Summed {
+    out: BufWriter<File>,
+    sum: Sha256,
+}
+
+impl Write for Summed {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.sum.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Which strokes of a shard are looked at again: one in 1/share, by their numbers.
+pub(crate) fn is_sampled(seed: u64, stroke: u64, share: f64) -> bool {
+    share >= 1.0 || Draws { seed, stroke }.unit("verify") < share
+}

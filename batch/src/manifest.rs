@@ -1,0 +1,183 @@
+//! Manifest: `manifest.json`, what a data set holds and what made it.
+//!
+//! Each shard has a file `NAME.sha256` beside it, written after it. A run lists those and rewrites the manifest whole under a lock, so
+//! that runs on many machines that share a folder end with a manifest of all that is there.
+
+use crate::build::Build;
+use crate::spec::Spec;
+use crate::stroke::DataLevels;
+use crate::whole_file;
+use asperity::files::FileError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::path::Path;
+
+/// Name of the file.
+pub const NAME: &str = "manifest.json";
+/// The `format` that is written.
+pub const FORMAT: u32 = 1;
+/// Held while the manifest is rewritten.
+const LOCK: &str = ".manifest.lock";
+
+/// What a data set holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of this layout.
+    pub format: u32,
+    /// Name of the data set.
+    pub name: String,
+    /// What made it.
+    #[serde(flatten)]
+    pub build: Build,
+    /// Seed of every draw.
+    pub seed: u64,
+    /// Strokes of the whole data set.
+    pub strokes: u64,
+    /// Strokes a shard; the last may have fewer.
+    pub per_shard: u64,
+    /// What sample value 1 stands for, and the gain of the sound.
+    pub levels: Levels,
+    /// What samples are in, and how many there are a second.
+    pub units: Units,
+    /// The part that each surface belongs to, where parts are made by surface.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub splits: BTreeMap<String, String>,
+    /// The shards that are there, in order.
+    pub shards: Vec<Shard>,
+}
+
+/// Levels that hold for every stroke.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Levels {
+    /// Metres or m/s² at sample value 1 of `haptic`.
+    pub haptic_full_scale: f64,
+    /// Gain of `audio`.
+    pub audio_gain: f64,
+}
+
+/// Units and rates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Units {
+    /// Unit of `haptic_full_scale`.
+    pub haptic: String,
+    /// What is felt.
+    pub haptic_output: String,
+    /// Samples a second of `haptic`, Hz.
+    pub haptic_rate_hz: f64,
+    /// What sample value 1 of `audio` is.
+    pub audio: String,
+    /// Samples a second of `audio`, Hz.
+    pub audio_rate_hz: f64,
+    /// How `audio` is stored.
+    pub audio_codec: String,
+}
+
+/// One shard.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shard {
+    /// Its file, in the data set's folder.
+    pub file: String,
+    /// SHA-256 of its bytes.
+    pub sha256: String,
+    /// Strokes in it.
+    pub strokes: u64,
+}
+
+impl Manifest {
+    /// Of a specification, without shards.
+    #[must_use]
+    pub fn new(spec: &Spec, build: &Build, levels: DataLevels, splits: BTreeMap<String, String>) -> Self {
+        let (haptic, audio) = (&spec.says.output.haptic, &spec.says.output.audio);
+        let unit = if haptic.output == "acceleration" { "m/s^2" } else { "m" };
+        Self {
+            format: FORMAT,
+            name: spec.says.name.clone(),
+            build: build.clone(),
+            seed: spec.says.seed,
+            strokes: spec.says.strokes,
+            per_shard: spec.says.per_shard,
+            levels: Levels { haptic_full_scale: levels.full_scale, audio_gain: levels.gain },
+            units: Units {
+                haptic: unit.to_owned(),
+                haptic_output: haptic.output.clone(),
+                haptic_rate_hz: haptic.rate_hz,
+                audio: "full scale".to_owned(),
+                audio_rate_hz: audio.rate_hz,
+                audio_codec: audio.codec.name().to_owned(),
+            },
+            splits,
+            shards: Vec::new(),
+        }
+    }
+
+    /// Reads the manifest of a data set; none where there is none yet.
+    ///
+    /// # Errors
+    /// When it cannot be read or is none of ours.
+    pub fn load(folder: &Path) -> Result<Option<Self>, FileError> {
+        let path = folder.join(NAME);
+        let bytes = match fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(FileError::read(&path, &error)),
+        };
+        let manifest: Self = serde_json::from_slice(&bytes).map_err(|error| {
+            FileError::file(
+                &path,
+                format!("is no manifest ({error})"),
+                "remove it; the next run writes it anew",
+            )
+        })?;
+        if manifest.format != FORMAT {
+            let what = format!("has format {}", manifest.format);
+            return Err(FileError::file(&path, what, format!("this program reads format {FORMAT}")));
+        }
+        Ok(Some(manifest))
+    }
+
+    /// Writes it with every shard that is there.
+    ///
+    /// # Errors
+    /// When the folder cannot be read or written.
+    pub fn write(&mut self, folder: &Path) -> Result<(), FileError> {
+        let lock = folder.join(LOCK);
+        let held = File::create(&lock).map_err(|error| FileError::write(&lock, &error))?;
+        // A file system without locks has no worse fate than a manifest that the next run completes.
+        let _ = held.lock();
+        self.shards = listed(folder, self.strokes, self.per_shard)?;
+        let path = folder.join(NAME);
+        let mut text = serde_json::to_string_pretty(self)
+            .map_err(|error| FileError::told(error).within(path.display()))?;
+        text.push('\n');
+        whole_file::write(&path, text.as_bytes())
+    }
+}
+
+/// Where a shard's hash stands.
+#[must_use]
+pub fn sum_name(file: &str) -> String {
+    format!("{file}.sha256")
+}
+
+/// Every shard whose hash stands beside it, in order.
+fn listed(folder: &Path, strokes: u64, per_shard: u64) -> Result<Vec<Shard>, FileError> {
+    let entries = fs::read_dir(folder).map_err(|error| FileError::read(folder, &error))?;
+    let mut shards = Vec::new();
+    for entry in entries.filter_map(Result::ok) {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let Some(index) = index_of(&name) else { continue };
+        let Ok(text) = fs::read_to_string(folder.join(sum_name(&name))) else { continue };
+        let sha256 = text.split_whitespace().next().unwrap_or_default().to_owned();
+        let held = per_shard.min(strokes.saturating_sub(index * per_shard));
+        shards.push((index, Shard { file: name, sha256, strokes: held }));
+    }
+    shards.sort_by_key(|(index, _)| *index);
+    Ok(shards.into_iter().map(|(_, shard)| shard).collect())
+}
+
+/// The number of a shard, by its name.
+fn index_of(name: &str) -> Option<u64> {
+    let (number, extension) = name.strip_prefix("shard-")?.split_once('.')?;
+    ["parquet", "tar"].contains(&extension).then(|| number.parse().ok())?
+}

@@ -1,0 +1,361 @@
+//! Specification: what a data set is made of, as a TOML file says it.
+//!
+//! ```toml
+//! name = "strokes"
+//! seed = 7
+//! strokes = 10_000
+//! per_shard = 500
+//! [surface]
+//! choice = ["maps/*.toml", { solid = "granite" }]      # scene files, or keys of a [[surface]]
+//! roughness = { uniform = [0, 1] }                     # any key of a [[surface]], over what the choice says
+//! [finger]
+//! speed_m_s = { log_uniform = [0.02, 0.3] }
+//! ```
+//! Every value under `surface`, `body`, `probe` and `finger` may be a distribution ([`crate::distribution`]).
+
+use crate::codec::Codec;
+use asperity::Isa;
+use asperity::files::FileError;
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
+
+/// Most strokes of a data set; their numbers have twelve digits.
+pub const MOST_STROKES: u64 = 1_000_000_000_000;
+/// Most strokes of a shard.
+pub const MOST_PER_SHARD: u64 = 1_000_000;
+
+/// A specification, read and checked.
+#[derive(Debug, Clone)]
+pub struct Spec {
+    /// The file, for messages and for paths inside it.
+    pub path: PathBuf,
+    /// Its bytes.
+    pub text: String,
+    /// What it says.
+    pub says: Says,
+}
+
+/// The keys of a specification.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Says {
+    /// Name of the data set; missing: the file's.
+    #[serde(default)]
+    pub name: String,
+    /// Seed of every draw.
+    #[serde(default)]
+    pub seed: u64,
+    /// How many strokes there are.
+    pub strokes: u64,
+    /// Strokes a shard.
+    #[serde(default = "per_shard")]
+    pub per_shard: u64,
+    /// Kernel family; missing: portable, whose bits do not depend on the processor.
+    #[serde(default = "portable")]
+    pub kernel: String,
+    /// What is touched.
+    pub surface: Surfaces,
+    /// What rings: keys of a `[[body]]`; missing: what the choice says, or nothing.
+    #[serde(default)]
+    pub body: Table,
+    /// What touches: keys of `[probe]`.
+    #[serde(default)]
+    pub probe: Table,
+    /// How it moves.
+    #[serde(default)]
+    pub finger: Finger,
+    /// What is kept.
+    #[serde(default)]
+    pub output: Output,
+    /// Who learns and who is asked.
+    #[serde(default)]
+    pub split: Split,
+}
+
+/// What is touched.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Surfaces {
+    /// Scene files (a name may hold `*`), or tables with the keys of a `[[surface]]`.
+    pub choice: Vec<Value>,
+    /// Keys of a `[[surface]]`, over what the choice says.
+    #[serde(flatten)]
+    pub over: Table,
+}
+
+/// How a finger moves.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Finger {
+    /// Speed along the path, m/s; the highest of a stroke to and fro.
+    pub speed_m_s: Value,
+    /// Force, N.
+    pub force_n: Value,
+    /// `line`, `arc` or `back-and-forth`.
+    pub path: Value,
+    /// How long the finger touches, s.
+    pub duration_s: Value,
+    /// Reports a second, Hz.
+    pub reports_hz: Value,
+}
+
+/// What is kept.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Output {
+    /// `parquet` or `webdataset`.
+    pub format: Format,
+    /// Ring-out after the finger lifts, s.
+    pub tail_s: f64,
+    /// What is felt.
+    pub haptic: Haptic,
+    /// What is heard.
+    pub audio: Audio,
+}
+
+/// What is felt.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Haptic {
+    /// Samples a second, Hz.
+    pub rate_hz: f64,
+    /// `displacement` (m), `acceleration` (m/s²) or `tangential` (m).
+    pub output: String,
+    /// What sample value 1 stands for; missing: by the level policy of the first surface, for all.
+    pub full_scale: Option<f64>,
+}
+
+/// What is heard.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Audio {
+    /// Samples a second, Hz: the engine's own rate.
+    pub rate_hz: f64,
+    /// How samples are stored.
+    pub codec: Codec,
+    /// Linear gain; missing: by the level policy of the first surface, for all.
+    pub gain: Option<f64>,
+}
+
+/// How shards are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// A table, one row a stroke.
+    #[default]
+    Parquet,
+    /// A tar file, files of one name a stroke.
+    WebDataset,
+}
+
+impl Format {
+    /// What shards of it end with.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Parquet => "parquet",
+            Self::WebDataset => "tar",
+        }
+    }
+}
+
+/// Who learns and who is asked: shares that add up to 1.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Split {
+    /// `surface`: all strokes of a surface are in one part, so that nothing is asked about what was learned; `stroke`: at random.
+    pub by: SplitBy,
+    /// Share of `train`.
+    pub train: f64,
+    /// Share of `validation`.
+    pub validation: f64,
+    /// Share of `test`.
+    pub test: f64,
+}
+
+/// What is never parted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SplitBy {
+    /// The strokes of a surface.
+    #[default]
+    Surface,
+    /// Nothing but a stroke.
+    Stroke,
+}
+
+fn per_shard() -> u64 {
+    1000
+}
+
+fn portable() -> String {
+    Isa::Portable.name().to_owned()
+}
+
+impl Default for Finger {
+    fn default() -> Self {
+        Self {
+            speed_m_s: Value::Float(0.1),
+            force_n: Value::Float(1.0),
+            path: Value::String("line".to_owned()),
+            duration_s: Value::Float(1.0),
+            reports_hz: Value::Float(60.0),
+        }
+    }
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { format: Format::Parquet, tail_s: 0.1, haptic: Haptic::default(), audio: Audio::default() }
+    }
+}
+
+impl Default for Haptic {
+    fn default() -> Self {
+        Self { rate_hz: 8000.0, output: "displacement".to_owned(), full_scale: None }
+    }
+}
+
+impl Default for Audio {
+    fn default() -> Self {
+        Self { rate_hz: 44_100.0, codec: Codec::F32, gain: None }
+    }
+}
+
+impl Default for Split {
+    fn default() -> Self {
+        Self { by: SplitBy::Surface, train: 0.8, validation: 0.1, test: 0.1 }
+    }
+}
+
+impl Spec {
+    /// Reads a specification.
+    ///
+    /// # Errors
+    /// When it cannot be read, is not TOML, or a key is unknown, missing or out of its range; the message names it.
+    pub fn load(path: &Path) -> Result<Self, FileError> {
+        let text = fs::read_to_string(path).map_err(|error| FileError::read(path, &error))?;
+        Self::parse(text, path)
+    }
+
+    /// Checks the text of a specification that lies at `path`.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn parse(text: String, path: &Path) -> Result<Self, FileError> {
+        let says: Says = toml::from_str(&text).map_err(|error| {
+            let at =
+                error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
+            let message = error.message().lines().collect::<Vec<_>>().join(" ");
+            FileError::file(
+                path,
+                format!("line {at}: {message}"),
+                "docs/formats.md has the keys of a specification",
+            )
+        })?;
+        let mut spec = Self { path: path.to_owned(), text, says };
+        if spec.says.name.is_empty() {
+            spec.says.name =
+                path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        }
+        spec.check().map_err(|error| error.within(path.display()))?;
+        Ok(spec)
+    }
+
+    /// SHA-256 of its bytes, in hexadecimal digits.
+    #[must_use]
+    pub fn sha256(&self) -> String {
+        sha256(self.text.as_bytes())
+    }
+
+    /// How many shards there are.
+    #[must_use]
+    pub fn shards(&self) -> u64 {
+        self.says.strokes.div_ceil(self.says.per_shard)
+    }
+
+    /// The kernel family.
+    #[must_use]
+    pub fn kernel(&self) -> Isa {
+        Isa::from_name(&self.says.kernel).unwrap_or(Isa::Portable)
+    }
+
+    fn check(&self) -> Result<(), FileError> {
+        let says = &self.says;
+        whole("strokes", says.strokes, MOST_STROKES)?;
+        whole("per_shard", says.per_shard, MOST_PER_SHARD)?;
+        if Isa::from_name(&says.kernel).is_none() {
+            let names = Isa::ALL.map(Isa::name).join(", ");
+            return Err(FileError::new(
+                "kernel",
+                format!("\"{}\" is unknown", says.kernel),
+                format!("must be one of {names}"),
+            ));
+        }
+        if says.surface.choice.is_empty() {
+            let right = "write choice = [\"maps/*.toml\", { solid = \"granite\" }]";
+            return Err(FileError::new("surface.choice", "is empty", right));
+        }
+        let rates = asperity::limits::output::SAMPLE_RATE_HZ;
+        number("output.audio.rate_hz", says.output.audio.rate_hz, [8000.0, 384_000.0], rates.words)?;
+        number(
+            "output.haptic.rate_hz",
+            says.output.haptic.rate_hz,
+            [100.0, says.output.audio.rate_hz],
+            "must be 100 Hz to the rate of the audio",
+        )?;
+        number("output.tail_s", says.output.tail_s, [0.0, 60.0], "must be 0 to 60 s")?;
+        let known = ["displacement", "acceleration", "tangential"];
+        if !known.contains(&says.output.haptic.output.as_str()) {
+            let what = format!("\"{}\" is unknown", says.output.haptic.output);
+            return Err(FileError::new(
+                "output.haptic.output",
+                what,
+                format!("must be one of {}", known.join(", ")),
+            ));
+        }
+        says.output.audio.codec.check(says.output.audio.rate_hz)?;
+        let shares =
+            [("train", says.split.train), ("validation", says.split.validation), ("test", says.split.test)];
+        for (name, share) in shares {
+            number(&format!("split.{name}"), share, [0.0, 1.0], "must be 0 to 1")?;
+        }
+        let sum: f64 = shares.iter().map(|(_, share)| share).sum();
+        if (sum - 1.0).abs() > 1e-6 {
+            return Err(FileError::new(
+                "split",
+                format!("the shares add up to {sum}"),
+                "they must add up to 1",
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn whole(name: &str, value: u64, most: u64) -> Result<(), FileError> {
+    if (1..=most).contains(&value) {
+        return Ok(());
+    }
+    Err(FileError::new(name, format!("{value} is refused"), format!("must be 1 to {most}")))
+}
+
+fn number(name: &str, value: f64, [low, high]: [f64; 2], right: &str) -> Result<(), FileError> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(FileError::new(name, format!("{value} is refused"), right))
+}
+
+/// SHA-256 in hexadecimal digits.
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
+    hex(&Sha256::digest(bytes))
+}
+
+/// Bytes in hexadecimal digits.
+#[must_use]
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,203 @@
+//! A stroke: the scene and the contact log of one number of a data set, and what they render to.
+
+use crate::distribution::{drawn, drawn_table};
+use crate::draw::Draws;
+use crate::path::{Motion, Shape};
+use crate::spec::{Output, Spec};
+use crate::surfaces::{Choice, split};
+use asperity::Engine;
+use asperity::files::FileError;
+use asperity::files::contact_log::ContactLog;
+use asperity::files::scene_file::SceneFile;
+use asperity::offline::{self, Options, Render};
+use asperity::open::{Maps, Overrides};
+use std::path::Path;
+use toml::{Table, Value};
+
+/// Longest stroke, s.
+const MOST_S: f64 = 600.0;
+
+/// What was drawn for one stroke.
+#[derive(Debug, Clone)]
+pub struct Stroke {
+    /// Its number in twelve digits.
+    pub id: String,
+    /// `train`, `validation` or `test`.
+    pub split: &'static str,
+    /// Name of the surface.
+    pub surface: String,
+    /// Scene file, with paths relative to the data set's folder.
+    pub scene: String,
+    /// Contact log, JSON Lines.
+    pub contacts: String,
+    /// How the finger moves.
+    pub motion: Motion,
+}
+
+/// Levels that hold for every stroke of a data set, so that strokes can be compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DataLevels {
+    /// Metres or m/s² at sample value 1.
+    pub full_scale: f64,
+    /// Gain of the sound.
+    pub gain: f64,
+}
+
+impl Stroke {
+    /// The stroke of that number.
+    ///
+    /// # Errors
+    /// When a draw is out of its range; the message names the field and the stroke.
+    pub fn drawn(
+        spec: &Spec,
+        choices: &[Choice],
+        levels: Option<DataLevels>,
+        number: u64,
+        folder: &Path,
+    ) -> Result<Self, FileError> {
+        let draws = Draws { seed: spec.says.seed, stroke: number };
+        let at = |error: FileError| error.within(format!("{}: stroke {number}", spec.path.display()));
+        let place = draws.place("surface", choices.len());
+        let choice = &choices[place];
+        let id = format!("{number:012}");
+        let motion = motion(spec, draws).map_err(at)?;
+        let table = scene_of(spec, choice, levels, &id, draws).map_err(at)?;
+        let scene = toml::to_string(&table).map_err(|error| at(FileError::told(error)))?;
+        let file = SceneFile::parse(&scene, &folder.join(format!("{id}.toml"))).map_err(at)?;
+        let touched = &file.surfaces[0];
+        let log = motion.log(&touched.name, [touched.width_m, touched.height_m], draws);
+        let mut contacts = Vec::new();
+        log.write(&mut contacts).map_err(|error| at(FileError::told(error)))?;
+        let contacts = String::from_utf8(contacts).map_err(|error| at(FileError::told(error)))?;
+        let split = split(spec, place, choices.len(), number);
+        Ok(Self { id, split, surface: choice.name.clone(), scene, contacts, motion })
+    }
+}
+
+/// The scene and the contact log of a record, rendered: what `asperity render` makes of them.
+///
+/// # Errors
+/// When either cannot be used.
+pub fn rendered(
+    scene: &str,
+    contacts: &str,
+    spec_kernel: asperity::Isa,
+    id: &str,
+    folder: &Path,
+    maps: &Maps,
+) -> Result<Render, FileError> {
+    let file = SceneFile::parse(scene, &folder.join(format!("{id}.toml")))?;
+    let log = ContactLog::parse(contacts, id).map_err(FileError::told)?;
+    let overrides = Overrides { kernel: Some(spec_kernel), maps: Some(maps), ..Overrides::default() };
+    let Engine { scene, renderer, names, .. } = Engine::from_scene(&file, &overrides)?;
+    let options = Options { tail_s: file.tail_s, ..Options::default() };
+    offline::render(scene, renderer, &log, &names, &options)
+        .map_err(|error| FileError::told(error).within(id))
+}
+
+/// The levels of a data set: as its specification says, and where it is silent those that the level policy finds for its first choice.
+///
+/// # Errors
+/// When that scene cannot be opened.
+pub fn data_levels(
+    spec: &Spec,
+    choices: &[Choice],
+    folder: &Path,
+    maps: &Maps,
+) -> Result<DataLevels, FileError> {
+    let (haptic, audio) = (&spec.says.output.haptic, &spec.says.output.audio);
+    if let (Some(full_scale), Some(gain)) = (haptic.full_scale, audio.gain) {
+        return Ok(DataLevels { full_scale, gain });
+    }
+    let first = Stroke::drawn(spec, &choices[..1], None, 0, folder)?;
+    let file = SceneFile::parse(&first.scene, &folder.join("levels.toml"))?;
+    let overrides = Overrides { kernel: Some(spec.kernel()), maps: Some(maps), ..Overrides::default() };
+    let engine = Engine::from_scene(&file, &overrides)?;
+    Ok(DataLevels {
+        full_scale: haptic.full_scale.unwrap_or(engine.levels.full_scale[0]),
+        gain: audio.gain.unwrap_or(engine.levels.gain[0]),
+    })
+}
+
+fn motion(spec: &Spec, draws: Draws) -> Result<Motion, FileError> {
+    let finger = &spec.says.finger;
+    let number = |name: &str, value: &Value, [low, high]: [f64; 2]| {
+        let field = format!("finger.{name}");
+        let value = drawn(value, &field, draws)?;
+        let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+        match number {
+            Some(number) if (low..=high).contains(&number) => Ok(number),
+            Some(number) => {
+                Err(FileError::new(field, format!("{number} is refused"), format!("must be {low} to {high}")))
+            }
+            None => Err(FileError::new(field, "is no number", "write a number or a distribution of numbers")),
+        }
+    };
+    let shape = drawn(&finger.path, "finger.path", draws)?;
+    let shape = shape
+        .as_str()
+        .ok_or_else(|| FileError::new("finger.path", "is no text", "must be line, arc or back-and-forth"))?;
+    Ok(Motion {
+        shape: Shape::from_name(shape)?,
+        speed_m_s: number("speed_m_s", &finger.speed_m_s, [0.0, 10.0])?,
+        force_n: number("force_n", &finger.force_n, [0.0, 1e4])?,
+        duration_s: number("duration_s", &finger.duration_s, [0.001, MOST_S])?,
+        reports_hz: number("reports_hz", &finger.reports_hz, [1.0, 5000.0])?,
+    })
+}
+
+/// The choice's scene, with what the specification says over it, drawn for one stroke.
+fn scene_of(
+    spec: &Spec,
+    choice: &Choice,
+    levels: Option<DataLevels>,
+    id: &str,
+    draws: Draws,
+) -> Result<Table, FileError> {
+    let mut scene = drawn_table(&choice.scene, &choice.name, draws)?;
+    let touched = first(&mut scene, "surface");
+    touched.extend(drawn_table(&spec.says.surface.over, "surface", draws)?);
+    if !spec.says.body.is_empty() {
+        let name = touched.get("body").cloned().unwrap_or_else(|| Value::String("body".into()));
+        touched.insert("body".into(), name.clone());
+        let body = first(&mut scene, "body");
+        body.extend(drawn_table(&spec.says.body, "body", draws)?);
+        body.insert("name".into(), name);
+    }
+    if !spec.says.probe.is_empty() {
+        scene.insert("probe".into(), Value::Table(drawn_table(&spec.says.probe, "probe", draws)?));
+    }
+    // 63 bits are what TOML's whole numbers hold.
+    scene.insert("seed".into(), Value::Integer((draws.bits("scene.seed", 0)[0] >> 1) as i64));
+    scene.insert("contacts".into(), Value::String(format!("{id}.jsonl")));
+    outputs(&mut scene, &spec.says.output, levels);
+    Ok(scene)
+}
+
+/// One haptic channel and one bus, at the rate of the sound.
+fn outputs(scene: &mut Table, output: &Output, levels: Option<DataLevels>) {
+    scene.insert("sample_rate_hz".into(), Value::Float(output.audio.rate_hz));
+    scene.insert("tail_s".into(), Value::Float(output.tail_s));
+    let mut actuator = Table::new();
+    actuator.insert("output".into(), Value::String(output.haptic.output.clone()));
+    let mut audio = Table::new();
+    if let Some(levels) = levels {
+        actuator.insert("full_scale".into(), Value::Float(levels.full_scale));
+        audio.insert("gain".into(), Value::Float(levels.gain));
+    }
+    scene.insert("actuator".into(), Value::Array(vec![Value::Table(actuator)]));
+    scene.insert("audio".into(), Value::Table(audio));
+}
+
+/// The first table of a list, made where there is none.
+fn first<'a>(scene: &'a mut Table, key: &str) -> &'a mut Table {
+    let list = scene.entry(key).or_insert_with(|| Value::Array(Vec::new()));
+    if !list.is_array() {
+        *list = Value::Array(Vec::new());
+    }
+    let list = list.as_array_mut().expect("made a list above");
+    if list.first().is_none_or(|value| !value.is_table()) {
+        list.insert(0, Value::Table(Table::new()));
+    }
+    list[0].as_table_mut().expect("made a table above")
+}

@@ -1,0 +1,228 @@
+//! Data sets from outside: the same bytes whoever makes them, whatever happens on the way.
+
+use asperity::files::FileError;
+use asperity_batch::manifest::Manifest;
+use asperity_batch::{DataSet, Outcome, Spec, verify};
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+const SPEC: &str = r#"
+seed = 11
+strokes = 10
+per_shard = 4
+[surface]
+choice = [{ solid = "granite" }, { name = "plate", roughness = { uniform = [0, 1] } }]
+[body]
+stock = "plate"
+size_m = { uniform = [0.1, 0.3] }
+material = { choice = ["ceramic", "wood"] }
+[finger]
+speed_m_s = { log_uniform = [0.02, 0.3] }
+force_n = { normal = [0.6, 0.2], within = [0.1, 2] }
+path = { choice = ["line", "arc", "back-and-forth"] }
+duration_s = 0.1
+[output]
+tail_s = 0.02
+haptic = { rate_hz = 8000 }
+audio = { rate_hz = 22050 }
+"#;
+
+fn spec(folder: &TempDir, text: &str) -> Result<Spec, FileError> {
+    let path = folder.path().join("spec.toml");
+    fs::write(&path, text).unwrap();
+    Spec::load(&path)
+}
+
+fn set(folder: &TempDir, text: &str, name: &str) -> Result<DataSet, FileError> {
+    DataSet::open(spec(folder, text)?, &folder.path().join(name))
+}
+
+fn make(set: &DataSet, shards: impl IntoIterator<Item = u64>) {
+    for index in shards {
+        set.shard(index, || ()).unwrap();
+    }
+    set.write_manifest().unwrap();
+}
+
+fn bytes(folder: &TempDir, name: &str) -> Vec<Vec<u8>> {
+    ["shard-000000", "shard-000001", "shard-000002"]
+        .map(|shard| {
+            let file =
+                |extension: &str| fs::read(folder.path().join(name).join(format!("{shard}.{extension}")));
+            file("parquet").or_else(|_| file("tar")).unwrap()
+        })
+        .to_vec()
+}
+
+#[test]
+fn shards_have_the_same_bytes_in_any_order_and_after_a_killed_run() {
+    for format in ["parquet", "webdataset"] {
+        let folder = tempfile::tempdir().unwrap();
+        let text = SPEC.replace("tail_s", &format!("format = \"{format}\"\ntail_s"));
+        make(&set(&folder, &text, "one").unwrap(), 0..3);
+        make(&set(&folder, &text, "other").unwrap(), [2, 0, 1]);
+        assert_eq!(bytes(&folder, "one"), bytes(&folder, "other"));
+        // A run that was killed left a shard cut off, one without its hash, and half a file beside.
+        let one = folder.path().join("one");
+        let named = |shard: &str| {
+            one.join(format!("{shard}.{}", if format == "parquet" { "parquet" } else { "tar" }))
+        };
+        let whole = fs::read(named("shard-000001")).unwrap();
+        fs::write(named("shard-000001"), &whole[..whole.len() / 2]).unwrap();
+        fs::remove_file(
+            one.join(format!("{}.sha256", named("shard-000002").file_name().unwrap().to_string_lossy())),
+        )
+        .unwrap();
+        fs::write(one.join(".shard-000001.part"), b"half").unwrap();
+        let again = set(&folder, &text, "one").unwrap();
+        assert_eq!(again.shard(0, || ()).unwrap(), Outcome::Kept);
+        assert!(matches!(again.shard(1, || ()).unwrap(), Outcome::Made { .. }));
+        assert!(matches!(again.shard(2, || ()).unwrap(), Outcome::Made { .. }));
+        again.write_manifest().unwrap();
+        assert_eq!(bytes(&folder, "one"), bytes(&folder, "other"));
+        let found = verify(&one, 1.0, || ()).unwrap();
+        assert_eq!((found.shards, found.rendered, found.missing), (3, 10, 0));
+    }
+}
+
+#[test]
+fn a_stroke_is_the_same_whatever_the_size_of_shards() {
+    let folder = tempfile::tempdir().unwrap();
+    let small = set(&folder, SPEC, "small").unwrap();
+    let large = set(&folder, &SPEC.replace("per_shard = 4", "per_shard = 1000"), "large").unwrap();
+    for number in [0, 5, 9] {
+        let [a, b] = [&small, &large].map(|set| set.record(number).unwrap());
+        assert!(a.samples.same_bits(&b.samples));
+        assert_eq!((a.stroke.scene, a.stroke.contacts), (b.stroke.scene, b.stroke.contacts));
+    }
+}
+
+#[test]
+fn the_manifest_names_build_levels_units_and_every_shard_that_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = set(&folder, SPEC, "set").unwrap();
+    make(&set, [1]);
+    let there = Manifest::load(&folder.path().join("set")).unwrap().unwrap();
+    assert_eq!(there.shards.len(), 1);
+    assert_eq!((there.shards[0].file.as_str(), there.shards[0].strokes), ("shard-000001.parquet", 4));
+    make(&set, [0, 2]);
+    let there = Manifest::load(&folder.path().join("set")).unwrap().unwrap();
+    let strokes: Vec<u64> = there.shards.iter().map(|shard| shard.strokes).collect();
+    assert_eq!(strokes, [4, 4, 2]);
+    assert_eq!(there.build.spec_sha256, set.spec().sha256());
+    assert_eq!((there.build.kernel.as_str(), there.units.haptic.as_str()), ("portable", "m"));
+    assert!(there.levels.haptic_full_scale > 0.0 && there.levels.audio_gain > 0.0);
+    assert_eq!(there.splits.len(), 2);
+}
+
+#[test]
+fn a_record_holds_the_rates_and_lengths_that_were_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = set(&folder, SPEC, "set").unwrap().record(3).unwrap();
+    let asperity_batch::record::Sound::F32(audio) = &record.samples.audio else { panic!("asked for f32") };
+    // 0.1 s and its tail of 0.02 s.
+    assert!((audio.len() as f64 / 22_050.0 - 0.12).abs() < 2e-3, "{}", audio.len());
+    assert!((record.samples.haptic.len() as f64 / 8000.0 - 0.12).abs() < 2e-3);
+    assert!(record.samples.haptic.iter().any(|x| *x != 0.0) && audio.iter().any(|x| *x != 0.0));
+}
+
+#[test]
+fn flac_holds_the_samples_at_sixteen_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = set(&folder, SPEC, "plain").unwrap().record(2).unwrap();
+    let coded = SPEC.replace("rate_hz = 22050", "rate_hz = 22050, codec = \"flac16\"");
+    let coded = set(&folder, &coded, "coded").unwrap().record(2).unwrap();
+    let asperity_batch::record::Sound::Flac(file) = coded.samples.audio else { panic!("asked for flac16") };
+    let asperity_batch::record::Sound::F32(samples) = plain.samples.audio else { panic!("asked for f32") };
+    assert_eq!(&file[..4], b"fLaC");
+    assert!(file.len() < 2 * samples.len() + 10_000, "{} bytes for {} samples", file.len(), samples.len());
+}
+
+#[test]
+fn shards_of_another_build_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    make(&set(&folder, SPEC, "set").unwrap(), 0..1);
+    let refusal = |text: &str| set(&folder, text, "set").err().unwrap().to_string();
+    assert!(refusal(&SPEC.replace("seed = 11", "seed = 12")).contains("is of another build: spec_sha256"));
+    // A shard alone tells as well.
+    fs::remove_file(folder.path().join("set/manifest.json")).unwrap();
+    let other = set(&folder, &SPEC.replace("seed = 11", "seed = 12"), "set").unwrap();
+    let error = other.shard(0, || ()).unwrap_err().to_string();
+    assert!(error.contains("shard-000000.parquet: is of another build"), "{error}");
+}
+
+#[test]
+fn verify_names_the_first_bad_shard() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = set(&folder, SPEC, "set").unwrap();
+    make(&there, 0..3);
+    let path = folder.path().join("set/shard-000001.parquet");
+    let mut changed = fs::read(&path).unwrap();
+    let middle = changed.len() / 2;
+    changed[middle] ^= 1;
+    fs::write(&path, changed).unwrap();
+    let error = verify(&folder.path().join("set"), 0.0, || ()).unwrap_err().to_string();
+    assert!(error.contains("shard-000001.parquet: has other bytes"), "{error}");
+    let error = verify(folder.path(), 0.0, || ()).unwrap_err().to_string();
+    assert!(error.contains("manifest.json: no such file"), "{error}");
+}
+
+#[test]
+fn wrong_specifications_are_refused_in_one_line_and_leave_no_shard() {
+    for (from, to, part) in [
+        ("strokes = 10", "strokes = 0", "strokes: 0 is refused"),
+        ("per_shard = 4", "per_shards = 4", "line"),
+        ("seed = 11", "kernel = \"sse9\"", "kernel: \"sse9\" is unknown"),
+        ("solid = \"granite\"", "solid = \"cheese\"", "cheese"),
+        ("\"arc\"", "\"zigzag\"", "finger.path: \"zigzag\" is unknown"),
+        ("rate_hz = 8000", "rate_hz = 80000", "output.haptic.rate_hz: 80000 is refused"),
+        ("[0.02, 0.3]", "[0, 0.3]", "finger.speed_m_s.log_uniform: 0 is refused"),
+        ("stock = \"plate\"", "stock = \"plat\"", "plat"),
+        ("choice = [{", "choice = [\"no-such.toml\", {", "no-such.toml: no such file"),
+        ("choice = [{", "choice = [\"no-*.toml\", {", "no-*.toml: no file is called so"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let text = SPEC.replace(from, to);
+        assert_ne!(text, SPEC);
+        let made = set(&folder, &text, "set")
+            .and_then(|set| (0..3).try_for_each(|index| set.shard(index, || ()).map(drop)));
+        let error = made.err().unwrap_or_else(|| panic!("{to} was accepted")).to_string();
+        assert!(error.contains(part) && !error.contains('\n'), "{to}: {error}");
+        let left = fs::read_dir(folder.path().join("set")).into_iter().flatten().filter_map(Result::ok);
+        let shards = left.filter(|entry| entry.file_name().to_string_lossy().contains("shard-"));
+        // Shards before the refused stroke stand whole; nothing half-written does.
+        assert!(
+            shards.map(|entry| entry.file_name()).all(|name| !name.to_string_lossy().ends_with(".part")),
+            "{to}"
+        );
+    }
+}
+
+#[test]
+fn a_scene_file_s_maps_are_copied_and_a_record_renders_from_the_folder_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture: Vec<u8> = (0..64 * 64).map(|i| ((i * 7) % 251) as u8).collect();
+    let mut pgm = b"P5 64 64 255\n".to_vec();
+    pgm.extend(picture);
+    fs::write(folder.path().join("map.pgm"), pgm).unwrap();
+    let scene = "[[surface]]\nname = \"top\"\ndisplacement = \"map.pgm\"\nrelief_m = 1e-4\nwidth_m = 0.05\nheight_m = 0.05\n";
+    fs::write(folder.path().join("bricks.toml"), scene).unwrap();
+    let text = SPEC.replace("{ solid = \"granite\" }", "\"br*.toml\"");
+    make(&set(&folder, &text, "set").unwrap(), 0..3);
+    fs::remove_file(folder.path().join("map.pgm")).unwrap();
+    fs::remove_file(folder.path().join("bricks.toml")).unwrap();
+    let moved = folder.path().join("moved");
+    fs::rename(folder.path().join("set"), &moved).unwrap();
+    assert_eq!(verify(&moved, 1.0, || ()).unwrap().rendered, 10);
+    let is_copied = |path: &Path| path.join("map.pgm").exists();
+    assert!(fs::read_dir(moved.join("surfaces")).unwrap().any(|entry| is_copied(&entry.unwrap().path())));
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("file"), b"").unwrap();
+    let error = set(&folder, SPEC, "file").err().unwrap().to_string();
+    assert!(error.contains("file: cannot be written") && !error.contains('\n'), "{error}");
+}
