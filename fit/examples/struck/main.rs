@@ -1,9 +1,10 @@
-//! Fitted bodies beside their recordings, as the engine plays them: `struck [--program ASPERITY] [--out DIR] FILE…`
+//! Fitted bodies beside their recordings, as the engine plays them: `struck [--program ASPERITY] [--out DIR] [--late] FILE…`
 //!
 //! Every file is fitted, the modes are struck once in the engine by an impulse of the model's own size, and what the
 //! renderer gives is held against the recording from the onset on (time zero within ±1 ms). With `--program` the fit is
 //! that of another build of `asperity` (its `--json` and modes file are read), so that two builds can be compared. With
-//! `--out` recording, struck body and modes of every file are written there, to be heard and looked at.
+//! `--out` recording, struck body and modes of every file are written there, to be heard and looked at; with
+//! `--late` every late partial is told, what is missing of it, and the modes near it.
 //!
 //! | column | what |
 //! |---|---|
@@ -12,7 +13,7 @@
 //! | `err5`, `burst` | energy of the difference in the first 5 ms over the recording's there, dB; with a burst of 40 ms |
 //! | `snr`, `told` | recording over difference from the onset on, dB; what the fit says it is |
 //! | `late` | partials at 0.3–0.6 s within 25 dB of the loudest that are more than 20 dB too quiet, of all |
-//! | `decay` | median error of the decays of partials within 25 dB of the loudest, % |
+//! | `decay` | median error of the decays of partials within 25 dB of the loudest, %, by the slope of level and of energy to come |
 //! | `split` | strong resonances of several modes of which fewer would do + those that beat, of all ([`resonances`]) |
 //! | `ring` | longest T60 over the length of sound that was seen |
 //! | `modes`, `limit` | how many; whether a warning names the mode limit |
@@ -26,7 +27,7 @@ use asperity_dsp::mode::Mode;
 use asperity_fit::{ChannelChoice, Recording, load};
 use asperity_measure::score::snr_db;
 use fitting::{Fitted, by_program, in_process};
-use partials::{decay_errors, late_partials};
+use partials::{DecayError, decay_errors, late_partials};
 use resonances::{Resonances, resonances};
 
 /// Length of the burst that bodies carry, s.
@@ -41,6 +42,7 @@ fn main() {
     let mut args = std::env::args().skip(1).peekable();
     let program = args.next_if(|arg| arg == "--program").and_then(|_| args.next());
     let out = args.next_if(|arg| arg == "--out").and_then(|_| args.next());
+    let listed = args.next_if(|arg| arg == "--late").is_some();
     println!("    s   peak   err5  burst    snr   told    late  decay  split     ring  modes limit  file");
     let mut rows = Vec::new();
     for path in args {
@@ -51,7 +53,7 @@ fn main() {
         };
         let row = fitted.and_then(|fitted| {
             let recording = load(&path, ChannelChoice::Loudest).map_err(|error| error.to_string())?;
-            Row::of(&recording, &fitted, out.as_deref().map(|out| format!("{out}/{name}")))
+            Row::of(&recording, &fitted, out.as_deref().map(|out| format!("{out}/{name}")), listed)
         });
         match row {
             Ok(row) => {
@@ -73,7 +75,7 @@ struct Row {
     snr_db: f64,
     told_db: f64,
     late: (usize, usize),
-    decays: Vec<f64>,
+    decays: Vec<DecayError>,
     resonances: Resonances,
     ring: f64,
     modes: usize,
@@ -81,7 +83,7 @@ struct Row {
 }
 
 impl Row {
-    fn of(recording: &Recording, fitted: &Fitted, out: Option<String>) -> Result<Self, String> {
+    fn of(recording: &Recording, fitted: &Fitted, out: Option<String>, listed: bool) -> Result<Self, String> {
         let rate = recording.sample_rate_hz;
         let tail = &recording.samples[recording.samples.len() * 3 / 4..];
         let mean = tail.iter().sum::<f64>() / tail.len() as f64;
@@ -96,6 +98,10 @@ impl Row {
         if let Some(out) = out {
             written(&out, fitted, &sound, &alone, rate).map_err(|error| error.to_string())?;
         }
+        let late = late_partials(&sound, &alone, rate);
+        if listed {
+            late.iter().for_each(|late| println!("{}", late.text(&fitted.modes)));
+        }
         let strongest = fitted.modes.iter().map(|m| m.t60_s()).fold(0.0, f64::max);
         Ok(Self {
             cpu_s: fitted.cpu_s,
@@ -104,13 +110,17 @@ impl Row {
             burst_db: -snr_db(&sound[..attack], &whole[..attack]),
             snr_db: snr_db(&sound, &alone),
             told_db: fitted.told_snr_db,
-            late: late_partials(&sound, &alone, rate),
+            late: (late.iter().filter(|l| l.absent()).count(), late.len()),
             decays: decay_errors(&sound, &alone, rate),
             resonances: resonances(&fitted.modes, &sound, &left, rate),
             ring: strongest * rate / sound.len() as f64,
             modes: fitted.modes.len(),
             limit: fitted.warnings.iter().any(|w| w.starts_with("mode limit")),
         })
+    }
+
+    fn decay(&self) -> f64 {
+        quantile(&self.decays.iter().map(|d| d.both).collect::<Vec<_>>(), 0.5)
     }
 
     fn text(&self) -> String {
@@ -124,7 +134,7 @@ impl Row {
             self.told_db,
             self.late.0,
             self.late.1,
-            100.0 * quantile(&self.decays, 0.5),
+            100.0 * self.decay(),
             self.resonances.split,
             self.resonances.beating,
             self.resonances.all,
@@ -182,11 +192,13 @@ fn summary(rows: &[Row]) {
     line("snr dB", column(|r| r.snr_db));
     line("told - snr dB", column(|r| r.told_db - r.snr_db));
     line("ring", column(|r| r.ring));
-    let decays: Vec<f64> =
-        rows.iter().filter(|r| !r.decays.is_empty()).map(|r| quantile(&r.decays, 0.5)).collect();
-    line("decay %", decays.iter().map(|d| 100.0 * d).collect());
-    let all: Vec<f64> = rows.iter().flat_map(|r| &r.decays).map(|d| 100.0 * d).collect();
-    line("decay % of all", all);
+    let with_decays = rows.iter().filter(|r| !r.decays.is_empty());
+    line("decay %", with_decays.map(|r| 100.0 * r.decay()).collect());
+    let errors =
+        |of: fn(&DecayError) -> f64| rows.iter().flat_map(|r| &r.decays).map(|d| 100.0 * of(d)).collect();
+    line("of all", errors(|d| d.both));
+    line("  by level", errors(|d| d.level));
+    line("  by energy", errors(|d| d.energy));
     let sum = |part: fn(&Row) -> (usize, usize)| {
         rows.iter().map(part).fold((0, 0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
     };

@@ -1,8 +1,11 @@
 //! Partials of a sound, found in its spectra without any model.
 
+use asperity_dsp::mode::Mode;
 use asperity_fft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::PI;
 
+/// Modes so near a late partial, Hz, are told with it.
+const NEAR_HZ: f64 = 8.0;
 /// The late part, s after the onset.
 const LATE_S: (f64, f64) = (0.3, 0.6);
 /// What is looked for: within this of the loudest, this far over the surroundings; absent from this on, dB.
@@ -19,29 +22,62 @@ const STEP_S: f64 = 0.01;
 const FOLLOWED_DB: f64 = 35.0;
 const OVER_END_DB: f64 = 10.0;
 
-/// Late partials that are absent from `played`, and all of them.
-pub fn late_partials(sound: &[f64], played: &[f64], rate: f64) -> (usize, usize) {
+/// A late partial: its frequency, Hz, and by how much `played` is too quiet there, dB.
+pub struct Late {
+    pub hz: f64,
+    pub missing_db: f64,
+}
+
+impl Late {
+    pub fn absent(&self) -> bool {
+        self.missing_db > ABSENT_DB
+    }
+
+    /// With those of `modes` that lie near it, as frequency/decay/amplitude.
+    pub fn text(&self, modes: &[Mode]) -> String {
+        let near = modes.iter().filter(|m| (m.frequency_hz - self.hz).abs() < NEAR_HZ);
+        let near = near.map(|m| format!(" {:.2}/{:.2}/{:.1e}", m.frequency_hz, m.decay_per_s, m.amplitude));
+        let absent = if self.absent() { "absent" } else { "" };
+        format!(
+            "    late {:8.1} Hz {:6.1} dB {absent:6}{}",
+            self.hz,
+            self.missing_db,
+            near.collect::<String>()
+        )
+    }
+}
+
+/// The late partials of `sound`, and how much of each `played` misses.
+pub fn late_partials(sound: &[f64], played: &[f64], rate: f64) -> Vec<Late> {
     let part = |x: &[f64], (from, to): (f64, f64)| {
         let at = |s: f64| (s * rate) as usize;
         (at(to) <= x.len()).then(|| x[at(from)..at(to)].to_vec())
     };
     let middle = 0.5 * (LATE_S.0 + LATE_S.1);
-    let Some(late) = part(sound, LATE_S) else { return (0, 0) };
+    let Some(late) = part(sound, LATE_S) else { return Vec::new() };
     let (Some(first), Some(second)) = (part(sound, (LATE_S.0, middle)), part(sound, (middle, LATE_S.1)))
     else {
-        return (0, 0);
+        return Vec::new();
     };
     let found = peaks(&spectrum_db(&late), rate);
     let played = played[(LATE_S.0 * rate) as usize..(LATE_S.1 * rate) as usize].to_vec();
     let falls = |hz: &f64| level_db(&second, *hz, rate) < level_db(&first, *hz, rate) - 0.5;
-    let partials: Vec<f64> = found.into_iter().filter(falls).collect();
-    let absent =
-        partials.iter().filter(|&&hz| level_db(&played, hz, rate) < level_db(&late, hz, rate) - ABSENT_DB);
-    (absent.count(), partials.len())
+    let missing = |hz: f64| level_db(&late, hz, rate) - level_db(&played, hz, rate);
+    found.into_iter().filter(falls).map(|hz| Late { hz, missing_db: missing(hz) }).collect()
 }
 
-/// Relative errors of the decays of the strong partials.
-pub fn decay_errors(sound: &[f64], played: &[f64], rate: f64) -> Vec<f64> {
+/// Relative errors of one partial's decay.
+pub struct DecayError {
+    /// Of the slope of its level.
+    pub level: f64,
+    /// Of the slope of the energy still to come, which beats sway less (Schroeder 1965).
+    pub energy: f64,
+    /// Of both, their signs kept: the two know of each other no more than that they look at the same partial.
+    pub both: f64,
+}
+
+/// Errors of the decays of the strong partials.
+pub fn decay_errors(sound: &[f64], played: &[f64], rate: f64) -> Vec<DecayError> {
     let at = |s: f64| (s * rate) as usize;
     let early = &sound[at(DECAYING_S.0).min(sound.len())..at(DECAYING_S.1).min(sound.len())];
     if early.len() < 1024 {
@@ -59,12 +95,35 @@ pub fn decay_errors(sound: &[f64], played: &[f64], rate: f64) -> Vec<f64> {
             if followed < 6 {
                 return None;
             }
-            let slope = slope(&frames[..followed]);
-            let ours = levels(played, hz, rate);
+            let theirs = &frames[..followed];
+            let ours = &levels(played, hz, rate)[..followed];
             // What does not fall has no decay.
-            (slope < -0.02).then(|| (self::slope(&ours[..followed]) / slope - 1.0).abs())
+            let falls = slope(theirs) < -0.02;
+            let level = slope(ours) / slope(theirs) - 1.0;
+            let energy = slope(&to_come(ours)) / slope(&to_come(theirs)) - 1.0;
+            falls.then(|| DecayError {
+                level: level.abs(),
+                energy: energy.abs(),
+                both: (0.5 * (level + energy)).abs(),
+            })
         })
         .collect()
+}
+
+/// The energy still to come, dB, of the first seven tenths (after that it falls for want of what follows).
+fn to_come(levels: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let mut backwards: Vec<f64> = levels
+        .iter()
+        .rev()
+        .map(|level| {
+            sum += 10.0_f64.powf(0.1 * level);
+            10.0 * sum.log10()
+        })
+        .collect();
+    backwards.reverse();
+    backwards.truncate((levels.len() * 7 / 10).max(4));
+    backwards
 }
 
 /// Hann-windowed, padded fourfold.
