@@ -7,8 +7,9 @@ use crate::model::id::BodyId;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::Owner;
-use crate::prepared::body::{BodySlot, Spot, Terms};
+use crate::prepared::body::{BodySlot, Terms};
 use crate::prepared::body_rub::RubAsked;
+use crate::prepared::spot::Spot;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 

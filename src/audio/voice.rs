@@ -18,6 +18,7 @@ mod pad;
 mod path;
 mod profile;
 mod role;
+mod rub_block;
 mod scratch;
 mod shared;
 mod skin;

@@ -9,6 +9,7 @@ use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
 use crate::prepared::body_rub::{BodyRub, RubAsked};
 use crate::prepared::bursts::Bursts;
 use crate::prepared::impulse_ring::ImpulseRing;
+use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
@@ -66,20 +67,6 @@ struct Place {
     touched: bool,
     /// All of it, while the stretch is rendered.
     input: [f32; MAX_BLOCK],
-}
-
-/// Where something touches a body.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Spot {
-    /// A place of its surface, for a body that has shapes.
-    pub(crate) place: Option<StrikePlace>,
-    /// One of its strike positions, for one that has none.
-    pub(crate) position: usize,
-}
-
-impl Spot {
-    /// Where the body's own amplitudes belong.
-    pub(crate) const FIRST: Self = Self { place: None, position: 0 };
 }
 
 /// How a stretch is rendered.

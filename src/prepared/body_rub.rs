@@ -7,10 +7,10 @@
 
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::{Bank, Owner};
-use crate::prepared::body::Spot;
 use crate::prepared::body_field::BodyField;
 use crate::prepared::holding::HeldModes;
 use crate::prepared::slider::{self, Slider};
+use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
 use asperity_dsp::modal_bank::{
     AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup, design_group,

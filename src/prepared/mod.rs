@@ -12,6 +12,7 @@ pub(crate) mod impulse_ring;
 pub(crate) mod overlay;
 pub(crate) mod probe;
 pub(crate) mod slider;
+pub(crate) mod spot;
 pub(crate) mod stiffness;
 pub(crate) mod stroking;
 pub(crate) mod surface;

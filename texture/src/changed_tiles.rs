@@ -3,7 +3,8 @@
 //! Whoever changes a rectangle of cells marks it; whoever shows the grid looks at the marked tiles alone and begins anew. A mark too many
 //! costs a look, a mark too few would show what is no longer there.
 
-use crate::moving_picture::TILE_CELLS;
+/// Side of a tile, cells; those at the right and lower edge may be smaller.
+pub const TILE_CELLS: usize = 32;
 
 /// The marks of one grid.
 #[derive(Debug, Clone, PartialEq, Eq)]

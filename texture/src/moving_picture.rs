@@ -11,11 +11,9 @@
 //! on its own thread; until then a picture costs its writer one look a frame.
 
 use crate::changed_tiles::ChangedTiles;
+pub use crate::changed_tiles::TILE_CELLS;
 use std::sync::atomic::{AtomicU32, Ordering, fence};
 use std::sync::{Arc, OnceLock};
-
-/// Side of a tile, cells; those at the right and lower edge may be smaller.
-pub const TILE_CELLS: usize = 32;
 
 /// The heights of a grid of cells, shared by one writer and its readers.
 #[derive(Debug)]

@@ -2,7 +2,6 @@
 
 use crate::entry::{enter, out};
 use crate::handles::{AudioHalf, RENDERERS, SCENES, SceneHalf, asp_renderer, asp_scene};
-use crate::render::CHUNK_FRAMES;
 use crate::sized::{self, sized};
 use crate::status::{ASP_REFUSED, Failure};
 use crate::text;
@@ -21,6 +20,8 @@ pub const ASP_KERNEL_BEST: u32 = 0;
 /// The same bits on every processor.
 pub const ASP_KERNEL_PORTABLE: u32 = 1;
 
+/// Longest stretch rendered at once, frames; longer calls are split, which does not change a bit.
+pub(crate) const CHUNK_FRAMES: usize = 512;
 /// Most haptic channels of an engine that is built or loaded here.
 pub const ASP_MAX_CHANNELS: u32 = 64;
 /// Most audio buses of an engine.

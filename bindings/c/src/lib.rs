@@ -29,6 +29,7 @@ pub mod load;
 pub mod log;
 pub mod material;
 pub mod player;
+mod playing;
 pub mod port;
 pub mod probe;
 pub mod record;

@@ -2,6 +2,7 @@
 
 use crate::entry::{array_mut, enter, out};
 use crate::handles::{PLAYERS, RENDERERS, asp_player, asp_renderer};
+use crate::playing::Playing;
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_DEVICE, ASP_REFUSED, Failure};
 use crate::text;
@@ -75,15 +76,6 @@ sized!(asp_player_report, "asp_player_report", |struct_size| Self {
     mean_load: 0.0,
     peak_load: 0.0,
 });
-
-/// What a player's handle names.
-pub(crate) enum Playing {
-    /// A sound card; without the feature there is none.
-    #[cfg(feature = "device")]
-    Device(asperity::live::device::Player),
-    /// Nobody.
-    Silent { sink: NullSink, block_frames: usize, rate_hz: f64 },
-}
 
 /// A config whose texts have been read.
 struct Wanted<'a> {

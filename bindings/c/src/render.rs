@@ -1,13 +1,11 @@
 //! Render: what the audio thread calls. Nothing here fails, allocates, locks or waits; where anything is wrong it is silent.
 
-use crate::config::{ASP_MAX_BUSES, ASP_MAX_CHANNELS};
+use crate::config::{ASP_MAX_BUSES, ASP_MAX_CHANNELS, CHUNK_FRAMES};
 use crate::entry::{enter, out};
 use crate::handles::{AudioHalf, RENDERERS, SCENES, asp_renderer, asp_scene};
 use crate::status::{ASP_REFUSED, Failure};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Longest stretch rendered at once, frames; longer calls are split, which does not change a bit.
-pub(crate) const CHUNK_FRAMES: usize = 512;
 /// Most frames of one call; a longer one renders nothing.
 pub const ASP_MAX_FRAMES: u32 = 16777216;
 /// Most channels of an interleaved buffer; with more nothing is rendered.

@@ -9,9 +9,10 @@
 //! The effect finds its engine by a parameter, a small whole number that `asp_unity_slot` gives; no pointer ever travels as a float.
 //! Haptic channels leave by ports.
 
+use crate::config::CHUNK_FRAMES;
 use crate::entry::{enter, out};
 use crate::handles::{RENDERERS, asp_renderer};
-use crate::render::{CHUNK_FRAMES, guarded};
+use crate::render::guarded;
 use crate::status::{ASP_BAD_HANDLE, Failure};
 use std::ffi::{c_char, c_int, c_void};
 use std::sync::OnceLock;

@@ -23,6 +23,7 @@ pub mod blocks;
 pub mod events;
 pub mod exchange;
 pub mod files;
+mod open_ports;
 pub mod ports;
 pub mod record;
 pub mod session;

@@ -3,17 +3,10 @@
 use crate::exchange::{answer, done};
 use crate::session;
 use asperity::Actuator;
-use asperity::live::ports::{Feed, Levels, LevelsPort, Picture, PicturePort};
+use asperity::live::ports::{Feed, Levels, Picture};
 
 /// How much of what a port tells waits for a page that is late, s.
 const HOLDS_S: f64 = 0.25;
-
-/// The ports that are open.
-#[derive(Default)]
-pub(crate) struct Ports {
-    levels: Option<LevelsPort>,
-    picture: Option<PicturePort>,
-}
 
 /// Opens the levels of a haptic channel, `rate_hz` a second, in the place of those before.
 #[unsafe(no_mangle)]

@@ -1,7 +1,7 @@
 //! Session: the engine of this instance, from a scene file.
 
 use crate::exchange::{answer, done, inbox_text};
-use crate::ports::Ports;
+use crate::open_ports::Ports;
 use asperity::files::FileError;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;

@@ -7,7 +7,7 @@ use crate::link::message::{Dead, Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
-use crate::prepared::body::Spot;
+use crate::prepared::spot::Spot;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_texture::height_field::MAX_BLOCK;

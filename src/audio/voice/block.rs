@@ -1,6 +1,6 @@
 //! What a voice hands on: what is felt of it, what it sends to the body, what was counted.
 
-use super::exciters::RubBlock;
+use super::rub_block::RubBlock;
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// What one voice adds to a stretch of samples.

@@ -14,7 +14,6 @@ mod grains;
 mod loudness;
 
 pub(super) use force::ForceRun;
-pub(crate) use friction::RubBlock;
 
 use super::PadSample;
 use super::PathPoint;

@@ -11,7 +11,7 @@ use crate::model::id::{BodyId, ProbeId};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::LONGEST_CONTACT_S;
-use crate::prepared::body::Spot;
+use crate::prepared::spot::Spot;
 use crate::prepared::stroking::elastic;
 use asperity_dsp::hertz::{HertzContact, HertzPulse};
 use asperity_dsp::limits;

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import io
 import wave
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-
-if TYPE_CHECKING:
-    from asperity._take import Take
 
 _WIDTH, _ROW = 760, 90
 _HEARD, _FELT = "#7b4fb5", "#2f8f5b"
@@ -43,11 +40,11 @@ def _outline(samples: npt.NDArray[Any], top: float) -> tuple[str, float]:
     return " ".join(there + back), peak
 
 
-def svg(take: Take) -> str:
+def svg(audio: npt.NDArray[Any], haptic: npt.NDArray[Any], duration_s: float) -> str:
     """Waves of every bus and channel over time, each to its own peak, which is written beside it."""
-    buses = np.atleast_2d(take.audio)
+    buses = np.atleast_2d(audio)
     rows = [(f"heard {i}", _HEARD, bus) for i, bus in enumerate(buses)]
-    rows += [(f"felt {i}", _FELT, channel) for i, channel in enumerate(take.haptic)]
+    rows += [(f"felt {i}", _FELT, channel) for i, channel in enumerate(haptic)]
     rows = rows[:_MOST_ROWS]
     height = _ROW * len(rows) + 20
     drawn = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH} {height}" width="{_WIDTH}" font-size="11">']
@@ -59,5 +56,5 @@ def svg(take: Take) -> str:
             label += f", peak {peak:.3g}"
         drawn.append(f'<text x="4" y="{top + 14}">{label}</text>')
     drawn.append(f'<text x="4" y="{height - 5}">0 s</text>')
-    drawn.append(f'<text x="{_WIDTH - 4}" y="{height - 5}" text-anchor="end">{take.duration_s:.2f} s</text></svg>')
+    drawn.append(f'<text x="{_WIDTH - 4}" y="{height - 5}" text-anchor="end">{duration_s:.2f} s</text></svg>')
     return "".join(drawn)

@@ -101,4 +101,4 @@ class Take:
         mix = np.atleast_2d(self.audio).sum(axis=0)
         sound = base64.b64encode(_picture.wav16(mix, self.sr)).decode()
         player = f'<audio controls src="data:audio/wav;base64,{sound}"></audio>'
-        return f"<div>{player}<br>{_picture.svg(self)}</div>"
+        return f"<div>{player}<br>{_picture.svg(self.audio, self.haptic, self.duration_s)}</div>"

@@ -4,31 +4,11 @@
 //! same line with a negative speed.
 
 use super::PadSample;
+use crate::audio::voice::rub_block::RubBlock;
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::MAX_BLOCK;
 
 /// Below this speed a motion has no direction, m/s.
 const AIMLESS_M_S: f64 = 1e-3;
-
-/// What one contact rubs with during a stretch.
-pub(crate) struct RubBlock {
-    /// Whether it does.
-    pub(crate) rubs: bool,
-    /// The line along which it does: a unit vector of u and v.
-    pub(crate) along: [f64; 2],
-    pub(crate) sweep_m_s: [f64; MAX_BLOCK],
-    pub(crate) normal_force_n: [f64; MAX_BLOCK],
-}
-
-impl RubBlock {
-    /// Nothing.
-    pub(crate) const STILL: Self = Self {
-        rubs: false,
-        along: [1.0, 0.0],
-        sweep_m_s: [0.0; MAX_BLOCK],
-        normal_force_n: [0.0; MAX_BLOCK],
-    };
-}
 
 /// The line of one contact.
 #[derive(Clone, Copy)]
