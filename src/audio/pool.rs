@@ -70,21 +70,20 @@ impl<J: Job> Pool<J> {
 
     /// Runs all jobs, the last of them first, on all threads; they come back in any order.
     pub(crate) fn run(&mut self, jobs: &mut Vec<J>, room: &mut J::Room) {
-        let (mut out, mut kept) = (0_usize, None);
-        while let Some(job) = jobs.pop() {
+        // Never more than the way home has room for, however many helpers have taken meanwhile.
+        let most = self.queues.done.capacity();
+        let mut out = 0;
+        while out < most {
+            let Some(job) = jobs.pop() else { break };
             if let Err(job) = self.queues.waiting.push(job) {
-                // More than were announced.
-                kept = Some(job);
+                jobs.push(job);
                 break;
             }
             out += 1;
         }
         // One job is for this thread.
         self.wake(out.saturating_sub(1));
-        let mut at_home = usize::from(kept.is_some()) + jobs.len();
-        if let Some(job) = kept {
-            jobs.push(job);
-        }
+        let mut at_home = jobs.len();
         jobs.iter_mut().for_each(|job| job.run(room));
         let wanted = at_home + out;
         let mut looks = 0;
