@@ -6,7 +6,6 @@ mod counting;
 #[allow(dead_code)]
 mod random_game;
 
-#[allow(dead_code)]
 mod common;
 
 use asperity::{

@@ -218,7 +218,7 @@ mod tests {
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
         for (right, wrong) in [
-            ("\"byteOffset\":0,", "\"byteOffset\":9,"),
+            ("\"byteOffset\":0", "\"byteOffset\":9"),
             ("\"count\":8", "\"count\":9"),
             ("5125", "5126"),
             ("\"VEC3\"", "\"VEC2\""),

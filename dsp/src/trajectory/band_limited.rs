@@ -282,6 +282,7 @@ impl Features {
     }
 
     /// The mean of the motion given what was seen, as polynomials about a time after the latest report.
+    #[expect(clippy::needless_range_loop, reason = "indices are those of the equations")]
     fn posterior(&self, noise_m: f64, centre_s: f64) -> Polynomial {
         let n = self.count;
         let mut covariance = [[0.0; OBSERVED]; OBSERVED];
@@ -331,6 +332,7 @@ fn taylor(found: &[f64; 2 + 2 * WAVES], centre_s: f64) -> [f64; TERMS] {
 }
 
 /// A symmetric matrix, of which the lower half is given, as L Lᵀ in its place.
+#[expect(clippy::needless_range_loop, reason = "indices are those of the equations")]
 fn cholesky(a: &mut [[f64; OBSERVED]; OBSERVED], n: usize) {
     for j in 0..n {
         for i in j..n {

@@ -54,6 +54,7 @@ pub struct Ranked {
 /// assert_eq!(audible_count(&order, 6.0), 2);
 /// ```
 #[must_use]
+#[expect(clippy::needless_range_loop, reason = "indices are those of the equations")]
 pub fn perceptual_order(modes: &[Mode], loudest_db_spl: f64) -> Vec<Ranked> {
     let loudest = modes.iter().fold(0.0f64, |most, mode| most.max(mode.amplitude.abs()));
     let level = |mode: &Mode, t: f64| {

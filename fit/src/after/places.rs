@@ -7,7 +7,7 @@
 //!
 //! | symbol | here |
 //! |---|---|
-//! | x | signed amplitudes of the modes that all strikes have in common ([`Merged`](super::strikes::Merged)) |
+//! | x | signed amplitudes of the modes that all strikes have in common ([`Merged`]) |
 //! | φ_k(p) | motion of a point across the surface in the shape of that mode |
 //! | g_k | how loud a mode is in the recordings: one gain a mode |
 //! | c_s | how hard strike s was, against the first |

@@ -126,7 +126,7 @@ fn log(case: &Case) -> ContactLog {
         })
         .collect();
     lines.push(LogLine { t: end_s, event: LogEvent::End { contact: 1 } });
-    ContactLog { lines, ..ContactLog::default() }
+    ContactLog { lines }
 }
 
 /// Names and contents of a case's files.
