@@ -164,11 +164,14 @@ impl<'a> Document<'a> {
         let number = |value: &Value| usize::try_from(value.as_u64().unwrap_or(0)).ok();
         let (count, length) = (number(&accessor["count"])?, number(&view["byteLength"])?);
         let stride = number(&view["byteStride"])?.max(size);
-        let lies = self.numbers.get(number(&view["byteOffset"])?..)?.get(..length)?;
-        let bytes = lies.get(number(&accessor["byteOffset"])?..)?;
+        let (of_view, within) = (number(&view["byteOffset"])?, number(&accessor["byteOffset"])?);
+        let bytes = self.numbers.get(of_view..)?.get(..length)?.get(within..)?;
         let needed =
             count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size))?;
-        let fits = accessor["type"] == kind && needed <= bytes.len() && number(&view["buffer"])? == 0;
+        // Numbers of four bytes lie at multiples of four (glTF 2.0, section 3.6.2.4).
+        let is_aligned = [of_view, within, stride].iter().all(|bytes| bytes.is_multiple_of(4));
+        let fits =
+            accessor["type"] == kind && is_aligned && needed <= bytes.len() && number(&view["buffer"])? == 0;
         fits.then(|| Elements {
             bytes,
             component: accessor["componentType"].as_u64().unwrap_or(0),
