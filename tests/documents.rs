@@ -41,7 +41,7 @@ fn every_link_between_the_documents_leads_to_a_file() {
 #[test]
 fn every_test_bench_and_example_that_the_figures_name_exists() {
     let text = fs::read_to_string(root().join("docs/figures.md")).unwrap();
-    let crates = ["", "dsp", "texture", "fit", "shape", "ports", "observer", "cli"];
+    let crates = ["", "dsp", "texture", "fit", "shape", "ports", "observer", "batch", "cli"];
     let exists = |folder: &str, name: &str| {
         let place = |within: &str| root().join(within).join(folder).join(name);
         let is_there = |path: &Path| path.with_extension("rs").exists() || path.join("main.rs").exists();
