@@ -193,6 +193,8 @@ def test_ctrl_c_stops_long_work_at_once(what):
         time.sleep(0.3)
         os.kill(os.getpid(), signal.SIGINT)
 
+    # A shell that starts the tests in the background has Ctrl-C ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     threading.Thread(target=interrupt, daemon=True).start()
     rate = 48_000
     t = np.arange(4 * rate) / rate
