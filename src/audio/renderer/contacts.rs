@@ -127,6 +127,11 @@ impl Renderer {
             return None;
         }
         let due = self.due(stamp);
+        // Where it touched before it may still fade: from now on it is shown here alone.
+        self.voices
+            .iter_mut()
+            .filter(|voice| voice.contact == contact)
+            .for_each(|voice| voice.leave(&self.shared));
         let index = self.take_voice();
         self.voices_used.insert(index);
         let voice = &mut self.voices[index];

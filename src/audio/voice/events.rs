@@ -155,6 +155,7 @@ impl Voice {
         self.fades.resume(self.phase, shared);
         self.phase = Phase::Sounding;
         self.ended = false;
+        self.left_behind = false;
     }
 
     /// Fades because its contact goes on in another voice.
