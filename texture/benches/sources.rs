@@ -6,6 +6,7 @@ mod naive_sand;
 
 use asperity_texture::brownian::BrownianDesign;
 use asperity_texture::brownian::rendering::{BrownianPath, Rendering};
+use asperity_texture::footprint::{footprint_radius_m, sample_under};
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
 use asperity_texture::height_map::{Extent, HeightMap};
 use asperity_texture::lattice::Lattice;
@@ -77,6 +78,32 @@ fn blocks(c: &mut Criterion) {
     group.finish();
 }
 
+/// A ball of 8 mm that stands 1 mm deep in a soft map, dragged at 88 mm/s.
+fn footprint(c: &mut Criterion) {
+    let relief = Raster::from_fn(512, 512, |x, y| ((x * 7 + y * 13) % 32) as f64 / 31.0);
+    let square = Extent { width_m: 0.1, height_m: 0.1, relief_m: 1e-3 };
+    let mut map = HeightMap::new(&relief, square, Wrap::Repeat).expect("a map");
+    let mut group = c.benchmark_group("footprint");
+    group.throughput(Throughput::Elements(MAX_BLOCK as u64)).sample_size(20);
+    for (name, radius_m) in [("a point", 0.0), ("a ball", footprint_radius_m(8e-3, 1e-3))] {
+        let mut out = SurfaceBlock::default();
+        let position_m: [[f64; 2]; MAX_BLOCK] = core::array::from_fn(|i| [0.01 + 2e-6 * i as f64, 0.02]);
+        let path = PathBlock {
+            position_m: &position_m,
+            velocity_m_s: &[[0.0882, 0.0]; MAX_BLOCK],
+            footprint_m: &[2e-6; MAX_BLOCK],
+            normal_force_n: &[],
+            first_sample: 0,
+            contact: 0,
+            slopes: true,
+        };
+        group.bench_function(name, |b| {
+            b.iter(|| sample_under(&mut map, black_box(&path), &[radius_m; MAX_BLOCK], &mut out));
+        });
+    }
+    group.finish();
+}
+
 /// A frame while a fingertip is dragged over a million cells.
 fn sand_frame(c: &mut Criterion) {
     let design = SandDesign { width_m: 1.0, height_m: 1.0, cells: 1000, ..SandDesign::default() };
@@ -115,5 +142,5 @@ fn settling(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, blocks, sand_frame, settling);
+criterion_group!(benches, blocks, footprint, sand_frame, settling);
 criterion_main!(benches);

@@ -59,10 +59,12 @@ pub fn sample_under(
     let mut there = SurfaceBlock::default();
     for (ring, (distance, share, places)) in (0_u32..).zip(RINGS) {
         let weight = share / f64::from(places);
-        for place in 0..places {
-            // An odd ring begins between two places.
-            let turns = (f64::from(place) + 0.5 * f64::from(ring % 2)) / f64::from(places);
-            let (sine, cosine) = (core::f64::consts::TAU * turns + TURN_RAD * f64::from(ring)).sin_cos();
+        let step_rad = core::f64::consts::TAU / f64::from(places);
+        // An odd ring begins between two places.
+        let first_rad = 0.5 * f64::from(ring % 2) * step_rad + TURN_RAD * f64::from(ring);
+        let (mut sine, mut cosine) = libm::sincos(first_rad);
+        let (step_sine, step_cosine) = libm::sincos(step_rad);
+        for _ in 0..places {
             for (i, beside_m) in position_m[..n].iter_mut().enumerate() {
                 let away_m = distance * radius_m[i];
                 *beside_m = [path.position_m[i][0] + away_m * cosine, path.position_m[i][1] + away_m * sine];
@@ -79,6 +81,8 @@ pub fn sample_under(
                 out.height_m[i] += weight * there.height_m[i];
                 out.gradient[i] = [0, 1].map(|a| out.gradient[i][a] + weight * there.gradient[i][a]);
             }
+            (sine, cosine) =
+                (sine * step_cosine + cosine * step_sine, cosine * step_cosine - sine * step_sine);
         }
     }
 }

@@ -223,8 +223,8 @@ impl SandLaw {
             return self.depth_m(force_n);
         }
         let k = self.exponent_per_m;
-        let stiff_n = met.hardness * self.wet_stiffness_n() * (k * met.top_m).exp();
-        met.top_m + (carried_by_it_n / stiff_n).ln_1p() / k
+        let stiff_n = met.hardness * self.wet_stiffness_n() * libm::exp(k * met.top_m);
+        met.top_m + libm::log1p(carried_by_it_n / stiff_n) / k
     }
 
     /// How much what is met pushes aside a tool that is carried with `force_n`, along u and v, for each newton.

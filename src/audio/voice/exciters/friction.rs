@@ -26,7 +26,7 @@ impl Rubbing {
     /// The line turns to where it moves: called at the steps of the absolute sample grid, and when it begins.
     pub(super) fn turn(&mut self, velocity_m_s: [f64; 2]) {
         let [u, v] = velocity_m_s;
-        let speed_m_s = u.hypot(v);
+        let speed_m_s = libm::hypot(u, v);
         if speed_m_s > AIMLESS_M_S {
             let back = self.along[0] * u + self.along[1] * v < 0.0;
             let length = if back { -speed_m_s } else { speed_m_s };
