@@ -121,8 +121,8 @@ const FIGURES: [Figure; 7] = [
     (
         "contact, exact events",
         |level| contact(level, Integrator::ExactEvent),
-        0xCFF6_A8C2_639B_C333,
-        0x71D1_77D9_FC09_BEC5,
+        0x448C_AAB3_3A58_6667,
+        0x2CDA_0421_41C3_5730,
     ),
     (
         "contact, semi-implicit Euler",

@@ -1,8 +1,7 @@
 //! Bodies, banks and renders that the tests of the modal bank share.
 
 use asperity_dsp::modal_bank::{
-    GroupOptions, GroupState, Inputs, ModalBank, ModeGroup, ReferenceMode, ReferenceState,
-    design_groups,
+    GroupOptions, GroupState, Inputs, ModalBank, ModeGroup, ReferenceMode, ReferenceState, design_groups,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
