@@ -8,13 +8,15 @@ use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
 use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
 use crate::prepared::body_rub::{BodyRub, RubAsked};
 use crate::prepared::bursts::Bursts;
+use crate::prepared::early::{EarlyForce, Sent};
 use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
-    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, LaneGains, MissingSamples, ModalBank,
+    self, FirstSamples, ForceTaps, GroupOptions, GroupState, Input, Inputs, LaneGains, MissingSamples,
+    ModalBank,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -61,6 +63,9 @@ struct Place {
     gains: Vec<LaneGains>,
     /// For each level of modes left out.
     first_samples: [FirstSamples; MODE_LEVELS],
+    /// The same for forces, and the forces.
+    force_taps: [ForceTaps; MODE_LEVELS],
+    early_force: EarlyForce,
     bus: ImpulseRing,
     /// What contacts send during the present stretch.
     contacts_n_s: [f64; MAX_BLOCK],
@@ -82,7 +87,13 @@ impl Place {
     fn new(gains: Vec<LaneGains>, first_samples: [FirstSamples; MODE_LEVELS], sample_rate_hz: f64) -> Self {
         let bus = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
         let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
-        Self { gains, first_samples, bus, contacts_n_s, touched: false, input }
+        let force_taps = first_samples.map(|missing| missing.of_force());
+        let early_force = EarlyForce::REST;
+        Self { gains, first_samples, force_taps, early_force, bus, contacts_n_s, touched: false, input }
+    }
+
+    fn is_silent(&self, position: u64) -> bool {
+        !self.touched && self.early_force.is_silent() && self.bus.is_empty(position)
     }
 
     /// Gathers the impulses of the next `n` samples, and tells whether there may be any.
@@ -204,10 +215,10 @@ impl BodySlot {
     }
 
     /// Adds what one contact sends during the present stretch to where it is.
-    pub(crate) fn touch_at(&mut self, owner: Owner, spot: &Spot, impulse_n_s: &[f64]) {
+    pub(crate) fn touch_at(&mut self, owner: Owner, spot: &Spot, sent: Sent<'_>) {
         let anywhere = self.field.as_mut().zip(spot.place.as_ref());
-        if !anywhere.is_some_and(|(field, place)| field.touch(owner, place, impulse_n_s)) {
-            self.touch(spot.position, impulse_n_s, 1.0);
+        if !anywhere.is_some_and(|(field, place)| field.touch(owner, place, sent)) {
+            self.touch(spot.position, sent, 1.0);
         }
     }
 
@@ -225,12 +236,13 @@ impl BodySlot {
     }
 
     /// Adds what one contact sends during the present stretch.
-    pub(crate) fn touch(&mut self, position: usize, impulse_n_s: &[f64], sign: f64) {
+    pub(crate) fn touch(&mut self, position: usize, sent: Sent<'_>, sign: f64) {
         let place = self.place(position);
         place.touched = true;
-        for (sum, x) in place.contacts_n_s.iter_mut().zip(impulse_n_s) {
+        for (sum, x) in place.contacts_n_s.iter_mut().zip(sent.impulse_n_s) {
             *sum += sign * x;
         }
+        place.early_force.add(sent.force_n_s, sign);
     }
 
     /// Forgets all that rings and all that is on its way.
@@ -240,6 +252,7 @@ impl BodySlot {
             place.bus.clear();
             place.contacts_n_s.fill(0.0);
             place.touched = false;
+            place.early_force.silence();
         }
         if let Some(field) = &mut self.field {
             field.silence();
@@ -256,7 +269,7 @@ impl BodySlot {
         self.bank.awake() == 0
             && self.bursts.is_silent(position)
             && self.early.is_empty(position)
-            && self.places.iter().all(|place| !place.touched && place.bus.is_empty(position))
+            && self.places.iter().all(|place| place.is_silent(position))
             && self.field.as_ref().is_none_or(|field| field.is_silent(position))
             && self.rub.as_ref().is_none_or(|rub| rub.is_idle())
     }
@@ -332,6 +345,13 @@ impl BodySlot {
             _ => Inputs::Placed(&inputs[..count]),
         };
         self.bank.render_leading(driven, terms.position, inputs, out);
+        for place in &mut self.places {
+            place.early_force.render(&place.force_taps[terms.mode_level], out);
+            place.early_force.end_stretch(n);
+        }
+        if let Some(field) = &mut self.field {
+            field.begin_forces(terms.position, terms.mode_level, out);
+        }
         self.end_stretch(terms.position, n);
         groups - driven
     }

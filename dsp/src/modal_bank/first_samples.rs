@@ -26,7 +26,7 @@ use crate::mode::Mode;
 use core::f64::consts::PI;
 
 /// Samples of which something is missing after each part of a pulse.
-const REACH: usize = 2 * KERNEL_LATENCY;
+pub(super) const REACH: usize = 2 * KERNEL_LATENCY;
 /// Chebyshev coefficients a sample: exact to 1e-5 for a mode at the Nyquist frequency.
 const TERMS: usize = 9;
 /// Coefficients of the pulse's polynomial in x = 2 t/τ − 1.
@@ -35,7 +35,7 @@ const POWERS: usize = 11;
 const LONG: f64 = 8.0;
 
 /// Places and weights of Gauss's rule on −1…1: exact to degree 11.
-const GAUSS: [(f64, f64); 6] = [
+pub(super) const GAUSS: [(f64, f64); 6] = [
     (-0.932_469_514_203_152, 0.171_324_492_379_170_3),
     (-0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
     (-0.238_619_186_083_196_9, 0.467_913_934_572_691),
@@ -116,6 +116,11 @@ impl FirstSamples {
             all.add(&MissingSamples::of(&mode, sample_rate_hz)?, 1.0);
         }
         Ok(all.first_samples())
+    }
+
+    /// E in the sample after `first`, −1 ≤ x ≤ 1.
+    pub(super) fn missing_at(&self, first: usize, x: f64) -> f64 {
+        series(&self.pieces[first], x)
     }
 
     fn moment(&self, power: i32) -> f64 {

@@ -63,6 +63,7 @@ mod bank;
 mod culling;
 mod design;
 mod direct;
+mod early_force;
 mod first_samples;
 mod job;
 mod kernel;
@@ -80,6 +81,7 @@ pub use culling::{Culling, audible};
 pub use design::{
     GRID_SAMPLES, GroupOptions, GroupState, LaneGains, ModeGroup, design_group, design_groups, sort_by_decay,
 };
+pub use early_force::{EARLY_HISTORY, ForceTaps, add_early_force};
 pub use first_samples::{FirstSamples, MissingSamples};
 pub use job::{Input, MAX_INPUTS};
 pub use reference::{ReferenceMode, ReferenceState};

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! collisions, grains → Hertz pulses → ring ┐
-//! alternating contact force ───────────────┴ × loudness → impulses, N·s
+//! alternating contact force ───────────────┴ × loudness → impulses, N·s: spread for the bank, and as they are
 //! friction ── speed and force along the motion → the body's own step
 //! ```
 //! Pulses and force meet sample by sample, not in the ring, so that the order of additions depends on no split into blocks.
@@ -12,6 +12,7 @@ mod force;
 mod friction;
 mod grains;
 mod loudness;
+mod pulses;
 
 pub(super) use force::ForceRun;
 
@@ -19,7 +20,6 @@ use super::PadSample;
 use super::PathPoint;
 use super::block::VoiceBlock;
 use crate::model::excitation::Exciter;
-use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_texture::height_field::Reaction;
@@ -28,6 +28,7 @@ use force::ContactForce;
 use friction::Rubbing;
 use grains::Grains;
 use loudness::Loudness;
+use pulses::Pulses;
 
 /// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms, against jelly 20.
 const LONGEST_COLLISION_S: f64 = 0.04;
@@ -54,8 +55,7 @@ pub(super) struct Exciters {
     force: ContactForce,
     rubbing: Rubbing,
     loudness: Loudness,
-    /// Pulses on their way to the body.
-    ring: ImpulseRing,
+    pulses: Pulses,
 }
 
 impl Exciters {
@@ -67,7 +67,7 @@ impl Exciters {
             force: ContactForce::default(),
             rubbing: Rubbing::default(),
             loudness: Loudness::default(),
-            ring: ImpulseRing::new(LONGEST_COLLISION_S, sample_rate_hz),
+            pulses: Pulses::new(LONGEST_COLLISION_S, sample_rate_hz),
         }
     }
 
@@ -78,9 +78,7 @@ impl Exciters {
         self.force = ContactForce::default();
         self.rubbing = Rubbing::default();
         self.loudness = Loudness::of(loudness);
-        if !self.ring.is_empty(position) {
-            self.ring.clear();
-        }
+        self.pulses.clear(position);
     }
 
     /// More of it sounds, or less, and it moves elsewhere: called at the steps of the absolute sample grid.
@@ -115,31 +113,23 @@ impl Exciters {
         for (row, sample) in rows.iter().zip(by.position..) {
             if let Some(onset) = row.onset {
                 collisions += 1;
-                shortened += u64::from(self.collisions.strike(by, &onset, sample, &mut self.ring));
+                shortened += u64::from(self.collisions.strike(by, &onset, sample, &mut self.pulses));
             }
             if grains {
-                self.grains.shift(by, sample, &mut self.ring);
+                self.grains.shift(by, sample, &mut self.pulses);
             }
         }
-        let impulse_n_s = &mut out.impulse_n_s[..rows.len()];
-        self.empty_ring(by.position, impulse_n_s);
-        self.force.add(force, impulse_n_s);
+        let (impulse_n_s, force_n_s) = (&mut out.impulse_n_s[..rows.len()], &mut out.force_n_s[..rows.len()]);
+        self.pulses.take(by.position, impulse_n_s, force_n_s);
+        self.force.add(force, impulse_n_s, force_n_s);
         self.loudness.weigh(by.position, by.slow_step, impulse_n_s);
+        self.loudness.weigh(by.position, by.slow_step, force_n_s);
         (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
-    }
-
-    /// Takes the pulses of the coming samples off the ring, which is empty beyond the last pulse.
-    fn empty_ring(&mut self, position: u64, out: &mut [f64]) {
-        if self.ring.is_empty(position) {
-            return out.fill(0.0);
-        }
-        let mut next = self.ring.drain(position);
-        out.iter_mut().for_each(|y| *y = next());
     }
 
     /// Whether nothing sounds from `end` on, when this was the last impulse.
     pub(super) fn are_still(&self, last_n_s: f64, end: u64) -> bool {
-        last_n_s.abs() < STILL_N_S && self.ring.is_empty(end)
+        last_n_s.abs() < STILL_N_S && self.pulses.is_empty(end)
     }
 
     /// Forgets the forces of a contact that has come to rest.

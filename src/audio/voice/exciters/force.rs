@@ -24,9 +24,10 @@ pub(super) struct ContactForce {
 }
 
 impl ContactForce {
-    /// Adds the force as the body hears it to `out`.
-    pub(super) fn add(&mut self, run: &mut ForceRun, out: &mut [f64]) {
+    /// Adds the force as the bank hears it to `out`, and as it is to `unspread`.
+    pub(super) fn add(&mut self, run: &mut ForceRun, out: &mut [f64], unspread: &mut [f64]) {
         let n = out.len();
+        unspread.iter_mut().zip(run.samples(n)).for_each(|(sum, x)| *sum += *x);
         run.0[..FORCE_HISTORY].copy_from_slice(&self.history_n_s);
         hertz::spread_force(&run.0[..FORCE_HISTORY + n], out);
         self.history_n_s.copy_from_slice(&run.0[n..n + FORCE_HISTORY]);

@@ -1,0 +1,62 @@
+//! What the bank leaves out of the first samples of contacts ([`asperity_dsp::modal_bank::FirstSamples::of_force`]), for one place of a body.
+//!
+//! A contact sends its force twice: spread for the bank, and as it is for what the bank leaves out. The forces of all contacts at a place
+//! are added up sample by sample, and the last of them are remembered by the place, so that no split into blocks changes a sample.
+
+use asperity_dsp::modal_bank::{EARLY_HISTORY, ForceTaps, add_early_force};
+use asperity_texture::height_field::MAX_BLOCK;
+
+/// What a contact sends to a body during a stretch.
+#[derive(Clone, Copy)]
+pub(crate) struct Sent<'a> {
+    /// What reaches the bank, N·s.
+    pub(crate) impulse_n_s: &'a [f64],
+    /// Mean force × step, not spread and two samples earlier, N·s.
+    pub(crate) force_n_s: &'a [f64],
+}
+
+/// Forces at one place.
+pub(crate) struct EarlyForce {
+    /// The last of the stretches before, then those of the present one.
+    force_n_s: [f64; EARLY_HISTORY + MAX_BLOCK],
+    /// Whether any of them may not be zero.
+    busy: bool,
+}
+
+impl EarlyForce {
+    pub(crate) const REST: Self = Self { force_n_s: [0.0; EARLY_HISTORY + MAX_BLOCK], busy: false };
+
+    /// Adds what a contact sends during the present stretch.
+    pub(crate) fn add(&mut self, force_n_s: &[f64], sign: f64) {
+        self.busy = true;
+        for (sum, x) in self.force_n_s[EARLY_HISTORY..].iter_mut().zip(force_n_s) {
+            *sum += sign * x;
+        }
+    }
+
+    /// Whether nothing is on its way.
+    pub(crate) fn is_silent(&self) -> bool {
+        !self.busy
+    }
+
+    /// Forgets everything.
+    pub(crate) fn silence(&mut self) {
+        *self = Self::REST;
+    }
+
+    /// Adds what is missing to the output of the present stretch.
+    pub(crate) fn render(&self, taps: &ForceTaps, out: &mut [f32]) {
+        if self.busy {
+            add_early_force(taps, &self.force_n_s[..EARLY_HISTORY + out.len()], out);
+        }
+    }
+
+    /// The stretch of `n` samples is over.
+    pub(crate) fn end_stretch(&mut self, n: usize) {
+        if self.busy {
+            self.force_n_s.copy_within(n..n + EARLY_HISTORY, 0);
+            self.force_n_s[EARLY_HISTORY..].fill(0.0);
+            self.busy = self.force_n_s[..EARLY_HISTORY].iter().any(|x| *x != 0.0);
+        }
+    }
+}
