@@ -127,7 +127,7 @@ fn a_force_that_lasts_is_the_convolution_with_the_modes() {
 #[test]
 fn a_pulse_in_steps_gives_what_its_spread_form_leaves_out() {
     let modes = modes();
-    let (onset, samples) = (20.6, 25.0);
+    let (onset, samples) = (20.6_f64, 25.0_f64);
     let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: samples / RATE_HZ };
     let (mut spread, mut steps) = (vec![0.0; 4096], vec![0.0; 4096]);
     pulse.deposit(&mut spread, onset as u64, onset.fract(), RATE_HZ);

@@ -18,8 +18,10 @@ impl Collisions {
         if !by.slot.surface.excitation.has(Exciter::Collisions) {
             return false;
         }
-        // An onset is dated within the step that ends at its row.
-        let sample = row.saturating_sub(1);
+        // An onset is dated within the step that ends at its row, and a force is heard as if that step's middle were the row: both are
+        // half a step late.
+        let half = onset.offset + 0.5;
+        let (sample, offset) = if half < 1.0 { (row.saturating_sub(1), half) } else { (row, half - 1.0) };
         let own_s = by.slot.stroking.hertz.contact_time_s(onset.closing_m_s);
         let contact_time_s = by.probe.contact_time_ratio * own_s;
         let pulse = HertzPulse {
@@ -27,8 +29,8 @@ impl Collisions {
             contact_time_s: contact_time_s.min(LONGEST_COLLISION_S),
         };
         let rate_hz = by.sample_rate_hz;
-        if let Some(pulse) = self.merge.admit(pulse, sample, onset.offset, rate_hz) {
-            pulses.deposit(&pulse, sample, onset.offset, rate_hz);
+        if let Some(pulse) = self.merge.admit(pulse, sample, offset, rate_hz) {
+            pulses.deposit(&pulse, sample, offset, rate_hz);
         }
         contact_time_s > LONGEST_COLLISION_S
     }
