@@ -28,7 +28,8 @@ fn convolved(modes: &[Mode], force: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut out = vec![0.0; COUNT];
     let step = 1.0 / FINE as f64;
     for mode in modes {
-        let (decay, angle) = (mode.decay_per_s / RATE_HZ * step, 2.0 * PI * mode.frequency_hz / RATE_HZ * step);
+        let (decay, angle) =
+            (mode.decay_per_s / RATE_HZ * step, 2.0 * PI * mode.frequency_hz / RATE_HZ * step);
         let turn = |part: f64| {
             let ((sin, cos), size) = ((angle * part).sin_cos(), (-decay * part).exp());
             [size * cos, size * sin]
@@ -106,7 +107,9 @@ fn a_force_that_lasts_is_the_convolution_with_the_modes() {
     };
     // Fades in, so that nothing but the sine is heard.
     let sine = |hz: f64| {
-        move |t: f64| (2.0 * PI * hz / RATE_HZ * t).sin() * (0.5 - 0.5 * (PI * (t / 400.0).clamp(0.0, 1.0)).cos())
+        move |t: f64| {
+            (2.0 * PI * hz / RATE_HZ * t).sin() * (0.5 - 0.5 * (PI * (t / 400.0).clamp(0.0, 1.0)).cos())
+        }
     };
     let mut all = Vec::new();
     for samples in [44.1, 14.7] {
@@ -138,7 +141,8 @@ fn a_pulse_in_steps_gives_what_its_spread_form_leaves_out() {
     let mut input = vec![0.0; COUNT];
     take(&mut spread, 0, &mut input);
     let input: Vec<f64> = input.into_iter().map(f64::from).collect();
-    let [bare, whole] = rendered(&modes, &steps[..COUNT], &input, COUNT).map(|found| error_db(&found, &wanted));
+    let [bare, whole] =
+        rendered(&modes, &steps[..COUNT], &input, COUNT).map(|found| error_db(&found, &wanted));
     println!("{bare:.1} -> {whole:.1} dB");
     assert!(whole <= -45.0, "{whole} dB");
 }

@@ -55,7 +55,7 @@
 //!
 //! [`ModalBank`] is its face: the modes and their memory, which instructions run them, and what sleeps. [`AheadGroup`] tells what they will do by
 //! themselves, [`Culling`] says which modes are worth it,
-//! [`FirstSamples`] what the impulse ring takes from the beginning of a strike.
+//! [`FirstSamples`] what the impulse ring takes from the beginning of a strike and, sample by sample ([`add_early_force`]), of a contact.
 
 mod ahead;
 mod awake;
