@@ -122,7 +122,7 @@ fn a_force_that_lasts_is_the_convolution_with_the_modes() {
         println!("{name}: {before:.1} -> {after:.1} dB");
     }
     for (name, [_, after]) in all {
-        let most = if name.contains("6000") || name.contains("8000") { -30.0 } else { -45.0 };
+        let most = if name.contains("6000") || name.contains("8000") { -32.0 } else { -85.0 };
         assert!(after <= most, "{name}: {after} dB");
     }
 }
@@ -135,7 +135,8 @@ fn a_pulse_in_steps_gives_what_its_spread_form_leaves_out() {
     let (mut spread, mut steps) = (vec![0.0; 4096], vec![0.0; 4096]);
     pulse.deposit(&mut spread, onset as u64, onset.fract(), RATE_HZ);
     pulse.deposit_steps(&mut steps, onset as u64, onset.fract(), RATE_HZ);
-    assert!((steps.iter().sum::<f64>() - 1.0).abs() < 1e-12, "its impulse is kept");
+    let kept = steps.iter().sum::<f64>();
+    assert!((kept - 1.0).abs() < 1e-7, "its impulse is kept: {kept}");
     assert!(steps[..=onset as usize].iter().all(|x| *x == 0.0), "nothing comes before the contact");
     let wanted = convolved(&modes, |t| asperity_dsp::hertz::pulse_shape((t - onset) / samples) / samples);
     let mut input = vec![0.0; COUNT];
@@ -144,5 +145,5 @@ fn a_pulse_in_steps_gives_what_its_spread_form_leaves_out() {
     let [bare, whole] =
         rendered(&modes, &steps[..COUNT], &input, COUNT).map(|found| error_db(&found, &wanted));
     println!("{bare:.1} -> {whole:.1} dB");
-    assert!(whole <= -45.0, "{whole} dB");
+    assert!(whole <= -85.0, "{whole} dB");
 }
