@@ -7,6 +7,7 @@
 //! to 0.01 dB up to 0.9 of the lower Nyquist frequency.
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 /// Zero crossings on either side.
 const CROSSINGS: usize = 32;
@@ -22,7 +23,9 @@ pub fn resampled(samples: &[f64], from_hz: f64, to_hz: f64) -> Vec<f64> {
     if from_hz == to_hz {
         return samples.to_vec();
     }
-    let table = kernel();
+    // The same for every rate: made once, because it takes as long as two seconds of samples.
+    static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
+    let table = TABLE.get_or_init(kernel);
     let step = from_hz / to_hz;
     let cut = EDGE * (to_hz / from_hz).min(1.0);
     let reach = CROSSINGS as f64 / cut;

@@ -5,14 +5,13 @@ import gc
 import os
 import pathlib
 import signal
-import subprocess
-import sys
 import threading
 import time
 import tracemalloc
 
 import numpy as np
 import pytest
+from machine import busy
 
 import asperity as asp
 
@@ -36,20 +35,6 @@ def strokes(duration):
     ]
     rows = np.concatenate(rows)
     return rows[np.argsort(rows["t"], kind="stable")]
-
-
-def busy(seconds_of_work):
-    """Two busy processes beside one: how many times as much gets done."""
-    work = f"x = 0\nfor i in range({seconds_of_work}): x += i * i"
-
-    def run(count):
-        began = time.perf_counter()
-        children = [subprocess.Popen([sys.executable, "-c", work]) for _ in range(count)]
-        for child in children:
-            child.wait()
-        return time.perf_counter() - began
-
-    return 2.0 * min(run(1) for _ in range(3)) / min(run(2) for _ in range(3))
 
 
 def test_two_threads_render_in_the_time_of_one():

@@ -1,6 +1,6 @@
 //! The picture of a solved body: its first shapes on the mesh, its frequencies, its damping.
 
-use super::file::ModesFile;
+use asperity_tools::modes_file::ModesFile;
 use crate::plot::colour::Scale;
 use crate::plot::{Axis, Figure, Layer, Panel, Picture, Series, palette};
 use asperity_dsp::damping::Damping;
