@@ -120,8 +120,7 @@ fn render(
     };
     let Engine { scene, renderer, names, .. } = Engine::from_scene(file, &overrides)?;
     let options = Options { tail_s: file.tail_s, ..Options::default() };
-    offline::render(scene, renderer, log, &names, &options)
-        .map_err(|error| FileError::told(error).within(id))
+    offline::render(scene, renderer, log, &names, &options).map_err(|error| FileError::told(error).within(id))
 }
 
 /// The levels of a data set: as its specification says, and where it is silent those that the level policy finds for its first choice.

@@ -52,8 +52,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     })
     .map_err(|error| CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) }))?;
     drop(progress);
-    let mut file = ModesFile::new(&mut body, &damping, options.radiation, &options.body)
-        .map_err(CliError::told)?;
+    let mut file =
+        ModesFile::new(&mut body, &damping, options.radiation, &options.body).map_err(CliError::told)?;
     let mut outputs = Outputs::new();
     let text = serde_json::to_string(&file)
         .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;
