@@ -94,14 +94,15 @@ def dask(spec: Path, folder: Path, client: Any = None, *, shard: str | None = No
 
     Raises as `make`, with the first error of a worker; what is whole by then stays, and the next call goes on.
     """
-    from distributed import Client, as_completed
+    import distributed
 
-    client = client if client is not None else Client.current()
+    engine: Any = distributed
+    client = client if client is not None else engine.Client.current()
     data, mine, work = _prepared(spec, folder, shard)
     futures = client.map(_made, *_columns(work, mine), pure=False, retries=retries)
     try:
         with shown(progress, "shards") as tell:
-            return _report(data, _told((future.result() for future in as_completed(futures)), len(mine), tell))
+            return _report(data, _told((future.result() for future in engine.as_completed(futures)), len(mine), tell))
     finally:
         # What was not waited for is not wanted either.
         client.cancel(futures)
