@@ -67,7 +67,7 @@ struct Phase {
 
 impl Ratio {
     fn of(from_hz: f64, to_hz: f64) -> Option<Self> {
-        let whole = |hz: f64| (hz.fract() == 0.0 && hz >= 1.0 && hz < 1e9).then_some(hz as usize);
+        let whole = |hz: f64| (hz.fract() == 0.0 && (1.0..1e9).contains(&hz)).then_some(hz as usize);
         let (from, to) = (whole(from_hz)?, whole(to_hz)?);
         let (mut a, mut b) = (from, to);
         while b > 0 {
@@ -166,7 +166,7 @@ mod tests {
         {
             let x = sine(150.0, from_hz, count);
             let y = resampled(&x, from_hz, to_hz);
-            let (table, cut) = (kernel(), EDGE * (to_hz / from_hz as f64).min(1.0));
+            let (table, cut) = (kernel(), EDGE * (to_hz / from_hz).min(1.0));
             let within = |distance: f64| distance.abs() * cut <= CROSSINGS as f64;
             for (k, y) in y.iter().enumerate() {
                 let at = |n: usize| k as f64 * from_hz / to_hz - n as f64;
