@@ -26,8 +26,7 @@ const METHODS: [(&str, Method); 4] = [
 /// The brightness of a photograph, 0 to 1, and how much of it is colour rather than light.
 #[pyfunction]
 pub fn read_photograph<'py>(py: Python<'py>, path: PathBuf) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-    let (image, colour) =
-        py.detach(|| load_photograph(&path)).map_err(|error| refused_at(&path, error))?;
+    let (image, colour) = py.detach(|| load_photograph(&path)).map_err(|error| refused_at(&path, error))?;
     Ok((array(py, image.raster)?, colour))
 }
 
@@ -61,9 +60,8 @@ pub fn from_photo<'py>(
         exaggeration: exaggerate,
     };
     let pulse = Pulse::new(progress);
-    let surface = py
-        .detach(|| pulse.run(|tell| surface_from_photo(&picture, &options, tell)))?
-        .map_err(refused)?;
+    let surface =
+        py.detach(|| pulse.run(|tell| surface_from_photo(&picture, &options, tell)))?.map_err(refused)?;
     let told = told(py, &surface, options.texel_m, reduced_by)?;
     let heights_m = surface.displacement.map(|grey| grey * surface.relief_m);
     Ok((array(py, heights_m)?, array(py, surface.roughness)?, told))

@@ -41,20 +41,25 @@ pub fn modes<'py>(
             let recorded = asperity::ModalModel::load(path).map_err(|error| refused_at(path, error))?;
             asperity_shape::damping_fit::fit(&recorded.modes).ok_or_else(|| {
                 let path = path.display();
-                refused(format!("{path}: has no damped mode to learn from; name the modes file of a recording"))
+                refused(format!(
+                    "{path}: has no damped mode to learn from; name the modes file of a recording"
+                ))
             })?
         }
     };
     let wanted = wanted(up_to_hz, max_modes)?;
     let mesh = match (&path, surface) {
-        (Some(path), _) => py.detach(|| asperity_shape::load(path)).map_err(|error| refused_at(path, error))?,
+        (Some(path), _) => {
+            py.detach(|| asperity_shape::load(path)).map_err(|error| refused_at(path, error))?
+        }
         (None, Some((points, triangles))) => mesh_of(&points, &triangles)?,
         (None, None) => return Err(refused("mesh: is missing; give a path, or points and triangles")),
     };
     let source = path.unwrap_or_else(|| PathBuf::from("mesh"));
     let making = Making { material: elastic, size_m, thickness_m, wanted };
     let pulse = Pulse::new(progress);
-    let solved = py.detach(|| pulse.run(|tell| asperity_shape::make(mesh, &making, &mut |done| tell(done))))?;
+    let solved =
+        py.detach(|| pulse.run(|tell| asperity_shape::make(mesh, &making, &mut |done| tell(done))))?;
     let name = source.display().to_string();
     let option = |error: asperity_shape::ShapeError| {
         // What the program calls an option is an argument here.
@@ -118,10 +123,7 @@ fn wanted(up_to_hz: Option<f64>, max_modes: Option<usize>) -> PyResult<Wanted> {
     })
 }
 
-fn mesh_of(
-    points: &PyReadonlyArray2<'_, f64>,
-    triangles: &PyReadonlyArray2<'_, u32>,
-) -> PyResult<Mesh> {
+fn mesh_of(points: &PyReadonlyArray2<'_, f64>, triangles: &PyReadonlyArray2<'_, u32>) -> PyResult<Mesh> {
     let three = |name: &str, shape: &[usize]| match shape {
         [_, 3] => Ok(()),
         _ => Err(refused(format!("{name}: has the shape {shape:?}; must be (n, 3)"))),
