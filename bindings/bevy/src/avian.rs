@@ -11,14 +11,12 @@
 use crate::component::TouchThing;
 use crate::plugin::TouchSystems;
 use crate::touch::Touch;
-use asperity::{
-    Actuator, ContactEvent, ContactId, ContactSample, Impact, SurfaceId, Touching,
-};
+use asperity::{Actuator, ContactEvent, ContactId, ContactSample, Impact, SurfaceId, Touching};
+use avian3d::math::Vector;
 use avian3d::prelude::{
     AngularVelocity, Collider, Collisions, ComputedCenterOfMass, ContactPair, LinearVelocity, PhysicsSystems,
     Position, Rotation,
 };
-use avian3d::math::Vector;
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time};
@@ -76,8 +74,13 @@ struct Solved {
 impl Solved {
     /// `None` when nothing presses.
     fn of(pair: &ContactPair) -> Option<Self> {
-        let mut solved =
-            Self { point_m: Vector::ZERO, normal: Vector::ZERO, impulse_n_s: 0.0, closing_m_s: 0.0, restitution: 0.0 };
+        let mut solved = Self {
+            point_m: Vector::ZERO,
+            normal: Vector::ZERO,
+            impulse_n_s: 0.0,
+            closing_m_s: 0.0,
+            restitution: 0.0,
+        };
         for manifold in &pair.manifolds {
             for point in &manifold.points {
                 solved.point_m += point.point * point.normal_impulse;
@@ -107,7 +110,15 @@ struct Motion {
 }
 
 impl Motion {
-    fn of((position, rotation, linear, angular, centre): (&Position, &Rotation, &LinearVelocity, &AngularVelocity, Option<&ComputedCenterOfMass>)) -> Self {
+    fn of(
+        (position, rotation, linear, angular, centre): (
+            &Position,
+            &Rotation,
+            &LinearVelocity,
+            &AngularVelocity,
+            Option<&ComputedCenterOfMass>,
+        ),
+    ) -> Self {
         let centre_m = position.0 + centre.map_or(Vector::ZERO, |centre| rotation.0 * centre.0);
         Self { linear_m_s: linear.0, angular_rad_s: angular.0, centre_m }
     }
@@ -143,8 +154,12 @@ fn listen(
         let pair = pairs.entry(entities).or_default();
         pair.seen = true;
         let sides = [first, second];
-        let strikes = landed && solved.closing_m_s > QUIET_LANDING_M_S
-            && !entities.iter().zip(sides).any(|(entity, (thing, ..))| thing.actuator.is_some() && touch.body(*entity).is_none());
+        let strikes = landed
+            && solved.closing_m_s > QUIET_LANDING_M_S
+            && !entities
+                .iter()
+                .zip(sides)
+                .any(|(entity, (thing, ..))| thing.actuator.is_some() && touch.body(*entity).is_none());
         if strikes {
             events.extend(impact(entities, sides, &solved, &touch));
             continue;

@@ -36,7 +36,11 @@ pub(crate) fn surface_went(on: On<Remove, TouchSurface>, touch: Option<ResMut<To
     }
 }
 
-pub(crate) fn probe_came(on: On<Insert, TouchProbe>, probes: Query<&TouchProbe>, touch: Option<ResMut<Touch>>) {
+pub(crate) fn probe_came(
+    on: On<Insert, TouchProbe>,
+    probes: Query<&TouchProbe>,
+    touch: Option<ResMut<Touch>>,
+) {
     if let (Ok(probe), Some(mut touch)) = (probes.get(on.entity), touch) {
         touch.set_probe(on.entity, probe);
     }

@@ -49,8 +49,9 @@ impl NullOutput {
         while renderer.position() < due {
             let frames = (due - renderer.position()).min(BLOCK as u64) as usize;
             let [haptic, audio] = &mut self.block;
-            let mut slices = [haptic, audio]
-                .map(|channels| channels.iter_mut().map(|channel| &mut channel[..frames]).collect::<Vec<_>>());
+            let mut slices = [haptic, audio].map(|channels| {
+                channels.iter_mut().map(|channel| &mut channel[..frames]).collect::<Vec<_>>()
+            });
             let [haptic, audio] = &mut slices;
             renderer.render(haptic, audio);
             if self.keep {

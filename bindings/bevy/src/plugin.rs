@@ -101,7 +101,10 @@ impl AsperityPlugin {
 /// The running device; dropped with the app.
 #[cfg(feature = "device")]
 #[derive(Resource)]
-struct Playing(#[expect(dead_code, reason = "it plays for as long as it lives")] std::sync::Mutex<asperity::live::device::Player>);
+struct Playing(
+    #[expect(dead_code, reason = "it plays for as long as it lives")]
+    std::sync::Mutex<asperity::live::device::Player>,
+);
 
 /// At the end of each fixed step, with its time.
 fn report(
@@ -112,8 +115,9 @@ fn report(
 ) {
     let Some(mut touch) = touch else { return events.clear() };
     for event in events.read() {
-        let (TouchEvent::Begin { toucher, .. } | TouchEvent::Move { toucher, .. } | TouchEvent::End { toucher }) =
-            *event
+        let (TouchEvent::Begin { toucher, .. }
+        | TouchEvent::Move { toucher, .. }
+        | TouchEvent::End { toucher }) = *event
         else {
             touch.told(time.elapsed_secs_f64(), event, None);
             continue;

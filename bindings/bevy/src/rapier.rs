@@ -34,7 +34,9 @@ struct Listener {
 impl Plugin for RapierTouchPlugin {
     fn build(&self, app: &mut App) {
         let Some(mut touch) = app.world_mut().get_resource_mut::<Touch>() else {
-            return log::error!("asperity hears no rapier: AsperityPlugin has to be added before, and to be built");
+            return log::error!(
+                "asperity hears no rapier: AsperityPlugin has to be added before, and to be built"
+            );
         };
         match Adapter::new(touch.scene()) {
             Ok(adapter) => {

@@ -14,8 +14,8 @@ use bevy_ecs::prelude::*;
 use bevy_seedling::node::RegisterNode;
 use firewheel::channel_config::{ChannelConfig, ChannelCount};
 use firewheel::node::{
-    AudioNode, AudioNodeInfo, AudioNodeProcessor, ConstructProcessorContext, EmptyConfig, NodeError, ProcBuffers,
-    ProcExtra, ProcInfo, ProcessStatus,
+    AudioNode, AudioNodeInfo, AudioNodeProcessor, ConstructProcessorContext, EmptyConfig, NodeError,
+    ProcBuffers, ProcExtra, ProcInfo, ProcessStatus,
 };
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -121,11 +121,15 @@ impl Touch {
     /// Puts an entity's surface into the scene, or another one into its place.
     pub(crate) fn set_surface(&mut self, entity: Entity, surface: &TouchSurface) {
         let Some(mut is) = surface.take() else {
-            return self.refused(entity, "surface: was moved into the scene before; must be a new TouchSurface");
+            return self
+                .refused(entity, "surface: was moved into the scene before; must be a new TouchSurface");
         };
         let body = self.body(surface.body().unwrap_or(entity));
         if surface.body().is_some() && body.is_none() {
-            self.refused(entity, "body: the entity named by on() has no TouchBody; add it before the surface");
+            self.refused(
+                entity,
+                "body: the entity named by on() has no TouchBody; add it before the surface",
+            );
         }
         if let Some(body) = body {
             is = is.on(body);
@@ -195,8 +199,10 @@ impl Touch {
         match *event {
             TouchEvent::Begin { toucher, surface, sample } => {
                 let Some(id) = self.surface(surface) else {
-                    return self
-                        .refused(surface, "surface: the entity has no TouchSurface; add it before it is touched");
+                    return self.refused(
+                        surface,
+                        "surface: the entity has no TouchSurface; add it before it is touched",
+                    );
                 };
                 self.lift(time_s, toucher);
                 let contact = Contact { id: ContactId(self.next_contact), surface };

@@ -118,14 +118,16 @@ fn a_finger_that_is_despawned_lifts_off() {
 fn a_hitch_of_200_ms_leaves_no_hole_and_no_stuck_contact() {
     let mut app = app();
     let both = finger_and_plate(&mut app);
+    touch(&mut app).start_recording();
     stroke(&mut app, both, 0..40);
     frame(&mut app, Duration::from_millis(200));
     let from = played(&app);
-    stroke(&mut app, both, 40..80);
+    stroke(&mut app, both, 40..110);
     assert!(heard(&app, from) > 1e-6);
     let stats = touch(&mut app).stats();
     assert_eq!((stats.refused, stats.dropped, stats.quarantined), (0, 0, 0));
     assert_eq!(errors(&mut app), [""; 0]);
+    assert_same_bits(&mut app, 1);
 }
 
 #[test]
@@ -186,7 +188,10 @@ fn what_is_refused_is_told_as_a_message_in_the_engines_words() {
     let [toucher, surface] = finger_and_plate(&mut app);
     let empty = app.world_mut().spawn_empty().id();
     let good = sliding(0.0);
-    tell(&mut app, TouchEvent::Begin { toucher, surface, sample: ContactSample { normal_force_n: f64::NAN, ..good } });
+    tell(
+        &mut app,
+        TouchEvent::Begin { toucher, surface, sample: ContactSample { normal_force_n: f64::NAN, ..good } },
+    );
     tell(&mut app, TouchEvent::Begin { toucher, surface: empty, sample: good });
     tell(&mut app, TouchEvent::Move { toucher, sample: good });
     let impact = Impact { speed_m_s: -1.0, ..Impact::on(asperity::BodyId::from_bits(0)) };
@@ -196,7 +201,13 @@ fn what_is_refused_is_told_as_a_message_in_the_engines_words() {
     app.update();
     app.update();
     let told = errors(&mut app);
-    let starts = ["normal_force_n", "surface: the entity has no TouchSurface", "toucher: touches nothing", "speed_m_s", "body: the entity has no TouchBody"];
+    let starts = [
+        "normal_force_n",
+        "surface: the entity has no TouchSurface",
+        "toucher: touches nothing",
+        "speed_m_s",
+        "body: the entity has no TouchBody",
+    ];
     assert_eq!(told.len(), starts.len(), "{told:?}");
     for (told, start) in told.iter().zip(starts) {
         assert!(told.starts_with(start), "{told:?} must start with {start:?}");

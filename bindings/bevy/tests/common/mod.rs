@@ -69,7 +69,8 @@ pub fn offline(log: &ContactLog, names: &Names, plates: usize) -> Render {
     let mut text = Vec::new();
     log.write(&mut text).unwrap();
     let log = ContactLog::parse(std::str::from_utf8(&text).unwrap(), "recording").unwrap();
-    let Engine { mut scene, renderer, .. } = Config { sample_rate_hz: 48_000.0, ..Config::default() }.build().unwrap();
+    let Engine { mut scene, renderer, .. } =
+        Config { sample_rate_hz: 48_000.0, ..Config::default() }.build().unwrap();
     let mut own = Names { surfaces: HashMap::new(), bodies: HashMap::new(), probes: HashMap::new() };
     for probe in names.probes.keys() {
         own.probes.insert(probe.clone(), scene.add_probe(asperity::probe_by_name("rigid").unwrap()).unwrap());
@@ -79,7 +80,7 @@ pub fn offline(log: &ContactLog, names: &Names, plates: usize) -> Render {
         own.bodies.insert(format!("body {i}"), body);
         own.surfaces.insert(format!("surface {i}"), scene.add_surface(top().on(body)).unwrap());
     }
-    offline::render(scene, renderer, &log, &own, &Options { tail_s: 1.0, ..Options::default() }).unwrap()
+    offline::render(scene, renderer, &log, &own, &Options { tail_s: 3.0, ..Options::default() }).unwrap()
 }
 
 /// What the null output got is what the recording renders to, to the bit; and it is not silence.
