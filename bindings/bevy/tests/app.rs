@@ -118,7 +118,6 @@ fn a_finger_that_is_despawned_lifts_off() {
 fn a_hitch_of_200_ms_leaves_no_hole_and_no_stuck_contact() {
     let mut app = app();
     let both = finger_and_plate(&mut app);
-    touch(&mut app).start_recording();
     stroke(&mut app, both, 0..40);
     frame(&mut app, Duration::from_millis(200));
     let from = played(&app);
@@ -127,7 +126,6 @@ fn a_hitch_of_200_ms_leaves_no_hole_and_no_stuck_contact() {
     let stats = touch(&mut app).stats();
     assert_eq!((stats.refused, stats.dropped, stats.quarantined), (0, 0, 0));
     assert_eq!(errors(&mut app), [""; 0]);
-    assert_same_bits(&mut app, 1);
 }
 
 #[test]
