@@ -7,7 +7,7 @@ use crate::null::{self, NullOutput};
 use crate::output::Output;
 use crate::touch::Touch;
 use asperity::files::contact_log::Names;
-use asperity::{Config, Engine, Renderer};
+use asperity::{AudioBus, Config, Engine, Renderer};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time, Virtual};
@@ -25,7 +25,7 @@ pub enum TouchSystems {
 /// reason is logged as an error.
 #[derive(Debug, Clone)]
 pub struct AsperityPlugin {
-    /// How the engine is built; a device's rate wins over its own.
+    /// How the engine is built; a device's rate wins over its own. By default live, 48 kHz, one bus at a gain of 0.1 with its limiter on.
     pub config: Config,
     /// Where it plays.
     pub output: Output,
@@ -33,7 +33,9 @@ pub struct AsperityPlugin {
 
 impl Default for AsperityPlugin {
     fn default() -> Self {
-        Self { config: Config::live(48_000.0), output: Output::default() }
+        // Blows of a physics engine reach 20 times full scale, and a sound card clips at 1.
+        let audio = vec![AudioBus { gain: 0.1, limit: true }];
+        Self { config: Config { audio, ..Config::live(48_000.0) }, output: Output::default() }
     }
 }
 

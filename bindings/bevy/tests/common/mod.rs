@@ -70,7 +70,7 @@ pub fn offline(log: &ContactLog, names: &Names, plates: usize) -> Render {
     log.write(&mut text).unwrap();
     let log = ContactLog::parse(std::str::from_utf8(&text).unwrap(), "recording").unwrap();
     let Engine { mut scene, renderer, .. } =
-        Config { sample_rate_hz: 48_000.0, ..Config::default() }.build().unwrap();
+        Config { clock: asperity::ClockMode::Exact, ..AsperityPlugin::default().config }.build().unwrap();
     let mut own = Names { surfaces: HashMap::new(), bodies: HashMap::new(), probes: HashMap::new() };
     for probe in names.probes.keys() {
         own.probes.insert(probe.clone(), scene.add_probe(asperity::probe_by_name("rigid").unwrap()).unwrap());
