@@ -3,6 +3,7 @@
 //! | file | what a project does with it |
 //! |---|---|
 //! | [`world`] | `AsperityWorld`: opens the engine, reports contacts, plays it |
+//! | [`record`] | its recordings |
 //! | [`body`] | `AsperityBody`: what rings |
 //! | [`surface`] | `AsperitySurface`: what is touched, also from a material's textures |
 //! | [`finger`] | `AsperityFinger3D`: touches the meshes of a scene |
@@ -20,6 +21,7 @@ pub mod finger;
 mod frames;
 pub mod haptic_stream;
 mod picture;
+pub mod record;
 mod res_files;
 pub mod stream;
 pub mod surface;

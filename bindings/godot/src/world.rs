@@ -6,17 +6,15 @@ use crate::haptic_stream::AsperityHapticStream;
 use crate::res_files::ResFiles;
 use crate::stream::{AsperityStream, MOST_CHANNELS};
 use crate::surface::AsperitySurface;
-use asperity::files::contact_log::{ContactLog, Names};
+use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::live::ports::{Feed, Pcm, PcmPort};
-use asperity::offline::{self, Options};
 use asperity::open::{Overrides, ReadSurface};
 use asperity::texture::sand::SandWorker;
 use asperity::{
     ActuatorSettings, BodyId, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId,
 };
-use godot::classes::file_access::ModeFlags;
-use godot::classes::{AudioServer, AudioStreamPlayer, FileAccess, INode, SceneTree};
+use godot::classes::{AudioServer, AudioStreamPlayer, INode, SceneTree};
 use godot::prelude::*;
 use std::path::Path;
 
@@ -30,9 +28,9 @@ const CLOCK: ClockMode = ClockMode::Live { max_lead_s: 0.2 };
 const HOLDS_S: f64 = 0.25;
 
 /// A scene that runs.
-struct Running {
-    scene: Scene,
-    names: Names,
+pub(crate) struct Running {
+    pub scene: Scene,
+    pub names: Names,
     /// Simulations on threads of their own; they end with it.
     sand: Vec<SandWorker>,
 }
@@ -251,50 +249,6 @@ impl AsperityWorld {
     fn last_error(&self) -> GString {
         (&self.error).into()
     }
-
-    /// Records what is reported from now on, as a contact log.
-    #[func]
-    fn record_start(&mut self) -> bool {
-        self.tried("record_start", |running| {
-            running.scene.start_recording(&running.names);
-            Ok(())
-        })
-        .is_some()
-    }
-
-    /// Ends the recording and writes it (JSON Lines) to a path, `user://touch.jsonl` for example.
-    #[func]
-    fn record_stop(&mut self, path: GString) -> bool {
-        self.tried("record_stop", |running| {
-            let mut lines = Vec::new();
-            running.scene.stop_recording().write(&mut lines).map_err(|error| error.to_string())?;
-            let file = FileAccess::open(&path, ModeFlags::WRITE);
-            let wrong = || format!("{path}: {:?}; give a path that can be written", FileAccess::get_open_error());
-            let written = file.ok_or_else(wrong)?.store_buffer(&PackedByteArray::from(lines));
-            if written { Ok(()) } else { Err(format!("{path}: could not be written whole")) }
-        })
-        .is_some()
-    }
-
-    /// Renders a recorded log of a world with a scene file once more, faster than real time: the same samples as were played. "rate_hz", "audio"
-    /// and "haptic", arrays of a PackedFloat32Array each; empty, and an error, where it cannot.
-    #[func]
-    fn render_log(&mut self, path: GString) -> VarDictionary {
-        let mut told = VarDictionary::new();
-        let made = self.open(false).and_then(|engine| {
-            let log = ContactLog::load_from(&ResFiles::default(), path.to_string()).map_err(|error| error.to_string())?;
-            let Engine { scene, renderer, names, .. } = engine;
-            offline::render(scene, renderer, &log, &names, &Options::default()).map_err(|error| error.to_string())
-        });
-        let Some(render) = self.said("render_log", made) else { return told };
-        let pack = |channels: &[Vec<f32>]| -> Array<PackedFloat32Array> {
-            channels.iter().map(|channel| PackedFloat32Array::from(channel.as_slice())).collect()
-        };
-        told.set("rate_hz", render.sample_rate_hz);
-        told.set("audio", &pack(&render.audio));
-        told.set("haptic", &pack(&render.haptic));
-        told
-    }
 }
 
 impl AsperityWorld {
@@ -304,7 +258,7 @@ impl AsperityWorld {
     }
 
     /// Reads and builds; `live`: for the audio server, else for a render.
-    fn open(&self, live: bool) -> Result<Engine, String> {
+    pub(crate) fn open(&self, live: bool) -> Result<Engine, String> {
         let rate_hz = f64::from(AudioServer::singleton().get_mix_rate());
         let clock = if live { CLOCK } else { ClockMode::Exact };
         if self.scene_file.is_empty() {
@@ -392,7 +346,7 @@ impl AsperityWorld {
     }
 
     /// Does something with the engine; says so where there is none.
-    fn tried<T>(&mut self, what: &str, work: impl FnOnce(&mut Running) -> Result<T, String>) -> Option<T> {
+    pub(crate) fn tried<T>(&mut self, what: &str, work: impl FnOnce(&mut Running) -> Result<T, String>) -> Option<T> {
         let done = match &mut self.running {
             Some(running) => work(running),
             None => Err("the world is not built; call build(), or see its error".into()),
@@ -401,7 +355,7 @@ impl AsperityWorld {
     }
 
     /// Says what was refused.
-    fn said<T>(&mut self, what: &str, done: Result<T, String>) -> Option<T> {
+    pub(crate) fn said<T>(&mut self, what: &str, done: Result<T, String>) -> Option<T> {
         done.inspect_err(|sentence| {
             godot_error!("{what}: {sentence}");
             self.error.clone_from(sentence);
