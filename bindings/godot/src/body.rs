@@ -56,9 +56,7 @@ impl INode3D for AsperityBody {
         let (body, surface) = (std::mem::take(&mut self.body_id), std::mem::take(&mut self.surface_id));
         // A world that is freed with the scene has taken everything along.
         let Some(mut world) = self.world.take().filter(Gd::is_instance_valid) else { return };
-        if let Ok(mut world) = world.try_bind_mut() {
-            world.leave(body, surface);
-        }
+        world.bind_mut().leave(body, surface);
         // Ready is called again when it comes back.
         self.base_mut().request_ready();
     }
@@ -90,7 +88,9 @@ impl AsperityBody {
         {
             let mut held = world.bind_mut();
             self.body_id = held.join_body(self, &name);
-            if self.body_id != 0 && let Some(surface) = self.surface.clone() {
+            if self.body_id != 0
+                && let Some(surface) = self.surface.clone()
+            {
                 self.surface_id = held.join_surface(&surface, self.body_id, &name);
             }
         }
@@ -114,7 +114,8 @@ impl AsperityBody {
         if !name.is_empty() {
             table.insert("name".into(), Value::String(name.into()));
         }
-        let bus = usize::try_from(self.bus).map_err(|_| format!("bus: {} is refused; must be 0 or more", self.bus))?;
+        let bus = usize::try_from(self.bus)
+            .map_err(|_| format!("bus: {} is refused; must be 0 or more", self.bus))?;
         Ok((written(&table)?, ResFiles::default(), bus, self.gain))
     }
 }

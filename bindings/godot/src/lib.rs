@@ -15,18 +15,18 @@
 // Godot's entry point and the audio server's buffers.
 #![allow(unsafe_code)]
 
-pub mod body;
-pub mod events;
-pub mod finger;
+mod body;
+mod events;
+mod finger;
 mod frames;
-pub mod haptic_stream;
+mod haptic_stream;
 mod picture;
-pub mod record;
+mod record;
 mod res_files;
-pub mod stream;
-pub mod surface;
+mod stream;
+mod surface;
 mod triangles;
-pub mod world;
+mod world;
 
 use godot::prelude::*;
 

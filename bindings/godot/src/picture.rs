@@ -18,7 +18,14 @@ pub(crate) fn of(texture: &Gd<Texture2D>, name: &str) -> Result<(Picture, bool),
     let (width, height) = (image.get_width() as u32, image.get_height() as u32);
     let is_byte = matches!(
         image.get_format(),
-        Format::L8 | Format::LA8 | Format::R8 | Format::RG8 | Format::RGB8 | Format::RGBA8 | Format::RGBA4444 | Format::RGB565
+        Format::L8
+            | Format::LA8
+            | Format::R8
+            | Format::RG8
+            | Format::RGB8
+            | Format::RGBA8
+            | Format::RGBA4444
+            | Format::RGB565
     );
     // Mipmaps, where there are some, follow the picture itself.
     let texels = width as usize * height as usize;

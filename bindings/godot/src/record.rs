@@ -28,7 +28,8 @@ impl AsperityWorld {
             let mut lines = Vec::new();
             running.scene.stop_recording().write(&mut lines).map_err(|error| error.to_string())?;
             let file = FileAccess::open(&path, ModeFlags::WRITE);
-            let wrong = || format!("{path}: {:?}; give a path that can be written", FileAccess::get_open_error());
+            let wrong =
+                || format!("{path}: {:?}; give a path that can be written", FileAccess::get_open_error());
             let written = file.ok_or_else(wrong)?.store_buffer(&PackedByteArray::from(lines));
             if written { Ok(()) } else { Err(format!("{path}: could not be written whole")) }
         })
@@ -41,9 +42,11 @@ impl AsperityWorld {
     fn render_log(&mut self, path: GString) -> VarDictionary {
         let mut told = VarDictionary::new();
         let made = self.open(false).and_then(|engine| {
-            let log = ContactLog::load_from(&ResFiles::default(), path.to_string()).map_err(|error| error.to_string())?;
+            let log = ContactLog::load_from(&ResFiles::default(), path.to_string())
+                .map_err(|error| error.to_string())?;
             let Engine { scene, renderer, names, .. } = engine;
-            offline::render(scene, renderer, &log, &names, &Options::default()).map_err(|error| error.to_string())
+            offline::render(scene, renderer, &log, &names, &Options::default())
+                .map_err(|error| error.to_string())
         });
         let Some(render) = self.said("render_log", made) else { return told };
         let pack = |channels: &[Vec<f32>]| -> Array<PackedFloat32Array> {

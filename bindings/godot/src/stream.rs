@@ -71,8 +71,8 @@ impl AsperityPlayback {
     fn render(&mut self, out: &mut [AudioFrame]) {
         let Some(renderer) = &mut self.renderer else { return frames::silence(out) };
         let (haptics, buses) = (self.haptic.len(), self.audio.len());
-        let mut haptic: [&mut [f32]; MOST_CHANNELS] = [const { &mut [] }; MOST_CHANNELS];
-        let mut audio: [&mut [f32]; MOST_CHANNELS] = [const { &mut [] }; MOST_CHANNELS];
+        let mut haptic: [&mut [f32]; MOST_CHANNELS] = std::array::from_fn(|_| Default::default());
+        let mut audio: [&mut [f32]; MOST_CHANNELS] = std::array::from_fn(|_| Default::default());
         for (place, signal) in haptic.iter_mut().zip(&mut self.haptic) {
             *place = &mut signal[..out.len()];
         }

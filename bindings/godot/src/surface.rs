@@ -72,7 +72,8 @@ impl AsperitySurface {
             (made.width_m, made.height_m) = (width_m, height_m);
             if material.get_feature(Feature::HEIGHT_MAPPING) {
                 made.displacement = material.get_texture(TextureParam::HEIGHTMAP);
-                made.relief_m = f64::from(material.get_heightmap_scale()).abs() * UV_PER_HEIGHTMAP_SCALE * width_m;
+                made.relief_m =
+                    f64::from(material.get_heightmap_scale()).abs() * UV_PER_HEIGHTMAP_SCALE * width_m;
             }
             if made.displacement.is_none() && material.get_texture(TextureParam::NORMAL).is_some() {
                 godot_warn!(

@@ -21,7 +21,9 @@ impl Triangles {
             let uvs = at(ArrayType::TEX_UV).try_to::<PackedVector2Array>().unwrap_or_default();
             let (points, uvs) = (points.as_slice(), uvs.as_slice());
             let corners: Vec<usize> = match at(ArrayType::INDEX).try_to::<PackedInt32Array>() {
-                Ok(indices) if !indices.is_empty() => indices.as_slice().iter().map(|i| *i as usize).collect(),
+                Ok(indices) if !indices.is_empty() => {
+                    indices.as_slice().iter().map(|i| *i as usize).collect()
+                }
                 _ => (0..points.len()).collect(),
             };
             for corner in corners.as_chunks::<3>().0 {

@@ -10,10 +10,8 @@ use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::live::ports::{Feed, Pcm, PcmPort};
 use asperity::open::{Overrides, ReadSurface};
-use asperity::texture::sand::SandWorker;
-use asperity::{
-    ActuatorSettings, BodyId, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId,
-};
+use asperity::texture::sand::{SandThread, SandWorker};
+use asperity::{ActuatorSettings, BodyId, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId};
 use godot::classes::{AudioServer, AudioStreamPlayer, INode, SceneTree};
 use godot::prelude::*;
 use std::path::Path;
@@ -32,7 +30,7 @@ pub(crate) struct Running {
     pub scene: Scene,
     pub names: Names,
     /// Simulations on threads of their own; they end with it.
-    sand: Vec<SandWorker>,
+    sand: Vec<SandThread>,
 }
 
 /// The engine: one in a tree, before what touches. It opens when it enters the tree, sounds on `audio_bus`, and lets `haptic_bus` vibrate.
@@ -113,7 +111,8 @@ impl AsperityWorld {
             *slot = Some(renderer);
         }
         self.stream = Some(stream);
-        self.running = Some(Running { scene, names, sand: workers.into_iter().map(SandWorker::spawn).collect() });
+        self.running =
+            Some(Running { scene, names, sand: workers.into_iter().map(SandWorker::spawn).collect() });
         true
     }
 
@@ -178,10 +177,21 @@ impl AsperityWorld {
     /// A contact begins: a number of your own, the surface, where (uv), how hard (N), which haptic channel feels it (-1: none). Report once a
     /// physics tick; the time is the tick's. False, and an error, where it is refused.
     #[func]
-    pub(crate) fn report_begin(&mut self, contact: i64, surface: i64, uv: Vector2, force_n: f64, channel: i64) -> bool {
+    pub(crate) fn report_begin(
+        &mut self,
+        contact: i64,
+        surface: i64,
+        uv: Vector2,
+        force_n: f64,
+        channel: i64,
+    ) -> bool {
         self.report("report_begin", || {
             let touching = events::touching(surface, channel)?;
-            Ok(ContactEvent::begin_with(events::contact(contact)?, touching, events::sample(uv, force_n, None)))
+            Ok(ContactEvent::begin_with(
+                events::contact(contact)?,
+                touching,
+                events::sample(uv, force_n, None),
+            ))
         })
     }
 
@@ -220,7 +230,8 @@ impl AsperityWorld {
         channel: i64,
     ) -> bool {
         self.report("report_impact", || {
-            events::impact(body, speed_m_s, mass_kg, radius_m, &striker.to_string(), channel).map(ContactEvent::Impact)
+            events::impact(body, speed_m_s, mass_kg, radius_m, &striker.to_string(), channel)
+                .map(ContactEvent::Impact)
         })
     }
 
@@ -265,9 +276,13 @@ impl AsperityWorld {
             let channels = usize::try_from(self.haptic_channels)
                 .ok()
                 .filter(|count| *count <= MOST_CHANNELS)
-                .ok_or_else(|| format!("haptic_channels: {} is refused; must be 0 to 16", self.haptic_channels))?;
+                .ok_or_else(|| {
+                    format!("haptic_channels: {} is refused; must be 0 to 16", self.haptic_channels)
+                })?;
             let mut config = Config { sample_rate_hz: rate_hz, clock, ..Config::default() };
             config.actuators.resize(channels, ActuatorSettings::default());
+            // As before a sound card.
+            config.audio.iter_mut().for_each(|bus| bus.limit = true);
             return config.build().map_err(|error| error.to_string());
         }
         let files = ResFiles::default();
@@ -346,7 +361,11 @@ impl AsperityWorld {
     }
 
     /// Does something with the engine; says so where there is none.
-    pub(crate) fn tried<T>(&mut self, what: &str, work: impl FnOnce(&mut Running) -> Result<T, String>) -> Option<T> {
+    pub(crate) fn tried<T>(
+        &mut self,
+        what: &str,
+        work: impl FnOnce(&mut Running) -> Result<T, String>,
+    ) -> Option<T> {
         let done = match &mut self.running {
             Some(running) => work(running),
             None => Err("the world is not built; call build(), or see its error".into()),
