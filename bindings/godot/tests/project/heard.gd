@@ -1,5 +1,4 @@
 # Every error that Godot is told, as a list of sentences.
-class_name Heard
 extends Logger
 
 var sentences: Array[String] = []
