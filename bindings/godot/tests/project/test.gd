@@ -117,6 +117,9 @@ func a_stroke_of_three_seconds_sounds_and_is_what_its_recording_renders() -> voi
 	var render := world.render_log("user://stroke.jsonl")
 	var audio: Array = render.get("audio", [])
 	var haptic: Array = render.get("haptic", [])
+	if audio.size() > 0:
+		# What the program `asperity` renders of the same log is compared with this.
+		FileAccess.open("user://stroke.f32", FileAccess.WRITE).store_buffer(audio[0].to_byte_array())
 	check("it renders", audio.size() == 1 and haptic.size() == 2, world.last_error())
 	if audio.size() == 1 and haptic.size() == 2:
 		same("what was heard is what its recording renders, to the bit", sound, 0, audio[0])
