@@ -36,7 +36,7 @@ impl AsperityWorld {
         .is_some()
     }
 
-    /// Renders a recorded log of a world with a scene file once more, faster than real time: the same samples as were played. "rate_hz", "audio"
+    /// Renders a recorded log of a world with a scene file once more, faster than real time. "rate_hz", "audio"
     /// and "haptic", arrays of a PackedFloat32Array each; empty, and an error, where it cannot.
     #[func]
     fn render_log(&mut self, path: GString) -> VarDictionary {
