@@ -110,7 +110,8 @@ fn main() {
     if let (Some(kind), Some(count)) = (arguments.next(), arguments.next().and_then(|n| n.parse().ok())) {
         assert!(KINDS.contains(&kind.as_str()), "{kind} is none of {KINDS:?}");
         let mut body = Body::new(count);
-        for _ in 0..(RATE_HZ as usize / CELL) {
+        let seconds = arguments.next().and_then(|n| n.parse().ok()).unwrap_or(1);
+        for _ in 0..(seconds * RATE_HZ as usize / CELL) {
             black_box(body.cell(&kind));
         }
         return;
