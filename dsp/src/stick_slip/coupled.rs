@@ -306,7 +306,8 @@ impl Coupled {
     fn impulses_in(&self, first: usize, step_s: f64, impulse_n_s: &mut [f64]) {
         let forces_n = self.force_n.get(first..).unwrap_or_default();
         for (to, forces_n) in impulse_n_s.iter_mut().zip(forces_n.windows(FORCE_HISTORY + 1)) {
-            *to = (0..=FORCE_HISTORY).map(|tap| FORCE_TAPS[tap] * step_s * forces_n[FORCE_HISTORY - tap]).sum();
+            *to =
+                (0..=FORCE_HISTORY).map(|tap| FORCE_TAPS[tap] * step_s * forces_n[FORCE_HISTORY - tap]).sum();
         }
     }
 }
