@@ -214,7 +214,7 @@ impl EquivalentSphere {
             if first > 0.0 && size <= MET * first {
                 return Some(c);
             }
-            if !(size < before) {
+            if size >= before || size.is_nan() {
                 return None;
             }
             add_all(&mut c, scale, &missing);
