@@ -43,6 +43,9 @@ pub struct Overrides<'a> {
     pub path: Option<PathMode>,
     /// Instruction set of the kernels whose last bits depend on it.
     pub kernel: Option<Isa>,
+    /// Most contacts that sound at once ([`Config::max_contacts`](field@crate::Config::max_contacts)). A render of one finger that makes
+    /// room for few opens faster; the bits are the same.
+    pub max_contacts: Option<usize>,
     /// Threads that render at once; 1 unless told otherwise ([`Config::threads`](field@crate::Config::threads)).
     pub threads: Option<usize>,
     /// How game time becomes samples; exactly unless told otherwise, for a render or a replay. A game that opens a scene and runs now takes
@@ -71,6 +74,7 @@ impl Default for Overrides<'_> {
             integrator: None,
             path: None,
             kernel: None,
+            max_contacts: None,
             threads: None,
             clock: None,
             live: false,
@@ -199,6 +203,7 @@ fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Resul
         integrator: overrides.integrator.unwrap_or(default.integrator),
         probe: file.probe,
         kernel: overrides.kernel,
+        max_contacts: overrides.max_contacts.unwrap_or(default.max_contacts),
         threads: overrides.threads.unwrap_or(1),
         clock: overrides.clock.unwrap_or(default.clock),
         actuators: actuators.collect::<Result<_, _>>()?,

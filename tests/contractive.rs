@@ -1,5 +1,5 @@
-//! The shipped defaults forget: a path moved by 1e-12 m is felt and heard the same. Where a contact bounces it is
-//! chaotic instead, and only levels can be compared; which is which stands here.
+//! The shipped defaults forget: a path moved by 1e-12 m is felt and heard the same. Where a contact bounces for good it would be chaotic
+//! instead, and only levels could be compared.
 
 mod common;
 
@@ -53,17 +53,11 @@ fn a_path_moved_by_a_picometre_gives_the_same_render_with_the_shipped_defaults()
         ("granite", &granite),
         ("wood", &wood),
     ];
-    let mut chaotic = Vec::new();
     for (name, make) in surfaces {
         for (speed_m_s, force_n) in [(0.05, 0.5), (0.1, 0.6), (0.2, 1.0)] {
             let [felt_db, heard_db] = difference_db(make, speed_m_s, force_n);
             println!("{name}, {speed_m_s} m/s, {force_n} N: felt {felt_db:.0} dB, heard {heard_db:.0} dB");
-            assert!(felt_db < -80.0 && heard_db < -60.0, "{name}: felt {felt_db} dB, heard {heard_db} dB");
-            if heard_db > -80.0 {
-                chaotic.push(format!("{name}, {speed_m_s} m/s, {force_n} N"));
-            }
+            assert!(felt_db.max(heard_db) < -80.0, "{name}: felt {felt_db} dB, heard {heard_db} dB");
         }
     }
-    // Not chaotic, but one grazing touch of 2,000 is counted or not.
-    assert_eq!(chaotic, ["matte, 0.05 m/s, 0.5 N"]);
 }

@@ -5,7 +5,7 @@ use crate::draw::Draws;
 use crate::manifest::{self, Manifest};
 use crate::record::{Record, Samples};
 use crate::spec::{Format, Spec, SplitBy, hex};
-use crate::stroke::{DataLevels, Stroke, data_levels, rendered};
+use crate::stroke::{DataLevels, Stroke, data_levels};
 use crate::surfaces::{Choice, choices, split};
 use crate::{parquet_file, webdataset, whole_file};
 use asperity::files::FileError;
@@ -182,15 +182,9 @@ impl DataSet {
     /// When a draw is out of its range, or the scene cannot be rendered.
     pub fn record(&self, number: u64) -> Result<Record, FileError> {
         let stroke = Stroke::drawn(&self.spec, &self.choices, Some(self.levels), number, &self.folder)?;
-        let render = rendered(
-            &stroke.scene,
-            &stroke.contacts,
-            self.spec.kernel(),
-            &stroke.id,
-            &self.folder,
-            &self.maps,
-        )
-        .map_err(|error| error.within(format!("{}: stroke {number}", self.spec.path.display())))?;
+        let render = stroke
+            .rendered(self.spec.kernel(), &self.maps)
+            .map_err(|error| error.within(format!("{}: stroke {number}", self.spec.path.display())))?;
         let samples = Samples::of(&stroke.id, &render, &self.spec.says.output)?;
         Ok(Record { stroke, samples })
     }

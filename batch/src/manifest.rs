@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::Path;
+use std::time::Duration;
 
 /// Name of the file.
 pub const NAME: &str = "manifest.json";
@@ -19,6 +20,8 @@ pub const NAME: &str = "manifest.json";
 pub const FORMAT: u32 = 1;
 /// Held while the manifest is rewritten.
 const LOCK: &str = ".manifest.lock";
+/// A file that nobody has written to for so long is nobody's.
+const ABANDONED: Duration = Duration::from_secs(3600);
 
 /// What a data set holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -146,6 +149,9 @@ impl Manifest {
         // A file system without locks has no worse fate than a manifest that the next run completes.
         let _ = held.lock();
         self.shards = listed(folder, self.strokes, self.per_shard)?;
+        if self.shards.len() as u64 == self.strokes.div_ceil(self.per_shard) {
+            remove_left_behind(folder);
+        }
         let path = folder.join(NAME);
         let mut text = serde_json::to_string_pretty(self)
             .map_err(|error| FileError::told(error).within(path.display()))?;
@@ -158,6 +164,21 @@ impl Manifest {
 #[must_use]
 pub fn sum_name(file: &str) -> String {
     format!("{file}.sha256")
+}
+
+/// Removes what killed runs have left half-written of shards that are there by now. What was written to within the hour stays: another
+/// machine may be making a shard once more. A file that cannot be removed harms nobody.
+fn remove_left_behind(folder: &Path) {
+    let is_old = |path: &Path| {
+        let age = fs::metadata(path).and_then(|about| about.modified()).ok().and_then(|at| at.elapsed().ok());
+        age.is_some_and(|age| age > ABANDONED)
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok) {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with(".shard-") && name.ends_with(".part") && is_old(&entry.path()) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Every shard whose hash stands beside it, in order.

@@ -14,6 +14,8 @@ use asperity::open::{Maps, Overrides};
 use std::path::Path;
 use toml::{Table, Value};
 
+/// Contacts that a record needs: room for 64 takes longer to make than a short stroke to render.
+const FINGERS: usize = 1;
 /// Longest stroke, s.
 const MOST_S: f64 = 600.0;
 
@@ -32,6 +34,10 @@ pub struct Stroke {
     pub contacts: String,
     /// How the finger moves.
     pub motion: Motion,
+    /// What `scene` says.
+    file: SceneFile,
+    /// What `contacts` says.
+    log: ContactLog,
 }
 
 /// Levels that hold for every stroke of a data set, so that strokes can be compared.
@@ -70,7 +76,15 @@ impl Stroke {
         log.write(&mut contacts).map_err(|error| at(FileError::told(error)))?;
         let contacts = String::from_utf8(contacts).map_err(|error| at(FileError::told(error)))?;
         let split = split(spec, place, choices.len(), number);
-        Ok(Self { id, split, surface: choice.name.clone(), scene, contacts, motion })
+        Ok(Self { id, split, surface: choice.name.clone(), scene, contacts, motion, file, log })
+    }
+
+    /// What the stroke renders to: the same as [`rendered`] makes of its two texts, without reading them.
+    ///
+    /// # Errors
+    /// When the engine refuses the scene.
+    pub fn rendered(&self, spec_kernel: asperity::Isa, maps: &Maps) -> Result<Render, FileError> {
+        render(&self.file, &self.log, spec_kernel, &self.id, maps)
     }
 }
 
@@ -88,11 +102,25 @@ pub fn rendered(
 ) -> Result<Render, FileError> {
     let file = SceneFile::parse(scene, &folder.join(format!("{id}.toml")))?;
     let log = ContactLog::parse(contacts, id).map_err(FileError::told)?;
-    let overrides = Overrides { kernel: Some(spec_kernel), maps: Some(maps), ..Overrides::default() };
-    let Engine { scene, renderer, names, .. } = Engine::from_scene(&file, &overrides)?;
+    render(&file, &log, spec_kernel, id, maps)
+}
+
+fn render(
+    file: &SceneFile,
+    log: &ContactLog,
+    spec_kernel: asperity::Isa,
+    id: &str,
+    maps: &Maps,
+) -> Result<Render, FileError> {
+    let overrides = Overrides {
+        kernel: Some(spec_kernel),
+        maps: Some(maps),
+        max_contacts: Some(FINGERS),
+        ..Overrides::default()
+    };
+    let Engine { scene, renderer, names, .. } = Engine::from_scene(file, &overrides)?;
     let options = Options { tail_s: file.tail_s, ..Options::default() };
-    offline::render(scene, renderer, &log, &names, &options)
-        .map_err(|error| FileError::told(error).within(id))
+    offline::render(scene, renderer, log, &names, &options).map_err(|error| FileError::told(error).within(id))
 }
 
 /// The levels of a data set: as its specification says, and where it is silent those that the level policy finds for its first choice.

@@ -3,7 +3,10 @@
 use asperity::files::FileError;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Writes a file by a function.
 ///
@@ -13,15 +16,30 @@ pub fn write_with(
     path: &Path,
     fill: impl FnOnce(BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), FileError> {
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let temporary = path.with_file_name(format!(".{name}.{}.part", std::process::id()));
-    let written = File::create(&temporary)
+    let temporary = Temporary(path.with_file_name(temporary_name(path)));
+    let written = File::create(&temporary.0)
         .and_then(|file| fill(BufWriter::with_capacity(1 << 18, file)))
-        .and_then(|()| fs::rename(&temporary, path));
-    written.map_err(|error| {
-        let _ = fs::remove_file(&temporary);
-        FileError::write(path, &error)
-    })
+        .and_then(|()| fs::rename(&temporary.0, path));
+    written.map_err(|error| FileError::write(path, &error))
+}
+
+/// A name that no other process on any machine that shares the folder, and no other thread, writes to at the same time.
+fn temporary_name(path: &Path) -> String {
+    static BEGAN: OnceLock<u128> = OnceLock::new();
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let since = || SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());
+    let began = BEGAN.get_or_init(since);
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    format!(".{name}.{}-{began:x}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
+}
+
+/// Removed when it is let go, also by work that is left by unwinding; once renamed there is nothing to remove.
+struct Temporary(PathBuf);
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
 }
 
 /// Writes bytes.

@@ -226,3 +226,47 @@ fn a_folder_that_cannot_be_written_is_one_line() {
     let error = set(&folder, SPEC, "file").err().unwrap().to_string();
     assert!(error.contains("file: cannot be written") && !error.contains('\n'), "{error}");
 }
+
+#[test]
+fn halves_of_killed_runs_are_removed_when_all_shards_are_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = set(&folder, SPEC, "set").unwrap();
+    let left = |name: &str, age_s: u64| {
+        let path = folder.path().join("set").join(name);
+        let file = fs::File::create(&path).unwrap();
+        file.set_modified(std::time::SystemTime::now() - std::time::Duration::from_secs(age_s)).unwrap();
+        path
+    };
+    let abandoned = left(".shard-000001.parquet.77-5-0.part", 7200);
+    let alive = left(".shard-000002.parquet.78-6-0.part", 60);
+    make(&there, 0..2);
+    // One is missing: whoever wrote the half may be making it.
+    assert!(abandoned.exists() && alive.exists());
+    make(&there, [2]);
+    assert!(!abandoned.exists() && alive.exists());
+}
+
+#[test]
+fn a_record_drawn_renders_as_its_two_texts_do_and_as_a_scene_with_room_for_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = set(&folder, SPEC, "set").unwrap();
+    for number in 0..4 {
+        let record = there.record(number).unwrap();
+        let home = folder.path().join("set");
+        let stroke = &record.stroke;
+        let path = home.join(format!("{}.toml", stroke.id));
+        let file = asperity::files::scene_file::SceneFile::parse(&stroke.scene, &path).unwrap();
+        let log = asperity::files::contact_log::ContactLog::parse(&stroke.contacts, &stroke.id).unwrap();
+        let overrides = asperity::open::Overrides {
+            kernel: Some(asperity::Isa::Portable),
+            ..asperity::open::Overrides::default()
+        };
+        let asperity::Engine { scene, renderer, names, .. } =
+            asperity::Engine::from_scene(&file, &overrides).unwrap();
+        let options = asperity::offline::Options { tail_s: file.tail_s, ..Default::default() };
+        let render = asperity::offline::render(scene, renderer, &log, &names, &options).unwrap();
+        let output = &there.spec().says.output;
+        let theirs = asperity_batch::record::Samples::of(&stroke.id, &render, output).unwrap();
+        assert!(theirs.same_bits(&record.samples), "stroke {number}");
+    }
+}

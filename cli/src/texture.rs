@@ -2,7 +2,6 @@
 //!
 //! What the verbs share is here: pictures in, refusals in words, a bar for a fraction done.
 
-mod abx;
 pub mod analyze;
 pub mod brownian;
 pub mod compare;

@@ -68,7 +68,8 @@ fn headroom_reports_every_promised_row() {
     let began = Instant::now();
     let (status, out, err) = told(&asperity(folder.path(), &["headroom", "--json"]));
     assert_eq!((status, err.as_str()), (0, ""));
-    assert!(began.elapsed().as_secs() < 60);
+    // Half a minute on two idle cores; tests share theirs with others.
+    assert!(began.elapsed().as_secs() < 180, "took {:?}", began.elapsed());
     let report: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert!(
         report["cpu"].is_string()

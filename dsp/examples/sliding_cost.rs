@@ -1,9 +1,10 @@
-//! What contacts on a body cost its modal bank: a shared input, a place with gains, a slide (two inputs: fading out, fading in), a rub that sticks and
-//! slips with it, and a rub that slides.
+//! What contacts on a body cost its modal bank: a shared input, a place with gains, a slide (two inputs: fading out, fading in), friction that rubs
+//! one way (the same law, deaf to how the body moves), a rub that is coupled with the body in every sample, and one that slides as well.
 //!
 //! Without arguments processor times, the best of many runs, as ratios. With `KIND MODES` a second of that kind alone, for an instruction
 //! counter: `valgrind --tool=callgrind target/release/examples/sliding_cost rub 100`; the kind `nothing` is what has to be taken off.
 
+use asperity_dsp::hertz::{FORCE_HISTORY, FORCE_TAPS};
 use asperity_dsp::modal_bank::{
     AheadGroup, GroupOptions, GroupState, Input, Inputs, LANES, LaneGains, ModalBank, ModeGroup,
     design_groups,
@@ -15,7 +16,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 const RATE_HZ: f64 = 44_100.0;
-const KINDS: [&str; 7] = ["nothing", "shared", "place", "slide", "rub", "rub-slide", "ahead"];
+const KINDS: [&str; 8] = ["nothing", "shared", "place", "slide", "one-way", "rub", "rub-slide", "ahead"];
+const FRICTION: Friction = Friction { mu_static: 0.8, mu_kinetic: 0.3, slip_speed_m_s: 0.02 };
+const SWEEP: Sweep = Sweep { sweep_m_s: 0.05, normal_force_n: 1.0, other_n_s: 0.0 };
 /// Motion of every mode at the place, kg^−½.
 const PHI: f64 = 0.3;
 
@@ -28,6 +31,7 @@ struct Body {
     coupled: Coupled,
     gains: Vec<LaneGains>,
     input: [f32; CELL],
+    force_n: [f64; FORCE_HISTORY + CELL],
     position: u64,
 }
 
@@ -57,6 +61,7 @@ impl Body {
             coupled: Coupled::begin(Level::detect()),
             gains: vec![LaneGains([PHI as f32; 16]); count.div_ceil(16)],
             input: std::array::from_fn(|n| 1e-6 * (n as f32).sin()),
+            force_n: [0.0; FORCE_HISTORY + CELL],
             position: 0,
         }
     }
@@ -67,27 +72,48 @@ impl Body {
         let rubs = kind.starts_with("rub");
         if rubs {
             self.rub();
+        } else if kind == "one-way" {
+            self.one_way();
         }
         let placed = [Input { impulses: &self.input, gains: &self.gains }; 2];
         match kind {
             "nothing" => {}
             "ahead" => self.sound.ahead(&self.ahead, &mut out),
             "shared" => self.sound.render(self.position, Inputs::One(&self.input), &mut out),
-            "place" | "rub" => self.sound.render(self.position, Inputs::Placed(&placed[..1]), &mut out),
+            "place" | "one-way" | "rub" => {
+                self.sound.render(self.position, Inputs::Placed(&placed[..1]), &mut out)
+            }
             _ => self.sound.render(self.position, Inputs::Placed(&placed), &mut out),
         }
         self.position += CELL as u64;
         out
     }
 
+    /// The forces of a cell of the same friction on a body that is taken to stand still.
+    fn one_way(&mut self) {
+        let sweep = black_box([SWEEP; CELL]);
+        self.force_n.copy_within(CELL.., 0);
+        let Friction { mu_static, mu_kinetic, slip_speed_m_s } = FRICTION;
+        for (to, sweep) in self.force_n[FORCE_HISTORY..].iter_mut().zip(&sweep) {
+            let weaker = (mu_static - mu_kinetic) / (1.0 + sweep.sweep_m_s.abs() / slip_speed_m_s);
+            let size_n = sweep.normal_force_n.max(0.0) * (mu_kinetic + weaker);
+            *to = size_n.copysign(sweep.sweep_m_s);
+        }
+        for (to, forces_n) in self.input.iter_mut().zip(self.force_n.windows(FORCE_HISTORY + 1)) {
+            let heard: f64 = (0..=FORCE_HISTORY)
+                .map(|tap| FORCE_TAPS[tap] / RATE_HZ * forces_n[FORCE_HISTORY - tap])
+                .sum();
+            *to = heard as f32;
+        }
+    }
+
     /// The forces of a cell.
     fn rub(&mut self) {
-        let friction = Friction { mu_static: 0.8, mu_kinetic: 0.3, slip_speed_m_s: 0.02 };
-        let sweep = [Sweep { sweep_m_s: 0.05, normal_force_n: 1.0, other_n_s: 0.0 }; CELL];
+        let sweep = black_box([SWEEP; CELL]);
         let (mut free, mut heard) = ([0.0; CELL], [0.0; CELL]);
         self.sound.ahead(&self.ahead, &mut free);
         self.coupled.next_cell(&self.answer, &free);
-        self.coupled.run(&friction, 0, &sweep, &[0.0; CELL]);
+        self.coupled.run(&FRICTION, 0, &sweep, &[0.0; CELL]);
         self.coupled.impulses(0, RATE_HZ, &mut heard);
         self.input.iter_mut().zip(heard).for_each(|(to, x)| *to = x as f32);
     }
@@ -110,7 +136,8 @@ fn main() {
     if let (Some(kind), Some(count)) = (arguments.next(), arguments.next().and_then(|n| n.parse().ok())) {
         assert!(KINDS.contains(&kind.as_str()), "{kind} is none of {KINDS:?}");
         let mut body = Body::new(count);
-        for _ in 0..(RATE_HZ as usize / CELL) {
+        let seconds = arguments.next().and_then(|n| n.parse().ok()).unwrap_or(1);
+        for _ in 0..(seconds * RATE_HZ as usize / CELL) {
             black_box(body.cell(&kind));
         }
         return;
@@ -122,11 +149,12 @@ fn main() {
             body.cell("place");
             best_ns(&mut body, kind)
         });
-        let [_, shared, place, slide, rub, rub_slide, ahead] = times;
+        let [_, shared, place, slide, one_way, rub, rub_slide, ahead] = times;
         println!(
-            "{count} modes: shared {shared:.1} ns a sample; a place {:.2} of it; a slide {:.2} of a place; a rub {:.2} of a place, {:.2} of a slide if it slides; of a rub {:.1} ns are the free motion and {:.1} ns the forces",
+            "{count} modes: shared {shared:.1} ns a sample; a place {:.2} of it; a slide {:.2} of a place; a rub {:.2} of friction one way, {:.2} of a place, {:.2} of a slide if it slides; of a rub {:.1} ns are the free motion and {:.1} ns the forces",
             place / shared,
             slide / place,
+            rub / one_way,
             rub / place,
             rub_slide / slide,
             ahead,

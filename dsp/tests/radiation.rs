@@ -66,17 +66,30 @@ fn exact_sigma(l: usize, x: f64) -> f64 {
 #[test]
 fn a_sphere_radiates_as_its_closed_form_says() {
     let radius_m = 0.07;
-    // Fine, because what a faceted ball leaks into a lower order radiates 60 dB better there.
-    let (points_m, triangles) = ball(radius_m, 90);
-    let surface = Surface { points_m: &points_m, triangles: &triangles };
+    for cells in [12, 40] {
+        let (points_m, triangles) = ball(radius_m, cells);
+        sphere_on_a_mesh(radius_m, [0.0; 3], &points_m, &triangles);
+        // Somewhere else, as single precision writes it, which no symmetry saves.
+        let [s, c] = [0.6_f64.sin(), 0.6_f64.cos()];
+        let turn = |p: Vec3| [c * p[0] - s * p[2], p[1] + 0.05, s * p[0] + c * p[2]];
+        let moved: Vec<Vec3> =
+            points_m.iter().map(|p| turn([p[0], c * p[1] - s * p[2], s * p[1] + c * p[2]])).collect();
+        sphere_on_a_mesh(radius_m, [0.0, 0.05, 0.0], &moved, &triangles);
+    }
+}
+
+/// Every order, all frequencies, within 0.5 dB.
+fn sphere_on_a_mesh(radius_m: f64, middle: Vec3, points_m: &[Vec3], triangles: &[[u32; 3]]) {
+    let surface = Surface { points_m, triangles };
     let sphere = EquivalentSphere::of(&surface).unwrap();
+    let out = |i: usize| [0, 1, 2].map(|k| (points_m[i][k] - middle[k]) / radius_m);
     let legendre = |l: usize, z: f64| {
         [1.0, z, 1.5 * z * z - 0.5, 2.5 * z * z * z - 1.5 * z, (35.0 * z.powi(4) - 30.0 * z * z + 3.0) / 8.0]
             [l]
     };
     let mut worst = 0.0_f64;
     for l in 0..5 {
-        let motion = |i: usize| points_m[i].map(|x| x / radius_m * legendre(l, points_m[i][2] / radius_m));
+        let motion = |i: usize| out(i).map(|x| x * legendre(l, out(i)[2]));
         let multipoles = sphere.multipoles(&surface, motion);
         for ka in [0.1, 0.3, 0.7, 1.0, 2.0, 4.0, 8.0] {
             let hz = ka * SOUND_M_S / (2.0 * PI * radius_m);
@@ -87,10 +100,6 @@ fn a_sphere_radiates_as_its_closed_form_says() {
             alone[l] = 4.0 * PI / (2 * l + 1) as f64;
             let formula = 2.0 * db(sphere.pressure_pa_s_m(&alone, hz) / exact);
             assert!(formula.abs() <= 0.05, "l = {l}, ka = {ka}: {formula:+.3} dB without a mesh");
-            // What facets leak into the monopole is louder than an order that radiates 90 dB less: no mesh shows that one.
-            if db(exact_sigma(l, ka) / exact_sigma(0, ka)) < -90.0 {
-                continue;
-            }
             let error = 2.0 * db(sphere.pressure_pa_s_m(&multipoles, hz) / exact);
             worst = worst.max(error.abs());
             assert!(error.abs() <= 0.5, "l = {l}, ka = {ka}: {error:+.2} dB");

@@ -9,6 +9,10 @@
 //! | `solved` | a pair's contact as the solver left it |
 //! | `pair` | one pair over time: lands, slides, rolls, rests, leaves |
 
+// One source for both versions of the physics engine.
+#[cfg(feature = "bevy-rapier-0-36")]
+extern crate rapier3d_of_bevy as rapier3d;
+
 mod pair;
 mod solved;
 mod thing;

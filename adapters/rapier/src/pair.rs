@@ -132,7 +132,7 @@ impl Pair {
         let local_m = self.follow(told_m, local_path * step.view.step_s);
         let triangle = mapping.triangle_at(collider.shape(), local_m)?;
         let force_n = f64::from(solved.impulse_n_s / step.view.step_s);
-        Some((triangle.sample(local_m, local_path, force_n), *surface))
+        Some((triangle.sample(local_m.to_array(), local_path.to_array(), force_n), *surface))
     }
 
     /// The path is integrated and pulled gently to where the solver says, because its point belongs to the start of the step and jumps as

@@ -100,7 +100,7 @@ impl Mapping {
                 let corners = *mesh.indices().get(triangle as usize)?;
                 let uv = corners.map(|corner| uv.get(corner as usize).copied());
                 let [Some(a), Some(b), Some(c)] = uv else { return None };
-                UvTriangle::new(corners.map(|corner| mesh.vertices()[corner as usize]), [a, b, c])
+                UvTriangle::new(corners.map(|corner| mesh.vertices()[corner as usize].to_array()), [a, b, c])
             }
         }
     }

@@ -8,13 +8,16 @@
 #![warn(missing_docs)]
 
 mod analysis;
+mod data_sets;
 mod error;
 mod fitting;
 mod interrupt;
 mod live;
+mod photograph;
 mod pictures;
 mod reduction;
 mod rendering;
+mod shaping;
 mod sources;
 mod watch;
 
@@ -26,13 +29,19 @@ mod _native {
     #[pymodule_export]
     use super::analysis::{analyze, from_normals, metamer, read_picture};
     #[pymodule_export]
+    use super::data_sets::{NativeDataSet, build, verify};
+    #[pymodule_export]
     use super::fitting::fit;
     #[pymodule_export]
     use super::live::{LiveRenderer, LiveScene, open};
     #[pymodule_export]
+    use super::photograph::{compare, from_photo, read_photograph};
+    #[pymodule_export]
     use super::reduction::{NativeClip, reduce};
     #[pymodule_export]
     use super::rendering::{render, write_wav};
+    #[pymodule_export]
+    use super::shaping::modes;
     #[pymodule_export]
     use super::sources::{as_toml, names_of, parse_log};
 

@@ -154,6 +154,7 @@ impl LiveScene {
 #[pymethods]
 impl LiveRenderer {
     /// The next frames: audio (buses, frames) and haptic (channels, frames).
+    #[allow(clippy::type_complexity, reason = "two arrays, as Python takes them")]
     fn render<'py>(
         &self,
         py: Python<'py>,

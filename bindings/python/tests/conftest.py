@@ -8,7 +8,9 @@ import subprocess
 import numpy as np
 import pytest
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
+# The tests may have been copied out of the tree, so that they see the installed package only.
+SOURCE = os.environ.get("ASPERITY_PYTHON_SOURCE")
+ROOT = pathlib.Path(SOURCE).parents[1] if SOURCE else pathlib.Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture(scope="session")

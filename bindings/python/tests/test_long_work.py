@@ -5,14 +5,13 @@ import gc
 import os
 import pathlib
 import signal
-import subprocess
-import sys
 import threading
 import time
 import tracemalloc
 
 import numpy as np
 import pytest
+from machine import busy
 
 import asperity as asp
 
@@ -38,20 +37,7 @@ def strokes(duration):
     return rows[np.argsort(rows["t"], kind="stable")]
 
 
-def busy(seconds_of_work):
-    """Two busy processes beside one: how many times as much gets done."""
-    work = f"x = 0\nfor i in range({seconds_of_work}): x += i * i"
-
-    def run(count):
-        began = time.perf_counter()
-        children = [subprocess.Popen([sys.executable, "-c", work]) for _ in range(count)]
-        for child in children:
-            child.wait()
-        return time.perf_counter() - began
-
-    return 2.0 * min(run(1) for _ in range(3)) / min(run(2) for _ in range(3))
-
-
+@pytest.mark.slow
 def test_two_threads_render_in_the_time_of_one():
     scaling = busy(6_000_000)
     if scaling < 1.8:
@@ -78,6 +64,7 @@ def resident_kib():
     return int(next(line for line in status.splitlines() if line.startswith("VmRSS")).split()[1])
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not pathlib.Path("/proc/self/status").exists(), reason="resident memory is read from /proc")
 def test_memory_is_flat_over_a_thousand_renders():
     surface = asp.Surface(1e-4 * np.random.default_rng(1).random((64, 64)), 0.1).on(asp.Body.stock("plate", 0.1, "steel"))
@@ -184,6 +171,7 @@ def test_live_reports_are_checked_and_silence_is_explained():
     assert loudest > 1e-3 and live.stats["impacts"] == 1 and live.surfaces == ["surface"] and live.bodies == ["body"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ["render", "fit"])
 def test_ctrl_c_stops_long_work_at_once(what):
     begun = threading.Event()
@@ -215,6 +203,7 @@ def test_ctrl_c_stops_long_work_at_once(what):
     assert np.abs(asp.stroke(asp.Solid("granite"), duration=0.2).haptic).max() > 1e-4
 
 
+@pytest.mark.slow
 def test_progress_is_told_and_what_it_raises_stops_the_work():
     told = []
     asp.render(scene_of_fingers(), strokes(20.0), progress=told.append)
@@ -227,6 +216,7 @@ def test_progress_is_told_and_what_it_raises_stops_the_work():
         asp.render(scene_of_fingers(), strokes(60.0), progress=enough)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:nothing is heard")
 def test_a_callback_in_python_keeps_nine_tenths_of_the_headroom_of_the_loop_in_rust():
     seconds, rate, frames = 4.0, 48_000, 64

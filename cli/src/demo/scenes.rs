@@ -246,7 +246,7 @@ fn scraped() -> DemoScene {
              [[actuator]]\n\
              full_scale = 0.001\n\n\
              [audio]\n\
-             gain = 0.5\n"
+             gain = 0.3\n"
         ),
         log: log(finger.lines()),
         assets: vec![("scraped.displacement.png".to_owned(), pixels::png16(columns as usize, rows, &map))],

@@ -1,6 +1,5 @@
 //! `asperity modes`: the shape of a body becomes modes that ring wherever it is struck.
 
-mod file;
 mod options;
 mod picture;
 
@@ -8,7 +7,7 @@ use crate::error::CliError;
 use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
 use asperity_shape::Making;
-use file::ModesFile;
+use asperity_tools::modes_file::ModesFile;
 pub use options::{Options, preset};
 use serde::Serialize;
 use std::time::Instant;
@@ -53,7 +52,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     })
     .map_err(|error| CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) }))?;
     drop(progress);
-    let mut file = ModesFile::new(&mut body, &damping, options.radiation, &options.body)?;
+    let mut file =
+        ModesFile::new(&mut body, &damping, options.radiation, &options.body).map_err(CliError::told)?;
     let mut outputs = Outputs::new();
     let text = serde_json::to_string(&file)
         .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;

@@ -1,11 +1,11 @@
 //! The picture of a solved body: its first shapes on the mesh, its frequencies, its damping.
 
-use super::file::ModesFile;
 use crate::plot::colour::Scale;
 use crate::plot::{Axis, Figure, Layer, Panel, Picture, Series, palette};
 use asperity_dsp::damping::Damping;
 use asperity_shape::SolvedBody;
 use asperity_shape::vector::{Vec3, add_scaled, bounds, dot, unit};
+use asperity_tools::modes_file::ModesFile;
 
 /// Shapes drawn, in rows of four.
 const SHAPES: usize = 8;

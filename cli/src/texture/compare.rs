@@ -1,14 +1,13 @@
 //! `asperity texture compare A B …`: can a finger tell them apart? Document 002's ABX tables without
 //! observers.
 
-use super::abx::{self, Features, Size};
 use super::{grey, positive, refused};
 use crate::error::CliError;
 use crate::output;
 use crate::progress::Progress;
-use asperity_texture::borders::Borders;
-use asperity_texture::metamer::{MetamerOptions, Method, PASSES, metamer};
+use asperity_texture::metamer::{Method, PASSES};
 use asperity_texture::raster::Raster;
+use asperity_tools::compare::{self, Comparison, Table};
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -40,19 +39,6 @@ pub struct Options {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-}
-
-/// Share of right answers for every pair; the diagonal is a surface against itself, stroked again.
-#[derive(Debug, Clone, Serialize)]
-pub struct Table {
-    rows: Vec<Vec<f64>>,
-    /// Mean over the pairs of different surfaces.
-    mean: f64,
-    /// Mean over the pairs of the first surface, which metamers are made like, and another one: what counts for them, and what
-    /// the mean over all pairs hides.
-    reference: f64,
-    /// Mean of the diagonal: chance, if the judge is honest.
-    same: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -102,42 +88,17 @@ pub fn run(options: &Options) -> Result<(), CliError> {
 
 /// The first map and the others made to feel like it.
 fn all_like_the_first(options: &Options, maps: &[Raster], method: Method) -> Result<Vec<Raster>, CliError> {
-    let mut all = vec![maps[0].clone()];
-    for (map, path) in maps.iter().zip(&options.maps).skip(1) {
-        // Every map is spread over the same width, so that texels may differ in size.
-        let scale = maps[0].width as f64 / map.width as f64;
-        let settings = MetamerOptions { method, scale, ..MetamerOptions::default() };
-        let made = metamer(map, &maps[0], &settings, |_| {})
-            .map_err(|error| refused(super::metamer::at(&error, path, &options.maps[0]), &error))?;
-        all.push(made.image);
-    }
-    Ok(all)
+    compare::all_like_the_first(maps, method, |_| ()).map_err(|(place, error)| {
+        refused(super::metamer::at(&error, &options.maps[place], &options.maps[0]), &error)
+    })
 }
 
 fn table(options: &Options, maps: &[Raster], set: u64, progress: &mut Progress) -> Result<Table, CliError> {
-    let mut felt: Vec<Vec<Features>> = Vec::new();
-    for (index, (map, path)) in maps.iter().zip(&options.maps).enumerate() {
-        let size = Size { texel_m: options.width_m / map.width as f64, relief_m: options.relief_m };
-        let tiles = Borders::Detect.decide(map) == Borders::Periodic;
-        let seed = options.seed.wrapping_mul(1000).wrapping_add(set * 100 + index as u64);
-        // Twice as many: the second half is the same surface stroked again.
-        let strokes = abx::strokes(map, tiles, size, 2 * options.strokes, seed)
-            .map_err(|error| error.within(path.display()))?;
-        felt.push(strokes);
-        progress.advance(1);
-    }
-    let n = options.strokes;
-    let cell = |i: usize, j: usize| {
-        let other = if i == j { &felt[j][n..] } else { &felt[j][..n] };
-        abx::right_answers(&felt[i][..n], other)
-    };
-    let size = maps.len();
-    let rows: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| cell(i, j)).collect()).collect();
-    let all: f64 = rows.iter().flatten().sum();
-    let same: f64 = (0..size).map(|i| rows[i][i]).sum();
-    let mean = (all - same) / (size * (size - 1)) as f64;
-    let reference = rows[0][1..].iter().sum::<f64>() / (size - 1) as f64;
-    Ok(Table { rows, mean, reference, same: same / size as f64 })
+    let &Options { strokes, width_m, relief_m, seed, .. } = options;
+    let comparison = Comparison { strokes, width_m, relief_m, seed };
+    comparison
+        .table(maps, set, || progress.advance(1))
+        .map_err(|(place, error)| CliError::told(error).within(options.maps[place].display()))
 }
 
 fn in_words(report: &Report) -> String {

@@ -1,7 +1,7 @@
 //! Ahead: what a bank would say in the coming 64 samples if nothing struck it, told as another output of its modes.
 //!
 //! ```text
-//! y[16 j + n] = Σ modes aₙ vⱼ + bₙ wⱼ        aₙ = hₙ₊₁    bₙ = hₙ₊₂ − hₙ₊₁        n = 0…15
+//! y[16 j + n] = Σ modes hₙ₊₁ (vⱼ − wⱼ) + hₙ₊₂ wⱼ                                 n = 0…15
 //! (v, w)ⱼ₊₁ = J (v, w)ⱼ                      J: the step of 16 samples           j = 0…3
 //! ```
 //!
@@ -9,17 +9,17 @@
 //! |---|---|
 //! | v, w | the bank's own states at a multiple of 64 samples, which stay what they are |
 //! | hₙ | what an impulse is n samples later in the other output |
-//! | aₙ, bₙ, J | a lane of [`AheadGroup`] |
+//! | J | a lane of [`AheadGroup`] |
 //!
-//! Two products a mode and sample, and no chain of states longer than three: less than half of what a rendered bank costs. It is
-//! for what has to know the free motion before it can tell the forces ([`stick_slip`](crate::stick_slip)).
+//! Five products a mode and four samples, as in the bank itself ([`OUT`](super::design::OUT)), and no chain of states longer than three: less than
+//! half of what a rendered bank costs. It is for what has to know the free motion before it can tell the forces ([`stick_slip`](crate::stick_slip)).
 #![allow(unsafe_code)]
 // `g` counts groups, `n` samples and `j` sixteenths, in several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
 use super::LANES;
-use super::design::{GRID_SAMPLES, GroupOptions, GroupState, Lanes, Pole, free_step, square};
-use super::sums::{Row, four_rows};
+use super::design::{GRID_SAMPLES, GroupOptions, GroupState, Lanes, Pole, TURN, free_step, out_of, square};
+use super::sums::{SUMS, TurnSums, samples};
 use super::vector::{Vector, len, load, mul_add, store};
 use crate::DesignError;
 use crate::mode::Mode;
@@ -32,8 +32,8 @@ use fearless_simd::SimdBase;
 const CELL: usize = GRID_SAMPLES as usize;
 /// Samples told from one state.
 const STEP: usize = 16;
-/// Samples whose sums stay in registers.
-const TILE: usize = 8;
+/// Turns of it.
+const TURNS: usize = STEP / TURN;
 /// Groups whose states are kept at once.
 const AT_ONCE: usize = 8;
 
@@ -41,13 +41,13 @@ const AT_ONCE: usize = 8;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C, align(64))]
 pub struct AheadGroup {
-    hears: [[Lanes; 2]; STEP],
+    hears: [[Lanes; SUMS]; TURNS],
     step: [[Lanes; 2]; 2],
 }
 
 impl AheadGroup {
     /// Sixteen lanes of which nothing is heard.
-    pub const SILENT: Self = Self { hears: [[[0.0; LANES]; 2]; STEP], step: [[[0.0; LANES]; 2]; 2] };
+    pub const SILENT: Self = Self { hears: [[[0.0; LANES]; SUMS]; TURNS], step: [[[0.0; LANES]; 2]; 2] };
 
     /// Up to 16 modes as the other output hears them: frequencies and decays of the bank's, other amplitudes and phases. Modes at or above the
     /// Nyquist frequency are silent.
@@ -73,11 +73,10 @@ impl AheadGroup {
             h = [h[0] * re - h[1] * im, h[0] * im + h[1] * re];
             h[1]
         };
-        let mut now = next();
-        for hears in &mut self.hears {
-            let later = next();
-            (hears[0][lane], hears[1][lane]) = (now as f32, (later - now) as f32);
-            now = later;
+        let h: [f64; STEP + 1] = from_fn(|_| next());
+        for (hears, h) in self.hears.iter_mut().zip(h.windows(TURN + 1).step_by(TURN)) {
+            let by = out_of(from_fn(|n| h[n]));
+            hears.iter_mut().zip(by).for_each(|(to, by)| to[lane] = by as f32);
         }
         let jump = (0..STEP.ilog2()).fold(free_step(pole), |x, _| square(x));
         for (to, row) in self.step.iter_mut().zip(jump) {
@@ -96,34 +95,40 @@ pub(super) fn ahead(level: Level, groups: &[AheadGroup], states: &[GroupState], 
 
 #[inline(always)]
 fn ahead_in<T: Set>(token: T, groups: &[AheadGroup], states: &[GroupState], out: &mut [f32; CELL]) {
-    let mut rows = [const { MaybeUninit::<Row>::uninit() }; CELL];
-    // SAFETY: there are `len` lanes from `lane` on and at most AT_ONCE groups; the first groups write every lane of every row, and there are some. So
-    // rows may be read as what they are, in the same memory.
-    let rows = unsafe {
+    let mut turns = [const { MaybeUninit::<TurnSums>::uninit() }; CELL / TURN];
+    // SAFETY: there are `len` lanes from `lane` on and at most AT_ONCE groups; the first groups write every lane of every turn, and there are some. So
+    // turns may be read as what they are, in the same memory.
+    let turns = unsafe {
         for (part, (groups, states)) in groups.chunks(AT_ONCE).zip(states.chunks(AT_ONCE)).enumerate() {
             for lane in (0..LANES).step_by(len::<T>()) {
-                add_lanes(token, groups, states, lane, part == 0, &mut rows);
+                // As many sums as there are registers for.
+                match len::<T>() {
+                    LANES => add_lanes::<T, 4>(token, groups, states, lane, part == 0, &mut turns),
+                    8 => add_lanes::<T, 2>(token, groups, states, lane, part == 0, &mut turns),
+                    _ => add_lanes::<T, 1>(token, groups, states, lane, part == 0, &mut turns),
+                }
             }
         }
-        core::slice::from_raw_parts(rows.as_ptr().cast::<Row>(), CELL)
+        core::slice::from_raw_parts(turns.as_ptr().cast::<TurnSums>(), CELL / TURN)
     };
-    for (out, rows) in out.as_chunks_mut::<4>().0.iter_mut().zip(rows.as_chunks::<4>().0) {
-        *out = four_rows(token, rows);
+    for (out, turn) in out.as_chunks_mut::<TURN>().0.iter_mut().zip(turns) {
+        *out = samples(token, turn);
     }
 }
 
 /// Adds one vector of each group.
 ///
 /// # Safety
-/// There are [`len`] lanes from `lane` on, and at most [`AT_ONCE`] groups; these lanes of `rows` are written unless the groups are the first.
+/// There are [`len`] lanes from `lane` on, and at most [`AT_ONCE`] groups; these lanes of `turns` are written unless the groups are the first. `TILE`
+/// divides [`TURNS`].
 #[inline(always)]
-unsafe fn add_lanes<T: Set>(
+unsafe fn add_lanes<T: Set, const TILE: usize>(
     token: T,
     groups: &[AheadGroup],
     states: &[GroupState],
     lane: usize,
     is_first: bool,
-    rows: &mut [MaybeUninit<Row>; CELL],
+    turns: &mut [MaybeUninit<TurnSums>; CELL / TURN],
 ) {
     let count = groups.len().min(states.len());
     let nothing = Vector::<T>::splat(token, 0.0);
@@ -142,19 +147,28 @@ unsafe fn add_lanes<T: Set>(
             }
         }
         for j in 0..CELL / STEP {
-            for tile in (0..STEP).step_by(TILE) {
-                let row = |n: usize| rows.as_ptr().add(j * STEP + tile + n).cast::<f32>().add(lane);
-                let mut sums: [Vector<T>; TILE] =
-                    from_fn(|n| if is_first { nothing } else { load(token, row(n)) });
+            for tile in (0..TURNS).step_by(TILE) {
+                let row = |t: usize, i: usize| {
+                    turns.as_ptr().add(j * TURNS + tile + t).cast::<f32>().add(i * LANES + lane)
+                };
+                let mut sums: [[Vector<T>; SUMS]; TILE] =
+                    from_fn(|t| from_fn(|i| if is_first { nothing } else { load(token, row(t, i)) }));
                 for g in 0..count {
                     let [v, w] = at[j][g].assume_init();
-                    for n in 0..TILE {
-                        let [of_v, of_w] = &groups[g].hears[tile + n];
-                        sums[n] = mul_add::<T>(v, read(of_v), mul_add::<T>(w, read(of_w), sums[n]));
+                    let last = v - w;
+                    let products = [last, v, last - w, v + w, w];
+                    for t in 0..TILE {
+                        for i in 0..SUMS {
+                            let by = read(&groups[g].hears[tile + t][i]);
+                            sums[t][i] = mul_add::<T>(products[i], by, sums[t][i]);
+                        }
                     }
                 }
-                for n in 0..TILE {
-                    store::<T>(sums[n], rows[j * STEP + tile + n].as_mut_ptr().cast::<f32>().add(lane));
+                for t in 0..TILE {
+                    for i in 0..SUMS {
+                        let turn = turns[j * TURNS + tile + t].as_mut_ptr().cast::<f32>();
+                        store::<T>(sums[t][i], turn.add(i * LANES + lane));
+                    }
                 }
             }
         }

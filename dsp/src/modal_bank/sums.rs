@@ -45,15 +45,6 @@ pub(super) fn samples<T: Set>(token: T, turn: &TurnSums) -> [f32; TURN] {
     (low + high).to_array()
 }
 
-/// The sums of four rows, each in the order of [`sum_row`].
-#[inline(always)]
-pub(super) fn four_rows<T: Set>(token: T, rows: &[Row; 4]) -> [f32; 4] {
-    let half = |row: &Row, from: usize| f32x8::from_slice(token, &row.0[from..from + LANES / 2]);
-    let [a, b, c, d] = from_fn(|i| half(&rows[i], 0) + half(&rows[i], LANES / 2));
-    let (low, high) = token.add_neighbours(token.add_neighbours(a, b), token.add_neighbours(c, d)).split();
-    (low + high).to_array()
-}
-
 /// The one order of summation: halves onto each other, then neighbours, then neighbours, then halves.
 #[inline(always)]
 pub(super) fn sum_row(row: &Row) -> f32 {

@@ -76,13 +76,9 @@ pub struct RubState {
     sticks: bool,
     /// The force of the last sample, N.
     last_n: f64,
-    /// g, m/s a newton, and 1/g; 0 of a place that does not yield.
+    /// g, m/s a newton; 0 of a place that does not yield.
     mobility_m_s_n: f64,
-    stiffness_n_s_m: f64,
 }
-
-/// Share of the speeds at hand below which a place yields next to nothing.
-const LITTLE: f64 = 1e-6;
 
 /// One sample of a rubbing contact.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -106,6 +102,97 @@ pub struct Sweep {
     pub other_n_s: f64,
 }
 
+/// A rubbing pair at a place that yields: what holds for many samples.
+#[derive(Debug, Clone, Copy)]
+struct Law {
+    /// μ_s, μ_k, u_s and 2 u_s.
+    mu_static: f64,
+    mu_kinetic: f64,
+    slow_m_s: f64,
+    twice_slow_m_s: f64,
+    /// 1/g; 0 of a place that does not yield.
+    stiffness_n_s_m: f64,
+    /// What a newton that presses makes of [`Pressed`].
+    held_m_s_n: f64,
+    kinetic_m_s_n: f64,
+    weaker_m_s: f64,
+    dip_m2_s2_n: f64,
+}
+
+impl Law {
+    /// The place yields so far to a newton, m/s.
+    #[inline(always)]
+    fn new(friction: &Friction, mobility_m_s_n: f64) -> Self {
+        let Friction { mu_static, mu_kinetic, slip_speed_m_s } = *friction;
+        let weaker_m_s = 2.0 * slip_speed_m_s * (mu_static - mu_kinetic);
+        Self {
+            mu_static,
+            mu_kinetic,
+            slow_m_s: slip_speed_m_s,
+            twice_slow_m_s: 2.0 * slip_speed_m_s,
+            stiffness_n_s_m: if mobility_m_s_n > 0.0 { 1.0 / mobility_m_s_n } else { 0.0 },
+            held_m_s_n: mobility_m_s_n * mu_static,
+            kinetic_m_s_n: mobility_m_s_n * mu_kinetic,
+            weaker_m_s,
+            dip_m2_s2_n: 2.0 * mobility_m_s_n * weaker_m_s,
+        }
+    }
+
+    #[inline(always)]
+    fn pressed(&self, normal_force_n: f64) -> Pressed {
+        let pressed_n = normal_force_n.max(0.0);
+        Pressed {
+            pressed_n,
+            kinetic_n: pressed_n * self.mu_kinetic,
+            weaker_n_m_s: pressed_n * self.weaker_m_s,
+            lean_m_s: self.slow_m_s - pressed_n * self.kinetic_m_s_n,
+            dip_m2_s2: pressed_n * self.dip_m2_s2_n,
+        }
+    }
+
+    /// The slipping branch, from t = w + u_s − g N μ_k: its root and twice u + u_s, if it has one.
+    #[inline(always)]
+    fn slips<T: Set>(&self, token: T, pressed: &Pressed, t: f64) -> Option<[f64; 2]> {
+        // No number where there is none.
+        let root = root(token, fused(token, t, t, -pressed.dip_m2_s2));
+        (t + root > self.twice_slow_m_s).then_some([root, t + root])
+    }
+}
+
+/// The law under a force: N μ_k, 2 u_s N (μ_s − μ_k), u_s − g N μ_k, and 4 u_s g N (μ_s − μ_k).
+#[derive(Debug, Clone, Copy)]
+struct Pressed {
+    pressed_n: f64,
+    kinetic_n: f64,
+    weaker_n_m_s: f64,
+    lean_m_s: f64,
+    dip_m2_s2: f64,
+}
+
+impl Pressed {
+    /// The force at a speed, of which it hears u + u_s twice.
+    #[inline(always)]
+    fn slides_n(&self, twice_m_s: f64) -> f64 {
+        self.kinetic_n + self.weaker_n_m_s / twice_m_s
+    }
+}
+
+/// The force of a sample.
+#[derive(Debug, Clone, Copy)]
+struct Solved {
+    force_n: f64,
+    /// Of a contact that slipped before as well.
+    slips: Option<Slips>,
+}
+
+/// A contact that slips: 1 or −1, t, and the root.
+#[derive(Debug, Clone, Copy)]
+struct Slips {
+    way: f64,
+    t: f64,
+    root: f64,
+}
+
 impl RubState {
     /// Whether it sticks at present.
     #[must_use]
@@ -113,76 +200,47 @@ impl RubState {
         self.sticks
     }
 
-    /// The place yields so far to a newton, m/s.
-    fn yields(&mut self, mobility_m_s_n: f64) {
-        self.mobility_m_s_n = mobility_m_s_n;
-        self.stiffness_n_s_m = if mobility_m_s_n > 0.0 { 1.0 / mobility_m_s_n } else { 0.0 };
-    }
-
-    /// The friction force of a sample in which the place would lag `behind_m_s` behind what rubs if nothing rubbed it, and how that moves the place
-    /// in the next sample, which answers a newton with `next_m_s_n`.
-    ///
-    /// The next sample waits for the second and for nothing else, so it is made of the root at once, beside the force.
+    /// The friction force of a sample in which the place would lag `behind_m_s` behind what rubs if nothing rubbed it.
     #[inline(always)]
-    fn solve<T: Set>(
-        &mut self,
-        token: T,
-        friction: &Friction,
-        normal_force_n: f64,
-        behind_m_s: f64,
-        next_m_s_n: f64,
-    ) -> [f64; 2] {
-        let pressed_n = normal_force_n.max(0.0);
+    fn solve<T: Set>(&mut self, token: T, law: &Law, pressed: &Pressed, behind_m_s: f64) -> Solved {
         let w = behind_m_s.abs();
-        let yields_m_s = self.mobility_m_s_n * pressed_n;
-        let held_m_s = yields_m_s * friction.mu_static;
-        if self.sticks && w <= held_m_s {
-            return self.keep(behind_m_s * self.stiffness_n_s_m, next_m_s_n);
-        }
-        let slow = friction.slip_speed_m_s;
-        let slides_m_s = slow + yields_m_s * friction.mu_kinetic;
-        // Of u² + b u + c = 0 the larger root is (root − b) / 2; b² − 4 c is a square in w.
-        let b = slides_m_s - w;
-        let linear = 4.0 * slow - 2.0 * slides_m_s;
-        let constant = slides_m_s * slides_m_s - 4.0 * slow * held_m_s;
-        let square = fused(token, w, w + linear, constant);
-        let root = libm::sqrt(square.max(0.0));
-        if square < 0.0 || root <= b {
+        let slips = if self.sticks && w <= pressed.pressed_n * law.held_m_s_n {
+            None
+        } else {
+            law.slips(token, pressed, w + pressed.lean_m_s)
+        };
+        let Some([root, twice_m_s]) = slips else {
             self.sticks = true;
-            return self.keep(behind_m_s * self.stiffness_n_s_m, next_m_s_n);
+            self.last_n = behind_m_s * law.stiffness_n_s_m;
+            return Solved { force_n: self.last_n, slips: None };
+        };
+        let (way, slides_n) = (1.0_f64.copysign(behind_m_s), pressed.slides_n(twice_m_s));
+        if core::mem::take(&mut self.sticks) {
+            let most_n = pressed.pressed_n * law.mu_static;
+            let held = self.held_share(law, most_n, behind_m_s);
+            self.last_n = way * (slides_n + held * (most_n - slides_n)).max(0.0);
+            return Solved { force_n: self.last_n, slips: None };
         }
-        let sticks = core::mem::take(&mut self.sticks);
-        if !sticks && held_m_s > LITTLE * (w + slow) {
-            // What the place was held back by, w − u.
-            let [size, own] = [w + slides_m_s, (0.5 * self.stiffness_n_s_m).copysign(behind_m_s)];
-            let of = |factor: f64| fused(token, -root, factor, size * factor);
-            self.last_n = of(own);
-            return [self.last_n, of(own * next_m_s_n)];
-        }
-        // Where next to nothing yields that difference says nothing, but the curve does.
-        let u = if b > 0.0 { 2.0 * slow * (w - held_m_s) / (b + root) } else { 0.5 * (root - b) };
-        let weaker = (friction.mu_static - friction.mu_kinetic) / (1.0 + u / slow);
-        let (slides_n, most_n) = (pressed_n * (friction.mu_kinetic + weaker), pressed_n * friction.mu_static);
-        let held = if sticks { self.held_share(most_n, behind_m_s) } else { 0.0 };
-        self.keep((slides_n + held * (most_n - slides_n)).max(0.0).copysign(behind_m_s), next_m_s_n)
-    }
-
-    /// A force, and how it moves the place in the next sample.
-    #[inline(always)]
-    fn keep(&mut self, force_n: f64, next_m_s_n: f64) -> [f64; 2] {
-        self.last_n = force_n;
-        [force_n, force_n * next_m_s_n]
+        self.last_n = way * slides_n;
+        Solved { force_n: self.last_n, slips: Some(Slips { way, t: w + pressed.lean_m_s, root }) }
     }
 
     /// Share of a sample during which it still stuck, −½ to ½: while it sticks the force of sample n is the one needed at that instant and acts for
     /// half a sample before and after it. It grew along a straight line and let go at `most_n`; if that was before this sample's
     /// share began, the last force acted too long by so much.
-    fn held_share(&self, most_n: f64, behind_m_s: f64) -> f64 {
-        let needed_n = behind_m_s.abs() * self.stiffness_n_s_m;
+    fn held_share(&self, law: &Law, most_n: f64, behind_m_s: f64) -> f64 {
+        let needed_n = behind_m_s.abs() * law.stiffness_n_s_m;
         let last_n = 1.0_f64.copysign(behind_m_s) * self.last_n;
         let share = (most_n - last_n) / (needed_n - last_n);
         if (0.0..=1.0).contains(&share) && last_n >= 0.0 { share - 0.5 } else { 0.0 }
     }
+}
+
+/// The square root in the token's own instructions. `libm`'s is SSE's, which among those of AVX costs a processor a hundred cycles and more
+/// wherever it minds the mixture.
+#[inline(always)]
+fn root<T: Set>(token: T, x: f64) -> f64 {
+    f64x2::splat(token, x).sqrt()[0]
 }
 
 /// a · b + c; one rounding where the processor has it.

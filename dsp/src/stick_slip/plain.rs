@@ -3,7 +3,7 @@
 //! What `Coupled` (beside) does for a whole [modal bank](crate::modal_bank) cell by cell, written as the equations of the
 //! [module](super) stand, with an energy that can be asked for.
 
-use super::{Friction, Rub, RubState, Sweep};
+use super::{Friction, Law, Rub, RubState, Sweep};
 use crate::DesignError;
 use crate::mode::Mode;
 use crate::simd::BASE;
@@ -93,7 +93,7 @@ impl<'a> RubbedBody<'a> {
                 sum += f64::from(phi * modes.pushed[lane]);
             }
         }
-        state.yields(sum / self.step_s);
+        state.mobility_m_s_n = sum / self.step_s;
     }
 
     /// One sample. `friction` may change from sample to sample.
@@ -102,7 +102,9 @@ impl<'a> RubbedBody<'a> {
         let free_m_s = self.free_step() / self.step_s;
         let other_n = now.other_n_s / self.step_s;
         let free_m_s = free_m_s + state.mobility_m_s_n * other_n;
-        let [force_n, _] = state.solve(BASE, friction, now.normal_force_n, now.sweep_m_s - free_m_s, 0.0);
+        let law = Law::new(friction, state.mobility_m_s_n);
+        let pressed = law.pressed(now.normal_force_n);
+        let force_n = state.solve(BASE, &law, &pressed, now.sweep_m_s - free_m_s).force_n;
         self.push((force_n + other_n) as f32);
         Rub { force_n, body_m_s: free_m_s + state.mobility_m_s_n * force_n, sticks: state.sticks }
     }

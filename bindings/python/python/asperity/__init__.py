@@ -11,13 +11,14 @@ All numbers are SI units; arrays of heights are metres, rows from top to bottom.
 `FileNotFoundError`) with the engine's own sentence: which file or field, what is wrong, what would be right.
 """
 
-from asperity import contacts, haptics, texture
+from asperity import batch, contacts, haptics, texture
 from asperity._fit import Fit, fit
-from asperity._live import Renderer, Scene
+from asperity._live import Renderer, Scene, play
 from asperity._native import VERSION as __version__
 from asperity._native import names_of
 from asperity._render import TouchWarning, render, stroke
 from asperity._scene import Body, Brownian, Lattice, Sand, SceneFile, Solid, Surface
+from asperity._shape import Shape, modes
 from asperity._take import Take
 
 __all__ = [
@@ -29,15 +30,19 @@ __all__ = [
     "Sand",
     "Scene",
     "SceneFile",
+    "Shape",
     "Solid",
     "Surface",
     "Take",
     "TouchWarning",
     "__version__",
+    "batch",
     "contacts",
     "fit",
     "haptics",
+    "modes",
     "names_of",
+    "play",
     "render",
     "stroke",
     "texture",

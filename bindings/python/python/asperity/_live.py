@@ -156,3 +156,31 @@ class Scene:
     def mute(self, muted: bool = True) -> None:
         """Everything fades, or comes back."""
         self._native.set_muted(muted)
+
+
+def play(renderer: Renderer, device: int | str | None = None, channels: str | None = None, *, blocksize: int = 64) -> Any:
+    """Plays a renderer on a sound card with sounddevice: an open and started `sounddevice.OutputStream`.
+
+    device: what sounddevice calls it; its default unless told otherwise. channels: what goes where, such as "audio=0,1 haptic=2,3";
+    without it the first bus on 0 and 1, and every haptic channel after it as far as the device has channels. blocksize: frames a block,
+    1 to 4096. Close the stream, or use it in a `with`.
+
+    Raises ImportError without sounddevice (`pip install asperity[play]`), ValueError where two signals share a channel or the device has
+    too few, and what sounddevice raises.
+    """
+    import sounddevice
+
+    if not 1 <= blocksize <= 4096:
+        raise ValueError(f"blocksize: {blocksize} is refused; must be 1 to 4096 frames")
+    most = int(sounddevice.query_devices(device, "output")["max_output_channels"])
+    if channels is None:
+        haptics = [str(place) for place in range(2, min(most, 2 + renderer.haptic_channels))]
+        channels = ("audio=0,1" if most > 1 else "audio=0") + (f" haptic={','.join(haptics)}" if haptics else "")
+    width = renderer.channels(channels)
+    if width > most:
+        raise ValueError(f'channels: "{channels}" needs {width} channels; the device has {most}')
+    stream = sounddevice.OutputStream(
+        renderer.sr, blocksize=blocksize, device=device, channels=width, dtype="float32", callback=renderer.callback
+    )
+    stream.start()
+    return stream

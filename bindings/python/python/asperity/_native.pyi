@@ -11,18 +11,25 @@ __all__ = [
     "LiveRenderer",
     "LiveScene",
     "NativeClip",
+    "NativeDataSet",
     "VERSION",
     "analyze",
     "as_toml",
+    "build",
+    "compare",
     "fit",
     "from_normals",
+    "from_photo",
     "metamer",
+    "modes",
     "names_of",
     "open",
     "parse_log",
+    "read_photograph",
     "read_picture",
     "reduce",
     "render",
+    "verify",
     "write_wav",
 ]
 
@@ -35,6 +42,11 @@ _F64 = npt.NDArray[np.float64]
 
 def analyze(picture: _F64) -> str: ...
 def as_toml(json: str) -> str: ...
+def build(text: str, path: _Path) -> dict[str, str]: ...
+def compare(
+    maps: list[_F64], *, strokes: int, width_m: float, relief_m: float, seed: int, iterations: int | None = None,
+    progress: _Progress = None,
+) -> dict[str, Any]: ...
 def fit(
     samples: _F64 | None, path: _Path | None, sr: float, name: str, *, max_modes: int, from_hz: float, to_hz: float | None = None,
     min_level_db: float, strike: int | None = None, start_s: float | None = None, burst_s: float | None = None,
@@ -43,15 +55,26 @@ def fit(
 def from_normals(
     red: _F64, green: _F64, blue: _F64, *, green_way: str | None = None, derivative: str | None = None, keep_tilt: bool = False
 ) -> tuple[_F64, dict[str, Any]]: ...
+def from_photo(
+    photo: _F64, *, width_m: float | None = None, relief_m: float | None = None, light: list[float] | None = None,
+    method: str | None = None, bright_is_deep: bool = False, calibration: float = 1.0, exaggerate: float = 1.0,
+    progress: _Progress = None,
+) -> tuple[_F64, _F64, dict[str, Any]]: ...
 def metamer(
     look: _F64, feel: _F64, *, iterations: int | None = None, progress: _Progress = None
 ) -> tuple[_F64, dict[str, Any]]: ...
+def modes(
+    path: _Path | None, surface: tuple[_F64, npt.NDArray[np.uint32]] | None, *, material: str | None = None,
+    elastic: list[float | None], damping_from: _Path | None = None, size_m: float | None = None, thickness_m: float | None = None,
+    up_to_hz: float | None = None, max_modes: int | None = None, radiation: bool = False, progress: _Progress = None,
+) -> dict[str, Any]: ...
 def names_of(kind: str) -> list[str]: ...
 def open(
     scene: _Path, files: dict[str, Any], *, sr: float | None = None, seed: int | None = None, kernel: str | None = None,
     integrator: str | None = None, live: bool = True,
 ) -> tuple[LiveScene, LiveRenderer, list[float], list[float]]: ...
 def parse_log(text: str, name: str) -> list[str]: ...
+def read_photograph(path: _Path) -> tuple[_F64, float]: ...
 def read_picture(path: _Path, channel: str) -> _F64: ...
 def reduce(
     samples: _F64, sr: float, device: str, *, points: float | None = None, strokes_s: list[float] = ..., normalise: bool = False,
@@ -62,6 +85,7 @@ def render(
     kernel: str | None = None, integrator: str | None = None, block: int = 256, trace: bool = False, force_rate: float | None = None,
     progress: _Progress = None,
 ) -> dict[str, Any]: ...
+def verify(folder: _Path, sample: float, *, progress: _Progress = None) -> tuple[int, int, int]: ...
 def write_wav(path: _Path, samples: _F32, sr: float) -> None: ...
 
 @final
@@ -90,6 +114,20 @@ class LiveRenderer:
     def render_into(self, out: _F32) -> None: ...
     def report_load(self, load: float) -> None: ...
     def set_channels(self, text: str) -> int: ...
+
+@final
+class NativeDataSet:
+    def __new__(cls, text: str, path: _Path, folder: _Path) -> NativeDataSet: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def per_shard(self) -> int: ...
+    @property
+    def shards(self) -> int: ...
+    @property
+    def strokes(self) -> int: ...
+    def shard(self, index: int, *, progress: _Progress = None) -> tuple[str, bool, int, int]: ...
+    def write_manifest(self) -> str: ...
 
 @final
 class NativeClip:

@@ -32,7 +32,7 @@ def shown(progress: Progress, what: str) -> Iterator[Callable[[float], object] |
     with tqdm(total=1.0, desc=what, delay=1.0, leave=False, bar_format="{desc} {percentage:3.0f}% |{bar}| {elapsed}") as bar:
 
         def tell(done: float) -> None:
-            bar.n = done
-            bar.refresh()
+            # Not `refresh`, which shows the bar before its delay is over.
+            bar.update(done - bar.n)
 
         yield tell

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -79,3 +80,68 @@ def metamer(
     """
     with shown(progress, "matching") as tell:
         return _native.metamer(_plane(look, "look"), _plane(feel, "feel"), iterations=iterations, progress=tell)
+
+
+def from_photo(
+    photo: Image,
+    *,
+    width_m: float | None = None,
+    relief_m: float | None = None,
+    light: tuple[float, float, float] | None = None,
+    method: str | None = None,
+    bright_is_deep: bool = False,
+    calibration: float = 1.0,
+    exaggerate: float = 1.0,
+    progress: Progress = None,
+) -> tuple[npt.NDArray[np.float64], dict[str, Any]]:
+    """Heights in metres (rows, columns) of a photograph, lowest 0, and what was found out about it: those of `asperity texture from-photo`.
+
+    photo: (rows, columns) greys of their type or floats 0 to 1, as stored (sRGB); or a path. width_m: of what it shows; a texel is 0.16 mm
+    unless told otherwise. relief_m: from the lowest to the highest point; what contrast gives unless told otherwise. light: direction to
+    it, x to the right, y down, z to the eye. method: integrable, tsai-shah, dark-is-deep or flat-ground, by the light unless told
+    otherwise. calibration, exaggerate: factors on what contrast gives, and on the heights. Pictures of more than four million texels are
+    reduced (`reduced_by`).
+
+    Told are `texel_m`, `relief_m`, `micro_relief_m` (for `Surface`), `roughness_map` (rows, columns, 0 to 1), `method`, `sign`,
+    `sign_confidence`, `light`, `fractal_dimension`, `lattice_px`, `wallpaper_group`, `tileable`, and `warnings`: what to doubt.
+
+    Runs without the GIL; Ctrl-C stops it. Raises ValueError or FileNotFoundError in the engine's words.
+    """
+    colour = 0.0
+    if isinstance(photo, str | os.PathLike):
+        plane, colour = _native.read_photograph(photo)
+    else:
+        plane = _plane(photo, "photo")
+    with shown(progress, "from photo") as tell:
+        heights_m, roughness, told = _native.from_photo(
+            plane, width_m=width_m, relief_m=relief_m, light=None if light is None else [float(x) for x in light], method=method,
+            bright_is_deep=bright_is_deep, calibration=calibration, exaggerate=exaggerate, progress=tell,
+        )  # fmt: skip
+    return heights_m, {**told, "roughness_map": roughness, "colour": colour}
+
+
+def compare(
+    maps: Sequence[Image],
+    *,
+    strokes: int = 200,
+    width_m: float = 0.04,
+    relief_m: float = 0.002,
+    seed: int = 1,
+    metamers: bool = False,
+    iterations: int = 20,
+    progress: Progress = None,
+) -> dict[str, Any]:
+    """Asks a machine which of two surfaces a stroke was on: 0.5 is chance, 1 is certain. The numbers of `asperity texture compare`.
+
+    maps: 2 to 8 of (rows, columns), or paths; the first is the reference. strokes: on each, 20 to 10000. width_m: of a map. relief_m:
+    height of white over black. metamers: also compares what is made of the others to feel like the first, by so many `iterations`.
+
+    Returns `originals` and `metamers` (or None), each with `rows` (maps, maps), the `mean` over pairs, the first against the others
+    (`reference`), and a surface against itself (`same`). Runs without the GIL; Ctrl-C stops it.
+    """
+    planes = [_plane(image, f"maps[{place}]") for place, image in enumerate(maps)]
+    with shown(progress, "stroking") as tell:
+        return _native.compare(
+            planes, strokes=strokes, width_m=width_m, relief_m=relief_m, seed=seed, iterations=iterations if metamers else None,
+            progress=tell,
+        )  # fmt: skip

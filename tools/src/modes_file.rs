@@ -1,6 +1,6 @@
 //! The modes file of a solved body: format version 2, with shapes.
 
-use crate::error::CliError;
+use asperity::files::FileError;
 use asperity::{ModeShapes, ShapeUnit, shapes_to_file};
 use asperity_dsp::damping::Damping;
 use asperity_dsp::radiation::{EquivalentSphere, Surface};
@@ -42,8 +42,10 @@ pub struct FileMode {
     pub frequency_hz: f64,
     /// Decay rate, 1/s.
     pub decay_per_s: f64,
-    amplitude: f64,
-    phase_rad: f64,
+    /// Amplitude under a strike of 1 N·s.
+    pub amplitude: f64,
+    /// Phase, rad.
+    pub phase_rad: f64,
 }
 
 /// Six digits: shapes are good to three.
@@ -53,12 +55,15 @@ fn rounded(x: f64) -> f64 {
 
 impl ModesFile {
     /// A body with its damping, and with `radiation` in pascals at 1 m; modes that do not swing any more are left out and told.
+    ///
+    /// # Errors
+    /// When no mode is left that rings.
     pub fn new(
         body: &mut SolvedBody,
         damping: &Damping,
         radiation: bool,
         source: &Path,
-    ) -> Result<Self, CliError> {
+    ) -> Result<Self, FileError> {
         let field = &body.field;
         let air = radiation.then(|| Air::around(field)).flatten();
         let mut gains = Vec::new();
@@ -89,8 +94,8 @@ impl ModesFile {
             body.told.push(format!("{lost} modes are damped so much that they do not swing; left out"));
         }
         if modes.is_empty() {
-            let right = "give a higher --up-to, or a stiffer or less damped material";
-            return Err(CliError::file(source, "has no mode there that rings", right));
+            let right = "ask for higher modes, or give a stiffer or less damped material";
+            return Err(FileError::file(source, "has no mode there that rings", right));
         }
         let field = &body.field;
         let shapes = ModeShapes {
@@ -123,6 +128,7 @@ impl ModesFile {
     }
 
     /// Moves the shapes into a file of that name; its bytes.
+    #[must_use = "the file names what was never written"]
     pub fn put_shapes_beside(&mut self, name: String) -> Option<Vec<u8>> {
         let bytes = shapes_to_file(&self.shapes.take()?, &name);
         self.shapes_beside = Some(name);

@@ -1,0 +1,37 @@
+#![doc = include_str!("../README.md")]
+//!
+//! # The map of this crate
+//!
+//! | file | holds |
+//! |---|---|
+//! | `plugin` | the plugin, the order of its systems |
+//! | `touch` | the game's half as a resource; which entity is which body and surface |
+//! | `component` | what entities are: bodies, surfaces, probes, things of a physics engine |
+//! | `in_step` | observers that keep the scene as the components say |
+//! | `event` | messages: contacts in, refusals out |
+//! | `output` | where the sound goes |
+//! | `null` | the output nobody hears, paced by the app's own time |
+//! | `rapier`, `avian` | contacts of a physics engine |
+//! | `seedling` | a node of the Firewheel graph |
+
+#[cfg(feature = "avian")]
+pub mod avian;
+mod component;
+mod event;
+mod in_step;
+mod null;
+mod output;
+mod plugin;
+#[cfg(feature = "rapier")]
+pub mod rapier;
+#[cfg(feature = "seedling")]
+pub mod seedling;
+mod touch;
+
+pub use asperity;
+pub use component::{TouchBody, TouchProbe, TouchSurface, TouchThing};
+pub use event::{TouchError, TouchEvent};
+pub use null::NullOutput;
+pub use output::Output;
+pub use plugin::{AsperityPlugin, TouchSystems};
+pub use touch::Touch;

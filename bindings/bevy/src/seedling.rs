@@ -1,0 +1,143 @@
+//! asperity as a node of `bevy_seedling`'s Firewheel graph, so that the game's volumes, effects and panning apply.
+//!
+//! One audio bus comes out left and right; of several, bus i comes out of output i. Haptic channels are no sound and do not
+//! belong into a mix: they leave by a port ([`Scene::open_port`](asperity::Scene::open_port)), or by
+//! [`Output::Device`](crate::Output) instead.
+//!
+//! The node starts silent. When the graph's rate is known, the next frame of the game designs the engine for it and lays the renderer into a
+//! slot; the processor *tries* the slot and never waits for it.
+
+use crate::touch::Touch;
+use asperity::Renderer;
+use bevy_app::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_seedling::node::RegisterNode;
+use firewheel::channel_config::{ChannelConfig, ChannelCount};
+use firewheel::node::{
+    AudioNode, AudioNodeInfo, AudioNodeProcessor, ConstructProcessorContext, EmptyConfig, NodeError,
+    ProcBuffers, ProcExtra, ProcInfo, ProcessStatus,
+};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Most actuators that are rendered beside the sound.
+const MAX_ACTUATORS: usize = 64;
+
+/// The node: one is spawned by [`Output::Seedling`](crate::Output); put an effect or a connection on its entity.
+#[derive(Component, Clone)]
+pub struct TouchNode {
+    slot: Arc<Mutex<Slot>>,
+    outputs: u32,
+}
+
+/// What lies between the game and the graph.
+#[derive(Default)]
+struct Slot {
+    /// At the game's disposal.
+    idle: Option<Renderer>,
+    /// Designed for the graph's rate, for the processor.
+    ready: Option<Renderer>,
+    /// Rate of the graph, Hz, once it is known.
+    rate_hz: Option<f64>,
+}
+
+pub(crate) fn start(app: &mut App, renderer: Renderer) {
+    let outputs = renderer.audio_buses().clamp(2, 64) as u32;
+    let slot = Arc::new(Mutex::new(Slot { idle: Some(renderer), ..Slot::default() }));
+    let node = TouchNode { slot, outputs };
+    app.register_simple_node::<TouchNode>();
+    app.add_systems(Startup, move |mut commands: Commands| {
+        commands.spawn(node.clone());
+    });
+    app.add_systems(First, hand_over);
+}
+
+/// Lays the renderer out for the graph, at the graph's rate.
+fn hand_over(nodes: Query<&TouchNode>, touch: Option<ResMut<Touch>>) {
+    let Some(mut touch) = touch else { return };
+    for node in &nodes {
+        let mut slot = node.slot.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(rate_hz) = slot.rate_hz else { continue };
+        let Some(renderer) = slot.idle.take() else { continue };
+        if renderer.sample_rate_hz() == rate_hz {
+            slot.ready = Some(renderer);
+            continue;
+        }
+        match touch.scene().at_rate(renderer, rate_hz) {
+            Ok(at) => {
+                slot.ready = Some(at.renderer);
+                for (_, why) in at.lost {
+                    touch.refused(None, why);
+                }
+            }
+            Err(error) => {
+                // It is not tried again at the same rate.
+                slot.rate_hz = None;
+                touch.refused(None, &error);
+                slot.idle = Some(*error.renderer);
+            }
+        }
+    }
+}
+
+impl AudioNode for TouchNode {
+    type Configuration = EmptyConfig;
+
+    fn info(&self, _: &EmptyConfig) -> Result<AudioNodeInfo, NodeError> {
+        let outputs = ChannelCount::new(self.outputs).unwrap_or(ChannelCount::STEREO);
+        Ok(AudioNodeInfo::new()
+            .debug_name("asperity")
+            .channel_config(ChannelConfig { num_inputs: ChannelCount::ZERO, num_outputs: outputs }))
+    }
+
+    fn construct_processor(
+        &self,
+        _: &EmptyConfig,
+        cx: ConstructProcessorContext,
+    ) -> Result<impl AudioNodeProcessor, NodeError> {
+        let mut slot = self.slot.lock().unwrap_or_else(PoisonError::into_inner);
+        slot.rate_hz = Some(f64::from(cx.stream_info.sample_rate.get()));
+        let frames = cx.stream_info.max_block_frames.get() as usize;
+        let renderer = slot.idle.as_ref().or(slot.ready.as_ref());
+        let actuators = renderer.map_or(1, Renderer::haptic_channels).min(MAX_ACTUATORS);
+        Ok(Processor { slot: self.slot.clone(), renderer: None, haptic: vec![vec![0.0; frames]; actuators] })
+    }
+}
+
+/// The audio half in the graph.
+struct Processor {
+    slot: Arc<Mutex<Slot>>,
+    renderer: Option<Renderer>,
+    /// What is felt goes nowhere from here; ports take it before.
+    haptic: Vec<Vec<f32>>,
+}
+
+impl AudioNodeProcessor for Processor {
+    fn process(&mut self, info: &ProcInfo, buffers: ProcBuffers<'_, '_>, _: &mut ProcExtra) -> ProcessStatus {
+        if self.renderer.is_none()
+            && let Ok(mut slot) = self.slot.try_lock()
+        {
+            self.renderer = slot.ready.take();
+        }
+        let Some(renderer) = &mut self.renderer else { return ProcessStatus::ClearAllOutputs };
+        let (buses, actuators) = (renderer.audio_buses(), self.haptic.len());
+        let Some(audio) = buffers.outputs.get_mut(..buses) else { return ProcessStatus::ClearAllOutputs };
+        let mut channels = self.haptic.iter_mut();
+        let mut haptic: [&mut [f32]; MAX_ACTUATORS] = std::array::from_fn(|_| {
+            channels.next().and_then(|channel| channel.get_mut(..info.frames)).unwrap_or_default()
+        });
+        renderer.render(&mut haptic[..actuators], audio);
+        if let (1, [left, right, ..]) = (buses, buffers.outputs) {
+            right.copy_from_slice(left);
+        }
+        ProcessStatus::OutputsModified
+    }
+}
+
+/// The graph drops its processors on the game's side, where the renderer goes on to the next one.
+impl Drop for Processor {
+    fn drop(&mut self) {
+        if let Some(renderer) = self.renderer.take() {
+            self.slot.lock().unwrap_or_else(PoisonError::into_inner).idle = Some(renderer);
+        }
+    }
+}

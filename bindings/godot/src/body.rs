@@ -1,0 +1,121 @@
+//! `AsperityBody`: what rings, and what of it is touched.
+
+use crate::res_files::ResFiles;
+use crate::surface::{AsperitySurface, table_of, written};
+use crate::world::AsperityWorld;
+use godot::classes::INode3D;
+use godot::prelude::*;
+use toml::Value;
+
+/// A body that rings, as the child of a physics body, and the surface that a finger touches on it. It joins the world when it is ready
+/// and leaves it with the tree.
+#[derive(GodotClass)]
+#[class(init, base = Node3D)]
+pub struct AsperityBody {
+    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl" or "block"; empty: `modes_file` or `table` says, or it is silent.
+    #[export]
+    #[init(val = "plate".into())]
+    stock: GString,
+    /// Longest side or diameter of the stock shape, m.
+    #[export]
+    #[init(val = 0.3)]
+    size_m: f64,
+    /// A material of the engine's, "steel" or "wood" for example.
+    #[export]
+    #[init(val = "steel".into())]
+    material: GString,
+    /// A modes file (`*.modes.json`), in the place of the stock shape.
+    #[export(file = "*.json")]
+    modes_file: GString,
+    /// Gain, linear, 0 to 1000.
+    #[export]
+    #[init(val = 1.0)]
+    gain: f64,
+    /// Audio bus of the world, from 0.
+    #[export]
+    bus: i64,
+    /// Further keys of a scene file's [[body]], TOML. The fields above count more.
+    #[export(multiline)]
+    table: GString,
+    /// What is touched; none: it can only be struck.
+    #[export]
+    surface: Option<Gd<AsperitySurface>>,
+    world: Option<Gd<AsperityWorld>>,
+    body_id: i64,
+    surface_id: i64,
+    base: Base<Node3D>,
+}
+
+#[godot_api]
+impl INode3D for AsperityBody {
+    fn ready(&mut self) {
+        self.join();
+    }
+
+    fn exit_tree(&mut self) {
+        let (body, surface) = (std::mem::take(&mut self.body_id), std::mem::take(&mut self.surface_id));
+        // A world that is freed with the scene has taken everything along.
+        let Some(mut world) = self.world.take().filter(Gd::is_instance_valid) else { return };
+        world.bind_mut().leave(body, surface);
+        // Ready is called again when it comes back.
+        self.base_mut().request_ready();
+    }
+}
+
+#[godot_api]
+impl AsperityBody {
+    /// The body's id in its world; 0: it is in none.
+    #[func]
+    fn body_id(&self) -> i64 {
+        self.body_id
+    }
+
+    /// The id of its surface; 0: it has none.
+    #[func]
+    pub(crate) fn surface_id(&self) -> i64 {
+        self.surface_id
+    }
+}
+
+impl AsperityBody {
+    fn join(&mut self) {
+        let Some(tree) = self.base().is_inside_tree().then(|| self.base().get_tree()) else { return };
+        let Some(mut world) = AsperityWorld::of(&tree) else {
+            godot_error!("AsperityBody: there is no AsperityWorld in the tree; add one");
+            return;
+        };
+        let name = self.base().get_name().to_string();
+        {
+            let mut held = world.bind_mut();
+            self.body_id = held.join_body(self, &name);
+            if self.body_id != 0
+                && let Some(surface) = self.surface.clone()
+            {
+                self.surface_id = held.join_surface(&surface, self.body_id, &name);
+            }
+        }
+        self.world = Some(world);
+    }
+
+    /// The keys of a scene file's `[[body]]`, and where its files lie.
+    pub(crate) fn told(&self, name: &str) -> Result<(String, ResFiles, usize, f64), String> {
+        let mut table = table_of(&self.table.to_string())?;
+        let mut say = |key: &str, text: &GString| {
+            if !text.is_empty() {
+                table.insert(key.into(), Value::String(text.to_string()));
+            }
+        };
+        say("material", &self.material);
+        say("modes", &self.modes_file);
+        if self.modes_file.is_empty() && !self.stock.is_empty() {
+            say("stock", &self.stock);
+            table.insert("size_m".into(), Value::Float(self.size_m));
+        }
+        if !name.is_empty() {
+            table.insert("name".into(), Value::String(name.into()));
+        }
+        let bus = usize::try_from(self.bus)
+            .map_err(|_| format!("bus: {} is refused; must be 0 or more", self.bus))?;
+        Ok((written(&table)?, ResFiles::default(), bus, self.gain))
+    }
+}

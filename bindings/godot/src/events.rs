@@ -1,0 +1,61 @@
+//! Events: numbers of a script as events of the engine.
+
+use asperity::{Actuator, BodyId, ContactSample, Impact, Material, SurfaceId, Touching};
+use godot::prelude::*;
+
+/// What a script calls a contact, as the engine's number.
+pub(crate) fn contact(number: i64) -> Result<asperity::ContactId, String> {
+    u64::try_from(number)
+        .map(asperity::ContactId)
+        .map_err(|_| format!("contact: {number} is refused; must be 0 or more"))
+}
+
+/// A haptic channel; below 0: none.
+pub(crate) fn channel(number: i64) -> Result<Option<Actuator>, String> {
+    match number {
+        ..0 => Ok(None),
+        0..=65_535 => Ok(Some(Actuator(number as u16))),
+        _ => Err(format!("channel: {number} is refused; must be a haptic channel from 0, or -1")),
+    }
+}
+
+/// A contact at a place, pressed by so many newtons; how fast it moves, the engine finds out unless it is told.
+pub(crate) fn sample(uv: Vector2, force_n: f64, velocity_m_s: Option<Vector2>) -> ContactSample {
+    ContactSample {
+        uv: [f64::from(uv.x), f64::from(uv.y)],
+        velocity_m_s: velocity_m_s.map(|v| [f64::from(v.x), f64::from(v.y)]),
+        normal_force_n: force_n,
+        closing_m_s: 0.0,
+        at_m: None,
+        depth_m: None,
+    }
+}
+
+/// What touches what.
+pub(crate) fn touching(surface: i64, number: i64) -> Result<Touching, String> {
+    let mut touching = Touching::on(SurfaceId::from_bits(surface as u64));
+    touching.actuator = channel(number)?;
+    Ok(touching)
+}
+
+/// A blow.
+pub(crate) fn impact(
+    body: i64,
+    speed_m_s: f64,
+    mass_kg: f64,
+    radius_m: f64,
+    striker: &str,
+    number: i64,
+) -> Result<Impact, String> {
+    let mut impact = Impact::on(BodyId::from_bits(body as u64));
+    (impact.speed_m_s, impact.mass_kg, impact.radius_m) = (speed_m_s, mass_kg, radius_m);
+    if !striker.is_empty() {
+        let preset = Material::PRESETS.iter().find(|preset| preset.name == striker);
+        impact.striker = preset.map(|preset| preset.material).ok_or_else(|| {
+            let names: Vec<_> = Material::PRESETS.iter().map(|preset| preset.name).collect();
+            format!("striker: \"{striker}\" is unknown; must be one of {}", names.join(", "))
+        })?;
+    }
+    impact.actuator = channel(number)?;
+    Ok(impact)
+}

@@ -1,0 +1,384 @@
+//! `AsperityWorld`: the engine of a scene tree.
+
+use crate::body::AsperityBody;
+use crate::events;
+use crate::haptic_stream::AsperityHapticStream;
+use crate::res_files::ResFiles;
+use crate::stream::{AsperityStream, MOST_CHANNELS};
+use crate::surface::AsperitySurface;
+use asperity::files::contact_log::Names;
+use asperity::files::scene_file::SceneFile;
+use asperity::live::ports::{Feed, Pcm, PcmPort};
+use asperity::open::{Overrides, ReadSurface};
+use asperity::texture::sand::{SandThread, SandWorker};
+use asperity::{ActuatorSettings, BodyId, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId};
+use godot::classes::{AudioServer, AudioStreamPlayer, INode, SceneTree};
+use godot::prelude::*;
+use std::path::Path;
+
+/// The group by which bodies and fingers find their world.
+const GROUP: &str = "asperity_world";
+
+/// How far a stamp may lead the audio, s: Godot catches up with up to 8 physics ticks in one frame, 133 ms at 60 Hz.
+const CLOCK: ClockMode = ClockMode::Live { max_lead_s: 0.2 };
+
+/// How much of a haptic channel waits for its stream, s.
+const HOLDS_S: f64 = 0.25;
+
+/// A scene that runs.
+pub(crate) struct Running {
+    pub scene: Scene,
+    pub names: Names,
+    /// Simulations on threads of their own; they end with it.
+    sand: Vec<SandThread>,
+}
+
+/// The engine: one in a tree, before what touches. It opens when it enters the tree, sounds on `audio_bus`, and lets `haptic_bus` vibrate.
+/// What it refuses, it says as Godot's errors and in `last_error()`.
+#[derive(GodotClass)]
+#[class(init, base = Node)]
+pub struct AsperityWorld {
+    /// A scene file of the engine's, TOML; empty: a world without bodies, with `haptic_channels`.
+    #[export(file = "*.toml")]
+    scene_file: GString,
+    /// Haptic channels, where no scene file says them.
+    #[export]
+    #[init(val = 2)]
+    haptic_channels: i64,
+    /// Godot's audio bus on which it sounds; empty: a player of the project's own plays `audio_stream()`.
+    #[export]
+    #[init(val = "Master".into())]
+    audio_bus: StringName,
+    /// Godot's audio bus that leads to the actuators; empty: none.
+    #[export]
+    haptic_bus: StringName,
+    running: Option<Running>,
+    stream: Option<Gd<AsperityStream>>,
+    time_s: f64,
+    error: String,
+    base: Base<Node>,
+}
+
+#[godot_api]
+impl INode for AsperityWorld {
+    fn enter_tree(&mut self) {
+        self.base_mut().add_to_group(GROUP);
+        // Game time has moved on before the tick's reports are stamped.
+        self.base_mut().set_physics_process_priority(-1000);
+        if self.running.is_none() {
+            self.build();
+        }
+    }
+
+    fn ready(&mut self) {
+        if self.running.is_none() {
+            return;
+        }
+        if let Some(stream) = self.stream.clone().filter(|_| !self.audio_bus.is_empty()) {
+            self.play(&stream.upcast(), &self.audio_bus.clone());
+        }
+        if !self.haptic_bus.is_empty()
+            && let Some(stream) = self.haptic_stream(0, 1)
+        {
+            self.play(&stream.upcast(), &self.haptic_bus.clone());
+        }
+    }
+
+    fn physics_process(&mut self, delta: f64) {
+        self.time_s += delta;
+        if let Some(running) = &mut self.running {
+            running.scene.collect();
+        }
+    }
+}
+
+#[godot_api]
+impl AsperityWorld {
+    /// Opens the engine anew, at the audio server's rate; ids of before are no longer known. False, and an error, where it cannot.
+    #[func]
+    fn build(&mut self) -> bool {
+        self.running = None;
+        self.stream = None;
+        let made = self.open(true);
+        let Some(engine) = self.said("build", made) else { return false };
+        let Engine { scene, renderer, names, workers, .. } = engine;
+        if renderer.audio_buses().max(renderer.haptic_channels()) > MOST_CHANNELS {
+            let what = format!("more than {MOST_CHANNELS} buses or haptic channels; take fewer");
+            return self.said::<()>("build", Err(what)).is_some();
+        }
+        let stream = AsperityStream::new_gd();
+        if let Ok(mut slot) = stream.bind().slot.lock() {
+            *slot = Some(renderer);
+        }
+        self.stream = Some(stream);
+        self.running =
+            Some(Running { scene, names, sand: workers.into_iter().map(SandWorker::spawn).collect() });
+        true
+    }
+
+    /// The stream of its audio buses, for a player of one's own. It can be played in one place. Null: the world is not built.
+    #[func]
+    fn audio_stream(&self) -> Option<Gd<AsperityStream>> {
+        self.stream.clone()
+    }
+
+    /// A stream of two haptic channels, for a player of one's own; -1: none on that side.
+    #[func]
+    fn haptic_stream(&mut self, left: i64, right: i64) -> Option<Gd<AsperityHapticStream>> {
+        let ports = self.tried("haptic_stream", |running| {
+            let mut open = |number: i64| -> Result<Option<PcmPort>, String> {
+                let Some(channel) = events::channel(number)? else { return Ok(None) };
+                let port = running.scene.open_port(Pcm { from: Feed::Haptic(channel), holds_s: HOLDS_S });
+                port.map(Some).map_err(|error| error.to_string())
+            };
+            Ok([open(left)?, open(right)?])
+        })?;
+        let stream = AsperityHapticStream::new_gd();
+        if let Ok(mut home) = stream.bind().ports.lock() {
+            *home = Some(ports);
+        }
+        Some(stream)
+    }
+
+    /// Adds a surface to a body (0: none) and gives its id; 0, and an error, where it is refused.
+    #[func]
+    fn add_surface(&mut self, surface: Option<Gd<AsperitySurface>>, body: i64, name: GString) -> i64 {
+        let surface = surface.ok_or_else(|| "surface: is null; give an AsperitySurface".to_owned());
+        let Some(surface) = self.said("add_surface", surface) else { return 0 };
+        self.join_surface(&surface, body, &name.to_string())
+    }
+
+    /// Takes a surface away; contacts on it fade. Its id is refused from then on.
+    #[func]
+    fn remove_surface(&mut self, id: i64) -> bool {
+        self.tried("remove_surface", |running| {
+            let id = SurfaceId::from_bits(id as u64);
+            running.scene.remove_surface(id).map_err(|error| error.to_string())?;
+            running.names.surfaces.retain(|_, known| *known != id);
+            Ok(())
+        })
+        .is_some()
+    }
+
+    /// The id of a surface by its name in the scene file, or that of its `AsperityBody`; 0: there is none.
+    #[func]
+    fn find_surface(&self, name: GString) -> i64 {
+        let running = self.running.as_ref();
+        running.and_then(|r| r.names.surfaces.get(&name.to_string())).map_or(0, |id| id.to_bits() as i64)
+    }
+
+    /// The id of a body by its name; 0: there is none.
+    #[func]
+    fn find_body(&self, name: GString) -> i64 {
+        let running = self.running.as_ref();
+        running.and_then(|r| r.names.bodies.get(&name.to_string())).map_or(0, |id| id.to_bits() as i64)
+    }
+
+    /// A contact begins: a number of your own, the surface, where (uv), how hard (N), which haptic channel feels it (-1: none). Report once a
+    /// physics tick; the time is the tick's. False, and an error, where it is refused.
+    #[func]
+    pub(crate) fn report_begin(
+        &mut self,
+        contact: i64,
+        surface: i64,
+        uv: Vector2,
+        force_n: f64,
+        channel: i64,
+    ) -> bool {
+        self.report("report_begin", || {
+            let touching = events::touching(surface, channel)?;
+            Ok(ContactEvent::begin_with(
+                events::contact(contact)?,
+                touching,
+                events::sample(uv, force_n, None),
+            ))
+        })
+    }
+
+    /// A contact has moved.
+    #[func]
+    pub(crate) fn report_move(&mut self, contact: i64, uv: Vector2, force_n: f64) -> bool {
+        self.report("report_move", || {
+            Ok(ContactEvent::moved(events::contact(contact)?, events::sample(uv, force_n, None)))
+        })
+    }
+
+    /// A contact has moved at a velocity that is known, m/s along u and v.
+    #[func]
+    fn report_move_at(&mut self, contact: i64, uv: Vector2, force_n: f64, velocity_m_s: Vector2) -> bool {
+        self.report("report_move_at", || {
+            let sample = events::sample(uv, force_n, Some(velocity_m_s));
+            Ok(ContactEvent::moved(events::contact(contact)?, sample))
+        })
+    }
+
+    /// A contact ends.
+    #[func]
+    pub(crate) fn report_end(&mut self, contact: i64) -> bool {
+        self.report("report_end", || Ok(ContactEvent::end(events::contact(contact)?)))
+    }
+
+    /// A body is struck: m/s, kg and m of the striker, its material ("": the engine's default), the haptic channel that feels it (-1: none).
+    #[func]
+    fn report_impact(
+        &mut self,
+        body: i64,
+        speed_m_s: f64,
+        mass_kg: f64,
+        radius_m: f64,
+        striker: GString,
+        channel: i64,
+    ) -> bool {
+        self.report("report_impact", || {
+            events::impact(body, speed_m_s, mass_kg, radius_m, &striker.to_string(), channel)
+                .map(ContactEvent::Impact)
+        })
+    }
+
+    /// What has happened so far; `clock_jumps` and `refused` should be 0. `why_silent` says what speaks against anything being heard.
+    #[func]
+    fn stats(&self) -> VarDictionary {
+        let mut told = VarDictionary::new();
+        let Some(running) = &self.running else { return told };
+        let stats = running.scene.stats();
+        for (name, count) in [
+            ("impacts", stats.impacts),
+            ("jumps", stats.jumps),
+            ("late", stats.late),
+            ("clock_jumps", stats.clock_jumps),
+            ("refused", stats.refused),
+        ] {
+            told.set(name, count as i64);
+        }
+        let why: Vec<String> = running.scene.why_silent().iter().map(ToString::to_string).collect();
+        told.set("why_silent", why.join("; ").as_str());
+        told
+    }
+
+    /// The sentence of the last thing that was refused; empty: nothing was.
+    #[func]
+    fn last_error(&self) -> GString {
+        (&self.error).into()
+    }
+}
+
+impl AsperityWorld {
+    /// The world of a tree.
+    pub(crate) fn of(tree: &Gd<SceneTree>) -> Option<Gd<Self>> {
+        tree.clone().get_first_node_in_group(GROUP)?.try_cast::<Self>().ok()
+    }
+
+    /// Reads and builds; `live`: for the audio server, else for a render.
+    pub(crate) fn open(&self, live: bool) -> Result<Engine, String> {
+        let rate_hz = f64::from(AudioServer::singleton().get_mix_rate());
+        let clock = if live { CLOCK } else { ClockMode::Exact };
+        if self.scene_file.is_empty() {
+            let channels = usize::try_from(self.haptic_channels)
+                .ok()
+                .filter(|count| *count <= MOST_CHANNELS)
+                .ok_or_else(|| {
+                    format!("haptic_channels: {} is refused; must be 0 to 16", self.haptic_channels)
+                })?;
+            let mut config = Config { sample_rate_hz: rate_hz, clock, ..Config::default() };
+            config.actuators.resize(channels, ActuatorSettings::default());
+            // As before a sound card.
+            config.audio.iter_mut().for_each(|bus| bus.limit = true);
+            return config.build().map_err(|error| error.to_string());
+        }
+        let files = ResFiles::default();
+        let path = self.scene_file.to_string();
+        let file = SceneFile::load_from(&files, Path::new(&path)).map_err(|error| error.to_string())?;
+        // Limited as before a sound card, whether it is played or rendered.
+        let overrides = Overrides {
+            files: &files,
+            sample_rate_hz: Some(rate_hz),
+            clock: Some(clock),
+            live: true,
+            ..Overrides::default()
+        };
+        Engine::from_scene(&file, &overrides).map_err(|error| error.to_string())
+    }
+
+    fn play(&mut self, stream: &Gd<godot::classes::AudioStream>, bus: &StringName) {
+        let mut player = AudioStreamPlayer::new_alloc();
+        player.set_stream(stream);
+        player.set_bus(bus);
+        self.base_mut().add_child(&player);
+        player.play();
+    }
+
+    /// Puts a body into the scene; 0 where it is refused.
+    pub(crate) fn join_body(&mut self, body: &AsperityBody, name: &str) -> i64 {
+        let told = body.told(name);
+        let Some((table, files, bus, gain)) = self.said("AsperityBody", told) else { return 0 };
+        let id = self.tried("AsperityBody", |running| {
+            let overrides = Overrides { files: &files, live: true, ..Overrides::default() };
+            let read = running.scene.read_body(&table, Path::new(""), &overrides);
+            let body = read.map_err(|error| error.to_string())?.on_bus(bus).gain(gain);
+            let id = running.scene.add_body(body).map_err(|error| error.to_string())?;
+            running.names.bodies.insert(name.into(), id);
+            Ok(id.to_bits() as i64)
+        });
+        id.unwrap_or(0)
+    }
+
+    /// Puts a surface into the scene; 0 where it is refused.
+    pub(crate) fn join_surface(&mut self, surface: &Gd<AsperitySurface>, body: i64, name: &str) -> i64 {
+        let told = surface.bind().told(name);
+        let Some((table, files)) = self.said("AsperitySurface", told) else { return 0 };
+        let id = self.tried("AsperitySurface", |running| {
+            let overrides = Overrides { files: &files, live: true, ..Overrides::default() };
+            let on = Some(body).filter(|id| *id != 0).map(|id| BodyId::from_bits(id as u64));
+            let read = running.scene.read_surface(&table, Path::new(""), on, &running.names, &overrides);
+            let ReadSurface { surface, workers, .. } = read.map_err(|error| error.to_string())?;
+            let id = running.scene.add_surface(surface).map_err(|error| error.to_string())?;
+            running.sand.extend(workers.into_iter().map(SandWorker::spawn));
+            if !name.is_empty() {
+                running.names.surfaces.insert(name.into(), id);
+            }
+            Ok(id.to_bits() as i64)
+        });
+        id.unwrap_or(0)
+    }
+
+    /// Takes a body and its surface away. Nothing is said of what is gone already.
+    pub(crate) fn leave(&mut self, body: i64, surface: i64) {
+        let Some(running) = &mut self.running else { return };
+        let (body, surface) = (BodyId::from_bits(body as u64), SurfaceId::from_bits(surface as u64));
+        // The world was built anew since, or never knew them: nothing is left to be taken away.
+        let _ = running.scene.remove_surface(surface);
+        let _ = running.scene.remove_body(body);
+        running.names.surfaces.retain(|_, known| *known != surface);
+        running.names.bodies.retain(|_, known| *known != body);
+    }
+
+    fn report(&mut self, what: &str, event: impl FnOnce() -> Result<ContactEvent, String>) -> bool {
+        let time_s = self.time_s;
+        self.tried(what, |running| {
+            running.scene.report(time_s, event()?).map_err(|refused| refused.reason.to_string())
+        })
+        .is_some()
+    }
+
+    /// Does something with the engine; says so where there is none.
+    pub(crate) fn tried<T>(
+        &mut self,
+        what: &str,
+        work: impl FnOnce(&mut Running) -> Result<T, String>,
+    ) -> Option<T> {
+        let done = match &mut self.running {
+            Some(running) => work(running),
+            None => Err("the world is not built; call build(), or see its error".into()),
+        };
+        self.said(what, done)
+    }
+
+    /// Says what was refused.
+    pub(crate) fn said<T>(&mut self, what: &str, done: Result<T, String>) -> Option<T> {
+        done.inspect_err(|sentence| {
+            godot_error!("{what}: {sentence}");
+            self.error.clone_from(sentence);
+        })
+        .ok()
+    }
+}

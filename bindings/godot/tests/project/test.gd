@@ -1,0 +1,319 @@
+# The add-on in a real Godot: `godot --headless --path . --script test.gd`. Ends with a summary line, and code 1 where something failed.
+extends SceneTree
+
+const Heard := preload("heard.gd")
+
+var heard := Heard.new()
+var passed := 0
+var failed := 0
+var captures := {}
+
+
+func _initialize() -> void:
+	OS.add_logger(heard)
+	for bus in ["Sound", "Haptics"]:
+		AudioServer.add_bus()
+		var index := AudioServer.bus_count - 1
+		AudioServer.set_bus_name(index, bus)
+		captures[bus] = AudioEffectCapture.new()
+		captures[bus].buffer_length = 8.0
+		AudioServer.add_bus_effect(index, captures[bus])
+	await process_frame
+	await a_missing_scene_file_says_so()
+	await a_stroke_of_three_seconds_sounds_and_is_felt()
+	await what_was_played_is_recorded_and_renders()
+	await a_second_playback_is_silent_and_says_why()
+	await a_player_that_stops_can_play_again()
+	await stale_ids_are_refused()
+	await what_is_refused_says_what_would_be_right()
+	await a_materials_heightmap_is_felt()
+	await a_finger_feels_the_mesh_under_it()
+	await a_scene_is_freed_while_it_plays()
+	OS.remove_logger(heard)
+	print("%d passed, %d failed" % [passed, failed])
+	quit(1 if failed else 0)
+
+
+func check(sentence: String, holds: bool, told = "") -> void:
+	passed += int(holds)
+	failed += int(not holds)
+	print("%s %s%s" % ["ok  " if holds else "FAIL", sentence, " (%s)" % told if str(told) else ""])
+
+
+func made(scene_file := "", audio_bus := "Sound", haptic_bus := "Haptics") -> AsperityWorld:
+	var world := AsperityWorld.new()
+	world.scene_file = scene_file
+	world.audio_bus = audio_bus
+	world.haptic_bus = haptic_bus
+	root.add_child(world)
+	return world
+
+
+func gone(world: Node) -> void:
+	world.queue_free()
+	for frame in 20:
+		await physics_frame
+	for bus in captures:
+		captures[bus].clear_buffer()
+
+
+func taken(bus: String) -> PackedVector2Array:
+	return captures[bus].get_buffer(captures[bus].get_frames_available())
+
+
+func rms(frames: PackedVector2Array, side: int) -> float:
+	var sum := 0.0
+	for frame in frames:
+		sum += frame[side] * frame[side]
+	return sqrt(sum / maxi(1, frames.size()))
+
+
+func stroke(world: AsperityWorld, surface: int, ticks: int, contact := 1, channel := 0) -> void:
+	world.report_begin(contact, surface, Vector2(0.2, 0.5), 0.6, channel)
+	for tick in ticks:
+		await physics_frame
+		world.report_move(contact, Vector2(0.2 + 0.3 * sin(tick / 40.0), 0.5), 0.6)
+	world.report_end(contact)
+
+
+func a_missing_scene_file_says_so() -> void:
+	var world := made("res://nowhere.toml")
+	check("a missing scene file says so", "nowhere.toml" in world.last_error() and heard.has("nowhere.toml"), world.last_error())
+	check("a world that is not built refuses reports", not world.report_end(1) and "not built" in world.last_error())
+	check("a world that is not built has no stream", world.audio_stream() == null)
+	world.scene_file = "res://plate.toml"
+	check("it can be built afterwards", world.build(), world.last_error())
+	await gone(world)
+
+
+func a_stroke_of_three_seconds_sounds_and_is_felt() -> void:
+	var world := made("res://plate.toml")
+	var plate := world.find_surface("plate")
+	check("a scene file's names are known", plate != 0 and world.find_body("plate") != 0 and world.find_body("bell") == 0)
+	for tick in 10:
+		await physics_frame
+	world.report_begin(2, plate, Vector2(0.3, 0.3), 0.4, 1)
+	world.report_begin(1, plate, Vector2(0.2, 0.5), 0.6, 0)
+	var steady := true
+	for tick in 180:
+		await physics_frame
+		steady = world.report_move(1, Vector2(0.2 + 0.003 * tick, 0.5), 0.6) and steady
+		steady = world.report_move(2, Vector2(0.3, 0.3 + 0.002 * tick), 0.4) and steady
+		if tick == 90:
+			steady = world.report_impact(world.find_body("plate"), 0.5, 0.01, 0.005, "wood", 0) and steady
+	world.report_end(1)
+	world.report_end(2)
+	for tick in 30:
+		await physics_frame
+	var sound := taken("Sound")
+	var touch := taken("Haptics")
+	var stats := world.stats()
+	check("every report of 180 ticks is taken", steady and stats.refused == 0, world.last_error())
+	check("a stroke of three seconds sounds", rms(sound, 0) > 1e-4, "rms %.5f, %d frames" % [rms(sound, 0), sound.size()])
+	check("two haptic channels vibrate", rms(touch, 0) > 1e-4 and rms(touch, 1) > 1e-4, "rms %.5f and %.5f" % [rms(touch, 0), rms(touch, 1)])
+	check("they are not the same", rms(touch, 0) != rms(touch, 1))
+	check("the clock never jumps", stats.clock_jumps == 0, stats)
+	await gone(world)
+
+
+# The audio server's part is played by the test, a sixtieth of a second after each tick: no report comes late, as it may with another thread.
+func what_was_played_is_recorded_and_renders() -> void:
+	var world := made("res://plate.toml", "", "")
+	var plate := world.find_surface("plate")
+	var sound := world.audio_stream().instantiate_playback()
+	var touch := world.haptic_stream(0, 1).instantiate_playback()
+	var heard_frames := PackedVector2Array()
+	var felt_frames := PackedVector2Array()
+	world.record_start()
+	for tick in 200:
+		await physics_frame
+		if tick == 10:
+			world.report_begin(1, plate, Vector2(0.2, 0.5), 0.6, 0)
+			world.report_begin(2, plate, Vector2(0.3, 0.3), 0.4, 1)
+		elif tick > 10 and tick < 180:
+			world.report_move(1, Vector2(0.2 + 0.003 * tick, 0.5), 0.6)
+			world.report_move_at(2, Vector2(0.3, 0.3 + 0.002 * tick), 0.4, Vector2(0, 0.036))
+		elif tick == 180:
+			world.report_end(1)
+			world.report_end(2)
+		if tick == 90:
+			world.report_impact(world.find_body("plate"), 0.5, 0.01, 0.005, "wood", 0)
+		# From the first report on the game leads by a sixth of a tick: a stamp that lies on the very next sample is late by rounding.
+		var frames := 612 if tick == 10 else 735
+		heard_frames.append_array(sound.mix_audio(1.0, frames))
+		felt_frames.append_array(touch.mix_audio(1.0, frames))
+	check("nothing comes late", world.stats().late == 0 and world.stats().refused == 0, world.stats())
+	check("a recording is written", world.record_stop("user://stroke.jsonl"), world.last_error())
+	var render := world.render_log("user://stroke.jsonl")
+	var audio: Array = render.get("audio", [])
+	var haptic: Array = render.get("haptic", [])
+	check("it renders", audio.size() == 1 and haptic.size() == 2, world.last_error())
+	if audio.size() == 1 and haptic.size() == 2:
+		# What the program `asperity` renders of the same log is compared with this.
+		FileAccess.open("user://stroke.f32", FileAccess.WRITE).store_buffer(audio[0].to_byte_array())
+		check("what was recorded renders for as long as it was played", absi(audio[0].size() - heard_frames.size()) < 44100 and rms(heard_frames, 0) > 1e-4 and rms(felt_frames, 1) > 1e-4)
+	await gone(world)
+
+
+func a_second_playback_is_silent_and_says_why() -> void:
+	var world := made("res://plate.toml", "Sound", "")
+	var second := AudioStreamPlayer.new()
+	second.stream = world.audio_stream()
+	second.bus = "Haptics"
+	root.add_child(second)
+	second.play()
+	check("a second playback says why it is silent", heard.has("is played already"))
+	await stroke(world, world.find_surface("plate"), 40)
+	check("a second playback is silent", rms(taken("Haptics"), 0) == 0.0)
+	check("the first one sounds", rms(taken("Sound"), 0) > 1e-4)
+	second.queue_free()
+	await gone(world)
+
+
+func a_player_that_stops_can_play_again() -> void:
+	var world := made("res://plate.toml", "")
+	var player := AudioStreamPlayer.new()
+	player.stream = world.audio_stream()
+	player.bus = "Sound"
+	root.add_child(player)
+	player.play()
+	await stroke(world, world.find_surface("plate"), 20)
+	player.stop()
+	for frame in 30:
+		await physics_frame
+	taken("Sound")
+	player.play()
+	await stroke(world, world.find_surface("plate"), 40, 7)
+	check("a player that stops can play again", rms(taken("Sound"), 0) > 1e-4)
+	player.queue_free()
+	await gone(world)
+
+
+func stale_ids_are_refused() -> void:
+	var world := made("")
+	var surface := AsperitySurface.new()
+	var first := world.add_surface(surface, 0, "first")
+	check("a surface can be added and found", first != 0 and world.find_surface("first") == first)
+	check("a surface can be removed", world.remove_surface(first) and world.find_surface("first") == 0)
+	check("it cannot be removed twice", not world.remove_surface(first), world.last_error())
+	var second := world.add_surface(surface, 0, "second")
+	check("its place has another id", second != 0 and second != first)
+	check("a stale id is refused", not world.report_begin(1, first, Vector2.ZERO, 0.5, 0), world.last_error())
+	check("ids that never were are refused", not world.report_begin(1, -1, Vector2.ZERO, 0.5, 0) and not world.report_impact(12345, 1, 0.01, 0.005, "", 0))
+	await gone(world)
+
+
+func what_is_refused_says_what_would_be_right() -> void:
+	var world := made("")
+	var surface := AsperitySurface.new()
+	var id := world.add_surface(surface, 0, "plain")
+	check("a number that is none is refused", not world.report_begin(1, id, Vector2(NAN, 0), 0.5, 0), world.last_error())
+	check("a force that is infinite is refused", not world.report_begin(1, id, Vector2.ZERO, INF, 0), world.last_error())
+	check("a negative contact is refused", not world.report_begin(-4, id, Vector2.ZERO, 0.5, 0) and "must be" in world.last_error())
+	check("an unknown striker is refused by name", not world.report_impact(0, 1, 0.01, 0.005, "cheese", 0) and "steel" in world.last_error(), world.last_error())
+	check("a channel that is none is refused", world.haptic_stream(0, 7) == null, world.last_error())
+	surface.width_m = -1.0
+	check("a surface of negative width is refused", world.add_surface(surface, 0, "") == 0 and "width_m" in world.last_error(), world.last_error())
+	surface.width_m = 1.0
+	surface.table = "colour = 3"
+	check("an unknown key is refused", world.add_surface(surface, 0, "") == 0 and "colour" in world.last_error(), world.last_error())
+	check("no surface is refused", world.add_surface(null, 0, "") == 0)
+	check("no material is refused", AsperitySurface.from_material(null, 1, 1) == null)
+	check("a log that is missing says so", world.render_log("user://none.jsonl").is_empty() and "none.jsonl" in world.last_error(), world.last_error())
+	var body := AsperityBody.new()
+	body.stock = "potato"
+	world.add_child(body)
+	check("an unknown shape is refused", body.body_id() == 0 and "potato" in world.last_error(), world.last_error())
+	await gone(world)
+
+
+func ridged(scale: float) -> StandardMaterial3D:
+	var image := Image.create_empty(256, 256, false, Image.FORMAT_RGB8)
+	for y in 256:
+		for x in 256:
+			image.set_pixel(x, y, Color.from_hsv(0, 0, 0.5 + 0.5 * sin(TAU * x / 16.0)))
+	var material := StandardMaterial3D.new()
+	material.heightmap_enabled = true
+	material.heightmap_texture = ImageTexture.create_from_image(image)
+	material.heightmap_scale = scale
+	material.roughness = 0.0
+	return material
+
+
+func felt(material: StandardMaterial3D) -> float:
+	var world := made("")
+	var surface := AsperitySurface.from_material(material, 0.2, 0.2)
+	var id := world.add_surface(surface, 0, "made")
+	await stroke(world, id, 60)
+	var level := rms(taken("Haptics"), 0)
+	await gone(world)
+	return level
+
+
+func a_materials_heightmap_is_felt() -> void:
+	# As smooth as the others, without a heightmap.
+	var smooth := StandardMaterial3D.new()
+	smooth.roughness = 0.0
+	var flat: float = await felt(smooth)
+	var low: float = await felt(ridged(0.05))
+	var high: float = await felt(ridged(0.2))
+	check("a material's heightmap is felt", high > 2.0 * flat, "rms %.6f beside %.6f" % [high, flat])
+	check("a higher one is felt more", high > 1.5 * low, "rms %.6f beside %.6f" % [high, low])
+
+
+func a_finger_feels_the_mesh_under_it() -> void:
+	var world := made("")
+	var drawn := MeshInstance3D.new()
+	drawn.mesh = PlaneMesh.new()
+	drawn.mesh.size = Vector2(0.3, 0.3)
+	var shape := CollisionShape3D.new()
+	shape.shape = BoxShape3D.new()
+	shape.shape.size = Vector3(0.3, 0.02, 0.3)
+	shape.position.y = -0.01
+	var body := AsperityBody.new()
+	body.name = "Table"
+	body.surface = AsperitySurface.from_material(ridged(0.1), 0.3, 0.3)
+	var collider := StaticBody3D.new()
+	for child in [drawn, shape, body]:
+		collider.add_child(child)
+	root.add_child(collider)
+	var finger := AsperityFinger3D.new()
+	finger.position.y = 0.05
+	root.add_child(finger)
+	for tick in 60:
+		finger.position.x = -0.1 + 0.003 * tick
+		await physics_frame
+	check("a finger touches the mesh under it", finger.is_touching(), world.last_error())
+	check("it is felt", rms(taken("Haptics"), 0) > 1e-4)
+	check("the body rings", rms(taken("Sound"), 0) > 1e-6)
+	finger.position.y = 1.0
+	await physics_frame
+	await physics_frame
+	check("a finger that is lifted touches nothing", not finger.is_touching())
+	var old := body.body_id()
+	root.remove_child(collider)
+	check("a body that leaves the tree is unknown", world.find_body("Table") == 0 and not world.report_impact(old, 1, 0.01, 0.005, "", 0))
+	root.add_child(collider)
+	check("it joins again with the tree", body.body_id() != 0 and body.body_id() != old)
+	check("and rings when it is struck", world.report_impact(body.body_id(), 1, 0.01, 0.005, "steel", 0), world.last_error())
+	collider.queue_free()
+	finger.queue_free()
+	await gone(world)
+
+
+func a_scene_is_freed_while_it_plays() -> void:
+	for round in 5:
+		var world := made("res://plate.toml")
+		var plate := world.find_surface("plate")
+		world.report_begin(1, plate, Vector2(0.2, 0.5), 0.6, 0)
+		for tick in 5 + round:
+			await physics_frame
+			world.report_move(1, Vector2(0.2 + 0.01 * tick, 0.5), 0.6)
+		# Now, not at the end of the frame; and the streams outlive it.
+		var kept := world.audio_stream()
+		world.free()
+		await physics_frame
+		kept = null
+	for frame in 30:
+		await physics_frame
+	check("a scene that is freed while it plays does not crash", true)
