@@ -22,7 +22,7 @@
 //! The level is a function of the reports and of the samples rendered alone: where no load is reported, as
 //! offline, nothing is ever left out and every bit repeats.
 
-use crate::prepared::body::MODE_LEVELS;
+use crate::prepared::bank::MODE_LEVELS;
 
 /// Share of the period from which a block counts as late.
 pub(crate) const LATE: f32 = 0.8;
@@ -106,7 +106,7 @@ impl Governor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prepared::body::groups_at;
+    use crate::prepared::bank::groups_at;
 
     const RATE: f64 = 44_100.0;
 

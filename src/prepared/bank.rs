@@ -11,3 +11,11 @@ pub(crate) type Bank = ModalBank<Box<[ModeGroup]>, Box<[GroupState]>>;
 
 /// Which contact an input belongs to: a voice and the sample at which it began.
 pub(crate) type Owner = (usize, u64);
+
+/// Levels of modes left out, from none.
+pub(crate) const MODE_LEVELS: usize = 5;
+
+/// How many of a body's groups hear what strikes it at a level of modes left out.
+pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
+    groups - (groups * mode_level / MODE_LEVELS).min(groups.saturating_sub(1))
+}

@@ -4,19 +4,18 @@ use crate::model::click::Click;
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
+use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, MODE_LEVELS, Owner, groups_at};
 use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
 use crate::prepared::body_rub::{BodyRub, RubAsked};
 use crate::prepared::bursts::Bursts;
-use crate::prepared::early::{EarlyForce, Sent};
+use crate::prepared::early::{EarlyForce, EarlySamples, Sent, first_samples};
 use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
-    self, FirstSamples, ForceTaps, GroupOptions, GroupState, Input, Inputs, LaneGains, MissingSamples,
-    ModalBank,
+    self, FirstSamples, ForceTaps, GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -27,14 +26,6 @@ const MOST_INPUTS: usize = MAX_POSITIONS + FIELD_INPUTS + 2;
 const _: () = assert!(MOST_INPUTS <= modal_bank::MAX_INPUTS);
 /// What strikes most bodies at once; a table for more costs as much as some samples of a short block.
 const FEW_INPUTS: usize = 4;
-
-/// Levels of modes left out, from none.
-pub(crate) const MODE_LEVELS: usize = 5;
-
-/// How many of a body's groups hear what strikes it at a level of modes left out.
-pub(crate) fn groups_at(mode_level: usize, groups: usize) -> usize {
-    groups - (groups * mode_level / MODE_LEVELS).min(groups.saturating_sub(1))
-}
 
 /// φ² times the mass where a mode of a body swings most: that of a string or a bar held at its ends. A plate has 4, a ball about 5.
 const ANTINODE: f64 = 2.0;
@@ -55,6 +46,8 @@ pub(crate) struct BodySlot {
     click: Option<Click>,
     /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
     early: ImpulseRing<f32>,
+    /// The same of forces in the present stretch.
+    early_of_forces: EarlySamples,
 }
 
 /// One strike position: what reaches the body there.
@@ -171,6 +164,7 @@ impl BodySlot {
             bursts,
             click: model.click,
             early,
+            early_of_forces: EarlySamples::NONE,
         })
     }
 
@@ -299,7 +293,7 @@ impl BodySlot {
         }
     }
 
-    /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first samples of strikes.
+    /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first samples of strikes and forces.
     pub(crate) fn add_strikes(&mut self, position: u64, out: &mut [f32]) {
         self.bursts.render(position, out);
         self.begin_strikes(position, out);
@@ -345,15 +339,22 @@ impl BodySlot {
             _ => Inputs::Placed(&inputs[..count]),
         };
         self.bank.render_leading(driven, terms.position, inputs, out);
-        for place in &mut self.places {
-            place.early_force.render(&place.force_taps[terms.mode_level], out);
-            place.early_force.end_stretch(n);
-        }
-        if let Some(field) = &mut self.field {
-            field.begin_forces(terms.position, terms.mode_level, out);
-        }
+        self.begin_forces(terms, n);
         self.end_stretch(terms.position, n);
         groups - driven
+    }
+
+    /// Works out what the bank leaves out of the first samples of forces. It is added last, as that of strikes is: sums are in one order
+    /// however many threads ring.
+    fn begin_forces(&mut self, terms: Terms, n: usize) {
+        let early = &mut self.early_of_forces;
+        for place in self.places.iter_mut().filter(|place| !place.early_force.is_silent()) {
+            place.early_force.render(&place.force_taps[terms.mode_level], early.open(n));
+            place.early_force.end_stretch(n);
+        }
+        if let Some(field) = self.field.as_mut().filter(|field| field.forces_are_coming()) {
+            field.begin_forces(terms.position, terms.mode_level, early.open(n));
+        }
     }
 
     /// The stretch has been rendered, or nothing rings in it.
@@ -368,36 +369,12 @@ impl BodySlot {
         rub.end_stretch(position + n as u64);
     }
 
-    /// Adds what the bank leaves out of the first samples of strikes.
+    /// Adds what the bank leaves out of the first samples of strikes and forces.
     fn begin_strikes(&mut self, position: u64, out: &mut [f32]) {
+        self.early_of_forces.add_to(out);
         if !self.early.is_empty(position) {
             let mut next = self.early.drain(position);
             out.iter_mut().for_each(|y| *y += next());
         }
     }
-}
-
-/// What a bank of these modes leaves out of the first samples of a strike, for each place and each level of modes left out.
-fn first_samples(
-    modes: &[(Mode, [f32; MAX_POSITIONS])],
-    places: usize,
-    groups: usize,
-    sample_rate_hz: f64,
-) -> Result<Vec<[FirstSamples; MODE_LEVELS]>, DesignError> {
-    let mut sums = vec![MissingSamples::NOTHING; places];
-    let mut all = vec![[FirstSamples::NOTHING; MODE_LEVELS]; places];
-    for group in 0..groups {
-        for (mode, shares) in modes.chunks(modal_bank::LANES).nth(group).into_iter().flatten() {
-            let missing = MissingSamples::of(mode, sample_rate_hz)?;
-            for (sum, share) in sums.iter_mut().zip(shares) {
-                sum.add(&missing, f64::from(*share));
-            }
-        }
-        for level in (0..MODE_LEVELS).filter(|level| groups_at(*level, groups) == group + 1) {
-            for (place, sum) in all.iter_mut().zip(&sums) {
-                place[level] = sum.first_samples();
-            }
-        }
-    }
-    Ok(all)
 }

@@ -5,8 +5,8 @@
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
+use crate::prepared::bank::groups_at;
 use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
-use crate::prepared::body::groups_at;
 use crate::prepared::early::Sent;
 use crate::prepared::holding::{HeldModes, Holding};
 use crate::prepared::impulse_ring::ImpulseRing;
@@ -163,6 +163,11 @@ impl BodyField {
         for slider in self.sliders.iter().filter(|slider| slider.touched) {
             slider.inputs(n, &mut add);
         }
+    }
+
+    /// Whether the bank leaves out something of what contacts send.
+    pub(crate) fn forces_are_coming(&self) -> bool {
+        self.sliders.iter().any(|slider| !slider.is_silent())
     }
 
     /// Adds what the bank leaves out of the first samples of contacts, before [`end_stretch`](Self::end_stretch).

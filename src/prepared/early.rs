@@ -1,9 +1,16 @@
-//! What the bank leaves out of the first samples of contacts ([`asperity_dsp::modal_bank::FirstSamples::of_force`]), for one place of a body.
+//! Early samples: what the bank leaves out of the first samples of strikes and contacts
+//! ([`asperity_dsp::modal_bank::FirstSamples`]), for the places of a body.
 //!
 //! A contact sends its force twice: spread for the bank, and as it is for what the bank leaves out. The forces of all contacts at a place
 //! are added up sample by sample, and the last of them are remembered by the place, so that no split into blocks changes a sample.
 
-use asperity_dsp::modal_bank::{EARLY_HISTORY, ForceTaps, add_early_force};
+use crate::model::modal_model::MAX_POSITIONS;
+use crate::prepared::bank::{MODE_LEVELS, groups_at};
+use asperity_dsp::DesignError;
+use asperity_dsp::modal_bank::{
+    EARLY_HISTORY, FirstSamples, ForceTaps, LANES, MissingSamples, add_early_force,
+};
+use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// What a contact sends to a body during a stretch.
@@ -59,4 +66,54 @@ impl EarlyForce {
             self.busy = self.force_n_s[..EARLY_HISTORY].iter().any(|x| *x != 0.0);
         }
     }
+}
+
+/// What the bank leaves out of the forces of one stretch, until it is added to what the body sounds like.
+pub(crate) struct EarlySamples {
+    samples: [f32; MAX_BLOCK],
+    open: bool,
+}
+
+impl EarlySamples {
+    pub(crate) const NONE: Self = Self { samples: [0.0; MAX_BLOCK], open: false };
+
+    /// The `n` samples of the present stretch, to be added to.
+    pub(crate) fn open(&mut self, n: usize) -> &mut [f32] {
+        if !std::mem::replace(&mut self.open, true) {
+            self.samples[..n].fill(0.0);
+        }
+        &mut self.samples[..n]
+    }
+
+    /// Adds them, once.
+    pub(crate) fn add_to(&mut self, out: &mut [f32]) {
+        if std::mem::take(&mut self.open) {
+            out.iter_mut().zip(&self.samples).for_each(|(y, x)| *y += x);
+        }
+    }
+}
+
+/// What a bank of these modes leaves out of the first samples of a strike, for each place and each level of modes left out.
+pub(crate) fn first_samples(
+    modes: &[(Mode, [f32; MAX_POSITIONS])],
+    places: usize,
+    groups: usize,
+    sample_rate_hz: f64,
+) -> Result<Vec<[FirstSamples; MODE_LEVELS]>, DesignError> {
+    let mut sums = vec![MissingSamples::NOTHING; places];
+    let mut all = vec![[FirstSamples::NOTHING; MODE_LEVELS]; places];
+    for group in 0..groups {
+        for (mode, shares) in modes.chunks(LANES).nth(group).into_iter().flatten() {
+            let missing = MissingSamples::of(mode, sample_rate_hz)?;
+            for (sum, share) in sums.iter_mut().zip(shares) {
+                sum.add(&missing, f64::from(*share));
+            }
+        }
+        for level in (0..MODE_LEVELS).filter(|level| groups_at(*level, groups) == group + 1) {
+            for (place, sum) in all.iter_mut().zip(&sums) {
+                place[level] = sum.first_samples();
+            }
+        }
+    }
+    Ok(all)
 }
