@@ -5,8 +5,7 @@
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::groups_at;
-use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
+use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner, groups_at};
 use crate::prepared::early::Sent;
 use crate::prepared::holding::{HeldModes, Holding};
 use crate::prepared::impulse_ring::ImpulseRing;

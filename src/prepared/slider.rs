@@ -5,8 +5,7 @@
 //! those that come. So the bank hears no step, whatever the blocks.
 
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::MODE_LEVELS;
-use crate::prepared::bank::Owner;
+use crate::prepared::bank::{MODE_LEVELS, Owner};
 use crate::prepared::early::EarlyForce;
 use asperity_dsp::modal_bank::{EARLY_HISTORY, ForceTaps, Input, LANES, LaneGains};
 use asperity_texture::height_field::MAX_BLOCK;
