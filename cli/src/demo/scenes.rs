@@ -244,7 +244,7 @@ fn scraped() -> DemoScene {
              finger_mass_kg = 0.05\n\
              contact_stiffness_n_m = 1e6\n\n\
              [[actuator]]\n\
-             full_scale = 0.001\n\n\
+             full_scale = 0.002\n\n\
              [audio]\n\
              gain = 0.3\n"
         ),
