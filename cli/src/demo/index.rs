@@ -1,7 +1,9 @@
 //! The page that says what each file of the demo is.
 
+use super::bowl;
 use super::demo_scene::DemoScene;
 use crate::fit;
+use crate::modes;
 use crate::plot::quantity;
 use crate::render::Report;
 use std::fmt::Write;
@@ -20,6 +22,26 @@ const FIT: &str = "tile_strike.wav is a recorded impact, made by the project (sy
                    tile.resynthesis.wav is what the modes alone sound like; the tile of the struck scene plays them. \
                    Do the same with a recording of your own.";
 
+/// What is said about the mesh, beside its picture.
+const SHAPE: &str = "bowl.obj is a mesh made by the project. `asperity modes bowl.obj --material ceramic --max-modes 16 --shapes-glb -o bowl.modes.json \
+                     --plot bowl.shapes.svg` makes the body of the bowl scene of it. Do the same with a mesh of your own.";
+
+/// The bodies that the demo makes before it renders.
+pub struct Bodies {
+    /// The tile, from its recording.
+    pub fitted: fit::Report,
+    /// The bowl, from its mesh.
+    pub solved: modes::Report,
+}
+
+/// What the mesh came to.
+fn solved(report: &modes::Report) -> String {
+    format!(
+        "{} modes from {:.0} to {:.0} Hz, {} unknowns, {:.1} s",
+        report.modes, report.lowest_hz, report.highest_hz, report.degrees_of_freedom, report.seconds
+    )
+}
+
 /// What the fit came to.
 fn found(fitted: &fit::Report) -> String {
     format!(
@@ -34,10 +56,11 @@ fn level(report: &Report) -> String {
 
 /// What is printed at the end.
 #[must_use]
-pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report], fitted: &fit::Report) -> String {
+pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report], bodies: &Bodies) -> String {
     let mut text = format!(
-        "fitted tile_strike.wav: {}\n{} scenes in {}\n\n",
-        found(fitted),
+        "fitted tile_strike.wav: {}\nsolved bowl.obj: {}\n{} scenes in {}\n\n",
+        found(&bodies.fitted),
+        solved(&bodies.solved),
         scenes.len(),
         folder.display()
     );
@@ -63,9 +86,10 @@ pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report], fitted: 
 
 /// `README.txt`.
 #[must_use]
-pub fn text(scenes: &[DemoScene], reports: &[Report], fitted: &fit::Report) -> String {
+pub fn text(scenes: &[DemoScene], reports: &[Report], bodies: &Bodies) -> String {
     let mut text = format!("asperity demo\n=============\n\n{}\n", wrapped(HOW));
-    let _ = write!(text, "\nThe fit\n-------\n{}{}\n", wrapped(FIT), found(fitted));
+    let _ = write!(text, "\nThe fit\n-------\n{}{}\n", wrapped(FIT), found(&bodies.fitted));
+    let _ = write!(text, "\nThe bowl\n--------\n{}{}\n", wrapped(SHAPE), solved(&bodies.solved));
     for (scene, report) in scenes.iter().zip(reports) {
         let _ = write!(
             text,
@@ -104,7 +128,7 @@ fn wrapped(text: &str) -> String {
 
 /// `index.html`: players and pictures, no script, no network.
 #[must_use]
-pub fn html(scenes: &[DemoScene], reports: &[Report], fitted: &fit::Report) -> String {
+pub fn html(scenes: &[DemoScene], reports: &[Report], bodies: &Bodies) -> String {
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>asperity demo</title>\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n<style>\n\
@@ -117,7 +141,9 @@ pub fn html(scenes: &[DemoScene], reports: &[Report], fitted: &fit::Report) -> S
     for scene in scenes {
         let _ = write!(page, "<a href=\"#{0}\">{1}</a> · ", scene.name, scene.title);
     }
-    page.push_str("<a href=\"#fit\">A recording becomes modes</a></p>\n");
+    page.push_str(
+        "<a href=\"#fit\">A recording becomes modes</a> · <a href=\"#shape\">A mesh becomes a body</a></p>\n",
+    );
     for (scene, report) in scenes.iter().zip(reports) {
         let name = scene.name;
         let _ = write!(
@@ -143,7 +169,15 @@ pub fn html(scenes: &[DemoScene], reports: &[Report], fitted: &fit::Report) -> S
          <label>its modes <audio controls preload=\"none\" src=\"tile.resynthesis.wav\"></audio></label></div>\n\
          <p>{} · <a href=\"tile.modes.json\">modes</a></p>\n<img src=\"tile.fit.svg\" alt=\"spectrograms of the \
          recording, its resynthesis and the residual\"></section>\n",
-        found(fitted)
+        found(&bodies.fitted)
+    );
+    let _ = write!(
+        page,
+        "<section id=\"shape\"><h2>A mesh becomes a body</h2>\n<p>{SHAPE}</p>\n<p>{} · <a href=\"{}\">modes</a></p>\n\
+         <img src=\"{}\" alt=\"the first shapes of the bowl, its frequencies and how long they ring\"></section>\n",
+        solved(&bodies.solved),
+        bowl::MODES,
+        bowl::PICTURE
     );
     page.push_str("</body></html>\n");
     page

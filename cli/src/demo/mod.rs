@@ -1,9 +1,10 @@
 //! `asperity demo`: the main job in one command, with nothing to download and nothing to install.
 //!
-//! Writes the shipped scenes into a folder, fits the shipped recording, renders every scene through the
+//! Writes the shipped scenes into a folder, fits the shipped recording, solves the shipped mesh, renders every scene through the
 //! very path of `asperity render --plot`, and writes an index that says what each file is.
 
 mod answering;
+mod bowl;
 mod demo_scene;
 mod gallery;
 mod index;
@@ -47,9 +48,9 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let scenes = scenes::scenes();
     write_inputs(folder, &scenes)?;
     let mut progress = Progress::new("rendering", 1 + scenes.len() as u64);
-    // The fit takes longest; scenes that do not need its body are rendered beside it.
-    let (with_tile, others): (Vec<usize>, Vec<usize>) =
-        (0..scenes.len()).partition(|&index| scenes[index].toml.contains(TILE_MODES));
+    // The fit takes longest; what does not need its body is done beside it.
+    let (with_bodies, others): (Vec<usize>, Vec<usize>) = (0..scenes.len())
+        .partition(|&index| [TILE_MODES, bowl::MODES].iter().any(|name| scenes[index].toml.contains(name)));
     let mut reports: Vec<Option<render::Report>> = scenes.iter().map(|_| None).collect();
     let mut render_all = |indices: &[usize]| -> Result<(), CliError> {
         for &index in indices {
@@ -58,21 +59,23 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         }
         Ok(())
     };
-    let fitted = std::thread::scope(|scope| {
+    let (fitted, solved) = std::thread::scope(|scope| {
         let fitting = scope.spawn(|| fit_tile(folder));
+        let solved = bowl::solve(folder);
         let rendered = render_all(&others);
         let fitted = fitting.join().unwrap_or_else(|payload| std::panic::resume_unwind(payload));
-        rendered.and(fitted)
+        rendered.and(fitted).and_then(|fitted| Ok((fitted, solved?)))
     })?;
-    render_all(&with_tile)?;
+    render_all(&with_bodies)?;
     let reports: Vec<render::Report> = reports.into_iter().flatten().collect();
     progress.advance(1);
     drop(progress);
+    let bodies = index::Bodies { fitted, solved };
     let mut outputs = Outputs::new();
-    outputs.write(&folder.join("index.html"), index::html(&scenes, &reports, &fitted).as_bytes())?;
-    outputs.write(&folder.join("README.txt"), index::text(&scenes, &reports, &fitted).as_bytes())?;
+    outputs.write(&folder.join("index.html"), index::html(&scenes, &reports, &bodies).as_bytes())?;
+    outputs.write(&folder.join("README.txt"), index::text(&scenes, &reports, &bodies).as_bytes())?;
     outputs.commit()?;
-    output::say(&index::summary(folder, &scenes, &reports, &fitted));
+    output::say(&index::summary(folder, &scenes, &reports, &bodies));
     Ok(())
 }
 

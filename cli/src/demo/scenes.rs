@@ -18,6 +18,7 @@ pub fn scenes() -> Vec<DemoScene> {
     scenes.push(scraped());
     scenes.extend(super::gallery::scenes());
     scenes.push(super::answering::scene());
+    scenes.push(super::bowl::scene());
     scenes
 }
 

@@ -17,15 +17,20 @@ const STEPS: u64 = 200;
 
 /// The object of `--json`.
 #[derive(Debug, Serialize)]
-struct Report {
-    modes: usize,
-    degrees_of_freedom: usize,
+pub struct Report {
+    /// Modes written.
+    pub modes: usize,
+    /// Unknowns solved for.
+    pub degrees_of_freedom: usize,
     elements: usize,
     volume_m3: f64,
     mass_kg: f64,
-    lowest_hz: f64,
-    highest_hz: f64,
-    seconds: f64,
+    /// Lowest mode, Hz.
+    pub lowest_hz: f64,
+    /// Highest mode, Hz.
+    pub highest_hz: f64,
+    /// What it took, s.
+    pub seconds: f64,
     peak_mib: Option<f64>,
     warnings: Vec<String>,
 }
@@ -35,6 +40,23 @@ struct Report {
 /// # Errors
 /// When the mesh is no body, an option is out of range, the modes cannot be solved for, or a file cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
+    let mut progress = Progress::new("solving", STEPS);
+    let mut shown = 0;
+    let report = make(options, &mut |done| {
+        let step = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
+        progress.advance(step.saturating_sub(shown));
+        shown = shown.max(step);
+    });
+    drop(progress);
+    let report = report?;
+    if options.json { output::say_json(&report) } else { say(&report, options) }
+}
+
+/// Writes the files and says nothing; `progress` hears the part done, 0 to 1.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, CliError> {
     let started = Instant::now();
     check_destination(&options.output)?;
     options.plot.as_deref().map_or(Ok(()), check_destination)?;
@@ -42,16 +64,10 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let (material, damping) = options.material()?;
     let mesh = asperity_shape::load(&options.body).map_err(CliError::told)?;
     let making = Making { material, size_m: options.size, thickness_m: options.thickness, wanted };
-    let mut progress = Progress::new("solving", STEPS);
-    let mut shown = 0;
     let name = options.body.display().to_string();
-    let mut body = asperity_shape::make(mesh, &making, &mut |done| {
-        let step = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
-        progress.advance(step.saturating_sub(shown));
-        shown = shown.max(step);
-    })
-    .map_err(|error| CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) }))?;
-    drop(progress);
+    let mut body = asperity_shape::make(mesh, &making, progress).map_err(|error| {
+        CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) })
+    })?;
     let mut file =
         ModesFile::new(&mut body, &damping, options.radiation, &options.body).map_err(CliError::told)?;
     let mut outputs = Outputs::new();
@@ -76,7 +92,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         outputs.write(path, picture::svg(&title, &body, &damping, &file).as_bytes())?;
     }
     outputs.commit()?;
-    let report = Report {
+    Ok(Report {
         modes: file.modes.len(),
         degrees_of_freedom: body.degrees_of_freedom,
         elements: body.elements,
@@ -87,8 +103,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         seconds: started.elapsed().as_secs_f64(),
         peak_mib: peak_mib(),
         warnings: body.told,
-    };
-    if options.json { output::say_json(&report) } else { say(&report, options) }
+    })
 }
 
 fn say(report: &Report, options: &Options) -> Result<(), CliError> {
