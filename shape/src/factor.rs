@@ -8,6 +8,7 @@ use crate::error::ShapeError;
 use crate::system::System;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{ldlt::factor::LdltRegularization, llt::factor::LltRegularization};
+use faer::perm::PermRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
@@ -32,7 +33,7 @@ fn out_of_memory() -> ShapeError {
 }
 
 impl Symbolic {
-    /// Orders the unknowns so that the factor stays small.
+    /// Orders the unknowns so that the factor stays small: by minimum degree or by nested dissection, whichever fills less.
     ///
     /// # Errors
     /// When memory runs out.
@@ -44,9 +45,21 @@ impl Symbolic {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..CholeskySymbolicParams::default()
         };
-        factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, params)
-            .map(Self)
-            .map_err(|_| out_of_memory())
+        let with = |order: SymmetricOrdering<'_, u32>| {
+            factorize_symbolic_cholesky(pattern, Side::Lower, order, params).map_err(|_| out_of_memory())
+        };
+        let minimum_degree = with(SymmetricOrdering::Amd)?;
+        let forward: Vec<u32> = crate::dissection::order(&system.nodes, &mut system.pairs())
+            .into_iter()
+            .flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2])
+            .collect();
+        let mut inverse = vec![0; n];
+        for (new, &old) in forward.iter().enumerate() {
+            inverse[old as usize] = new as u32;
+        }
+        let dissected = with(SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, n)))?;
+        let smaller = dissected.len_val() < minimum_degree.len_val();
+        Ok(Self(if smaller { dissected } else { minimum_degree }))
     }
 
     /// Factors K − σM for a σ below all modes.

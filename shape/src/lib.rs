@@ -11,6 +11,7 @@
 pub mod body;
 pub mod damping_fit;
 mod delaunay;
+mod dissection;
 pub mod eigenmodes;
 pub mod elastic;
 mod error;

@@ -102,6 +102,12 @@ impl System {
             .sum()
     }
 
+    /// The pairs of nodes that an element joins, each once, and each node with itself.
+    pub fn pairs(&self) -> impl Iterator<Item = (u32, u32)> {
+        let columns = (0..self.nodes.len()).map(|c| (c as u32, self.pattern.column(c)));
+        columns.flat_map(|(column, range)| self.pattern.rows[range].iter().map(move |&row| (column, row)))
+    }
+
     /// The lower triangle of K − σM: column starts, rows and values.
     #[must_use]
     pub fn shifted(&self, sigma: f64) -> (Vec<u32>, Vec<u32>, Vec<f64>) {
