@@ -53,7 +53,9 @@ pub struct Overrides<'a> {
     pub clock: Option<ClockMode>,
     /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are limited.
     pub live: bool,
-    /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names them.
+    /// Sources of one's own, by the `kind` under which a scene's `own = { kind = "NAME", … }` names them:
+    /// `Engine::from_scene(&SceneFile::load(path)?, &Overrides { own: &[("NAME", make)], ..Overrides::default() })`. What makes them may be
+    /// called more than once ([`MakeSource`]).
     pub own: &'a [(&'a str, MakeSource)],
     /// For [`Scene::apply`](crate::Scene::apply): files that hold something else than before, though the scene names them alike. What is made
     /// from them is made anew.

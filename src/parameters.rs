@@ -145,7 +145,7 @@ parameters! {
             "Rms of the 1/f^α overlay in the octave around 1 mm; missing: its material's";
         OUTER_SCALE_M: "outer_scale_m", "m", limits::OUTER_SCALE_M,
             "Wavelength beyond which the micro-relief is flat; missing: the engine's default";
-        ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R; missing: its map's or its material's";
+        ROUGHNESS: "roughness", "", limits::ROUGHNESS, "Perceptual roughness R; missing: its map's or own source's, else its material's";
         FRICTION: "friction", "", limits::FRICTION, "Coulomb coefficient of the 3-D force; missing: the source's";
         MU_STATIC: "mu_static", "", limits::FRICTION, "With `friction` among `excitation`: coefficient of what sticks",
             or(DEFAULT_STICK_SLIP.mu_static), from("assumed: rosin");

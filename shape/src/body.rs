@@ -11,8 +11,8 @@ use crate::system::System;
 use crate::vector::{distance, longest_side};
 use crate::volume_mesh::{EDGES, MOST_DEGREES_OF_FREEDOM, VolumeMesh};
 
-/// Unknowns of a mesh that neither walls nor waves want finer.
-const ORDINARY_UNKNOWNS: f64 = 24_000.0;
+/// Unknowns of a mesh that neither walls nor waves want finer: a cup's upper modes are 2 % off at 24,000, 0.6 % at this.
+const ORDINARY_UNKNOWNS: f64 = 55_000.0;
 /// Spacings to the shortest wave through the body and along a wall: the highest mode is then right to about 1 %.
 const PER_SHEAR_WAVE: f64 = 6.0;
 const PER_BENDING_WAVE: f64 = 11.0;

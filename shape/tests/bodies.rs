@@ -62,3 +62,46 @@ const BOWL_HZ: [f64; 20] = [
     1531.0, 1531.0, 3956.0, 3956.0, 7103.0, 7103.0, 10_860.0, 10_860.0, 14_330.0, 14_376.0, 14_376.0,
     15_197.0, 15_197.0, 15_680.0, 15_680.0, 16_124.0, 17_411.0, 17_411.0, 17_544.0, 17_544.0,
 ];
+
+#[test]
+fn props_of_a_game_ring_stuffed_as_their_volume_meshes_do() {
+    // A horn: 20 cm long, bent through a third of a turn, thick at one end, oval across.
+    let horn = |cells: [usize; 3]| {
+        common::mapped(cells, |[along, across, up]| {
+            // A round section from a square one, so that no edge runs along it.
+            let across_up = [across, up];
+            let (most, length) = (across.abs().max(up.abs()), across.hypot(up));
+            let round = if length == 0.0 { 0.0 } else { most / length };
+            let thick_m = 0.016 - 0.008 * along;
+            let [y, z] = [across_up[0] * round * thick_m, 0.8 * across_up[1] * round * thick_m];
+            let (s, c) = (1.05 * along).sin_cos();
+            let bend_m = 0.095;
+            [(bend_m + y) * s, (bend_m + y) * c, z]
+        })
+    };
+    // A cup whose floor is thicker than its wall.
+    let cup = |cells: [usize; 3]| {
+        common::lathe(cells, |along, across| {
+            let floor = (along / 0.4).min(1.0);
+            let rise = ((along - 0.4) / 0.6).max(0.0);
+            let inside = [0.031 * floor + 0.004 * rise, 0.009 + 0.075 * rise];
+            let outside = [0.038 * floor + 0.003 * rise, 0.084 * rise];
+            (outside[0] + across * (inside[0] - outside[0]), outside[1] + across * (inside[1] - outside[1]))
+        })
+    };
+    for (name, mesh) in [("horn", horn([40, 10, 10])), ("cup", cup([40, 24, 3]))] {
+        let surface = common::surface_of(&mesh);
+        let (filled, stuffed) = (body(Mesh::Volume(mesh), 12), body(Mesh::Surface(surface), 12));
+        let error = worst(&stuffed, &filled.frequency_hz);
+        println!(
+            "{name}: {:.1} to {:.1} Hz, {error:.4}; {} unknowns filled, {} stuffed, {:?} {:.4}",
+            filled.frequency_hz[0],
+            filled.frequency_hz[11],
+            filled.degrees_of_freedom,
+            stuffed.degrees_of_freedom,
+            stuffed.told,
+            stuffed.volume_m3 / filled.volume_m3
+        );
+        assert!(error < 1e-2, "{name}: {:?} {:?}", filled.frequency_hz, stuffed.frequency_hz);
+    }
+}

@@ -270,7 +270,8 @@ impl Scene {
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
     /// documented: solid noise its parameters, sand its law, a scaled source a [`ScaleTo`](asperity_texture::combine::ScaleTo), one of your own
     /// whatever type it looks for. A change that no source of the surface takes (another type, or impossible numbers) is counted as
-    /// quarantined.
+    /// quarantined. It holds from the stamp of the last event on, after everything that is queued already: a game that reports ahead gets it
+    /// then, not now. Recordings hold no such change.
     ///
     /// # Errors
     /// When the surface is not in this scene or the queue is full.

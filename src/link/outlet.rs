@@ -10,7 +10,8 @@ use crate::model::id::SurfaceId;
 use asperity_texture::moving_picture::MovingPicture;
 use std::sync::Arc;
 
-/// The audio half's end of a port. It must not allocate, lock or wait.
+/// The audio half's end of a port. It must not allocate, lock or wait. It is shown every channel and bus, in blocks of the caller's length or parts
+/// of it, and picks what it wants.
 pub trait Outlet: Send + Sync {
     /// Samples of a haptic channel as they leave, from sample `first` on.
     fn haptic(&mut self, _channel: usize, _first: u64, _samples: &[f32]) {}
@@ -56,6 +57,44 @@ impl PortSetup<'_> {
 }
 
 /// A kind of port: what is wanted, as plain data.
+///
+/// ```
+/// use asperity::live::ports::{Opened, Outlet, PortKind, PortSetup};
+/// use asperity::{AddError, Config, Engine};
+/// use std::sync::Arc;
+/// use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+///
+/// /// How loud the first bus was at most.
+/// struct Peak;
+/// struct Meter(Arc<AtomicU32>);
+///
+/// impl Outlet for Meter {
+///     fn bus(&mut self, bus: usize, _first: u64, samples: &[f32]) {
+///         if bus == 0 {
+///             let peak = samples.iter().fold(f32::from_bits(self.0.load(Relaxed)), |peak, x| peak.max(x.abs()));
+///             self.0.store(peak.to_bits(), Relaxed);
+///         }
+///     }
+///     // Taken away when the reading end is dropped.
+///     fn is_closed(&self) -> bool {
+///         Arc::strong_count(&self.0) == 1
+///     }
+/// }
+///
+/// impl PortKind for Peak {
+///     type Port = Arc<AtomicU32>;
+///     fn open(self, _setup: &PortSetup<'_>) -> Result<Opened<Self::Port>, AddError> {
+///         let level = Self::Port::default();
+///         Ok(Opened { outlet: Some(Box::new(Meter(level.clone()))), port: level })
+///     }
+/// }
+///
+/// let Engine { mut scene, mut renderer, .. } = Config::default().build()?;
+/// let peak = scene.open_port(Peak)?;
+/// renderer.render(&mut [&mut [0.0; 64]], &mut [&mut [0.0; 64]]);
+/// assert_eq!(f32::from_bits(peak.load(Relaxed)), 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait PortKind {
     /// The reading end.
     type Port;
@@ -63,7 +102,7 @@ pub trait PortKind {
     /// Makes both ends.
     ///
     /// # Errors
-    /// When what is wanted does not exist or a number is outside its range.
+    /// When what is wanted does not exist ([`AddError::Unknown`] with its name, [`AddError::UnknownBus`]) or a number is outside its range.
     fn open(self, setup: &PortSetup<'_>) -> Result<Opened<Self::Port>, AddError>;
 }
 

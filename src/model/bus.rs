@@ -12,6 +12,9 @@ pub const MAX_BUSES: usize = 64;
 /// let config = Config { audio: vec![AudioBus { gain: 0.5, limit: true }; 8], ..Config::default() };
 /// assert!(config.build().is_ok());
 /// ```
+///
+/// Here a gain is 1 and nothing limits unless said; a scene file that leaves `gain` out has the level policy find it, and a limiter behind. A sum
+/// of panned buses may exceed 1 where each keeps within: limit after the mix.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AudioBus {

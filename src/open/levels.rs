@@ -9,10 +9,14 @@
 //! | haptic channel | −26 dBFS rms ([`HAPTIC_REFERENCE`]) | strokes four times as fast and five times as hard, with peaks of four times their rms |
 //! | audio bus | −32 dBFS rms ([`AUDIO_REFERENCE`]) | the same for sound, whose peaks are higher |
 //!
-//! A bus that says how many pascals full scale is, and holds bodies whose modes are in pascals, has their level from there: its gain by
-//! policy follows from its other bodies and leaves these alone; without others it is 1.
+//! Buses without a gain of their own share one, so that bodies on different buses keep their loudness beside each other: the loudest stroke of
+//! them all lands on the reference.
 //!
-//! A bus that no stroke reaches follows a reference strike: 10 g of steel at 0.5 m/s peak at −12 dBFS. Sand is left out, because the
+//! A bus that says how many pascals full scale is, and holds bodies whose modes are in pascals, has their level from there: the gain by
+//! policy follows from other bodies and leaves these alone; a bus without others has 1.
+//!
+//! Where no stroke is heard, a reference strike counts: 10 g of steel at 0.5 m/s peak at −12 dBFS. Where strokes are all but silent (smooth
+//! surfaces without micro-relief) they are not lifted until a strike bursts: it peaks at +24 dBFS at most, which a limiter holds. Sand is left out, because the
 //! stroke would leave its print; a scene of nothing else has [`FALLBACK_FULL_SCALE_M`] and a gain of 1. Where a level was
 //! resolved a peak limiter stands behind it, unless the scene says `limit = false`.
 
@@ -36,6 +40,8 @@ pub const HAPTIC_REFERENCE: f64 = 0.050_118_723_362_727_22;
 pub const AUDIO_REFERENCE: f64 = 0.025_118_864_315_095_8;
 /// Peak of a reference strike, full scale 1: −12 dB.
 pub const STRIKE_REFERENCE: f64 = 0.251_188_643_150_958;
+/// Greatest peak of a reference strike where strokes are to land on their reference, full scale 1: +24 dB.
+pub const LOUDEST_STRIKE: f64 = 15.848_931_924_611_133;
 /// Displacement at full scale where nothing says better, m.
 pub const FALLBACK_FULL_SCALE_M: f64 = 1e-4;
 /// Acceleration at full scale where nothing says better, m/s².
@@ -92,16 +98,11 @@ pub(super) fn resolve(
             Quantity::Acceleration => FALLBACK_FULL_SCALE_M_S2,
         };
     }
+    let shared: Vec<usize> =
+        (0..levels.gain.len()).filter(|&bus| levels.gain[bus].is_nan() && trials.levelled[bus]).collect();
+    let gain = trials.gain(&render, &shared);
     for (bus, level) in levels.gain.iter_mut().enumerate().filter(|(_, level)| level.is_nan()) {
-        let loudest =
-            trials.strongest(&render, |stroke| (!stroke.calibrated).then_some(&render.audio[bus][..]));
-        let struck = trials.struck(&render, &render.audio[bus]);
-        *level = match (loudest > SILENT, struck > SILENT) {
-            (true, _) => AUDIO_REFERENCE / loudest,
-            (_, true) => STRIKE_REFERENCE / struck,
-            _ => 1.0,
-        };
-        *level = level.min(limits::AUDIO_GAIN.high);
+        *level = if shared.contains(&bus) { gain } else { 1.0 };
     }
     Ok(levels)
 }
@@ -109,8 +110,8 @@ pub(super) fn resolve(
 /// A reference stroke among the trials.
 struct Trial {
     actuator: usize,
-    /// Whether the body tells in pascals how loud it is.
-    calibrated: bool,
+    /// Bus of the body that it rings; none where that is told in pascals, or nothing rings.
+    bus: Option<usize>,
     start_s: f64,
 }
 
@@ -118,6 +119,8 @@ struct Trial {
 struct Trials {
     log: ContactLog,
     strokes: Vec<Trial>,
+    /// Whether a body plays on each bus that does not tell in pascals how loud it is.
+    levelled: Vec<bool>,
     /// When the first strike comes.
     strikes_s: f64,
 }
@@ -127,7 +130,22 @@ impl Trials {
         let is_calibrated = |name: &String| {
             file.bodies.iter().zip(calibrated).any(|(body, calibrated)| body.name == *name && *calibrated)
         };
-        let mut trials = Self { log: ContactLog { lines: Vec::new() }, strokes: Vec::new(), strikes_s: 0.0 };
+        let bus_of = |name: &String| {
+            let body = file.bodies.iter().find(|body| body.name == *name && !is_calibrated(name))?;
+            // A body that names none plays on the first.
+            body.bus
+                .as_ref()
+                .map_or(Some(0), |bus| file.audio.iter().position(|b| b.name.as_ref() == Some(bus)))
+        };
+        let mut trials = Self {
+            log: ContactLog { lines: Vec::new() },
+            strokes: Vec::new(),
+            levelled: vec![false; file.audio.len()],
+            strikes_s: 0.0,
+        };
+        for bus in file.bodies.iter().filter_map(|body| bus_of(&body.name)) {
+            trials.levelled[bus] = true;
+        }
         let probes = std::iter::once(None).chain(file.probes.iter().map(|(name, _)| Some(name.as_str())));
         let probes: Vec<Option<&str>> = probes.collect();
         let mut at_s = 0.0;
@@ -138,8 +156,8 @@ impl Trials {
             for probe in &probes {
                 for actuator in kinds(file) {
                     for axis in 0..2 {
-                        let calibrated = entry.body.as_ref().is_some_and(is_calibrated);
-                        trials.stroke(file, (surface, *probe, actuator), axis, (at_s, calibrated));
+                        let bus = entry.body.as_ref().and_then(bus_of);
+                        trials.stroke(file, (surface, *probe, actuator), axis, (at_s, bus));
                         at_s += STROKE_S + PAUSE_S;
                     }
                 }
@@ -159,7 +177,7 @@ impl Trials {
         file: &SceneFile,
         (surface, probe, actuator): (usize, Option<&str>, usize),
         axis: usize,
-        (start_s, calibrated): (f64, bool),
+        (start_s, bus): (f64, Option<usize>),
     ) {
         let entry = &file.surfaces[surface];
         let size_m = [entry.width_m, entry.height_m];
@@ -189,7 +207,22 @@ impl Trials {
             self.log.lines.push(LogLine { t: start_s + t, event: LogEvent::moved(contact, sample(t)) });
         }
         self.log.lines.push(LogLine { t: start_s + STROKE_S, event: LogEvent::End { contact } });
-        self.strokes.push(Trial { actuator, calibrated, start_s });
+        self.strokes.push(Trial { actuator, bus, start_s });
+    }
+
+    /// The gain that some buses share: the loudest stroke on them lands on its reference, or a strike where no stroke is heard.
+    fn gain(&self, render: &Render, buses: &[usize]) -> f64 {
+        let heard =
+            |stroke: &Trial| stroke.bus.filter(|bus| buses.contains(bus)).map(|bus| &render.audio[bus][..]);
+        let loudest = self.strongest(render, heard);
+        let struck = buses.iter().map(|&bus| self.struck(render, &render.audio[bus])).fold(0.0, f64::max);
+        let gain = match (loudest > SILENT, struck > SILENT) {
+            (true, true) => (AUDIO_REFERENCE / loudest).min(LOUDEST_STRIKE / struck),
+            (true, false) => AUDIO_REFERENCE / loudest,
+            (false, true) => STRIKE_REFERENCE / struck,
+            (false, false) => 1.0,
+        };
+        gain.min(limits::AUDIO_GAIN.high)
     }
 
     /// Greatest rms of what two strokes across each other give.

@@ -161,13 +161,14 @@ pub struct Reaction {
 /// What lies beyond one tile of a source: what texture coordinates that wrap mean on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Beyond {
-    /// The same again, or relief that does not belong to places: a jump by a tile is no movement.
+    /// The same again, or relief that does not belong to places: a jump by a tile is no movement. Positions run on beyond the tile, so a source
+    /// whose period does not divide it goes on smoothly and is another place in the next lap.
     Same,
     /// The same mirrored: a jump by two tiles is no movement.
     Mirrored,
-    /// More of its kind, unlike the tile: the engine makes a tile of it ([`crate::tiled`]).
+    /// More of its kind, unlike the tile: the engine makes a tile of it ([`crate::tiled`]), blended where it meets itself.
     Fresh,
-    /// Its edge: a jump across is a jump.
+    /// Its edge: a jump across is a jump. Who runs on beyond it without wrapping goes on.
     Edge,
 }
 
@@ -189,7 +190,8 @@ impl Default for Setup {
 
 /// A surface that can be sampled in real time.
 ///
-/// A source of one's own is these two methods; what changes while it is touched goes through a handle of its own (an atomic, a ring). Positions
+/// A source of one's own is these two methods. What changes while it is touched comes by [`change`](Self::change), at a sample that is known, or through a
+/// handle of its own (an atomic, a ring), which takes effect wherever the audio thread happens to be: a game steered so does not replay to the bit. Positions
 /// are metres from uv (0, 0) and run on beyond the surface; where texture coordinates wrap, heights must be the same again after the surface's
 /// width and height, or [`beyond`](Self::beyond) says that they are not:
 ///
@@ -235,7 +237,8 @@ impl Default for Setup {
 /// assert!((out.height_m[0] - 1e-4).abs() < 1e-12);
 /// ```
 pub trait HeightField: Send + Sync {
-    /// The wavelengths this source represents.
+    /// The wavelengths this source represents. Asked when the surface is added, not again: it covers every wavelength that the source can be
+    /// steered to.
     fn band(&self) -> WavelengthBand;
 
     /// Gets ready for an engine, before it is sampled, and again when that engine's rate changes; it may allocate. A source made of
@@ -308,8 +311,9 @@ pub trait HeightField: Send + Sync {
         Reaction::default()
     }
 
-    /// Changes the source at an absolute sample, without a click; tells whether the change was meant
-    /// for this source and acceptable. A change is any plain value that the source knows by its type: parameters, a factor.
+    /// Changes the source at an absolute sample, counted at [`Setup::sample_rate_hz`] as [`PathBlock::first_sample`] is, without a click;
+    /// tells whether the change was meant for this source and acceptable. That nothing clicks is the source's to keep: a new pitch carries on the
+    /// phase of each contact ([`PathBlock::contact`]). A change is any plain value that the source knows by its type: parameters, a factor.
     /// A source made of others hands on what it does not know.
     fn change(&mut self, _change: &dyn Any, _sample: u64) -> bool {
         false

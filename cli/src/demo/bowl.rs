@@ -18,7 +18,7 @@ pub const PICTURE: &str = "bowl.shapes.svg";
 /// What it is made of.
 const MATERIAL: &str = "ceramic";
 /// Modes solved for.
-const MODES_WANTED: usize = 16;
+const MODES_WANTED: usize = 12;
 
 /// Outer radius, m.
 const RADIUS_M: f64 = 0.07;

@@ -23,7 +23,7 @@ const FIT: &str = "tile_strike.wav is a recorded impact, made by the project (sy
                    Do the same with a recording of your own.";
 
 /// What is said about the mesh, beside its picture.
-const SHAPE: &str = "bowl.obj is a mesh made by the project. `asperity modes bowl.obj --material ceramic --max-modes 16 --shapes-glb -o bowl.modes.json \
+const SHAPE: &str = "bowl.obj is a mesh made by the project. `asperity modes bowl.obj --material ceramic --max-modes 12 --shapes-glb -o bowl.modes.json \
                      --plot bowl.shapes.svg` makes the body of the bowl scene of it. Do the same with a mesh of your own.";
 
 /// The bodies that the demo makes before it renders.

@@ -14,7 +14,7 @@ use asperity_dsp::{DesignError, limits};
 use std::sync::Arc;
 
 impl Scene {
-    /// Adds a body that rings: a [`Body`], or the modes of one of PLA on the first bus.
+    /// Adds a body that rings: a [`Body`]; or a [`ModalModel`](crate::ModalModel), which becomes a body of PLA on the first bus.
     ///
     /// # Errors
     /// When every place is taken, the modes cannot be rendered at this rate, the material is impossible, or there is no such bus.

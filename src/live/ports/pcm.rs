@@ -98,7 +98,8 @@ impl PcmPort {
         self.words.lost()
     }
 
-    /// How many samples since the port was opened lie before the next one to be read: those read and those lost.
+    /// How many samples since the port was opened lie before the next one to be read: those read and those lost. The first one is the first
+    /// of the block that was rendered next after the opening.
     #[must_use]
     pub fn position(&self) -> u64 {
         self.read + self.words.lost()
