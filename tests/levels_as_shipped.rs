@@ -167,3 +167,33 @@ fn bodies_in_pascals_sound_as_loud_as_they_say_and_leave_their_neighbours_alone(
     let beside = struck("pascals_at_full_scale = 2.0", "r");
     assert!((beside / alone - 1.0).abs() < 1e-5, "{beside} {alone}");
 }
+
+#[test]
+fn buses_without_a_gain_share_one_and_a_bus_of_bodies_in_pascals_keeps_one() {
+    let gains = |audio: &str, surfaces: &str| {
+        let toml = format!(
+            "[[body]]\nname = \"plate\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"ceramic\"\nbus = \"left\"\n\
+             [[body]]\nname = \"bowl\"\nstock = \"bowl\"\nsize_m = 0.2\nmaterial = \"glass\"\nbus = \"right\"\n\
+             {surfaces}[[actuator]]\nfull_scale = 1e-4\n{audio}"
+        );
+        let file = SceneFile::parse(&toml, Path::new("two.toml")).unwrap();
+        Engine::from_scene(&file, &Overrides::default()).unwrap().levels.gain
+    };
+    let surface = |body: &str, relief: &str| {
+        format!(
+            "[[surface]]\nname = \"{body}-top\"\nbody = \"{body}\"\nwidth_m = 0.14\nheight_m = 0.14\n{relief}"
+        )
+    };
+    let rough = surface("plate", "roughness = 0.9\n") + &surface("bowl", "roughness = 0.2\n");
+    let buses = |left: &str, right: &str| {
+        format!("[[audio]]\nname = \"left\"\n{left}[[audio]]\nname = \"right\"\n{right}")
+    };
+    let shared = gains(&buses("", ""), &rough);
+    assert!(shared[0] == shared[1] && shared[0] != 1.0, "{shared:?}");
+    // One that is written is its own; the other is found for itself.
+    let written = gains(&buses("gain = 3.0\n", ""), &rough);
+    assert!(written[0] == 3.0 && written[1] != 3.0, "{written:?}");
+    // A stock body tells pascals: nothing is to be found for its bus, whatever else sounds.
+    let calibrated = gains(&buses("pascals_at_full_scale = 2.0\n", ""), &rough);
+    assert!(calibrated[0] == 1.0 && calibrated[1] != 1.0, "{calibrated:?}");
+}

@@ -15,8 +15,7 @@
 //! A bus that says how many pascals full scale is, and holds bodies whose modes are in pascals, has their level from there: the gain by
 //! policy follows from other bodies and leaves these alone; a bus without others has 1.
 //!
-//! Where no stroke is heard, a reference strike counts: 10 g of steel at 0.5 m/s peak at −12 dBFS. Where strokes are all but silent (smooth
-//! surfaces without micro-relief) they are not lifted until a strike bursts: it peaks at +24 dBFS at most, which a limiter holds. Sand is left out, because the
+//! Where no stroke is heard, a reference strike counts: 10 g of steel at 0.5 m/s peak at −12 dBFS. Sand is left out, because the
 //! stroke would leave its print; a scene of nothing else has [`FALLBACK_FULL_SCALE_M`] and a gain of 1. Where a level was
 //! resolved a peak limiter stands behind it, unless the scene says `limit = false`.
 
@@ -40,8 +39,6 @@ pub const HAPTIC_REFERENCE: f64 = 0.050_118_723_362_727_22;
 pub const AUDIO_REFERENCE: f64 = 0.025_118_864_315_095_8;
 /// Peak of a reference strike, full scale 1: −12 dB.
 pub const STRIKE_REFERENCE: f64 = 0.251_188_643_150_958;
-/// Greatest peak of a reference strike where strokes are to land on their reference, full scale 1: +24 dB.
-pub const LOUDEST_STRIKE: f64 = 15.848_931_924_611_133;
 /// Displacement at full scale where nothing says better, m.
 pub const FALLBACK_FULL_SCALE_M: f64 = 1e-4;
 /// Acceleration at full scale where nothing says better, m/s².
@@ -217,8 +214,7 @@ impl Trials {
         let loudest = self.strongest(render, heard);
         let struck = buses.iter().map(|&bus| self.struck(render, &render.audio[bus])).fold(0.0, f64::max);
         let gain = match (loudest > SILENT, struck > SILENT) {
-            (true, true) => (AUDIO_REFERENCE / loudest).min(LOUDEST_STRIKE / struck),
-            (true, false) => AUDIO_REFERENCE / loudest,
+            (true, _) => AUDIO_REFERENCE / loudest,
             (false, true) => STRIKE_REFERENCE / struck,
             (false, false) => 1.0,
         };
