@@ -9,8 +9,10 @@ use crate::vector::Vec3;
 
 /// Parts of so few nodes are not cut any more.
 const LEAF: usize = 24;
-/// Shares of the nodes below a cut that are tried; the one with the fewest nodes on it is taken.
-const SHARES: [f64; 5] = [0.5, 0.47, 0.53, 0.44, 0.56];
+/// Cuts that are tried, as shares of the nodes below them: so many, from this one to as much above a half. The one with the fewest nodes on
+/// it is taken.
+const TRIED: usize = 21;
+const LEAST_SHARE: f64 = 0.4;
 
 /// Neighbours of every node.
 struct Graph {
@@ -90,8 +92,8 @@ fn halves(piece: &mut [u32], nodes: &[Vec3], graph: &Graph, side: &mut [Side]) -
     piece.sort_unstable_by(|&a, &b| {
         nodes[a as usize][axis].total_cmp(&nodes[b as usize][axis]).then(a.cmp(&b))
     });
-    let best = SHARES
-        .iter()
+    let best = (0..TRIED)
+        .map(|i| LEAST_SHARE + (1.0 - 2.0 * LEAST_SHARE) * i as f64 / (TRIED - 1) as f64)
         .flat_map(|share| {
             let at = ((share * piece.len() as f64) as usize).clamp(1, piece.len() - 1);
             [(at, Side::Below), (at, Side::Above)]
