@@ -4,7 +4,7 @@
 //! neighbours, and a factor of two too long weighs as much as one too short.
 //!
 //! Learned from are resonances, not terms: a fit spends several modes on one resonance (an attack, a room, a beat), and the short ones among
-//! them say nothing of the material. The strongest within [`WIDTHS`] half-widths stands for them, and what lies [`FAINT_DB`] below the
+//! them say nothing of the material. The strongest within three half-widths stands for them, and what lies 40 dB below the
 //! strongest of all is left out.
 //!
 //! What such a law can do is little: decays of neighbouring modes of one real body differ by factors, because supports, air and the shape of
