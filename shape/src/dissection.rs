@@ -10,7 +10,7 @@ use crate::vector::Vec3;
 /// Parts of so few nodes are not cut any more.
 const LEAF: usize = 24;
 /// Cuts that are tried, as shares of the nodes below them: so many, from this one to as much above a half. The one with the fewest nodes on
-/// it is taken.
+/// it is taken; of several as small, the one nearest to the middle.
 const TRIED: usize = 21;
 const LEAST_SHARE: f64 = 0.4;
 
@@ -98,7 +98,7 @@ fn halves(piece: &mut [u32], nodes: &[Vec3], graph: &Graph, side: &mut [Side]) -
             let at = ((share * piece.len() as f64) as usize).clamp(1, piece.len() - 1);
             [(at, Side::Below), (at, Side::Above)]
         })
-        .min_by_key(|&(at, from)| cut_of(piece, at, from, graph, side).len());
+        .min_by_key(|&(at, from)| (cut_of(piece, at, from, graph, side).len(), at.abs_diff(piece.len() / 2)));
     let Some((at, from)) = best else { return [Vec::new(), Vec::new(), piece.to_vec()] };
     let cut = cut_of(piece, at, from, graph, side);
     mark(piece, at, side);
