@@ -8,8 +8,8 @@ use asperity::files::scene_file::SceneFile;
 use asperity::offline::{self, Options};
 use asperity::open::{Edits, Overrides};
 use asperity::{
-    Actuator, Body, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact, Material, NoTap,
-    Renderer, Scene, Stock, Surface, Touching, probe_by_name,
+    Actuator, Body, ClockMode, ContactEvent, ContactId, ContactSample, Engine, Extent, Impact, Material,
+    NoTap, Renderer, Scene, Stock, Surface, Touching, probe_by_name,
 };
 use std::io::Write;
 use std::path::Path;
@@ -239,3 +239,76 @@ fn what_a_reset_drops_is_not_in_the_recording() {
     assert_eq!(log.lines.len(), 2);
     assert_same_bits(&game, &replay(&log, &mut Edits::default()).unwrap());
 }
+
+/// Two fingers on one plate at 60 ticks a second, each tick rendered in a block of 735 frames (44.1 kHz), the first one in a shorter one: the
+/// order in which an engine like Godot calls.
+#[test]
+fn a_live_recording_of_two_fingers_and_a_blow_renders_to_the_bits_of_the_game() {
+    let file = SceneFile::parse(TWO_FINGERS, Path::new("plate.toml")).unwrap();
+    let live = Overrides {
+        sample_rate_hz: Some(44_100.0),
+        clock: Some(ClockMode::Live { max_lead_s: 0.2 }),
+        live: true,
+        ..Overrides::default()
+    };
+    let Engine { mut scene, mut renderer, names, .. } = Engine::from_scene(&file, &live).unwrap();
+    let (plate, body) = (names.surfaces["plate"], names.bodies["plate"]);
+    let pressed = |uv: [f64; 2], normal_force_n: f64, velocity_m_s| ContactSample {
+        uv: uv.map(|x| f64::from(x as f32)),
+        normal_force_n,
+        velocity_m_s,
+        closing_m_s: 0.0,
+        ..ContactSample::default()
+    };
+    let touching = |channel| Touching::on(plate).felt_by(Actuator(channel));
+    let mut played: [Vec<f32>; 3] = Default::default();
+    scene.start_recording(&names);
+    let mut t = 0.0;
+    for tick in 0..200 {
+        t += 1.0 / 60.0;
+        let along = f64::from(tick);
+        let mut report = |event| scene.report(t, event).unwrap();
+        match tick {
+            10 => {
+                report(ContactEvent::begin_with(ContactId(1), touching(0), pressed([0.2, 0.5], 0.6, None)));
+                report(ContactEvent::begin_with(ContactId(2), touching(1), pressed([0.3, 0.3], 0.4, None)));
+            }
+            11..180 => {
+                let first = pressed([0.2 + 0.003 * along, 0.5], 0.6, None);
+                let second = pressed([0.3, 0.3 + 0.002 * along], 0.4, Some([0.0, f64::from(0.036_f32)]));
+                report(ContactEvent::moved(ContactId(1), first));
+                report(ContactEvent::moved(ContactId(2), second));
+            }
+            180 => [1, 2].map(|n| report(ContactEvent::End { contact: ContactId(n) })).into_iter().collect(),
+            _ => {}
+        }
+        if tick == 90 {
+            let blow = Impact { speed_m_s: 0.5, mass_kg: 0.01, radius_m: 0.005, ..Impact::on(body) };
+            report(ContactEvent::Impact(Impact { actuator: Some(Actuator(0)), ..blow }));
+        }
+        let frames = if tick == 10 { 612 } else { 735 };
+        let at = played[0].len();
+        played.iter_mut().for_each(|channel| channel.resize(at + frames, 0.0));
+        let [first, second, audio] = &mut played;
+        renderer.render(&mut [&mut first[at..], &mut second[at..]], &mut [&mut audio[at..]]);
+    }
+    let mut text = Vec::new();
+    scene.stop_recording().write(&mut text).unwrap();
+    let log = ContactLog::parse(std::str::from_utf8(&text).unwrap(), "log").unwrap();
+    assert_eq!((scene.stats().late, scene.stats().refused, scene.stats().clock_jumps), (0, 0, 0));
+
+    let exact = Overrides { clock: Some(ClockMode::Exact), ..live };
+    let Engine { scene, renderer: again, names, .. } = Engine::from_scene(&file, &exact).unwrap();
+    let render = offline::render(scene, again, &log, &names, &Options::default()).unwrap();
+    let late = renderer.latency_samples();
+    let rendered = [&render.haptic[0], &render.haptic[1], &render.audio[0]];
+    for (played, rendered) in played.iter().zip(rendered) {
+        let pairs = played[late..].iter().zip(rendered);
+        let first = pairs.clone().position(|(a, b)| a.to_bits() != b.to_bits());
+        let off = pairs.fold(0.0_f32, |worst, (a, b)| worst.max((a - b).abs()));
+        assert_eq!(first, None, "the first sample that differs, of {}; at most {off:e} off", played.len());
+    }
+}
+
+const TWO_FINGERS: &str = "[[body]]\nname = \"plate\"\nstock = \"plate\"\nsize_m = 0.3\nmaterial = \"steel\"\n[[surface]]\n\
+    name = \"plate\"\nbody = \"plate\"\nwidth_m = 0.3\nheight_m = 0.3\nroughness = 0.7\n[[actuator]]\n[[actuator]]\n";
