@@ -54,6 +54,7 @@ pub struct AsperityWorld {
     haptic_bus: StringName,
     running: Option<Running>,
     stream: Option<Gd<AsperityStream>>,
+    latency_frames: usize,
     time_s: f64,
     error: String,
     base: Base<Node>,
@@ -106,6 +107,7 @@ impl AsperityWorld {
             let what = format!("more than {MOST_CHANNELS} buses or haptic channels; take fewer");
             return self.said::<()>("build", Err(what)).is_some();
         }
+        self.latency_frames = renderer.latency_samples();
         let stream = AsperityStream::new_gd();
         if let Ok(mut slot) = stream.bind().slot.lock() {
             *slot = Some(renderer);
@@ -120,6 +122,12 @@ impl AsperityWorld {
     #[func]
     fn audio_stream(&self) -> Option<Gd<AsperityStream>> {
         self.stream.clone()
+    }
+
+    /// By how many frames what is played comes after the engine's own time line: what `render_log` renders begins so many frames earlier.
+    #[func]
+    fn latency_frames(&self) -> i64 {
+        self.latency_frames as i64
     }
 
     /// A stream of two haptic channels, for a player of one's own; -1: none on that side.

@@ -68,6 +68,16 @@ func rms(frames: PackedVector2Array, side: int) -> float:
 	return sqrt(sum / maxi(1, frames.size()))
 
 
+# What is played comes so many frames late, and ends before a rendered tail.
+func same_bits(played: PackedVector2Array, side: int, rendered: PackedFloat32Array, late: int) -> bool:
+	var frames := played.size() - late
+	for i in frames:
+		if played[i + late][side] != rendered[i]:
+			print("     frame %d of %d: %.9g, not %.9g" % [i, frames, played[i + late][side], rendered[i]])
+			return false
+	return frames > 44100 and frames <= rendered.size()
+
+
 func stroke(world: AsperityWorld, surface: int, ticks: int, contact := 1, channel := 0) -> void:
 	world.report_begin(contact, surface, Vector2(0.2, 0.5), 0.6, channel)
 	for tick in ticks:
@@ -149,9 +159,10 @@ func what_was_played_is_recorded_and_renders() -> void:
 	var haptic: Array = render.get("haptic", [])
 	check("it renders", audio.size() == 1 and haptic.size() == 2, world.last_error())
 	if audio.size() == 1 and haptic.size() == 2:
-		# What the program `asperity` renders of the same log is compared with this.
-		FileAccess.open("user://stroke.f32", FileAccess.WRITE).store_buffer(audio[0].to_byte_array())
-		check("what was recorded renders for as long as it was played", absi(audio[0].size() - heard_frames.size()) < 44100 and rms(heard_frames, 0) > 1e-4 and rms(felt_frames, 1) > 1e-4)
+		for channel in 3:
+			var played := heard_frames if channel == 0 else felt_frames
+			var rendered: PackedFloat32Array = audio[0] if channel == 0 else haptic[channel - 1]
+			check("channel %d plays what its recording renders, to the bit" % channel, same_bits(played, maxi(0, channel - 1), rendered, world.latency_frames()) and rms(played, maxi(0, channel - 1)) > 1e-4)
 	await gone(world)
 
 
