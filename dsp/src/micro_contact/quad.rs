@@ -24,47 +24,6 @@ pub(super) trait Quad: Copy {
     fn first(self) -> f64;
 }
 
-/// Plain numbers, for what happens rarely.
-#[derive(Clone, Copy)]
-pub(super) struct Plain(pub [f64; 4]);
-
-impl Quad for Plain {
-    #[inline(always)]
-    fn load(self, from: &[f64; 4]) -> Self {
-        Self(*from)
-    }
-    #[inline(always)]
-    fn array(self) -> [f64; 4] {
-        self.0
-    }
-    #[inline(always)]
-    fn splat(self, value: f64) -> Self {
-        Self([value; 4])
-    }
-    #[inline(always)]
-    fn spread<const I: usize>(self) -> Self {
-        Self([self.0[I]; 4])
-    }
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        let (a, b) = (self.0, other.0);
-        Self([a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]])
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let (a, b) = (self.0, other.0);
-        Self([a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]])
-    }
-    #[inline(always)]
-    fn times_plus(self, factor: Self, sum: Self) -> Self {
-        self.mul(factor).add(sum)
-    }
-    #[inline(always)]
-    fn first(self) -> f64 {
-        self.0[0]
-    }
-}
-
 /// One vector, as wide as the level has it.
 impl<S: Set> Quad for f64x4<S> {
     #[inline(always)]
@@ -98,6 +57,46 @@ impl<S: Set> Quad for f64x4<S> {
     #[inline(always)]
     fn first(self) -> f64 {
         self[0]
+    }
+}
+
+/// Another vector whose products and sums round apart even where the level could fuse them: for what gave those bits before it was
+/// worked out four at a time.
+#[derive(Clone, Copy)]
+pub(super) struct Apart<Q>(pub Q);
+
+impl<Q: Quad> Quad for Apart<Q> {
+    #[inline(always)]
+    fn load(self, from: &[f64; 4]) -> Self {
+        Self(self.0.load(from))
+    }
+    #[inline(always)]
+    fn array(self) -> [f64; 4] {
+        self.0.array()
+    }
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        Self(self.0.splat(value))
+    }
+    #[inline(always)]
+    fn spread<const I: usize>(self) -> Self {
+        Self(self.0.spread::<I>())
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.add(other.0))
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0.mul(other.0))
+    }
+    #[inline(always)]
+    fn times_plus(self, factor: Self, sum: Self) -> Self {
+        self.mul(factor).add(sum)
+    }
+    #[inline(always)]
+    fn first(self) -> f64 {
+        self.0.first()
     }
 }
 
