@@ -5,24 +5,40 @@ use super::exciters::ForceRun;
 use super::profile::Profile;
 use super::watching::Shown;
 use super::{PadSample, PathPoint};
+use asperity_dsp::micro_contact::LANES;
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// Outputs of the stages, in their order.
 pub(crate) struct Scratch {
-    pub(super) points: [PathPoint; MAX_BLOCK],
+    /// Contacts that go side by side; one alone has the first.
+    pub(super) lanes: [Lane; LANES],
     pub(super) profile: Profile,
-    pub(super) rows: [PadSample; MAX_BLOCK],
     pub(super) force: ForceRun,
     pub(super) shown: Shown,
     pub(crate) out: VoiceBlock,
 }
 
+/// What of one contact waits while others are at the same stage.
+#[derive(Clone, Copy)]
+pub(super) struct Lane {
+    pub(super) points: [PathPoint; MAX_BLOCK],
+    /// The profile, m, and what presses, N.
+    pub(super) height_m: [f64; MAX_BLOCK],
+    pub(super) force_n: [f64; MAX_BLOCK],
+    pub(super) rows: [PadSample; MAX_BLOCK],
+}
+
 impl Scratch {
     pub(crate) fn new() -> Box<Self> {
-        Box::new(Self {
+        let lane = Lane {
             points: [PathPoint::default(); MAX_BLOCK],
-            profile: Profile::new(),
+            height_m: [0.0; MAX_BLOCK],
+            force_n: [0.0; MAX_BLOCK],
             rows: [PadSample::default(); MAX_BLOCK],
+        };
+        Box::new(Self {
+            lanes: [lane; LANES],
+            profile: Profile::new(),
             force: ForceRun::new(),
             shown: Shown::new(),
             out: VoiceBlock::new(),
