@@ -15,13 +15,13 @@
 //! the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid as well, so
 //! that a seamless map has no seam.
 
-mod beside;
+mod blend;
 mod extent;
 
 pub use extent::{Extent, MapError};
 
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_by_samples_m,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_between_m,
 };
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
@@ -29,7 +29,7 @@ use crate::resample::halve;
 use crate::ridden::ridden;
 use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
-use beside::{Beside, Blend};
+use blend::Blend;
 use extent::check;
 use std::sync::Arc;
 
@@ -65,7 +65,6 @@ pub struct HeightMap {
     /// What tips of some radii ride on, and the one that rides now.
     tips: Vec<(f64, Pyramid)>,
     tip: Option<usize>,
-    beside: Box<Beside>,
 }
 
 #[derive(Debug, Clone)]
@@ -115,7 +114,6 @@ impl HeightMap {
             friction: FRICTION,
             tips: Vec::new(),
             tip: None,
-            beside: Beside::new(),
         })
     }
 
@@ -170,6 +168,11 @@ impl HeightMap {
         self.wrap
     }
 
+    /// What the tip that rides now rides on.
+    fn ridden(&self) -> &Pyramid {
+        self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map)
+    }
+
     /// After how many metres along u and v the surface is the same again; what a path unwraps by.
     #[must_use]
     pub fn wrap_period_m(&self) -> [f64; 2] {
@@ -201,12 +204,18 @@ impl Pyramid {
         widest_m: f64,
         places: &mut Places,
         out: &mut Samples,
-        between: &mut Blend,
     ) {
         let Some(finest) = self.levels.first() else { return out.fill(self.constant) };
         if is_sharp(widest_m, finest.texels_per_metre()) {
             return finest.sample_block::<SLOPES>(path.position_m, places, out);
         }
+        self.sample_blurred::<SLOPES>(finest, path, out);
+    }
+
+    /// The same where some footprint is wider than a texel.
+    #[inline(never)]
+    fn sample_blurred<const SLOPES: bool>(&self, finest: &Spline, path: &PathBlock<'_>, out: &mut Samples) {
+        let mut between = Blend::new();
         let mut blur = [(0, 0.0); MAX_BLOCK];
         for (n, blur) in blur[..path.len()].iter_mut().enumerate() {
             *blur = self.blur(finest, path.velocity_m_s[n], path.footprint_m[n]);
@@ -216,7 +225,8 @@ impl Pyramid {
             let level = blur[start].0;
             let same = blur[start..path.len()].iter().take_while(|blur| blur.0 == level).count();
             let run = start..start + same;
-            self.blend_block::<SLOPES>(level, &path.position_m[run.clone()], &blur[run], start, out, between);
+            let (position_m, blur) = (&path.position_m[run.clone()], &blur[run]);
+            self.blend_block::<SLOPES>(level, position_m, blur, start, out, &mut between);
             start += same;
         }
     }
@@ -327,7 +337,16 @@ impl HeightField for HeightMap {
     }
 
     fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
-        if self.heights.levels.is_empty() { 0.0 } else { hollow_by_samples_m(self, touch, reach_m) }
+        if self.heights.levels.is_empty() {
+            return 0.0;
+        }
+        // Nothing but heights is asked for.
+        hollow_between_m(touch, reach_m, |path| {
+            let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
+            let widest_m = widest_m(path.footprint_m);
+            self.ridden().sample_block::<false>(path, widest_m, &mut places, &mut samples);
+            std::array::from_fn(|i| samples.value[i])
+        })
     }
 
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
@@ -346,23 +365,24 @@ impl HeightField for HeightMap {
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
-        let Beside { places, samples, blend } = &mut *self.beside;
-        places.forget();
-        let heights = self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map);
+        // On the stack: memory of its own would be another for each of many surfaces, and far away.
+        let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
+        let (places, samples) = (&mut places, &mut samples);
+        let heights = self.ridden();
         if path.slopes {
-            heights.sample_block::<true>(path, widest_m, places, samples, blend);
+            heights.sample_block::<true>(path, widest_m, places, samples);
             let slopes = samples.slope_u.iter().zip(&samples.slope_v).take(n);
             for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
                 *gradient = [*u, *v];
             }
         } else {
-            heights.sample_block::<false>(path, widest_m, places, samples, blend);
+            heights.sample_block::<false>(path, widest_m, places, samples);
         }
         out.height_m[..n].copy_from_slice(&samples.value[..n]);
         match &self.roughness {
             Roughness::Constant(roughness) => out.roughness[..n].fill(*roughness),
             Roughness::Map(map) => {
-                map.sample_block::<false>(path, widest_m, places, samples, blend);
+                map.sample_block::<false>(path, widest_m, places, samples);
                 for (roughness, value) in out.roughness[..n].iter_mut().zip(&samples.value) {
                     *roughness = value.clamp(0.0, 1.0);
                 }

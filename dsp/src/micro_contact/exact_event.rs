@@ -174,7 +174,7 @@ impl ExactEvent {
             let size = 1.0 / (1_usize << level) as f64;
             let end = [c[0] + size * (2.0 * c[1] + 3.0 * size * c[2]), c[1] + 3.0 * size * c[2], c[2]];
             if event {
-                let event = self.split(y[0], &mut next, end[0] / self.step_s, size * self.step_s);
+                let event = self.split(quad, y[0], &mut next, end[0] / self.step_s, size * self.step_s);
                 if pressed == 0 {
                     let touch = Onset {
                         offset: (now as f64 / ticks as f64 + event.at * size).clamp(0.0, 1.0),
@@ -196,14 +196,21 @@ impl ExactEvent {
 
     /// Corrects a tick of `tick_s` that ended in the other regime; `slope_m_s` is the profile's at its end.
     #[inline(always)]
-    fn split(&self, before: f64, next: &mut [f64; 4], slope_m_s: f64, tick_s: f64) -> Event {
+    fn split<Q: Quad>(
+        &self,
+        quad: Q,
+        before: f64,
+        next: &mut [f64; 4],
+        slope_m_s: f64,
+        tick_s: f64,
+    ) -> Event {
         // Penetration at the end, its rate and its bend, with the sign turned so that it ends positive.
         let sign = if next[0] < 0.0 { 1.0 } else { -1.0 };
         let (past, past_before) = (-sign * next[0], -sign * before);
         let rate = sign * (slope_m_s - next[2]);
         let bend = 2.0 * (past_before - past + rate * tick_s) / (tick_s * tick_s);
         // Time from the event to the end: the parabola's root in the tick. It ends positive and begins negative, so there is one.
-        let falls = libm::sqrt(at_least_zero(rate * rate - 2.0 * bend * past));
+        let falls = quad.root(at_least_zero(rate * rate - 2.0 * bend * past));
         let rest_s = (2.0 * past / (rate + falls).max(f64::MIN_POSITIVE)).clamp(0.0, tick_s);
         let kick = rest_s * (4.0 * past - rate * rest_s) * (1.0 / 6.0) * self.stiffness_per_mass;
         let shift = rest_s * rest_s * (3.0 * past - rate * rest_s) * (1.0 / 12.0) * self.stiffness_per_mass;

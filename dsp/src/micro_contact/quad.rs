@@ -22,6 +22,11 @@ pub(super) trait Quad: Copy {
     fn times_plus(self, factor: Self, sum: Self) -> Self;
     /// Lane 0.
     fn first(self) -> f64;
+    /// The square root of a number, at least 0.
+    #[inline(always)]
+    fn root(self, x: f64) -> f64 {
+        libm::sqrt(x)
+    }
 }
 
 /// One vector, as wide as the level has it.
@@ -57,6 +62,11 @@ impl<S: Set> Quad for f64x4<S> {
     #[inline(always)]
     fn first(self) -> f64 {
         self[0]
+    }
+    #[inline(always)]
+    fn root(self, x: f64) -> f64 {
+        // The library's is an older instruction, which waits for the upper half of the register.
+        f64x2::splat(self.token(), x).sqrt()[0]
     }
 }
 
@@ -97,6 +107,10 @@ impl<Q: Quad> Quad for Apart<Q> {
     #[inline(always)]
     fn first(self) -> f64 {
         self.0.first()
+    }
+    #[inline(always)]
+    fn root(self, x: f64) -> f64 {
+        self.0.root(x)
     }
 }
 
