@@ -75,6 +75,8 @@ struct Pass {
     n: usize,
     /// Whether it moves, and not rests.
     slides: bool,
+    /// Its high-passes have run beside those of others.
+    coupled: bool,
 }
 
 /// One contact.
@@ -199,7 +201,9 @@ impl Voice {
     ) {
         let pass = self.approach(stretch, tap.is_watching(), seat, scratch, 0);
         if pass.slides {
-            self.touch_down(pass, scratch, 0);
+            let Lane { height_m, force_n, rows, .. } = &mut scratch.lanes[0];
+            self.pad.run(&height_m[..pass.n], &force_n[..pass.n], &mut rows[..pass.n]);
+            self.settle(stretch.shared, pass, &mut scratch.lanes[0]);
         }
         self.finish(stretch, pass, seat, scratch, 0, tap);
     }
@@ -226,7 +230,7 @@ impl Voice {
             self.asleep &= !self.reaction.stirs;
         }
         let slides = !self.asleep && self.slide_to(Stretch { n, ..stretch }, slopes, seat, scratch, lane);
-        Pass { n, slides }
+        Pass { n, slides, coupled: false }
     }
 
     /// Where the contact goes, and what lies there; false where there is no surface.
@@ -266,28 +270,30 @@ impl Voice {
         true
     }
 
-    /// The pad over the profile of its lane.
-    fn touch_down(&mut self, pass: Pass, scratch: &mut Scratch, lane: usize) {
-        let Lane { height_m, force_n, rows, .. } = &mut scratch.lanes[lane];
-        self.pad.run(&height_m[..pass.n], &force_n[..pass.n], &mut rows[..pass.n]);
+    /// The rows of the pad's model as they are felt.
+    fn settle(&mut self, shared: &Shared, pass: Pass, lane: &mut Lane) {
+        let rows = &mut lane.rows[..pass.n];
+        lane.resets = self.pad.settle(shared.probe(self.role.probe).waits, rows);
+        lane.blows = self.blows.count(rows);
     }
 
     /// The rest of a stretch, into `scratch.out`.
     fn finish<T: Tap>(
         &mut self,
         stretch: Stretch<'_>,
-        Pass { n, slides }: Pass,
+        pass: Pass,
         seat: &Seat,
         scratch: &mut Scratch,
         lane: usize,
         tap: &mut T,
     ) {
         let (position, wanted) = (stretch.position, stretch.n);
+        let Pass { n, slides, coupled } = pass;
         let stretch = Stretch { n, ..stretch };
         scratch.out.silence(n..wanted);
         scratch.out.rub.rubs = false;
         if slides {
-            self.let_go(stretch, seat, scratch, lane);
+            self.let_go(stretch, coupled, seat, scratch, lane);
         } else if self.asleep {
             self.rest(n, scratch, lane);
         }
@@ -306,14 +312,20 @@ impl Voice {
     }
 
     /// From the pad's rows to what is felt and what strikes the body.
-    fn let_go(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch, lane: usize) {
+    fn let_go(
+        &mut self,
+        stretch: Stretch<'_>,
+        coupled: bool,
+        seat: &Seat,
+        scratch: &mut Scratch,
+        lane: usize,
+    ) {
         let Stretch { shared, output, position, n } = stretch;
-        let Scratch { lanes, profile, force, out, .. } = scratch;
-        let Lane { points, rows, .. } = &mut lanes[lane];
-        let (points, rows) = (&points[..n], &mut rows[..n]);
+        let Scratch { lanes, coupled: among, profile, force, out, .. } = scratch;
+        let Lane { points, rows, resets, blows, .. } = &lanes[lane];
+        let (points, rows) = (&points[..n], &rows[..n]);
         let probe = shared.probe(self.role.probe);
-        out.resets = self.pad.settle(probe.waits, rows);
-        out.blows = self.blows.count(rows);
+        (out.resets, out.blows) = (*resets, *blows);
 
         let Some(slot) = seat.current() else { return };
         let sounds = slot.surface.excitation.has(Exciter::Force);
@@ -328,9 +340,13 @@ impl Voice {
             }
             rows
         } else {
-            &*rows
+            rows
         };
-        self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
+        if coupled {
+            self.ac.leave(step_s, lane, among, &mut out.haptic[..n], force.samples(n));
+        } else {
+            self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
+        }
         if !dragged {
             self.skin.pass(&mut out.haptic[..n]);
         }

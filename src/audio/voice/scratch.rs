@@ -1,5 +1,6 @@
 //! What passes from stage to stage during one stretch; made once, used by every voice in turn.
 
+use super::ac_coupling::Coupled;
 use super::block::VoiceBlock;
 use super::exciters::ForceRun;
 use super::profile::Profile;
@@ -12,6 +13,7 @@ use asperity_texture::height_field::MAX_BLOCK;
 pub(crate) struct Scratch {
     /// Contacts that go side by side; one alone has the first.
     pub(super) lanes: [Lane; LANES],
+    pub(super) coupled: Coupled,
     pub(super) profile: Profile,
     pub(super) force: ForceRun,
     pub(super) shown: Shown,
@@ -26,6 +28,9 @@ pub(super) struct Lane {
     pub(super) height_m: [f64; MAX_BLOCK],
     pub(super) force_n: [f64; MAX_BLOCK],
     pub(super) rows: [PadSample; MAX_BLOCK],
+    /// How often its pad was begun anew, and blows among the rows.
+    pub(super) resets: u64,
+    pub(super) blows: u64,
 }
 
 impl Scratch {
@@ -35,9 +40,12 @@ impl Scratch {
             height_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             rows: [PadSample::default(); MAX_BLOCK],
+            resets: 0,
+            blows: 0,
         };
         Box::new(Self {
             lanes: [lane; LANES],
+            coupled: Coupled::new(),
             profile: Profile::new(),
             force: ForceRun::new(),
             shown: Shown::new(),

@@ -2,7 +2,7 @@
 //! the lanes of one vector (`dsp::micro_contact::run_side_by_side`).
 //!
 //! ```text
-//! path, profile of each, in order → pads of all at once → the rest of each, in order
+//! path, profile of each, in order → pads of all at once → high-passes of all at once → the rest of each, in order
 //! ```
 //! Surfaces are asked in the order of the contacts, and what contacts do is handed on in that order: the bits are those of one after the other.
 
@@ -88,8 +88,11 @@ impl<'a, W> Company<'a, W> {
         scratch: &mut Scratch,
         mut done: impl FnMut(Done<'_, W>),
     ) {
+        if self.count == 0 {
+            return;
+        }
         let At { position, n } = at;
-        let mut passes = [Pass { n: 0, slides: false }; LANES];
+        let mut passes = [Pass { n: 0, slides: false, coupled: false }; LANES];
         let mut pressing = [None; LANES];
         for (lane, member) in self.members.iter_mut().flatten().enumerate() {
             let Member { voice, output, .. } = member;
@@ -101,6 +104,7 @@ impl<'a, W> Company<'a, W> {
             passes[lane] = voice.approach(stretch, false, seat, scratch, lane);
         }
         self.touch_down(n, &passes, &mut scratch.lanes);
+        self.couple(shared, n, &mut passes, seats, scratch);
         for (lane, place) in self.members.iter_mut().enumerate() {
             let Some(Member { voice, output, who }) = place.take() else { continue };
             let seat = &*seats.seat(voice.surface);
@@ -109,6 +113,32 @@ impl<'a, W> Company<'a, W> {
             done(Done { voice, seat, pressing: pressing[lane], out: &mut scratch.out, who });
         }
         self.count = 0;
+    }
+
+    /// The rows of those that slide, and the high-passes of those that have company.
+    fn couple(
+        &mut self,
+        shared: &Shared,
+        n: usize,
+        passes: &mut [Pass; LANES],
+        seats: &mut (impl Seats + ?Sized),
+        Scratch { lanes, coupled, .. }: &mut Scratch,
+    ) {
+        let together = passes.iter().filter(|pass| pass.slides && pass.n == n).count() > 1;
+        coupled.clear();
+        let members = self.members.iter_mut().flatten().zip(passes).zip(lanes).enumerate();
+        for (lane, ((Member { voice, output, .. }, pass), own)) in
+            members.filter(|(_, ((_, pass), _))| pass.slides)
+        {
+            voice.settle(shared, *pass, own);
+            if let (true, Some(slot)) = (together && pass.n == n, seats.seat(voice.surface).current()) {
+                let heard = &slot.stroking.force_high_pass;
+                pass.coupled = voice.ac.enter(output, heard, &own.rows[..n], lane, coupled);
+            }
+        }
+        if together {
+            coupled.run(shared.noise.level(), n);
+        }
     }
 
     /// The pads of those that slide.
