@@ -17,6 +17,7 @@ mod fades;
 mod pad;
 mod path;
 mod profile;
+mod rest;
 mod role;
 mod rub_block;
 mod scratch;
@@ -53,6 +54,7 @@ use fades::Fades;
 use pad::Pad;
 use path::Path;
 use scratch::Lane;
+use shared::Pass;
 use skin::ContactSkin;
 use tip::Tip;
 use watching::Done;
@@ -66,17 +68,6 @@ pub(crate) enum Phase {
     Sounding,
     /// Going silent within `left` samples.
     Fading { left: u32 },
-}
-
-/// What one stretch is to a contact.
-#[derive(Clone, Copy)]
-struct Pass {
-    /// Samples of it.
-    n: usize,
-    /// Whether it moves, and not rests.
-    slides: bool,
-    /// Its high-passes have run beside those of others.
-    coupled: bool,
 }
 
 /// One contact.
@@ -376,18 +367,6 @@ impl Voice {
         }
     }
 
-    /// A resting contact: nothing moves, so nothing is computed; the rows stay as they were.
-    fn rest(&self, n: usize, scratch: &mut Scratch, lane: usize) {
-        scratch.lanes[lane].points[..n].fill(self.path.last);
-        scratch.lanes[lane].rows[..n].fill(self.last_row);
-        let out = &mut scratch.out;
-        self.ac.rest(&mut out.haptic[..n]);
-        out.impulse_n_s[..n].fill(0.0);
-        out.force_n_s[..n].fill(0.0);
-        out.excites = false;
-        (out.collisions, out.shortened, out.resets, out.blows) = (0, 0, 0, 0);
-    }
-
     fn show<T: Tap>(
         &mut self,
         stretch: Stretch<'_>,
@@ -412,26 +391,5 @@ impl Voice {
             impulse_n_s: &out.impulse_n_s,
         };
         shown.show(stretch, &done, &mut self.tip, &mut self.unshown_n_s, tap);
-    }
-
-    fn fall_asleep_when_still(&mut self, stretch: Stretch<'_>, scratch: &Scratch, lane: usize) {
-        let Stretch { output, position, n, .. } = stretch;
-        let row = PadSample { onset: None, ..scratch.lanes[lane].rows[n - 1] };
-        self.last_row = row;
-        if self.asleep {
-            return;
-        }
-        self.asleep = self.ac.feels_still(output, row.pad_m)
-            && self.path.is_still()
-            && self.skin.is_still()
-            && self.pad.is_settled(&row)
-            && self.reaction.grain_rate_per_s == 0.0
-            && !self.reaction.stirs
-            && !scratch.out.rub.rubs
-            && self.exciters.are_still(scratch.out.impulse_n_s[n - 1], position + n as u64);
-        if self.asleep {
-            self.ac.settle(output);
-            self.exciters.settle();
-        }
     }
 }

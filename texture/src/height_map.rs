@@ -17,6 +17,8 @@
 
 mod blend;
 mod extent;
+mod sampling;
+mod short;
 
 pub use extent::{Extent, MapError};
 
@@ -31,6 +33,8 @@ use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
 use blend::Blend;
 use extent::check;
+use sampling::widest_m;
+use short::{SHORT, Short};
 use std::sync::Arc;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
@@ -65,6 +69,7 @@ pub struct HeightMap {
     /// What tips of some radii ride on, and the one that rides now.
     tips: Vec<(f64, Pyramid)>,
     tip: Option<usize>,
+    short: Option<Box<Short>>,
 }
 
 #[derive(Debug, Clone)]
@@ -114,6 +119,7 @@ impl HeightMap {
             friction: FRICTION,
             tips: Vec::new(),
             tip: None,
+            short: Some(Short::new()),
         })
     }
 
@@ -275,19 +281,6 @@ impl Pyramid {
     }
 }
 
-/// The longest of some footprints; looked at side by side.
-fn widest_m(footprint_m: &[f64]) -> f64 {
-    let mut widest = [0.0; 8];
-    let wider =
-        |widest: &mut f64, footprint: &f64| *widest = if *footprint > *widest { *footprint } else { *widest };
-    let (eights, rest) = footprint_m.as_chunks::<8>();
-    for eight in eights {
-        widest.iter_mut().zip(eight).for_each(|(widest, footprint)| wider(widest, footprint));
-    }
-    widest.iter_mut().zip(rest).for_each(|(widest, footprint)| wider(widest, footprint));
-    widest.into_iter().fold(0.0, f64::max)
-}
-
 /// Whether the finest level needs no blur in any direction.
 #[inline]
 fn is_sharp(footprint_m: f64, texels_per_metre: [f64; 2]) -> bool {
@@ -364,32 +357,15 @@ impl HeightField for HeightMap {
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
-        // On the stack: memory of its own would be another for each of many surfaces, and far away.
-        let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
-        let (places, samples) = (&mut places, &mut samples);
-        let heights = self.ridden();
-        if path.slopes {
-            heights.sample_block::<true>(path, widest_m, places, samples);
-            let slopes = samples.slope_u.iter().zip(&samples.slope_v).take(n);
-            for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
-                *gradient = [*u, *v];
-            }
+        if path.len() <= SHORT
+            && let Some(mut own) = self.short.take()
+        {
+            let Short { places, samples } = &mut *own;
+            self.sample_in(places, samples, path, out);
+            self.short = Some(own);
         } else {
-            heights.sample_block::<false>(path, widest_m, places, samples);
+            let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
+            self.sample_in(&mut places, &mut samples, path, out);
         }
-        out.height_m[..n].copy_from_slice(&samples.value[..n]);
-        match &self.roughness {
-            Roughness::Constant(roughness) => out.roughness[..n].fill(*roughness),
-            Roughness::Map(map) => {
-                map.sample_block::<false>(path, widest_m, places, samples);
-                for (roughness, value) in out.roughness[..n].iter_mut().zip(&samples.value) {
-                    *roughness = value.clamp(0.0, 1.0);
-                }
-            }
-        }
-        out.friction[..n].fill(self.friction);
-        out.compliance_m_n[..n].fill(0.0);
-        out.answer.clear();
     }
 }

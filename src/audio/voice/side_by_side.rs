@@ -125,7 +125,9 @@ impl<'a, W> Company<'a, W> {
         Scratch { lanes, coupled, .. }: &mut Scratch,
     ) {
         let together = passes.iter().filter(|pass| pass.slides && pass.n == n).count() > 1;
-        coupled.clear();
+        if together {
+            coupled.clear();
+        }
         let members = self.members.iter_mut().flatten().zip(passes).zip(lanes).enumerate();
         for (lane, ((Member { voice, output, .. }, pass), own)) in
             members.filter(|(_, ((_, pass), _))| pass.slides)
