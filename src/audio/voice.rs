@@ -17,10 +17,12 @@ mod fades;
 mod pad;
 mod path;
 mod profile;
+mod rest;
 mod role;
 mod rub_block;
 mod scratch;
 mod shared;
+mod side_by_side;
 mod skin;
 mod tip;
 mod watching;
@@ -29,7 +31,8 @@ pub(crate) use block::VoiceBlock;
 pub(crate) use events::EMPTY_FORCE_N;
 pub(crate) use role::Role;
 pub(crate) use scratch::Scratch;
-pub(crate) use shared::{Shared, Stretch};
+pub(crate) use shared::{At, Shared, Stretch};
+pub(crate) use side_by_side::{Company, Member};
 
 use crate::audio::seat::Seat;
 use crate::link::tap::Tap;
@@ -50,6 +53,8 @@ use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
 use path::Path;
+use scratch::Lane;
+use shared::Pass;
 use skin::ContactSkin;
 use tip::Tip;
 use watching::Done;
@@ -185,52 +190,59 @@ impl Voice {
         scratch: &mut Scratch,
         tap: &mut T,
     ) {
+        let pass = self.approach(stretch, tap.is_watching(), seat, scratch, 0);
+        if pass.slides {
+            let Lane { height_m, force_n, rows, .. } = &mut scratch.lanes[0];
+            self.pad.run(&height_m[..pass.n], &force_n[..pass.n], &mut rows[..pass.n]);
+            self.settle(stretch.shared, pass, &mut scratch.lanes[0]);
+        }
+        self.finish(stretch, pass, seat, scratch, 0, tap);
+    }
+
+    /// The part of a stretch that asks the surface: from reports to the profile under `lane`.
+    fn approach(
+        &mut self,
+        stretch: Stretch<'_>,
+        slopes: bool,
+        seat: &mut Seat,
+        scratch: &mut Scratch,
+        lane: usize,
+    ) -> Pass {
         let (position, wanted) = (stretch.position, stretch.n);
-        let at_grid = position.is_multiple_of(MAX_BLOCK as u64);
         // Nothing is computed, counted or shown after a fade, wherever the stretch ends.
         let n = match self.phase {
             Phase::Fading { left } => wanted.min(left as usize),
             Phase::Free | Phase::Sounding => wanted,
         };
-        let stretch = Stretch { n, ..stretch };
-        scratch.out.silence(n..wanted);
-        scratch.out.rub.rubs = false;
         // First the touch, then the heights: a surface that gives way answers within the same grid
         // cell wherever it is cut into stretches. Who sleeps still touches, and wakes when the ground stirs.
-        if at_grid {
+        if position.is_multiple_of(MAX_BLOCK as u64) {
             self.reaction = seat.react(&self.touch_at(position));
             self.asleep &= !self.reaction.stirs;
         }
-        if self.asleep {
-            self.rest(n, scratch);
-        } else {
-            self.slide(stretch, tap.is_watching(), seat, scratch);
-        }
-        self.phase = self.fades.run(self.phase, self.role.gain, stretch.shared, n, &mut scratch.out);
-        // A contact that has jumped is shown where it is, and not where it fades.
-        if tap.is_watching() && !self.left_behind {
-            self.show(stretch, seat, scratch, tap);
-        }
-        if self.phase == Phase::Free {
-            return;
-        }
-        self.path.last = scratch.points[n - 1];
-        if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
-            self.fall_asleep_when_still(stretch, scratch);
-        }
+        let slides = !self.asleep && self.slide_to(Stretch { n, ..stretch }, slopes, seat, scratch, lane);
+        Pass { n, slides, coupled: false }
     }
 
-    /// The signal path, from reports to what is felt and what strikes the body.
-    fn slide(&mut self, stretch: Stretch<'_>, slopes: bool, seat: &mut Seat, scratch: &mut Scratch) {
+    /// Where the contact goes, and what lies there; false where there is no surface.
+    fn slide_to(
+        &mut self,
+        stretch: Stretch<'_>,
+        slopes: bool,
+        seat: &mut Seat,
+        scratch: &mut Scratch,
+        lane: usize,
+    ) -> bool {
         let Stretch { shared, output, position, n } = stretch;
         let at_slow_step = position.is_multiple_of(shared.slow_step);
         if at_slow_step {
             let velocity_m_s = self.path.last.velocity_m_s;
             self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
         }
-        let Some(slot) = seat.current() else { return };
-        let Scratch { points, profile, rows, force, out, .. } = scratch;
-        let (points, rows) = (&mut points[..n], &mut rows[..n]);
+        let Some(slot) = seat.current() else { return false };
+        let Scratch { lanes, profile, .. } = scratch;
+        let Lane { points, height_m, force_n, .. } = &mut lanes[lane];
+        let points = &mut points[..n];
         let probe = shared.probe(self.role.probe);
         let dragged = output.quantity() == Quantity::Tangential;
         if at_slow_step {
@@ -244,14 +256,73 @@ impl Voice {
         self.path.run(slot, points, &mut profile.at_m);
         let along = self.along(shared, position, slopes || dragged);
         profile.run(seat, along, points, &mut self.cells);
-        out.resets = self.pad.run(probe.waits, &profile.surface.height_m[..n], &profile.force_n[..n], rows);
+        height_m[..n].copy_from_slice(&profile.surface.height_m[..n]);
+        force_n[..n].copy_from_slice(&profile.force_n[..n]);
+        true
+    }
 
-        out.blows = self.blows.count(rows);
+    /// The rows of the pad's model as they are felt.
+    fn settle(&mut self, shared: &Shared, pass: Pass, lane: &mut Lane) {
+        let rows = &mut lane.rows[..pass.n];
+        lane.resets = self.pad.settle(shared.probe(self.role.probe).waits, rows);
+        lane.blows = self.blows.count(rows);
+    }
+
+    /// The rest of a stretch, into `scratch.out`.
+    fn finish<T: Tap>(
+        &mut self,
+        stretch: Stretch<'_>,
+        pass: Pass,
+        seat: &Seat,
+        scratch: &mut Scratch,
+        lane: usize,
+        tap: &mut T,
+    ) {
+        let (position, wanted) = (stretch.position, stretch.n);
+        let Pass { n, slides, coupled } = pass;
+        let stretch = Stretch { n, ..stretch };
+        scratch.out.silence(n..wanted);
+        scratch.out.rub.rubs = false;
+        if slides {
+            self.let_go(stretch, coupled, seat, scratch, lane);
+        } else if self.asleep {
+            self.rest(n, scratch, lane);
+        }
+        self.phase = self.fades.run(self.phase, self.role.gain, stretch.shared, n, &mut scratch.out);
+        // A contact that has jumped is shown where it is, and not where it fades.
+        if tap.is_watching() && !self.left_behind {
+            self.show(stretch, seat, scratch, lane, tap);
+        }
+        if self.phase == Phase::Free {
+            return;
+        }
+        self.path.last = scratch.lanes[lane].points[n - 1];
+        if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
+            self.fall_asleep_when_still(stretch, scratch, lane);
+        }
+    }
+
+    /// From the pad's rows to what is felt and what strikes the body.
+    fn let_go(
+        &mut self,
+        stretch: Stretch<'_>,
+        coupled: bool,
+        seat: &Seat,
+        scratch: &mut Scratch,
+        lane: usize,
+    ) {
+        let Stretch { shared, output, position, n } = stretch;
+        let Scratch { lanes, coupled: among, profile, force, out, .. } = scratch;
+        let Lane { points, rows, resets, blows, .. } = &lanes[lane];
+        let (points, rows) = (&points[..n], &rows[..n]);
+        let probe = shared.probe(self.role.probe);
+        (out.resets, out.blows) = (*resets, *blows);
 
         let Some(slot) = seat.current() else { return };
         let sounds = slot.surface.excitation.has(Exciter::Force);
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
         let heard = ForceCoupling { high_pass: &slot.stroking.force_high_pass, step_s };
+        let dragged = output.quantity() == Quantity::Tangential;
         let felt = if dragged {
             let (rows, from_m) = self.drag.run(points, &profile.surface, rows);
             // A skin that has been dragged for long begins as if it had been there for ever.
@@ -260,9 +331,13 @@ impl Voice {
             }
             rows
         } else {
-            &*rows
+            rows
         };
-        self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
+        if coupled {
+            self.ac.leave(step_s, lane, among, &mut out.haptic[..n], force.samples(n));
+        } else {
+            self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
+        }
         if !dragged {
             self.skin.pass(&mut out.haptic[..n]);
         }
@@ -292,21 +367,17 @@ impl Voice {
         }
     }
 
-    /// A resting contact: nothing moves, so nothing is computed; the rows stay as they were.
-    fn rest(&self, n: usize, scratch: &mut Scratch) {
-        scratch.points[..n].fill(self.path.last);
-        scratch.rows[..n].fill(self.last_row);
-        let out = &mut scratch.out;
-        self.ac.rest(&mut out.haptic[..n]);
-        out.impulse_n_s[..n].fill(0.0);
-        out.force_n_s[..n].fill(0.0);
-        out.excites = false;
-        (out.collisions, out.shortened, out.resets, out.blows) = (0, 0, 0, 0);
-    }
-
-    fn show<T: Tap>(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch, tap: &mut T) {
+    fn show<T: Tap>(
+        &mut self,
+        stretch: Stretch<'_>,
+        seat: &Seat,
+        scratch: &mut Scratch,
+        lane: usize,
+        tap: &mut T,
+    ) {
         let Some(slot) = seat.current() else { return };
-        let Scratch { points, profile, rows, shown, out, .. } = scratch;
+        let Scratch { lanes, profile, shown, out, .. } = scratch;
+        let Lane { points, rows, .. } = &lanes[lane];
         let done = Done {
             contact: self.contact,
             role: &self.role,
@@ -320,26 +391,5 @@ impl Voice {
             impulse_n_s: &out.impulse_n_s,
         };
         shown.show(stretch, &done, &mut self.tip, &mut self.unshown_n_s, tap);
-    }
-
-    fn fall_asleep_when_still(&mut self, stretch: Stretch<'_>, scratch: &Scratch) {
-        let Stretch { output, position, n, .. } = stretch;
-        let row = PadSample { onset: None, ..scratch.rows[n - 1] };
-        self.last_row = row;
-        if self.asleep {
-            return;
-        }
-        self.asleep = self.ac.feels_still(output, row.pad_m)
-            && self.path.is_still()
-            && self.skin.is_still()
-            && self.pad.is_settled(&row)
-            && self.reaction.grain_rate_per_s == 0.0
-            && !self.reaction.stirs
-            && !scratch.out.rub.rubs
-            && self.exciters.are_still(scratch.out.impulse_n_s[n - 1], position + n as u64);
-        if self.asleep {
-            self.ac.settle(output);
-            self.exciters.settle();
-        }
     }
 }

@@ -16,7 +16,7 @@
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
-use asperity_texture::height_field::MAX_BLOCK;
+use asperity_texture::height_field::{MAX_BLOCK, bounds};
 use asperity_texture::tiled::{Place, TileAxis};
 use std::f64::consts::FRAC_PI_2;
 
@@ -140,41 +140,44 @@ impl Overlay {
         let walked_m = path.position_m;
         let n = walked_m.len().min(MAX_BLOCK);
         let mut position_m = [[0.0; 2]; MAX_BLOCK];
+        let [low_m, high_m] = bounds(&walked_m[..n]);
+        let begin_m = [0, 1].map(|axis: usize| self.axes[axis].begin_of_all_m(low_m[axis], high_m[axis]));
+        if let [Some(begin_u_m), Some(begin_v_m)] = begin_m {
+            for (at_m, [u_m, v_m]) in position_m.iter_mut().zip(walked_m) {
+                *at_m = [u_m - begin_u_m, v_m - begin_v_m];
+            }
+            let path = NoisePath { position_m: &position_m[..n], ..*path };
+            return field.add_each(&path, roughness, weights, &mut heights_m, cells);
+        }
+        let mut places = [[Place::default(); 2]; MAX_BLOCK];
+        let places = &mut places[..n];
         let mut meets = [false; 2];
         let mut turns = [0.0; 2];
-        for (at_m, path_m) in position_m.iter_mut().zip(walked_m) {
-            let u = self.axes[0].place_after(path_m[0], &mut turns[0]);
-            let v = self.axes[1].place_after(path_m[1], &mut turns[1]);
-            *at_m = [u.at_m, v.at_m];
-            meets = [meets[0] | (u.weight > 0.0), meets[1] | (v.weight > 0.0)];
+        for ((place, at_m), path_m) in places.iter_mut().zip(&mut position_m).zip(walked_m) {
+            *place = [0, 1].map(|axis: usize| self.axes[axis].place_after(path_m[axis], &mut turns[axis]));
+            *at_m = place.map(|place| place.at_m);
+            meets = [meets[0] | (place[0].weight > 0.0), meets[1] | (place[1].weight > 0.0)];
         }
         if meets == [false; 2] {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
             return field.add_each(&path, roughness, weights, &mut heights_m, cells);
         }
         for copy in COPIES.into_iter().filter(|copy| (0..2).all(|axis| copy[axis] == 0 || meets[axis])) {
-            for (at_m, path_m) in position_m.iter_mut().zip(walked_m) {
-                let places = self.places(path_m);
-                *at_m = [0, 1].map(|axis: usize| {
-                    let back_m = if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 };
-                    places[axis].at_m - back_m
-                });
+            let back_m = [0, 1].map(|axis| if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 });
+            for (at_m, place) in position_m.iter_mut().zip(&*places) {
+                *at_m = [place[0].at_m - back_m[0], place[1].at_m - back_m[1]];
             }
             let mut parts_m = [[0.0; MAX_BLOCK]; W];
             let path = NoisePath { position_m: &position_m[..n], ..*path };
             let mut into_m = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
             field.add_each(&path, roughness, weights, &mut into_m, cells);
-            for (i, path_m) in walked_m.iter().enumerate().take(n) {
-                let gain = gain(&self.places(path_m), copy);
+            for (i, place) in places.iter().enumerate() {
+                let gain = gain(place, copy);
                 for (height_m, part_m) in heights_m.iter_mut().zip(&parts_m) {
                     height_m[i] += gain * part_m[i];
                 }
             }
         }
-    }
-
-    fn places(&self, [u_m, v_m]: &[f64; 2]) -> [Place; 2] {
-        [self.axes[0].place(*u_m), self.axes[1].place(*v_m)]
     }
 }
 

@@ -6,7 +6,7 @@
 //! bits. The path's positions are finite; they may be any number of periods away from the origin.
 
 use crate::answer::{Answer, AnswerAt};
-pub use crate::block::MAX_BLOCK;
+pub use crate::block::{MAX_BLOCK, bounds};
 use asperity_dsp::DesignError;
 use std::any::Any;
 
@@ -326,22 +326,30 @@ pub trait HeightField: Send + Sync {
 
 /// [`HeightField::hollow_m`] from five samples, blurred to an eighth of the reach.
 pub fn hollow_by_samples_m(source: &mut (impl HeightField + ?Sized), touch: &Touch, reach_m: f64) -> f64 {
+    hollow_between_m(touch, reach_m, |path| {
+        let mut out = SurfaceBlock::default();
+        source.sample(path, &mut out);
+        std::array::from_fn(|i| out.height_m[i])
+    })
+}
+
+/// The same, given the heights along a path of five places.
+pub(crate) fn hollow_between_m(
+    touch: &Touch,
+    reach_m: f64,
+    heights_m: impl FnOnce(&PathBlock<'_>) -> [f64; 5],
+) -> f64 {
     let [u_m, v_m] = touch.position_m;
     let position_m =
         [[u_m, v_m], [u_m - reach_m, v_m], [u_m + reach_m, v_m], [u_m, v_m - reach_m], [u_m, v_m + reach_m]];
-    let mut out = SurfaceBlock::default();
-    source.sample(
-        &PathBlock {
-            position_m: &position_m,
-            velocity_m_s: &[[0.0; 2]; 5],
-            footprint_m: &[0.125 * reach_m; 5],
-            normal_force_n: &[],
-            first_sample: touch.sample,
-            contact: touch.contact,
-            slopes: false,
-        },
-        &mut out,
-    );
-    let [here_m, about_m @ ..] = &out.height_m[..5] else { return 0.0 };
+    let [here_m, about_m @ ..] = heights_m(&PathBlock {
+        position_m: &position_m,
+        velocity_m_s: &[[0.0; 2]; 5],
+        footprint_m: &[0.125 * reach_m; 5],
+        normal_force_n: &[],
+        first_sample: touch.sample,
+        contact: touch.contact,
+        slopes: false,
+    });
     0.25 * about_m.iter().sum::<f64>() - here_m
 }

@@ -15,13 +15,15 @@
 //! the prefiltered cubic B-spline 63 dB. Wrap modes apply to the prefilter and the pyramid as well, so
 //! that a seamless map has no seam.
 
-mod beside;
+mod blend;
 mod extent;
+mod sampling;
+mod short;
 
 pub use extent::{Extent, MapError};
 
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_by_samples_m,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_between_m,
 };
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
@@ -29,8 +31,10 @@ use crate::resample::halve;
 use crate::ridden::ridden;
 use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
-use beside::{Beside, Blend};
+use blend::Blend;
 use extent::check;
+use sampling::widest_m;
+use short::{SHORT, Short};
 use std::sync::Arc;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
@@ -65,7 +69,7 @@ pub struct HeightMap {
     /// What tips of some radii ride on, and the one that rides now.
     tips: Vec<(f64, Pyramid)>,
     tip: Option<usize>,
-    beside: Box<Beside>,
+    short: Option<Box<Short>>,
 }
 
 #[derive(Debug, Clone)]
@@ -115,7 +119,7 @@ impl HeightMap {
             friction: FRICTION,
             tips: Vec::new(),
             tip: None,
-            beside: Beside::new(),
+            short: Some(Short::new()),
         })
     }
 
@@ -170,6 +174,11 @@ impl HeightMap {
         self.wrap
     }
 
+    /// What the tip that rides now rides on.
+    fn ridden(&self) -> &Pyramid {
+        self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map)
+    }
+
     /// After how many metres along u and v the surface is the same again; what a path unwraps by.
     #[must_use]
     pub fn wrap_period_m(&self) -> [f64; 2] {
@@ -201,12 +210,18 @@ impl Pyramid {
         widest_m: f64,
         places: &mut Places,
         out: &mut Samples,
-        between: &mut Blend,
     ) {
         let Some(finest) = self.levels.first() else { return out.fill(self.constant) };
         if is_sharp(widest_m, finest.texels_per_metre()) {
             return finest.sample_block::<SLOPES>(path.position_m, places, out);
         }
+        self.sample_blurred::<SLOPES>(finest, path, out);
+    }
+
+    /// The same where some footprint is wider than a texel.
+    #[inline(never)]
+    fn sample_blurred<const SLOPES: bool>(&self, finest: &Spline, path: &PathBlock<'_>, out: &mut Samples) {
+        let mut between = Blend::new();
         let mut blur = [(0, 0.0); MAX_BLOCK];
         for (n, blur) in blur[..path.len()].iter_mut().enumerate() {
             *blur = self.blur(finest, path.velocity_m_s[n], path.footprint_m[n]);
@@ -216,7 +231,8 @@ impl Pyramid {
             let level = blur[start].0;
             let same = blur[start..path.len()].iter().take_while(|blur| blur.0 == level).count();
             let run = start..start + same;
-            self.blend_block::<SLOPES>(level, &path.position_m[run.clone()], &blur[run], start, out, between);
+            let (position_m, blur) = (&path.position_m[run.clone()], &blur[run]);
+            self.blend_block::<SLOPES>(level, position_m, blur, start, out, &mut between);
             start += same;
         }
     }
@@ -263,19 +279,6 @@ impl Pyramid {
             }
         }
     }
-}
-
-/// The longest of some footprints; looked at side by side.
-fn widest_m(footprint_m: &[f64]) -> f64 {
-    let mut widest = [0.0; 8];
-    let wider =
-        |widest: &mut f64, footprint: &f64| *widest = if *footprint > *widest { *footprint } else { *widest };
-    let (eights, rest) = footprint_m.as_chunks::<8>();
-    for eight in eights {
-        widest.iter_mut().zip(eight).for_each(|(widest, footprint)| wider(widest, footprint));
-    }
-    widest.iter_mut().zip(rest).for_each(|(widest, footprint)| wider(widest, footprint));
-    widest.into_iter().fold(0.0, f64::max)
 }
 
 /// Whether the finest level needs no blur in any direction.
@@ -327,7 +330,16 @@ impl HeightField for HeightMap {
     }
 
     fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
-        if self.heights.levels.is_empty() { 0.0 } else { hollow_by_samples_m(self, touch, reach_m) }
+        if self.heights.levels.is_empty() {
+            return 0.0;
+        }
+        // Nothing but heights is asked for.
+        hollow_between_m(touch, reach_m, |path| {
+            let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
+            let widest_m = widest_m(path.footprint_m);
+            self.ridden().sample_block::<false>(path, widest_m, &mut places, &mut samples);
+            std::array::from_fn(|i| samples.value[i])
+        })
     }
 
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
@@ -345,31 +357,15 @@ impl HeightField for HeightMap {
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
-        let Beside { places, samples, blend } = &mut *self.beside;
-        places.forget();
-        let heights = self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map);
-        if path.slopes {
-            heights.sample_block::<true>(path, widest_m, places, samples, blend);
-            let slopes = samples.slope_u.iter().zip(&samples.slope_v).take(n);
-            for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
-                *gradient = [*u, *v];
-            }
+        if path.len() <= SHORT
+            && let Some(mut own) = self.short.take()
+        {
+            let Short { places, samples } = &mut *own;
+            self.sample_in(places, samples, path, out);
+            self.short = Some(own);
         } else {
-            heights.sample_block::<false>(path, widest_m, places, samples, blend);
+            let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
+            self.sample_in(&mut places, &mut samples, path, out);
         }
-        out.height_m[..n].copy_from_slice(&samples.value[..n]);
-        match &self.roughness {
-            Roughness::Constant(roughness) => out.roughness[..n].fill(*roughness),
-            Roughness::Map(map) => {
-                map.sample_block::<false>(path, widest_m, places, samples, blend);
-                for (roughness, value) in out.roughness[..n].iter_mut().zip(&samples.value) {
-                    *roughness = value.clamp(0.0, 1.0);
-                }
-            }
-        }
-        out.friction[..n].fill(self.friction);
-        out.compliance_m_n[..n].fill(0.0);
-        out.answer.clear();
     }
 }

@@ -8,6 +8,7 @@
 //! it keeps 3·10⁻⁴ at 2 mm. So P is the mean square of what the map has between two texels and about 4 mm, and 0
 //! where it is flat, whatever its resolution.
 
+use crate::block::bounds;
 use crate::raster::Raster;
 use crate::wrap::Wrap;
 
@@ -42,9 +43,23 @@ impl LocalRelief {
 
     /// Adds P at each place, m²: between the four nearest cells, which a finger shares for many samples.
     pub fn add_along(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
+        let place = |[u_m, v_m]: [f64; 2]| [u_m * self.cells_per_m[0] - 0.5, v_m * self.cells_per_m[1] - 0.5];
+        let [low_m, high_m] = bounds(position_m);
+        let ([x, y], [far_x, far_y]) = (place(low_m), place(high_m));
+        if x.is_finite() && y.is_finite() {
+            let corners = self.corners(x, y);
+            if corners.hold(x, y) && corners.hold(far_x, far_y) {
+                // All of them lie between the same four.
+                for (position_m, power_m2) in position_m.iter().zip(power_m2) {
+                    let [x, y] = place(*position_m);
+                    *power_m2 += corners.between(x, y);
+                }
+                return;
+            }
+        }
         let mut corners = Corners { left: f64::NAN, top: f64::NAN, rows_m2: [[0.0; 2]; 2] };
         for ([u_m, v_m], power_m2) in position_m.iter().zip(power_m2) {
-            let [x, y] = [u_m * self.cells_per_m[0] - 0.5, v_m * self.cells_per_m[1] - 0.5];
+            let [x, y] = place([*u_m, *v_m]);
             if !corners.hold(x, y) {
                 corners = self.corners(x, y);
             }

@@ -73,6 +73,20 @@ impl TileAxis {
         self.inside(position_m - self.length_m * *turn)
     }
 
+    /// Where the tile begins that all places from `low_m` to `high_m` lie in, well inside and before its blend: each is then
+    /// [at](Place::at_m) its distance from there, to the bit. None where they may lie otherwise.
+    #[must_use]
+    pub fn begin_of_all_m(&self, low_m: f64, high_m: f64) -> Option<f64> {
+        if !self.length_m.is_finite() {
+            return Some(0.0);
+        }
+        let begin_m = self.length_m * floor(low_m / self.length_m);
+        let edge_m = EDGE * (self.length_m + low_m.abs().max(high_m.abs()));
+        let (low_m, high_m) = (low_m - begin_m, high_m - begin_m);
+        let ends_m = (self.length_m - edge_m).min(self.length_m - self.blend_m);
+        (low_m > edge_m && high_m < ends_m).then_some(begin_m)
+    }
+
     #[inline]
     fn inside(&self, at_m: f64) -> Place {
         if at_m <= self.length_m - self.blend_m {
@@ -329,6 +343,15 @@ mod tests {
                     "{x}: {after:?} {alone:?}"
                 );
                 assert_eq!(after.at_m.is_nan(), alone.at_m.is_nan());
+                for other in [x, x + 1e-4, x - 3e-3] {
+                    let (low, high) = (x.min(other), x.max(other));
+                    if let Some(begin) = axis.begin_of_all_m(low, high) {
+                        for x in [low, 0.5 * (low + high), high] {
+                            let at_m = x - begin;
+                            assert_eq!(bits(axis.place(x)), bits(Place { at_m, ..Place::default() }), "{x}");
+                        }
+                    }
+                }
             }
         }
     }

@@ -14,8 +14,10 @@
 
 use super::flow::{MAX_LEVEL, Regime};
 use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
-use super::quad::{Plain, Quad};
+use super::quad::{Apart, Quad};
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
+use crate::simd::{Level, at_level};
+use fearless_simd::{SimdBase, f64x4};
 
 /// ω_c·(tick) that events are located to, radians.
 const TICK_PHASE: f64 = 0.07;
@@ -26,23 +28,23 @@ const PRESSED_PHASE: f64 = 1.0;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ExactEvent {
     /// Free, pressed.
-    regimes: [Regime; 2],
+    pub(super) regimes: [Regime; 2],
     /// Coarsest level of each regime.
-    coarsest: [usize; 2],
+    pub(super) coarsest: [usize; 2],
     /// Level of a tick.
     finest: usize,
     step_s: f64,
     /// k_m/m_s, 1/s².
     stiffness_per_mass: f64,
     /// m_s/h and m_f/h, kg/s.
-    mass_rate: [f64; 2],
+    pub(super) mass_rate: [f64; 2],
 }
 
 /// What one step came to.
-struct Step {
-    y: [f64; 4],
-    touched: bool,
-    onset: Option<Onset>,
+pub(super) struct Step {
+    pub(super) y: [f64; 4],
+    pub(super) touched: bool,
+    pub(super) onset: Option<Onset>,
     /// Maps it took; the tests hold the promise of the module with it.
     #[cfg_attr(not(test), expect(dead_code))]
     maps: u32,
@@ -107,7 +109,7 @@ impl ExactEvent {
             if (next.first() < 0.0) == pressed && self.coarsest[usize::from(pressed)] == 0 {
                 y = next;
             } else {
-                let step = self.walk(before, c, force);
+                let step = self.walk(design.level, before, c, force);
                 (touched, onset) = (step.touched, step.onset);
                 y = quad.load(&step.y);
                 pressed = y.first() < 0.0;
@@ -144,17 +146,25 @@ impl ExactEvent {
         state.gap_m = y.first();
     }
 
-    /// One sample with events, piece by piece.
+    /// One sample with events, piece by piece. Products and sums round apart on every level.
     #[cold]
     #[inline(never)]
-    fn walk(&self, mut y: [f64; 4], mut c: [f64; 3], force_n: f64) -> Step {
+    pub(super) fn walk(&self, level: Level, y: [f64; 4], c: [f64; 3], force_n: f64) -> Step {
+        at_level!(level.at_most_256_bits(), s => {
+            let zero: f64x4<_> = SimdBase::splat(s, 0.0);
+            self.walk_in(Apart(zero), y, c, force_n)
+        })
+    }
+
+    #[inline(always)]
+    fn walk_in<Q: Quad>(&self, quad: Q, mut y: [f64; 4], mut c: [f64; 3], force_n: f64) -> Step {
         let ticks = 1_usize << self.finest;
         let (mut now, mut level) = (0, 0);
         let (mut touched, mut onset, mut maps) = (false, None, 0);
         while now < ticks {
             let pressed = usize::from(y[0] < 0.0);
             level = level.max(self.coarsest[pressed].min(self.finest));
-            let mut next = self.regimes[pressed].maps[level].apply(Plain(y), c, force_n).array();
+            let mut next = self.regimes[pressed].maps[level].apply(quad.load(&y), c, force_n).array();
             maps += 1;
             let event = usize::from(next[0] < 0.0) != pressed;
             if event && level < self.finest {
@@ -164,7 +174,7 @@ impl ExactEvent {
             let size = 1.0 / (1_usize << level) as f64;
             let end = [c[0] + size * (2.0 * c[1] + 3.0 * size * c[2]), c[1] + 3.0 * size * c[2], c[2]];
             if event {
-                let event = self.split(y[0], &mut next, end[0] / self.step_s, size * self.step_s);
+                let event = self.split(quad, y[0], &mut next, end[0] / self.step_s, size * self.step_s);
                 if pressed == 0 {
                     let touch = Onset {
                         offset: (now as f64 / ticks as f64 + event.at * size).clamp(0.0, 1.0),
@@ -186,14 +196,21 @@ impl ExactEvent {
 
     /// Corrects a tick of `tick_s` that ended in the other regime; `slope_m_s` is the profile's at its end.
     #[inline(always)]
-    fn split(&self, before: f64, next: &mut [f64; 4], slope_m_s: f64, tick_s: f64) -> Event {
+    fn split<Q: Quad>(
+        &self,
+        quad: Q,
+        before: f64,
+        next: &mut [f64; 4],
+        slope_m_s: f64,
+        tick_s: f64,
+    ) -> Event {
         // Penetration at the end, its rate and its bend, with the sign turned so that it ends positive.
         let sign = if next[0] < 0.0 { 1.0 } else { -1.0 };
         let (past, past_before) = (-sign * next[0], -sign * before);
         let rate = sign * (slope_m_s - next[2]);
         let bend = 2.0 * (past_before - past + rate * tick_s) / (tick_s * tick_s);
         // Time from the event to the end: the parabola's root in the tick. It ends positive and begins negative, so there is one.
-        let falls = libm::sqrt(at_least_zero(rate * rate - 2.0 * bend * past));
+        let falls = quad.root(at_least_zero(rate * rate - 2.0 * bend * past));
         let rest_s = (2.0 * past / (rate + falls).max(f64::MIN_POSITIVE)).clamp(0.0, tick_s);
         let kick = rest_s * (4.0 * past - rate * rest_s) * (1.0 / 6.0) * self.stiffness_per_mass;
         let shift = rest_s * rest_s * (3.0 * past - rate * rest_s) * (1.0 / 12.0) * self.stiffness_per_mass;
@@ -235,7 +252,8 @@ mod tests {
         let rise_m = 1e-5;
         for share in 1..1000 {
             let gap_m = rise_m * f64::from(share) / 1000.0;
-            let met = exact.walk([gap_m, 0.0, 0.0, 0.0], [0.0, rise_m, 0.0], 0.0).onset.unwrap();
+            let met =
+                exact.walk(Level::detect(), [gap_m, 0.0, 0.0, 0.0], [0.0, rise_m, 0.0], 0.0).onset.unwrap();
             let (at, closing_m_s) = (libm::sqrt(gap_m / rise_m), 2.0 * libm::sqrt(rise_m * gap_m) / step_s);
             assert!((met.offset - at).abs() < 1e-6, "{gap_m}: at {} and not {at}", met.offset);
             let off = met.closing_m_s / closing_m_s - 1.0;
@@ -256,7 +274,8 @@ mod tests {
                     let size = 1e-6 * libm::exp2(20.0 * rng.uniform() - 10.0);
                     let c = [rng.normal() * size, rng.normal() * size, rng.normal() * size];
                     let speed = size * rate_hz * rng.normal();
-                    let step = exact.walk([rng.normal() * size * 0.3, 0.0, speed, 0.0], c, 0.5);
+                    let y = [rng.normal() * size * 0.3, 0.0, speed, 0.0];
+                    let step = exact.walk(Level::detect(), y, c, 0.5);
                     assert!(step.y.iter().all(|y| y.is_finite()));
                     worst = worst.max(step.maps);
                 }

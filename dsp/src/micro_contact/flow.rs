@@ -216,13 +216,16 @@ impl Units {
 
 #[cfg(test)]
 mod tests {
-    use super::super::quad::Plain;
+    use super::super::quad::{Apart, Quad};
     use super::*;
+    use crate::simd::BASE;
+    use fearless_simd::{SimdBase, f64x4};
 
     const STEP_S: f64 = 1.0 / 44_100.0;
 
     fn apply(map: &Map, y: [f64; 4], c: [f64; 3], force_n: f64) -> [f64; 4] {
-        map.apply(Plain(y), c, force_n).array()
+        let zero: f64x4<_> = SimdBase::splat(BASE, 0.0);
+        map.apply(Apart(zero).load(&y), c, force_n).array()
     }
 
     #[test]

@@ -22,46 +22,10 @@ pub(super) trait Quad: Copy {
     fn times_plus(self, factor: Self, sum: Self) -> Self;
     /// Lane 0.
     fn first(self) -> f64;
-}
-
-/// Plain numbers, for what happens rarely.
-#[derive(Clone, Copy)]
-pub(super) struct Plain(pub [f64; 4]);
-
-impl Quad for Plain {
+    /// The square root of a number, at least 0.
     #[inline(always)]
-    fn load(self, from: &[f64; 4]) -> Self {
-        Self(*from)
-    }
-    #[inline(always)]
-    fn array(self) -> [f64; 4] {
-        self.0
-    }
-    #[inline(always)]
-    fn splat(self, value: f64) -> Self {
-        Self([value; 4])
-    }
-    #[inline(always)]
-    fn spread<const I: usize>(self) -> Self {
-        Self([self.0[I]; 4])
-    }
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        let (a, b) = (self.0, other.0);
-        Self([a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]])
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let (a, b) = (self.0, other.0);
-        Self([a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]])
-    }
-    #[inline(always)]
-    fn times_plus(self, factor: Self, sum: Self) -> Self {
-        self.mul(factor).add(sum)
-    }
-    #[inline(always)]
-    fn first(self) -> f64 {
-        self.0[0]
+    fn root(self, x: f64) -> f64 {
+        libm::sqrt(x)
     }
 }
 
@@ -98,6 +62,55 @@ impl<S: Set> Quad for f64x4<S> {
     #[inline(always)]
     fn first(self) -> f64 {
         self[0]
+    }
+    #[inline(always)]
+    fn root(self, x: f64) -> f64 {
+        // The library's is an older instruction, which waits for the upper half of the register.
+        f64x2::splat(self.token(), x).sqrt()[0]
+    }
+}
+
+/// Another vector whose products and sums round apart even where the level could fuse them: for what gave those bits before it was
+/// worked out four at a time.
+#[derive(Clone, Copy)]
+pub(super) struct Apart<Q>(pub Q);
+
+impl<Q: Quad> Quad for Apart<Q> {
+    #[inline(always)]
+    fn load(self, from: &[f64; 4]) -> Self {
+        Self(self.0.load(from))
+    }
+    #[inline(always)]
+    fn array(self) -> [f64; 4] {
+        self.0.array()
+    }
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        Self(self.0.splat(value))
+    }
+    #[inline(always)]
+    fn spread<const I: usize>(self) -> Self {
+        Self(self.0.spread::<I>())
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.add(other.0))
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0.mul(other.0))
+    }
+    #[inline(always)]
+    fn times_plus(self, factor: Self, sum: Self) -> Self {
+        self.mul(factor).add(sum)
+    }
+    #[inline(always)]
+    fn first(self) -> f64 {
+        self.0.first()
+    }
+    #[inline(always)]
+    fn root(self, x: f64) -> f64 {
+        self.0.root(x)
     }
 }
 

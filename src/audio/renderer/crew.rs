@@ -9,13 +9,11 @@
 #![allow(clippy::vec_box, reason = "boxes change hands, what is in them does not move")]
 
 use super::outputs::HapticChannel;
-use super::voices::At;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::occupied::Occupied;
 use crate::audio::pool::{Job, Pool};
 use crate::audio::seat::Seat;
-use crate::audio::voice::{Phase, Scratch, Shared, Voice, VoiceBlock};
-use crate::link::tap::NoTap;
+use crate::audio::voice::{At, Company, Member, Phase, Scratch, Shared, Voice, VoiceBlock};
 use crate::prepared::body::{BodySlot, Terms};
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
@@ -77,11 +75,22 @@ impl Job for Share {
 impl SurfaceShare {
     fn run(&mut self, scratch: &mut Scratch) {
         let Some(shared) = &self.shared else { return };
+        let mut company = Company::new();
+        let mut render = |company: &mut Company<'_, _>| {
+            company.render(shared, self.at, &mut self.seat, scratch, |done| {
+                let (pressing, out): (&mut Option<Probe>, &mut VoiceBlock) = done.who;
+                *pressing = done.pressing;
+                std::mem::swap(out, done.out);
+            });
+        };
         for share in &mut self.voices {
             let VoiceShare { voice, output, pressing, out, .. } = &mut **share;
-            *pressing = self.at.render(shared, output, voice, &mut self.seat, scratch, &mut NoTap);
-            std::mem::swap(out, &mut scratch.out);
+            if !company.has_room(output) {
+                render(&mut company);
+            }
+            company.join(Member { voice, output: *output, who: (pressing, out) });
         }
+        render(&mut company);
         // Nobody but the renderer holds it between two blocks.
         self.shared = None;
     }
@@ -162,7 +171,7 @@ impl Crew {
         })
     }
 
-    /// Renders the contacts of a stretch, if sharing them pays; what they do waits for [`take_voice`](Self::take_voice).
+    /// Renders the contacts of a stretch, if sharing them pays, and whether it did; what they do waits for [`take_voice`](Self::take_voice).
     pub(super) fn render_contacts(
         &mut self,
         at: At,
@@ -171,9 +180,9 @@ impl Crew {
         seats: &mut [Seat],
         channels: &[HapticChannel],
         scratch: &mut Box<Scratch>,
-    ) {
+    ) -> bool {
         if !pays(at, voices, used) {
-            return;
+            return false;
         }
         for index in used.iter() {
             if voices[index].phase == Phase::Free {
@@ -214,6 +223,7 @@ impl Crew {
             }
             self.surfaces.push(surface);
         }
+        true
     }
 
     /// What a contact did in this stretch, if it was shared.

@@ -3,8 +3,9 @@
 use super::Renderer;
 use super::outputs::HapticChannel;
 use crate::audio::body_seat::BodySeat;
+use crate::audio::occupied::Occupied;
 use crate::audio::seat::Seat;
-use crate::audio::voice::{Phase, Scratch, Shared, Stretch, Voice, VoiceBlock};
+use crate::audio::voice::{At, Company, Member, Phase, Scratch, Shared, Stretch, Voice, VoiceBlock};
 use crate::link::stats::Counters;
 use crate::link::tap::Tap;
 use crate::model::strike_field::StrikePlace;
@@ -13,24 +14,10 @@ use crate::prepared::body_rub::RubAsked;
 use crate::prepared::spot::Spot;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
-use asperity_texture::height_field::MAX_BLOCK;
-
-/// The samples at hand, for whoever renders voices.
-#[derive(Clone, Copy)]
-pub(super) struct At {
-    /// Absolute index of the first sample.
-    pub(super) position: u64,
-    /// How many.
-    pub(super) n: usize,
-}
 
 impl At {
-    fn is_on_grid(self) -> bool {
-        self.position.is_multiple_of(MAX_BLOCK as u64)
-    }
-
     /// Renders a voice into `scratch.out`; what presses on the touched body, at the steps of the absolute grid.
-    pub(super) fn render<T: Tap>(
+    fn render<T: Tap>(
         self,
         shared: &Shared,
         output: &ContactOutput,
@@ -120,19 +107,20 @@ impl Renderer {
         }
         let tap = &mut self.outlets.beside(tap);
         let at = At { position: self.position, n };
+        let watched = tap.is_watching();
         // A tap is not shared: it is shown one contact after the other.
-        if !tap.is_watching()
-            && let Some(crew) = &mut self.crew
-        {
-            crew.render_contacts(
+        let crew = self.crew.as_mut().filter(|_| !watched).and_then(|crew| {
+            let voices = (&mut self.voices[..], &self.voices_used);
+            let shared_out = crew.render_contacts(
                 at,
                 &self.shared,
-                (&mut self.voices, &self.voices_used),
+                voices,
                 &mut self.seats,
                 &self.channels,
                 &mut self.scratch,
             );
-        }
+            shared_out.then_some(crew)
+        });
         let mut gathering = Gathering {
             at,
             channels: &mut self.channels,
@@ -144,24 +132,43 @@ impl Renderer {
             blows: 0,
             crowded: 0,
         };
-        for index in self.voices_used.iter() {
-            let done = self.crew.as_mut().and_then(|crew| crew.take_voice(index));
-            let voice = &mut self.voices[index];
-            let seat = &mut self.seats[voice.surface];
-            if let Some(share) = done {
-                gathering.add(index, voice, seat, share.pressing, &share.out);
-                if let Some(crew) = &mut self.crew {
-                    crew.put_back(share);
+        let (shared, scratch) = (&*self.shared, &mut *self.scratch);
+        if let Some(crew) = crew {
+            for index in self.voices_used.iter() {
+                let Some(share) = crew.take_voice(index) else { continue };
+                let voice = &self.voices[index];
+                gathering.add(index, voice, &self.seats[voice.surface], share.pressing, &share.out);
+                crew.put_back(share);
+            }
+        } else if watched {
+            for index in self.voices_used.iter() {
+                let voice = &mut self.voices[index];
+                if voice.phase == Phase::Free {
+                    continue;
                 }
-                continue;
+                let seat = &mut self.seats[voice.surface];
+                let output = output(voice, gathering.channels, shared);
+                let pressing = at.render(shared, &output, voice, seat, scratch, tap);
+                gathering.add(index, voice, seat, pressing, &scratch.out);
             }
-            if voice.phase == Phase::Free {
-                continue;
+        } else {
+            let mut company = Company::new();
+            let mut render = |company: &mut Company<'_, usize>, gathering: &mut Gathering<'_>| {
+                company.render(shared, at, &mut self.seats[..], scratch, |done| {
+                    gathering.add(done.who, done.voice, done.seat, done.pressing, done.out);
+                });
+            };
+            for (index, voice) in in_use(&mut self.voices, &self.voices_used) {
+                if voice.phase == Phase::Free {
+                    continue;
+                }
+                let output = output(voice, gathering.channels, shared);
+                if !company.has_room(&output) {
+                    render(&mut company, &mut gathering);
+                }
+                company.join(Member { voice, output, who: index });
             }
-            let channel = voice.role.actuator.map(|channel| &gathering.channels[channel]);
-            let output = channel.map_or(&self.shared.idle_output, |channel| &channel.output);
-            let pressing = at.render(&self.shared, output, voice, seat, &mut self.scratch, tap);
-            gathering.add(index, voice, seat, pressing, &self.scratch.out);
+            render(&mut company, &mut gathering);
         }
         gathering.count(&self.counters);
         let channels = &mut self.channels;
@@ -172,6 +179,21 @@ impl Renderer {
             }
         });
     }
+}
+
+/// What the contact's actuator plays.
+fn output(voice: &Voice, channels: &[HapticChannel], shared: &Shared) -> ContactOutput {
+    voice.role.actuator.map_or(shared.idle_output, |channel| channels[channel].output)
+}
+
+/// The voices in use, in ascending order.
+fn in_use<'a>(
+    voices: &'a mut [Box<Voice>],
+    used: &'a Occupied,
+) -> impl Iterator<Item = (usize, &'a mut Voice)> {
+    let mut used = used.iter().peekable();
+    let all = voices.iter_mut().enumerate();
+    all.filter_map(move |(index, voice)| used.next_if_eq(&index).map(|_| (index, &mut **voice)))
 }
 
 /// Where a contact rubs, and along what of the body.

@@ -82,7 +82,7 @@ impl Voice {
         let [slope_m_s, bend_m_s2] = self.trend(shared, position, seat, scratch);
         self.lay_behind(1, shared, position, seat, scratch);
         let (heights_m, forces_n) = (&scratch.profile.surface.height_m, &scratch.profile.force_n);
-        let row = self.pad.lead_in(heights_m, forces_n, slope_m_s, &mut scratch.rows);
+        let row = self.pad.lead_in(heights_m, forces_n, slope_m_s, &mut scratch.lanes[0].rows);
         let PadSample { pad_m, pad_velocity_m_s, .. } = row;
         self.ac.feel =
             ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
@@ -97,9 +97,9 @@ impl Voice {
         seat: &mut Seat,
         scratch: &mut Scratch,
     ) {
-        self.path.lay_behind(stride, shared.sample_rate_hz, &mut scratch.points);
+        self.path.lay_behind(stride, shared.sample_rate_hz, &mut scratch.lanes[0].points);
         let along = self.along(shared, position, false);
-        scratch.profile.run(seat, along, &scratch.points, &mut self.cells);
+        scratch.profile.run(seat, along, &scratch.lanes[0].points, &mut self.cells);
     }
 
     /// How the profile has risen, m/s, and bent, m/s², during the last [`TREND_S`]: the parabola nearest to it.

@@ -122,8 +122,7 @@ impl Exciters {
         let (impulse_n_s, force_n_s) = (&mut out.impulse_n_s[..rows.len()], &mut out.force_n_s[..rows.len()]);
         self.pulses.take(by.position, impulse_n_s, force_n_s);
         self.force.add(force, impulse_n_s, force_n_s);
-        self.loudness.weigh(by.position, by.slow_step, impulse_n_s);
-        self.loudness.weigh(by.position, by.slow_step, force_n_s);
+        self.loudness.weigh(by.position, by.slow_step, impulse_n_s, force_n_s);
         (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
     }
 

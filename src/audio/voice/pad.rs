@@ -6,7 +6,7 @@
 use super::PadSample;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stiffness::{Ground, stiffness_n_m};
-use asperity_dsp::micro_contact::{ContactState, MicroContact};
+use asperity_dsp::micro_contact::{Beside, ContactState, MicroContact};
 
 /// A contact force so many times what presses is a blow: no contact begins in the middle of one.
 const LEAD_IN_BLOW: f64 = 10.0;
@@ -89,15 +89,23 @@ impl Pad {
         self.late_row
     }
 
-    /// A row for each height; how often the state was no longer finite and begun anew.
-    pub(super) fn run(
-        &mut self,
-        waits: bool,
-        heights_m: &[f64],
-        forces_n: &[f64],
-        rows: &mut [PadSample],
-    ) -> u64 {
+    /// A row for each height, as the model gives it.
+    pub(super) fn run(&mut self, heights_m: &[f64], forces_n: &[f64], rows: &mut [PadSample]) {
         self.model.run(&mut self.state, heights_m, forces_n, rows);
+    }
+
+    /// The same for [`run_side_by_side`](asperity_dsp::micro_contact::run_side_by_side).
+    pub(super) fn beside<'a>(
+        &'a mut self,
+        height_m: &'a [f64],
+        normal_force_n: &'a [f64],
+        out: &'a mut [PadSample],
+    ) -> Beside<'a> {
+        Beside { design: &self.model, state: &mut self.state, height_m, normal_force_n, out }
+    }
+
+    /// Rows of the model as they are felt; how often the state was no longer finite and begun anew.
+    pub(super) fn settle(&mut self, waits: bool, rows: &mut [PadSample]) -> u64 {
         if waits {
             self.wait_a_row(rows);
         }

@@ -1,28 +1,52 @@
 //! What passes from stage to stage during one stretch; made once, used by every voice in turn.
 
+use super::ac_coupling::Coupled;
 use super::block::VoiceBlock;
 use super::exciters::ForceRun;
 use super::profile::Profile;
 use super::watching::Shown;
 use super::{PadSample, PathPoint};
+use asperity_dsp::micro_contact::LANES;
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// Outputs of the stages, in their order.
 pub(crate) struct Scratch {
-    pub(super) points: [PathPoint; MAX_BLOCK],
+    /// Contacts that go side by side; one alone has the first.
+    pub(super) lanes: [Lane; LANES],
+    pub(super) coupled: Coupled,
     pub(super) profile: Profile,
-    pub(super) rows: [PadSample; MAX_BLOCK],
     pub(super) force: ForceRun,
     pub(super) shown: Shown,
     pub(crate) out: VoiceBlock,
 }
 
+/// What of one contact waits while others are at the same stage.
+#[derive(Clone, Copy)]
+pub(super) struct Lane {
+    pub(super) points: [PathPoint; MAX_BLOCK],
+    /// The profile, m, and what presses, N.
+    pub(super) height_m: [f64; MAX_BLOCK],
+    pub(super) force_n: [f64; MAX_BLOCK],
+    pub(super) rows: [PadSample; MAX_BLOCK],
+    /// How often its pad was begun anew, and blows among the rows.
+    pub(super) resets: u64,
+    pub(super) blows: u64,
+}
+
 impl Scratch {
     pub(crate) fn new() -> Box<Self> {
-        Box::new(Self {
+        let lane = Lane {
             points: [PathPoint::default(); MAX_BLOCK],
-            profile: Profile::new(),
+            height_m: [0.0; MAX_BLOCK],
+            force_n: [0.0; MAX_BLOCK],
             rows: [PadSample::default(); MAX_BLOCK],
+            resets: 0,
+            blows: 0,
+        };
+        Box::new(Self {
+            lanes: [lane; LANES],
+            coupled: Coupled::new(),
+            profile: Profile::new(),
             force: ForceRun::new(),
             shown: Shown::new(),
             out: VoiceBlock::new(),

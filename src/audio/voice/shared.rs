@@ -5,6 +5,7 @@ use crate::prepared::probe::PreparedProbe;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_texture::height_field::MAX_BLOCK;
 
 /// What every voice needs and none owns.
 pub(crate) struct Shared {
@@ -40,7 +41,7 @@ impl Shared {
     }
 }
 
-/// The samples at hand. A stretch lies within one cell of the absolute grid of [`MAX_BLOCK`](asperity_texture::height_field::MAX_BLOCK) samples.
+/// The samples at hand. A stretch lies within one cell of the absolute grid of [`MAX_BLOCK`] samples.
 #[derive(Clone, Copy)]
 pub(crate) struct Stretch<'a> {
     pub(crate) shared: &'a Shared,
@@ -50,4 +51,31 @@ pub(crate) struct Stretch<'a> {
     pub(crate) position: u64,
     /// How many.
     pub(crate) n: usize,
+}
+
+/// What one stretch is to a contact.
+#[derive(Clone, Copy)]
+pub(super) struct Pass {
+    /// Samples of it.
+    pub(super) n: usize,
+    /// Whether it moves, and not rests.
+    pub(super) slides: bool,
+    /// Its high-passes have run beside those of others.
+    pub(super) coupled: bool,
+}
+
+/// The samples at hand, for whoever renders voices.
+#[derive(Clone, Copy)]
+pub(crate) struct At {
+    /// Absolute index of the first sample.
+    pub(crate) position: u64,
+    /// How many.
+    pub(crate) n: usize,
+}
+
+impl At {
+    /// Whether they begin at a step of the absolute grid.
+    pub(crate) fn is_on_grid(self) -> bool {
+        self.position.is_multiple_of(MAX_BLOCK as u64)
+    }
 }

@@ -21,13 +21,16 @@ impl Loudness {
         self.ends = [self.ends[1], loudness];
     }
 
-    /// Weighs what the contact sends to the body; `slow_step` samples lie between two steps of the grid.
-    pub(super) fn weigh(&self, position: u64, slow_step: u64, impulse_n_s: &mut [f64]) {
+    /// Weighs what the contact sends to the body, spread and as it is; `slow_step` samples lie between two steps of the grid.
+    pub(super) fn weigh(&self, position: u64, slow_step: u64, spread: &mut [f64], unspread: &mut [f64]) {
         let [from, to] = self.ends;
-        let first = (position % slow_step) as usize;
-        for (i, impulse_n_s) in impulse_n_s.iter_mut().enumerate() {
-            let part = (first + i + 1) as f64 / slow_step as f64;
-            *impulse_n_s *= from + part * (to - from);
+        let first = (position % slow_step) as u32 + 1;
+        let steps = slow_step as f64;
+        for (i, (spread, unspread)) in (first..).zip(spread.iter_mut().zip(unspread)) {
+            let part = f64::from(i) / steps;
+            let weight = from + part * (to - from);
+            *spread *= weight;
+            *unspread *= weight;
         }
     }
 }

@@ -1,0 +1,170 @@
+//! Side by side: a few contacts go through a stretch together, stage by stage, so that stages in which each waits for itself run them in
+//! the lanes of one vector (`dsp::micro_contact::run_side_by_side`).
+//!
+//! ```text
+//! path, profile of each, in order → pads of all at once → high-passes of all at once → the rest of each, in order
+//! ```
+//! Surfaces are asked in the order of the contacts, and what contacts do is handed on in that order: the bits are those of one after the other.
+
+use super::shared::{At, Shared, Stretch};
+use super::{Lane, Pass, Scratch, Voice, VoiceBlock};
+use crate::audio::seat::Seat;
+use crate::link::tap::NoTap;
+use asperity_dsp::actuator::{ContactOutput, Quantity};
+use asperity_dsp::micro_contact::{LANES, Probe, run_side_by_side};
+
+/// The surfaces that contacts lie on.
+pub(crate) trait Seats {
+    /// The one of that place.
+    fn seat(&mut self, surface: usize) -> &mut Seat;
+}
+
+impl Seats for [Seat] {
+    fn seat(&mut self, surface: usize) -> &mut Seat {
+        &mut self[surface]
+    }
+}
+
+/// All on one.
+impl Seats for Seat {
+    fn seat(&mut self, _surface: usize) -> &mut Seat {
+        self
+    }
+}
+
+/// One of them.
+pub(crate) struct Member<'a, W> {
+    pub(crate) voice: &'a mut Voice,
+    pub(crate) output: ContactOutput,
+    /// What it is to whoever renders it.
+    pub(crate) who: W,
+}
+
+/// What a member did in a stretch: itself, what pressed on the touched body at a step of the absolute grid, and its block.
+pub(crate) struct Done<'a, W> {
+    pub(crate) voice: &'a Voice,
+    pub(crate) seat: &'a Seat,
+    pub(crate) pressing: Option<Probe>,
+    pub(crate) out: &'a mut VoiceBlock,
+    pub(crate) who: W,
+}
+
+/// The contacts that go together; empty between two stretches.
+pub(crate) struct Company<'a, W> {
+    members: [Option<Member<'a, W>>; LANES],
+    count: usize,
+}
+
+impl<'a, W> Company<'a, W> {
+    /// Nobody.
+    pub(crate) fn new() -> Self {
+        Self { members: [const { None }; LANES], count: 0 }
+    }
+
+    /// Whether a contact with this output may come along. One whose skin is dragged goes alone, because it needs its ground once more when
+    /// the others have been shown theirs.
+    pub(crate) fn has_room(&self, output: &ContactOutput) -> bool {
+        let dragged = |output: &ContactOutput| output.quantity() == Quantity::Tangential;
+        match &self.members[0] {
+            None => true,
+            Some(first) => self.count < LANES && !dragged(output) && !dragged(&first.output),
+        }
+    }
+
+    /// One more comes along, if there is room.
+    pub(crate) fn join(&mut self, member: Member<'a, W>) {
+        if let Some(place) = self.members.get_mut(self.count) {
+            *place = Some(member);
+            self.count += 1;
+        }
+    }
+
+    /// Renders them, and lets everyone go.
+    pub(crate) fn render(
+        &mut self,
+        shared: &Shared,
+        at: At,
+        seats: &mut (impl Seats + ?Sized),
+        scratch: &mut Scratch,
+        mut done: impl FnMut(Done<'_, W>),
+    ) {
+        if self.count == 0 {
+            return;
+        }
+        let At { position, n } = at;
+        let mut passes = [Pass { n: 0, slides: false, coupled: false }; LANES];
+        let mut pressing = [None; LANES];
+        for (lane, member) in self.members.iter_mut().flatten().enumerate() {
+            let Member { voice, output, .. } = member;
+            let seat = seats.seat(voice.surface);
+            // Before it is rendered: how it presses at the end of a stretch would depend on where the blocks are cut.
+            let slot = seat.current().filter(|_| at.is_on_grid());
+            pressing[lane] = slot.and_then(|slot| voice.pressing(shared, slot));
+            let stretch = Stretch { shared, output, position, n };
+            passes[lane] = voice.approach(stretch, false, seat, scratch, lane);
+        }
+        self.touch_down(n, &passes, &mut scratch.lanes);
+        self.couple(shared, n, &mut passes, seats, scratch);
+        for (lane, place) in self.members.iter_mut().enumerate() {
+            let Some(Member { voice, output, who }) = place.take() else { continue };
+            let seat = &*seats.seat(voice.surface);
+            let stretch = Stretch { shared, output: &output, position, n };
+            voice.finish(stretch, passes[lane], seat, scratch, lane, &mut NoTap);
+            done(Done { voice, seat, pressing: pressing[lane], out: &mut scratch.out, who });
+        }
+        self.count = 0;
+    }
+
+    /// The rows of those that slide, and the high-passes of those that have company.
+    fn couple(
+        &mut self,
+        shared: &Shared,
+        n: usize,
+        passes: &mut [Pass; LANES],
+        seats: &mut (impl Seats + ?Sized),
+        Scratch { lanes, coupled, .. }: &mut Scratch,
+    ) {
+        let together = passes.iter().filter(|pass| pass.slides && pass.n == n).count() > 1;
+        if together {
+            coupled.clear();
+        }
+        let members = self.members.iter_mut().flatten().zip(passes).zip(lanes).enumerate();
+        for (lane, ((Member { voice, output, .. }, pass), own)) in
+            members.filter(|(_, ((_, pass), _))| pass.slides)
+        {
+            voice.settle(shared, *pass, own);
+            if let (true, Some(slot)) = (together && pass.n == n, seats.seat(voice.surface).current()) {
+                let heard = &slot.stroking.force_high_pass;
+                pass.coupled = voice.ac.enter(output, heard, &own.rows[..n], lane, coupled);
+            }
+        }
+        if together {
+            coupled.run(shared.noise.level(), n);
+        }
+    }
+
+    /// The pads of those that slide.
+    fn touch_down(&mut self, n: usize, passes: &[Pass; LANES], lanes: &mut [Lane; LANES]) {
+        let mut beside = [const { None }; LANES];
+        let mut count = 0;
+        for ((member, pass), lane) in self.members.iter_mut().zip(passes).zip(lanes) {
+            let Some(Member { voice, .. }) = member.as_mut().filter(|_| pass.slides) else { continue };
+            let (height_m, force_n) = (&lane.height_m[..pass.n], &lane.force_n[..pass.n]);
+            let rows = &mut lane.rows[..pass.n];
+            if pass.n == n {
+                beside[count] = Some(voice.pad.beside(height_m, force_n, rows));
+                count += 1;
+            } else {
+                // It fades away in the middle of the stretch.
+                voice.pad.run(height_m, force_n, rows);
+            }
+        }
+        match beside {
+            [Some(a), Some(b), Some(c), Some(d)] => run_side_by_side(&mut [a, b, c, d]),
+            [Some(a), Some(b), Some(c), None] => run_side_by_side(&mut [a, b, c]),
+            [Some(a), Some(b), ..] => run_side_by_side(&mut [a, b]),
+            [Some(a), ..] => run_side_by_side(&mut [a]),
+            [None, ..] => {}
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! A block of a map: heights, slopes and roughness along a path.
+
+use super::{HeightMap, Roughness};
+use crate::height_field::{PathBlock, SurfaceBlock};
+use crate::spline::{Places, Samples};
+
+impl HeightMap {
+    /// What a path meets, worked out in some memory.
+    pub(super) fn sample_in(
+        &self,
+        places: &mut Places,
+        samples: &mut Samples,
+        path: &PathBlock<'_>,
+        out: &mut SurfaceBlock,
+    ) {
+        let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
+        places.forget();
+        let heights = self.ridden();
+        if path.slopes {
+            heights.sample_block::<true>(path, widest_m, places, samples);
+            let slopes = samples.slope_u.iter().zip(&samples.slope_v).take(n);
+            for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
+                *gradient = [*u, *v];
+            }
+        } else {
+            heights.sample_block::<false>(path, widest_m, places, samples);
+        }
+        out.height_m[..n].copy_from_slice(&samples.value[..n]);
+        match &self.roughness {
+            Roughness::Constant(roughness) => out.roughness[..n].fill(*roughness),
+            Roughness::Map(map) => {
+                map.sample_block::<false>(path, widest_m, places, samples);
+                for (roughness, value) in out.roughness[..n].iter_mut().zip(&samples.value) {
+                    *roughness = value.clamp(0.0, 1.0);
+                }
+            }
+        }
+        out.friction[..n].fill(self.friction);
+        out.compliance_m_n[..n].fill(0.0);
+        out.answer.clear();
+    }
+}
+
+/// The longest of some footprints; looked at side by side.
+pub(super) fn widest_m(footprint_m: &[f64]) -> f64 {
+    let mut widest = [0.0; 8];
+    let wider =
+        |widest: &mut f64, footprint: &f64| *widest = if *footprint > *widest { *footprint } else { *widest };
+    let (eights, rest) = footprint_m.as_chunks::<8>();
+    for eight in eights {
+        widest.iter_mut().zip(eight).for_each(|(widest, footprint)| wider(widest, footprint));
+    }
+    widest.iter_mut().zip(rest).for_each(|(widest, footprint)| wider(widest, footprint));
+    widest.into_iter().fold(0.0, f64::max)
+}
