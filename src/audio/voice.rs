@@ -18,6 +18,7 @@ mod pad;
 mod path;
 mod profile;
 mod role;
+mod rolling;
 mod rub_block;
 mod scratch;
 mod shared;
@@ -50,6 +51,7 @@ use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
 use path::Path;
+use rolling::{RolledOver, Rolling};
 use skin::ContactSkin;
 use tip::Tip;
 use watching::Done;
@@ -89,6 +91,7 @@ pub(crate) struct Voice {
     path: Path,
     /// Where in the micro-relief it is.
     cells: NoiseCells,
+    rolling: Rolling,
     tip: Tip,
     pad: Pad,
     drag: Drag,
@@ -128,6 +131,7 @@ impl Voice {
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
             cells: NoiseCells::default(),
+            rolling: Rolling::default(),
             tip: Tip::default(),
             pad: Pad::idle(&shared.own_probe),
             drag: Drag::idle(sample_rate_hz),
@@ -139,9 +143,10 @@ impl Voice {
         }
     }
 
-    /// A report tells what carries its tip, or that it is pressed.
+    /// A report tells what carries its tip, or that it is pressed, and whether it rolls.
     pub(crate) fn carry(&mut self, sample: &ContactSample) {
         self.tip.carry(sample);
+        self.rolling.tell(sample);
     }
 
     /// Whether there is anything to render but rest.
@@ -228,6 +233,9 @@ impl Voice {
             let velocity_m_s = self.path.last.velocity_m_s;
             self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
         }
+        if at_slow_step && self.rolling.rolls() {
+            self.roll(shared, seat, Rolling::turn);
+        }
         let Some(slot) = seat.current() else { return };
         let Scratch { points, profile, rows, force, out, .. } = scratch;
         let (points, rows) = (&mut points[..n], &mut rows[..n]);
@@ -244,6 +252,7 @@ impl Voice {
         self.path.run(slot, points, &mut profile.at_m);
         let along = self.along(shared, position, slopes || dragged);
         profile.run(seat, along, points, &mut self.cells);
+        self.rolling.run(position, shared.slow_step, &mut profile.surface, n);
         out.resets = self.pad.run(probe.waits, &profile.surface.height_m[..n], &profile.force_n[..n], rows);
 
         out.blows = self.blows.count(rows);
@@ -270,7 +279,10 @@ impl Voice {
         let slow_step = shared.slow_step;
         let by = Excited { slot, probe, reaction, sample_rate_hz, slow_step, position };
         self.exciters.run(&by, rows, force, out);
+        let sent = [&mut out.impulse_n_s[..n], &mut out.force_n_s[..n]];
+        self.rolling.soften(position, slow_step, sent);
         self.exciters.rub(&by, points, rows, out);
+        self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
     }
 
     /// How much of the contact sounds: the more, the harder it is pressed and the closer it nestles to the ground.
@@ -279,6 +291,19 @@ impl Voice {
         let touch = self.touch_at(position);
         let hollow_m = |reach_m| seat.hollow_m(&touch, reach_m, tip_radius_m);
         loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
+    }
+
+    /// Over what it rolls at its last sample, to whoever minds.
+    fn roll(&mut self, shared: &Shared, seat: &Seat, then: impl FnOnce(&mut Rolling, RolledOver<'_>)) {
+        let Some(slot) = seat.current() else { return };
+        let over = RolledOver {
+            slot,
+            source_power_m2: seat.power_m2(self.path.last.position_m),
+            tip_radius_m: shared.probe(self.role.probe).tip_radius_m(),
+            at: &self.path.last,
+            sample_rate_hz: shared.sample_rate_hz,
+        };
+        then(&mut self.rolling, over);
     }
 
     /// How the contact pressed at its last sample.
