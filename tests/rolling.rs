@@ -1,4 +1,4 @@
-//! What rolls is heard and felt otherwise than what slides as fast and as hard: darker, smoother, softer.
+//! What rolls is heard and felt otherwise than what slides as fast and as hard: darker, softer, its loudness less even.
 //!
 //! Direction: rolling is heard through more of a low-pass than sliding (K. van den Doel, P. G. Kry, D. K. Pai, "FoleyAutomatic", 2001), and what
 //! presses changes the slower the larger the ball (M. M. J. Houben, A. Kohlrausch, D. J. Hermes 2004, recorded balls).
@@ -107,7 +107,8 @@ fn what_rolls_is_darker_than_what_slides_and_its_envelope_another() {
         "median of rolling over sliding: centroid {centroid:.2}, depth {depth:.2}, rate {rate:.2}, level {level:.2}, felt {felt:.2}"
     );
     assert!(centroid < 0.8 && depth > 1.2, "centroid {centroid}, depth {depth}");
-    assert!(rows.iter().all(|row| row[0] < 1.0 && row[3] < 1.0), "brighter or louder than sliding");
+    // In every cell: by a fifth and more.
+    assert!(rows.iter().all(|row| row[0] < 0.8 && row[3] < 1.0), "not darker, or louder, than sliding");
 }
 
 #[test]

@@ -1,29 +1,37 @@
 //! Rolling: what reaches a body that rolls over the ground instead of sliding, and what it sends.
 //!
 //! ```text
-//! ẏ = ω_d (x − y)                          heights that it rides on
-//! ḟ = ω_p (g − f)                          force that it sends            ω = 2π v / λ
+//! ride       ẏ = ω_d (x − y),  ω_d = 2π v / λ_d
 //! dilation   a(λ_d) (2π/λ_d)² r = 0.63      a(λ) = rms (λ / 1 mm)^((α−1)/2)
-//! patch      2π a_p / λ_p = (4/π)^(1/3)     a_p² = (3 F r / 4 E*)^(2/3) + 2 r rms
+//! force      f → f + (M/m − 1) L_M f → L_p … L a low-pass of second order, critically damped
+//! mass       ω_M = √(k/M),  M = F/g
+//! patch      1.55 v / λ_p,  2π a_p / λ_p = (4/π)^(1/3),  a_p² = (3 F r / 4 E*)^(2/3) + 2 r rms
 //! ```
 //!
 //! | symbol | here | |
 //! |---|---|---|
 //! | x, y | height of the ground, and of the path that the rolling body follows | m |
-//! | g, f | force of a point that rides so, and of a patch of such points | N |
+//! | f | force of a point that rides so, and what becomes of it in a patch of points under the whole body | N |
+//! | m, k | mass and stiffness with which the point was reckoned | |
 //! | v | speed of the place of contact over the surface | m/s |
 //! | r | [`Rolling::radius_m`] | of the body that rolls |
 //! | rms, α | [`Rolling::rms_at_1mm_m`], [`Rolling::alpha`] | the ground: rms of the octave about 1 mm, spectral exponent |
 //! | F, E* | [`Rolling::normal_force_n`], [`Rolling::modulus_pa`] | |
 //!
 //! What slides sends edges and asperities of its own through the ground, each as sharp as a tip; what rolls is laid down on it: its surface meets the
-//! ground without a relative speed, from above, and only as a whole ball. So it reaches no valley sharper than itself (λ_d, the law of
-//! [`crate::fractal_noise`]'s dilation: amplitudes of octaves below fall by one power of λ more, which a first-order low-pass has), and asperities
-//! enter and leave its patch of contact one after the other (λ_p, where the measured filter of a wheel's patch, 1/(1 + π/4 (k a)³), is at −3 dB: P. J. Remington 1976, D. J. Thompson,
-//! "Railway noise and vibration", 2009 §5.4, recalled). On rough ground the patch is wider than Hertz': asperities touch as far out as the gap under the ball is no
-//! wider than they are high (J. A. Greenwood, J. H. Tripp 1967). Direction as measured: rolling is heard by more low-pass than sliding, and the more the larger
-//! the ball (K. van den Doel, P. G. Kry, D. K. Pai, "FoleyAutomatic", 2001; M. M. J. Houben, A. Kohlrausch, D. J. Hermes 2004: recorded wooden
-//! balls). Trapezoidal, so that ω may change from sample to sample.
+//! ground without a relative speed, from above, and only as a whole ball.
+//!
+//! - It reaches no valley sharper than itself: λ_d, the law of [`crate::fractal_noise`]'s dilation, below which the amplitudes of octaves fall by one
+//!   power of λ more, as behind a first-order low-pass.
+//! - Asperities enter and leave its patch of contact one after the other: λ_p, where the measured filter of a wheel's patch, 1/(1 + π/4 (k a)³), is at
+//!   −3 dB (P. J. Remington 1976; D. J. Thompson, "Railway noise and vibration", 2009 §5.4; **recalled**). Its fall lies between first and second
+//!   order, within 2 dB of the second down to a seventh of λ_p. On rough ground the patch is wider than Hertz': asperities touch as far out as the gap under the ball
+//!   is no wider than they are high (J. A. Greenwood, J. H. Tripp 1967, **recalled**).
+//! - Where a tip gives way by itself, a ball is rigid: all of its mass M follows the ground, up to its resonance on the contact. A body that rolls
+//!   free presses with its weight.
+//!
+//! Direction as published: rolling is heard through more of a low-pass than sliding (K. van den Doel, P. G. Kry, D. K. Pai, "FoleyAutomatic",
+//! 2001, **recalled**). Trapezoidal, so that ω may change from sample to sample.
 
 use core::f64::consts::PI;
 
@@ -64,6 +72,9 @@ impl Rolling {
     }
 }
 
+/// Highest corner over the rate: up to it the path is a mean of what it has ridden, and never beyond it.
+const HIGHEST: f64 = 0.25;
+
 /// The low-pass at one speed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RollingFilter {
@@ -75,7 +86,7 @@ impl RollingFilter {
     /// At a speed, m/s, over ground of which waves shorter than this are not followed.
     #[must_use]
     pub fn new(speed_m_s: f64, wavelength_m: f64, sample_rate_hz: f64) -> Self {
-        let gain = libm::tan(PI * (speed_m_s / wavelength_m / sample_rate_hz).min(0.45));
+        let gain = libm::tan(PI * (speed_m_s / wavelength_m / sample_rate_hz).min(HIGHEST));
         Self { step: gain / (1.0 + gain) }
     }
 }
@@ -100,6 +111,56 @@ impl RollingState {
         let y = self.held + step;
         self.held = y + step;
         y
+    }
+}
+
+/// What a body that rolls sends of the force of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RollingForce {
+    mass_gain: f64,
+    mass: RollingFilter,
+    patch: RollingFilter,
+}
+
+/// Memory of one [`RollingForce`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RollingForceState {
+    mass: [RollingState; 2],
+    patch: [RollingState; 2],
+}
+
+/// Corner of each of two equal first-order low-passes over where both together are at −3 dB.
+const PAIR: f64 = 1.553_773_974;
+/// The patch's low-pass is nowhere slower, Hz: a patch that rests sends the force of its points.
+const SLOWEST_HZ: f64 = 20.0;
+
+impl RollingForce {
+    /// At a speed, m/s; `mass_ratio` is M/m and `resonance_hz` that of M on its contact.
+    #[must_use]
+    pub fn new(
+        (speed_m_s, patch_m): (f64, f64),
+        (mass_ratio, resonance_hz): (f64, f64),
+        sample_rate_hz: f64,
+    ) -> Self {
+        let at = |frequency_hz: f64| RollingFilter::new(frequency_hz, 1.0, sample_rate_hz);
+        Self {
+            mass_gain: (mass_ratio - 1.0).max(0.0),
+            mass: at(resonance_hz),
+            patch: at((PAIR * speed_m_s / patch_m).max(SLOWEST_HZ)),
+        }
+    }
+}
+
+impl RollingForceState {
+    /// One sample of the force of a point, or of its impulse → of the rolling body's.
+    #[inline]
+    pub fn tick(&mut self, design: &RollingForce, x: f64) -> f64 {
+        let pass = |states: &mut [RollingState; 2], filter: &RollingFilter, x: f64| {
+            let [first, second] = states;
+            second.tick(filter, first.tick(filter, x))
+        };
+        let heavy = x + design.mass_gain * pass(&mut self.mass, &design.mass, x);
+        pass(&mut self.patch, &design.patch, heavy)
     }
 }
 
@@ -170,7 +231,7 @@ mod tests {
             let filter = RollingFilter::new(10.0 * rng.uniform(), 1e-4 + 1e-2 * rng.uniform(), RATE_HZ);
             for _ in 0..16 {
                 let y = state.tick(&filter, rng.uniform());
-                assert!((-1.0..2.0).contains(&y), "{y}");
+                assert!((-1e-12..=1.0 + 1e-12).contains(&y), "{y}");
             }
         }
         let still = RollingFilter::new(0.0, 1e-3, RATE_HZ);
@@ -179,6 +240,31 @@ mod tests {
             let odd = Rolling { rms_at_1mm_m: bad, modulus_pa: bad, ..MARBLE }.wavelengths_m();
             assert!(odd.iter().all(|odd| odd.is_finite() && *odd > 0.0), "{odd:?}");
         }
+    }
+
+    #[test]
+    fn a_slow_force_is_that_of_the_whole_mass_and_a_fast_one_is_the_patch_s() {
+        let force = RollingForce::new((0.5, 1e-3), (20.0, 50.0), RATE_HZ);
+        let gain = |frequency_hz: f64| {
+            let (mut state, mut re, mut im) = (RollingForceState::default(), 0.0, 0.0);
+            for n in 0..88_200 {
+                let turn = 2.0 * PI * frequency_hz * f64::from(n) / RATE_HZ;
+                let y = state.tick(&force, libm::sin(turn));
+                if n >= 44_100 {
+                    (re, im) = (re + y * libm::sin(turn), im + y * libm::cos(turn));
+                }
+            }
+            libm::hypot(re, im) / 22_050.0
+        };
+        assert!((gain(2.0) / 20.0 - 1.0).abs() < 0.01);
+        // 0.5 m/s over 1 mm: −3 dB at 500 Hz, where of the mass 19/(1 + i 10)² is left beside 1.
+        let (re, im) = (1.0 + 19.0 * -99.0 / 10_201.0, 19.0 * -20.0 / 10_201.0);
+        assert!((gain(500.0) / (0.5f64.sqrt() * libm::hypot(re, im)) - 1.0).abs() < 0.01, "{}", gain(500.0));
+        // Momentum stays: what a light body sends in all, it sends rolling too.
+        let light = RollingForce::new((0.5, 1e-3), (0.5, 50.0), RATE_HZ);
+        let mut state = RollingForceState::default();
+        let sum: f64 = (0..44_100).map(|n| state.tick(&light, f64::from(u8::from(n == 0)))).sum();
+        assert!((sum - 1.0).abs() < 1e-9, "{sum}");
     }
 
     #[test]

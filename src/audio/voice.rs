@@ -299,7 +299,7 @@ impl Voice {
         let over = RolledOver {
             slot,
             source_power_m2: seat.power_m2(self.path.last.position_m),
-            tip_radius_m: shared.probe(self.role.probe).tip_radius_m(),
+            probe: shared.probe(self.role.probe).micro_contact.probe(),
             at: &self.path.last,
             sample_rate_hz: shared.sample_rate_hz,
         };

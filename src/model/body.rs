@@ -67,8 +67,8 @@ impl Body {
         self
     }
 
-    /// How loud impacts on it are beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike of 10 mN·s is then some 40 dB
-    /// above a stroke. A scene file that leaves it out has the [level policy](crate::open::levels) find it.
+    /// How loud impacts on it are beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike is then far above a
+    /// stroke. A scene file that leaves it out has the [level policy](crate::open::levels) find it.
     #[must_use]
     pub fn strike_gain(mut self, gain: f64) -> Self {
         self.strike_gain = gain;

@@ -15,7 +15,7 @@
 //! A bus that says how many pascals full scale is, and holds bodies whose modes are in pascals, has their level from there: the gain by
 //! policy follows from other bodies and leaves these alone; a bus without others has 1.
 //!
-//! Strikes are far louder than strokes, by 20 to 70 dB where mechanics has the word, and what rings long adds them up. So impacts have a gain of their
+//! Strikes are far louder than strokes where mechanics has the word, and what rings long adds them up. So impacts have a gain of their
 //! own beside strokes, `strike_gain`, at most 1: one for all bodies whose bus has its gain from here, the greatest with which fifty reference
 //! strikes a second, 10 g of steel at 0.5 m/s, peak within full scale on every one of them. Bodies keep their loudness beside each other when they are
 //! struck; a `strike_gain` that a body writes is its own, and 1 is mechanics'.

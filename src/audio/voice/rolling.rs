@@ -1,20 +1,23 @@
 //! Rolling: of what rolls and does not slide only the ride over the ground is felt and heard (`dsp::rolling`).
 //!
-//! Heights in, heights out, and before the body impulses in, impulses out. How much of the motion is slip, and what ground lies there, is worked out at the steps of the absolute sample grid; between two of
-//! them the share goes along a straight line. A contact whose reports tell no slip slides, and its heights stay what they are to the bit.
+//! Heights in, heights out, and before the body impulses in, impulses out. How much of the motion is slip, and what ground lies there, is worked out
+//! at the steps of the absolute sample grid; between two of them the share goes along a straight line. A contact whose reports tell no slip slides, and
+//! its heights stay what they are to the bit.
 
 use crate::model::event::ContactSample;
 use crate::prepared::area::FINGERTIP_RADIUS_M;
+use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::fractal_noise::{FractalNoise, growth};
-use asperity_dsp::rolling::{Rolling as Law, RollingFilter, RollingState};
+use asperity_dsp::micro_contact::Probe;
+use asperity_dsp::rolling::{Rolling as Law, RollingFilter, RollingForce, RollingForceState, RollingState};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock};
 
 /// Slower than this a contact neither rolls nor slides, m/s: it goes on as it did.
 const RESTING_M_S: f64 = 1e-4;
-/// The low-pass of what is sent is nowhere slower, Hz: below what is heard.
-const SLOWEST_HZ: f64 = 20.0;
+/// Of what rolls free its weight presses, m/s².
+const GRAVITY_M_S2: f64 = 9.81;
 /// What of the way to another share is left after a step of the grid: 8 ms for most of it, half a report at 60 Hz.
 const LAG: f64 = 0.8;
 
@@ -27,10 +30,10 @@ pub(super) struct Rolling {
     share: [f64; 2],
     /// Of the ground under its last sample.
     roughness: f64,
-    /// Of the ride, and of what is sent.
-    filters: [RollingFilter; 2],
+    filter: RollingFilter,
+    force: RollingForce,
     ride: RollingState,
-    sent: [RollingState; 2],
+    sent: [RollingForceState; 2],
 }
 
 /// What is rolled over and how.
@@ -39,7 +42,7 @@ pub(super) struct RolledOver<'a> {
     pub(super) slot: &'a SurfaceSlot,
     /// Mean square of the relief that the source has there, m².
     pub(super) source_power_m2: f64,
-    pub(super) tip_radius_m: f64,
+    pub(super) probe: &'a Probe,
     pub(super) at: &'a PathPoint,
     pub(super) sample_rate_hz: f64,
 }
@@ -58,7 +61,7 @@ impl Rolling {
     /// It begins as the newest report says, where the profile begins.
     pub(super) fn begin(&mut self, over: RolledOver<'_>, surface: &SurfaceBlock) {
         (self.ride, self.roughness) = (RollingState::at(surface.height_m[0]), surface.roughness[0]);
-        self.sent = [RollingState::default(); 2];
+        self.sent = Default::default();
         self.turn(over);
         let share = self.wanted(over.at).unwrap_or(0.0);
         self.share = [share; 2];
@@ -75,7 +78,7 @@ impl Rolling {
         let radius_m = self.told.and_then(|(_, radius_m)| radius_m);
         let micro_m = over.slot.surface.micro_relief_m * growth(self.roughness);
         let law = Law {
-            radius_m: radius_m.unwrap_or(over.tip_radius_m.max(FINGERTIP_RADIUS_M)),
+            radius_m: radius_m.unwrap_or(over.probe.tip_radius_m.max(FINGERTIP_RADIUS_M)),
             normal_force_n: over.at.normal_force_n,
             modulus_pa: over.slot.stroking.ground.modulus_pa(),
             rms_at_1mm_m: libm::sqrt(micro_m * micro_m + over.source_power_m2),
@@ -83,11 +86,12 @@ impl Rolling {
         };
         let [ride_m, patch_m] = law.wavelengths_m();
         let speed_m_s = libm::hypot(u, v);
-        // What rests rides no further, but the force on a patch that rests is the force on its points.
-        let patch_m_s = speed_m_s.max(SLOWEST_HZ * patch_m);
-        self.filters = [(speed_m_s, ride_m), (patch_m_s, patch_m)].map(|(speed_m_s, wavelength_m)| {
-            RollingFilter::new(speed_m_s, wavelength_m, over.sample_rate_hz)
-        });
+        self.filter = RollingFilter::new(speed_m_s, ride_m, over.sample_rate_hz);
+        let rolling_kg = rolling_kg(over.probe, law.normal_force_n);
+        let stiffness_n_m = stiffness_n_m(over.probe, &over.slot.stroking.ground, law.normal_force_n);
+        let resonance_hz = libm::sqrt(stiffness_n_m / rolling_kg) / std::f64::consts::TAU;
+        let mass = (rolling_kg / over.probe.pad_mass_kg, resonance_hz);
+        self.force = RollingForce::new((speed_m_s, patch_m), mass, over.sample_rate_hz);
     }
 
     /// The share that the newest report asks for; none at rest.
@@ -108,7 +112,7 @@ impl Rolling {
         }
         for (i, (height_m, friction)) in height_m.iter_mut().zip(&mut surface.friction).enumerate() {
             let share = share_at(self.share, position + i as u64, slow_step);
-            let ride_m = self.ride.tick(&self.filters[0], *height_m);
+            let ride_m = self.ride.tick(&self.filter, *height_m);
             *height_m += share * (ride_m - *height_m);
             *friction *= 1.0 - share;
         }
@@ -117,13 +121,13 @@ impl Rolling {
     /// What is sent to the body comes from a patch that asperities enter and leave.
     pub(super) fn soften(&mut self, position: u64, slow_step: u64, impulses_n_s: [&mut [f64]; 2]) {
         if !self.rolls() {
-            self.sent = [RollingState::default(); 2];
+            self.sent = Default::default();
             return;
         }
         for (state, impulses_n_s) in self.sent.iter_mut().zip(impulses_n_s) {
             for (impulse_n_s, sample) in impulses_n_s.iter_mut().zip(position..) {
                 let share = share_at(self.share, sample, slow_step);
-                let patch_n_s = state.tick(&self.filters[1], *impulse_n_s);
+                let patch_n_s = state.tick(&self.force, *impulse_n_s);
                 *impulse_n_s += share * (patch_n_s - *impulse_n_s);
             }
         }
@@ -144,6 +148,12 @@ impl Rolling {
             self.run(0, MAX_BLOCK as u64, surface, MAX_BLOCK);
         }
     }
+}
+
+/// What of a rolling body follows the ground, kg: as much as presses with its weight, as far as the probe has it. A finger gives way.
+fn rolling_kg(probe: &Probe, force_n: f64) -> f64 {
+    let most_kg = if probe.ridge_m > 0.0 { 0.0 } else { probe.finger_mass_kg };
+    probe.pad_mass_kg + (force_n / GRAVITY_M_S2 - probe.pad_mass_kg).clamp(0.0, most_kg)
 }
 
 /// The share at a sample between two steps of the grid.
