@@ -141,7 +141,7 @@ fn calibrated(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Vec<bool>, 
     let maker =
         Maker { files: overrides.files, maps: &Maps::default(), own: overrides.own, seed: 0, workers: None };
     let is = |entry| {
-        let body = maker.body(entry, &file.audio, &[])?;
+        let body = maker.body(entry, &file.audio, &[], 1.0)?;
         let pascals = file.audio.get(body.bus).and_then(|bus| bus.pascals_at_full_scale);
         Ok(pascals.is_some() && body.model.unit == crate::model::mode_shapes::Unit::PascalsAtOneMetre)
     };
@@ -175,9 +175,9 @@ fn assemble(
         let id = scene.add_probe(*probe).map_err(|error| place(FileError::told(error)))?;
         names.probes.insert(name.clone(), id);
     }
-    for entry in &file.bodies {
+    for (entry, strike_gain) in file.bodies.iter().zip(&levels.strike_gain) {
         let place = |error: FileError| at(error.within(format!("body \"{}\"", entry.name)));
-        let body = maker.body(entry, &file.audio, &levels.gain).map_err(place)?;
+        let body = maker.body(entry, &file.audio, &levels.gain, *strike_gain).map_err(place)?;
         let id = scene.add_body(body).map_err(|error| place(FileError::told(error)))?;
         names.bodies.insert(entry.name.clone(), id);
     }

@@ -120,6 +120,8 @@ parameters! {
         RESIDUAL: "residual", "", limits::material::RESIDUAL,
             "Gain of the residual that the modes file may carry; 0 = not played", or(1.0);
         SIZE_M: "size_m", "m", limits::material::SIZE_M, "Longest side or diameter of a stock body";
+        STRIKE_GAIN: "strike_gain", "", limits::impact::GAIN,
+            "Linear gain of impacts beside strokes, 1 = as mechanics says; missing: by the level policy where the bus's gain is, else 1";
         MASS_KG: "mass_kg", "kg", limits::material::MASS_KG,
             "Mass, for friction that rings a body without shapes; a stock body's is known";
     }
@@ -287,6 +289,10 @@ parameters! {
         AT_M: "at_m", "m", limits::PLACE_M, "Place in the body's frame, each coordinate; instead of uv on a surface with a frame", changes(Event);
         DEPTH_M: "depth_m", "m", limits::TIP_DEPTH_M,
             "How deep the tip stands below the untouched surface, instead of a force, on what gives way", changes(Event);
+        SLIP_M_S: "slip_m_s", "m/s", limits::SPEED_M_S,
+            "Speed at which what touches slides on the ground there; missing: as fast as it moves; 0 = it rolls", changes(Event);
+        ROLL_RADIUS_M: "roll_radius_m", "m", limits::impact::RADIUS_M,
+            "Radius of what rolls; missing: of the probe's tip, at least 8 mm", changes(Event);
         CLOSING_M_S: "closing_m_s", "m/s", limits::SPEED_M_S, "Approach speed at landing", or(0.0), changes(Event);
         SPEED_M_S: "speed_m_s", "m/s", limits::SPEED_M_S, "Approach speed of an impact", changes(Event);
         MASS_KG: "mass_kg", "kg", limits::impact::MASS_KG, "Effective mass of the striker", changes(Event);

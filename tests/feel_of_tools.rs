@@ -12,7 +12,9 @@ use asperity_fft::{FftPlanner, num_complex::Complex};
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::raster::Raster;
 use common::plate;
-use common::strokes::{brownian, exponents, map, power, relief, rms_and_centroid, take, third_octaves_db};
+use common::strokes::{
+    brownian, exponents, map, power, relief, rms_and_centroid, take, take_over, third_octaves_db,
+};
 
 const SPEEDS_M_S: [f64; 3] = [0.04, 0.12, 0.24];
 const FORCES_N: [f64; 3] = [0.3, 1.5, 5.0];
@@ -130,11 +132,14 @@ fn a_stylus_is_shaken_as_measured_tools_are() {
     );
 }
 
-/// Grains of a nominal size on 40 mm: flat above twice the size, self-affine below (H 0.8); the rms is 0.27 of the size, as profilometers
+/// Side of the abrasives, m.
+const ABRASIVE_M: f64 = 0.04;
+
+/// Grains of a nominal size: flat above twice the size, self-affine below (H 0.8); the rms is 0.27 of the size, as profilometers
 /// find on coated abrasives.
 fn abrasive(grain_m: f64) -> Surface {
     const SIDE: usize = 1024;
-    let side_m = 0.04;
+    let side_m = ABRASIVE_M;
     let mut rng = Rng::new(3);
     let mut spectrum = vec![Complex::new(0.0, 0.0); SIDE * SIDE];
     let turns = |i: usize| if i < SIDE / 2 { i as f64 } else { i as f64 - SIDE as f64 };
@@ -163,13 +168,8 @@ fn abrasive(grain_m: f64) -> Surface {
 fn coarser_abrasives_shake_a_stylus_more() {
     // FEPA P60, P120 and P320: 269, 125 and 46 µm.
     let levels = [269e-6, 125e-6, 46e-6].map(|grain_m| {
-        let take = take(
-            "stylus",
-            abrasive(grain_m),
-            SPEEDS_M_S[REFERENCE.0],
-            FORCES_N[REFERENCE.1],
-            Quantity::Acceleration,
-        );
+        let cell = (SPEEDS_M_S[REFERENCE.0], FORCES_N[REFERENCE.1]);
+        let take = take_over(ABRASIVE_M, "stylus", abrasive(grain_m), cell, Quantity::Acceleration);
         let (level, centroid_hz) =
             rms_and_centroid(&power(&take.haptic[0], take.sample_rate_hz), 10.0, 500.0);
         println!("grains of {:.0} µm: {level:.2} m/s², {centroid_hz:.0} Hz", grain_m * 1e6);
@@ -179,5 +179,5 @@ fn coarser_abrasives_shake_a_stylus_more() {
     // A three-axis measurement holds what friction shakes, 3 to 5 dB on such ground; a normal force alone does not.
     let off_db = 20.0 * (levels[0] / COARSE_ABRASIVE_M_S2).log10();
     println!("coarse: {off_db:+.1} dB of a published coarse abrasive");
-    assert!((-14.0..8.0).contains(&off_db), "{off_db} dB");
+    assert!((-8.0..8.0).contains(&off_db), "{off_db} dB");
 }

@@ -107,28 +107,66 @@ fn another_stroke_lands_near_the_reference_levels_on_every_stock_material() {
     println!("felt {:+.1} to {:+.1} dB, heard {:+.1} to {:+.1} dB", least[0], most[0], least[1], most[1]);
     println!("heard within 6 dB: {heard_within} of {cells}");
     assert!(least[0] >= -6.0 && most[0] <= 6.0, "felt: {least:?} {most:?}");
-    // Across the grain of a fabric a stylus leaps from thread to thread; the reference strokes run along and across it.
-    assert!(
-        10 * heard_within >= 9 * cells && least[1] >= -6.0 && most[1] <= 14.0,
-        "heard: {least:?} {most:?}"
-    );
+    assert!(heard_within == cells, "heard: {least:?} {most:?}");
 }
 
 #[test]
 fn fifty_strikes_a_second_never_clip() {
-    let mut reduced = Vec::new();
+    let (mut within, mut cells) = (0, 0);
     for preset in Material::PRESETS {
-        let lines = (0..50).map(|n| strike(0.02 * f64::from(n), "b")).collect();
         let toml = scene(preset.name, "fingertip", GROUNDS[0].1);
-        let render = rendered(&toml, &Memory::new(), &ContactLog { lines });
-        assert!(peak(&render.audio[0]) <= 1.0, "{}: {}", preset.name, peak(&render.audio[0]));
-        println!("{}: peak {:.2}, limiter {:.1} dB", preset.name, peak(&render.audio[0]), render.limiter_db);
-        reduced.push(render.limiter_db.abs());
+        // As often as told, and the document's thirty milliseconds apart.
+        for apart_s in [0.02, 0.03] {
+            let lines = (0..50).map(|n| strike(apart_s * f64::from(n), "b")).collect();
+            let render = rendered(&toml, &Memory::new(), &ContactLog { lines });
+            let peak = peak(&render.audio[0]);
+            println!("{}, {apart_s} s: peak {peak:.2}, limiter {:.1} dB", preset.name, render.limiter_db);
+            assert!((0.02..=1.0).contains(&peak), "{}: {peak}", preset.name);
+            within += usize::from(render.limiter_db <= 6.0);
+            cells += 1;
+        }
     }
-    let within = reduced.iter().filter(|db| **db <= 6.0).count();
-    // What rings long sums up: the limiter holds it, by more than 6 dB on metals and glass.
-    println!("{within} of {} within 6 dB", reduced.len());
-    assert!(2 * within >= reduced.len());
+    println!("{within} of {cells} within 6 dB");
+    assert!(20 * within >= 19 * cells);
+}
+
+#[test]
+fn strikes_keep_their_balance_from_body_to_body_and_a_word_makes_them_as_loud_as_mechanics_says() {
+    let body = |name: &str, material: &str, key: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"{material}\"\n{key}\n\
+             [[surface]]\nname = \"{name}-top\"\nbody = \"{name}\"\nwidth_m = 0.14\nheight_m = 0.14\n\
+             roughness = 0.1\nmicro_relief_m = 1e-6\n"
+        )
+    };
+    let opened = |toml: &str| {
+        let file = SceneFile::parse(toml, Path::new("two.toml")).unwrap();
+        Engine::from_scene(&file, &Overrides::default()).unwrap().levels
+    };
+    let found = opened(&(body("a", "glass", "") + &body("b", "wood", "")));
+    assert!(found.strike_gain[0] < 0.3 && found.strike_gain[0] == found.strike_gain[1], "{found:?}");
+    // One that is written is its own, and the others are found without it.
+    let beside = opened(&(body("a", "glass", "strike_gain = 1.0") + &body("b", "wood", "")));
+    assert!(beside.strike_gain[0] == 1.0 && beside.strike_gain[1] >= found.strike_gain[1], "{beside:?}");
+    // With a gain of its own a bus leaves strikes alone.
+    let written = opened(&(body("a", "glass", "") + "[audio]\ngain = 2.0\n"));
+    assert_eq!(written.strike_gain, [1.0]);
+    // What is turned down is turned down by as much as is told, and strokes are not.
+    let toml = |key: &str| body("a", "glass", key) + "[audio]\ngain = 1e-3\nlimit = false\n";
+    let struck = |key: &str| {
+        let lines = vec![strike(0.0, "a"), LogLine { t: 0.3, event: LogEvent::End { contact: 9 } }];
+        peak(&rendered(&toml(key), &Memory::new(), &ContactLog { lines }).audio[0])
+    };
+    assert!((struck("strike_gain = 0.25") / struck("") - 0.25).abs() < 1e-6);
+    let mut stroked = other_stroke();
+    stroked.lines.iter_mut().for_each(|line| {
+        if let LogEvent::Begin { touching, .. } = &mut line.event {
+            touching.surface = "a-top".to_owned();
+        }
+    });
+    let [soft, plain] =
+        ["strike_gain = 0.25", ""].map(|key| rendered(&toml(key), &Memory::new(), &stroked).audio);
+    assert_eq!(soft, plain);
 }
 
 #[test]

@@ -48,6 +48,7 @@ pub mod mode;
 pub mod pair;
 pub mod radiation;
 pub mod rng;
+pub mod rolling;
 pub mod sensation;
 pub mod simd;
 pub mod stick_slip;

@@ -214,6 +214,15 @@ impl Seat {
         })
     }
 
+    /// Mean square of the relief that the source really has about a place, m²; of one that does not tell, a ninth of the square of its reach.
+    pub(crate) fn power_m2(&self, position_m: [f64; 2]) -> f64 {
+        let Some(slot) = &self.current else { return 0.0 };
+        let mut power_m2 = [0.0];
+        slot.surface.source.add_local_power(&[position_m], &mut power_m2);
+        let reach_m = slot.surface.source.reach_m() / 3.0;
+        if power_m2[0].is_finite() { power_m2[0] } else { reach_m * reach_m }
+    }
+
     /// Tells the surface how it is touched.
     pub(crate) fn react(&mut self, touch: &Touch) -> Reaction {
         self.current.as_mut().map_or_else(Reaction::default, |slot| slot.surface.source.react(touch))

@@ -19,6 +19,7 @@ mod path;
 mod profile;
 mod rest;
 mod role;
+mod rolling;
 mod rub_block;
 mod scratch;
 mod shared;
@@ -53,6 +54,7 @@ use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
 use path::Path;
+use rolling::{RolledOver, Rolling};
 use scratch::Lane;
 use shared::Pass;
 use skin::ContactSkin;
@@ -94,6 +96,7 @@ pub(crate) struct Voice {
     path: Path,
     /// Where in the micro-relief it is.
     cells: NoiseCells,
+    rolling: Rolling,
     tip: Tip,
     pad: Pad,
     drag: Drag,
@@ -133,6 +136,7 @@ impl Voice {
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
             cells: NoiseCells::default(),
+            rolling: Rolling::default(),
             tip: Tip::default(),
             pad: Pad::idle(&shared.own_probe),
             drag: Drag::idle(sample_rate_hz),
@@ -144,9 +148,10 @@ impl Voice {
         }
     }
 
-    /// A report tells what carries its tip, or that it is pressed.
+    /// A report tells what carries its tip, or that it is pressed, and whether it rolls.
     pub(crate) fn carry(&mut self, sample: &ContactSample) {
         self.tip.carry(sample);
+        self.rolling.tell(sample);
     }
 
     /// Whether there is anything to render but rest.
@@ -239,6 +244,9 @@ impl Voice {
             let velocity_m_s = self.path.last.velocity_m_s;
             self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
         }
+        if at_slow_step && self.rolling.rolls() {
+            self.roll(shared, seat, Rolling::turn);
+        }
         let Some(slot) = seat.current() else { return false };
         let Scratch { lanes, profile, .. } = scratch;
         let Lane { points, height_m, force_n, .. } = &mut lanes[lane];
@@ -256,6 +264,7 @@ impl Voice {
         self.path.run(slot, points, &mut profile.at_m);
         let along = self.along(shared, position, slopes || dragged);
         profile.run(seat, along, points, &mut self.cells);
+        self.rolling.run(position, shared.slow_step, &mut profile.surface, n);
         height_m[..n].copy_from_slice(&profile.surface.height_m[..n]);
         force_n[..n].copy_from_slice(&profile.force_n[..n]);
         true
@@ -345,7 +354,10 @@ impl Voice {
         let slow_step = shared.slow_step;
         let by = Excited { slot, probe, reaction, sample_rate_hz, slow_step, position };
         self.exciters.run(&by, rows, force, out);
+        let sent = [&mut out.impulse_n_s[..n], &mut out.force_n_s[..n]];
+        self.rolling.soften(position, slow_step, sent);
         self.exciters.rub(&by, points, rows, out);
+        self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
     }
 
     /// How much of the contact sounds: the more, the harder it is pressed and the closer it nestles to the ground.
@@ -354,6 +366,19 @@ impl Voice {
         let touch = self.touch_at(position);
         let hollow_m = |reach_m| seat.hollow_m(&touch, reach_m, tip_radius_m);
         loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
+    }
+
+    /// Over what it rolls at its last sample, to whoever minds.
+    fn roll(&mut self, shared: &Shared, seat: &Seat, then: impl FnOnce(&mut Rolling, RolledOver<'_>)) {
+        let Some(slot) = seat.current() else { return };
+        let over = RolledOver {
+            slot,
+            source_power_m2: seat.power_m2(self.path.last.position_m),
+            probe: shared.probe(self.role.probe).micro_contact.probe(),
+            at: &self.path.last,
+            sample_rate_hz: shared.sample_rate_hz,
+        };
+        then(&mut self.rolling, over);
     }
 
     /// How the contact pressed at its last sample.

@@ -14,6 +14,9 @@ use crate::prepared::bank::LONGEST_CONTACT_S;
 /// Events this far ahead of what is rendered wait longer than any clock's window, s.
 const FAR_AHEAD_S: f64 = 0.25;
 
+/// A limiter that turns down by more is told, dB.
+const LIMITED_DB: u64 = 12;
+
 /// A reason why less is heard or felt than was reported. Its text says what would be right.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -121,6 +124,15 @@ pub enum SilentBecause {
         /// How many, as [`Stats::shed`] counts.
         count: u64,
     },
+    /// A limiter holds down what is far too loud, and what plays beside it.
+    #[error(
+        "a limiter has turned down by {by_db} dB, and with what is too loud whatever else plays there: lower the gain of its bus, \
+         strike_gain of what is struck, or raise full_scale of its actuator"
+    )]
+    TurnedDown {
+        /// By how much at most, dB.
+        by_db: u64,
+    },
     /// The audio gain is zero.
     #[error("the audio gain is 0; raise gain under [audio], AudioBus::gain")]
     AudioGainZero,
@@ -201,6 +213,7 @@ impl Reported {
                 because.push(reason);
             }
         };
+        say(stats.limiter_db > LIMITED_DB, SilentBecause::TurnedDown { by_db: stats.limiter_db });
         say(config.audio.iter().all(|bus| bus.gain == 0.0), SilentBecause::AudioGainZero);
         say(self.contacts + self.impacts > 0 && self.ringing == 0, SilentBecause::NothingRings);
         let strokes_only = self.contacts > 0 && self.impacts == 0;

@@ -95,6 +95,8 @@ counters! {
     /// How far ahead of the audio the latest event was stamped, samples. Live, more than some blocks' worth says
     /// why it is silent: game and audio are not tied ([`Config::live`](crate::Config::live)).
     ahead,
+    /// By how much the peak limiters have turned down at most, whole dB.
+    limiter_db,
     /// Pieces of work left out because blocks ran late: a group of modes or an octave of a contact's noise
     /// for 64 samples, or a contact.
     shed,

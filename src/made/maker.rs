@@ -18,8 +18,14 @@ use asperity_texture::wrap::Wrap;
 use std::path::Path;
 
 impl<'a> Maker<'a> {
-    /// A body, on the bus that it names.
-    pub fn body(&self, entry: &BodyEntry, audio: &[AudioEntry], gains: &[f64]) -> Result<Body, FileError> {
+    /// A body, on the bus that it names; its impacts are as loud as it says, or else as `strike_gain` does.
+    pub fn body(
+        &self,
+        entry: &BodyEntry,
+        audio: &[AudioEntry],
+        gains: &[f64],
+        strike_gain: f64,
+    ) -> Result<Body, FileError> {
         let material = entry.material.unwrap_or(Body::DEFAULT_MATERIAL);
         let mut model = match (&entry.modes, entry.stock) {
             (Some(path), _) => ModalModel::load_from(self.files, path).map_err(FileError::told)?,
@@ -47,7 +53,8 @@ impl<'a> Maker<'a> {
         }
         let stock_kg = || entry.stock.map(|(shape, size_m)| shape.mass_kg(&material, size_m));
         let body = Body::new(model).of(material).on_bus(bus);
-        Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), ..body })
+        let strike_gain = entry.strike_gain.unwrap_or(strike_gain);
+        Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), strike_gain, ..body })
     }
 
     /// What all sources of a surface share.

@@ -21,6 +21,7 @@ pub struct Body {
     pub(crate) material: Material,
     pub(crate) bus: usize,
     pub(crate) gain: f64,
+    pub(crate) strike_gain: f64,
     pub(crate) mass_kg: Option<f64>,
 }
 
@@ -31,7 +32,7 @@ impl Body {
     /// A body of PLA on bus 0.
     #[must_use]
     pub fn new(model: ModalModel) -> Self {
-        Self { model, material: Self::DEFAULT_MATERIAL, bus: 0, gain: 1.0, mass_kg: None }
+        Self { model, material: Self::DEFAULT_MATERIAL, bus: 0, gain: 1.0, strike_gain: 1.0, mass_kg: None }
     }
 
     /// Of another material, which decides how long impacts on it last.
@@ -63,6 +64,14 @@ impl Body {
     #[must_use]
     pub fn gain(mut self, gain: f64) -> Self {
         self.gain = gain;
+        self
+    }
+
+    /// How loud impacts on it are beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike is then far above a
+    /// stroke. A scene file that leaves it out has the [level policy](crate::open::levels) find it.
+    #[must_use]
+    pub fn strike_gain(mut self, gain: f64) -> Self {
+        self.strike_gain = gain;
         self
     }
 }

@@ -41,6 +41,11 @@ pub struct ContactSample {
     pub at_m: Option<[f64; 3]>,
     /// How deep the tip stands below the untouched surface, m; below 0 it is above it. For surfaces that give way.
     pub depth_m: Option<f64>,
+    /// Speed at which what touches slides on the ground where they touch, m/s: missing = as fast as it moves, a stroke; 0 = it rolls. Between
+    /// them it does a bit of both ([`asperity_dsp::rolling`]).
+    pub slip_m_s: Option<f64>,
+    /// Radius of what rolls, m; missing = its probe's tip, and at least that of a fingertip, 8 mm. Without a slip it says nothing.
+    pub roll_radius_m: Option<f64>,
 }
 
 /// The same as it is written.
@@ -58,6 +63,10 @@ struct Written {
     at_m: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     depth_m: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    slip_m_s: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    roll_radius_m: Option<f64>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands out references")]
@@ -69,7 +78,8 @@ impl TryFrom<Written> for ContactSample {
     type Error = &'static str;
 
     fn try_from(written: Written) -> Result<Self, &'static str> {
-        let Written { uv, velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m } = written;
+        let Written { uv, velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m, slip_m_s, roll_radius_m } =
+            written;
         let normal_force_n = match (normal_force_n, depth_m) {
             (Some(force_n), _) => force_n,
             (None, Some(_)) => 0.0,
@@ -79,13 +89,23 @@ impl TryFrom<Written> for ContactSample {
         if uv.is_none() && at_m.is_none() {
             return Err("missing field `uv`; or at_m, on a surface with a frame");
         }
-        Ok(Self { uv: uv.unwrap_or([f64::NAN; 2]), velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m })
+        let uv = uv.unwrap_or([f64::NAN; 2]);
+        Ok(Self { uv, velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m, slip_m_s, roll_radius_m })
     }
 }
 
 impl From<ContactSample> for Written {
     fn from(sample: ContactSample) -> Self {
-        let ContactSample { uv, velocity_m_s, normal_force_n, closing_m_s, at_m, depth_m } = sample;
+        let ContactSample {
+            uv,
+            velocity_m_s,
+            normal_force_n,
+            closing_m_s,
+            at_m,
+            depth_m,
+            slip_m_s,
+            roll_radius_m,
+        } = sample;
         let told_by_place = |value: f64| at_m.is_some() && value.is_nan();
         Self {
             uv: Some(uv).filter(|uv| !uv.iter().any(|x| told_by_place(*x))),
@@ -94,6 +114,8 @@ impl From<ContactSample> for Written {
             closing_m_s,
             at_m,
             depth_m,
+            slip_m_s,
+            roll_radius_m,
         }
     }
 }
@@ -140,6 +162,25 @@ impl ContactSample {
         self
     }
 
+    /// Rolling, a body of this radius, m: nothing of its motion is slip.
+    ///
+    /// ```
+    /// let marble = asperity::ContactSample::new([0.2, 0.5], 0.05).sliding([0.4, 0.0]).rolling(0.008);
+    /// assert_eq!(marble.slip_m_s, Some(0.0));
+    /// ```
+    #[must_use]
+    pub fn rolling(mut self, radius_m: f64) -> Self {
+        (self.slip_m_s, self.roll_radius_m) = (Some(0.0), Some(radius_m));
+        self
+    }
+
+    /// Sliding with this speed where it touches, m/s, whatever else of its motion is: a wheel that spins or locks.
+    #[must_use]
+    pub fn slipping(mut self, slip_m_s: f64) -> Self {
+        self.slip_m_s = Some(slip_m_s);
+        self
+    }
+
     /// Landing with this speed, m/s.
     #[must_use]
     pub fn landing(mut self, closing_m_s: f64) -> Self {
@@ -164,6 +205,8 @@ impl ContactSample {
         within("normal_force_n", self.normal_force_n, limits::NORMAL_FORCE_N)?;
         within("depth_m", self.depth_m.unwrap_or(0.0), limits::TIP_DEPTH_M)?;
         within("closing_m_s", self.closing_m_s, limits::SPEED_M_S)?;
+        within("slip_m_s", self.slip_m_s.unwrap_or(0.0), limits::SPEED_M_S)?;
+        within("roll_radius_m", self.roll_radius_m.unwrap_or(1.0), limits::impact::RADIUS_M)?;
         self.normal_force_n = self.normal_force_n.max(0.0);
         Ok(self)
     }
@@ -219,6 +262,7 @@ mod tests {
             ContactSample::at_depth([0.1, 0.2], 0.003),
             ContactSample::tip_at([0.1, 0.2, -0.003]),
             sample().placed([1.0, 2.0, 3.0]),
+            sample().rolling(0.008).slipping(0.02),
         ] {
             let text = serde_json::to_string(&sample).unwrap();
             let again: ContactSample = serde_json::from_str(&text).unwrap();
@@ -240,6 +284,8 @@ mod tests {
                 ("normal_force_n", ContactSample { normal_force_n: bad, ..sample() }),
                 ("depth_m", ContactSample::at_depth([0.1; 2], bad)),
                 ("at_m", sample().placed([0.0, bad, 0.0])),
+                ("slip_m_s", sample().slipping(bad)),
+                ("roll_radius_m", sample().rolling(bad)),
                 ("closing_m_s", ContactSample { closing_m_s: bad, ..sample() }),
             ];
             for (field, case) in cases {

@@ -243,6 +243,7 @@ impl ContactEvent {
     pub(crate) fn at_pace(mut self, pace: f64) -> Self {
         if let Self::Begin { sample, .. } | Self::Moved { sample, .. } = &mut self {
             sample.velocity_m_s = sample.velocity_m_s.map(|v| v.map(|v| v * pace));
+            sample.slip_m_s = sample.slip_m_s.map(|slip| slip * pace);
         }
         self
     }

@@ -1,10 +1,12 @@
 //! Levels of a scene: what full scale stands for, and the gains of the buses.
 
-/// What was resolved: one number a channel or bus, whoever gave it.
+/// What was resolved: one number a channel, bus or body, whoever gave it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Levels {
     /// m or m/s² at sample value 1.0 of each actuator.
     pub full_scale: Vec<f64>,
     /// Linear gain of each bus.
     pub gain: Vec<f64>,
+    /// Linear gain of impacts beside strokes, of each body.
+    pub strike_gain: Vec<f64>,
 }

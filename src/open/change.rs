@@ -10,6 +10,7 @@ use crate::game::scene::Scene;
 use crate::made::maker::Maker;
 use crate::made::maps::Maps;
 use crate::model::body::Body;
+use crate::model::id::BodyId;
 use crate::model::surface::Surface;
 use asperity_texture::sand::SandWorker;
 use std::cell::RefCell;
@@ -51,13 +52,21 @@ impl Scene {
         };
         let at = |error: FileError| error.within(after.path.display());
         let gains: Vec<f64> = self.config().audio.iter().map(|bus| bus.gain).collect();
-        let new = New::make(&maker, &gains, before, after, overrides.touched).map_err(at)?;
+        let strike_gain = |name: &String| self.strike_gain_of(names.bodies.get(name));
+        let new = New::make(&maker, (&gains, &strike_gain), before, after, overrides.touched).map_err(at)?;
         let mut changes = Changes { waiting: waiting(before, after), ..Changes::default() };
         new.put(self, names, &mut changes).map_err(at)?;
         self.apply_buses(before, after, &mut changes).map_err(at)?;
         self.remove_what_is_gone(names, before, after, &mut changes).map_err(at)?;
         changes.workers = workers.into_inner();
         Ok(changes)
+    }
+
+    /// How loud impacts are on a body that says nothing: as they are on it, and on a new one as on the others, which share what the level policy
+    /// has found.
+    fn strike_gain_of(&self, body: Option<&BodyId>) -> f64 {
+        let known = body.and_then(|body| self.given.get(body)).map(|body| body.strike_gain);
+        known.unwrap_or_else(|| self.given.values().map(|body| body.strike_gain).fold(1.0, f64::min))
     }
 
     fn apply_buses(
@@ -114,7 +123,7 @@ struct New<'a> {
 impl<'a> New<'a> {
     fn make(
         maker: &Maker<'_>,
-        gains: &[f64],
+        (gains, strike_gain): (&[f64], &dyn Fn(&String) -> f64),
         before: &SceneFile,
         after: &'a SceneFile,
         touched: &[PathBuf],
@@ -125,7 +134,7 @@ impl<'a> New<'a> {
         let mut bodies = Vec::new();
         for entry in after.bodies.iter().filter(|entry| differs(entry)) {
             // Buses are those that the engine was built with.
-            let body = maker.body(entry, &before.audio, gains);
+            let body = maker.body(entry, &before.audio, gains, strike_gain(&entry.name));
             bodies.push((entry, body.map_err(|error| error.within(format!("body \"{}\"", entry.name)))?));
         }
         let body_of = |file: &'a SceneFile, entry: &SurfaceEntry| {

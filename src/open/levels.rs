@@ -1,6 +1,6 @@
 //! The level policy: what `full_scale` and `gain` are where a scene does not say.
 //!
-//! One reference stroke, 0.1 m/s at 1 N, is rendered over every surface of the scene with every probe, before anything else; the loudest and
+//! One reference stroke, 0.1 m/s at 1 N, is rendered over every surface of the scene with every probe, four times in directions of its own, before anything else; the loudest and
 //! the strongest of them land on the reference levels below. So levels follow from relief, probe, material and modes, whatever they are, and
 //! within a scene surfaces and probes keep their differences. From there a stroke grows as it does: faster and harder is stronger.
 //!
@@ -15,13 +15,18 @@
 //! A bus that says how many pascals full scale is, and holds bodies whose modes are in pascals, has their level from there: the gain by
 //! policy follows from other bodies and leaves these alone; a bus without others has 1.
 //!
-//! Where no stroke is heard, a reference strike counts: 10 g of steel at 0.5 m/s peak at −12 dBFS. Sand is left out, because the
+//! Strikes are far louder than strokes where mechanics has the word, and what rings long adds them up. So impacts have a gain of their
+//! own beside strokes, `strike_gain`, at most 1: one for all bodies whose bus has its gain from here, the greatest with which fifty reference
+//! strikes a second, 10 g of steel at 0.5 m/s, peak within full scale on every one of them. Bodies keep their loudness beside each other when they are
+//! struck; a `strike_gain` that a body writes is its own, and 1 is mechanics'.
+//!
+//! Where no stroke is heard, one reference strike counts: it peaks at −12 dBFS. Sand is left out, because the
 //! stroke would leave its print; a scene of nothing else has [`FALLBACK_FULL_SCALE_M`] and a gain of 1. Where a level was
 //! resolved a peak limiter stands behind it, unless the scene says `limit = false`.
 
 use crate::engine::Engine;
 use crate::files::FileError;
-use crate::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Striker};
+use crate::files::contact_log::{ContactLog, LogEdit, LogEvent, LogHand, LogLine, Striker};
 use crate::files::scene_file::{SceneFile, Source};
 use crate::model::actuator::Quantity;
 use crate::model::event::ContactSample;
@@ -45,14 +50,20 @@ pub const FALLBACK_FULL_SCALE_M: f64 = 1e-4;
 pub const FALLBACK_FULL_SCALE_M_S2: f64 = 50.0;
 
 /// How long each stroke lasts, s, and from when on it is measured.
-const STROKE_S: f64 = 0.4;
+const STROKE_S: f64 = 0.35;
 const SETTLED_S: f64 = 0.1;
+/// Strikes of a burst, and between two of them, s.
+const BURST: (u32, f64) = (50, 0.02);
 /// Between two strokes, s.
 const PAUSE_S: f64 = 0.1;
 /// What is weaker is silence: rms in m, m/s² or the modes' own units.
 const SILENT: f64 = 1e-10;
 /// Where a stroke begins, uv.
 const FROM: [f64; 2] = [0.31, 0.37];
+/// Where they go, unit vectors of u and v: along threads and across them, and between.
+const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.6, -0.8], [0.0, 1.0], [0.8, 0.6]];
+/// The least power that one of them counts with, over the strongest: along its ribs a file is silent.
+const LEAST_POWER: f64 = 1.0 / 16.0;
 
 impl Levels {
     /// What the scene says; NaN where it does not.
@@ -60,6 +71,7 @@ impl Levels {
         Self {
             full_scale: file.actuators.iter().map(|entry| entry.full_scale.unwrap_or(f64::NAN)).collect(),
             gain: file.audio.iter().map(|entry| entry.gain.unwrap_or(f64::NAN)).collect(),
+            strike_gain: file.bodies.iter().map(|entry| entry.strike_gain.unwrap_or(1.0)).collect(),
         }
     }
 
@@ -78,7 +90,11 @@ pub(super) fn resolve(
     if levels.is_whole() {
         return Ok(levels);
     }
-    let plain = Levels { full_scale: vec![1.0; levels.full_scale.len()], gain: vec![1.0; levels.gain.len()] };
+    let plain = Levels {
+        full_scale: vec![1.0; levels.full_scale.len()],
+        gain: vec![1.0; levels.gain.len()],
+        ..levels.clone()
+    };
     let trials = Trials::of(file, calibrated);
     let Engine { scene, renderer, names, .. } = assemble(&plain)?;
     let options = Options { tail_s: 0.3, ..Options::default() };
@@ -101,6 +117,13 @@ pub(super) fn resolve(
     for (bus, level) in levels.gain.iter_mut().enumerate().filter(|(_, level)| level.is_nan()) {
         *level = if shared.contains(&bus) { gain } else { 1.0 };
     }
+    let silent =
+        |burst: &&Burst| shared.contains(&burst.bus) && file.bodies[burst.body].strike_gain.is_none();
+    let loudest =
+        trials.bursts.iter().filter(silent).map(|burst| gain * burst.peak(&render)).fold(0.0, f64::max);
+    for burst in trials.bursts.iter().filter(silent) {
+        levels.strike_gain[burst.body] = loudest.max(1.0).recip();
+    }
     Ok(levels)
 }
 
@@ -112,14 +135,37 @@ struct Trial {
     start_s: f64,
 }
 
+/// Reference strikes that follow each other on one body.
+struct Burst {
+    body: usize,
+    bus: usize,
+    start_s: f64,
+}
+
+impl Burst {
+    /// Between this one and the next, s: what rings is damped in it.
+    const PAUSE_S: f64 = 0.15;
+
+    fn length_s() -> f64 {
+        f64::from(BURST.0) * BURST.1
+    }
+
+    /// Its peak.
+    fn peak(&self, render: &Render) -> f64 {
+        let ends_s = [self.start_s, self.start_s + Self::length_s()];
+        peak(&render.audio[self.bus], ends_s, render.sample_rate_hz)
+    }
+}
+
 /// Everything that is tried, as a log.
 struct Trials {
     log: ContactLog,
     strokes: Vec<Trial>,
     /// Whether a body plays on each bus that does not tell in pascals how loud it is.
     levelled: Vec<bool>,
-    /// When the first strike comes.
-    strikes_s: f64,
+    /// When the single strikes come, from and to.
+    strikes_s: [f64; 2],
+    bursts: Vec<Burst>,
 }
 
 impl Trials {
@@ -138,7 +184,8 @@ impl Trials {
             log: ContactLog { lines: Vec::new() },
             strokes: Vec::new(),
             levelled: vec![false; file.audio.len()],
-            strikes_s: 0.0,
+            strikes_s: [0.0; 2],
+            bursts: Vec::new(),
         };
         for bus in file.bodies.iter().filter_map(|body| bus_of(&body.name)) {
             trials.levelled[bus] = true;
@@ -152,38 +199,52 @@ impl Trials {
             }
             for probe in &probes {
                 for actuator in kinds(file) {
-                    for axis in 0..2 {
+                    for way in WAYS {
                         let bus = entry.body.as_ref().and_then(bus_of);
-                        trials.stroke(file, (surface, *probe, actuator), axis, (at_s, bus));
+                        trials.stroke(file, (surface, *probe, actuator), way, (at_s, bus));
                         at_s += STROKE_S + PAUSE_S;
                     }
                 }
             }
         }
-        trials.strikes_s = at_s;
+        trials.strikes_s[0] = at_s;
         for body in file.bodies.iter().filter(|body| !is_calibrated(&body.name)) {
-            let striker = Striker::Preset("steel".to_owned());
-            trials.log.lines.push(LogLine { t: at_s, event: strike(&body.name, striker) });
+            trials.log.lines.push(LogLine { t: at_s, event: strike(&body.name) });
             at_s += PAUSE_S;
         }
+        trials.strikes_s[1] = at_s;
+        for (body, entry) in file.bodies.iter().enumerate() {
+            if let Some(bus) = bus_of(&entry.name).filter(|bus| file.audio[*bus].gain.is_none()) {
+                trials.burst(&entry.name, Burst { body, bus, start_s: at_s + Burst::PAUSE_S });
+                at_s += Burst::PAUSE_S + Burst::length_s();
+            }
+        }
         trials
+    }
+
+    /// What rang before is damped.
+    fn burst(&mut self, name: &str, burst: Burst) {
+        let damped = LogLine { t: burst.start_s - Burst::PAUSE_S, event: LogEvent::Edit(LogEdit::FadeAll) };
+        self.log.lines.push(damped);
+        self.log.lines.extend(
+            (0..BURST.0).map(|n| LogLine { t: burst.start_s + f64::from(n) * BURST.1, event: strike(name) }),
+        );
+        self.bursts.push(burst);
     }
 
     fn stroke(
         &mut self,
         file: &SceneFile,
         (surface, probe, actuator): (usize, Option<&str>, usize),
-        axis: usize,
+        way: [f64; 2],
         (start_s, bus): (f64, Option<usize>),
     ) {
         let entry = &file.surfaces[surface];
         let size_m = [entry.width_m, entry.height_m];
         let contact = self.strokes.len() as u64;
         let sample = |t: f64| {
-            let mut uv = FROM;
-            uv[axis] += REFERENCE_SPEED_M_S * t / size_m[axis];
-            let mut velocity_m_s = [0.0; 2];
-            velocity_m_s[axis] = REFERENCE_SPEED_M_S;
+            let velocity_m_s = way.map(|share| share * REFERENCE_SPEED_M_S);
+            let uv = [0, 1].map(|axis| FROM[axis] + velocity_m_s[axis] * t / size_m[axis]);
             let velocity_m_s = Some(velocity_m_s);
             ContactSample {
                 uv,
@@ -221,7 +282,8 @@ impl Trials {
         gain.min(limits::AUDIO_GAIN.high)
     }
 
-    /// Greatest rms of what two strokes across each other give.
+    /// Greatest rms of what strokes in all directions give: the mean of their levels in decibels, so that ground that is loud in one of them lands in the
+    /// middle.
     fn strongest<'a>(&self, render: &Render, of: impl Fn(&Trial) -> Option<&'a [f32]>) -> f64 {
         let power = |trial: &Trial| {
             let samples = of(trial)?;
@@ -229,18 +291,25 @@ impl Trials {
             let part = samples.get(range[0]..range[1])?;
             Some(part.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>() / part.len().max(1) as f64)
         };
-        let pairs = self.strokes.chunks(2).filter_map(|pair| {
-            let powers: Vec<f64> = pair.iter().filter_map(power).collect();
-            (!powers.is_empty()).then(|| powers.iter().sum::<f64>() / powers.len() as f64)
+        let means = self.strokes.chunks(WAYS.len()).filter_map(|strokes| {
+            let powers: Vec<f64> = strokes.iter().filter_map(power).collect();
+            let least = LEAST_POWER * powers.iter().copied().fold(0.0, f64::max);
+            let logs = powers.iter().map(|power| power.max(least).ln()).sum::<f64>();
+            (least > 0.0).then(|| (logs / powers.len() as f64).exp())
         });
-        pairs.fold(0.0, f64::max).sqrt()
+        means.fold(0.0, f64::max).sqrt()
     }
 
     /// Peak of what the strikes give.
     fn struck(&self, render: &Render, samples: &[f32]) -> f64 {
-        let from = (self.strikes_s * render.sample_rate_hz) as usize;
-        samples.get(from..).unwrap_or(&[]).iter().fold(0.0, |peak, x| peak.max(f64::from(x.abs())))
+        peak(samples, self.strikes_s, render.sample_rate_hz)
     }
+}
+
+/// Largest sample between two times.
+fn peak(samples: &[f32], ends_s: [f64; 2], sample_rate_hz: f64) -> f64 {
+    let [from, to] = ends_s.map(|s| ((s * sample_rate_hz) as usize).min(samples.len()));
+    samples[from..to].iter().fold(0.0, |peak, x| peak.max(f64::from(x.abs())))
 }
 
 /// The first actuator of each kind of output.
@@ -253,14 +322,14 @@ fn kinds(file: &SceneFile) -> Vec<usize> {
 }
 
 /// The reference strike on a body.
-fn strike(body: &str, striker: Striker) -> LogEvent {
+fn strike(body: &str) -> LogEvent {
     LogEvent::Impact {
         body: body.to_owned(),
         other: None,
         speed_m_s: 0.5,
         mass_kg: 0.01,
         radius_m: 0.005,
-        striker,
+        striker: Striker::Preset("steel".to_owned()),
         restitution: 1.0,
         position: 0,
         at_m: None,

@@ -62,7 +62,7 @@ impl Scene {
             return Err(FileError::new("body: bus", "is a name, and a body by itself knows no names", right));
         }
         let entry = BodyEntry::read(table, folder)?;
-        self.maker(overrides, &Maps::default(), None).body(&entry, &[], &[])
+        self.maker(overrides, &Maps::default(), None).body(&entry, &[], &[], 1.0)
     }
 
     /// A surface from the keys of a scene file's `[[surface]]`; `name` may be missing. It rings `on`, or the body that the table

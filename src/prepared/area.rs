@@ -10,7 +10,7 @@
 use crate::prepared::stiffness::within;
 
 /// Radius of a fingertip's pulp, m: of what has no tip of its own. Hertz fits of fingers take 5 to 10 mm; **chosen** among them.
-const FINGERTIP_RADIUS_M: f64 = 8e-3;
+pub(crate) const FINGERTIP_RADIUS_M: f64 = 8e-3;
 /// How far from its middle a tip feels how the ground bends, over its radius: about the radius of its area of contact. **Chosen.**
 const REACH: f64 = 0.25;
 /// κ r in the closest hollow, where the law of a small area ends, and on the sharpest crest.

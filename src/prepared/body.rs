@@ -44,6 +44,8 @@ pub(crate) struct BodySlot {
     ones: Box<[LaneGains]>,
     bursts: Bursts,
     click: Option<Click>,
+    /// Of impacts beside strokes.
+    strike_gain: f64,
     /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
     early: ImpulseRing<f32>,
     /// The same of forces in the present stretch.
@@ -163,9 +165,15 @@ impl BodySlot {
             ones,
             bursts,
             click: model.click,
+            strike_gain: 1.0,
             early,
             early_of_forces: EarlySamples::NONE,
         })
+    }
+
+    /// Its impacts sound so much louder than mechanics says, linear.
+    pub(crate) fn struck_with(self, strike_gain: f64) -> Self {
+        Self { strike_gain, ..self }
     }
 
     /// The place of a strike position; one the body does not have counts as its last.
@@ -183,6 +191,7 @@ impl BodySlot {
         mode_level: usize,
         sample_rate_hz: f64,
     ) {
+        let pulse = &HertzPulse { impulse_n_s: self.strike_gain * pulse.impulse_n_s, ..*pulse };
         let end = pulse.end_sample(stamp.sample(), sample_rate_hz);
         let driven = groups_at(mode_level, self.bank.groups());
         let anywhere = self.field.as_mut().zip(spot.place.as_ref());

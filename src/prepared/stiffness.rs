@@ -37,6 +37,11 @@ impl Ground {
         Self { modulus_pa, hard: material.young_pa >= SOFT_PA }
     }
 
+    /// E/(1 − ν²), Pa.
+    pub(crate) fn modulus_pa(&self) -> f64 {
+        self.modulus_pa
+    }
+
     /// Whether it counts as rigid beside a probe.
     fn is_hard(&self) -> bool {
         self.hard

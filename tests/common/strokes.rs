@@ -21,9 +21,20 @@ pub fn map(name: &str, relief_m: f64) -> Option<Surface> {
 
 /// A stroke of a second along u with a probe preset.
 pub fn take(probe: &str, surface: Surface, speed_m_s: f64, force_n: f64, output: Quantity) -> Render {
+    take_over(SIDE_M, probe, surface, (speed_m_s, force_n), output)
+}
+
+/// The same on a surface of another width, m: uv counts in its widths.
+pub fn take_over(
+    width_m: f64,
+    probe: &str,
+    surface: Surface,
+    (speed_m_s, force_n): (f64, f64),
+    output: Quantity,
+) -> Render {
     let actuators = vec![ActuatorSettings { full_scale: 1.0, output, ..ActuatorSettings::default() }];
     let config = Config { probe: probe_by_name(probe).unwrap(), actuators, ..Config::default() };
-    let log = stroke(SIDE_M, speed_m_s, force_n, 1.0);
+    let log = stroke(width_m, speed_m_s, force_n, 1.0);
     render(config, surface, &log, &Options { tail_s: 0.0, ..Options::default() })
 }
 

@@ -3,7 +3,7 @@
 //! ```text
 //! closing    (v₁ − v₂) · n before the step, gravity's share of the step included
 //! mass       1 / (n·K₁n + n·K₂n),  n·Kn = 1/m + (r × n)·I⁻¹(r × n)
-//! path       of a round body: (v_c + (ω·n) n × r) ∥ surface, of others: the slip, v_c + ω × r
+//! path       of a round body: (v_c + (ω·n) n × r) ∥ surface, of others: the slip, v_c + ω × r; a round one tells its slip beside it
 //! ```
 
 use crate::solved::Solved;
@@ -76,7 +76,7 @@ impl Pair {
         });
         // What has just struck leaves again, or slides from the next step on.
         if let Some(scraped) = scraped.filter(|_| !strikes) {
-            self.slide(step, &solved, (scraped, path, closing_m_s), next_contact, events);
+            self.slide(step, &solved, (scraped, path, slip, closing_m_s), next_contact, events);
         }
         if let Some(touch) = &mut self.touch {
             touch.contact = self.contact;
@@ -88,7 +88,7 @@ impl Pair {
         &mut self,
         step: &Step<'_>,
         solved: &Solved,
-        (scraped, path, closing_m_s): (usize, Vector, f32),
+        (scraped, path, slip, closing_m_s): (usize, Vector, Vector, f32),
         next_contact: &mut u64,
         events: &mut Vec<ContactEvent>,
     ) {
@@ -98,9 +98,13 @@ impl Pair {
         if self.resting_steps > REST_STEPS || (rests && self.contact.is_none()) {
             return self.end(events);
         }
-        let Some((sample, surface)) = self.sample(step, solved, scraped, path) else {
+        let Some((mut sample, surface)) = self.sample(step, solved, scraped, path) else {
             return self.end(events);
         };
+        // What is not round slides as fast as it moves.
+        if let Some(radius_m) = step.roll_radius_m(scraped) {
+            sample = sample.rolling(radius_m).slipping(f64::from(slip.length()));
+        }
         if let Some(contact) = self.contact {
             events.push(ContactEvent::moved(contact, sample));
             return;
@@ -201,6 +205,13 @@ impl Step<'_> {
             if striker.actuator.is_some() { (striker.body, None) } else { (None, striker.body) };
         impact.actuator = striker.actuator.or(thing.actuator);
         Some(impact)
+    }
+
+    /// Radius of the round one that touches the scraped one, m.
+    fn roll_radius_m(&self, scraped: usize) -> Option<f64> {
+        let [a, b] = self.colliders.map(|collider| self.view.colliders.get(collider));
+        let round = [a, b][1 - scraped].is_some_and(is_round);
+        Some(radius_m([(self.things[0], a?), (self.things[1], b?)])).filter(|_| round)
     }
 
     /// Which of the two is scraped: the one with a surface; of two the one that moves less easily.

@@ -156,6 +156,7 @@ impl asp_event {
             closing_m_s: self.closing_m_s,
             at_m: all_told(self.at_m),
             depth_m,
+            ..ContactSample::default()
         }
     }
 

@@ -25,9 +25,7 @@ pub(crate) fn sample(uv: Vector2, force_n: f64, velocity_m_s: Option<Vector2>) -
         uv: [f64::from(uv.x), f64::from(uv.y)],
         velocity_m_s: velocity_m_s.map(|v| [f64::from(v.x), f64::from(v.y)]),
         normal_force_n: force_n,
-        closing_m_s: 0.0,
-        at_m: None,
-        depth_m: None,
+        ..ContactSample::default()
     }
 }
 

@@ -146,6 +146,7 @@ impl Row {
             closing_m_s: self.told(CLOSING_M_S).unwrap_or(0.0),
             at_m: self.several(AT_M),
             depth_m,
+            ..ContactSample::default()
         }
     }
 

@@ -40,6 +40,8 @@ pub struct Report {
     pub full_scale: Vec<f64>,
     /// Gain of the audio, written or by the level policy; a list where there are several buses.
     pub gain: Value,
+    /// Gain of impacts beside strokes of each body, written or by the level policy.
+    pub strike_gain: Vec<f64>,
     /// By how much the peak limiters turned down at most, dB.
     pub limiter_db: f64,
     /// Contacts faded because nothing was heard of them.
@@ -96,6 +98,7 @@ pub(super) fn report(render: &Render, kernel: Isa, levels: Levels, watching: Dur
         haptic_peak: render.haptic.iter().map(|channel| peak(channel)).collect(),
         full_scale: levels.full_scale,
         gain: one_or_all(levels.gain),
+        strike_gain: levels.strike_gain,
         limiter_db: render.limiter_db,
         orphaned: stats.orphaned,
         lapsed: stats.lapsed,

@@ -49,7 +49,7 @@ fn turned_down(report: &Report) -> Option<String> {
     let by_db = report.limiter_db;
     (by_db > HARD_DB).then(|| {
         format!(
-            "a limiter turned down by up to {by_db:.1} dB: lower gain under [audio] or raise full_scale of the [[actuator]] (in use: \
+            "a limiter turned down by up to {by_db:.1} dB: lower gain under [audio], strike_gain of the [[body]], or raise full_scale of the [[actuator]] (in use: \
              gain {}, full_scale {:?})",
             report.gain, report.full_scale
         )

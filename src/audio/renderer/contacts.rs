@@ -94,6 +94,7 @@ impl Renderer {
             return false;
         };
         voice.resume(&self.shared);
+        voice.carry(sample);
         // It does not jump: see above.
         let _: Option<Trajectory> = voice.moved(sample, slot, stamp, self.position);
         self.silent.retain(|silent| silent.contact != contact);

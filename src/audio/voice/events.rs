@@ -47,6 +47,7 @@ impl Voice {
         self.fades.begin(self.role.gain, lands, shared);
         let force_n = self.path.begin(sample, slot, stamp);
         self.tip = Tip::begin(sample);
+        self.rolling.tell(sample);
         scratch.profile.at_m = [sample.at_m.unwrap_or_default(); MAX_BLOCK];
         let ground = slot.stroking.ground;
         seat.land(&self.touch_at(position));
@@ -58,6 +59,7 @@ impl Voice {
             let along = self.along(shared, position, false);
             scratch.profile.run(seat, along, points, &mut self.cells);
             let height_m = scratch.profile.surface.height_m[0];
+            self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
             // It touches at the stamp; without delay it would one sample before the voice's first.
             self.pad.land(height_m, force_n, sample.closing_m_s, 1.0 + stamp.fraction());
             self.ac.feel = ContactOutputState::begin(at.output, height_m, -sample.closing_m_s);
@@ -81,6 +83,8 @@ impl Voice {
         let Stretch { shared, output, position, .. } = at;
         let [slope_m_s, bend_m_s2] = self.trend(shared, position, seat, scratch);
         self.lay_behind(1, shared, position, seat, scratch);
+        self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
+        self.rolling.lead_in(&mut scratch.profile.surface);
         let (heights_m, forces_n) = (&scratch.profile.surface.height_m, &scratch.profile.force_n);
         let row = self.pad.lead_in(heights_m, forces_n, slope_m_s, &mut scratch.lanes[0].rows);
         let PadSample { pad_m, pad_velocity_m_s, .. } = row;

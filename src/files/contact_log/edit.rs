@@ -126,6 +126,9 @@ pub struct LogBody {
     /// Linear gain; missing: 1.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub gain: f64,
+    /// Linear gain of impacts beside strokes; missing: 1.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub strike_gain: f64,
     /// Its mass, if it is known, kg.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
@@ -157,7 +160,8 @@ pub struct LogSurface {
 impl From<&Body> for LogBody {
     fn from(body: &Body) -> Self {
         let modes = serde_json::from_str(&body.model.to_json()).unwrap_or_default();
-        Self { modes, material: body.material, bus: body.bus, gain: body.gain, mass_kg: body.mass_kg }
+        let Body { material, bus, gain, strike_gain, mass_kg, .. } = *body;
+        Self { modes, material, bus, gain, strike_gain, mass_kg }
     }
 }
 
@@ -168,6 +172,7 @@ impl LogBody {
     /// When the modes are none.
     pub(crate) fn body(&self) -> Result<Body, crate::model::modal_model::ModalModelError> {
         let body = Body::new(ModalModel::parse(&self.modes.to_string())?);
-        Ok(Body { material: self.material, bus: self.bus, gain: self.gain, mass_kg: self.mass_kg, ..body })
+        let Self { material, bus, gain, strike_gain, mass_kg, .. } = *self;
+        Ok(Body { material, bus, gain, strike_gain, mass_kg, ..body })
     }
 }

@@ -15,7 +15,7 @@ struct Keys {
     read_past: &'static [&'static str],
 }
 
-const BODY: &[&str] = &["body", "modes", "material", "bus", "gain"];
+const BODY: &[&str] = &["body", "modes", "material", "bus", "gain", "strike_gain", "mass_kg"];
 const SURFACE: &[&str] = &["surface", "is", "folder", "material"];
 
 const fn edit(event: &'static str, read: &'static [&'static str]) -> Keys {
@@ -39,6 +39,8 @@ const EVENTS: &[Keys] = &[
             "closing_m_s",
             "at_m",
             "depth_m",
+            "slip_m_s",
+            "roll_radius_m",
         ],
         read_past: &["direction"],
     },
@@ -54,6 +56,8 @@ const EVENTS: &[Keys] = &[
             "closing_m_s",
             "at_m",
             "depth_m",
+            "slip_m_s",
+            "roll_radius_m",
         ],
         read_past: &["actuator", "direction"],
     },

@@ -23,6 +23,8 @@ pub struct BodyEntry {
     pub radiation: bool,
     /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
     pub residual: Option<f64>,
+    /// Gain of impacts beside strokes; none = by the level policy.
+    pub strike_gain: Option<f64>,
     /// Its mass, kg; none = a stock body's own, or unknown.
     pub mass_kg: Option<f64>,
     /// Name of the bus it plays on; none = the first.
@@ -41,6 +43,7 @@ pub(super) fn read(mut fields: Fields, folder: &Path) -> Result<BodyEntry, FileE
         material: read_material(&mut fields)?,
         radiation: fields.flag("radiation")?.unwrap_or(false),
         residual: fields.number(&parameters::body::RESIDUAL)?,
+        strike_gain: fields.number(&parameters::body::STRIKE_GAIN)?,
         mass_kg: fields.number(&parameters::body::MASS_KG)?,
         bus: fields.text("bus")?,
     };

@@ -9,6 +9,7 @@ use crate::model::error::AddError;
 use crate::model::id::BodyId;
 use crate::model::strike_field::StrikeField;
 use crate::prepared::body::BodySlot;
+use crate::prepared::probe::colliding_kg;
 use crate::prepared::stroking::Stroking;
 use asperity_dsp::{DesignError, limits};
 use std::sync::Arc;
@@ -73,12 +74,14 @@ impl Scene {
     pub(crate) fn prepared_body(&self, id: BodyId, body: &Body) -> Result<(Message, KnownBody), AddError> {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
         let gain = within("gain", body.gain, limits::impact::GAIN)?;
+        let strike_gain = within("strike_gain", body.strike_gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
         let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
         let mass_kg = body.mass_kg.map(|kg| within("mass_kg", kg, limits::material::MASS_KG)).transpose()?;
         let rubs_on = self.surfaces.iter().any(|(_, known)| known.body == Some(id) && known.rubs);
         let heard = audible.as_ref().unwrap_or(model);
-        let body = Box::new(BodySlot::new(heard, mass_kg, self.kernel, rate, inner)?);
+        let body = BodySlot::new(heard, mass_kg, self.kernel, rate, inner)?;
+        let body = Box::new(body.struck_with(strike_gain));
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let field = heard.shapes.as_ref().map(|shapes| Arc::new(StrikeField::new(Arc::clone(shapes))));
@@ -92,7 +95,7 @@ impl Scene {
 
     /// How strokes excite a body.
     pub(super) fn stroking(&self, body: &KnownBody) -> Result<Stroking, DesignError> {
-        let (mass_kg, rate_hz) = (self.config.probe.pad_mass_kg, self.config.inner_rate_hz());
+        let (mass_kg, rate_hz) = (colliding_kg(&self.config.probe), self.config.inner_rate_hz());
         Stroking::new(body.material, body.lowest_mode_hz, mass_kg, rate_hz)
     }
 
