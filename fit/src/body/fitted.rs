@@ -3,6 +3,7 @@
 //! Everything that is said of the modes is said of the *struck body*: of what the engine plays when the modes file is
 //! struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t + φ) from the onset on and nothing else.
 
+use crate::body::no_louder::no_louder;
 use crate::body::residual::{Burst, Residual, ratio_db};
 use crate::body::struck::{lead, struck};
 use crate::options::{FitOptions, Found, LARGEST_AMPLITUDE};
@@ -119,6 +120,8 @@ pub struct Fit {
 const TAKEN: f64 = 0.95;
 /// Below this resynthesis, dB, a user should know.
 const POOR_DB: f64 = 6.0;
+/// A struck body may be so much louder than its recording: 2.5 dB.
+const LOUDEST: f64 = 1.334;
 /// The band of the modes reaches this far beyond the lowest and the highest, as a factor.
 const HALF_OCTAVE: f64 = std::f64::consts::SQRT_2;
 
@@ -157,6 +160,12 @@ impl Fit {
         let (contact, onset, offset) = (offset, onset - lead, offset + lead);
         early.iter_mut().for_each(|p| *p = p.moved(-(lead as f64)));
         let sound = &samples[onset..end];
+        if let Some(louder) = no_louder(sound, &mut early, LOUDEST) {
+            warnings.push(Warning::LouderThanRecorded { over_db: 20.0 * louder.log10() });
+            for (partial, early) in partials.iter_mut().zip(&early) {
+                partial.c = early.moved(offset as f64).c;
+            }
+        }
         let struck = struck(&early, samples.len() - onset);
         let mut left = samples.to_vec();
         left[onset..].iter_mut().zip(&struck).for_each(|(left, struck)| *left -= struck);

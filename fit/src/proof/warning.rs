@@ -77,6 +77,11 @@ pub enum Warning {
         /// What is left of it, relative to it, dB.
         left_db: f64,
     },
+    /// Struck at once, the modes would be louder than the recording ever is; their amplitudes were fitted anew.
+    LouderThanRecorded {
+        /// By how much their peak was over the recording's, dB.
+        over_db: f64,
+    },
     /// Modes explain little of the recording.
     PoorFit {
         /// Struck body against recording in the modes' band, dB.
@@ -113,6 +118,7 @@ impl Warning {
             Self::Hum { .. } => "hum",
             Self::Rumble { .. } => "rumble",
             Self::NotExponential { .. } => "not exponential",
+            Self::LouderThanRecorded { .. } => "loud strike",
             Self::PoorFit { .. } => "poor fit",
             Self::Offset { .. } => "constant offset",
             Self::Cancelling { .. } => "cancelling",
@@ -213,6 +219,11 @@ impl fmt::Display for Warning {
                 "the decay of {} that ring loudest is no exponential, least at {frequency_hz:.1} Hz ({left_db:.0} dB of \
                  that mode remain); hold the object more freely, or record in a drier room",
                 if *count == 1 { "1 of the modes".to_owned() } else { format!("{count} of the modes") }
+            ),
+            Self::LouderThanRecorded { over_db } => write!(
+                f,
+                "struck at once, the modes would peak {over_db:.1} dB over the recording; amplitudes were fitted anew; \
+                 a harder striker, or one strike alone, makes them right"
             ),
             Self::PoorFit { snr_db } => write!(
                 f,

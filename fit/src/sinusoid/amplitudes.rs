@@ -49,7 +49,7 @@ fn factored(partials: &[Partial], count: usize) -> Option<Scaled> {
 }
 
 /// The (Re c, Im c) rows and columns of the Gram matrix.
-fn amplitude_gram(partials: &[Partial], count: usize) -> DMatrix<f64> {
+pub(crate) fn amplitude_gram(partials: &[Partial], count: usize) -> DMatrix<f64> {
     let size = 2 * partials.len();
     let mut gram = DMatrix::zeros(size, size);
     let poles: Vec<_> = partials.iter().map(|p| (p.pole(), p.power(count as f64))).collect();
