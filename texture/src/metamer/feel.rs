@@ -1,6 +1,6 @@
 //! Tactile statistics of a reference, and surfaces that are given them.
 
-use super::arrangement::correlation;
+use super::arrangement::{Correlation, correlation};
 use super::bands::{Parts, Scratch};
 use super::level::{Gait, Level, Task, add, on_grid};
 use super::{BORROWED, Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, REACH, check_finite};
@@ -119,18 +119,19 @@ impl Feel {
             tileable,
             passes,
             borrowed,
-            correlation_with_original: with_original,
-            correlation_with_reference: with_reference,
+            correlation_with_original: with_original.in_place,
+            correlation_with_reference: with_reference.highest,
+            shift_from_reference_px: with_reference.shift_px,
         })
     }
 
     /// Correlations of the sub-bands of an image with those of an original, and of the reference laid out over its size.
-    fn arrangement(&mut self, original: &Raster, image: &Raster, tiles: bool) -> [f64; 2] {
+    fn arrangement(&mut self, original: &Raster, image: &Raster, tiles: bool) -> [Correlation; 2] {
         let borders = if tiles { Borders::Periodic } else { Borders::Smooth };
         let image = SplitBorders::of(image, borders).periodic;
         let reference = Raster::from_fn(image.width, image.height, |x, y| self.laid_out(x, y));
         let pyramid = &mut self.level.quick_bands().pyramid;
-        [original, &reference].map(|other| correlation(other, &image, pyramid))
+        [original, &reference].map(|other| correlation(&image, other, pyramid))
     }
 
     /// The reference's height at a texel of the original's grid, which it covers again and again.
