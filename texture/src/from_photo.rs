@@ -1,8 +1,9 @@
 //! Shape from a photograph: a picture becomes a surface that can be touched.
 //!
 //! ```text
-//! photo → camera's noise off → lattice, primitive → symmetric part ─→ heights → displacement
-//!                                                └─ residual ──────→ heights → 1/f^α → roughness R, micro-relief
+//! photo → camera's noise off → lattice, primitive → symmetric part ─→ heights ──────(+)→ displacement
+//!                                                └─ residual ──────→ heights ─ fine ─┘
+//!                                                                        └→ 1/f^α → roughness R, micro-relief
 //! ```
 //! Source: document 004, the chain of chapters 6 (roughness), 7 (symmetry) and 8 (heights). Nothing in it
 //! is tuned by hand:
@@ -26,6 +27,7 @@
 
 mod heights;
 mod options;
+mod residual;
 mod sign;
 
 pub use heights::{Fallback, linear_light};
@@ -34,7 +36,6 @@ pub use sign::{DECIDED, Sign};
 
 use crate::borders::Borders;
 use crate::camera_noise::{MOST_NOISE, without_camera_noise};
-use crate::dark_is_deep::dark_is_deep;
 use crate::fractal_dimension::{Condition, conditions, transects};
 use crate::raster::Raster;
 use crate::relief_spectrum::ReliefSpectrum;
@@ -97,7 +98,7 @@ impl std::fmt::Display for Doubt {
             Self::Condition(condition) => condition.fmt(f),
             Self::Repeats(confidence) => write!(
                 f,
-                "a pattern repeats (confidence {confidence:.2}): heights are those of its mean cell, roughness and micro-relief those of what differs from it"
+                "a pattern repeats (confidence {confidence:.2}): heights are those of its mean cell and the fine waves of what differs from it, roughness and micro-relief those of what differs"
             ),
             Self::Fallback(reason) => reason.fmt(f),
             Self::GuessedSign => f.write_str(
@@ -190,9 +191,15 @@ pub fn surface_from_photo(
     let averaged = repetition.as_ref().is_some_and(|found| !found.wanders);
     let shaped = if averaged { &parts.symmetric } else { &quiet.picture };
     let mut found = heights::heights_of(shaped, &quiet.picture, options, |done| progress(0.4 + 0.4 * done))?;
+    let textured_px = if averaged {
+        let up = if found.sign.bright_is_deep { -1.0 } else { 1.0 };
+        let residual_px = residual::residual_heights(&parts.residual, picture).map(|z| up * z);
+        residual::add_fine_waves(&mut found.shape.height_px, &residual_px);
+        residual_px
+    } else {
+        found.shape.height_px.clone()
+    };
     let scale = options.scale(&found.shape.height_px);
-    let textured_px =
-        if averaged { residual_heights(&parts.residual, picture) } else { found.shape.height_px.clone() };
     let law = ReliefSpectrum::of(&textured_px);
     let roughness = match &law {
         Some(law) => law.roughness_map(&textured_px),
@@ -299,13 +306,6 @@ fn take_apart(picture: &Raster) -> (Option<Repetition>, symmetry::Separation) {
     let share = (deviation(&parts.symmetric) / deviation(picture).max(1e-12)).powi(2).min(1.0);
     let wanders = symmetry::steadiness(picture, &lattice, &averaged) < STEADY;
     (Some(Repetition { lattice, group: found.group, share, wanders }), parts)
-}
-
-/// Heights of what does not repeat, by its contrast against the whole picture.
-fn residual_heights(residual: &Raster, picture: &Raster) -> Raster {
-    let mean = picture.mean();
-    let quiet = without_camera_noise(&residual.map(|v| v + mean)).picture;
-    dark_is_deep(&heights::contrast(&quiet))
 }
 
 /// The mean cell of the heights.

@@ -363,6 +363,20 @@ impl Pyramid {
         sums
     }
 
+    /// Adds to `sum` the cross spectrum of one sub-band of two images with these half spectra, Ψ² A B*, times `gain`.
+    pub(crate) fn add_cross_spectrum(
+        &self,
+        [a, b]: [&[Complex64]; 2],
+        index: usize,
+        gain: f64,
+        sum: &mut [Complex64],
+    ) {
+        let filter = &self.filters[index];
+        for ((place, _), psi) in self.levels[filter.level].frequencies(self.width()).zip(&filter.gains) {
+            sum[place] += a[place] * b[place].conj() * (gain * psi * psi);
+        }
+    }
+
     /// Replaces `values` by the image with this half spectrum.
     pub(crate) fn image(&mut self, spectrum: &[Complex64], values: &mut Vec<f64>) {
         let Level { fft, columns, .. } = &self.levels[0];

@@ -4,6 +4,7 @@
 
 mod surfaces;
 
+use asperity_texture::fft2::{Fft2, angular_frequency};
 use asperity_texture::from_photo::{
     Doubt, Fallback, MOST_TEXELS, PhotoOptions, TEXEL_M, calibration, reduced, surface_from_photo,
 };
@@ -44,6 +45,27 @@ fn tiles_are_taken_apart_and_grout_is_deep() {
 }
 
 #[test]
+fn the_grain_on_a_pattern_stays_in_the_map_and_dirt_does_not() {
+    let tile = |x: usize, y: usize| if x % 16 < 3 || y % 12 < 3 { 0.35 } else { 0.7 };
+    let mut rng = asperity_dsp::rng::Rng::new(70);
+    let grain = Raster::from_fn(192, 192, |_, _| 0.06 * rng.normal());
+    let stain =
+        |x: usize, y: usize| 0.15 * (-((x as f64 - 90.0).powi(2) + (y as f64 - 70.0).powi(2)) / 200.0).exp();
+    let clean = Raster::from_fn(192, 192, tile);
+    let dirty = Raster::from_fn(192, 192, |x, y| tile(x, y) + stain(x, y));
+    let grainy = Raster::from_fn(192, 192, |x, y| tile(x, y) + grain.at(x, y));
+    let heights = |picture: &Raster| made(picture, PhotoOptions::default()).shape.height_px;
+    let plain = heights(&clean);
+    let beside_plain = |other: &Raster| Raster::from_fn(192, 192, |x, y| other.at(x, y) - plain.at(x, y));
+    let rms = |raster: &Raster| (raster.values.iter().map(|v| v * v).sum::<f64>() / 36_864.0).sqrt();
+    let kept = correlation(&beside_plain(&heights(&grainy)), &heights(&grain.map(|v| v + 0.6)));
+    let alone = heights(&Raster::from_fn(192, 192, |x, y| 0.6 + stain(x, y)));
+    let dirt = rms(&beside_plain(&heights(&dirty))) / rms(&alone);
+    println!("correlation with the grain's own heights {kept:.2}; {dirt:.3} of the dirt's own are left");
+    assert!(kept > 0.8 && dirt < 0.3);
+}
+
+#[test]
 fn a_pattern_that_wanders_off_its_lattice_is_not_blurred_into_a_mean_cell() {
     // Bumps 12 texels apart; bent, they run through every phase of their lattice.
     let bumps = |bend: f64, noise: f64| {
@@ -66,7 +88,7 @@ fn a_pattern_that_wanders_off_its_lattice_is_not_blurred_into_a_mean_cell() {
     let noisy = made(&bumps(0.0, 0.2), PhotoOptions::default());
     let repetition = noisy.repetition.as_ref().expect("bumps repeat");
     assert!(!repetition.wanders, "{repetition:?}");
-    assert!(correlation(&noisy.displacement, &bumps(0.0, 0.0)) > 0.9);
+    assert!(correlation(&noisy.symmetric, &bumps(0.0, 0.0)) > 0.9);
 }
 
 #[test]
@@ -119,6 +141,34 @@ fn relief_and_micro_relief_follow_the_contrast_of_the_picture() {
         println!("contrast {contrast}: relief {relief:.3}, micro-relief {micro:.3} of what it should be");
         assert!((relief - 1.0).abs() < 0.2 && (micro - 1.0).abs() < 0.3);
     }
+}
+
+/// Power of the waves of at most 8 texels.
+fn fine_power(raster: &Raster) -> f64 {
+    let (w, h) = (raster.width, raster.height);
+    let spectrum = Fft2::new(w, h).spectrum(&raster.values);
+    let wave = |place: usize| angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
+    let fine = spectrum.iter().enumerate().filter(|(place, _)| wave(*place) >= std::f64::consts::TAU / 8.0);
+    fine.map(|(_, value)| value.norm_sqr()).sum()
+}
+
+#[test]
+fn fine_levels_rank_as_the_plain_contrast_of_1_to_8_texels_does() {
+    // Twelve surfaces of unlike roughness and contrast under one light.
+    let mut levels: Vec<(f64, f64)> = (0..12)
+        .map(|i| {
+            let roughness = 2.2 + 0.15 * f64::from((5 * i) % 12);
+            let gain = 0.05 * 1.13_f64.powi((3 * i) % 13);
+            let picture = fractal(128, roughness, 1.0, 90 + i as u64).map(|v| 0.45 + gain * (v - 0.5));
+            let surface = made(&picture, PhotoOptions::default());
+            (fine_power(&picture).log10(), fine_power(&surface.shape.height_px).log10())
+        })
+        .collect();
+    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let spread = levels[11].0 - levels[0].0;
+    let out_of_order = levels.windows(2).filter(|pair| pair[1].1 < pair[0].1 - 0.1).count();
+    println!("{spread:.1} of spread: {levels:.2?}");
+    assert!(spread > 1.0 && out_of_order == 0);
 }
 
 #[test]

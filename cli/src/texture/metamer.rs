@@ -120,10 +120,12 @@ struct Report {
     heights_after: f64,
     /// Share of the reference's own arrangement in the surface that the passes began with.
     borrowed: f64,
-    /// Mean correlation of the oriented sub-bands with the original's and with the reference's: how much of either
-    /// arrangement the surface has, 1 all and 0 none.
+    /// Mean correlation of the oriented sub-bands with the original's in place and with the reference's at the best of all
+    /// shifts: how much of either arrangement the surface has, 1 all and 0 none.
     correlation_with_original: f64,
     correlation_with_reference: f64,
+    /// That shift of the reference along u and v, texels.
+    shift_from_reference_px: [usize; 2],
     tileable: bool,
     /// Height = `offset` + `scale` · grey, grey 0–1, in units of the reference's white over black.
     offset: f64,
@@ -256,6 +258,7 @@ fn report(options: &Options, made: &Metamer, file: Levels, size: SizeMm) -> Repo
         borrowed: made.borrowed,
         correlation_with_original: made.correlation_with_original,
         correlation_with_reference: made.correlation_with_reference,
+        shift_from_reference_px: made.shift_from_reference_px,
         tileable: made.tileable,
         offset: file.offset,
         scale: file.scale,

@@ -204,11 +204,6 @@ impl Level {
         passes
     }
 
-    /// Whether the grid is finer than [`SIDE`].
-    pub fn is_large(&self) -> bool {
-        self.reduced.is_some()
-    }
-
     /// The bands as large as their waves need: a third of the work, and nearly the same distances.
     pub fn quick_bands(&mut self) -> &mut Bands {
         self.reduced.as_mut().unwrap_or(&mut self.full)
