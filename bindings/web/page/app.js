@@ -4,13 +4,12 @@ import { Feel } from './feel.js';
 import { Hand } from './hand.js';
 import { PIXELS_A_METRE, Picture, RELIEF_TEXELS, lookOf, thumbnail } from './look.js';
 import { fractal, ofImage } from './pictures.js';
-import { archive, download } from './save.js';
 import { Strips, length } from './strips.js';
-import { RATE_HZ, SURFACES, ownSurface, sceneOf } from './surfaces.js';
+import { LEVELS_HZ, RATE_HZ, SURFACES, ownSurface, sceneOf } from './surfaces.js';
 
 const $ = (id) => document.getElementById(id);
-/** Levels of the haptic channel a second, for motors. */
-const LEVELS_HZ = 30;
+/** What of the engine the first surface needs: half of it. The whole comes when that sounds, or when somebody wants more. */
+const FIRST = String(new URL('./first.wasm', import.meta.url));
 /** A take longer than this begins anew when no finger touches, lines of its log. */
 const LONGEST_TAKE = 20000;
 const MOST_FILE_BYTES = 64 << 20;
@@ -24,9 +23,9 @@ worker.onmessage = ({ data: { id, answer, error } }) => {
   else reject(new Error(error));
 };
 
-/** Lets the worker make or render something. */
-async function ask(work) {
-  const { module } = await load();
+/** Lets the worker make or render something, with the whole engine if that is not said otherwise. */
+async function ask(work, wasm) {
+  const { module } = await load(wasm);
   const id = (ask.count = (ask.count ?? 0) + 1);
   worker.postMessage({ id, module, ...work });
   return new Promise((resolve, reject) => asked.set(id, { resolve, reject }));
@@ -51,7 +50,9 @@ function say(sentence, seconds = 6) {
 function make(surface, modes) {
   const { text, pictures, files } = sceneOf(surface, surface.id, modes);
   const relief = surface.draw ? 0 : RELIEF_TEXELS;
-  return ask({ make: { scene: text, pictures, files, rate: RATE_HZ, levels: LEVELS_HZ, relief, watch: surface.watch ? 'surface' : null } });
+  const wasm = surface === SURFACES[0] && modes === undefined && !state.whole ? FIRST : undefined;
+  return ask({ make: { scene: text, pictures, files, rate: RATE_HZ, levels: LEVELS_HZ, relief, watch: surface.watch ? 'surface' : null } }, wasm)
+    .then((prepared) => ({ ...prepared, wasm }));
 }
 
 /** Another surface: under the fingers without a click. */
@@ -107,7 +108,7 @@ async function begin() {
   state.context = context;
   context.onstatechange = () => { if (context.state === 'interrupted') say('The sound was interrupted; touch to go on.'); };
   const { prepared } = state.prepared ? state : { prepared: await make(state.surface) };
-  const engine = await createEngine(context, { prepared });
+  const engine = await createEngine(context, { prepared, wasm: prepared.wasm, part: prepared.wasm !== undefined });
   state.prepared = null;
   const volume = new GainNode(context);
   const analyser = new AnalyserNode(context, { fftSize: 4096, smoothingTimeConstant: 0.2 });
@@ -118,6 +119,7 @@ async function begin() {
   engine.addEventListener('frame', ({ detail }) => frame(detail));
   engine.addEventListener('refused', ({ detail }) => say(`Not played: ${detail.refused}`));
   engine.addEventListener('error', ({ detail }) => refuse(detail));
+  engine.addEventListener('lacking', () => choose(state.surface, state.modes).catch(refuse));
   engine.addEventListener('heard', ({ detail }) => { state.latency_ms = detail.at - detail.heard; });
   feel.tell(context);
   $('wide').disabled = context.destination.maxChannelCount < 4;
@@ -125,6 +127,9 @@ async function begin() {
   await context.resume();
   state.engine = engine;
   hand.again();
+  // What is not heard yet may load now.
+  state.whole = true;
+  await engine.complete();
 }
 
 function touched() {
@@ -242,6 +247,7 @@ async function save() {
   if (log === '') throw new Error('Nothing was played yet: stroke the surface, then save.');
   const { text, pictures, files } = sceneOf(state.surface, name, state.modes);
   const { audio, haptic } = await ask({ render: { scene: text, log, pictures, files } });
+  const { archive, download } = await import('./save.js');
   download(await archive(name, { scene: text, log, pictures, files, audio, haptic }), `${name}.zip`);
   say('Saved: the WAV, and the contact log and scene that make it again.');
 }

@@ -3,6 +3,8 @@ import * as pictures from './pictures.js';
 
 /** Rate of every engine of the page: what it plays is the same on every device, and so is what it saves. */
 export const RATE_HZ = 48000;
+/** Levels of the haptic channel a second, for motors. */
+export const LEVELS_HZ = 30;
 
 const FINGER = '';
 const STICK = `

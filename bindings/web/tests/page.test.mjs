@@ -31,7 +31,8 @@ async function sounding(options, hash = '') {
   return opened;
 }
 
-test('sound begins within a second of the first touch, with no error and no request to anybody else', async (t) => {
+test('sound begins within a second of the first touch and 250 kB, with no error and no request to anybody else', async (t) => {
+  server.sent.bytes = 0;
   const { context, page, wrong } = await open(chromium, server.url);
   await ready(page);
   await page.evaluate(() => {
@@ -46,10 +47,14 @@ test('sound begins within a second of the first touch, with no error and no requ
       look();
     });
   });
+  let [sent, paths] = [0, []];
+  const whole = page.waitForRequest(/asperity\.wasm/).then(() => { [sent, paths] = [server.sent.bytes, [...server.sent.paths]]; });
   await drag(page, line(250, 60));
   const took = await page.evaluate(() => window.first);
-  t.diagnostic(`${took.toFixed(0)} ms`);
+  await whole;
+  t.diagnostic(`${took.toFixed(0)} ms, ${sent} bytes until the whole engine was asked for: ${paths.join(' ')}`);
   assert.ok(took < 1000, `${took} ms`);
+  assert.ok(sent > 200_000 && sent <= 250_000, `${sent} bytes`);
   assert.deepEqual(wrong, []);
   await context.close();
 });
@@ -84,6 +89,20 @@ test('a scripted stroke rendered by an OfflineAudioContext has the same digest t
   const count = Math.min(native.length, ours.length - first.late);
   assert.ok(count > 48000 && native.some((x) => Math.abs(x) > 0.01));
   assert.equal(native.subarray(0, count).findIndex((x, i) => x !== ours[i + first.late]), -1);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('a part of the engine that lacks something is followed by the whole one', async () => {
+  const { context, page, wrong } = await open(chromium, server.url);
+  await ready(page);
+  await drag(page, line(250, 6));
+  await page.waitForFunction(() => window.asperity.state.engine, null, { timeout: 30000 });
+  await page.evaluate(() => window.asperity.state.engine.tell('lacking', {}));
+  await page.waitForFunction(() => window.asperity.state.engine.isPart === false, null, { timeout: 30000 });
+  await drag(page, line(260, 20));
+  const { stats: after } = await stats(page);
+  assert.ok(after.events > 5 && after.refused === 0);
   assert.deepEqual(wrong, []);
   await context.close();
 });
