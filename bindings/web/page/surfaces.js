@@ -38,8 +38,7 @@ full_scale = ${fullScale}
 limit = true
 
 [audio]
-gain = ${gain}
-limit = true
+${gain === null ? '' : `gain = ${gain}\n`}limit = true
 `;
 }
 
@@ -158,12 +157,27 @@ export function ownSurface({ picture, colours }) {
   };
 }
 
+/** A surface of a photograph: heights and roughness as the offline tools found them. */
+export function photoSurface(drawn, { displacement, roughness, relief_m, micro_relief_m }) {
+  const own = ownSurface(drawn);
+  const [width_m, height_m] = own.size_m;
+  const numbers = [`relief_m = ${relief_m}`, `micro_relief_m = ${micro_relief_m}`, `width_m = ${width_m}`, `height_m = ${height_m}`, 'wrap = "mirror"'];
+  return {
+    ...own, name: 'Your photograph', note: 'Heights found from light and shade, roughness from how they fall off.',
+    draw: () => displacement, roughness, fullScale: Math.max(1e-4, relief_m), gain: null,
+    surface: (name) => [`displacement = "${name}.displacement.png"`, `roughness = "${name}.roughness.png"`, ...numbers].join('\n'),
+  };
+}
+
 /** What is saved and opened: the scene's text, and the maps beside it by the names of their files. */
 export function sceneOf(surface, name, modes) {
   const wraps = surface.clamps || surface.mirrors ? '' : '\nwrap = "repeat"';
   const body = modes === undefined ? surface.body : `modes = "${name}.modes.json"\nmaterial = "ceramic"`;
-  const text = scene(name, { ...surface, title: surface.name, body, surface: surface.surface(name) + wraps });
+  // How loud a body of one's own is nobody knows: the engine finds a gain.
+  const gain = modes === undefined ? surface.gain : null;
+  const text = scene(name, { ...surface, gain, title: surface.name, body, surface: surface.surface(name) + wraps });
   const maps = {};
   if (surface.draw) maps[`${name}.${surface.isRoughness ? 'roughness' : 'displacement'}.png`] = surface.draw();
+  if (surface.roughness) maps[`${name}.roughness.png`] = surface.roughness;
   return { text, pictures: maps, files: modes === undefined ? {} : { [`${name}.modes.json`]: modes } };
 }

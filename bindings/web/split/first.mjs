@@ -10,10 +10,10 @@ import { marked, ran, trimmed } from './split.mjs';
 import { opened, play, taken, trouble } from './visit.mjs';
 
 /** A function of at most so many bytes stays whole, if it ever plays. */
-const SHORT_BYTES = 1200;
+const SHORT_BYTES = 500;
 const SEEDS = [1, 2];
 const SECONDS = 8;
-const VISITORS = 16;
+const VISITORS = 24;
 
 const [from, to] = process.argv.slice(2);
 const whole = new Uint8Array(readFileSync(from));

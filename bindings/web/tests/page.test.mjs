@@ -5,6 +5,7 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { SURFACES, sceneOf } from '../page/surfaces.js';
+import { wav } from '../js/engine.js';
 import { png } from '../page/save.js';
 import { browser, drag, host, open } from './host.mjs';
 import { DIST, render, samples, seeded, stroke, text, unzip } from './native.mjs';
@@ -182,11 +183,11 @@ test('everything is reached and done by the keyboard alone', async () => {
   assert.equal(await page.evaluate(() => document.activeElement.id), 'mute');
   const reached = new Set();
   await page.evaluate(() => { document.getElementById('more').open = true; });
-  for (let i = 0; i < 40; i++) {
+  for (let i = 0; i < 44; i++) {
     reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.dataset.id || document.activeElement.tagName));
     await page.keyboard.press('Tab');
   }
-  for (const id of ['mute', 'stroke', 'hit', 'SUMMARY', 'force', 'blow', 'save', 'share', 'own', 'surface', ...SURFACES.map((s) => s.id)]) assert.ok(reached.has(id), `${id} is not reached: ${[...reached]}`);
+  for (const id of ['mute', 'stroke', 'hit', 'SUMMARY', 'force', 'blow', 'save', 'share', 'own', 'listen', 'map', 'surface', ...SURFACES.map((s) => s.id)]) assert.ok(reached.has(id), `${id} is not reached: ${[...reached]}`);
   await page.evaluate(() => { document.getElementById('more').open = false; });
   await page.focus('#surface');
   await page.keyboard.down('ArrowRight');
@@ -236,12 +237,58 @@ test('pictures of the page', async () => {
   }
 });
 
+test('a recorded hit rings and a photograph is stroked, and both are saved as the program renders them', async () => {
+  const { context, page, wrong } = await sounding();
+  const bring = async (name, mimeType, bytes, words) => {
+    await page.setInputFiles('#file', { name, mimeType, buffer: Buffer.from(bytes) });
+    await page.waitForFunction((words) => document.getElementById('status').textContent.includes(words), words, { timeout: 60000 });
+  };
+  const ring = Float32Array.from({ length: 48000 }, (_, i) => (i < 4800 ? 0 : 0.5 * Math.exp(-(i - 4800) / 8000) * Math.sin((i - 4800) / 9)));
+  await bring('cup.wav', 'audio/wav', wav([ring], 48000), 'cup.wav rings now');
+  const side = 96;
+  const lit = Uint16Array.from({ length: side * side }, (_, i) => 32768 + 20000 * Math.sin((i % side) / 4) * Math.cos(Math.floor(i / side) / 5));
+  await bring('wall.png', 'image/png', await png({ width: side, height: side, samples: lit }), 'found from light and shade');
+  await ready(page, 'own');
+  await drag(page, line(260, 30));
+  await page.mouse.click(400, 300);
+  await page.waitForTimeout(300);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save')]);
+  const files = unzip(readFileSync(await download.path()));
+  const native = render(files, 'asperity-own.toml');
+  assert.ok(native.audio.equals(files['asperity-own.wav']), 'audio differs');
+  assert.ok(samples(native.audio).some((x) => Math.abs(x) > 1e-4), 'it is silent');
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('a link brings the strokes of whoever sent it', async () => {
+  const { context, page, wrong } = await sounding();
+  await drag(page, line(250, 20));
+  await page.mouse.click(400, 300);
+  await page.waitForTimeout(300);
+  await page.evaluate(() => document.getElementById('share').click());
+  await page.waitForFunction(() => location.hash.includes('stroke='), null, { timeout: 10000 });
+  const link = await page.evaluate(() => location.href);
+  assert.ok(link.length < 8000, `${link.length} letters`);
+  await context.close();
+  const other = await open(chromium, link);
+  await ready(other.page);
+  assert.match(await other.page.textContent('#status'), /stroke came with this link/);
+  await other.page.click('#surface');
+  await other.page.waitForFunction(() => window.asperity.state.touching && window.asperity.state.speed > 0.02, null, { timeout: 20000 });
+  await other.page.waitForTimeout(1500);
+  const { stats: after } = await stats(other.page);
+  assert.ok(after.events > 15 && after.refused === 0 && after.contacts === 0, JSON.stringify(after));
+  assert.deepEqual([wrong, other.wrong], [[], []]);
+  await other.context.close();
+});
+
 test('hostile links and files are answered in words, and the engine goes on', async () => {
-  const { context, page, wrong } = await sounding({}, '/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe');
+  const { context, page, wrong } = await sounding({}, '/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe&stroke=%00AAAA');
   assert.match(await page.textContent('#status'), /unknown/);
   const drop = async (name, type, bytes) => {
     await page.setInputFiles('#file', { name, mimeType: type, buffer: Buffer.from(bytes) });
-    await page.waitForFunction(() => document.getElementById('status').textContent !== '', null, { timeout: 30000 });
+    await page.waitForFunction(() => !/^(|.* is looked at …)$/.test(document.getElementById('status').textContent), null, { timeout: 60000 });
     const words = await page.textContent('#status');
     await page.evaluate(() => { document.getElementById('status').textContent = ''; });
     return words;
@@ -250,11 +297,14 @@ test('hostile links and files are answered in words, and the engine goes on', as
   const noise = Uint8Array.from({ length: 5000 }, () => 256 * random());
   assert.match(await drop('noise.png', 'image/png', noise), /no picture/);
   assert.match(await drop('half.png', 'image/png', (await png({ width: 9, height: 9, samples: new Uint16Array(81) })).subarray(0, 60)), /no picture/);
-  assert.match(await drop('hit.wav', 'audio/wav', noise), /asperity fit/);
+  assert.match(await drop('hit.wav', 'audio/wav', noise), /no recording/);
+  assert.match(await drop('silence.wav', 'audio/wav', wav([new Float32Array(48000)], 48000)), /silence\.wav: ./);
+  assert.match(await drop('short.wav', 'audio/wav', wav([Float32Array.of(0, 1, 0)], 48000)), /short\.wav: ./);
   assert.match(await drop('x.modes.json', 'application/json', '{"format":"other"}'), /modes/);
   assert.match(await drop('y.modes.json', 'application/json', '['.repeat(100000)), /modes/);
   assert.match(await drop('bomb.svg', 'image/svg+xml', '<svg xmlns="http://www.w3.org/2000/svg"/>'), /./);
   const good = await png({ width: 64, height: 64, samples: Uint16Array.from({ length: 4096 }, (_, i) => (i % 9) * 7000) });
+  await page.evaluate(() => { document.getElementById('map').checked = true; });
   assert.match(await drop('mine.png', 'image/png', good), /bright is high/);
   await ready(page, 'own');
   await drag(page, line(250, 20));
