@@ -69,7 +69,7 @@ class AsperityProcessor extends AudioWorkletProcessor {
   lacks(error) {
     if (!(error instanceof WebAssembly.RuntimeError) || !(this.part || this.moves)) return false;
     [this.engine, this.moves] = [null, false];
-    this.port.postMessage({ lacking: error.message });
+    this.port.postMessage({ lacking: error.stack });
     return true;
   }
 
@@ -142,6 +142,7 @@ class AsperityProcessor extends AudioWorkletProcessor {
 
   /** Lines of a script that are due in this block. */
   play(frames) {
+    if (this.scripted === this.script.length) return;
     const until = (this.engine.position + frames) / sampleRate;
     while (this.scripted < this.script.length && this.script[this.scripted].t < until) {
       const line = this.script[this.scripted++];

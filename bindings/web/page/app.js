@@ -12,6 +12,8 @@ const $ = (id) => document.getElementById(id);
 const TOOLS = String(new URL('./tools.wasm', import.meta.url));
 /** What of the engine the first surface needs: half of it. The whole comes when that sounds, or when somebody wants more. */
 const FIRST = String(new URL('./first.wasm', import.meta.url));
+/** The whole engine is asked for when the first has told so much, frames: a second of sound. */
+const COMPLETED_AFTER = 60;
 /** A take longer than this begins anew when no finger touches, lines of its log. */
 const LONGEST_TAKE = 20000;
 
@@ -120,7 +122,7 @@ async function begin() {
   engine.addEventListener('frame', ({ detail }) => frame(detail));
   engine.addEventListener('refused', ({ detail }) => say(`Not played: ${detail.refused}`));
   engine.addEventListener('error', ({ detail }) => refuse(detail));
-  engine.addEventListener('lacking', () => choose(state.surface, state.modes).catch(refuse));
+  engine.addEventListener('lacking', ({ detail }) => { state.lacked = detail.lacking; choose(state.surface, state.modes).catch(refuse); });
   engine.addEventListener('heard', ({ detail }) => { state.latency_ms = detail.at - detail.heard; });
   feel.tell(context);
   $('wide').disabled = context.destination.maxChannelCount < 4;
@@ -129,9 +131,7 @@ async function begin() {
   state.engine = engine;
   hand.again();
   replay().catch(refuse);
-  // What is not heard yet may load now.
   state.whole = true;
-  await engine.complete();
 }
 
 /** The stroke that came with the link, once. */
@@ -163,6 +163,8 @@ function frame({ rows, levels, tiles }) {
   const last = rows.length - 16;
   [state.speed, state.force, state.touching] = last >= 0 ? [Math.hypot(rows[last + 7], rows[last + 8]), rows[last + 9], rows[last] > 0] : [0, 0, false];
   state.frames++;
+  // What nobody hears yet may load now.
+  if (state.frames === COMPLETED_AFTER) state.engine.complete().catch(refuse);
 }
 
 function readout() {

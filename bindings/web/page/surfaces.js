@@ -45,6 +45,9 @@ ${gain === null ? '' : `gain = ${gain}\n`}limit = true
 /** Colours between two, by a number from 0 to 1. */
 const between = (low, high) => (t) => low.map((c, i) => c + (high[i] - c) * Math.min(1, Math.max(0, t)));
 
+/** Goes from one colour to another where `x` passes `at`, without an edge of texels. */
+const blend = (from, to, x, at) => between(from, to)((x - at) / 0.06 + 0.5);
+
 const map = (lines) => (name) => lines.replaceAll('MAP', `${name}.displacement.png`);
 
 const STEEL = { striker: 'steel', mass_kg: 0.008, radius_m: 0.006, restitution: 0.5 };
@@ -70,7 +73,7 @@ export const SURFACES = [
     fullScale: 0.002, gain: 0.1, blow: STEEL, colour: between([150, 62, 48], [236, 148, 110]), shine: 0.6,
   },
   {
-    id: 'halves', name: 'Matte and shiny', note: 'No relief at all: the bright stripes are rough, the dark ones smooth.',
+    id: 'halves', name: 'Matte, shiny', note: 'No relief at all: the bright stripes are rough, the dark ones smooth.',
     size_m: [0.08, 0.01], draw: pictures.halves, isRoughness: true,
     body: 'stock = "disc"\nsize_m = 0.14\nmaterial = "pla"',
     surface: (name) => `roughness = "${name}.roughness.png"\nwidth_m = 0.08\nheight_m = 0.01`,
@@ -103,7 +106,8 @@ export const SURFACES = [
     fullScale: 1.5e-4, gain: 40, blow: STEEL, shine: 0.35,
     colour: (h, u, v) => {
       const grain = pictures.fractal(u, v, [128, 128], 3, 21);
-      return grain < 0.36 ? [46, 44, 46] : grain > 0.6 ? [214, 196, 188] : between([126, 118, 118], [176, 166, 162])(h);
+      const pale = blend(between([126, 118, 118], [176, 166, 162])(h), [214, 196, 188], grain, 0.6);
+      return blend([46, 44, 46], pale, grain, 0.37);
     },
   },
   {
@@ -121,7 +125,8 @@ export const SURFACES = [
 width_m = 0.3
 height_m = 0.3
 wrap = "clamp"`,
-    fullScale: 2e-4, gain: 3, colour: between([190, 146, 92], [240, 208, 156]), shine: 0,
+    fullScale: 2e-4, gain: 3, shine: 0,
+    colour: (h, u, v) => between([186, 140, 86], [246, 216, 164])(0.6 * h + 0.8 * (pictures.fractal(u, v, [256, 256], 2, 5) - 0.3)),
   },
   {
     id: 'gravel', name: 'Gravel', note: 'Stones under a stick.',

@@ -42,7 +42,16 @@ export function play(engine, seed, seconds) {
   const fingers = new Map();
   let name = 0;
   let skew = 0;
-  const tell = (t, event) => { try { engine.report(t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; } };
+  const late = [];
+  let stalls = 0;
+  const tell = (t, event) => {
+    // A page that is busy reports nothing for a while, and then all at once.
+    late.push([t, event]);
+    if (stalls === 0) for (const [then, what] of late.splice(0)) now(then, what);
+  };
+  const now = (t, event) => { try { engine.report(t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; } };
+  // Every other visitor has one finger only and leads it evenly, as keys do.
+  const isCalm = seed % 2 === 1;
   const pace = () => [0, 0.02, 0.1, 0.3, 1, 3][Math.floor(random() * 6)];
   const begin = (t) => {
     const finger = { uv: [random() * 3 - 1, random() * 3 - 1], v: [pace() * (random() - 0.5), pace() * (random() - 0.5)], t, force: 0.1 + 3 * random() };
@@ -52,17 +61,18 @@ export function play(engine, seed, seconds) {
   const move = (t, contact, finger) => {
     const dt = t - finger.t;
     finger.t = t;
-    if (random() < 0.03) finger.v = [pace() * (random() - 0.5), pace() * (random() - 0.5)];
-    if (random() < 0.005) finger.uv = [random() * 40 - 20, random()];
-    if (random() < 0.05) finger.force = random() < 0.1 ? 0 : 6 * random();
+    if (random() < (isCalm ? 0.002 : 0.03)) finger.v = [pace() * (random() - 0.5), pace() * (random() - 0.5)];
+    if (!isCalm && random() < 0.005) finger.uv = [random() * 40 - 20, random()];
+    if (!isCalm && random() < 0.05) finger.force = random() < 0.1 ? 0 : 6 * random();
     finger.uv = [finger.uv[0] + finger.v[0] * dt / 0.028, finger.uv[1] + finger.v[1] * dt / 0.007];
     tell(t, { event: 'move', contact, uv: finger.uv, velocity_m_s: random() < 0.9 ? finger.v : undefined, normal_force_n: finger.force });
   };
   for (let block = 0; block < (seconds * RATE_HZ) / BLOCK; block++) {
-    const now = 1000 + (block * BLOCK) / RATE_HZ;
+    const clock = 1000 + (block * BLOCK) / RATE_HZ;
+    stalls = stalls > 0 ? stalls - 1 : random() < 0.002 ? Math.floor(600 * random() ** 2) : 0;
     if (random() < 0.002) skew = 0.3 * (random() - 0.5);
-    const t = now + skew + 0.004 * random();
-    if (random() < 0.03 && fingers.size < 10) begin(t);
+    const t = clock + skew + 0.004 * random();
+    if (random() < 0.03 && fingers.size < (isCalm ? 1 : 10)) begin(t);
     for (const [contact, finger] of fingers) {
       if (random() < 0.006) { fingers.delete(contact); if (random() < 0.8) tell(t, { event: 'end', contact }); }
       else if (!finger.still && t > finger.t && random() < 0.35) move(t, contact, finger);
@@ -70,12 +80,14 @@ export function play(engine, seed, seconds) {
     }
     if (random() < 0.02) tell(t, { event: 'impact', body: 'body', speed_m_s: 0.1 + 2.9 * random(), ...SURFACES[0].blow });
     if (random() < 0.002) tell(t, { event: 'end', contact: 1 + Math.floor(random() * name) });
+    if (!(engine.position >= 0)) throw new Error('the engine has no position');
     engine.render(BLOCK);
-    engine.scope();
+    for (const signal of [engine.scope(), engine.audio(0, BLOCK), engine.haptic(0, BLOCK)]) if (!signal.every((x) => !Number.isNaN(x))) throw new Error('not a number');
     if (block % 6 === 0) engine.levels();
     if (block % 188 === 0) { engine.recorded(); engine.record(); }
     if (block % 400 === 0) engine.stats();
   }
+  stalls = 0;
   for (const contact of fingers.keys()) tell(2000, { event: 'end', contact });
 }
 

@@ -53,6 +53,7 @@ test('sound begins within a second of the first touch and 250 kB, with no error 
   await drag(page, line(250, 60));
   const took = await page.evaluate(() => window.first);
   await whole;
+  assert.equal(await page.evaluate(() => window.asperity.state.lacked), undefined);
   t.diagnostic(`${took.toFixed(0)} ms, ${sent} bytes until the whole engine was asked for: ${paths.join(' ')}`);
   assert.ok(took < 1000, `${took} ms`);
   assert.ok(sent > 200_000 && sent <= 250_000, `${sent} bytes`);
@@ -284,8 +285,11 @@ test('a link brings the strokes of whoever sent it', async () => {
 });
 
 test('hostile links and files are answered in words, and the engine goes on', async () => {
-  const { context, page, wrong } = await sounding({}, '/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe&stroke=%00AAAA');
+  const { context, page, wrong } = await sounding({}, '/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe');
   assert.match(await page.textContent('#status'), /unknown/);
+  const changed = await sounding({}, '/#stroke=%00AAAA');
+  assert.match(await changed.page.textContent('#status'), /the stroke in the link is none/);
+  await changed.context.close();
   const drop = async (name, type, bytes) => {
     await page.setInputFiles('#file', { name, mimeType: type, buffer: Buffer.from(bytes) });
     await page.waitForFunction(() => !/^(|.* is looked at …)$/.test(document.getElementById('status').textContent), null, { timeout: 60000 });
