@@ -11,6 +11,8 @@ import { opened, play, taken, trouble } from './visit.mjs';
 
 /** A function of at most so many bytes stays whole, if it ever plays. */
 const SHORT_BYTES = 500;
+/** So does one of which so much was reached anyway. */
+const MOST_OF_IT = 0.7;
 const SEEDS = [1, 2];
 const SECONDS = 6;
 const VISITORS = 24;
@@ -34,7 +36,8 @@ for (const seed of SEEDS) {
 }
 note(first);
 const sizes = bodies(sections(whole).find(({ id }) => id === SECTION.code)).map(({ body }) => body.length);
-const kept = new Set([...plays].filter((i) => sizes[i] <= SHORT_BYTES));
+const left = bodies(sections(trimmed(whole, { entries, reached, whole: new Set() }).bytes).find(({ id }) => id === SECTION.code)).map(({ body }) => body.length);
+const kept = new Set([...plays].filter((i) => sizes[i] <= SHORT_BYTES || left[i] >= MOST_OF_IT * sizes[i]));
 let part = trimmed(whole, { entries, reached, whole: kept });
 
 // More visitors, who need no marks and so go through it ten times as fast: where one stops, that function stays whole.

@@ -67,6 +67,8 @@ export function play(engine, seed, seconds) {
     finger.uv = [finger.uv[0] + finger.v[0] * dt / 0.028, finger.uv[1] + finger.v[1] * dt / 0.007];
     tell(t, { event: 'move', contact, uv: finger.uv, velocity_m_s: random() < 0.9 ? finger.v : undefined, normal_force_n: finger.force });
   };
+  // The first touch may well be there before the first block.
+  if (isCalm) begin(1000.003);
   for (let block = 0; block < (seconds * RATE_HZ) / BLOCK; block++) {
     const clock = 1000 + (block * BLOCK) / RATE_HZ;
     stalls = stalls > 0 ? stalls - 1 : random() < 0.002 ? Math.floor(600 * random() ** 2) : 0;

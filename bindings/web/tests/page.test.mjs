@@ -100,8 +100,12 @@ test('a part of the engine that lacks something is followed by the whole one', a
   await ready(page);
   await drag(page, line(250, 6));
   await page.waitForFunction(() => window.asperity.state.engine, null, { timeout: 30000 });
-  await page.evaluate(() => window.asperity.state.engine.tell('lacking', {}));
-  await page.waitForFunction(() => window.asperity.state.engine.isPart === false, null, { timeout: 30000 });
+  await page.evaluate(() => {
+    delete document.getElementById('surfaces').dataset.ready;
+    window.asperity.state.engine.tell('lacking', {});
+  });
+  await ready(page);
+  assert.equal(await page.evaluate(() => window.asperity.state.engine.isPart), false);
   await drag(page, line(260, 20));
   const { stats: after } = await stats(page);
   assert.ok(after.events > 5 && after.refused === 0);
@@ -277,18 +281,25 @@ test('a link brings the strokes of whoever sent it', async () => {
   assert.match(await other.page.textContent('#status'), /stroke came with this link/);
   await other.page.click('#surface');
   await other.page.waitForFunction(() => window.asperity.state.touching && window.asperity.state.speed > 0.02, null, { timeout: 20000 });
-  await other.page.waitForTimeout(1500);
-  const { stats: after } = await stats(other.page);
-  assert.ok(after.events > 15 && after.refused === 0 && after.contacts === 0, JSON.stringify(after));
+  await other.page.waitForFunction(async () => {
+    const { stats } = await window.asperity.state.engine.stats();
+    return stats.impacts > 0 && stats.contacts === 0 && stats.events > 15;
+  }, null, { timeout: 30000, polling: 300 });
+  assert.equal((await stats(other.page)).stats.refused, 0);
   assert.deepEqual([wrong, other.wrong], [[], []]);
   await other.context.close();
 });
 
 test('hostile links and files are answered in words, and the engine goes on', async () => {
-  const { context, page, wrong } = await sounding({}, '/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe');
+  const { context, page, wrong } = await open(chromium, `${server.url}/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe`);
+  await ready(page);
   assert.match(await page.textContent('#status'), /unknown/);
-  const changed = await sounding({}, '/#stroke=%00AAAA');
-  assert.match(await changed.page.textContent('#status'), /the stroke in the link is none/);
+  await drag(page, line(250, 6));
+  await page.waitForFunction(() => window.asperity.state.engine && window.asperity.state.frames > 3, null, { timeout: 30000 });
+  const changed = await open(chromium, `${server.url}/#stroke=%00AAAA`);
+  await ready(changed.page);
+  await changed.page.click('#surface');
+  await changed.page.waitForFunction(() => /the stroke in the link is none/.test(document.getElementById('status').textContent), null, { timeout: 30000 });
   await changed.context.close();
   const drop = async (name, type, bytes) => {
     await page.setInputFiles('#file', { name, mimeType: type, buffer: Buffer.from(bytes) });

@@ -222,6 +222,39 @@ setInterval(() => {
   flush();
 }, SENT_MS);
 
+// ---- The pad ----
+
+/** Where fingers were, of the last moments. */
+const trail = [];
+const TRAIL_MS = 900;
+
+function draw() {
+  const [canvas, now] = [$('pad'), performance.now()];
+  const scale = Math.min(devicePixelRatio || 1, 2);
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  if (canvas.width !== Math.round(width * scale)) [canvas.width, canvas.height] = [Math.round(width * scale), Math.round(height * scale)];
+  const context = canvas.getContext('2d');
+  const style = getComputedStyle(document.documentElement);
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  context.clearRect(0, 0, width, height);
+  const size = state?.surfaces[surface];
+  context.fillStyle = style.getPropertyValue('--quiet');
+  context.font = '13px system-ui, sans-serif';
+  if (size) context.fillText(`${(1e3 * size.width_m).toPrecision(3)} × ${(1e3 * size.height_m).toPrecision(3)} mm: stroke here, Space strikes`, 10, 20);
+  for (const finger of fingers.values()) trail.push({ at: now, uv: finger.uv, force: finger.force });
+  while (trail.length > 0 && now - trail[0].at > TRAIL_MS) trail.shift();
+  context.fillStyle = style.getPropertyValue('--mark');
+  for (const { at, uv, force } of trail) {
+    const left = 1 - (now - at) / TRAIL_MS;
+    context.globalAlpha = 0.5 * left * left;
+    context.beginPath();
+    context.arc(uv[0] * width, uv[1] * height, (4 + 9 * Math.sqrt(force)) * left, 0, 2 * Math.PI);
+    context.fill();
+  }
+  context.globalAlpha = 1;
+  requestAnimationFrame(draw);
+}
+
 // ---- Buttons ----
 
 const act = (id, work) => $(id).addEventListener('click', () => work().then((next) => next && show(next, id === 'revert')).catch((error) => say(error.message)));
@@ -233,6 +266,7 @@ $('settings').addEventListener('submit', (event) => event.preventDefault());
 addEventListener('keydown', (event) => { if ((event.ctrlKey || event.metaKey) && event.key === 's') { event.preventDefault(); $('keep').click(); } });
 addEventListener('beforeunload', (event) => { if (state?.changed) event.preventDefault(); });
 
+draw();
 ask('state').then((next) => {
   // A scene that says no numbers shows what it could say.
   showsMissing = next.settings.every(({ value }) => value.length === 0);
