@@ -142,6 +142,8 @@ export class Engine {
   image(): Uint8Array;
   fill(image: Uint8Array, from: number, to: number): void;
   know(told: Told): void;
+  /** This engine, going on in an instance of a module with the same memory. */
+  moved(module: WebAssembly.Module): Engine;
 }
 
 export interface EngineOptions extends Partial<PrepareOptions> {
@@ -150,6 +152,8 @@ export interface EngineOptions extends Partial<PrepareOptions> {
   log?: string | Event[];
   /** Where asperity.wasm and worklet.js lie, if not beside asperity.js. */
   wasm?: string | URL;
+  /** `wasm` is only a part of the engine, enough for what is prepared; `complete` brings the whole one. */
+  part?: boolean;
   worklet?: string | URL;
 }
 
@@ -162,7 +166,7 @@ export interface Frame {
   time: number;
 }
 
-/** A running engine: events `frame` (detail: Frame), `refused`, `error`, `taken`. */
+/** A running engine: events `frame` (detail: Frame), `refused`, `error`, `taken`, `lacking` (a part of the engine could not go on: `take` the scene again). */
 export class WebEngine extends EventTarget {
   readonly context: BaseAudioContext;
   readonly node: AudioWorkletNode;
@@ -180,6 +184,8 @@ export class WebEngine extends EventTarget {
   impact(body: string, blow: Blow): void;
   /** Another scene in the place of this one, without a gap. */
   take(options: Partial<PrepareOptions> & { prepared?: Prepared }): Promise<void>;
+  /** Goes on with the whole engine (of `asperity.wasm`, if nothing else is said) where a part has begun to play. */
+  complete(wasm?: string | URL): Promise<void>;
   /** Changes the scene that sounds: bodies, surfaces, gains. */
   apply(scene: string, options?: { files?: SceneParts['files']; pictures?: SceneParts['pictures'] }): Promise<{ done: string[]; waiting: string[] }>;
   mute(muted: boolean): Promise<void>;

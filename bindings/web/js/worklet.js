@@ -12,7 +12,9 @@ const LOG_TOLD_S = 0.5;
 class AsperityProcessor extends AudioWorkletProcessor {
   constructor({ processorOptions }) {
     super();
-    const { wasm, prepared, log } = processorOptions;
+    const { wasm, part, prepared, log } = processorOptions;
+    this.part = part === true;
+    this.moves = false;
     this.module = wasm instanceof WebAssembly.Module ? wasm : new WebAssembly.Module(wasm);
     this.engine = null;
     this.old = null;
@@ -42,18 +44,42 @@ class AsperityProcessor extends AudioWorkletProcessor {
     }
     try {
       const answer = this[message.do](message);
-      if (message.id !== undefined) this.port.postMessage({ answer, id: message.id });
+      if (message.id === undefined) return;
+      if (answer instanceof Promise) answer.then(() => this.port.postMessage({ id: message.id }), (error) => this.refuse(error, message.id));
+      else this.port.postMessage({ answer, id: message.id });
     } catch (error) {
-      this.port.postMessage({ error: error.message, id: message.id });
+      this.refuse(error, message.id);
     }
+  }
+
+  refuse(error, id) {
+    this.port.postMessage({ error: error.message, id });
+  }
+
+  /** The whole engine, of which a part plays: compiled beside the sound, gone over to as soon as nothing touches. */
+  complete({ wasm }) {
+    return WebAssembly.compile(wasm).then((module) => {
+      this.module = module;
+      this.moves = this.part;
+      this.part = false;
+    });
+  }
+
+  /** What a part of the engine does not have stops it; the page then brings the whole one. */
+  lacks(error) {
+    if (!(error instanceof WebAssembly.RuntimeError) || !(this.part || this.moves)) return false;
+    [this.engine, this.moves] = [null, false];
+    this.port.postMessage({ lacking: error.stack });
+    return true;
   }
 
   report({ events, stamp }) {
     for (const event of events) {
+      if (this.engine === null) return;
       try {
         this.engine.report(event.t, event);
       } catch (error) {
-        this.port.postMessage({ refused: error.message, event });
+        if (!this.lacks(error)) this.port.postMessage({ refused: error.message, event });
       }
     }
     if (stamp !== undefined) this.stamps.push(stamp);
@@ -77,6 +103,7 @@ class AsperityProcessor extends AudioWorkletProcessor {
       [this.old, this.fading] = [this.engine, 0];
     }
     this.engine = engine;
+    this.moves = false;
     this.watches = this.coming.picture !== null;
     this.records = this.coming.record;
     this.coming = null;
@@ -115,6 +142,7 @@ class AsperityProcessor extends AudioWorkletProcessor {
 
   /** Lines of a script that are due in this block. */
   play(frames) {
+    if (this.scripted === this.script.length) return;
     const until = (this.engine.position + frames) / sampleRate;
     while (this.scripted < this.script.length && this.script[this.scripted].t < until) {
       const line = this.script[this.scripted++];
@@ -127,8 +155,14 @@ class AsperityProcessor extends AudioWorkletProcessor {
     const frames = audio[0].length;
     if (this.coming !== null) this.copy(COPIED_A_BLOCK);
     if (this.engine === null) return this.alive;
-    this.play(frames);
-    this.engine.render(frames);
+    if (this.moves && this.engine.scope()[0] === 0) [this.engine, this.moves] = [this.engine.moved(this.module), false];
+    try {
+      this.play(frames);
+      this.engine?.render(frames);
+    } catch (error) {
+      if (!this.lacks(error)) throw error;
+    }
+    if (this.engine === null) return this.alive;
     this.mix(audio, (index) => this.engine.audio(index, frames));
     if (haptic) haptic.forEach((channel, index) => this.lay(channel, this.engine.haptic(index, frames)));
     if (this.old !== null) this.fade(audio, frames);

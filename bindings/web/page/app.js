@@ -1,19 +1,21 @@
 // The page: puts surface, hand, engine, strips, files and buttons together.
-import { createEngine, load } from './asperity.js';
+import { createEngine, load, parseLog } from './asperity.js';
 import { Feel } from './feel.js';
 import { Hand } from './hand.js';
 import { PIXELS_A_METRE, Picture, RELIEF_TEXELS, lookOf, thumbnail } from './look.js';
-import { fractal, ofImage } from './pictures.js';
-import { archive, download } from './save.js';
+import { fractal } from './pictures.js';
 import { Strips, length } from './strips.js';
-import { RATE_HZ, SURFACES, ownSurface, sceneOf } from './surfaces.js';
+import { LEVELS_HZ, RATE_HZ, SURFACES, sceneOf } from './surfaces.js';
 
 const $ = (id) => document.getElementById(id);
-/** Levels of the haptic channel a second, for motors. */
-const LEVELS_HZ = 30;
+/** The offline tools, for what visitors bring. */
+const TOOLS = String(new URL('./tools.wasm', import.meta.url));
+/** What of the engine the first surface needs: half of it. The whole comes when that sounds, or when somebody wants more. */
+const FIRST = String(new URL('./first.wasm', import.meta.url));
+/** The whole engine is asked for when the first has told so much, frames: a second of sound. */
+const COMPLETED_AFTER = 60;
 /** A take longer than this begins anew when no finger touches, lines of its log. */
 const LONGEST_TAKE = 20000;
-const MOST_FILE_BYTES = 64 << 20;
 
 const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
 const asked = new Map();
@@ -24,9 +26,9 @@ worker.onmessage = ({ data: { id, answer, error } }) => {
   else reject(new Error(error));
 };
 
-/** Lets the worker make or render something. */
-async function ask(work) {
-  const { module } = await load();
+/** Lets the worker make or render something, with the whole engine if that is not said otherwise. */
+async function ask(work, wasm) {
+  const { module } = await load(wasm);
   const id = (ask.count = (ask.count ?? 0) + 1);
   worker.postMessage({ id, module, ...work });
   return new Promise((resolve, reject) => asked.set(id, { resolve, reject }));
@@ -51,7 +53,9 @@ function say(sentence, seconds = 6) {
 function make(surface, modes) {
   const { text, pictures, files } = sceneOf(surface, surface.id, modes);
   const relief = surface.draw ? 0 : RELIEF_TEXELS;
-  return ask({ make: { scene: text, pictures, files, rate: RATE_HZ, levels: LEVELS_HZ, relief, watch: surface.watch ? 'surface' : null } });
+  const wasm = surface === SURFACES[0] && modes === undefined && !state.whole ? FIRST : undefined;
+  return ask({ make: { scene: text, pictures, files, rate: RATE_HZ, levels: LEVELS_HZ, relief, watch: surface.watch ? 'surface' : null } }, wasm)
+    .then((prepared) => ({ ...prepared, wasm }));
 }
 
 /** Another surface: under the fingers without a click. */
@@ -107,7 +111,7 @@ async function begin() {
   state.context = context;
   context.onstatechange = () => { if (context.state === 'interrupted') say('The sound was interrupted; touch to go on.'); };
   const { prepared } = state.prepared ? state : { prepared: await make(state.surface) };
-  const engine = await createEngine(context, { prepared });
+  const engine = await createEngine(context, { prepared, wasm: prepared.wasm, part: prepared.wasm !== undefined });
   state.prepared = null;
   const volume = new GainNode(context);
   const analyser = new AnalyserNode(context, { fftSize: 4096, smoothingTimeConstant: 0.2 });
@@ -118,6 +122,7 @@ async function begin() {
   engine.addEventListener('frame', ({ detail }) => frame(detail));
   engine.addEventListener('refused', ({ detail }) => say(`Not played: ${detail.refused}`));
   engine.addEventListener('error', ({ detail }) => refuse(detail));
+  engine.addEventListener('lacking', ({ detail }) => { state.lacked = detail.lacking; choose(state.surface, state.modes).catch(refuse); });
   engine.addEventListener('heard', ({ detail }) => { state.latency_ms = detail.at - detail.heard; });
   feel.tell(context);
   $('wide').disabled = context.destination.maxChannelCount < 4;
@@ -125,6 +130,22 @@ async function begin() {
   await context.resume();
   state.engine = engine;
   hand.again();
+  replay().catch(refuse);
+  state.whole = true;
+}
+
+/** The stroke that came with the link, once. */
+async function replay() {
+  const { stroke } = state;
+  state.stroke = undefined;
+  if (!stroke) return;
+  const { play, unpack } = await import('./link.js');
+  const events = (await unpack(stroke)).map((event) => {
+    if (event.event === 'impact') return { ...event, body: 'body', ...state.surface.blow };
+    return event.event === 'begin' ? { ...event, surface: 'surface', actuator: 0 } : event;
+  });
+  say('This is the stroke that came with the link.');
+  await play(events, (event) => state.engine.node.port.postMessage({ do: 'events', events: [event] }));
 }
 
 function touched() {
@@ -142,6 +163,8 @@ function frame({ rows, levels, tiles }) {
   const last = rows.length - 16;
   [state.speed, state.force, state.touching] = last >= 0 ? [Math.hypot(rows[last + 7], rows[last + 8]), rows[last + 9], rows[last] > 0] : [0, 0, false];
   state.frames++;
+  // What nobody hears yet may load now.
+  if (state.frames === COMPLETED_AFTER) state.engine.complete().catch(refuse);
 }
 
 function readout() {
@@ -242,29 +265,34 @@ async function save() {
   if (log === '') throw new Error('Nothing was played yet: stroke the surface, then save.');
   const { text, pictures, files } = sceneOf(state.surface, name, state.modes);
   const { audio, haptic } = await ask({ render: { scene: text, log, pictures, files } });
+  const { archive, download } = await import('./save.js');
   download(await archive(name, { scene: text, log, pictures, files, audio, haptic }), `${name}.zip`);
   say('Saved: the WAV, and the contact log and scene that make it again.');
 }
 
-function link() {
+async function link() {
   const words = new URLSearchParams({ s: state.surface.id, force: $('force').value, blow: $('blow').value, tool: state.tool });
+  const stroke = state.engine ? await (await import('./link.js')).pack(parseLog(await state.engine.log())) : '';
+  if (stroke !== '') words.set('stroke', stroke);
   return `${location.origin}${location.pathname}#${words}`;
 }
 
 async function share() {
-  if (state.surface.isOwn) throw new Error('A picture of your own is not in a link: save it instead.');
-  history.replaceState(null, '', link());
+  if (state.surface.isOwn || state.modes !== undefined) throw new Error('What you brought yourself is not in a link: save it instead.');
+  const made = await link();
+  history.replaceState(null, '', made);
+  const what = made.includes('stroke=') ? 'The link, with your last strokes in it,' : 'The link';
   try {
-    await navigator.clipboard.writeText(link());
-    say('The link is copied.');
+    await navigator.clipboard.writeText(made);
+    say(`${what} is copied.`);
   } catch {
-    say('The link is in the address bar: copy it from there.');
+    say(`${what} is in the address bar: copy it from there.`);
   }
 }
 
 /** What a link says; what it says wrongly is told and left out. */
 function opened() {
-  const words = new URLSearchParams(location.hash.slice(1, 400));
+  const words = new URLSearchParams(location.hash.slice(1, 8000));
   const wrong = [];
   for (const [key, value] of words) {
     if (key === 's') { if (!SURFACES.some(({ id }) => id === value)) wrong.push(`surface “${value.slice(0, 30)}” is unknown`); }
@@ -273,7 +301,8 @@ function opened() {
       const number = Number(value);
       if (value !== '' && number >= Number(min) && number <= Number(max)) $(key).value = value;
       else wrong.push(`${key} “${value.slice(0, 30)}” must be ${min} to ${max}`);
-    } else if (key === 'tool') { if (value === 'hit' || value === 'stroke') tool(value); else wrong.push(`tool “${value.slice(0, 30)}” must be stroke or hit`); }
+    } else if (key === 'stroke') state.stroke = value;
+    else if (key === 'tool') { if (value === 'hit' || value === 'stroke') tool(value); else wrong.push(`tool “${value.slice(0, 30)}” must be stroke or hit`); }
     else wrong.push(`“${key.slice(0, 30)}” is unknown`);
   }
   if (wrong.length > 0) say(`In the link: ${wrong.slice(0, 3).join('; ')}.`, 12);
@@ -281,31 +310,25 @@ function opened() {
   return SURFACES.find(({ id }) => id === words.get('s')) ?? SURFACES[0];
 }
 
-/** A picture becomes a surface, a file of modes the body. */
+/** A picture becomes a surface, a recorded hit or a file of modes the body. */
 async function take(file) {
-  if (file.size > MOST_FILE_BYTES) throw new Error(`${file.name}: has ${Math.round(file.size / 1e6)} MB; must be at most 64 MB.`);
-  if (/\.json$/i.test(file.name)) {
-    const modes = await file.text();
-    await choose(state.surface, modes);
-    say(`${file.name} rings now.`);
-    return;
+  say(`${file.name} is looked at …`, 60);
+  const own = await import('./own.js');
+  await wear(await own.bring(file, { isMap: $('map').checked, ask: (work) => ask(work, TOOLS) }));
+}
+
+async function listen() {
+  const own = await import('./own.js');
+  await wear(await own.listen((work) => ask(work, TOOLS), say));
+}
+
+async function wear({ surface, modes, sentence }) {
+  if (surface) {
+    [...$('surfaces').children].find((child) => child.dataset.id === 'own')?.remove();
+    button(surface).scrollIntoView({ block: 'nearest' });
   }
-  if (/\.(wav|flac|ogg|mp3)$/i.test(file.name) || file.type.startsWith('audio/')) {
-    throw new Error(`${file.name}: a recorded hit becomes a body by “asperity fit ${file.name} -o hit.modes.json”; drop that file here.`);
-  }
-  let image;
-  try {
-    image = await createImageBitmap(file);
-  } catch {
-    throw new Error(`${file.name}: is no picture that this browser reads; must be PNG, JPEG, WebP or the like, or a .modes.json.`);
-  }
-  const surface = ownSurface(ofImage(image));
-  image.close();
-  [...$('surfaces').children].find((child) => child.dataset.id === 'own')?.remove();
-  const made = button(surface);
-  await choose(surface);
-  made.scrollIntoView({ block: 'nearest' });
-  say(`${file.name}: what is bright is high, 1 mm.`);
+  await choose(surface ?? state.surface, modes);
+  say(sentence);
 }
 
 // ---- The rest ----
@@ -332,6 +355,7 @@ $('hit').addEventListener('click', () => tool('hit'));
 $('save').addEventListener('click', () => save().catch(refuse));
 $('share').addEventListener('click', () => share().catch(refuse));
 $('own').addEventListener('click', () => $('file').click());
+$('listen').addEventListener('click', () => listen().catch(refuse));
 $('file').addEventListener('change', () => { const [file] = $('file').files; $('file').value = ''; if (file) take(file).catch(refuse); });
 $('wide').addEventListener('change', () => wide($('wide').checked));
 for (const id of ['force', 'blow']) $(id).addEventListener('input', show);
@@ -345,7 +369,7 @@ $('scale').firstElementChild.textContent = length(0.01);
 $('scale').firstElementChild.style.width = `${0.01 * PIXELS_A_METRE}px`;
 
 SURFACES.forEach(button);
-choose(opened()).catch(refuse);
+choose(opened()).then(() => { if (state.stroke) say('A stroke came with this link: touch to hear it.', 30); }).catch(refuse);
 paint();
 // For whoever looks inside, and for the tests.
 window.asperity = { state, choose, hand, picture, strips, surfaces: SURFACES };

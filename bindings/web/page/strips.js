@@ -11,6 +11,7 @@ export class Strips {
     this.canvas = canvas;
     this.context = canvas.getContext('2d', { alpha: false });
     this.columns = [];
+    this.told = 0;
     this.spans = [1e-5, 1e-5];
     this.colours();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.colours());
@@ -38,6 +39,7 @@ export class Strips {
     column.rate = rate;
     column.marker = wavelength_m && column.speed > 0.005 ? column.speed / wavelength_m : 0;
     this.columns.push(column);
+    this.told = 1;
     if (this.columns.length > 200) this.columns.shift();
   }
 
@@ -49,6 +51,7 @@ export class Strips {
       [canvas.width, canvas.height, this.clear] = [Math.max(1, width), Math.max(1, height), false];
       context.fillStyle = this.inks.strip;
       context.fillRect(0, 0, width, height);
+      this.labels(height);
     }
     const columns = this.columns.splice(0);
     const step = 2;
@@ -80,7 +83,7 @@ export class Strips {
       const bin = Math.min(bins - 1, Math.round((hz / (column.rate / 2)) * bins));
       const level = (column.spectrum[bin] - FLOOR_DB) / -FLOOR_DB;
       if (level <= 0.02) continue;
-      context.globalAlpha = Math.min(1, level * 1.5) ** 1.3;
+      context.globalAlpha = Math.min(1, level * 1.9) ** 1.2;
       context.fillRect(x, lines[2] + y, step, 2);
     }
     context.globalAlpha = 1;
@@ -95,7 +98,7 @@ export class Strips {
     const { context, inks } = this;
     context.font = '11px system-ui, sans-serif';
     [['relief', this.spans[0], inks.relief, 12], ['skin', this.spans[1], inks.skin, height * 0.24 + 12], ['sound, — v/λ', null, inks.heard, height * 0.48 + 12]].forEach(([name, span, ink, y]) => {
-      const text = span === null ? name : `${name} ±${length(span)}`;
+      const text = span === null || this.columns.length + this.told === 0 ? name : `${name} ±${length(span)}`;
       context.fillStyle = inks.strip;
       context.fillRect(0, y - 10, context.measureText(text).width + 12, 13);
       context.fillStyle = ink;

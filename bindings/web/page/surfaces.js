@@ -3,6 +3,8 @@ import * as pictures from './pictures.js';
 
 /** Rate of every engine of the page: what it plays is the same on every device, and so is what it saves. */
 export const RATE_HZ = 48000;
+/** Levels of the haptic channel a second, for motors. */
+export const LEVELS_HZ = 30;
 
 const FINGER = '';
 const STICK = `
@@ -36,13 +38,15 @@ full_scale = ${fullScale}
 limit = true
 
 [audio]
-gain = ${gain}
-limit = true
+${gain === null ? '' : `gain = ${gain}\n`}limit = true
 `;
 }
 
 /** Colours between two, by a number from 0 to 1. */
 const between = (low, high) => (t) => low.map((c, i) => c + (high[i] - c) * Math.min(1, Math.max(0, t)));
+
+/** Goes from one colour to another where `x` passes `at`, without an edge of texels. */
+const blend = (from, to, x, at) => between(from, to)((x - at) / 0.06 + 0.5);
 
 const map = (lines) => (name) => lines.replaceAll('MAP', `${name}.displacement.png`);
 
@@ -69,7 +73,7 @@ export const SURFACES = [
     fullScale: 0.002, gain: 0.1, blow: STEEL, colour: between([150, 62, 48], [236, 148, 110]), shine: 0.6,
   },
   {
-    id: 'halves', name: 'Matte and shiny', note: 'No relief at all: the bright stripes are rough, the dark ones smooth.',
+    id: 'halves', name: 'Matte, shiny', note: 'No relief at all: the bright stripes are rough, the dark ones smooth.',
     size_m: [0.08, 0.01], draw: pictures.halves, isRoughness: true,
     body: 'stock = "disc"\nsize_m = 0.14\nmaterial = "pla"',
     surface: (name) => `roughness = "${name}.roughness.png"\nwidth_m = 0.08\nheight_m = 0.01`,
@@ -102,7 +106,8 @@ export const SURFACES = [
     fullScale: 1.5e-4, gain: 40, blow: STEEL, shine: 0.35,
     colour: (h, u, v) => {
       const grain = pictures.fractal(u, v, [128, 128], 3, 21);
-      return grain < 0.36 ? [46, 44, 46] : grain > 0.6 ? [214, 196, 188] : between([126, 118, 118], [176, 166, 162])(h);
+      const pale = blend(between([126, 118, 118], [176, 166, 162])(h), [214, 196, 188], grain, 0.6);
+      return blend([46, 44, 46], pale, grain, 0.37);
     },
   },
   {
@@ -120,7 +125,8 @@ export const SURFACES = [
 width_m = 0.3
 height_m = 0.3
 wrap = "clamp"`,
-    fullScale: 2e-4, gain: 3, colour: between([190, 146, 92], [240, 208, 156]), shine: 0,
+    fullScale: 2e-4, gain: 3, shine: 0,
+    colour: (h, u, v) => between([186, 140, 86], [246, 216, 164])(0.6 * h + 0.8 * (pictures.fractal(u, v, [256, 256], 2, 5) - 0.3)),
   },
   {
     id: 'gravel', name: 'Gravel', note: 'Stones under a stick.',
@@ -156,12 +162,27 @@ export function ownSurface({ picture, colours }) {
   };
 }
 
+/** A surface of a photograph: heights and roughness as the offline tools found them. */
+export function photoSurface(drawn, { displacement, roughness, relief_m, micro_relief_m }) {
+  const own = ownSurface(drawn);
+  const [width_m, height_m] = own.size_m;
+  const numbers = [`relief_m = ${relief_m}`, `micro_relief_m = ${micro_relief_m}`, `width_m = ${width_m}`, `height_m = ${height_m}`, 'wrap = "mirror"'];
+  return {
+    ...own, name: 'Your photograph', note: 'Heights found from light and shade, roughness from how they fall off.',
+    draw: () => displacement, roughness, fullScale: Math.max(1e-4, relief_m), gain: null,
+    surface: (name) => [`displacement = "${name}.displacement.png"`, `roughness = "${name}.roughness.png"`, ...numbers].join('\n'),
+  };
+}
+
 /** What is saved and opened: the scene's text, and the maps beside it by the names of their files. */
 export function sceneOf(surface, name, modes) {
   const wraps = surface.clamps || surface.mirrors ? '' : '\nwrap = "repeat"';
   const body = modes === undefined ? surface.body : `modes = "${name}.modes.json"\nmaterial = "ceramic"`;
-  const text = scene(name, { ...surface, title: surface.name, body, surface: surface.surface(name) + wraps });
+  // How loud a body of one's own is nobody knows: the engine finds a gain.
+  const gain = modes === undefined ? surface.gain : null;
+  const text = scene(name, { ...surface, gain, title: surface.name, body, surface: surface.surface(name) + wraps });
   const maps = {};
   if (surface.draw) maps[`${name}.${surface.isRoughness ? 'roughness' : 'displacement'}.png`] = surface.draw();
+  if (surface.roughness) maps[`${name}.roughness.png`] = surface.roughness;
   return { text, pictures: maps, files: modes === undefined ? {} : { [`${name}.modes.json`]: modes } };
 }

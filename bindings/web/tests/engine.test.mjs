@@ -7,9 +7,14 @@ import { gzipSync } from 'node:zlib';
 import { Engine, decode, encode, parseLog, prepare, renderLog } from '../js/engine.js';
 import { SURFACES, sceneOf } from '../page/surfaces.js';
 import { png } from '../page/save.js';
-import { DIST, render, seeded, stroke, text, wasm } from './native.mjs';
+import { MOST_LETTERS, pack, unpack } from '../page/link.js';
+import { fit, photo } from '../page/tools.js';
+import { opened, play, taken, trouble } from '../split/visit.mjs';
+import { DIST, fromPhoto, render, seeded, stroke, text, wasm } from './native.mjs';
 
 const module = wasm();
+/** Files of the page that are asked for when the first surface sounds, or when something is saved. */
+const LATER = ['asperity.wasm', 'save.js', 'tools.wasm', 'tools.js', 'own.js', 'listen.js', 'link.js'];
 
 for (const surface of SURFACES) {
   test(`a stroke over ${surface.id} has the bits of the program`, async () => {
@@ -194,11 +199,114 @@ test('text goes through UTF-8 and back', () => {
   }
 });
 
-test('the first surface needs no more than it does', (t) => {
-  const files = readdirSync(join(DIST, 'page'));
+test('all that the first surface loads is at most 250 kB gzipped', (t) => {
+  const files = readdirSync(join(DIST, 'page')).filter((name) => !LATER.includes(name));
   const bytes = Object.fromEntries(files.map((name) => [name, gzipSync(readFileSync(join(DIST, 'page', name)), { level: 9 }).length]));
   const all = Object.values(bytes).reduce((sum, n) => sum + n, 0);
-  t.diagnostic(`${all} bytes gzipped, ${bytes['asperity.wasm']} of them the engine`);
-  // The bar is 250,000; the engine has grown past it (README.md, “How large”). This holds what is reached.
-  assert.ok(all < 500_000, JSON.stringify(bytes));
+  t.diagnostic(`${all} bytes gzipped, ${bytes['first.wasm']} of them the engine`);
+  assert.ok(all <= 250_000, JSON.stringify(bytes));
+});
+
+test('the part of the engine that the first surface needs plays like the whole, goes over into it, and stops where it ends', (t) => {
+  const part = new WebAssembly.Module(readFileSync(join(DIST, 'page/first.wasm')));
+  const start = opened(part);
+  assert.ok(Buffer.from(start.image()).equals(Buffer.from(opened(module).image())));
+  let stopped = 0;
+  for (let seed = 5001; seed <= 5008; seed++) {
+    let [ours, whole] = [taken(part, start), taken(module, start)];
+    try {
+      play(ours, seed, 3);
+      trouble(ours);
+    } catch (error) {
+      assert.ok(error instanceof WebAssembly.RuntimeError, error);
+      stopped++;
+      continue;
+    }
+    play(whole, seed, 3);
+    trouble(whole);
+    ours = ours.moved(module);
+    for (const engine of [ours, whole]) play(engine, seed + 50, 0.5);
+    assert.ok(Buffer.from(ours.image()).equals(Buffer.from(whole.image())), `visitor ${seed}`);
+  }
+  // A visitor of ten fingers in the first seconds; who stops it hears the surface again when the whole engine has come.
+  t.diagnostic(`${stopped} of 8 visitors needed more`);
+  assert.ok(stopped <= 1);
+  assert.throws(() => new Engine(part).open(sceneOf(SURFACES[7], 'x').text, { rate: 48000 }), WebAssembly.RuntimeError);
+});
+
+test('a stroke goes into a link and comes back as it was played, however long it was', async () => {
+  const lines = stroke(SURFACES[0]);
+  const back = await unpack(await pack(lines));
+  assert.equal(back.length, lines.length);
+  lines.forEach((line, i) => {
+    assert.equal(back[i].event, line.event);
+    assert.ok(Math.abs(back[i].t - (line.t - lines[0].t)) < 1e-4);
+    (line.uv ?? []).forEach((x, k) => assert.ok(Math.abs(back[i].uv[k] - x) < 1e-5));
+    if (line.normal_force_n) assert.ok(Math.abs(back[i].normal_force_n - line.normal_force_n) < 0.006);
+  });
+  const random = seeded(4);
+  const long = Array.from({ length: 20000 }, (_, i) => ({ t: i / 200, event: i === 0 ? 'begin' : 'move', contact: 1, uv: [random(), random()], velocity_m_s: [random(), random()], normal_force_n: random() }));
+  const text = await pack(long.map((line, i) => (i % 400 === 0 ? { ...line, event: 'begin' } : i % 400 === 399 ? { t: line.t, event: 'end', contact: 1 } : line)));
+  const kept = await unpack(text);
+  assert.ok(text.length <= MOST_LETTERS && kept.length > 100, `${text.length} letters, ${kept.length} events`);
+  assert.equal(await pack([]), '');
+});
+
+test('a stroke in a link that somebody has changed is refused in words or plays', async () => {
+  const good = await pack(stroke(SURFACES[0]));
+  const random = seeded(8);
+  for (let i = 0; i < 1000; i++) {
+    const letters = [...good];
+    for (let k = 0; k < 1 + 3 * random(); k++) letters[Math.floor(random() * letters.length)] = 'ABCxyz019-_'[Math.floor(11 * random())];
+    const changed = letters.slice(0, random() < 0.3 ? Math.floor(random() * letters.length) : letters.length).join('');
+    const events = await unpack(changed).catch((error) => { assert.match(error.message, /^the stroke in the link /); return []; });
+    assert.ok(events.every(({ t, uv }) => Number.isFinite(t) && (uv ?? [0]).every(Number.isFinite)));
+  }
+  for (const text of ['!', 'A'.repeat(MOST_LETTERS + 1), 'AAAA', '====', '%00']) await assert.rejects(unpack(text), /the stroke in the link/);
+});
+
+const tools = new WebAssembly.Module(readFileSync(join(DIST, 'page/tools.wasm')));
+
+test('a recorded hit becomes the modes that it is made of, and the engine plays them', () => {
+  const rate = 48000;
+  const truth = [[440, 6, 0.4], [1113.7, 11, 0.25], [2975, 24, 0.15]];
+  const random = seeded(2);
+  const samples = Float64Array.from({ length: 1.5 * rate }, (_, i) => {
+    const t = i / rate - 0.1;
+    return 1e-5 * (random() - 0.5) + (t < 0 ? 0 : truth.reduce((sum, [hz, d, a]) => sum + a * Math.exp(-d * t) * Math.sin(2 * Math.PI * hz * t), 0));
+  });
+  const modes = fit(tools, { name: 'hit.wav', samples, rate });
+  const found = JSON.parse(modes).modes;
+  for (const [hz, decay] of truth) assert.ok(found.some((mode) => Math.abs(mode.frequency_hz / hz - 1) < 1e-4 && Math.abs(mode.decay_per_s / decay - 1) < 0.01), `${hz} Hz of ${modes}`);
+  const { text: scene, pictures, files } = sceneOf(SURFACES[0], 'x', modes);
+  const { audio } = renderLog(module, { scene, log: text(stroke(SURFACES[0])), pictures, files });
+  const heard = new Float32Array(audio.slice(68).buffer);
+  assert.ok(heard.every(Number.isFinite) && heard.some((x) => Math.abs(x) > 0.01));
+});
+
+test('what is no hit and no photograph is refused in words by the tools', () => {
+  const noise = seeded(6);
+  for (const samples of [new Float64Array(0), new Float64Array(48000), Float64Array.of(NaN, 1, 2), Float64Array.from({ length: 9 }, noise)]) {
+    assert.throws(() => fit(tools, { name: 'x', samples, rate: 48000 }), (error) => !(error instanceof WebAssembly.RuntimeError) && error.message.length > 10);
+  }
+  assert.throws(() => fit(tools, { name: 'x', samples: Float64Array.from({ length: 48000 }, noise), rate: NaN }), Error);
+  for (const [width, height, grey] of [[4, 4, new Float64Array(16)], [64, 64, new Float64Array(10)], [64, 64, new Float64Array(4096).fill(NaN)], [1e9, 1e9, new Float64Array(4)]]) {
+    assert.throws(() => photo(tools, { width, height, grey, texel_m: 1e-4 }), (error) => !(error instanceof WebAssembly.RuntimeError) && error.message.length > 10);
+  }
+});
+
+test('a photograph becomes the relief that the program makes of it', async () => {
+  const side = 128;
+  const random = seeded(12);
+  const grain = Float64Array.from({ length: side * side }, random);
+  const samples = Uint16Array.from({ length: side * side }, (_, i) => {
+    const [x, y] = [i % side, Math.floor(i / side)];
+    return Math.round(65535 * (0.45 + 0.3 * Math.cos(x / 5 + Math.sin(y / 11)) * Math.cos(y / 7) + 0.1 * grain[i]));
+  });
+  const grey = Float64Array.from(samples, (x) => x / 65535);
+  const ours = photo(tools, { width: side, height: side, grey, texel_m: 0.12 / side });
+  const { report, displacement } = fromPhoto(await png({ width: side, height: side, samples }), 0.12);
+  assert.ok(Math.abs(ours.relief_m / report.relief_m - 1) < 1e-6, `${ours.relief_m} m and ${report.relief_m} m`);
+  const apart = ours.displacement.samples.reduce((most, x, i) => Math.max(most, Math.abs(x - displacement[i])), 0);
+  assert.ok(apart <= 2, `${apart} of 65535`);
 });

@@ -18,7 +18,8 @@ export async function host(folder) {
       const body = gzipSync(await readFile(join(folder, path)), { level: 9 });
       sent.bytes += body.length;
       sent.paths.push(path);
-      response.writeHead(200, { 'content-type': TYPES[extname(path)] ?? 'application/octet-stream', 'content-encoding': 'gzip' });
+      // Ten minutes: what static hosts say who are told nothing, GitHub's pages among them.
+      response.writeHead(200, { 'content-type': TYPES[extname(path)] ?? 'application/octet-stream', 'content-encoding': 'gzip', 'cache-control': 'max-age=600' });
       response.end(body);
     } catch {
       response.writeHead(404).end();

@@ -3,6 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
+import { inflateSync } from 'node:zlib';
 
 export const PROGRAM = process.env.ASPERITY_PROGRAM;
 export const DIST = new URL('../dist/', import.meta.url).pathname;
@@ -15,6 +16,35 @@ export function render(files, scene) {
   for (const [name, content] of Object.entries(files)) writeFileSync(join(folder, name), content);
   execFileSync(PROGRAM, ['render', join(folder, scene), '-o', join(folder, 'native'), '--kernel', 'portable']);
   return { audio: readFileSync(join(folder, 'native.audio.wav')), haptic: readFileSync(join(folder, 'native.haptic.wav')) };
+}
+
+/** What the program makes of a photograph so wide: its report, and the map of heights. */
+export function fromPhoto(photo, width_m) {
+  const folder = mkdtempSync(join(tmpdir(), 'asperity-web-'));
+  writeFileSync(join(folder, 'photo.png'), photo);
+  execFileSync(PROGRAM, ['texture', 'from-photo', join(folder, 'photo.png'), '-o', join(folder, 'made'), '--width-m', String(width_m)]);
+  return { report: JSON.parse(readFileSync(join(folder, 'made/report.json'))), displacement: grey16(readFileSync(join(folder, 'made/displacement.png'))) };
+}
+
+/** Samples of a grey PNG of 16 bits. */
+function grey16(bytes) {
+  const [parts, [width, height]] = [[], [bytes.readUInt32BE(16), bytes.readUInt32BE(20)]];
+  for (let at = 8; at < bytes.length; at += 12 + bytes.readUInt32BE(at)) {
+    if (bytes.toString('latin1', at + 4, at + 8) === 'IDAT') parts.push(bytes.subarray(at + 8, at + 8 + bytes.readUInt32BE(at)));
+  }
+  const raw = inflateSync(Buffer.concat(parts));
+  const [stride, rows] = [2 * width, []];
+  for (let y = 0; y < height; y++) {
+    const [filter, row, above] = [raw[y * (stride + 1)], Buffer.from(raw.subarray(y * (stride + 1) + 1, (y + 1) * (stride + 1))), rows.at(-1) ?? Buffer.alloc(stride)];
+    for (let i = 0; i < stride; i++) {
+      const [left, up, corner] = [row[i - 2] ?? 0, above[i], above[i - 2] ?? 0];
+      const guess = left + up - corner;
+      const paeth = [left, up, corner].reduce((best, each) => (Math.abs(guess - each) < Math.abs(guess - best) ? each : best));
+      row[i] = (row[i] + [0, left, up, (left + up) >> 1, paeth][filter]) & 255;
+    }
+    rows.push(row);
+  }
+  return rows.flatMap((row) => Array.from({ length: width }, (_, x) => row.readUInt16BE(2 * x)));
 }
 
 /** Files of an archive without compression. */

@@ -5,6 +5,7 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { SURFACES, sceneOf } from '../page/surfaces.js';
+import { wav } from '../js/engine.js';
 import { png } from '../page/save.js';
 import { browser, drag, host, open } from './host.mjs';
 import { DIST, render, samples, seeded, stroke, text, unzip } from './native.mjs';
@@ -31,7 +32,8 @@ async function sounding(options, hash = '') {
   return opened;
 }
 
-test('sound begins within a second of the first touch, with no error and no request to anybody else', async (t) => {
+test('sound begins within a second of the first touch and 250 kB, with no error and no request to anybody else', async (t) => {
+  server.sent.bytes = 0;
   const { context, page, wrong } = await open(chromium, server.url);
   await ready(page);
   await page.evaluate(() => {
@@ -46,10 +48,15 @@ test('sound begins within a second of the first touch, with no error and no requ
       look();
     });
   });
+  let [sent, paths] = [0, []];
+  const whole = page.waitForRequest(/asperity\.wasm/).then(() => { [sent, paths] = [server.sent.bytes, [...server.sent.paths]]; });
   await drag(page, line(250, 60));
   const took = await page.evaluate(() => window.first);
-  t.diagnostic(`${took.toFixed(0)} ms`);
+  await whole;
+  assert.equal(await page.evaluate(() => window.asperity.state.lacked), undefined);
+  t.diagnostic(`${took.toFixed(0)} ms, ${sent} bytes until the whole engine was asked for: ${paths.join(' ')}`);
   assert.ok(took < 1000, `${took} ms`);
+  assert.ok(sent > 200_000 && sent <= 250_000, `${sent} bytes`);
   assert.deepEqual(wrong, []);
   await context.close();
 });
@@ -84,6 +91,24 @@ test('a scripted stroke rendered by an OfflineAudioContext has the same digest t
   const count = Math.min(native.length, ours.length - first.late);
   assert.ok(count > 48000 && native.some((x) => Math.abs(x) > 0.01));
   assert.equal(native.subarray(0, count).findIndex((x, i) => x !== ours[i + first.late]), -1);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('a part of the engine that lacks something is followed by the whole one', async () => {
+  const { context, page, wrong } = await open(chromium, server.url);
+  await ready(page);
+  await drag(page, line(250, 6));
+  await page.waitForFunction(() => window.asperity.state.engine, null, { timeout: 30000 });
+  await page.evaluate(() => {
+    delete document.getElementById('surfaces').dataset.ready;
+    window.asperity.state.engine.tell('lacking', {});
+  });
+  await ready(page);
+  assert.equal(await page.evaluate(() => window.asperity.state.engine.isPart), false);
+  await drag(page, line(260, 20));
+  const { stats: after } = await stats(page);
+  assert.ok(after.events > 5 && after.refused === 0);
   assert.deepEqual(wrong, []);
   await context.close();
 });
@@ -163,11 +188,11 @@ test('everything is reached and done by the keyboard alone', async () => {
   assert.equal(await page.evaluate(() => document.activeElement.id), 'mute');
   const reached = new Set();
   await page.evaluate(() => { document.getElementById('more').open = true; });
-  for (let i = 0; i < 40; i++) {
+  for (let i = 0; i < 44; i++) {
     reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.dataset.id || document.activeElement.tagName));
     await page.keyboard.press('Tab');
   }
-  for (const id of ['mute', 'stroke', 'hit', 'SUMMARY', 'force', 'blow', 'save', 'share', 'own', 'surface', ...SURFACES.map((s) => s.id)]) assert.ok(reached.has(id), `${id} is not reached: ${[...reached]}`);
+  for (const id of ['mute', 'stroke', 'hit', 'SUMMARY', 'force', 'blow', 'save', 'share', 'own', 'listen', 'map', 'surface', ...SURFACES.map((s) => s.id)]) assert.ok(reached.has(id), `${id} is not reached: ${[...reached]}`);
   await page.evaluate(() => { document.getElementById('more').open = false; });
   await page.focus('#surface');
   await page.keyboard.down('ArrowRight');
@@ -217,12 +242,68 @@ test('pictures of the page', async () => {
   }
 });
 
+test('a recorded hit rings and a photograph is stroked, and both are saved as the program renders them', async () => {
+  const { context, page, wrong } = await sounding();
+  const bring = async (name, mimeType, bytes, words) => {
+    await page.setInputFiles('#file', { name, mimeType, buffer: Buffer.from(bytes) });
+    await page.waitForFunction((words) => document.getElementById('status').textContent.includes(words), words, { timeout: 60000 });
+  };
+  const ring = Float32Array.from({ length: 48000 }, (_, i) => (i < 4800 ? 0 : 0.5 * Math.exp(-(i - 4800) / 8000) * Math.sin((i - 4800) / 9)));
+  await bring('cup.wav', 'audio/wav', wav([ring], 48000), 'cup.wav rings now');
+  const side = 96;
+  const lit = Uint16Array.from({ length: side * side }, (_, i) => 32768 + 20000 * Math.sin((i % side) / 4) * Math.cos(Math.floor(i / side) / 5));
+  await bring('wall.png', 'image/png', await png({ width: side, height: side, samples: lit }), 'found from light and shade');
+  await ready(page, 'own');
+  await drag(page, line(260, 30));
+  await page.mouse.click(400, 300);
+  await page.waitForTimeout(300);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save')]);
+  const files = unzip(readFileSync(await download.path()));
+  const native = render(files, 'asperity-own.toml');
+  assert.ok(native.audio.equals(files['asperity-own.wav']), 'audio differs');
+  assert.ok(samples(native.audio).some((x) => Math.abs(x) > 1e-4), 'it is silent');
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
+test('a link brings the strokes of whoever sent it', async () => {
+  const { context, page, wrong } = await sounding();
+  await drag(page, line(250, 20));
+  await page.mouse.click(400, 300);
+  await page.waitForTimeout(300);
+  await page.evaluate(() => document.getElementById('share').click());
+  await page.waitForFunction(() => location.hash.includes('stroke='), null, { timeout: 10000 });
+  const link = await page.evaluate(() => location.href);
+  assert.ok(link.length < 8000, `${link.length} letters`);
+  await context.close();
+  const other = await open(chromium, link);
+  await ready(other.page);
+  assert.match(await other.page.textContent('#status'), /stroke came with this link/);
+  await other.page.click('#surface');
+  await other.page.waitForFunction(() => window.asperity.state.touching && window.asperity.state.speed > 0.02, null, { timeout: 20000 });
+  await other.page.waitForFunction(async () => {
+    const { stats } = await window.asperity.state.engine.stats();
+    return stats.impacts > 0 && stats.contacts === 0 && stats.events > 15;
+  }, null, { timeout: 30000, polling: 300 });
+  assert.equal((await stats(other.page)).stats.refused, 0);
+  assert.deepEqual([wrong, other.wrong], [[], []]);
+  await other.context.close();
+});
+
 test('hostile links and files are answered in words, and the engine goes on', async () => {
-  const { context, page, wrong } = await sounding({}, '/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe');
+  const { context, page, wrong } = await open(chromium, `${server.url}/#s=%3Cscript%3E&force=1e99&x=%00&tool=axe`);
+  await ready(page);
   assert.match(await page.textContent('#status'), /unknown/);
+  await drag(page, line(250, 6));
+  await page.waitForFunction(() => window.asperity.state.engine && window.asperity.state.frames > 3, null, { timeout: 30000 });
+  const changed = await open(chromium, `${server.url}/#stroke=%00AAAA`);
+  await ready(changed.page);
+  await changed.page.click('#surface');
+  await changed.page.waitForFunction(() => /the stroke in the link is none/.test(document.getElementById('status').textContent), null, { timeout: 30000 });
+  await changed.context.close();
   const drop = async (name, type, bytes) => {
     await page.setInputFiles('#file', { name, mimeType: type, buffer: Buffer.from(bytes) });
-    await page.waitForFunction(() => document.getElementById('status').textContent !== '', null, { timeout: 30000 });
+    await page.waitForFunction(() => !/^(|.* is looked at …)$/.test(document.getElementById('status').textContent), null, { timeout: 60000 });
     const words = await page.textContent('#status');
     await page.evaluate(() => { document.getElementById('status').textContent = ''; });
     return words;
@@ -231,11 +312,14 @@ test('hostile links and files are answered in words, and the engine goes on', as
   const noise = Uint8Array.from({ length: 5000 }, () => 256 * random());
   assert.match(await drop('noise.png', 'image/png', noise), /no picture/);
   assert.match(await drop('half.png', 'image/png', (await png({ width: 9, height: 9, samples: new Uint16Array(81) })).subarray(0, 60)), /no picture/);
-  assert.match(await drop('hit.wav', 'audio/wav', noise), /asperity fit/);
+  assert.match(await drop('hit.wav', 'audio/wav', noise), /no recording/);
+  assert.match(await drop('silence.wav', 'audio/wav', wav([new Float32Array(48000)], 48000)), /silence\.wav: ./);
+  assert.match(await drop('short.wav', 'audio/wav', wav([Float32Array.of(0, 1, 0)], 48000)), /short\.wav: ./);
   assert.match(await drop('x.modes.json', 'application/json', '{"format":"other"}'), /modes/);
   assert.match(await drop('y.modes.json', 'application/json', '['.repeat(100000)), /modes/);
   assert.match(await drop('bomb.svg', 'image/svg+xml', '<svg xmlns="http://www.w3.org/2000/svg"/>'), /./);
   const good = await png({ width: 64, height: 64, samples: Uint16Array.from({ length: 4096 }, (_, i) => (i % 9) * 7000) });
+  await page.evaluate(() => { document.getElementById('map').checked = true; });
   assert.match(await drop('mine.png', 'image/png', good), /bright is high/);
   await ready(page, 'own');
   await drag(page, line(250, 20));

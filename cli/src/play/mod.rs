@@ -1,9 +1,12 @@
 //! `asperity play SCENE.toml`: a scene and its contact log through the sound card, in real time.
 //!
-//! Needs the cargo feature `device` (or `jack`, `pulseaudio`); without it the verb is there and says so.
+//! Needs the cargo feature `device` (or `jack`, `pulseaudio`); without it the verb is there and says so. `--tune` needs `web`, and plays unheard
+//! where there is no sound card.
 
 #[cfg(feature = "device")]
 mod session;
+#[cfg(feature = "web")]
+mod tune;
 #[cfg(any(feature = "device", test))]
 mod watch;
 
@@ -38,6 +41,12 @@ pub struct Options {
     /// Apply what changes in SCENE.toml while it plays
     #[arg(long)]
     pub watch: bool,
+    /// Turn the scene's numbers on a page while it plays, and write them back
+    #[arg(long, conflicts_with_all = ["watch", "list_devices", "json"])]
+    pub tune: bool,
+    /// Port of that page on the loopback address; 0 = one that is free
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "tune")]
+    pub port: u16,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -47,17 +56,30 @@ pub struct Options {
 ///
 /// # Errors
 /// When an input is bad, a named device is not there, or it is lost and does not come back.
-#[cfg(feature = "device")]
 pub fn run(options: &Options) -> Result<(), CliError> {
+    if options.tune { tune(options) } else { play(options) }
+}
+
+#[cfg(feature = "web")]
+use tune::run as tune;
+
+#[cfg(not(feature = "web"))]
+fn tune(_options: &Options) -> Result<(), CliError> {
+    Err(CliError::new(
+        "play --tune",
+        "this program was built without the page",
+        "build it with `cargo build --release -p asperity-cli --features web` (and device, to hear it)",
+    ))
+}
+
+#[cfg(feature = "device")]
+fn play(options: &Options) -> Result<(), CliError> {
     if options.list_devices { session::list(options) } else { session::run(options) }
 }
 
-/// Runs the verb of a program that was built without sound card support.
-///
-/// # Errors
-/// Always: names the feature to build with.
+/// Of a program that was built without sound card support: names the feature to build with.
 #[cfg(not(feature = "device"))]
-pub fn run(_options: &Options) -> Result<(), CliError> {
+fn play(_options: &Options) -> Result<(), CliError> {
     Err(CliError::new(
         "play",
         "this program was built without sound card support",

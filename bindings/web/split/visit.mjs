@@ -1,0 +1,116 @@
+// What a visitor does with the first surface: opening it, and everything that hands, keys, pads and buttons of the page report. `build` notes which
+// parts of the engine that needs.
+import { Engine } from '../js/engine.js';
+import { LEVELS_HZ, RATE_HZ, SURFACES, sceneOf } from '../page/surfaces.js';
+
+const BLOCK = 128;
+
+/** Whole numbers from a seed, 0 to 1. */
+function seeded(seed) {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) >>> 0;
+    let mixed = Math.imul(state ^ (state >>> 15), state | 1);
+    mixed ^= mixed + Math.imul(mixed ^ (mixed >>> 7), mixed | 61);
+    return ((mixed ^ (mixed >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+/** The first surface as the page opens it; tells the instance. */
+export function opened(module) {
+  const { text, pictures, files } = sceneOf(SURFACES[0], SURFACES[0].id);
+  const engine = new Engine(module);
+  engine.open(text, { rate: RATE_HZ, live: true, files, pictures });
+  engine.openLevels(0, LEVELS_HZ);
+  engine.record();
+  engine.wasm.asp_forget_files();
+  return engine;
+}
+
+/** Taken over by another instance, as the audio thread does. */
+export function taken(module, engine) {
+  const image = engine.image();
+  const other = Engine.shell(module, image.length);
+  other.fill(image, 0, image.length);
+  other.know(engine.told);
+  return other;
+}
+
+/** Plays for so many seconds: up to ten fingers that slide, rest, leap, press, are forgotten and come back; blows; all buttons. */
+export function play(engine, seed, seconds) {
+  const random = seeded(seed);
+  const fingers = new Map();
+  let name = 0;
+  let skew = 0;
+  const late = [];
+  let stalls = 0;
+  const tell = (t, event) => {
+    // A page that is busy reports nothing for a while, and then all at once.
+    late.push([t, event]);
+    if (stalls === 0) for (const [then, what] of late.splice(0)) now(then, what);
+  };
+  const now = (t, event) => { try { engine.report(t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; } };
+  // Every other visitor has one finger only and leads it evenly, as keys do.
+  const isCalm = seed % 2 === 1;
+  const pace = () => [0, 0.02, 0.1, 0.3, 1, 3][Math.floor(random() * 6)];
+  const begin = (t) => {
+    const finger = { uv: [random() * 3 - 1, random() * 3 - 1], v: [pace() * (random() - 0.5), pace() * (random() - 0.5)], t, force: 0.1 + 3 * random() };
+    fingers.set(++name, finger);
+    tell(t, { event: 'begin', contact: name, surface: 'surface', actuator: 0, uv: finger.uv, normal_force_n: finger.force, closing_m_s: random() < 0.8 ? 0.04 : undefined });
+  };
+  const move = (t, contact, finger) => {
+    const dt = t - finger.t;
+    finger.t = t;
+    if (random() < (isCalm ? 0.002 : 0.03)) finger.v = [pace() * (random() - 0.5), pace() * (random() - 0.5)];
+    if (!isCalm && random() < 0.005) finger.uv = [random() * 40 - 20, random()];
+    if (!isCalm && random() < 0.05) finger.force = random() < 0.1 ? 0 : 6 * random();
+    finger.uv = [finger.uv[0] + finger.v[0] * dt / 0.028, finger.uv[1] + finger.v[1] * dt / 0.007];
+    tell(t, { event: 'move', contact, uv: finger.uv, velocity_m_s: random() < 0.9 ? finger.v : undefined, normal_force_n: finger.force });
+  };
+  // The first touch may well be there before the first block.
+  if (isCalm) begin(1000.003);
+  for (let block = 0; block < (seconds * RATE_HZ) / BLOCK; block++) {
+    const clock = 1000 + (block * BLOCK) / RATE_HZ;
+    stalls = stalls > 0 ? stalls - 1 : random() < 0.002 ? Math.floor(600 * random() ** 2) : 0;
+    if (random() < 0.002) skew = 0.3 * (random() - 0.5);
+    const t = clock + skew + 0.004 * random();
+    if (random() < 0.03 && fingers.size < (isCalm ? 1 : 10)) begin(t);
+    for (const [contact, finger] of fingers) {
+      if (random() < 0.006) { fingers.delete(contact); if (random() < 0.8) tell(t, { event: 'end', contact }); }
+      else if (!finger.still && t > finger.t && random() < 0.35) move(t, contact, finger);
+      if (random() < 0.002) finger.still = !finger.still;
+    }
+    if (random() < 0.02) tell(t, { event: 'impact', body: 'body', speed_m_s: 0.1 + 2.9 * random(), ...SURFACES[0].blow });
+    if (random() < 0.002) tell(t, { event: 'end', contact: 1 + Math.floor(random() * name) });
+    if (!(engine.position >= 0)) throw new Error('the engine has no position');
+    engine.render(BLOCK);
+    for (const signal of [engine.scope(), engine.audio(0, BLOCK), engine.haptic(0, BLOCK)]) if (!signal.every((x) => !Number.isNaN(x))) throw new Error('not a number');
+    if (block % 6 === 0) engine.levels();
+    if (block % 188 === 0) { engine.recorded(); engine.record(); }
+    if (block % 400 === 0) engine.stats();
+  }
+  stalls = 0;
+  for (const contact of fingers.keys()) tell(2000, { event: 'end', contact });
+}
+
+/** What a page may say wrongly, and every button. */
+export function trouble(engine) {
+  const good = { event: 'begin', contact: 1e6, surface: 'surface', actuator: 0, uv: [0, 0], normal_force_n: 1 };
+  const blow = { event: 'impact', body: 'body', speed_m_s: 1 };
+  for (const event of [
+    { ...good, event: 'dance' }, { ...good, normal_force_n: NaN }, { ...good, normal_force_n: -3 }, { ...good, normal_force_n: 1e12 }, { ...good, uv: [NaN, 0] },
+    { ...good, uv: [1e300, 0] }, { ...good, contact: -1 }, { ...good, actuator: 9 }, { ...good, closing_m_s: -1 }, { ...blow, speed_m_s: 1e9 },
+    { ...blow, mass_kg: -1 }, { ...blow, radius_m: 0 }, { ...blow, restitution: 7 }, { ...blow, position: 99 }, { event: 'move', contact: 123456, uv: [0, 0], normal_force_n: 1 },
+  ]) {
+    for (const t of [1500, NaN]) {
+      try { engine.report(t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; }
+    }
+  }
+  for (const what of ['mute', 'pause', 'resume', 'audioGain', 'hapticGain', 'timeScale', 'fadeAll']) {
+    for (const value of [1, 0, NaN]) {
+      try { engine.do(what, value); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; }
+      for (let block = 0; block < 40; block++) engine.render(BLOCK);
+    }
+    try { engine.do('timeScale', 1); } catch { /* It was refused before as well. */ }
+  }
+}

@@ -1,0 +1,173 @@
+//! The page's other end: a few addresses on the loopback address, for nobody but the page.
+//!
+//! | request | does |
+//! |---|---|
+//! | `GET /`, `/tune.js`, `/style.css` | the page |
+//! | `GET /state` | everything that can be turned, and what plays |
+//! | `POST /set` | `{ "path", "key", "value": [numbers] }`; an empty list takes the key out |
+//! | `POST /touch` | lines of a contact log, `t` by the page's own clock |
+//! | `POST /keep`, `/revert` | writes the file; takes it as it is |
+//! | `POST /log` | `true` or `false`: whether the contact log plays |
+//! | `POST /end` | ends the program |
+//!
+//! A request that another page sends is refused: its `Host` or `Origin` is not this address.
+
+use super::Tuned;
+use crate::error::CliError;
+use serde::Deserialize;
+use serde_json::json;
+use std::io::Read;
+use tiny_http::{Header, Method, Request, Response, Server};
+
+/// Files of the page, by their addresses.
+const PAGE: &[(&str, &str, &str)] = &[
+    ("/", "text/html; charset=utf-8", include_str!("../../../../bindings/web/tune/tune.html")),
+    ("/tune.js", "text/javascript; charset=utf-8", include_str!("../../../../bindings/web/tune/tune.js")),
+    ("/style.css", "text/css; charset=utf-8", include_str!("../../../../bindings/web/page/style.css")),
+];
+/// A request is never longer, bytes.
+const MOST_BYTES: u64 = 1 << 20;
+/// Requests answered before the log is looked at again.
+const MOST_AT_ONCE: usize = 64;
+
+/// The page's other end.
+pub struct Desk {
+    server: Server,
+}
+
+#[derive(Deserialize)]
+struct Turn {
+    path: String,
+    key: String,
+    value: Vec<f64>,
+}
+
+impl Desk {
+    /// Listens on a port of the loopback address; 0: one that is free.
+    ///
+    /// # Errors
+    /// When it is taken.
+    pub fn open(port: u16) -> Result<Self, CliError> {
+        let server = Server::http(("127.0.0.1", port)).map_err(|error| {
+            CliError::new("--port", format!("{port} cannot be served on ({error})"), "give another one, or 0")
+        })?;
+        Ok(Self { server })
+    }
+
+    /// Where the page is.
+    pub fn address(&self) -> String {
+        format!("http://{}/", self.server.server_addr())
+    }
+
+    /// Answers what has come in; false when the page ends the program.
+    pub fn answer(&self, tuned: &mut Tuned<'_>) -> bool {
+        for _ in 0..MOST_AT_ONCE {
+            match self.server.try_recv() {
+                Ok(Some(request)) => {
+                    if !self.one(request, tuned) {
+                        return false;
+                    }
+                }
+                _ => return true,
+            }
+        }
+        true
+    }
+
+    fn one(&self, mut request: Request, tuned: &mut Tuned<'_>) -> bool {
+        let path = request.url().split(['?', '#']).next().unwrap_or_default().to_owned();
+        if !self.is_ours(&request) {
+            let _ = request
+                .respond(Response::from_string("only the page itself is answered").with_status_code(403));
+            return true;
+        }
+        if *request.method() == Method::Get
+            && let Some((_, kind, content)) = PAGE.iter().find(|(name, _, _)| *name == path)
+        {
+            let _ = request.respond(with_kind(Response::from_string(*content), kind));
+            return true;
+        }
+        let mut body = String::new();
+        let whole = request.as_reader().take(MOST_BYTES).read_to_string(&mut body).is_ok();
+        let done = match (request.method(), path.as_str()) {
+            _ if !whole => Err(CliError::new("request", "is no text", "send UTF-8")),
+            (Method::Get, "/state") => Ok(()),
+            (Method::Post, "/set") => set(tuned, &body),
+            (Method::Post, "/touch") => tuned.touch(&body),
+            (Method::Post, "/keep") => tuned.keep(),
+            (Method::Post, "/revert") => tuned.revert(),
+            (Method::Post, "/log") => plays(tuned, &body),
+            (Method::Post, "/end") => Ok(()),
+            _ => {
+                let _ = request.respond(Response::from_string("no such address").with_status_code(404));
+                return true;
+            }
+        };
+        let (text, status) = match (&done, path.as_str()) {
+            (Err(error), _) => (json!({ "error": error.to_string() }), 400),
+            (Ok(()), "/touch") => (json!({}), 200),
+            (Ok(()), _) => (state(tuned), 200),
+        };
+        let response = Response::from_string(text.to_string()).with_status_code(status);
+        let _ = request.respond(with_kind(response, "application/json"));
+        path != "/end" || done.is_err()
+    }
+
+    /// Whether a request comes from this machine's own page.
+    fn is_ours(&self, request: &Request) -> bool {
+        let own = self.server.server_addr().to_string();
+        let port = own.rsplit(':').next().unwrap_or_default();
+        let hosts = [own.clone(), format!("localhost:{port}")];
+        let header = |name: &'static str| {
+            let found = request.headers().iter().find(|header| header.field.equiv(name));
+            found.map(|header| header.value.as_str().to_owned())
+        };
+        let is_host = header("Host").is_some_and(|host| hosts.contains(&host));
+        let is_origin = header("Origin").is_none_or(|origin| {
+            origin.strip_prefix("http://").is_some_and(|host| hosts.iter().any(|own| own == host))
+        });
+        is_host && is_origin
+    }
+}
+
+fn with_kind<R: Read>(response: Response<R>, kind: &str) -> Response<R> {
+    Header::from_bytes("Content-Type", kind).into_iter().fold(response, Response::with_header)
+}
+
+fn set(tuned: &mut Tuned<'_>, body: &str) -> Result<(), CliError> {
+    let turn: Turn = serde_json::from_str(body).map_err(|error| {
+        CliError::new("request", error, "send { \"path\", \"key\", \"value\": [numbers] }")
+    })?;
+    tuned.set(&turn.path, &turn.key, &turn.value)
+}
+
+fn plays(tuned: &mut Tuned<'_>, body: &str) -> Result<(), CliError> {
+    let on =
+        serde_json::from_str(body).map_err(|error| CliError::new("request", error, "send true or false"))?;
+    tuned.log.plays = on && !tuned.log.lines.lines.is_empty();
+    Ok(())
+}
+
+/// What the page shows.
+fn state(tuned: &Tuned<'_>) -> serde_json::Value {
+    let stats = tuned.scene.stats();
+    let surfaces = tuned.file.surfaces.iter();
+    json!({
+        "scene": tuned.name(),
+        "settings": tuned.document.settings(),
+        "surfaces": surfaces
+            .map(|entry| json!({ "name": entry.name, "width_m": entry.width_m, "height_m": entry.height_m }))
+            .collect::<Vec<_>>(),
+        "bodies": tuned.file.bodies.iter().map(|entry| &entry.name).collect::<Vec<_>>(),
+        "actuators": tuned.file.actuators.len(),
+        "heard": tuned.heard,
+        "plays": tuned.log.plays,
+        "has_log": !tuned.log.lines.lines.is_empty(),
+        "changed": tuned.is_changed(),
+        "said": tuned.said,
+        "position_s": tuned.position_s(),
+        "events": stats.events,
+        "peak": stats.bus_levels,
+        "why_silent": tuned.scene.why_silent().iter().map(ToString::to_string).collect::<Vec<_>>(),
+    })
+}
