@@ -244,7 +244,7 @@ fn a_rolling_ball_rolls_and_takes_its_place_of_contact_along() {
     assert!((sample.velocity_m_s.unwrap()[0] - 0.8).abs() < 0.08, "{sample:?}");
     // What is told of its motion is that it rolls.
     assert!(
-        sample.slip_m_s.unwrap() < 0.05 && (sample.roll_radius_m.unwrap() - radius_m as f64).abs() < 1e-6,
+        sample.slip_m_s.unwrap() < 0.05 && (sample.roll_radius_m.unwrap() - f64::from(radius_m)).abs() < 1e-6,
         "{sample:?}"
     );
 }
