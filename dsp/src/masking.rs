@@ -19,7 +19,7 @@
 //! Modes are taken away one by one, always the one that is furthest below what hides it, and those that are left hide the others from
 //! then on. So what stays hidden is hidden by what is really heard. The order is that of a level: at another one the slopes differ.
 //! A mode that is left out is missing from the waveform all the same (10 to 22 dB below the whole on dense tables): the claim is inaudible by
-//! this model at this level, not inaudible. The time grows with the square of the number of modes: 20 ms for 300 of them.
+//! this model at this level, not inaudible. The time grows with the square of the number of modes.
 
 use crate::mode::Mode;
 
