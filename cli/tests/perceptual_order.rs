@@ -1,14 +1,20 @@
 //! Order of modes by a masking model, on named tables of measured modes: how many nobody would miss, and what the ear's excitation says.
 
-use asperity_dsp::mode::Mode;
-use asperity_fit::after::masking::{
-    audible_count, erb_number, excitation_db, perceptual_order, quiet_db_spl,
+use asperity_dsp::masking::{
+    Ranked, audible_count, erb_number, excitation_db, perceptual_order, quiet_db_spl,
 };
+use asperity_dsp::mode::Mode;
 use asperity_measure::corpus::corpus;
 use serde_json::Value;
 
 const LOUDEST_DB_SPL: f64 = 70.0;
 const SAFETY_DB: f64 = 6.0;
+
+fn ranked(modes: &[Mode]) -> Vec<Ranked> {
+    let mut order = vec![Ranked::default(); modes.len()];
+    perceptual_order(modes, LOUDEST_DB_SPL, modes.len(), &mut order);
+    order
+}
 
 fn table(name: &str) -> Option<Vec<Mode>> {
     let text = std::fs::read_to_string(corpus(&format!("modal/{name}.json"))?).unwrap();
@@ -45,7 +51,7 @@ fn dense_tables_need_a_fraction_of_their_modes_and_excite_the_ear_within_a_decib
         [("tdw_ceramic_0_mm", 4.0), ("tdw_wood_medium_0_mm", 1.5), ("tdw_stone_1_mm", 1.0)]
     {
         let Some(modes) = table(name) else { continue };
-        let order = perceptual_order(&modes, LOUDEST_DB_SPL);
+        let order = ranked(&modes);
         let count = audible_count(&order, SAFETY_DB);
         let kept: Vec<usize> = order[..count].iter().map(|ranked| ranked.index).collect();
         let all: Vec<usize> = (0..modes.len()).collect();
@@ -75,7 +81,7 @@ fn the_order_does_not_depend_on_how_the_modes_were_sorted() {
     let Some(modes) = table("tdw_ceramic_0_mm") else { return };
     let turned: Vec<Mode> = modes.iter().rev().copied().collect();
     let [one, other] = [&modes, &turned].map(|modes| {
-        let order = perceptual_order(modes, LOUDEST_DB_SPL);
+        let order = ranked(modes);
         let kept = &order[..audible_count(&order, SAFETY_DB)];
         let mut hz: Vec<f64> = kept.iter().map(|ranked| modes[ranked.index].frequency_hz).collect();
         hz.sort_by(f64::total_cmp);

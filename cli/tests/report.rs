@@ -263,13 +263,43 @@ fn presets_err_less_the_more_they_cost_and_tell_which_stage_errs() {
     }
     let error_db = |which: usize| number(&presets[which]["error_db"]);
     assert!(error_db(2) < error_db(1) - 15.0 && error_db(1) < error_db(0));
-    // What each is felt and heard as where the pad stays on smooth ground, and where it is thrown off it.
-    for (preset, felt_db, heard_db) in [(1, -55.0, -48.0), (2, -85.0, -70.0)] {
-        for name in ["smooth", "bouncing"] {
-            let cases = presets[preset]["cases"].as_array().unwrap();
-            let case = cases.iter().find(|case| case["name"] == name).unwrap();
-            assert!(case["contractive"] == true && number(&case["felt_db"]) <= felt_db, "{case}");
-            assert!(number(&case["heard_db"]) <= heard_db, "{case}");
+    // What each is felt and heard as where the contact forgets how it came to where it is. At the engine's own rate what passes within a few samples,
+    // in `fast` and `light`, is not known well enough between them: with the slopes at the samples besides it would be −48 and −38 dB, with heights twice as
+    // dense −55 and −44.
+    let most = [
+        ("default", "smooth", -80.0, -65.0),
+        ("default", "bouncing", -70.0, -55.0),
+        ("default", "steep", -70.0, -48.0),
+        ("default", "fast", -40.0, -33.0),
+        ("default", "light", -34.0, -22.0),
+        ("accurate", "smooth", -100.0, -70.0),
+        ("accurate", "bouncing", -90.0, -70.0),
+        ("accurate", "steep", -90.0, -65.0),
+        ("accurate", "fast", -90.0, -65.0),
+        ("accurate", "light", -80.0, -65.0),
+    ];
+    for (preset, name, felt_db, heard_db) in most {
+        let preset = presets.iter().find(|found| found["preset"] == preset).unwrap();
+        let cases = preset["cases"].as_array().unwrap();
+        let case = cases.iter().find(|case| case["name"] == name).unwrap();
+        assert!(case["contractive"] == true && number(&case["felt_db"]) <= felt_db, "{case}");
+        assert!(number(&case["heard_db"]) <= heard_db, "{case}");
+    }
+}
+
+#[test]
+fn sixty_reports_a_second_leave_gratings_of_2_mm_and_more_their_waveform_and_a_rough_plate_its_levels() {
+    let strokes = report().1["from_reports"].as_array().unwrap();
+    for stroke in strokes {
+        println!("{stroke}");
+        if stroke["name"] == "rough plate" {
+            assert!(
+                number(&stroke["felt_levels_db"]).max(number(&stroke["heard_levels_db"])) <= 1.0,
+                "{stroke}"
+            );
+        } else {
+            assert!(number(&stroke["felt_db"]).max(number(&stroke["heard_db"])) <= -30.0, "{stroke}");
         }
     }
+    assert_eq!(strokes.len(), 6);
 }

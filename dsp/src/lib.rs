@@ -16,6 +16,7 @@
 //! | [`hertz`] | impacts → force pulses → impulses a sample |
 //! | [`mobility`] | force pulses → what the hand feels of an impact |
 //! | [`mode`], [`modal_bank`] | impulses → sound |
+//! | [`masking`] | modes → the order in which nobody would miss them |
 //! | [`held`] | contacts that press on a body → its pitches and decays |
 //! | [`radiation`] | motion of a surface → pressure at 1 m |
 //! | [`damping`] | a material → the decays of its modes |
@@ -41,6 +42,7 @@ pub mod gradient_noise_3d;
 pub mod held;
 pub mod hertz;
 pub mod limits;
+pub mod masking;
 pub mod micro_contact;
 pub mod mobility;
 pub mod modal_bank;

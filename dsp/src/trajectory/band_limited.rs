@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! p(t) = c₀ + c₁ t + Σ A √S_k (a_k cos ω_k t + b_k sin ω_k t)      a_k, b_k ~ N(0, 1); c₀, c₁ as good as free
-//! S_k ∝ 1/(1 + f⁴) · 1/(1 + (f/15)¹⁶)                             f in Hz; 24 of them up to 22 Hz
+//! S_k ∝ 1/(1 + f⁴) · 1/(1 + (f/15)¹⁶)                             f in Hz; 24 of them up to 30 Hz
 //! report i: place p(tᵢ) + σ, and velocity p′(tᵢ) + σᵥ if it was reported
 //! output = E[p | the last six reports] at t − lag, + r            r″ = −(1/τᵥ + 1/τ_p) r′ − r/(τᵥ τ_p)
 //! ```
@@ -10,7 +10,7 @@
 //! | symbol | here | |
 //! |---|---|---|
 //! | A | `AMPLITUDE_M` | assumed: 0.1 m/s rms; where reports are exact the estimate does not depend on it |
-//! | σ | `NOISE_M` | exact or a tracker's; whichever has foretold the last reports better counts |
+//! | σ, σᵥ | `NOISE` | exact, rounded or a tracker's; whichever has foretold the last reports best counts |
 //! | r | `Estimate::rest` | what the estimate jumps by at a report, made up smoothly: slowly in place (τ_p), at once in velocity (τᵥ) |
 //! | lag | the 30 Hz filter's delay | the same as that of the other modes |
 //!
@@ -18,9 +18,10 @@
 //! they are: jitter costs nothing. The mean of the posterior is worked out once a report and laid down as a polynomial about the middle
 //! of the time for which it is wanted.
 //!
-//! **Where it fails.** A finger that stops dead between two reports moves in no band: the estimate overshoots (0.1 m/s stopped at once: up to
-//! 1 m/s for some milliseconds), jittered stamps of a straight stroke lead it by up to 2 ms, and a path that rests does not always fall
-//! asleep. It is a choice for hands on smooth strokes, and not the default.
+//! A finger that is said to stand while the estimate has it move stands: what it did before no longer counts, because no band holds a dead stop.
+//!
+//! **Where it fails.** A finger that meets an edge and goes on elsewhere between two reports moves in no band: the estimate overshoots for some
+//! milliseconds. Jittered stamps of a straight stroke lead it by up to 2 ms. It is a choice for hands on smooth strokes, and not the default.
 
 use super::TrajectoryDesign;
 use super::reckoning::Belief;
@@ -32,25 +33,28 @@ const OBSERVED: usize = 2 * KEPT;
 /// Frequencies of the motion …
 const WAVES: usize = 24;
 /// … up to, Hz.
-const TOP_HZ: f64 = 22.0;
+const TOP_HZ: f64 = 30.0;
 /// Terms of the polynomial.
 const TERMS: usize = 8;
 /// Size of ordinary motion, m: with this spectrum 0.1 m/s rms. Assumed.
 const AMPLITUDE_M: f64 = 0.0125;
-/// What places may err by, m: rounding; a tracker's noise.
-const NOISE_M: [f64; 2] = [3e-7, 5e-5];
-/// What reported velocities may err by, m/s.
-const VELOCITY_NOISE_M_S: f64 = 1e-6;
+/// What places, m, and reported velocities, m/s, may err by: a game's in `f64`; rounded to `f32`; a tracker's places.
+const NOISE: [[f64; 2]; MODELS] = [[3e-8, 3e-7], [1e-6, 1e-6], [5e-5, 1e-6]];
+/// How many of these there are.
+const MODELS: usize = 3;
 /// How free the line under the motion is: variance of its place and of its slope (1/s), in units of the motion's own.
 const LINE: [f64; 2] = [1e2, 1e4];
 /// How soon a jump of the velocity is made up, and one of the place, s.
 const MADE_UP_S: [f64; 2] = [7e-4, 0.1];
 /// Weight of the past when the models of noise are compared …
 const PAST: f64 = 0.8;
-/// … a tracker's noise counts where it foretells so much better, of a variance …
+/// … more noise counts where it foretells so much better, of a variance …
 const CLEARLY: f64 = 0.6;
 /// … and the most that one report may count, m².
 const MOST_M2: f64 = 4e-6;
+
+/// A finger that is said to stand and is estimated to be faster has stopped dead, m/s: what is left of a hand's smooth end is below.
+const DEAD_STOP_M_S: f64 = 0.02;
 
 /// What was reported, about the path's origin.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -70,9 +74,9 @@ pub(super) struct Estimate {
     len: usize,
     centre_s: f64,
     /// One for each model of noise.
-    polynomials: [Polynomial; 2],
+    polynomials: [Polynomial; MODELS],
     /// How badly each has foretold, m².
-    surprise_m2: [f64; 2],
+    surprise_m2: [f64; MODELS],
     /// Place and velocity of what is still to be made up, of each axis.
     rest: [[f64; 2]; 2],
     /// Since the velocity is no longer believed: place and velocity.
@@ -87,8 +91,8 @@ impl Estimate {
             reports: [report; KEPT],
             len: 1,
             centre_s: 0.0,
-            polynomials: [[[0.0; TERMS]; 2]; 2],
-            surprise_m2: [0.0; 2],
+            polynomials: [[[0.0; TERMS]; 2]; MODELS],
+            surprise_m2: [0.0; MODELS],
             rest: [[0.0; 2]; 2],
             glide: None,
         };
@@ -113,7 +117,12 @@ impl Estimate {
             *surprise_m2 = PAST * *surprise_m2 + (u * u + v * v).min(MOST_M2);
         }
         let report = Report { sample, position_m: [0.0; 2], velocity_m_s };
-        if afresh || self.glide.is_some() {
+        let has_stopped = velocity_m_s == Some([0.0; 2]) && {
+            let since_s = (sample - latest) as f64 * design.sample_period_s - self.centre_s;
+            let [u, v] = [0, 1].map(|axis| value(&self.best()[axis], since_s)[1]);
+            libm::hypot(u, v) > DEAD_STOP_M_S
+        };
+        if afresh || has_stopped || self.glide.is_some() {
             (self.len, self.reports[0]) = (1, report);
         } else if sample == latest {
             self.reports[self.len - 1] = report;
@@ -143,12 +152,20 @@ impl Estimate {
         }
     }
 
+    /// That of the model of noise that has foretold best.
+    fn best(&self) -> &Polynomial {
+        let better = |best: usize, model: usize| {
+            if self.surprise_m2[model] < CLEARLY * self.surprise_m2[best] { model } else { best }
+        };
+        &self.polynomials[(1..MODELS).fold(0, better)]
+    }
+
     /// Place and velocity of each axis at a sample; beyond belief those at its end.
     fn at(&self, design: &TrajectoryDesign, sample: u64, belief: Belief) -> [[f64; 2]; 2] {
         let latest = self.reports[self.len - 1].sample;
         let age = (sample.wrapping_sub(latest) as i64).min(belief.whole_samples);
         let since_s = age as f64 * design.sample_period_s - design.filter.group_delay_s() - self.centre_s;
-        let polynomial = &self.polynomials[usize::from(self.surprise_m2[1] < CLEARLY * self.surprise_m2[0])];
+        let polynomial = self.best();
         [0, 1].map(|axis| {
             let [place, velocity] =
                 self.glide.map_or_else(|| value(&polynomial[axis], since_s), |glide| glide[axis]);
@@ -206,8 +223,8 @@ impl Estimate {
         };
         self.centre_s = 0.5 * period_s.min(0.03) - design.filter.group_delay_s();
         let features = Features::of(design, &self.reports[..self.len]);
-        for (polynomial, noise_m) in self.polynomials.iter_mut().zip(NOISE_M) {
-            *polynomial = features.posterior(noise_m, self.centre_s);
+        for (polynomial, noise) in self.polynomials.iter_mut().zip(NOISE) {
+            *polynomial = features.posterior(noise, self.centre_s);
         }
     }
 }
@@ -283,7 +300,7 @@ impl Features {
 
     /// The mean of the motion given what was seen, as polynomials about a time after the latest report.
     #[expect(clippy::needless_range_loop, reason = "indices are those of the equations")]
-    fn posterior(&self, noise_m: f64, centre_s: f64) -> Polynomial {
+    fn posterior(&self, noise: [f64; 2], centre_s: f64) -> Polynomial {
         let n = self.count;
         let mut covariance = [[0.0; OBSERVED]; OBSERVED];
         for i in 0..n {
@@ -291,7 +308,7 @@ impl Features {
                 let pairs = self.rows[i].iter().zip(&self.rows[j]).zip(&self.variance);
                 covariance[i][j] = pairs.map(|((a, b), variance)| a * b * variance).sum();
             }
-            let noise = if self.is_velocity[i] { VELOCITY_NOISE_M_S } else { noise_m } / AMPLITUDE_M;
+            let noise = noise[usize::from(self.is_velocity[i])] / AMPLITUDE_M;
             covariance[i][i] += noise * noise;
         }
         cholesky(&mut covariance, n);

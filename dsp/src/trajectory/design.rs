@@ -11,7 +11,7 @@ pub const HERMITE_DELAY_S: f64 = 1.25 / 60.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum PathMode {
-    /// Dead reckoning with the reported velocity.
+    /// Dead reckoning with the reported velocity, and with how it has been changing.
     #[default]
     Extrapolate,
     /// Each event's position is held until the next, as in the paper.

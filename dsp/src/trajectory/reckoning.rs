@@ -1,5 +1,6 @@
 //! Dead reckoning from the latest event, and how long to believe it.
 
+use super::bend::Turn;
 use super::{REST_SPEED_M_S, TrajectoryDesign};
 
 /// Event period assumed until two events are known, s.
@@ -32,6 +33,8 @@ pub(super) struct Reckoning {
     /// How far beyond its sample the event holds, samples; its position is already carried back to it.
     fraction: f64,
     velocity_m_s: [f64; 2],
+    /// How the velocity will change.
+    turn: Turn,
     force_n: f64,
     period_s: f64,
     events: u32,
@@ -65,6 +68,7 @@ impl Reckoning {
             sample,
             fraction,
             velocity_m_s,
+            turn: Turn::default(),
             force_n,
             period_s: FIRST_PERIOD_S,
             events: 1,
@@ -87,6 +91,10 @@ impl Reckoning {
 
     pub fn force_n(&self) -> f64 {
         self.force_n
+    }
+
+    pub fn period_s(&self) -> f64 {
+        self.period_s
     }
 
     pub fn set_force_n(&mut self, force_n: f64) {
@@ -125,6 +133,7 @@ impl Reckoning {
     pub fn stop(&mut self) {
         self.lost |= self.velocity_m_s != [0.0; 2];
         self.velocity_m_s = [0.0; 2];
+        self.turn = Turn::default();
         self.glide.started = false;
         self.glide.after_samples = -1;
     }
@@ -142,9 +151,11 @@ impl Reckoning {
         let Belief { whole_samples, fade_s } = self.belief(design);
         let believed_s = whole_samples as f64 * design.sample_period_s;
         let late_s = gap_s - believed_s;
-        let time_s =
-            if late_s > 0.0 { believed_s + fade_s * (1.0 - libm::exp(-late_s / fade_s)) } else { gap_s };
-        [self.velocity_m_s[0] * time_s, self.velocity_m_s[1] * time_s]
+        let on_s = gap_s.min(believed_s);
+        let fading_s = if late_s > 0.0 { fade_s * (1.0 - libm::exp(-late_s / fade_s)) } else { 0.0 };
+        let [further, faster] = self.turn.after(on_s);
+        [0, 1]
+            .map(|axis| self.velocity_m_s[axis] * (on_s + fading_s) + further[axis] + faster[axis] * fading_s)
     }
 
     /// Takes a new event, `gap_s` after the latest; the origin has already been moved to it.
@@ -153,12 +164,12 @@ impl Reckoning {
         design: &TrajectoryDesign,
         (sample, fraction): (u64, f64),
         gap_s: f64,
-        velocity_m_s: [f64; 2],
+        (velocity_m_s, turn): ([f64; 2], Turn),
         force_n: f64,
     ) {
         self.note_interval(gap_s);
         let (period_s, events) = (self.period_s, self.events);
-        *self = Self { period_s, events, ..Self::begin(sample, fraction, velocity_m_s, force_n) };
+        *self = Self { period_s, events, turn, ..Self::begin(sample, fraction, velocity_m_s, force_n) };
         self.plan_glide(design);
     }
 
@@ -185,6 +196,10 @@ impl Reckoning {
         for out in believed {
             let since_s = if samples > earliest { samples } else { earliest } * design.sample_period_s;
             *out = [self.velocity_m_s[0] * since_s, self.velocity_m_s[1] * since_s, self.force_n];
+            if !self.turn.is_none() {
+                let [[u, v], _] = self.turn.after(since_s);
+                (out[0], out[1]) = (out[0] + u, out[1] + v);
+            }
             samples += 1.0;
         }
         for out in late {
@@ -197,8 +212,11 @@ impl Reckoning {
         let glide = &mut self.glide;
         if !glide.started {
             let believed_s = glide.after_samples as f64 * design.sample_period_s;
-            glide.position_m = [self.velocity_m_s[0] * believed_s, self.velocity_m_s[1] * believed_s];
-            glide.velocity_m_s = self.velocity_m_s;
+            let [further, faster] = self.turn.after(believed_s);
+            for axis in 0..2 {
+                glide.position_m[axis] = self.velocity_m_s[axis] * believed_s + further[axis];
+                glide.velocity_m_s[axis] = self.velocity_m_s[axis] + faster[axis];
+            }
             glide.started = true;
         }
         for axis in 0..2 {

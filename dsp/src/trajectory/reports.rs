@@ -1,5 +1,6 @@
 //! Reports taken by a path: it goes on, makes up what a silence cost, or starts elsewhere.
 
+use super::bend::{Bend, Turn};
 use super::catch_up::{Distance, Speeds};
 use super::{PathMode, STILL_DISTANCE_M, Trajectory, TrajectoryDesign, or_rest};
 use crate::trajectory::history::History;
@@ -148,7 +149,9 @@ impl Trajectory {
             && force_n == self.reckoning.force_n();
         self.still &= unchanged;
         self.rebase(step);
-        self.reckoning.follow(design, (event.sample, event.fraction), seen.gap_s, velocity, force_n);
+        let turn = self.turn(design, seen, reported, rejoins);
+        let at = (event.sample, event.fraction);
+        self.reckoning.follow(design, at, seen.gap_s, (velocity, turn), force_n);
         match design.mode {
             PathMode::Hermite if rejoins => self.history = History::begin(event.sample, velocity, force_n),
             PathMode::Hermite => {
@@ -160,6 +163,25 @@ impl Trajectory {
                 self.estimate.push(design, samples, belief, reported, rejoins);
             }
             PathMode::Extrapolate | PathMode::Hold => {}
+        }
+    }
+
+    /// How the velocity of an event will change: of a path that reckons on, where reports hold velocities.
+    fn turn(
+        &mut self,
+        design: &TrajectoryDesign,
+        seen: &Seen,
+        reported: Option<[f64; 2]>,
+        rejoins: bool,
+    ) -> Turn {
+        match reported {
+            Some(velocity) if design.mode == PathMode::Extrapolate && !rejoins => {
+                self.bend.follow(seen.gap_s, seen.covered_m, velocity, self.reckoning.period_s())
+            }
+            _ => {
+                self.bend = Bend::begin(reported);
+                Turn::default()
+            }
         }
     }
 

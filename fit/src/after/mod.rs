@@ -2,13 +2,11 @@
 //!
 //! | file | from → to |
 //! |---|---|
-//! | [`masking`] | modes → the order in which nobody would miss them |
 //! | [`places`] | several strikes and the body's shapes → where they were made, and how well that explains them |
 //! | [`scaling`] | modes → modes of another size or material |
 //! | [`strikes`] | fits of several strikes → one body with amplitudes per strike |
 //! | [`table`] | modes ↔ CSV, and other programs' tables |
 
-pub mod masking;
 pub mod places;
 pub mod scaling;
 pub mod strikes;

@@ -22,6 +22,9 @@ pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
 /// How far back a contact that appears is taken to have slid, s: what a 10 Hz high-pass remembers.
 const TREND_S: f64 = 0.025;
 
+/// How long the pad is led before it appears, s. The same at every rate, because a finger remembers for tenths of a second how it began.
+const LEAD_IN_S: f64 = 64.0 / 44_100.0;
+
 impl Voice {
     /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed. `at` begins at the stamp.
     pub(crate) fn begin(
@@ -80,37 +83,52 @@ impl Voice {
     /// A finger that is suddenly there has been sliding already: the pad is led along the straight line
     /// to where it appears, so that it moves with the surface from its first sample.
     fn lead_in(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
-        let Stretch { shared, output, position, .. } = at;
-        let [slope_m_s, bend_m_s2] = self.trend(shared, position, seat, scratch);
-        self.lay_behind(1, shared, position, seat, scratch);
+        let Stretch { shared, output, .. } = at;
+        let [slope_m_s, bend_m_s2] = self.trend(at, seat, scratch);
+        let step_s = 1.0 / shared.sample_rate_hz;
+        let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
+        self.lay_behind(steps + 1, step_s, 1, at, seat, scratch);
+        self.pad.ride(scratch.profile.surface.height_m[0], scratch.profile.force_n[0], slope_m_s);
         self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
-        self.rolling.lead_in(&mut scratch.profile.surface);
-        let (heights_m, forces_n) = (&scratch.profile.surface.height_m, &scratch.profile.force_n);
-        let row = self.pad.lead_in(heights_m, forces_n, slope_m_s, &mut scratch.lanes[0].rows);
+        let (mut left, mut row) = (steps, PadSample::default());
+        while left > 0 {
+            let count = left.min(MAX_BLOCK);
+            self.lay_behind(left, step_s, count, at, seat, scratch);
+            let Scratch { lanes, profile, .. } = &mut *scratch;
+            self.rolling.lead_in(&mut profile.surface, count);
+            let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
+            row = self.pad.lead_in(heights_m, forces_n, &mut lanes[0].rows[..count]);
+            left -= count;
+            if left == 0 {
+                self.pad.appear(&row, heights_m[count - 1], forces_n[count - 1], slope_m_s);
+            }
+        }
         let PadSample { pad_m, pad_velocity_m_s, .. } = row;
         self.ac.feel =
             ContactOutputState::begin_sliding(output, pad_m, pad_velocity_m_s, slope_m_s, bend_m_s2);
     }
 
-    /// The profile behind the contact, a point every `stride` samples.
+    /// The profile under `count` points behind the contact, a step of `step_s` apart, of which the first is `steps` behind.
     fn lay_behind(
         &mut self,
-        stride: usize,
-        shared: &Shared,
-        position: u64,
+        steps: usize,
+        step_s: f64,
+        count: usize,
+        at: Stretch<'_>,
         seat: &mut Seat,
         scratch: &mut Scratch,
     ) {
-        self.path.lay_behind(stride, shared.sample_rate_hz, &mut scratch.lanes[0].points);
-        let along = self.along(shared, position, false);
-        scratch.profile.run(seat, along, &scratch.lanes[0].points, &mut self.cells);
+        let Scratch { lanes, profile, .. } = scratch;
+        let points = &mut lanes[0].points[..count];
+        self.path.lay_behind(steps, step_s, points);
+        let along = self.along(at.shared, at.position, false);
+        profile.run(seat, along, points, &mut self.cells);
     }
 
     /// How the profile has risen, m/s, and bent, m/s², during the last [`TREND_S`]: the parabola nearest to it.
-    fn trend(&mut self, shared: &Shared, position: u64, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
-        let stride = ((TREND_S * shared.sample_rate_hz) as usize / MAX_BLOCK).max(1);
-        self.lay_behind(stride, shared, position, seat, scratch);
-        let step_s = stride as f64 / shared.sample_rate_hz;
+    fn trend(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) -> [f64; 2] {
+        let step_s = TREND_S / MAX_BLOCK as f64;
+        self.lay_behind(MAX_BLOCK, step_s, MAX_BLOCK, at, seat, scratch);
         let [slope, bend] = parabola(&scratch.profile.surface.height_m);
         // The slope is that of the middle; the contact is half a trend later.
         let bend_m_s2 = bend / (step_s * step_s);

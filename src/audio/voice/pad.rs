@@ -65,28 +65,33 @@ impl Pad {
         self.resets_told = self.state.resets();
     }
 
-    /// It has been sliding over these heights already, which rise by `rise_m_s` on the whole; the row it ends with.
+    /// It has been sliding for a while already, over ground of this height that rises by `rise_m_s` on the whole.
     ///
-    /// Finger and pad rise with them: set off from rest they would still swing when they are heard. On the whole means over the
+    /// Finger and pad rise with it: set off from rest they would still swing when they are heard. On the whole means over the
     /// time that a finger answers in: with the slope of a millisecond's roughness a lightly pressed one would be thrown.
+    pub(super) fn ride(&mut self, height_m: f64, force_n: f64, rise_m_s: f64) {
+        self.state = self.model.riding(height_m, force_n, rise_m_s);
+    }
+
+    /// Then over these heights; the row it ends with.
     pub(super) fn lead_in(
         &mut self,
         heights_m: &[f64],
         forces_n: &[f64],
-        rise_m_s: f64,
         rows: &mut [PadSample],
     ) -> PadSample {
-        let last = heights_m.len() - 1;
-        self.state = self.model.riding(heights_m[0], forces_n[0], rise_m_s);
         self.model.run(&mut self.state, heights_m, forces_n, rows);
-        self.late_row = PadSample { onset: None, ..rows[last] };
-        let (height_m, force_n) = (heights_m[last], forces_n[last]);
-        if self.state.resets() > 0 || self.late_row.contact_force_n > LEAD_IN_BLOW * force_n {
+        rows.last().copied().unwrap_or_default()
+    }
+
+    /// And is here, after such a row, on ground of this height that rises by `rise_m_s` on the whole.
+    pub(super) fn appear(&mut self, row: &PadSample, height_m: f64, force_n: f64, rise_m_s: f64) {
+        self.late_row = PadSample { onset: None, ..*row };
+        if self.state.resets() > 0 || row.contact_force_n > LEAD_IN_BLOW * force_n {
             // What never was there cannot have thrown it.
             self.state = self.model.riding(height_m, force_n, rise_m_s);
         }
         self.resets_told = self.state.resets();
-        self.late_row
     }
 
     /// A row for each height, as the model gives it.

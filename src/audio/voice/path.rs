@@ -116,11 +116,11 @@ impl Path {
         self.trajectory.is_still() && self.body.as_ref().is_none_or(BodyPath::is_still)
     }
 
-    /// The straight line that ends where the contact is, a point every `stride` samples.
-    pub(super) fn lay_behind(&self, stride: usize, sample_rate_hz: f64, points: &mut [PathPoint; MAX_BLOCK]) {
+    /// The straight line that ends where the contact is: points a step of `step_s` apart, of which the first is `steps` before it.
+    pub(super) fn lay_behind(&self, steps: usize, step_s: f64, points: &mut [PathPoint]) {
         let PathPoint { position_m: end_m, velocity_m_s, normal_force_n } = self.last;
         for (i, point) in points.iter_mut().enumerate() {
-            let before_s = ((MAX_BLOCK - i) * stride) as f64 / sample_rate_hz;
+            let before_s = (steps - i) as f64 * step_s;
             let position_m = [0, 1].map(|axis| end_m[axis] - velocity_m_s[axis] * before_s);
             *point = PathPoint { position_m, velocity_m_s, normal_force_n };
         }

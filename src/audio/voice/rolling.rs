@@ -142,10 +142,10 @@ impl Rolling {
         }
     }
 
-    /// The same of heights that lie behind a contact that appears.
-    pub(super) fn lead_in(&mut self, surface: &mut SurfaceBlock) {
+    /// The same of `n` heights that lie behind a contact that appears; its share stands still meanwhile.
+    pub(super) fn lead_in(&mut self, surface: &mut SurfaceBlock, n: usize) {
         if self.rolls() {
-            self.run(0, MAX_BLOCK as u64, surface, MAX_BLOCK);
+            self.run(0, MAX_BLOCK as u64, surface, n);
         }
     }
 }
