@@ -1,10 +1,11 @@
 //! Handle table: what a C program holds is a number, never an address, so that every wrong one can be told.
 //!
 //! ```text
-//! handle = generation · 2¹³ + place · 2³ + kind        place < 1024, kind 1…4
+//! handle = (generation xor copy) · 2¹³ + place · 2³ + kind        place < 1024, kind 1…4
 //! ```
 //!
-//! A place's generation grows each time it is used again, so a handle that was freed never names what came after it. One word a place
+//! A place's generation grows each time it is used again, so a handle that was freed never names what came after it. `copy` follows from where
+//! the table lies: where a library is loaded from two files, the handles of one are none of the other's. One word a place
 //! says who may use it; it is taken by a single compare-and-swap, by the audio thread as well: nobody ever waits for it.
 
 use crate::status::{ASP_BAD_HANDLE, ASP_BUSY, ASP_FULL, ASP_PANIC, Failure};
@@ -19,7 +20,8 @@ const KIND_BITS: u32 = 3;
 const PLACE_BITS: u32 = 10;
 const PHASE_BITS: u32 = 2;
 /// As many as fit into a pointer of 32 bits.
-const GENERATIONS: u64 = 1 << 19;
+const GENERATION_BITS: u32 = 19;
+const GENERATIONS: u64 = 1 << GENERATION_BITS;
 /// How long freeing waits for another thread to come out of its call.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -61,6 +63,12 @@ impl<T: Send> Table<T> {
         Self { kind, name, slots, next: AtomicUsize::new(0) }
     }
 
+    /// A number of this copy of the library: two lie at different pages.
+    fn copy(&self) -> u64 {
+        let page = std::ptr::from_ref(self).addr() as u64 >> 12;
+        page.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (u64::BITS - GENERATION_BITS)
+    }
+
     fn fail(&self, status: i32, what: &str, right: &str) -> Failure {
         Failure::new(status, format!("{}: {what}; {right}", self.name))
     }
@@ -84,7 +92,8 @@ impl<T: Send> Table<T> {
             // SAFETY: the word is ours.
             unsafe { *slot.value.get() = Some(Box::new(value)) };
             slot.word.store(generation << PHASE_BITS | phase::IDLE, Release);
-            return Ok((generation as usize) << (PLACE_BITS + KIND_BITS) | index << KIND_BITS | self.kind);
+            let marked = (generation ^ self.copy()) as usize;
+            return Ok(marked << (PLACE_BITS + KIND_BITS) | index << KIND_BITS | self.kind);
         }
         Err(self.fail(ASP_FULL, "all 1024 handles are taken", "free those that are no longer needed"))
     }
@@ -92,7 +101,7 @@ impl<T: Send> Table<T> {
     /// The place and the generation of a handle, if it is one of this table's.
     fn place(&self, handle: usize) -> Option<(usize, u64)> {
         let index = handle >> KIND_BITS & (PLACES - 1);
-        let generation = (handle >> (PLACE_BITS + KIND_BITS)) as u64;
+        let generation = (handle >> (PLACE_BITS + KIND_BITS)) as u64 ^ self.copy();
         (handle & 7 == self.kind && (1..GENERATIONS).contains(&generation)).then_some((index, generation))
     }
 
@@ -236,6 +245,16 @@ mod tests {
         assert_eq!(TABLE.hold(handle).err().unwrap().status, ASP_PANIC);
         assert!(TABLE.hold_at(TABLE.index(handle).unwrap()).is_none());
         assert_eq!(*TABLE.remove(handle).unwrap(), 1);
+    }
+
+    #[test]
+    fn a_handle_of_another_copy_of_the_table_is_none_of_this_one() {
+        static ONE: Table<u32> = Table::new(1, "number");
+        static OTHER: Table<u32> = Table::new(1, "number");
+        let (one, other) = (ONE.insert(1).unwrap(), OTHER.insert(2).unwrap());
+        assert_eq!(OTHER.hold(one).err().unwrap().status, ASP_BAD_HANDLE);
+        assert_eq!(ONE.remove(other).err().unwrap().status, ASP_BAD_HANDLE);
+        assert_eq!((*ONE.hold(one).unwrap(), *OTHER.hold(other).unwrap()), (1, 2));
     }
 
     #[test]
