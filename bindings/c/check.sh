@@ -109,7 +109,7 @@ skip() {
 
 if need valgrind valgrind; then
     check="valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect"
-    $check "$work/hostile"
+    $check "$work/hostile" few
     $check "$work/audio_thread" short
     $check "$work/fuzz" 5000 60
     ok "valgrind: no error, no leak"

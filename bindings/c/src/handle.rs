@@ -35,6 +35,8 @@ mod phase {
 
 struct Slot<T> {
     word: AtomicU64,
+    /// The generation that somebody waits to free, 0 = none: nobody else begins a call with it, or threads without pause would keep it for ever.
+    closing: AtomicU64,
     value: UnsafeCell<Option<Box<T>>>,
 }
 
@@ -58,8 +60,13 @@ pub(crate) struct Held<'a, T> {
 
 impl<T: Send> Table<T> {
     pub(crate) const fn new(kind: usize, name: &'static str) -> Self {
-        let slots =
-            [const { Slot { word: AtomicU64::new(phase::FREE), value: UnsafeCell::new(None) } }; PLACES];
+        let slots = [const {
+            Slot {
+                word: AtomicU64::new(phase::FREE),
+                closing: AtomicU64::new(0),
+                value: UnsafeCell::new(None),
+            }
+        }; PLACES];
         Self { kind, name, slots, next: AtomicUsize::new(0) }
     }
 
@@ -114,13 +121,21 @@ impl<T: Send> Table<T> {
     /// `hold` to put into words.
     pub(crate) fn try_hold(&self, handle: usize) -> Result<Held<'_, T>, Option<u64>> {
         let (index, generation) = self.place(handle).ok_or(None)?;
-        self.swap(index, generation, phase::IDLE)
+        self.begin(index, generation)
     }
 
     /// The same by place: whatever is there now.
     pub(crate) fn hold_at(&self, index: usize) -> Option<Held<'_, T>> {
         let generation = self.slots.get(index)?.word.load(Relaxed) >> PHASE_BITS;
-        self.swap(index, generation, phase::IDLE).ok()
+        self.begin(index, generation).ok()
+    }
+
+    /// Begins a call, unless it is being freed.
+    fn begin(&self, index: usize, generation: u64) -> Result<Held<'_, T>, Option<u64>> {
+        if generation != 0 && self.slots[index].closing.load(Relaxed) == generation {
+            return Err(Some(phase::IN_USE));
+        }
+        self.swap(index, generation, phase::IDLE)
     }
 
     fn swap(&self, index: usize, generation: u64, from: u64) -> Result<Held<'_, T>, Option<u64>> {
@@ -161,6 +176,17 @@ impl<T: Send> Table<T> {
     /// Takes the value out for good. Waits, for a while, until no other thread is inside a call with it.
     pub(crate) fn remove(&self, handle: usize) -> Result<Box<T>, Failure> {
         let (index, generation) = self.place(handle).ok_or(None).map_err(|why| self.refusal(why))?;
+        let slot = &self.slots[index];
+        if slot.word.load(Relaxed) >> PHASE_BITS == generation {
+            slot.closing.store(generation, Relaxed);
+        }
+        let removed = self.wait_and_take(index, generation);
+        // Of a later generation it is somebody else's by now.
+        let _ = slot.closing.compare_exchange(generation, 0, Relaxed, Relaxed);
+        removed
+    }
+
+    fn wait_and_take(&self, index: usize, generation: u64) -> Result<Box<T>, Failure> {
         let began = Instant::now();
         loop {
             let idle = self.swap(index, generation, phase::IDLE);
@@ -245,6 +271,24 @@ mod tests {
         assert_eq!(TABLE.hold(handle).err().unwrap().status, ASP_PANIC);
         assert!(TABLE.hold_at(TABLE.index(handle).unwrap()).is_none());
         assert_eq!(*TABLE.remove(handle).unwrap(), 1);
+    }
+
+    #[test]
+    fn a_handle_is_freed_however_busy_others_are_with_it() {
+        static TABLE: Table<u32> = Table::new(2, "number");
+        let handle = TABLE.insert(1).unwrap();
+        let users: Vec<_> = (0..3)
+            .map(|_| {
+                std::thread::spawn(move || {
+                    while !matches!(TABLE.try_hold(handle), Err(None)) {
+                        std::hint::spin_loop();
+                    }
+                })
+            })
+            .collect();
+        std::thread::sleep(Duration::from_millis(5));
+        assert_eq!(*TABLE.remove(handle).unwrap(), 1);
+        users.into_iter().for_each(|user| user.join().unwrap());
     }
 
     #[test]

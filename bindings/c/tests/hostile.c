@@ -23,6 +23,8 @@
 /* The same on any thread: nothing is counted. */
 #define REFUSED_BY_STATUS(call, with, word) MUST((call) == (with) && strstr(asp_last_error(), (word)))
 static int refusals_;
+/* Fewer threads and rounds: under valgrind one thread runs at a time. */
+static int few;
 
 static asp_config exact(void) {
     asp_config config;
@@ -423,7 +425,7 @@ static void *everything(void *seed) {
 
 /* Many threads with the same handles, which are freed under them. */
 static void threads(void) {
-    for (int round = 0; round < 10; round++) {
+    for (int round = 0; round < (few ? 2 : 10); round++) {
         build(&shared_scene, &shared_renderer);
         asp_scene *played;
         asp_renderer *plays;
@@ -546,7 +548,7 @@ static void texts(void) {
 
 /* 64 threads that build, load, render and free engines of their own at once; and one engine more than there are handles. */
 static void *own_engine(void *seed) {
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < (few ? 1 : 6); i++) {
         asp_scene *scene;
         asp_renderer *renderer;
         static const char scene_file[] = "[[body]]\nname = \"a\"\nstock = \"disc\"\nsize_m = 0.1\n[[surface]]\nname = \"b\"\nbody = \"a\"\nwidth_m = 0.1\nheight_m = 0.1\n";
@@ -571,9 +573,10 @@ static void *own_engine(void *seed) {
 
 static void many(void) {
     pthread_t all[64];
-    for (size_t i = 0; i < 64; i++)
+    const size_t count_of_threads = few ? 8 : 64;
+    for (size_t i = 0; i < count_of_threads; i++)
         MUST(pthread_create(&all[i], NULL, own_engine, (void *)i) == 0);
-    for (int i = 0; i < 64; i++)
+    for (size_t i = 0; i < count_of_threads; i++)
         MUST(pthread_join(all[i], NULL) == 0);
     asp_scene *scene;
     asp_renderer *renderer;
@@ -591,7 +594,8 @@ static void many(void) {
     MUST(asp_scene_free(scene) == ASP_OK && asp_renderer_free(renderer) == ASP_OK);
 }
 
-int main(void) {
+int main(int count, char **words) {
+    few = count > 1 && strcmp(words[1], "few") == 0;
     nulls(), sizes(), ids_and_numbers(), handles(), threads(), callbacks(), texts(), many();
     printf("hostile: %d refusals, each with a status and a sentence; %d calls met a busy handle\n", refusals_, atomic_load(&busy));
     return 0;

@@ -13,6 +13,8 @@ namespace Asperity
         public AudioMixer Mixer;
         [Tooltip("The name under which the parameter Engine is exposed")]
         public string EngineParameter = "AsperityEngine";
+        [Tooltip("Loudness before the limiter: blows of a physics engine reach many times full scale")]
+        public float Gain = 0.1f;
         [Tooltip("Haptic channels: hands, controllers")]
         public uint HapticChannels = 2;
 
@@ -29,7 +31,8 @@ namespace Asperity
         void OnEnable()
         {
             Renderer renderer;
-            Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels);
+            string audio = "audio = [{ gain = " + Gain.ToString("R", System.Globalization.CultureInfo.InvariantCulture) + ", limit = true }]";
+            Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels, more: audio);
             Renderer = renderer;
             Current = this;
             // Unity hears an object only where one of these is on it.
