@@ -71,13 +71,10 @@ impl Motion {
             .map(|report| {
                 let t = report as f64 / self.reports_hz;
                 let (place_m, velocity_m_s) = way.at(t);
+                let uv = [place_m[0] / size_m[0], place_m[1] / size_m[1]];
                 let sample = ContactSample {
-                    uv: [place_m[0] / size_m[0], place_m[1] / size_m[1]],
                     velocity_m_s: Some(velocity_m_s),
-                    normal_force_n: self.force_n,
-                    closing_m_s: 0.0,
-                    at_m: None,
-                    depth_m: None,
+                    ..ContactSample::new(uv, self.force_n)
                 };
                 let event = if report == 0 {
                     LogEvent::begin(0, surface, 0, sample)

@@ -2,11 +2,12 @@
 # Checks of the C library.
 #
 #   check.sh 1          the header is of these sources, and C and C++ programs find, build and run it (tier 1)
-#   check.sh 2          everything: valgrind, the malloc counter, random calls, C#, the Unity host, Octave, Windows where it can be had (tier 2)
+#   check.sh 2          everything: valgrind, the malloc counter, random calls, C#, the Unity host, Unreal's page, Octave, Windows where it can be
+#                       had (tier 2)
 #   check.sh accept     notes the interface as it is now, after its version was raised
 #
-# Needs Rust, gcc, cmake, pkg-config and Python; tier 2 installs what else is missing, where it may. SANITIZE=1 adds the address sanitizer,
-# which compiles the engine once more, with nightly Rust.
+# Needs Rust, gcc, cmake, pkg-config and Python; tier 2 installs what else is missing, where it may. SANITIZE=1 adds the address sanitizer in
+# the engine too, which is compiled once more for it; TARGETS=1 the static libraries of other systems.
 set -euo pipefail
 cd "$(dirname "$0")"
 here="$PWD" root="$(cd ../.. && pwd)"
@@ -14,6 +15,8 @@ tier="${1:?1, 2 or accept}"
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
 passed=0
+# What a README shows: its first block of a language, as it is printed.
+shown() { awk -v fence="\`\`\`$2" '$0 == fence && !done { on = 1; next } /^ *```$/ && on { on = 0; done = 1 } on' "$1"; }
 ok() { passed=$((passed + 1)) && printf 'ok %2d   %s (%s s)\n' "$passed" "$1" "$SECONDS"; }
 fail() { echo "error: $1" && exit 1; }
 
@@ -55,10 +58,13 @@ found="$(pkg-config --cflags asperity)" libs="$(pkg-config --libs asperity) -lm 
     for program in replay hostile fuzz; do
         gcc -std=c99 -pedantic $strict $found tests/$program.c -o "$work/$program" $libs
     done
+    shown README.md c >"$work/readme.c"
+    gcc -std=c99 -pedantic $strict $found "$work/readme.c" -o "$work/readme" $libs
+    gcc -std=c99 -pedantic $strict tests/loading.c -I. -L"$lib" -Wl,--no-as-needed -o "$work/loading" $libs -ldl
     gcc -std=c11 $strict $found tests/audio_thread.c -o "$work/audio_thread" $libs
     gcc -O1 -shared -fPIC tests/malloc_counter.c -o "$work/malloc_counter.so"
 }
-(cd "$work" && ./stroke && ./stroke_cpp)
+(cd "$work" && ./readme && ./stroke && ./stroke_cpp)
 ok "C99 and C++17 programs found by pkg-config build without a warning and run"
 
 cmake -S example -B "$work/cmake" -DCMAKE_PREFIX_PATH="$PREFIX" >"$work/cmake.log" || { cat "$work/cmake.log" && fail "find_package: failed"; }
@@ -82,6 +88,9 @@ ok "nothing is allocated or freed on the audio thread"
 ok "hostile calls"
 "$work/fuzz" 1 300
 ok "random calls"
+cp "$lib/libasperity.so" "$work/another_copy.so"
+"$work/loading" "$lib/libasperity.so" "$work/another_copy.so"
+ok "loaded twice, closed while it plays, forked"
 [ "$tier" = 2 ] || exit 0
 
 (cd "$root" && cargo test --release -q -p asperity-c)
@@ -100,7 +109,7 @@ skip() {
 
 if need valgrind valgrind; then
     check="valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite,indirect"
-    $check "$work/hostile"
+    $check "$work/hostile" few
     $check "$work/audio_thread" short
     $check "$work/fuzz" 5000 60
     ok "valgrind: no error, no leak"
@@ -110,16 +119,28 @@ fi
 "$work/fuzz" 10000 1500
 ok "more random calls"
 
+# The address sanitizer in the programs, and in every allocation of the library: what it frees twice, leaks or gives back too late.
+# shellcheck disable=SC2086
+for program in hostile fuzz replay; do
+    gcc -std=c99 $strict -fsanitize=address,undefined $found tests/$program.c "$lib/libasperity.a" -o "$work/${program}_asan" -lm -lpthread -ldl
+done
+sanitized() {
+    "$work/hostile_asan"
+    "$work/fuzz_asan" "$1" "$2"
+    "$work/replay_asan" tests/replay.toml tests/replay.jsonl 0.5 "$work/asan.f32" 512
+}
+sanitized 30000 300
+ok "address sanitizer of the programs: hostile and random calls, the replay"
 if [ "${SANITIZE:-}" = 1 ]; then
-    (cd "$root" && RUSTFLAGS=-Zsanitizer=address CARGO_PROFILE_RELEASE_OPT_LEVEL=1 cargo +nightly build --release -q -p asperity-c \
-        --target x86_64-unknown-linux-gnu)
-    built="$target/x86_64-unknown-linux-gnu/release/libasperity_c.a"
+    # The stable compiler has it behind this switch.
+    (cd "$root" && RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address CARGO_PROFILE_RELEASE_OPT_LEVEL=1 cargo rustc --release -q -p asperity-c \
+        --crate-type staticlib --target x86_64-unknown-linux-gnu --target-dir "$target/sanitized")
+    built="$target/sanitized/x86_64-unknown-linux-gnu/release/libasperity_c.a"
+    # shellcheck disable=SC2086
     for program in hostile fuzz replay; do
         gcc -std=c99 $strict -fsanitize=address $found tests/$program.c "$built" -o "$work/${program}_asan" -lm -lpthread -ldl
     done
-    "$work/hostile_asan"
-    "$work/fuzz_asan" 20000 1000
-    "$work/replay_asan" tests/replay.toml tests/replay.jsonl 0.5 "$work/asan.f32" 512
+    sanitized 20000 1000
     ok "address sanitizer, engine and programs: hostile and random calls, the replay"
 fi
 
@@ -128,9 +149,13 @@ if need mcs mono-mcs && need mono mono-runtime libmono-system-core4.0-cil; then
     mono "$work/Test.exe"
     mcs -warnaserror -langversion:7 -out:"$work/Stroke.exe" unity/Runtime/Asperity.cs example/Stroke.cs
     mono "$work/Stroke.exe"
-    # The component compiles against the few of Unity's types that it uses; nothing of Unity runs here.
-    mcs -warnaserror -langversion:7 -target:library -define:ASPERITY_UNITY -out:"$work/Unity.dll" tests/unity_types.cs unity/Runtime/*.cs
-    ok "C# under Mono"
+    # Unity's components and the package's sample, against the few of Unity's types that they use; nothing of Unity runs here.
+    cp "$lib/libasperity.so" "$work/libaudioplugin_asperity.so"
+    shown unity/README.md csharp >"$work/Shown.cs"
+    mcs -langversion:7 -define:ASPERITY_UNITY -out:"$work/UnityScene.exe" tests/unity_types.cs tests/UnityScene.cs unity/Runtime/*.cs \
+        unity/Samples~/FirstTouch/FirstTouch.cs "$work/Shown.cs"
+    LD_LIBRARY_PATH="$work:$lib" mono "$work/UnityScene.exe"
+    ok "C# under Mono; Unity's components and the package's sample with stand-ins for Unity's types"
 else
     skip "no Mono"
 fi
@@ -138,23 +163,54 @@ fi
 g++ -std=c++17 $strict -I. tests/unity_host.cpp -o "$work/unity_host" -ldl
 cp "$lib/libasperity.so" "$work/libaudioplugin_asperity.so"
 "$work/unity_host" "$work/libaudioplugin_asperity.so"
-python3 -c 'import json; json.load(open("unity/package.json")); json.load(open("unity/Runtime/Asperity.asmdef"))'
+python3 -c '
+import json, os, sys
+package = json.load(open("unity/package.json"))
+json.load(open("unity/Runtime/Asperity.asmdef"))
+assert package["version"] == sys.argv[1], "unity/package.json: version must be " + sys.argv[1]
+assert all(os.path.isdir("unity/" + sample["path"]) for sample in package["samples"])
+' "$version"
 ok "the callbacks of Unity's mixer, with its offsets; the package's files"
+
+mkdir -p "$work/unreal/Components"
+shown unreal/README.md cpp >"$work/unreal/TouchSynth.h"
+touch "$work/unreal/CoreMinimal.h" "$work/unreal/TouchSynth.generated.h" "$work/unreal/Components/SynthComponent.h"
+# shellcheck disable=SC2086
+g++ -std=c++20 -fno-exceptions -fno-rtti $strict -Itests/unreal -I"$work/unreal" $found tests/unreal/page.cpp -o "$work/unreal/page" $libs
+"$work/unreal/page"
+ok "the component of Unreal's page, with stand-ins for Unreal's types"
 
 if need mkoctfile octave octave-dev; then
     (cd "$work" && CFLAGS="-Wall -Wextra -Werror" mkoctfile --mex $found "$here/octave/asperity_render.c" -L"$lib" -lasperity "-Wl,-rpath,$lib" -o asperity_render.mex &&
         "$work/replay" "$here/tests/replay.toml" "$here/tests/replay.jsonl" 0.5 replay.f32 512 &&
-        octave-cli -q --no-init-file --no-window-system "$here/tests/test_octave.m" "$here/tests" replay.f32)
-    ok "Octave"
+        octave-cli -q --no-init-file --no-window-system "$here/tests/test_octave.m" "$here/tests" replay.f32 &&
+        octave-cli -q --no-init-file --no-window-system "$here/octave/example/stroke.m" && [ -s stroke.wav ])
+    cmp octave/example/stroke.m <(shown octave/README.md matlab) || fail "octave/README.md: does not show octave/example/stroke.m"
+    ok "Octave, and the example of its page"
 else
     skip "no Octave"
 fi
 
-if ls "$(rustc --print sysroot)/lib/rustlib" | grep -qx x86_64-pc-windows-gnu && need x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64-win32 &&
+has_target() { [ -d "$(rustc --print sysroot)/lib/rustlib/$1" ] || timeout 120 rustup target add "$1" 2>/dev/null; }
+
+if has_target x86_64-pc-windows-gnu && need x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64-win32 &&
     { command -v wine64 || [ -x /usr/lib/wine/wine64 ] || need wine64 wine64; } >/dev/null; then
     tests/windows.sh "$work"
     ok "Windows: the DLL and the C programs under Wine"
 else
-    echo "skipped: Windows, where Rust's library for it, mingw and Wine are installed (rustup target add x86_64-pc-windows-gnu)"
+    echo "skipped: Windows, where Rust's library for it, mingw and Wine can be had (rustup target add x86_64-pc-windows-gnu)"
+fi
+
+# As far as other systems can be reached without their linkers: the static libraries of the recipes in release/.
+if [ "${TARGETS:-}" = 1 ]; then
+    for system in x86_64-apple-darwin aarch64-apple-darwin aarch64-apple-ios aarch64-linux-android x86_64-pc-windows-msvc; do
+        if has_target "$system"; then
+            (cd "$root" && cargo rustc --release -q -p asperity-c --crate-type staticlib --target "$system" --target-dir "$target/targets")
+            ls "$target/targets/$system/release/"*asperity_c.{a,lib} 2>/dev/null
+            ok "$system: a static library is built; nothing of it has run"
+        else
+            echo "skipped: no standard library of $system"
+        fi
+    done
 fi
 printf '%d passed, 0 failed in %s s\n' "$passed" "$SECONDS"

@@ -7,41 +7,31 @@
 //! | `view` | the parts of a physics world, whoever owns them |
 //! | `thing` | what a collider is to asperity |
 //! | `solved` | a pair's contact as the solver left it |
-//! | `pair` | one pair over time: lands, slides, rolls, rests, leaves |
+//! | `side` | one of the two of a pair, for the rules of the crate `asperity-pairs` |
+//! | `vector` | vectors of one and the other |
 
 // One source for both versions of the physics engine.
 #[cfg(feature = "bevy-rapier-0-36")]
 extern crate rapier3d_of_bevy as rapier3d;
 
-mod pair;
+mod side;
 mod solved;
 mod thing;
+mod vector;
 mod view;
 
-pub use thing::{EDGE_RADIUS_M, Mapping, Thing};
+pub use asperity_pairs::{EDGE_RADIUS_M, Kind};
+pub use thing::{Mapping, Thing};
 pub use view::View;
 
 use asperity::{AddError, ContactEvent, ContactId, ProbeId, Scene, probe_by_name};
-use pair::{Pair, Step};
+use asperity_pairs::{Motion, Pair, Side, Step};
 use rapier3d::prelude::*;
-use solved::Solved;
+use side::ColliderSide;
 use std::collections::{BTreeMap, HashMap};
-use view::Motion;
 
 /// Ids of the adapter's contacts begin here, so that a game's own stay free below.
 pub const FIRST_CONTACT: u64 = 1 << 32;
-
-/// What a pair does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Kind {
-    /// It touches, and its place of contact stands still.
-    Rests,
-    /// It slides.
-    Scrapes,
-    /// Its place of contact moves, and what is there does not slide.
-    Rolls,
-}
 
 /// A pair that touches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,10 +56,18 @@ pub struct Touch {
 pub struct Adapter {
     things: HashMap<ColliderHandle, Thing>,
     /// In order, so that the same world gives the same events.
-    pairs: BTreeMap<[(u32, u32); 2], Pair>,
+    pairs: BTreeMap<[(u32, u32); 2], Listed>,
     before: HashMap<RigidBodyHandle, Motion>,
     rigid: ProbeId,
     next_contact: u64,
+}
+
+/// A pair that rapier lists.
+#[derive(Debug)]
+struct Listed {
+    seen: bool,
+    colliders: [ColliderHandle; 2],
+    pair: Pair,
 }
 
 impl Adapter {
@@ -109,14 +107,14 @@ impl Adapter {
     pub fn before_step(&mut self, view: &View<'_>) {
         self.before.clear();
         for (handle, body) in view.bodies.iter() {
-            self.before.insert(handle, Motion::of(body));
+            self.before.insert(handle, view::motion(body));
         }
     }
 
     /// To be called right after the physics step: what happened in it, to be reported at its game time.
     pub fn after_step(&mut self, view: &View<'_>) -> Vec<ContactEvent> {
         let mut events = Vec::new();
-        self.pairs.values_mut().for_each(|pair| pair.seen = false);
+        self.pairs.values_mut().for_each(|listed| listed.seen = false);
         for contact in view.narrow_phase.contact_pairs() {
             let colliders = [contact.collider1, contact.collider2];
             let [Some(first), Some(second)] = colliders.map(|collider| self.things.get(&collider)) else {
@@ -126,35 +124,46 @@ impl Adapter {
             let before = [a, b].map(|collider| {
                 collider.parent().and_then(|body| self.before.get(&body)).copied().unwrap_or_default()
             });
+            let sides = [(colliders[0], a, first), (colliders[1], b, second)]
+                .map(|(handle, collider, thing)| ColliderSide { view, handle, collider, thing });
             let step = Step {
-                view,
-                colliders,
-                things: [first, second],
-                before,
-                solved: Solved::of(contact, view),
+                sides: [&sides[0] as &dyn Side, &sides[1]],
+                solved: solved::solved(contact, view, before),
                 rigid: self.rigid,
+                step_s: view.step_s,
             };
             let key = colliders.map(ColliderHandle::into_raw_parts);
-            let pair = self.pairs.entry(key).or_default();
-            pair.seen = true;
-            pair.advance(&step, &mut self.next_contact, &mut events);
+            let new = || Listed { seen: true, colliders, pair: Pair::default() };
+            let listed = self.pairs.entry(key).or_insert_with(new);
+            (listed.seen, listed.colliders) = (true, colliders);
+            listed.pair.advance(&step, &mut self.next_contact, &mut events);
         }
-        for pair in self.pairs.values_mut().filter(|pair| !pair.seen) {
-            pair.leave(&mut events);
+        for listed in self.pairs.values_mut().filter(|listed| !listed.seen) {
+            listed.pair.leave(&mut events);
         }
-        self.pairs.retain(|_, pair| pair.seen);
+        self.pairs.retain(|_, listed| listed.seen);
         events
     }
 
     /// Every pair that touched in the last step.
     pub fn touches(&self) -> impl Iterator<Item = Touch> + '_ {
-        self.pairs.values().filter_map(|pair| pair.touch)
+        self.pairs.values().filter_map(|listed| {
+            let doing = listed.pair.doing()?;
+            Some(Touch {
+                colliders: listed.colliders,
+                kind: doing.kind,
+                contact: doing.contact,
+                path_m_s: doing.path_m_s,
+                slip_m_s: doing.slip_m_s,
+                force_n: doing.force_n,
+            })
+        })
     }
 
     /// Ends every contact, for a level that is left: what is returned is to be reported.
     pub fn end_all(&mut self) -> Vec<ContactEvent> {
         let mut events = Vec::new();
-        self.pairs.values_mut().for_each(|pair| pair.leave(&mut events));
+        self.pairs.values_mut().for_each(|listed| listed.pair.leave(&mut events));
         self.pairs.clear();
         events
     }

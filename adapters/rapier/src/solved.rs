@@ -1,41 +1,47 @@
 //! A contact as the solver left it: the impulse-weighted mean of a pair's points.
 
+use crate::vector::told;
 use crate::view::View;
+use asperity_pairs::{Motion, Solved};
 use rapier3d::prelude::*;
 
-#[derive(Clone, Copy)]
-pub(crate) struct Solved {
-    /// Where, in space, m.
-    pub point_m: Vector,
-    /// Of length 1, from the first collider to the second.
-    pub normal: Vector,
-    /// Along the normal, over the whole step, N·s.
-    pub impulse_n_s: f32,
-    pub restitution: f32,
+/// `None` when nothing presses. `before`: how both moved before the step.
+pub(crate) fn solved(pair: &ContactPair, view: &View<'_>, before: [Motion; 2]) -> Option<Solved> {
+    let first = view.colliders.get(pair.collider1)?.position();
+    let (mut point_m, mut normal, mut impulse_n_s, mut restitution) =
+        (Vector::ZERO, Vector::ZERO, 0.0, 0.0f32);
+    for manifold in pair.solver_manifolds() {
+        // A point of a compound is told in the space of its part.
+        let place = manifold.subshape_pos1().map_or(*first, |part| *first * part);
+        for contact in &manifold.points {
+            let impulse = pushed_n_s(&contact.data);
+            point_m += place * contact.local_p1 * impulse;
+            normal += manifold.data.normal * impulse;
+            impulse_n_s += impulse;
+            restitution = restitution.max(manifold.data.restitution);
+        }
+    }
+    if impulse_n_s <= 0.0 {
+        return None;
+    }
+    let (point_m, normal) = (told(point_m / impulse_n_s), told(normal.normalize_or_zero()));
+    let gained_m_s = [pair.collider1, pair.collider2].map(|collider| {
+        let body = view.body_of(collider).filter(|body| body.is_dynamic());
+        told(view.gravity * (body.map_or(0.0, |body| body.gravity_scale()) * view.step_s))
+    });
+    let closing_m_s = Solved::closing_m_s(before, gained_m_s, point_m, normal);
+    Some(Solved { point_m, normal, impulse_n_s, restitution, closing_m_s })
 }
 
-impl Solved {
-    /// `None` when nothing presses.
-    pub fn of(pair: &ContactPair, view: &View<'_>) -> Option<Self> {
-        let first = view.colliders.get(pair.collider1)?.position();
-        let (mut point_m, mut normal, mut impulse_n_s, mut restitution) =
-            (Vector::ZERO, Vector::ZERO, 0.0, 0.0f32);
-        for manifold in pair.solver_manifolds() {
-            // A point of a compound is told in the space of its part.
-            let place = manifold.subshape_pos1().map_or(*first, |part| *first * part);
-            for contact in &manifold.points {
-                let impulse = contact.data.impulse;
-                point_m += place * contact.local_p1 * impulse;
-                normal += manifold.data.normal * impulse;
-                impulse_n_s += impulse;
-                restitution = restitution.max(manifold.data.restitution);
-            }
-        }
-        (impulse_n_s > 0.0).then(|| Self {
-            point_m: point_m / impulse_n_s,
-            normal: normal.normalize_or_zero(),
-            impulse_n_s,
-            restitution,
-        })
-    }
+/// What a point has pushed in the step, N·s.
+#[cfg(not(feature = "bevy-rapier-0-36"))]
+fn pushed_n_s(point: &ContactData) -> f32 {
+    point.impulse
+}
+
+/// The same of rapier 0.35, which counts what the step before handed over as well: of steps alike that is what this one hands on, a quarter of
+/// the weight of what lies still.
+#[cfg(feature = "bevy-rapier-0-36")]
+fn pushed_n_s(point: &ContactData) -> f32 {
+    (point.impulse - point.warmstart_impulse).max(0.0)
 }

@@ -5,9 +5,6 @@ use rapier3d::parry::query::PointQueryWithLocation;
 use rapier3d::parry::shape::ShapeType;
 use rapier3d::prelude::*;
 
-/// Radius of an edge or a corner that nobody gave one, m: what is broken with sandpaper. Assumed.
-pub const EDGE_RADIUS_M: f64 = 0.002;
-
 /// What a collider is to asperity.
 #[derive(Debug, Clone)]
 pub struct Thing {
@@ -54,16 +51,22 @@ impl Thing {
         self
     }
 
-    /// Radius of what strikes, m: a ball's own and [`EDGE_RADIUS_M`] for an edge unless told otherwise.
+    /// Radius of what strikes, m: a ball's own and [`EDGE_RADIUS_M`](crate::EDGE_RADIUS_M) for an edge unless told otherwise.
     #[must_use]
     pub fn radius_m(mut self, radius_m: f64) -> Self {
         self.radius_m = Some(radius_m);
         self
     }
 
-    /// A finger is felt and does not ring: its landings are contacts, not impacts.
-    pub(crate) fn is_finger(&self) -> bool {
-        self.actuator.is_some() && self.body.is_none()
+    /// What the rules of pairs need to know of it.
+    pub(crate) fn facts(&self) -> asperity_pairs::Thing {
+        asperity_pairs::Thing {
+            material: self.material,
+            body: self.body,
+            surface: self.surface.as_ref().map(|(surface, _)| *surface),
+            actuator: self.actuator,
+            probe: self.probe,
+        }
     }
 }
 
@@ -112,13 +115,9 @@ pub(crate) fn is_round(collider: &Collider) -> bool {
     matches!(collider.shape().shape_type(), Ball | Capsule | Cylinder | Cone | RoundCylinder | RoundCone)
 }
 
-/// Radius of curvature with which two things meet, m: of the round ones, where there are any, else of an edge.
-pub(crate) fn radius_m(things: [(&Thing, &Collider); 2]) -> f64 {
-    let own = |(thing, collider): (&Thing, &Collider)| {
-        let ball = collider.shape().as_ball().map(|ball| f64::from(ball.radius));
-        let capsule = collider.shape().as_capsule().map(|capsule| f64::from(capsule.radius));
-        thing.radius_m.or(ball).or(capsule)
-    };
-    let curvature: f64 = things.into_iter().filter_map(own).map(|radius_m| 1.0 / radius_m).sum();
-    if curvature > 0.0 { 1.0 / curvature } else { EDGE_RADIUS_M }
+/// Radius of curvature of a thing where it strikes, m; none = an edge.
+pub(crate) fn own_radius_m(thing: &Thing, collider: &Collider) -> Option<f64> {
+    let ball = collider.shape().as_ball().map(|ball| f64::from(ball.radius));
+    let capsule = collider.shape().as_capsule().map(|capsule| f64::from(capsule.radius));
+    thing.radius_m.or(ball).or(capsule)
 }

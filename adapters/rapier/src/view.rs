@@ -1,5 +1,7 @@
 //! A view of a physics world: the sets that the adapter reads, whoever owns them.
 
+use crate::vector::told;
+use asperity_pairs::Motion;
 use rapier3d::prelude::*;
 
 /// The parts of a rapier world, borrowed between two steps.
@@ -29,21 +31,12 @@ impl<'a> From<&'a PhysicsWorld> for View<'a> {
     }
 }
 
-/// Motion of a rigid body at an instant; still for a collider without one.
-#[derive(Clone, Copy, Default, Debug)]
-pub(crate) struct Motion {
-    pub linear_m_s: Vector,
-    pub angular_rad_s: Vector,
-    pub centre_m: Vector,
-}
-
-impl Motion {
-    pub fn of(body: &RigidBody) -> Self {
-        Self { linear_m_s: body.linvel(), angular_rad_s: body.angvel(), centre_m: body.center_of_mass() }
-    }
-
-    pub fn at(&self, point_m: Vector) -> Vector {
-        self.linear_m_s + self.angular_rad_s.cross(point_m - self.centre_m)
+/// How a rigid body moves.
+pub(crate) fn motion(body: &RigidBody) -> Motion {
+    Motion {
+        linear_m_s: told(body.linvel()),
+        angular_rad_s: told(body.angvel()),
+        centre_m: told(body.center_of_mass()),
     }
 }
 
@@ -52,16 +45,8 @@ impl View<'_> {
         self.bodies.get(self.colliders.get(collider)?.parent()?)
     }
 
+    /// Still for a collider without a body.
     pub(crate) fn motion(&self, collider: ColliderHandle) -> Motion {
-        self.body_of(collider).map(Motion::of).unwrap_or_default()
-    }
-
-    /// How much faster a body's point goes along a direction after an impulse of 1 N·s along it there, 1/kg: 0 for what nothing moves.
-    pub(crate) fn mobility_per_kg(&self, collider: ColliderHandle, point_m: Vector, along: Vector) -> f32 {
-        let Some(body) = self.body_of(collider).filter(|body| body.is_dynamic()) else { return 0.0 };
-        let properties = body.mass_properties();
-        let arm = (point_m - body.center_of_mass()).cross(along);
-        along.dot(properties.effective_inv_mass * along)
-            + arm.dot(properties.effective_world_inv_inertia * arm)
+        self.body_of(collider).map(motion).unwrap_or_default()
     }
 }

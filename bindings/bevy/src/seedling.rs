@@ -5,17 +5,19 @@
 //! [`Output::Device`](crate::Output) instead.
 //!
 //! The node starts silent. When the graph's rate is known, the next frame of the game designs the engine for it and lays the renderer into a
-//! slot; the processor *tries* the slot and never waits for it.
+//! slot; the processor *tries* the slot and never waits for it. A stream that starts anew, on another device for instance, gives the renderer back
+//! and has it designed for its own rate.
 
 use crate::touch::Touch;
 use asperity::Renderer;
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_seedling::node::RegisterNode;
+use firewheel::StreamInfo;
 use firewheel::channel_config::{ChannelConfig, ChannelCount};
 use firewheel::node::{
     AudioNode, AudioNodeInfo, AudioNodeProcessor, ConstructProcessorContext, EmptyConfig, NodeError,
-    ProcBuffers, ProcExtra, ProcInfo, ProcessStatus,
+    ProcBuffers, ProcExtra, ProcInfo, ProcStreamCtx, ProcessStatus,
 };
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -27,6 +29,7 @@ const MAX_ACTUATORS: usize = 64;
 pub struct TouchNode {
     slot: Arc<Mutex<Slot>>,
     outputs: u32,
+    actuators: usize,
 }
 
 /// What lies between the game and the graph.
@@ -40,10 +43,12 @@ struct Slot {
     rate_hz: Option<f64>,
 }
 
+/// Needs `SeedlingPlugins` (or its core plugin) in the same app, before or after.
 pub(crate) fn start(app: &mut App, renderer: Renderer) {
     let outputs = renderer.audio_buses().clamp(2, 64) as u32;
+    let actuators = renderer.haptic_channels().min(MAX_ACTUATORS);
     let slot = Arc::new(Mutex::new(Slot { idle: Some(renderer), ..Slot::default() }));
-    let node = TouchNode { slot, outputs };
+    let node = TouchNode { slot, outputs, actuators };
     app.register_simple_node::<TouchNode>();
     app.add_systems(Startup, move |mut commands: Commands| {
         commands.spawn(node.clone());
@@ -94,12 +99,10 @@ impl AudioNode for TouchNode {
         _: &EmptyConfig,
         cx: ConstructProcessorContext,
     ) -> Result<impl AudioNodeProcessor, NodeError> {
-        let mut slot = self.slot.lock().unwrap_or_else(PoisonError::into_inner);
-        slot.rate_hz = Some(f64::from(cx.stream_info.sample_rate.get()));
-        let frames = cx.stream_info.max_block_frames.get() as usize;
-        let renderer = slot.idle.as_ref().or(slot.ready.as_ref());
-        let actuators = renderer.map_or(1, Renderer::haptic_channels).min(MAX_ACTUATORS);
-        Ok(Processor { slot: self.slot.clone(), renderer: None, haptic: vec![vec![0.0; frames]; actuators] })
+        let haptic = vec![Vec::new(); self.actuators];
+        let mut processor = Processor { slot: self.slot.clone(), renderer: None, haptic };
+        processor.make_ready(cx.stream_info);
+        Ok(processor)
     }
 }
 
@@ -111,7 +114,22 @@ struct Processor {
     haptic: Vec<Vec<f32>>,
 }
 
+impl Processor {
+    /// Asks for a renderer of the stream's rate, and makes room for its blocks.
+    fn make_ready(&mut self, stream: &StreamInfo) {
+        let mut slot = self.slot.lock().unwrap_or_else(PoisonError::into_inner);
+        let (own, laid_out) = (self.renderer.take(), slot.ready.take());
+        slot.idle = slot.idle.take().or(own).or(laid_out);
+        slot.rate_hz = Some(f64::from(stream.sample_rate.get()));
+        self.haptic.fill(vec![0.0; stream.max_block_frames.get() as usize]);
+    }
+}
+
 impl AudioNodeProcessor for Processor {
+    fn new_stream(&mut self, stream: &StreamInfo, _: &mut ProcStreamCtx<'_>) {
+        self.make_ready(stream);
+    }
+
     fn process(&mut self, info: &ProcInfo, buffers: ProcBuffers<'_, '_>, _: &mut ProcExtra) -> ProcessStatus {
         if self.renderer.is_none()
             && let Ok(mut slot) = self.slot.try_lock()

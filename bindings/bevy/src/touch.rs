@@ -175,7 +175,7 @@ impl Touch {
     }
 
     /// What an adapter added by itself gets a name too.
-    #[cfg(feature = "rapier")]
+    #[cfg(any(feature = "avian", feature = "rapier"))]
     pub(crate) fn name_own_probe(&mut self, name: &str, id: ProbeId) {
         self.names.probes.insert(name.into(), id);
     }

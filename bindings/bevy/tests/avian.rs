@@ -6,7 +6,7 @@ mod common;
 use asperity::Material;
 use avian3d::prelude::*;
 use bevy::prelude::*;
-use bevy_asperity::avian::AvianTouchPlugin;
+use bevy_asperity::avian::{self, AvianTouchPlugin};
 use bevy_asperity::*;
 use common::*;
 
@@ -60,7 +60,7 @@ fn a_ball_dropped_on_a_plate_strikes_it_and_the_recording_renders_to_the_same_bi
     run(&mut app);
     let impacts = touch(&mut app).stats().impacts;
     assert!((2..40).contains(&impacts), "{impacts} impacts");
-    assert_same_bits(&mut app, 1);
+    assert_bounces(&assert_same_bits(&mut app, 1));
 }
 
 #[test]
@@ -69,7 +69,95 @@ fn a_block_that_slides_over_a_plate_is_heard_and_felt_and_the_recording_renders_
     app.world_mut().spawn(block());
     run(&mut app);
     assert!(peak(&app.world().resource::<NullOutput>().haptic[0]) > 1e-6);
-    assert_same_bits(&mut app, 1);
+    assert_slides(&assert_same_bits(&mut app, 1), None);
+}
+
+#[test]
+fn a_block_that_nobody_holds_scrapes_as_a_rigid_thing_and_falls_silent_when_it_rests() {
+    let (mut app, _) = world();
+    let block = app.world_mut().spawn(block()).id();
+    app.world_mut().entity_mut(block).insert(TouchThing::of(Material::STEEL));
+    run(&mut app);
+    assert_slides(&assert_same_bits(&mut app, 1), Some(avian::RIGID_PROBE));
+}
+
+#[test]
+fn a_ball_that_rolls_takes_its_place_of_contact_along_and_a_finger_lands_as_a_contact() {
+    let (mut app, _) = world();
+    app.world_mut().spawn((
+        RigidBody::Dynamic,
+        Collider::sphere(0.01),
+        ColliderDensity(7800.0),
+        Friction::new(0.6),
+        Transform::from_xyz(-0.15, 0.0201, 0.0),
+        LinearVelocity(Vec3::new(0.2, 0.0, 0.0)),
+        AngularVelocity(Vec3::new(0.0, 0.0, -20.0)),
+        TouchThing::of(Material::STEEL),
+    ));
+    run(&mut app);
+    let log = assert_same_bits(&mut app, 1);
+    let Slid { begins, samples, .. } = slid(&log);
+    assert_eq!(begins.len(), 1, "{begins:?}");
+    for (t, sample) in samples.iter().skip(5).filter(|(t, _)| *t < 1.0) {
+        let (u_m, along_m_s) = (0.4 * sample.uv[0], sample.velocity_m_s.unwrap()[0]);
+        assert!((along_m_s - 0.2).abs() < 0.02, "{along_m_s} m/s at {t} s");
+        assert!((u_m - (0.05 + 0.2 * t)).abs() < 0.012, "{u_m} m at {t} s");
+    }
+    // A finger that comes down.
+    let (mut app, _) = world();
+    app.world_mut().spawn((
+        RigidBody::Dynamic,
+        LockedAxes::ROTATION_LOCKED,
+        Collider::sphere(0.008),
+        Transform::from_xyz(0.0, 0.05, 0.0),
+        LinearVelocity(Vec3::new(0.0, -0.5, 0.0)),
+        TouchThing::of(Material::NAIL).felt_by(0),
+    ));
+    run(&mut app);
+    let log = assert_same_bits(&mut app, 1);
+    assert!(impacts(&log).is_empty(), "a finger strikes");
+    let Slid { begins, samples, .. } = slid(&log);
+    assert!(begins[0].actuator == Some(0) && begins[0].probe.is_none(), "{begins:?}");
+    // 0.5 m/s and 3.2 cm of fall: 0.94 m/s.
+    assert!((samples[0].1.closing_m_s - 0.94).abs() < 0.2, "{:?}", samples[0]);
+}
+
+#[test]
+fn a_rod_that_lands_on_one_end_strikes_with_a_quarter_of_its_mass_and_two_balls_with_half_of_theirs() {
+    let (mut app, _) = world();
+    app.world_mut().spawn((
+        RigidBody::Dynamic,
+        Collider::cuboid(0.2, 0.001, 0.001),
+        ColliderDensity(8000.0),
+        Transform::from_xyz(0.0, 0.1, 0.0).with_rotation(Quat::from_rotation_z(0.1)),
+        TouchThing::of(Material::STEEL),
+    ));
+    run(&mut app);
+    let blows = impacts(&touch(&mut app).stop_recording());
+    // n·K n = 1/m + (L/2)² / (m L² / 12) = 4/m.
+    let quarter_kg = 8000.0 * 0.2e-6 / 4.0;
+    assert!((blows[0][2] / quarter_kg - 1.0).abs() < 0.05, "{} kg, must be near {quarter_kg}", blows[0][2]);
+    let (mut app, _) = world();
+    app.insert_resource(Gravity(Vec3::ZERO));
+    for (x, speed_m_s) in [(-0.1, 1.0), (0.1, -0.5)] {
+        app.world_mut().spawn((
+            RigidBody::Dynamic,
+            Collider::sphere(0.02),
+            ColliderDensity(2000.0),
+            Restitution::new(0.9),
+            Transform::from_xyz(x, 0.5, 0.0),
+            LinearVelocity(Vec3::new(speed_m_s, 0.0, 0.0)),
+            TouchBody(body()),
+            TouchThing::of(Material::BRASS),
+        ));
+    }
+    run(&mut app);
+    let blows = impacts(&touch(&mut app).stop_recording());
+    assert_eq!(blows.len(), 1, "{blows:?}");
+    let mass_kg = 2000.0 * 4.0 / 3.0 * std::f64::consts::PI * 8e-6;
+    let [_, speed_m_s, mass, radius_m, _] = blows[0];
+    assert!((speed_m_s - 1.5).abs() < 0.02 && (radius_m - 0.01).abs() < 1e-6, "{:?}", blows[0]);
+    assert!((mass / (mass_kg / 2.0) - 1.0).abs() < 0.01, "{mass} kg, must be half of {mass_kg}");
 }
 
 #[test]

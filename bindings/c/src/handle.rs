@@ -1,10 +1,11 @@
 //! Handle table: what a C program holds is a number, never an address, so that every wrong one can be told.
 //!
 //! ```text
-//! handle = generation · 2¹³ + place · 2³ + kind        place < 1024, kind 1…4
+//! handle = (generation xor copy) · 2¹³ + place · 2³ + kind        place < 1024, kind 1…4
 //! ```
 //!
-//! A place's generation grows each time it is used again, so a handle that was freed never names what came after it. One word a place
+//! A place's generation grows each time it is used again, so a handle that was freed never names what came after it. `copy` follows from where
+//! the table lies: where a library is loaded from two files, the handles of one are none of the other's. One word a place
 //! says who may use it; it is taken by a single compare-and-swap, by the audio thread as well: nobody ever waits for it.
 
 use crate::status::{ASP_BAD_HANDLE, ASP_BUSY, ASP_FULL, ASP_PANIC, Failure};
@@ -19,7 +20,8 @@ const KIND_BITS: u32 = 3;
 const PLACE_BITS: u32 = 10;
 const PHASE_BITS: u32 = 2;
 /// As many as fit into a pointer of 32 bits.
-const GENERATIONS: u64 = 1 << 19;
+const GENERATION_BITS: u32 = 19;
+const GENERATIONS: u64 = 1 << GENERATION_BITS;
 /// How long freeing waits for another thread to come out of its call.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -33,6 +35,8 @@ mod phase {
 
 struct Slot<T> {
     word: AtomicU64,
+    /// The generation that somebody waits to free, 0 = none: nobody else begins a call with it, or threads without pause would keep it for ever.
+    closing: AtomicU64,
     value: UnsafeCell<Option<Box<T>>>,
 }
 
@@ -56,9 +60,20 @@ pub(crate) struct Held<'a, T> {
 
 impl<T: Send> Table<T> {
     pub(crate) const fn new(kind: usize, name: &'static str) -> Self {
-        let slots =
-            [const { Slot { word: AtomicU64::new(phase::FREE), value: UnsafeCell::new(None) } }; PLACES];
+        let slots = [const {
+            Slot {
+                word: AtomicU64::new(phase::FREE),
+                closing: AtomicU64::new(0),
+                value: UnsafeCell::new(None),
+            }
+        }; PLACES];
         Self { kind, name, slots, next: AtomicUsize::new(0) }
+    }
+
+    /// A number of this copy of the library: two lie at different pages.
+    fn copy(&self) -> u64 {
+        let page = std::ptr::from_ref(self).addr() as u64 >> 12;
+        page.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (u64::BITS - GENERATION_BITS)
     }
 
     fn fail(&self, status: i32, what: &str, right: &str) -> Failure {
@@ -84,7 +99,8 @@ impl<T: Send> Table<T> {
             // SAFETY: the word is ours.
             unsafe { *slot.value.get() = Some(Box::new(value)) };
             slot.word.store(generation << PHASE_BITS | phase::IDLE, Release);
-            return Ok((generation as usize) << (PLACE_BITS + KIND_BITS) | index << KIND_BITS | self.kind);
+            let marked = (generation ^ self.copy()) as usize;
+            return Ok(marked << (PLACE_BITS + KIND_BITS) | index << KIND_BITS | self.kind);
         }
         Err(self.fail(ASP_FULL, "all 1024 handles are taken", "free those that are no longer needed"))
     }
@@ -92,7 +108,7 @@ impl<T: Send> Table<T> {
     /// The place and the generation of a handle, if it is one of this table's.
     fn place(&self, handle: usize) -> Option<(usize, u64)> {
         let index = handle >> KIND_BITS & (PLACES - 1);
-        let generation = (handle >> (PLACE_BITS + KIND_BITS)) as u64;
+        let generation = (handle >> (PLACE_BITS + KIND_BITS)) as u64 ^ self.copy();
         (handle & 7 == self.kind && (1..GENERATIONS).contains(&generation)).then_some((index, generation))
     }
 
@@ -105,13 +121,21 @@ impl<T: Send> Table<T> {
     /// `hold` to put into words.
     pub(crate) fn try_hold(&self, handle: usize) -> Result<Held<'_, T>, Option<u64>> {
         let (index, generation) = self.place(handle).ok_or(None)?;
-        self.swap(index, generation, phase::IDLE)
+        self.begin(index, generation)
     }
 
     /// The same by place: whatever is there now.
     pub(crate) fn hold_at(&self, index: usize) -> Option<Held<'_, T>> {
         let generation = self.slots.get(index)?.word.load(Relaxed) >> PHASE_BITS;
-        self.swap(index, generation, phase::IDLE).ok()
+        self.begin(index, generation).ok()
+    }
+
+    /// Begins a call, unless it is being freed.
+    fn begin(&self, index: usize, generation: u64) -> Result<Held<'_, T>, Option<u64>> {
+        if generation != 0 && self.slots[index].closing.load(Relaxed) == generation {
+            return Err(Some(phase::IN_USE));
+        }
+        self.swap(index, generation, phase::IDLE)
     }
 
     fn swap(&self, index: usize, generation: u64, from: u64) -> Result<Held<'_, T>, Option<u64>> {
@@ -152,6 +176,17 @@ impl<T: Send> Table<T> {
     /// Takes the value out for good. Waits, for a while, until no other thread is inside a call with it.
     pub(crate) fn remove(&self, handle: usize) -> Result<Box<T>, Failure> {
         let (index, generation) = self.place(handle).ok_or(None).map_err(|why| self.refusal(why))?;
+        let slot = &self.slots[index];
+        if slot.word.load(Relaxed) >> PHASE_BITS == generation {
+            slot.closing.store(generation, Relaxed);
+        }
+        let removed = self.wait_and_take(index, generation);
+        // Of a later generation it is somebody else's by now.
+        let _ = slot.closing.compare_exchange(generation, 0, Relaxed, Relaxed);
+        removed
+    }
+
+    fn wait_and_take(&self, index: usize, generation: u64) -> Result<Box<T>, Failure> {
         let began = Instant::now();
         loop {
             let idle = self.swap(index, generation, phase::IDLE);
@@ -236,6 +271,34 @@ mod tests {
         assert_eq!(TABLE.hold(handle).err().unwrap().status, ASP_PANIC);
         assert!(TABLE.hold_at(TABLE.index(handle).unwrap()).is_none());
         assert_eq!(*TABLE.remove(handle).unwrap(), 1);
+    }
+
+    #[test]
+    fn a_handle_is_freed_however_busy_others_are_with_it() {
+        static TABLE: Table<u32> = Table::new(2, "number");
+        let handle = TABLE.insert(1).unwrap();
+        let users: Vec<_> = (0..3)
+            .map(|_| {
+                std::thread::spawn(move || {
+                    while !matches!(TABLE.try_hold(handle), Err(None)) {
+                        std::hint::spin_loop();
+                    }
+                })
+            })
+            .collect();
+        std::thread::sleep(Duration::from_millis(5));
+        assert_eq!(*TABLE.remove(handle).unwrap(), 1);
+        users.into_iter().for_each(|user| user.join().unwrap());
+    }
+
+    #[test]
+    fn a_handle_of_another_copy_of_the_table_is_none_of_this_one() {
+        static ONE: Table<u32> = Table::new(1, "number");
+        static OTHER: Table<u32> = Table::new(1, "number");
+        let (one, other) = (ONE.insert(1).unwrap(), OTHER.insert(2).unwrap());
+        assert_eq!(OTHER.hold(one).err().unwrap().status, ASP_BAD_HANDLE);
+        assert_eq!(ONE.remove(other).err().unwrap().status, ASP_BAD_HANDLE);
+        assert_eq!((*ONE.hold(one).unwrap(), *OTHER.hold(other).unwrap()), (1, 2));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::entry::enter;
 use crate::handle::Table;
-use crate::playing::Playing;
+use crate::playing::Player;
 use asperity::files::contact_log::Names;
 use asperity::live::ports::{ForcePort, LevelsPort, PcmPort, PointsPort};
 use asperity::texture::sand::SandThread;
@@ -69,7 +69,7 @@ pub(crate) enum AnyPort {
 pub(crate) static SCENES: Table<SceneHalf> = Table::new(1, "scene");
 pub(crate) static RENDERERS: Table<AudioHalf> = Table::new(2, "renderer");
 pub(crate) static PORTS: Table<AnyPort> = Table::new(3, "port");
-pub(crate) static PLAYERS: Table<Playing> = Table::new(4, "player");
+pub(crate) static PLAYERS: Table<Player> = Table::new(4, "player");
 
 /// Frees what a handle names; what it leaves in a fault is not freed.
 fn free<T: Send>(table: &Table<T>, handle: usize) -> i32 {

@@ -2,7 +2,7 @@
 
 use crate::entry::{array_mut, enter, out};
 use crate::handles::{PLAYERS, RENDERERS, asp_player, asp_renderer};
-use crate::playing::Playing;
+use crate::playing::{Player, Playing};
 use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_DEVICE, ASP_REFUSED, Failure};
 use crate::text;
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn asp_play(
         let playing = if config.silent == 0 { on_device(renderer, wanted) } else { silent(renderer, wanted) };
         #[cfg(not(feature = "device"))]
         let playing = silent(renderer, wanted);
-        *player = PLAYERS.insert(playing?)? as *mut asp_player;
+        *player = PLAYERS.insert(Player::new(playing?))? as *mut asp_player;
         Ok(())
     })
 }
@@ -197,7 +197,7 @@ pub unsafe extern "C" fn asp_player_device(player: *mut asp_player, words: *mut 
         let room = array_mut(words.cast::<u8>(), size as usize, 1 << 20, "words")?;
         room[0] = 0;
         let player = PLAYERS.hold(player as usize)?;
-        match &*player {
+        match player.playing() {
             #[cfg(feature = "device")]
             Playing::Device(device) => match device.silent_because() {
                 Some(why) => text::copy(&why.to_string(), room),
@@ -217,7 +217,7 @@ pub unsafe extern "C" fn asp_get_player_report(
 ) -> i32 {
     enter(|| {
         let player = PLAYERS.hold(player as usize)?;
-        let told = match &*player {
+        let told = match player.playing() {
             #[cfg(feature = "device")]
             Playing::Device(device) => of_device(device.report(), device.silent_because().is_some()),
             Playing::Silent { .. } => asp_player_report { silent: 1, ..sized::Sized32::initial() },
@@ -247,7 +247,7 @@ pub unsafe extern "C" fn asp_player_stop(player: *mut asp_player, report: *mut a
         if player.is_null() {
             return Ok(());
         }
-        let told = match *PLAYERS.remove(player as usize)? {
+        let told = match PLAYERS.remove(player as usize)?.into_playing()? {
             #[cfg(feature = "device")]
             Playing::Device(device) => {
                 let silent = device.silent_because().is_some();

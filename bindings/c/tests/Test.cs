@@ -108,6 +108,37 @@ static class Test
         }
     }
 
+    /// <summary>Files that a program has somewhere else; what its own function throws comes out of the call, never through the library.</summary>
+    static void Files()
+    {
+        const string modes = "{\"format\":\"asperity.modes\",\"version\":1,\"modes\":[{\"frequency_hz\":400,\"decay_per_s\":3,\"amplitude\":1}]}";
+        const string text = "[[body]]\nname = \"bell\"\nmodes = \"bell.modes.json\"\n";
+        var asked = new List<string>();
+        Func<string, byte[]> archive = path =>
+        {
+            asked.Add(path);
+            GC.Collect();
+            if (path.EndsWith("scene.toml")) return System.Text.Encoding.UTF8.GetBytes(text);
+            return path.EndsWith("bell.modes.json") ? System.Text.Encoding.UTF8.GetBytes(modes) : null;
+        };
+        Renderer renderer;
+        using (var scene = Scene.Load("packed/scene.toml", out renderer, files: archive))
+        using (renderer)
+        {
+            Must(scene.Find(Kind.Body, "bell") != 0 && asked.Count >= 2, "a scene of an archive");
+            ulong again = scene.Add(new Body { Table = "modes = \"bell.modes.json\"", Files = archive });
+            Must(again != 0, "a body of an archive");
+            Refused(-4, "other.json", () => scene.Add(new Body { Table = "modes = \"other.json\"", Files = archive }));
+            try
+            {
+                scene.Add(new Body { Table = "modes = \"bell.modes.json\"", Files = path => { throw new InvalidOperationException("the archive is shut"); } });
+                Must(false, "an exception of the program's own");
+            }
+            catch (InvalidOperationException own) { Must(own.Message == "the archive is shut", own.Message); }
+            Must(scene.Add(new Body { Stock = "bar", SizeM = 0.2 }) != 0, "the scene goes on");
+        }
+    }
+
     static volatile bool stop;
 
     static void GarbageCollector()
@@ -157,7 +188,8 @@ static class Test
         double heard = Stroke();
         Must(Stroke() == heard, "the same stroke has the same bits");
         Errors();
+        Files();
         GarbageCollector();
-        Console.WriteLine("C#: sizes, stroke, errors and garbage collector hold");
+        Console.WriteLine("C#: sizes, stroke, errors, files and garbage collector hold");
     }
 }

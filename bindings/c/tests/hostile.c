@@ -20,7 +20,11 @@
         }                                                                                                              \
         refusals_++;                                                                                                   \
     } while (0)
+/* The same on any thread: nothing is counted. */
+#define REFUSED_BY_STATUS(call, with, word) MUST((call) == (with) && strstr(asp_last_error(), (word)))
 static int refusals_;
+/* Fewer threads and rounds: under valgrind one thread runs at a time. */
+static int few;
 
 static asp_config exact(void) {
     asp_config config;
@@ -372,6 +376,8 @@ static void handles(void) {
 
 static asp_scene *shared_scene;
 static asp_renderer *shared_renderer;
+static asp_port *shared_port;
+static asp_player *shared_player;
 static atomic_int odd, busy;
 
 static void *everything(void *seed) {
@@ -393,6 +399,17 @@ static void *everything(void *seed) {
         case 2:
             status = asp_collect(shared_scene, NULL);
             break;
+        case 3:
+        case 4:
+            asp_port_pcm(shared_port, out, 2 * 64), asp_port_lost(shared_port);
+            break;
+        case 5: {
+            asp_player_report report;
+            char words[40];
+            asp_player_report_init(&report);
+            status = random & 1 ? asp_get_player_report(shared_player, &report) : asp_player_device(shared_player, words, 40);
+            break;
+        }
         default:
             asp_render_interleaved(shared_renderer, out, 2, 64, NULL);
         }
@@ -408,25 +425,178 @@ static void *everything(void *seed) {
 
 /* Many threads with the same handles, which are freed under them. */
 static void threads(void) {
-    for (int round = 0; round < 10; round++) {
+    for (int round = 0; round < (few ? 2 : 10); round++) {
         build(&shared_scene, &shared_renderer);
+        asp_scene *played;
+        asp_renderer *plays;
+        asp_port_config wanted;
+        asp_player_config silent;
+        asp_port_config_init(&wanted), asp_player_config_init(&silent);
+        silent.silent = 1, silent.block_frames = 64;
+        build(&played, &plays);
+        MUST(asp_open_port(shared_scene, &wanted, &shared_port) == ASP_OK && asp_play(plays, &silent, &shared_player) == ASP_OK);
         pthread_t all[6];
         for (size_t i = 0; i < 6; i++)
             MUST(pthread_create(&all[i], NULL, everything, (void *)(i + 1 + 6 * (size_t)round)) == 0);
         if (round % 2) {
-            MUST(asp_scene_free(shared_scene) == ASP_OK);
-            MUST(asp_renderer_free(shared_renderer) == ASP_OK);
+            MUST(asp_scene_free(shared_scene) == ASP_OK && asp_port_free(shared_port) == ASP_OK);
+            MUST(asp_renderer_free(shared_renderer) == ASP_OK && asp_player_stop(shared_player, NULL) == ASP_OK);
         }
         for (int i = 0; i < 6; i++)
             MUST(pthread_join(all[i], NULL) == 0);
-        if (round % 2 == 0)
+        if (round % 2 == 0) {
             MUST(asp_renderer_free(shared_renderer) == ASP_OK && asp_scene_free(shared_scene) == ASP_OK);
+            MUST(asp_port_free(shared_port) == ASP_OK && asp_player_stop(shared_player, NULL) == ASP_OK);
+        }
+        MUST(asp_scene_free(played) == ASP_OK);
     }
     MUST(atomic_load(&odd) == 0);
 }
 
-int main(void) {
-    nulls(), sizes(), ids_and_numbers(), handles(), threads();
+/* Called back while a file is asked for: with the scene that asks, with engines of its own, with the sink after its time. */
+static asp_scene *asking;
+static asp_renderer *asking_renderer;
+static asp_sink *kept;
+static int depth, asked;
+
+static int32_t calls_back(void *user, const char *path, asp_sink *sink) {
+    static const uint8_t modes[] = "{\"format\":\"asperity.modes\",\"version\":1,\"modes\":[{\"frequency_hz\":400,\"decay_per_s\":3,\"amplitude\":1}]}";
+    MUST(user == (void *)&asking && strcmp(path, "m.json") == 0);
+    asked++;
+    asp_body body;
+    uint64_t id;
+    float out[128];
+    asp_body_init(&body);
+    REFUSED(asp_add_body(asking, &body, &id), ASP_BUSY, "one thread at a time");
+    REFUSED(asp_reset(asking), ASP_BUSY, "one thread at a time");
+    asp_render_interleaved(asking_renderer, out, 2, 64, NULL);
+    if (kept)
+        REFUSED(asp_sink_bytes(kept == sink ? (asp_sink *)&id : kept, modes, sizeof modes - 1), ASP_BAD_ARGUMENT, "not open");
+    if (depth++ == 0) {
+        /* Another engine's file, asked for from within; its sink is the open one meanwhile. */
+        asp_scene *outer = asking;
+        asp_renderer *outer_renderer = asking_renderer;
+        asp_files files;
+        asp_files_init(&files);
+        files.read = calls_back, files.user = (void *)&asking;
+        build(&asking, &asking_renderer);
+        body.table = "modes = \"m.json\"", body.files = &files;
+        kept = sink;
+        MUST(asp_add_body(asking, &body, &id) == ASP_OK);
+        kept = NULL;
+        MUST(asp_scene_free(asking) == ASP_OK && asp_renderer_free(asking_renderer) == ASP_OK);
+        asking = outer, asking_renderer = outer_renderer;
+    }
+    REFUSED(asp_sink_bytes(sink, NULL, 5), ASP_BAD_ARGUMENT, "bytes");
+    REFUSED(asp_sink_bytes(sink, modes, (size_t)1 << 40), ASP_BAD_ARGUMENT, "bytes");
+    MUST(asp_sink_bytes(sink, modes, 3) == ASP_OK);
+    return asp_sink_bytes(sink, modes, sizeof modes - 1);
+}
+
+static void callbacks(void) {
+    build(&asking, &asking_renderer);
+    asp_files files;
+    asp_files_init(&files);
+    files.read = calls_back, files.user = (void *)&asking;
+    asp_body body;
+    asp_body_init(&body);
+    body.table = "modes = \"m.json\"", body.files = &files;
+    uint64_t id;
+    MUST(asp_add_body(asking, &body, &id) == ASP_OK && asked == 2);
+    MUST(asp_scene_free(asking) == ASP_OK && asp_renderer_free(asking_renderer) == ASP_OK);
+}
+
+/* Names and paths that are no UTF-8, or very long. */
+static void texts(void) {
+    asp_scene *scene, *s;
+    asp_renderer *renderer, *r;
+    build(&scene, &renderer);
+    static const char *odd[] = {"\xff.toml", "a\xc3", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xc0\xaf"};
+    asp_body body;
+    asp_body_init(&body);
+    uint64_t id;
+    uint32_t number;
+    asp_event event;
+    for (int i = 0; i < 5; i++) {
+        REFUSED(asp_load(odd[i], NULL, NULL, NULL, &s, &r), ASP_BAD_ARGUMENT, "UTF-8");
+        REFUSED(asp_load("x", odd[i], NULL, NULL, &s, &r), ASP_BAD_ARGUMENT, "UTF-8");
+        REFUSED(asp_find(scene, ASP_BODY, odd[i], &id), ASP_BAD_ARGUMENT, "UTF-8");
+        body.name = odd[i];
+        REFUSED(asp_add_body(scene, &body, &id), ASP_BAD_ARGUMENT, "UTF-8");
+        REFUSED(asp_material(odd[i], &number), ASP_BAD_ARGUMENT, "UTF-8");
+        REFUSED(asp_read_log(scene, odd[i], &event, NULL, 0, sizeof event, &number), ASP_BAD_ARGUMENT, "UTF-8");
+        REFUSED(asp_add_probe(scene, odd[i], NULL, &id), ASP_BAD_ARGUMENT, "UTF-8");
+        MUST(asp_record_start(scene) == ASP_OK);
+        REFUSED(asp_record_stop(scene, odd[i]), ASP_BAD_ARGUMENT, "UTF-8");
+        asp_record_stop(scene, NULL);
+    }
+    const size_t length = 1 << 20;
+    char *giant = (char *)malloc(length + 1);
+    MUST(giant);
+    memset(giant, 'x', length), giant[length] = 0;
+    MUST(asp_load(giant, NULL, NULL, NULL, &s, &r) == ASP_FILE && asp_load("x", giant, NULL, NULL, &s, &r) == ASP_FILE);
+    REFUSED(asp_find(scene, ASP_BODY, giant, &id), ASP_UNKNOWN, "body");
+    memset(giant, '[', length);
+    body.name = NULL, body.table = giant;
+    REFUSED(asp_add_body(scene, &body, &id), ASP_REFUSED, "table");
+    MUST(asp_load("x", giant, NULL, NULL, &s, &r) == ASP_FILE);
+    body.table = NULL, body.modes_json = giant;
+    REFUSED(asp_add_body(scene, &body, &id), ASP_REFUSED, "modes");
+    free(giant);
+    MUST(asp_scene_free(scene) == ASP_OK && asp_renderer_free(renderer) == ASP_OK);
+}
+
+/* 64 threads that build, load, render and free engines of their own at once; and one engine more than there are handles. */
+static void *own_engine(void *seed) {
+    for (int i = 0; i < (few ? 1 : 6); i++) {
+        asp_scene *scene;
+        asp_renderer *renderer;
+        static const char scene_file[] = "[[body]]\nname = \"a\"\nstock = \"disc\"\nsize_m = 0.1\n[[surface]]\nname = \"b\"\nbody = \"a\"\nwidth_m = 0.1\nheight_m = 0.1\n";
+        asp_config config = exact();
+        MUST(asp_load("a.toml", scene_file, NULL, &config, &scene, &renderer) == ASP_OK);
+        uint64_t body, surface;
+        MUST(asp_find(scene, ASP_BODY, "a", &body) == ASP_OK && asp_find(scene, ASP_SURFACE, "b", &surface) == ASP_OK);
+        asp_event events[2] = {asp_impact(body, 1, 0.01, 0.005), asp_begin((size_t)seed, surface, 0, 0.5, 0.5, 1)};
+        MUST(asp_report(scene, 0, events, 2, sizeof *events, NULL) == ASP_OK);
+        float out[2 * 256], peak = 0;
+        for (int block = 0; block < 4; block++) {
+            asp_render_interleaved(renderer, out, 2, 256, NULL);
+            for (int s = 0; s < 2 * 256; s++)
+                peak = fabsf(out[s]) > peak ? fabsf(out[s]) : peak;
+        }
+        MUST(peak > 0);
+        REFUSED_BY_STATUS(asp_find(scene, ASP_BODY, "gong", &body), ASP_UNKNOWN, "gong");
+        MUST(asp_scene_free(scene) == ASP_OK && asp_renderer_free(renderer) == ASP_OK);
+    }
+    return NULL;
+}
+
+static void many(void) {
+    pthread_t all[64];
+    const size_t count_of_threads = few ? 8 : 64;
+    for (size_t i = 0; i < count_of_threads; i++)
+        MUST(pthread_create(&all[i], NULL, own_engine, (void *)i) == 0);
+    for (size_t i = 0; i < count_of_threads; i++)
+        MUST(pthread_join(all[i], NULL) == 0);
+    asp_scene *scene;
+    asp_renderer *renderer;
+    build(&scene, &renderer);
+    asp_port_config wanted;
+    asp_port_config_init(&wanted);
+    asp_port *ports[1025];
+    int count = 0;
+    int32_t status = ASP_OK;
+    while (count < 1025 && (status = asp_open_port(scene, &wanted, &ports[count])) == ASP_OK)
+        count++;
+    MUST(status == ASP_FULL && count >= 1 && asp_last_error()[0]);
+    while (count > 0)
+        MUST(asp_port_free(ports[--count]) == ASP_OK);
+    MUST(asp_scene_free(scene) == ASP_OK && asp_renderer_free(renderer) == ASP_OK);
+}
+
+int main(int count, char **words) {
+    few = count > 1 && strcmp(words[1], "few") == 0;
+    nulls(), sizes(), ids_and_numbers(), handles(), threads(), callbacks(), texts(), many();
     printf("hostile: %d refusals, each with a status and a sentence; %d calls met a busy handle\n", refusals_, atomic_load(&busy));
     return 0;
 }

@@ -1,46 +1,122 @@
-// The few types of Unity that the components use, so that they can be compiled without it. Nothing here does anything.
+// The few types of Unity that the components and the sample use, as far as they are needed to run them without it: objects hold their components,
+// and Unity's messages are sent by the test.
 using System;
+using System.Collections.Generic;
 
 namespace UnityEngine
 {
     public class Object { }
-    public class Component : Object { public Transform transform; public T GetComponent<T>() { return default(T); } }
-    public class MonoBehaviour : Component { }
-    public class Transform : Component { public Vector3 position, forward; }
+    public class Component : Object
+    {
+        public GameObject gameObject;
+        public Transform transform { get { return gameObject.transform; } }
+        public T GetComponent<T>() where T : Component { return gameObject.GetComponent<T>(); }
+    }
+    public class Behaviour : Component { }
+    public class MonoBehaviour : Behaviour { }
+    public class Transform : Component
+    {
+        public Vector3 position, forward, localScale;
+        public void LookAt(Vector3 at) { forward = new Vector3(at.x - position.x, at.y - position.y, at.z - position.z); }
+    }
+    public enum PrimitiveType { Sphere, Cube }
+    public class GameObject : Object
+    {
+        public static readonly List<GameObject> All = new List<GameObject>();
+        public readonly List<Component> Components = new List<Component>();
+        public readonly Transform transform = new Transform();
+        public GameObject(string name) { transform.gameObject = this; All.Add(this); }
+        public static GameObject CreatePrimitive(PrimitiveType type)
+        {
+            var made = new GameObject(type.ToString());
+            made.AddComponent<Collider>();
+            return made;
+        }
+        public T AddComponent<T>() where T : Component, new()
+        {
+            var made = new T { gameObject = this };
+            Components.Add(made);
+            Messages.Send(made, "Awake");
+            Messages.Send(made, "OnEnable");
+            return made;
+        }
+        public T GetComponent<T>() where T : Component { return Components.Find(component => component is T) as T; }
+    }
+    /// <summary>Unity's way to call a script: by name, where it has such a method.</summary>
+    public static class Messages
+    {
+        public static void Send(Component to, string name, params object[] with)
+        {
+            var flags = System.Reflection.BindingFlags.Instance | System.Reflection.BindingFlags.Public | System.Reflection.BindingFlags.NonPublic;
+            var method = to.GetType().GetMethod(name, flags);
+            if (method != null) method.Invoke(to, with);
+        }
+        public static void SendAll(string name, params object[] with)
+        {
+            foreach (var thing in GameObject.All.ToArray())
+                foreach (var component in thing.Components.ToArray()) Send(component, name, with);
+        }
+    }
     public struct Vector3
     {
         public float x, y, z;
-        public float magnitude { get { return 0f; } }
-        public static float Dot(Vector3 a, Vector3 b) { return 0f; }
+        public Vector3(float x, float y, float z) { this.x = x; this.y = y; this.z = z; }
+        public static Vector3 one { get { return new Vector3(1, 1, 1); } }
+        public static Vector3 down { get { return new Vector3(0, -1, 0); } }
+        public float magnitude { get { return (float)Math.Sqrt(Dot(this, this)); } }
+        public static float Dot(Vector3 a, Vector3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+        public static Vector3 operator *(Vector3 a, float b) { return new Vector3(a.x * b, a.y * b, a.z * b); }
+        public static Vector3 operator +(Vector3 a, Vector3 b) { return new Vector3(a.x + b.x, a.y + b.y, a.z + b.z); }
     }
     public struct Vector2
     {
         public float x, y;
         public Vector2(float x, float y) { this.x = x; this.y = y; }
-        public static Vector2 operator /(Vector2 a, float b) { return a; }
+        public static Vector2 operator /(Vector2 a, float b) { return new Vector2(a.x / b, a.y / b); }
     }
-    public static class Mathf { public static float Abs(float x) { return x; } }
-    public static class Time { public static double fixedTimeAsDouble { get { return 0; } } }
-    public static class Debug { public static void LogWarning(object what) { } }
+    public struct Rect { public Rect(float x, float y, float width, float height) { } }
+    public static class GUI { public static string Said = ""; public static void Label(Rect at, string text) { Said = text; } }
+    public static class Mathf
+    {
+        public static float Abs(float x) { return Math.Abs(x); }
+        public static float Max(float x, float y) { return Math.Max(x, y); }
+        public static float Sin(float x) { return (float)Math.Sin(x); }
+    }
+    public static class Time
+    {
+        public static double fixedTimeAsDouble;
+        public static float fixedTime { get { return (float)fixedTimeAsDouble; } }
+    }
+    public static class Debug { public static string Warned = ""; public static void LogWarning(object what) { Warned += what + "\n"; } }
     public static class AudioSettings { public static int outputSampleRate { get { return 48000; } } }
+    public class AudioSource : Behaviour { }
+    public class AudioListener : Behaviour { }
+    public class Rigidbody : Component { public float mass; }
     public class Collider : Component { }
     public class MeshCollider : Collider { }
     public struct RaycastHit
     {
-        public Collider collider { get { return null; } }
+        public Collider collider { get; set; }
         public Vector2 textureCoord { get { return new Vector2(); } }
-        public Vector3 point { get { return new Vector3(); } }
-        public float distance { get { return 0f; } }
+        public Vector3 point { get; set; }
+        public float distance { get; set; }
     }
     public static class Physics
     {
-        public static bool Raycast(Vector3 from, Vector3 along, out RaycastHit hit, float reach) { hit = new RaycastHit(); return false; }
+        /// <summary>The one thing that rays meet: a plane at height Top, which belongs to Ground.</summary>
+        public static Collider Ground;
+        public static float Top;
+        public static bool Raycast(Vector3 from, Vector3 along, out RaycastHit hit, float reach)
+        {
+            hit = new RaycastHit { collider = Ground, point = new Vector3(from.x, Top, from.z), distance = from.y - Top };
+            return Ground != null && along.y < 0 && from.y > Top && hit.distance <= reach;
+        }
     }
-    public struct ContactPoint { public Vector3 normal { get { return new Vector3(); } } }
+    public struct ContactPoint { public Vector3 normal { get { return new Vector3(0, 1, 0); } } }
     public class Collision
     {
-        public Vector3 impulse { get { return new Vector3(); } }
-        public Vector3 relativeVelocity { get { return new Vector3(); } }
+        public Vector3 impulse { get; set; }
+        public Vector3 relativeVelocity { get; set; }
         public ContactPoint GetContact(int index) { return new ContactPoint(); }
     }
     public class TextAsset : Object { public string text { get { return ""; } } }
@@ -51,5 +127,19 @@ namespace UnityEngine
 
 namespace UnityEngine.Audio
 {
-    public class AudioMixer : UnityEngine.Object { public bool SetFloat(string name, float value) { return true; } }
+    public class AudioMixer : UnityEngine.Object
+    {
+        public readonly System.Collections.Generic.Dictionary<string, float> Exposed = new System.Collections.Generic.Dictionary<string, float>();
+        public bool SetFloat(string name, float value)
+        {
+            bool known = Exposed.ContainsKey(name);
+            if (known) Exposed[name] = value;
+            return known;
+        }
+    }
+}
+
+namespace AOT
+{
+    [AttributeUsage(AttributeTargets.Method)] public class MonoPInvokeCallbackAttribute : Attribute { public MonoPInvokeCallbackAttribute(Type type) { } }
 }

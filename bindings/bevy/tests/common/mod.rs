@@ -3,7 +3,7 @@
 // Every test file uses a part of it.
 #![allow(dead_code)]
 
-use asperity::files::contact_log::{ContactLog, Names};
+use asperity::files::contact_log::{ContactLog, LogEvent, LogHand, LogLine, Names};
 use asperity::offline::{self, Options, Render};
 use asperity::{Body, Config, ContactSample, Engine, Material, Stock, Surface};
 use bevy::prelude::*;
@@ -84,7 +84,7 @@ pub fn offline(log: &ContactLog, names: &Names, plates: usize) -> Render {
 }
 
 /// What the null output got is what the recording renders to, to the bit; and it is not silence.
-pub fn assert_same_bits(app: &mut App, plates: usize) {
+pub fn assert_same_bits(app: &mut App, plates: usize) -> ContactLog {
     let (log, names) = {
         let mut touch = touch(app);
         assert_eq!((touch.stats().refused, touch.stats().dropped, touch.stats().late), (0, 0, 0));
@@ -104,4 +104,86 @@ pub fn assert_same_bits(app: &mut App, plates: usize) {
         assert_eq!(first, None, "{what}: the first sample that differs, of {frames}");
     }
     assert!(peak(&output.audio[0]) > 1e-6, "silence");
+    log
+}
+
+/// The blows of a recording: when, m/s, kg, m, rebound.
+pub fn impacts(log: &ContactLog) -> Vec<[f64; 5]> {
+    let blow = |line: &LogLine| match line.event {
+        LogEvent::Impact { speed_m_s, mass_kg, radius_m, restitution, .. } => {
+            Some([line.t, speed_m_s, mass_kg, radius_m, restitution])
+        }
+        _ => None,
+    };
+    log.lines.iter().filter_map(blow).collect()
+}
+
+/// What slid: how often something began and ended, with which probe, and every sample.
+pub struct Slid {
+    pub begins: Vec<LogHand>,
+    pub ends: usize,
+    pub samples: Vec<(f64, ContactSample)>,
+}
+
+pub fn slid(log: &ContactLog) -> Slid {
+    let mut slid = Slid { begins: Vec::new(), ends: 0, samples: Vec::new() };
+    for line in &log.lines {
+        match &line.event {
+            LogEvent::Begin { touching, sample, .. } => {
+                slid.begins.push(touching.hand.clone());
+                slid.samples.push((line.t, *sample));
+            }
+            LogEvent::Move { sample, .. } => slid.samples.push((line.t, *sample)),
+            LogEvent::End { .. } => slid.ends += 1,
+            _ => {}
+        }
+    }
+    slid
+}
+
+/// A steel ball of 1 cm that fell 13 cm onto the plate: speeds of free fall, its own mass and radius, each flight as long as its rebound says.
+pub fn assert_bounces(log: &ContactLog) {
+    let blows = impacts(log);
+    assert!(blows.len() >= 2, "{blows:?}");
+    let fall_m_s = (2.0 * 9.81 * 0.13_f64).sqrt();
+    let mass_kg = 7800.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-6;
+    let [_, speed_m_s, mass, radius_m, restitution] = blows[0];
+    // A step of 16 ms is 0.16 m/s of fall.
+    assert!((speed_m_s / fall_m_s - 1.0).abs() < 0.11, "{speed_m_s} m/s, must be near {fall_m_s}");
+    assert!((mass / mass_kg - 1.0).abs() < 0.01, "{mass} kg, must be {mass_kg}");
+    assert!((radius_m - 0.01).abs() < 1e-6 && (0.1..0.9).contains(&restitution), "{:?}", blows[0]);
+    let [[t, speed, .., e], [later, next, ..]] = [blows[0], blows[1]];
+    assert!((later - t - 2.0 * e * speed / 9.81).abs() < 0.045, "{} s of flight", later - t);
+    assert!((next / speed - e).abs() < 0.15, "{next} m/s after {speed} m/s, rebound {e}");
+    let last = blows.last().unwrap();
+    assert!(last[0] - blows[0][0] < 1.0, "a ball that lies still strikes at {} s", last[0]);
+}
+
+/// A block of 16 g that slid over the plate from 5 cm on with 0.3 m/s and friction 0.05 until it rested.
+pub fn assert_slides(log: &ContactLog, probe: Option<&str>) {
+    let Slid { begins, ends, samples } = slid(log);
+    assert_eq!(begins.len(), 1, "{begins:?}");
+    assert_eq!(begins[0].probe.as_deref(), probe);
+    let weight_n = 0.016 * 9.81;
+    // Where it lands and where it stops, after 0.61 s, are left out.
+    let steady: Vec<_> = samples.iter().filter(|(t, _)| (0.1..0.5).contains(t)).collect();
+    assert!(steady.len() > 20, "{} samples", steady.len());
+    let force_n = steady.iter().map(|(_, sample)| sample.normal_force_n).sum::<f64>() / steady.len() as f64;
+    assert!((force_n / weight_n - 1.0).abs() < 0.1, "{force_n} N, must be near {weight_n}");
+    for (t, sample) in &steady {
+        let at = |t: f64| 0.05 + 0.3 * t - 0.5 * 0.05 * 9.81 * t * t;
+        let (u_m, velocity) = (0.4 * sample.uv[0], sample.velocity_m_s.unwrap());
+        // The solver's point leads by as much as friction tips the block.
+        assert!((u_m - at(*t)).abs() < 0.015, "at {t} s it is at {u_m} m, must be near {}", at(*t));
+        assert!((velocity[0] - (0.3 - 0.05 * 9.81 * t)).abs() < 0.04, "{velocity:?} at {t} s");
+        assert!(velocity[1].abs() < 0.01 && (sample.uv[1] - 0.5).abs() < 0.02, "{sample:?}");
+    }
+    // Its place moves as it slides: no leaps as points of contact come and go.
+    for pair in steady.windows(2) {
+        let moved_m = 0.4 * (pair[1].1.uv[0] - pair[0].1.uv[0]);
+        assert!((-0.001..0.01).contains(&moved_m), "{moved_m} m in a step at {} s", pair[1].0);
+    }
+    if begins[0].actuator.is_none() {
+        assert_eq!(ends, 1, "a block that lies still is still reported");
+    }
 }

@@ -261,6 +261,48 @@ namespace Asperity
             return handle.AddrOfPinnedObject();
         }
         public IntPtr Of(string text) { return Of((object)Native.Bytes(text)); }
+
+        /// <summary>Files from wherever a program keeps them; null = the disk.</summary>
+        public IntPtr Of(Func<string, byte[]> files)
+        {
+            if (files == null) return IntPtr.Zero;
+            var asked = GCHandle.Alloc(new Asked { Files = files, Pins = this });
+            handles.Add(asked);
+            var native = new NativeFiles { StructSize = (uint)Marshal.SizeOf(typeof(NativeFiles)), User = GCHandle.ToIntPtr(asked) };
+            native.Read = Marshal.GetFunctionPointerForDelegate(Answer);
+            return Of((object)native);
+        }
+
+        sealed class Asked { public Func<string, byte[]> Files; public Pins Pins; }
+        static readonly ReadFile Answer = Read;
+        Exception thrown;
+
+#if ASPERITY_UNITY
+        [AOT.MonoPInvokeCallback(typeof(ReadFile))]
+#endif
+        static int Read(IntPtr user, IntPtr path, IntPtr sink)
+        {
+            // No exception may pass through the library: it waits until the call is back.
+            var asked = (Asked)GCHandle.FromIntPtr(user).Target;
+            try
+            {
+                var bytes = asked.Files(Native.Text(path));
+                return bytes == null ? 1 : Native.asp_sink_bytes(sink, bytes, (UIntPtr)(uint)bytes.Length);
+            }
+            catch (Exception exception)
+            {
+                asked.Pins.thrown = exception;
+                return 1;
+            }
+        }
+
+        /// <summary>What a call has answered; what a program's own files have thrown meanwhile counts first.</summary>
+        public void Must(int status)
+        {
+            if (thrown != null) throw thrown;
+            Native.Must(status);
+        }
+
         public void Dispose() { foreach (var handle in handles) handle.Free(); }
     }
 
@@ -272,6 +314,8 @@ namespace Asperity
         public Material Material;
         public uint Bus;
         public Mode[] Modes;
+        /// <summary>Where files lie that Table names; null = the disk.</summary>
+        public Func<string, byte[]> Files;
 
         internal NativeBody Native(Pins pins)
         {
@@ -279,7 +323,7 @@ namespace Asperity
             Asperity.Native.asp_body_init(out body);
             body.Material = Material; body.Bus = Bus; body.Gain = Gain; body.Name = pins.Of(Name); body.Stock = pins.Of(Stock); body.SizeM = SizeM;
             body.Modes = pins.Of(Modes); body.ModeCount = (uint)(Modes == null ? 0 : Modes.Length); body.ImpulseNS = ImpulseNS;
-            body.ModesJson = pins.Of(ModesJson); body.Table = pins.Of(Table);
+            body.ModesJson = pins.Of(ModesJson); body.Table = pins.Of(Table); body.Files = pins.Of(Files);
             return body;
         }
     }
@@ -294,6 +338,8 @@ namespace Asperity
             ComplianceMN = double.NaN;
         public Array Heights, RoughnessMap;
         public uint HeightsWidth, HeightsChannels = 1, RoughnessWidth, RoughnessChannels = 1;
+        /// <summary>Where files lie that Table names; null = the disk.</summary>
+        public Func<string, byte[]> Files;
 
         static NativeImage Image(Pins pins, Array samples, uint width, uint channels)
         {
@@ -314,7 +360,7 @@ namespace Asperity
             Asperity.Native.asp_surface_init(out surface);
             surface.Wrap = Wrap; surface.Body = Body; surface.Name = pins.Of(Name); surface.WidthM = WidthM; surface.HeightM = HeightM;
             surface.ReliefM = ReliefM; surface.Roughness = Roughness; surface.MicroReliefM = MicroReliefM; surface.Friction = Friction;
-            surface.ComplianceMN = ComplianceMN; surface.Table = pins.Of(Table);
+            surface.ComplianceMN = ComplianceMN; surface.Table = pins.Of(Table); surface.Files = pins.Of(Files);
             surface.Heights = Image(pins, Heights, HeightsWidth, HeightsChannels);
             surface.RoughnessMap = Image(pins, RoughnessMap, RoughnessWidth, RoughnessChannels);
             return surface;
@@ -347,17 +393,22 @@ namespace Asperity
             }
         }
 
-        /// <summary>The engine of a scene file; with text, that is the scene, and path says where its files lie.</summary>
-        public static Scene Load(string path, out Renderer renderer, string text = null, double sampleRateHz = 0, Clock clock = Clock.Live)
+        /// <summary>The engine of a scene file; with text, that is the scene, and path says where its files lie. `files` answers with the bytes of a
+        /// file, or null where there is none, for a program that keeps them in an archive; null = the disk.</summary>
+        public static Scene Load(string path, out Renderer renderer, string text = null, double sampleRateHz = 0, Clock clock = Clock.Live,
+                                 Func<string, byte[]> files = null)
         {
             Native.Check();
-            NativeConfig config;
-            Native.asp_config_init(out config);
-            config.Clock = clock; config.SampleRateHz = sampleRateHz;
-            IntPtr scene, audio;
-            Native.Must(Native.asp_load(Native.Bytes(path), Native.Bytes(text), IntPtr.Zero, ref config, out scene, out audio));
-            renderer = new Renderer(audio);
-            return new Scene(scene);
+            using (var pins = new Pins())
+            {
+                NativeConfig config;
+                Native.asp_config_init(out config);
+                config.Clock = clock; config.SampleRateHz = sampleRateHz;
+                IntPtr scene, audio;
+                pins.Must(Native.asp_load(Native.Bytes(path), Native.Bytes(text), pins.Of(files), ref config, out scene, out audio));
+                renderer = new Renderer(audio);
+                return new Scene(scene);
+            }
         }
 
         public ulong Find(Kind kind, string name)
@@ -373,7 +424,7 @@ namespace Asperity
             {
                 var native = body.Native(pins);
                 ulong id;
-                Native.Must(Native.asp_add_body(handle, ref native, out id));
+                pins.Must(Native.asp_add_body(handle, ref native, out id));
                 return id;
             }
         }
@@ -384,7 +435,7 @@ namespace Asperity
             {
                 var native = surface.Native(pins);
                 ulong id;
-                Native.Must(Native.asp_add_surface(handle, ref native, out id));
+                pins.Must(Native.asp_add_surface(handle, ref native, out id));
                 return id;
             }
         }
@@ -394,7 +445,7 @@ namespace Asperity
             using (var pins = new Pins())
             {
                 var native = body.Native(pins);
-                Native.Must(Native.asp_replace_body(handle, id, ref native));
+                pins.Must(Native.asp_replace_body(handle, id, ref native));
             }
         }
 
@@ -403,7 +454,7 @@ namespace Asperity
             using (var pins = new Pins())
             {
                 var native = surface.Native(pins);
-                Native.Must(Native.asp_replace_surface(handle, id, ref native));
+                pins.Must(Native.asp_replace_surface(handle, id, ref native));
             }
         }
 

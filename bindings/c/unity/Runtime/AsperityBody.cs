@@ -22,20 +22,34 @@ namespace Asperity
         public ulong Body { get; private set; }
         public ulong Surface { get; private set; }
 
+        /// <summary>The engine that it is in: one that is disabled and enabled again is another one.</summary>
+        Scene scene;
+
         void Start()
         {
+            if (AsperityWorld.Current == null) Debug.LogWarning("Asperity: no AsperityWorld in this scene; add one");
+            else Join();
+        }
+
+        /// <summary>Puts it into the engine that runs now; false: none does.</summary>
+        public bool Join()
+        {
             var world = AsperityWorld.Current;
-            if (world == null) { Debug.LogWarning("Asperity: no AsperityWorld in this scene; add one"); return; }
+            if (world == null || world.Scene == null) return false;
+            if (world.Scene == scene) return Body != 0;
+            scene = world.Scene;
+            Body = Surface = 0;
             var body = new Body { SizeM = SizeM, Material = Made };
             if (ModesJson != null) body.ModesJson = ModesJson.text; else body.Stock = Stock;
-            Body = world.Scene.Add(body);
-            Surface = world.Scene.Add(new Surface { WidthM = UvSizeM, HeightM = UvSizeM, Body = Body, Table = SurfaceTable });
+            Body = scene.Add(body);
+            Surface = scene.Add(new Surface { WidthM = UvSizeM, HeightM = UvSizeM, Body = Body, Table = SurfaceTable });
+            return true;
         }
 
         void OnCollisionEnter(Collision collision)
         {
             float impulse = collision.impulse.magnitude;
-            if (AsperityWorld.Current == null || Body == 0 || impulse < LeastImpulseNS) return;
+            if (impulse < LeastImpulseNS || !Join()) return;
             // The approach along the normal; a resting contact has none.
             float speed = Mathf.Abs(Vector3.Dot(collision.relativeVelocity, collision.GetContact(0).normal));
             if (speed > 0f) AsperityWorld.Current.Report(Event.Collision(Body, impulse, speed, 0.5));
@@ -44,9 +58,10 @@ namespace Asperity
         void OnDestroy()
         {
             var world = AsperityWorld.Current;
-            if (world == null || world.Scene == null || Body == 0) return;
-            world.Scene.RemoveSurface(Surface);
-            world.Scene.RemoveBody(Body);
+            if (world == null || scene == null || world.Scene != scene) return;
+            if (Surface != 0) scene.RemoveSurface(Surface);
+            if (Body != 0) scene.RemoveBody(Body);
+            scene = null;
         }
     }
 }

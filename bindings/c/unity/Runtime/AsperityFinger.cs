@@ -14,6 +14,7 @@ namespace Asperity
         static ulong names;
         ulong contact;
         AsperityBody touched;
+        Scene scene;
         Vector2 uv;
 
         void FixedUpdate()
@@ -22,8 +23,8 @@ namespace Asperity
             if (world == null || world.Scene == null) return;
             RaycastHit hit;
             var found = Physics.Raycast(transform.position, transform.forward, out hit, ReachM) ? hit.collider.GetComponent<AsperityBody>() : null;
-            if (found != touched) Lift(world);
-            if (found == null || found.Surface == 0) return;
+            if (found != touched || world.Scene != scene) Lift(world);
+            if (found == null || !found.Join() || found.Surface == 0) return;
             // Mesh colliders know texture coordinates; any other is a plane in the world.
             uv = hit.collider is MeshCollider ? hit.textureCoord : new Vector2(hit.point.x + hit.point.y, hit.point.z) / found.UvSizeM;
             double force = StiffnessNM * (ReachM - hit.distance);
@@ -31,6 +32,7 @@ namespace Asperity
             {
                 contact = ++names;
                 touched = found;
+                scene = world.Scene;
                 world.Report(Event.Begin(contact, found.Surface, HapticChannel, uv.x, uv.y, force));
             }
             else world.Report(Event.Move(contact, uv.x, uv.y, force));
@@ -38,7 +40,8 @@ namespace Asperity
 
         void Lift(AsperityWorld world)
         {
-            if (touched != null) world.Report(Event.End(contact));
+            // A contact of an engine that is gone has ended with it.
+            if (touched != null && world.Scene == scene) world.Report(Event.End(contact));
             touched = null;
         }
 

@@ -1,4 +1,5 @@
-// The engine of a scene: builds it at the mixer's rate, reports once a physics step, hands it to the mixer effect "Asperity".
+// The engine of a scene: builds it at Unity's rate, reports once a physics step, and plays it: where its own object is heard, or, given a mixer,
+// through that mixer's effect "Asperity".
 using System.Collections.Generic;
 using UnityEngine;
 using UnityEngine.Audio;
@@ -8,10 +9,12 @@ namespace Asperity
     [DefaultExecutionOrder(-1000)]
     public sealed class AsperityWorld : MonoBehaviour
     {
-        [Tooltip("A mixer whose group carries the effect Asperity, with its parameter Engine exposed")]
+        [Tooltip("None: played from this object. Else a mixer whose group carries the effect Asperity, with its parameter Engine exposed")]
         public AudioMixer Mixer;
         [Tooltip("The name under which the parameter Engine is exposed")]
         public string EngineParameter = "AsperityEngine";
+        [Tooltip("Loudness before the limiter: blows of a physics engine reach many times full scale")]
+        public float Gain = 0.1f;
         [Tooltip("Haptic channels: hands, controllers")]
         public uint HapticChannels = 2;
 
@@ -22,13 +25,18 @@ namespace Asperity
         Event[] events = new Event[64];
         int count;
         string lastRefusal;
+        float[] block = new float[0];
+        int[] map = new int[0];
 
         void OnEnable()
         {
             Renderer renderer;
-            Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels);
+            string audio = "audio = [{ gain = " + Gain.ToString("R", System.Globalization.CultureInfo.InvariantCulture) + ", limit = true }]";
+            Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels, more: audio);
             Renderer = renderer;
             Current = this;
+            // Unity hears an object only where one of these is on it.
+            if (Mixer == null && GetComponent<AudioSource>() == null && GetComponent<AudioListener>() == null) gameObject.AddComponent<AudioSource>();
             if (Mixer != null && !Mixer.SetFloat(EngineParameter, renderer.UnitySlot()))
                 Debug.LogWarning("Asperity: the mixer exposes no parameter \"" + EngineParameter + "\"; expose the effect's Engine under this name");
         }
@@ -51,6 +59,21 @@ namespace Asperity
             lastRefusal = refusal ?? lastRefusal;
         }
 
+        // Audio thread. Without a mixer the bus is added to what this object plays; haptic channels leave by ports.
+        void OnAudioFilterRead(float[] samples, int channels)
+        {
+            var renderer = Renderer;
+            if (Mixer != null || renderer == null || channels <= 0) return;
+            if (block.Length != samples.Length || map.Length != channels)
+            {
+                block = new float[samples.Length];
+                map = new int[channels];
+                for (int channel = 2; channel < channels; channel++) map[channel] = Renderer.Silent;
+            }
+            renderer.Render(block, channels, map);
+            for (int i = 0; i < samples.Length; i++) samples[i] += block[i];
+        }
+
         void OnDisable()
         {
             if (Mixer != null) Mixer.SetFloat(EngineParameter, 0f);
@@ -58,6 +81,7 @@ namespace Asperity
             if (Scene != null) Scene.Dispose();
             Renderer = null;
             Scene = null;
+            count = 0;
             if (Current == this) Current = null;
         }
     }

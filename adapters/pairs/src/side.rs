@@ -1,0 +1,109 @@
+//! One of the two of a pair: what it is to asperity, and how it moves.
+
+use asperity::{Actuator, BodyId, Material, ProbeId, SurfaceId, UvTriangle};
+use glam::Vec3;
+
+/// Radius of an edge or a corner that nobody gave one, m: what is broken with sandpaper. Assumed.
+pub const EDGE_RADIUS_M: f64 = 0.002;
+
+/// What a collider is to asperity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thing {
+    /// What it is made of.
+    pub material: Material,
+    /// What rings when it is struck or stroked.
+    pub body: Option<BodyId>,
+    /// What is stroked on it.
+    pub surface: Option<SurfaceId>,
+    /// The haptic channel that feels it: a finger, or a tool in the hand.
+    pub actuator: Option<Actuator>,
+    /// What it touches with; none = a finger is the engine's own probe, anything else a rigid one.
+    pub probe: Option<ProbeId>,
+}
+
+impl Thing {
+    /// A finger is felt and does not ring: its landings are contacts, not impacts.
+    #[must_use]
+    pub fn is_finger(&self) -> bool {
+        self.actuator.is_some() && self.body.is_none()
+    }
+}
+
+/// How a rigid body moves at an instant; still for what has none.
+#[derive(Clone, Copy, Default, Debug, PartialEq)]
+pub struct Motion {
+    /// Of its centre of mass, m/s.
+    pub linear_m_s: Vec3,
+    /// rad/s.
+    pub angular_rad_s: Vec3,
+    /// Centre of mass, m.
+    pub centre_m: Vec3,
+}
+
+impl Motion {
+    /// Velocity of a point of it, m/s.
+    #[must_use]
+    pub fn at(&self, point_m: Vec3) -> Vec3 {
+        self.linear_m_s + self.angular_rad_s.cross(point_m - self.centre_m)
+    }
+}
+
+/// What a physics engine knows of one of the two.
+pub trait Side {
+    /// What it is to asperity.
+    fn thing(&self) -> Thing;
+    /// How it moves after the step.
+    fn motion(&self) -> Motion;
+    /// Mass, kg; infinite for what nothing moves.
+    fn mass_kg(&self) -> f32;
+    /// How much faster its point goes along a direction after an impulse of 1 N·s along it there, 1/kg: 0 for what nothing moves.
+    fn mobility_per_kg(&self, point_m: Vec3, along: Vec3) -> f32;
+    /// Whether it rolls: then its place of contact moves with its centre.
+    fn is_round(&self) -> bool;
+    /// Radius of curvature where it strikes, m; none = an edge.
+    fn radius_m(&self) -> Option<f64>;
+    /// A place in the collider's own space, m.
+    fn place_m(&self, point_m: Vec3) -> Vec3;
+    /// A direction in the collider's own space.
+    fn direction(&self, along: Vec3) -> Vec3;
+    /// The triangle with texture coordinates on which a place of its own space lies.
+    fn triangle(&self, place_m: Vec3) -> Option<UvTriangle>;
+}
+
+/// [`Side::mobility_per_kg`] of a body that moves: 1/m and inverse inertia in space are given as what they do to a vector.
+#[must_use]
+pub fn mobility_per_kg(
+    arm_m: Vec3,
+    along: Vec3,
+    inverse_mass: impl Fn(Vec3) -> Vec3,
+    inverse_inertia: impl Fn(Vec3) -> Vec3,
+) -> f32 {
+    let turn = arm_m.cross(along);
+    along.dot(inverse_mass(along)) + turn.dot(inverse_inertia(turn))
+}
+
+/// Radius of curvature with which two things meet, m: of the round ones, where there are any, else of an edge.
+#[must_use]
+pub fn radius_m(own: [Option<f64>; 2]) -> f64 {
+    let curvature: f64 = own.into_iter().flatten().map(|radius_m| 1.0 / radius_m).sum();
+    if curvature > 0.0 { 1.0 / curvature } else { EDGE_RADIUS_M }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_balls_meet_with_half_their_radius_a_ball_and_a_plane_with_the_balls_and_edges_with_theirs() {
+        assert_eq!(radius_m([Some(0.03), Some(0.03)]), 0.015);
+        assert_eq!(radius_m([None, Some(0.03)]), 0.03);
+        assert_eq!(radius_m([None, None]), EDGE_RADIUS_M);
+    }
+
+    #[test]
+    fn a_rod_struck_at_its_end_is_as_mobile_as_a_quarter_of_its_mass() {
+        // 1 kg, 1 m: I = 1/12 about its centre, across.
+        let mobility = mobility_per_kg(Vec3::new(0.5, 0.0, 0.0), Vec3::Y, |v| v, |turn| turn * 12.0);
+        assert!((mobility - 4.0).abs() < 1e-6, "{mobility}");
+    }
+}

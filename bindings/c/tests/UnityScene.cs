@@ -1,0 +1,72 @@
+// The components and the sample, driven as Unity drives them: a second of physics steps, each with a block of audio.
+using System;
+using Asperity;
+using UnityEngine;
+
+static class UnityScene
+{
+    static void Must(bool holds, string what)
+    {
+        if (holds) return;
+        Console.Error.WriteLine("does not hold: " + what + "; warned: " + Debug.Warned);
+        Environment.Exit(1);
+    }
+
+    static float Second(Action<int> between)
+    {
+        float peak = 0f;
+        for (int step = 0; step < 50; step++)
+        {
+            Time.fixedTimeAsDouble += 0.02;
+            between(step);
+            Messages.SendAll("FixedUpdate");
+            var block = new float[2 * 960];
+            Messages.SendAll("OnAudioFilterRead", block, 2);
+            foreach (var x in block) peak = Math.Max(peak, Math.Abs(x));
+            Messages.SendAll("Update");
+            Messages.SendAll("OnGUI");
+        }
+        return peak;
+    }
+
+    static void Main()
+    {
+        new GameObject("Anything").AddComponent<FirstTouch>();
+        var world = AsperityWorld.Current;
+        Must(world.GetComponent<AudioSource>() != null, "a world without a mixer is heard from its own object");
+        Messages.SendAll("Start");
+        var plate = GameObject.All.Find(thing => thing.GetComponent<AsperityBody>() != null).GetComponent<AsperityBody>();
+        Physics.Ground = plate.GetComponent<Collider>();
+        Physics.Top = 0.01f;
+        float stroked = Second(step => { });
+        Must(stroked > 1e-5f && !GUI.Said.StartsWith("felt: 0.0000"), "a stroke is heard and felt: " + stroked + ", " + GUI.Said);
+        var blow = new Collision { impulse = new Vector3(0, 0.5f, 0), relativeVelocity = new Vector3(0, -2f, 0) };
+        float struck = Second(step => { if (step == 5) Messages.Send(plate, "OnCollisionEnter", blow); });
+        Must(struck > 2f * stroked && struck <= 1f, "a blow is heard: " + struck + " beside " + stroked);
+        Must(world.Scene.Stats().Impacts == 1 && world.Scene.Stats().Refused == 0 && Debug.Warned == "", "nothing is refused");
+
+        // With a mixer the world leaves its own object silent and tells the effect which engine is its.
+        var mixer = new UnityEngine.Audio.AudioMixer();
+        mixer.Exposed["AsperityEngine"] = 0f;
+        Messages.Send(world, "OnDisable");
+        Must(AsperityWorld.Current == null, "a world that is disabled is gone");
+        world.Mixer = mixer;
+        Messages.Send(world, "OnEnable");
+        Must(mixer.Exposed["AsperityEngine"] == world.Renderer.UnitySlot() && Second(step => { }) == 0f, "the mixer plays it");
+        // Bodies and fingers join the new engine by themselves.
+        Messages.Send(world, "OnDisable");
+        world.Mixer = null;
+        Messages.Send(world, "OnEnable");
+        struck = Second(step => { if (step == 5) Messages.Send(plate, "OnCollisionEnter", blow); });
+        Must(struck > 2f * stroked && world.Scene.Stats().Impacts == 1 && world.Scene.Stats().Refused == 0 && Debug.Warned == "", "an engine enabled again sounds as before");
+        world.Mixer = mixer;
+        Messages.Send(world, "OnDisable");
+        world.EngineParameter = "Other";
+        Messages.Send(world, "OnEnable");
+        Must(Debug.Warned.Contains("exposes no parameter \"Other\""), "a parameter that is not exposed is told");
+        Messages.SendAll("OnDestroy");
+        Messages.SendAll("OnDisable");
+        Must(AsperityWorld.Current == null, "all is gone");
+        Console.WriteLine("Unity's components: a stroke is heard and felt ({0:g3}), a blow rings ({1:g3})", stroked, struck);
+    }
+}
