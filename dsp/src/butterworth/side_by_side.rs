@@ -135,8 +135,10 @@ impl<S: Simd> Lanes<S> {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
     use crate::rng::Rng;
+    use std::{vec, vec::Vec};
 
     #[test]
     fn high_passes_of_four_contacts_give_the_bits_of_each_alone_wherever_blocks_are_cut() {
