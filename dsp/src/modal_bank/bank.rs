@@ -60,10 +60,11 @@ pub struct ModalBank<G, S> {
 impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalBank<G, S> {
     /// A bank as its states say. Groups beyond the states are silent.
     ///
-    /// Modes are best in falling order of [`ringing_s`](super::ringing_s), so that the groups that still ring are the first ones.
+    /// Modes are best in the order of [`shedding_order`](super::shedding_order), or in falling order of [`ringing_s`](super::ringing_s): the groups that
+    /// still ring are then the first ones, of the bank or of its sections between two levels of modes left out.
     pub fn new(level: Level, groups: G, states: S) -> Self {
-        let at_rest = states.as_ref().iter().rposition(|state| !state.is_at_rest());
-        let awake = Awake::of(at_rest.map_or(0, |last| last + 1));
+        let count = groups.as_ref().len().min(states.as_ref().len());
+        let awake = Awake::of(&states.as_ref()[..count]);
         Self { kernel: Kernel(level), groups, states, awake, threshold: SLEEP_AMPLITUDE }
     }
 
@@ -110,7 +111,7 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
     /// Forgets all that rings.
     pub fn silence(&mut self) {
         self.states.as_mut().fill(GroupState::REST);
-        self.awake = Awake::default();
+        self.awake = Awake::NONE;
     }
 
     /// Groups of [`LANES`](super::LANES) modes.
@@ -120,7 +121,7 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
 
     /// How many leading groups are rendered at the moment; the rest sleep until the next impulse.
     pub fn awake(&self) -> usize {
-        self.awake.groups()
+        self.awake.groups(self.groups())
     }
 
     /// Whether every mode is exactly at rest.
