@@ -40,20 +40,18 @@ fn strokes_are_heard_more_the_faster_and_the_harder_they_are() {
                 .map(|row| row.iter().map(|x| (200.0 * x.log10()).round() / 10.0).collect())
                 .collect();
             println!("{probe:>10} {name:>10}: v^{v:.2} F^{f:.2} {db:?} dB");
-            for i in 0..3 {
-                for j in 0..2 {
-                    for (softer, louder, what) in
-                        [(levels[i][j], levels[i][j + 1], "force"), (levels[j][i], levels[j + 1][i], "speed")]
-                    {
-                        steps += 1;
-                        // Seeds alone scatter by 0.2 to 0.9 dB.
-                        if louder < 0.89 * softer {
-                            falls.push(format!(
-                                "{probe}, {name}: {what} {i} {j}: {:.1} dB",
-                                20.0 * (louder / softer).log10()
-                            ));
-                        }
-                    }
+            let by_force =
+                levels.iter().flat_map(|row| row.windows(2)).map(|step| (step[0], step[1], "force"));
+            let by_speed = levels
+                .windows(2)
+                .flat_map(|rows| rows[0].iter().zip(&rows[1]))
+                .map(|(slower, faster)| (*slower, *faster, "speed"));
+            for (softer, louder, what) in by_force.chain(by_speed) {
+                steps += 1;
+                // Seeds alone scatter by 0.2 to 0.9 dB.
+                if louder < 0.89 * softer {
+                    let by_db = 20.0 * (louder / softer).log10();
+                    falls.push(format!("{probe}, {name}: {what}, {by_db:.1} dB"));
                 }
             }
         }

@@ -53,7 +53,7 @@ impl Scene {
         let at = |error: FileError| error.within(after.path.display());
         let gains: Vec<f64> = self.config().audio.iter().map(|bus| bus.gain).collect();
         let strike_gain = |name: &String| self.strike_gain_of(names.bodies.get(name));
-        let new = New::make(&maker, (&gains, &strike_gain), before, after, overrides.touched).map_err(at)?;
+        let new = New::make(&maker, (&gains, strike_gain), before, after, overrides.touched).map_err(at)?;
         let mut changes = Changes { waiting: waiting(before, after), ..Changes::default() };
         new.put(self, names, &mut changes).map_err(at)?;
         self.apply_buses(before, after, &mut changes).map_err(at)?;
@@ -123,7 +123,7 @@ struct New<'a> {
 impl<'a> New<'a> {
     fn make(
         maker: &Maker<'_>,
-        (gains, strike_gain): (&[f64], &dyn Fn(&String) -> f64),
+        (gains, strike_gain): (&[f64], impl Fn(&String) -> f64),
         before: &SceneFile,
         after: &'a SceneFile,
         touched: &[PathBuf],
