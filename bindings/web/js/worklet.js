@@ -120,7 +120,7 @@ class AsperityProcessor extends AudioWorkletProcessor {
   }
 
   stats() {
-    return { ...this.engine?.stats(), memory: this.engine?.wasm.memory.buffer.byteLength };
+    return { stats: {}, why_silent: [], ...this.engine?.stats(), memory: this.engine?.wasm.memory.buffer.byteLength };
   }
 
   /** The rest of the recording, at once. */

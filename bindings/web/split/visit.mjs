@@ -80,7 +80,7 @@ export function play(engine, seed, seconds) {
       else if (!finger.still && t > finger.t && random() < 0.35) move(t, contact, finger);
       if (random() < 0.002) finger.still = !finger.still;
     }
-    if (random() < 0.02) tell(t, { event: 'impact', body: 'body', speed_m_s: 0.1 + 2.9 * random(), ...SURFACES[0].blow });
+    if (random() < 0.02) tell(t, { event: 'impact', body: 'body', speed_m_s: 0.1 + 2.9 * random(), position: Math.floor(3 * random()), actuator: 0, ...SURFACES[0].blow });
     if (random() < 0.002) tell(t, { event: 'end', contact: 1 + Math.floor(random() * name) });
     if (!(engine.position >= 0)) throw new Error('the engine has no position');
     engine.render(BLOCK);

@@ -200,6 +200,7 @@ test('everything is reached and done by the keyboard alone', async () => {
   await page.keyboard.up('ArrowRight');
   await page.keyboard.press('Space');
   await page.waitForFunction(async () => (await window.asperity.state.engine.stats()).stats.impacts > 0, null, { timeout: 10000 });
+  assert.equal(await page.evaluate(() => window.asperity.state.lacked), undefined);
   await page.keyboard.press('6');
   await ready(page, 'granite');
   await page.keyboard.press('m');
