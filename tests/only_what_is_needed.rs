@@ -233,8 +233,8 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
         shed = late.scene.stats().shed;
         assert_eq!(late.scene.stats().contacts, 10);
     }
-    // What a masking model misses least goes first, which is not what errs least by waveform; then the last but sixteen, and octaves of the relief.
-    assert!(errors[0] < -80.0 && errors[1] < -50.0 && errors[2] < -35.0 && errors[3] < -8.0, "{errors:?}");
+    // Three fifths of the modes go unheard; then the last but sixteen (7 dB), and octaves of the relief.
+    assert!(errors[0] < -90.0 && errors[1] < -50.0 && errors[2] < -40.0, "{errors:?}");
     late.blocks(30, Some(2.0));
     whole.blocks(30, None);
     let few = late.scene.stats().contacts;

@@ -13,7 +13,6 @@ use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
-use asperity_dsp::masking::Ranked;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
     self, FirstSamples, ForceTaps, GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank,
@@ -122,12 +121,12 @@ impl BodySlot {
     ) -> Result<Self, DesignError> {
         let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
         let numbered = model.unit_modes().enumerate().filter(|(_, (mode, _))| heard(mode));
-        let modes: Vec<(usize, (Mode, [f32; MAX_POSITIONS]))> = numbered.collect();
-        // What nobody would miss comes last, and what rings longest first as far as that allows.
-        let mut order = vec![Ranked::default(); modes.len()];
-        let plain: Vec<Mode> = modes.iter().map(|(_, (mode, _))| *mode).collect();
-        modal_bank::shedding_order(&plain, TYPICAL_IMPULSE_N_S, &mut order);
-        let modes: Vec<_> = order.iter().map(|ranked| modes[ranked.index]).collect();
+        let mut modes: Vec<(usize, (Mode, [f32; MAX_POSITIONS]))> = numbered.collect();
+        // What rings longest comes first, so that the groups still awake are always a prefix.
+        let rings = |mode: &Mode| modal_bank::ringing_s(mode, TYPICAL_IMPULSE_N_S);
+        modes.sort_by(|(_, (a, _)), (_, (b, _))| {
+            rings(b).total_cmp(&rings(a)).then(a.frequency_hz.total_cmp(&b.frequency_hz))
+        });
         let unit: Vec<(usize, Mode)> = modes.iter().map(|(number, (mode, _))| (*number, *mode)).collect();
         let modes: Vec<_> = modes.into_iter().map(|(_, mode)| mode).collect();
         let plain: Vec<Mode> = unit.iter().map(|(_, mode)| *mode).collect();

@@ -60,11 +60,10 @@ pub struct ModalBank<G, S> {
 impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalBank<G, S> {
     /// A bank as its states say. Groups beyond the states are silent.
     ///
-    /// Modes are best in the order of [`shedding_order`](super::shedding_order), or in falling order of [`ringing_s`](super::ringing_s): the groups that
-    /// still ring are then the first ones, of the bank or of its sections between two levels of modes left out.
+    /// Modes are best in falling order of [`ringing_s`](super::ringing_s), so that the groups that still ring are the first ones.
     pub fn new(level: Level, groups: G, states: S) -> Self {
-        let count = groups.as_ref().len().min(states.as_ref().len());
-        let awake = Awake::of(&states.as_ref()[..count]);
+        let at_rest = states.as_ref().iter().rposition(|state| !state.is_at_rest());
+        let awake = Awake::of(at_rest.map_or(0, |last| last + 1));
         Self { kernel: Kernel(level), groups, states, awake, threshold: SLEEP_AMPLITUDE }
     }
 
@@ -111,7 +110,7 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
     /// Forgets all that rings.
     pub fn silence(&mut self) {
         self.states.as_mut().fill(GroupState::REST);
-        self.awake = Awake::NONE;
+        self.awake = Awake::default();
     }
 
     /// Groups of [`LANES`](super::LANES) modes.
@@ -121,7 +120,7 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
 
     /// How many leading groups are rendered at the moment; the rest sleep until the next impulse.
     pub fn awake(&self) -> usize {
-        self.awake.groups(self.groups())
+        self.awake.groups()
     }
 
     /// Whether every mode is exactly at rest.
