@@ -78,6 +78,11 @@ impl AsperityBody {
 }
 
 impl AsperityBody {
+    /// Where a mesh's uv lies on the maps of its surface.
+    pub(crate) fn on_maps(&self, uv: Vector2) -> Vector2 {
+        self.surface.as_ref().map_or(uv, |surface| surface.bind().on_maps(uv))
+    }
+
     fn join(&mut self) {
         let Some(tree) = self.base().is_inside_tree().then(|| self.base().get_tree()) else { return };
         let Some(mut world) = AsperityWorld::of(&tree) else {

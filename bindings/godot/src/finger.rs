@@ -110,25 +110,30 @@ impl AsperityFinger3D {
         let hit = space.intersect_ray(&query);
         let collider = hit.get("collider")?.try_to::<Gd<Node>>().ok()?;
         let point = hit.get("position")?.try_to::<Vector3>().ok()?;
-        let mut surface = 0;
+        let mut touched = None;
         let mut drawn = None;
         for child in collider.get_children().iter_shared() {
             let child = match child.try_cast::<AsperityBody>() {
                 Ok(body) => {
-                    surface = body.bind().surface_id();
+                    touched = Some(body);
                     continue;
                 }
                 Err(child) => child,
             };
             drawn = child.try_cast::<MeshInstance3D>().ok().or(drawn);
         }
-        let drawn = drawn.filter(|_| surface != 0)?;
+        let (touched, drawn) = (touched?, drawn?);
+        let surface = touched.bind().surface_id();
+        if surface == 0 {
+            return None;
+        }
         let mesh = drawn.get_mesh()?;
         if self.mesh.as_ref() != Some(&mesh) {
             self.triangles = Triangles::of(&mesh);
             self.mesh = Some(mesh);
         }
         let local = drawn.get_global_transform().affine_inverse() * point;
-        Some((surface, self.triangles.uv_at(local)?))
+        let uv = self.triangles.uv_at(local)?;
+        Some((surface, touched.bind().on_maps(uv)))
     }
 }
