@@ -28,7 +28,7 @@ func _initialize() -> void:
 	await what_is_refused_says_what_would_be_right()
 	await a_materials_heightmap_is_felt()
 	await a_normal_map_is_felt()
-	a_normal_map_gives_the_heights_that_it_was_made_of()
+	await a_normal_map_gives_the_heights_that_it_was_made_of()
 	a_normal_map_that_is_none_says_why_it_is_not_felt()
 	await a_finger_feels_the_mesh_under_it()
 	await what_a_material_repeats_is_felt_repeated()
@@ -256,8 +256,11 @@ func ridged(scale: float) -> StandardMaterial3D:
 
 
 func felt(material: StandardMaterial3D) -> float:
+	return await felt_on(AsperitySurface.from_material(material, 0.2, 0.2))
+
+
+func felt_on(surface: AsperitySurface) -> float:
 	var world := made("")
-	var surface := AsperitySurface.from_material(material, 0.2, 0.2)
 	var id := world.add_surface(surface, 0, "made")
 	await stroke(world, id, 60)
 	var level := rms(taken("Haptics"), 0)
@@ -300,7 +303,17 @@ func a_normal_map_is_felt() -> void:
 	smooth.roughness = 0.0
 	var flat: float = await felt(smooth)
 	var full: float = await felt(normals_of_waves(Image.FORMAT_RGB8))
-	check("a material that has only a normal map is felt by it", full > 2.0 * flat, "rms %.6f beside %.6f" % [full, flat])
+	# The same waves as a heightmap.
+	var image := Image.create_empty(256, 256, false, Image.FORMAT_RF)
+	for y in 256:
+		for x in 256:
+			image.set_pixel(x, y, Color(0.5 + 0.5 * sin(TAU * 8 * x / 256.0), 0, 0))
+	var heights := AsperitySurface.from_material(smooth, 0.2, 0.2)
+	heights.displacement = ImageTexture.create_from_image(image)
+	heights.relief_m = 0.001
+	var told: float = await felt_on(heights)
+	check("a material that has only a normal map is felt by it", full > 1.5 * flat, "rms %.6f beside %.6f" % [full, flat])
+	check("as its heights as a heightmap are felt", absf(full / told - 1.0) < 0.05, "rms %.6f beside %.6f" % [full, told])
 	var off := normals_of_waves(Image.FORMAT_RGB8)
 	off.normal_enabled = false
 	check("one that does not draw its normal map is not", AsperitySurface.from_material(off, 0.2, 0.2).displacement == null)
@@ -330,7 +343,7 @@ func a_normal_map_gives_the_heights_that_it_was_made_of() -> void:
 	half.uv1_scale = Vector3(0, 4, 1)
 	var world := made("")
 	check("repeated not at all is refused", world.add_surface(AsperitySurface.from_material(half, 1, 1), 0, "") == 0 and "uv_scale" in world.last_error(), world.last_error())
-	world.queue_free()
+	await gone(world)
 
 
 func a_normal_map_that_is_none_says_why_it_is_not_felt() -> void:
