@@ -41,14 +41,7 @@ pub struct AsperityFinger3D {
 #[godot_api]
 impl INode3D for AsperityFinger3D {
     fn physics_process(&mut self, _delta: f64) {
-        let world = match self.world.clone().filter(Gd::is_instance_valid) {
-            Some(world) => world,
-            None => match AsperityWorld::of(&self.base().get_tree()) {
-                Some(world) => world,
-                None => return,
-            },
-        };
-        self.world = Some(world.clone());
+        let Some(world) = self.living_world() else { return };
         match self.hit() {
             Some((surface, uv)) => self.touch(world, surface, uv),
             None => self.lift(),
@@ -74,6 +67,20 @@ impl AsperityFinger3D {
     fn contact(&self) -> i64 {
         // Instance ids have their highest bit set for reference-counted objects only; nodes stay positive.
         self.base().instance_id().to_i64() & i64::MAX
+    }
+
+    /// The world it touches in: the one that it knows, or, where that was freed, the tree's next one.
+    fn living_world(&mut self) -> Option<Gd<AsperityWorld>> {
+        // Asked before it is cloned: a freed one cannot be.
+        if self.world.as_ref().is_some_and(|world| !world.is_instance_valid()) {
+            self.world = None;
+            // What it touched went along.
+            self.touched = 0;
+        }
+        if self.world.is_none() {
+            self.world = AsperityWorld::of(&self.base().get_tree());
+        }
+        self.world.clone()
     }
 
     fn touch(&mut self, mut world: Gd<AsperityWorld>, surface: i64, uv: Vector2) {
