@@ -12,6 +12,7 @@ use crate::touch::Touch;
 use asperity::Renderer;
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
+use bevy_seedling::SeedlingCorePlugin;
 use bevy_seedling::node::RegisterNode;
 use firewheel::StreamInfo;
 use firewheel::channel_config::{ChannelConfig, ChannelCount};
@@ -43,8 +44,13 @@ struct Slot {
     rate_hz: Option<f64>,
 }
 
-/// Needs `SeedlingPlugins` (or its core plugin) in the same app, before or after.
+/// Needs `SeedlingPlugins`, or their core plugin, in the app before.
 pub(crate) fn start(app: &mut App, renderer: Renderer) {
+    if !app.is_plugin_added::<SeedlingCorePlugin>() {
+        return log::error!(
+            "asperity plays nothing: Output::Seedling needs SeedlingPlugins; add them before AsperityPlugin"
+        );
+    }
     let outputs = renderer.audio_buses().clamp(2, 64) as u32;
     let actuators = renderer.haptic_channels().min(MAX_ACTUATORS);
     let slot = Arc::new(Mutex::new(Slot { idle: Some(renderer), ..Slot::default() }));

@@ -9,6 +9,7 @@ use bevy::prelude::*;
 use bevy_asperity::*;
 use bevy_asset::AssetPlugin;
 use bevy_seedling::SeedlingCorePlugin;
+use bevy_seedling::context::SampleRate;
 use bevy_seedling::platform::initialize_stream;
 use bevy_seedling::prelude::*;
 use common::*;
@@ -17,6 +18,7 @@ use firewheel::backend::BackendProcessInfo;
 use firewheel::node::StreamStatus;
 use firewheel::processor::FirewheelProcessor;
 use std::num::NonZeroU32;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 const CHANNELS: usize = 2;
@@ -41,28 +43,44 @@ struct Stream {
     frames: usize,
 }
 
+fn activate(context: &mut AudioContext, rate_hz: u32, most_frames: u32) -> FirewheelProcessor {
+    let info = ActivateInfo {
+        sample_rate: NonZeroU32::new(rate_hz).unwrap(),
+        max_block_frames: NonZeroU32::new(most_frames).unwrap(),
+        num_stream_in_channels: 0,
+        num_stream_out_channels: CHANNELS as u32,
+        input_to_output_latency_seconds: 0.0,
+    };
+    context.with(|context| context.activate(info).unwrap())
+}
+
 impl Stream {
-    /// Started as a platform's plugin does it.
+    /// Started when a platform's plugin would, in the first frame of the app.
     fn start(app: &mut App, rate_hz: u32, most_frames: u32) -> Self {
-        let rate = NonZeroU32::new(rate_hz).unwrap();
-        let info = ActivateInfo {
-            sample_rate: rate,
-            max_block_frames: NonZeroU32::new(most_frames).unwrap(),
-            num_stream_in_channels: 0,
-            num_stream_out_channels: CHANNELS as u32,
-            input_to_output_latency_seconds: 0.0,
+        let made = Arc::new(Mutex::new(None));
+        let to = made.clone();
+        let start = move |mut context: ResMut<AudioContext>, commands: Commands| {
+            *to.lock().unwrap() = Some(activate(&mut context, rate_hz, most_frames));
+            initialize_stream(SampleRate::new(NonZeroU32::new(rate_hz).unwrap()), commands);
         };
-        let processor =
-            app.world_mut().resource_mut::<AudioContext>().with(|context| context.activate(info).unwrap());
-        let told = bevy_seedling::context::SampleRate::new(rate);
-        app.world_mut()
-            .run_system_cached(move |commands: Commands| initialize_stream(told.clone(), commands))
-            .unwrap();
-        Self {
-            processor,
-            played: Vec::new(),
-            frames: (f64::from(rate_hz) * STEP.as_secs_f64()).round() as usize,
-        }
+        app.add_systems(PostStartup, start.in_set(SeedlingStartupSystems::StreamInitialization));
+        app.update();
+        // The graph asks for the renderer, the game hands it over.
+        app.update();
+        Self::of(made.lock().unwrap().take().unwrap(), rate_hz)
+    }
+
+    /// Started anew, on another device for instance.
+    fn again(app: &mut App, rate_hz: u32, most_frames: u32) -> Self {
+        let mut context = app.world_mut().resource_mut::<AudioContext>();
+        let stream = Self::of(activate(&mut context, rate_hz, most_frames), rate_hz);
+        app.update();
+        stream
+    }
+
+    fn of(processor: FirewheelProcessor, rate_hz: u32) -> Self {
+        let frames = (f64::from(rate_hz) * STEP.as_secs_f64()).round() as usize;
+        Self { processor, played: Vec::new(), frames }
     }
 
     /// What a device would take during a frame, in blocks of a size that divides nothing.
@@ -123,11 +141,7 @@ fn what_leaves_the_graph_is_what_the_recording_renders_to_the_bit() {
             }
         },
     );
-    app.update();
     let mut stream = Stream::start(&mut app, 48_000, 128);
-    // The graph asks for the renderer, the game hands it over.
-    app.update();
-    app.update();
     let plate = plate(&mut app);
     touch(&mut app).start_recording();
     stroke(&mut app, &mut stream, plate);
@@ -156,10 +170,7 @@ fn what_leaves_the_graph_is_what_the_recording_renders_to_the_bit() {
 #[test]
 fn a_games_usual_graph_plays_it_through_its_main_bus() {
     let mut app = app_with(AudioGraphTemplate::Game);
-    app.update();
     let mut stream = Stream::start(&mut app, 48_000, 256);
-    app.update();
-    app.update();
     let plate = plate(&mut app);
     stroke(&mut app, &mut stream, plate);
     assert!(peak(&stream.played) > 1e-4, "silence");
@@ -169,18 +180,13 @@ fn a_games_usual_graph_plays_it_through_its_main_bus() {
 #[test]
 fn a_stream_that_starts_anew_at_another_rate_and_with_longer_blocks_goes_on_sounding_there() {
     let mut app = app_with(AudioGraphTemplate::Game);
-    app.update();
     let mut stream = Stream::start(&mut app, 48_000, 64);
-    app.update();
-    app.update();
     let plate = plate(&mut app);
     stroke(&mut app, &mut stream, plate);
     let first = peak(&stream.played);
     drop(stream);
     app.update();
-    let mut stream = Stream::start(&mut app, 44_100, 512);
-    app.update();
-    app.update();
+    let mut stream = Stream::again(&mut app, 44_100, 512);
     stroke(&mut app, &mut stream, plate);
     let again = peak(&stream.played);
     assert!(again > 0.5 * first && again < 2.0 * first, "{again} after {first}");

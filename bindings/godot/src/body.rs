@@ -54,30 +54,39 @@ impl INode3D for AsperityBody {
 
     fn exit_tree(&mut self) {
         let (body, surface) = (std::mem::take(&mut self.body_id), std::mem::take(&mut self.surface_id));
+        // Ready is called again when it comes back.
+        self.base_mut().request_ready();
         // A world that is freed with the scene has taken everything along.
         let Some(mut world) = self.world.take().filter(Gd::is_instance_valid) else { return };
         world.bind_mut().leave(body, surface);
-        // Ready is called again when it comes back.
-        self.base_mut().request_ready();
     }
 }
 
 #[godot_api]
 impl AsperityBody {
-    /// The body's id in its world; 0: it is in none.
+    /// The body's id in its world; 0: it is in none, or its world was freed.
     #[func]
     fn body_id(&self) -> i64 {
-        self.body_id
+        if self.has_world() { self.body_id } else { 0 }
     }
 
-    /// The id of its surface; 0: it has none.
+    /// The id of its surface; 0: it has none, or its world was freed.
     #[func]
     pub(crate) fn surface_id(&self) -> i64 {
-        self.surface_id
+        if self.has_world() { self.surface_id } else { 0 }
     }
 }
 
 impl AsperityBody {
+    fn has_world(&self) -> bool {
+        self.world.as_ref().is_some_and(Gd::is_instance_valid)
+    }
+
+    /// Where a mesh's uv lies on the maps of its surface.
+    pub(crate) fn on_maps(&self, uv: Vector2) -> Vector2 {
+        self.surface.as_ref().map_or(uv, |surface| surface.bind().on_maps(uv))
+    }
+
     fn join(&mut self) {
         let Some(tree) = self.base().is_inside_tree().then(|| self.base().get_tree()) else { return };
         let Some(mut world) = AsperityWorld::of(&tree) else {

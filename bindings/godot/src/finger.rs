@@ -41,14 +41,7 @@ pub struct AsperityFinger3D {
 #[godot_api]
 impl INode3D for AsperityFinger3D {
     fn physics_process(&mut self, _delta: f64) {
-        let world = match self.world.clone().filter(Gd::is_instance_valid) {
-            Some(world) => world,
-            None => match AsperityWorld::of(&self.base().get_tree()) {
-                Some(world) => world,
-                None => return,
-            },
-        };
-        self.world = Some(world.clone());
+        let Some(world) = self.living_world() else { return };
         match self.hit() {
             Some((surface, uv)) => self.touch(world, surface, uv),
             None => self.lift(),
@@ -74,6 +67,20 @@ impl AsperityFinger3D {
     fn contact(&self) -> i64 {
         // Instance ids have their highest bit set for reference-counted objects only; nodes stay positive.
         self.base().instance_id().to_i64() & i64::MAX
+    }
+
+    /// The world it touches in: the one that it knows, or, where that was freed, the tree's next one.
+    fn living_world(&mut self) -> Option<Gd<AsperityWorld>> {
+        // Asked before it is cloned: a freed one cannot be.
+        if self.world.as_ref().is_some_and(|world| !world.is_instance_valid()) {
+            self.world = None;
+            // What it touched went along.
+            self.touched = 0;
+        }
+        if self.world.is_none() {
+            self.world = AsperityWorld::of(&self.base().get_tree());
+        }
+        self.world.clone()
     }
 
     fn touch(&mut self, mut world: Gd<AsperityWorld>, surface: i64, uv: Vector2) {
@@ -110,25 +117,30 @@ impl AsperityFinger3D {
         let hit = space.intersect_ray(&query);
         let collider = hit.get("collider")?.try_to::<Gd<Node>>().ok()?;
         let point = hit.get("position")?.try_to::<Vector3>().ok()?;
-        let mut surface = 0;
+        let mut touched = None;
         let mut drawn = None;
         for child in collider.get_children().iter_shared() {
             let child = match child.try_cast::<AsperityBody>() {
                 Ok(body) => {
-                    surface = body.bind().surface_id();
+                    touched = Some(body);
                     continue;
                 }
                 Err(child) => child,
             };
             drawn = child.try_cast::<MeshInstance3D>().ok().or(drawn);
         }
-        let drawn = drawn.filter(|_| surface != 0)?;
+        let (touched, drawn) = (touched?, drawn?);
+        let surface = touched.bind().surface_id();
+        if surface == 0 {
+            return None;
+        }
         let mesh = drawn.get_mesh()?;
         if self.mesh.as_ref() != Some(&mesh) {
             self.triangles = Triangles::of(&mesh);
             self.mesh = Some(mesh);
         }
         let local = drawn.get_global_transform().affine_inverse() * point;
-        Some((surface, self.triangles.uv_at(local)?))
+        let uv = self.triangles.uv_at(local)?;
+        Some((surface, touched.bind().on_maps(uv)))
     }
 }

@@ -6,6 +6,7 @@
 //! | [`record`] | its recordings |
 //! | [`body`] | `AsperityBody`: what rings |
 //! | [`surface`] | `AsperitySurface`: what is touched, also from a material's textures |
+//! | [`normal_map`] | heights of a material that has normals only |
 //! | [`finger`] | `AsperityFinger3D`: touches the meshes of a scene |
 //! | [`stream`] | `AsperityStream`: the audio buses; its playback is the renderer |
 //! | [`haptic_stream`] | `AsperityHapticStream`: two haptic channels |
@@ -20,6 +21,7 @@ mod events;
 mod finger;
 mod frames;
 mod haptic_stream;
+mod normal_map;
 mod picture;
 mod record;
 mod res_files;

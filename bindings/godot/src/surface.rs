@@ -1,5 +1,6 @@
 //! `AsperitySurface`: what is touched.
 
+use crate::normal_map;
 use crate::picture;
 use crate::res_files::ResFiles;
 use godot::classes::base_material_3d::{Feature, TextureChannel, TextureParam};
@@ -15,11 +16,18 @@ pub struct AsperitySurface {
     /// What uv 0 to 1 spans along u, m.
     #[export]
     #[init(val = 1.0)]
-    pub(crate) width_m: f64,
+    width_m: f64,
     /// What uv 0 to 1 spans along v, m.
     #[export]
     #[init(val = 1.0)]
-    pub(crate) height_m: f64,
+    height_m: f64,
+    /// How often the maps repeat within uv 0 to 1, as a material's `uv1_scale`: a finger's uv times this is where it is on them.
+    #[export]
+    #[init(val = Vector2::ONE)]
+    uv_scale: Vector2,
+    /// Where uv 0 lies on the maps, as a material's `uv1_offset`.
+    #[export]
+    uv_offset: Vector2,
     /// Heights: white is high.
     #[export]
     displacement: Option<Gd<Texture2D>>,
@@ -58,8 +66,9 @@ const UV_PER_HEIGHTMAP_SCALE: f64 = 0.01;
 #[godot_api]
 impl AsperitySurface {
     /// The surface that a material draws: its heightmap, its roughness and its roughness texture. `width_m` and `height_m` are what uv 0 to 1
-    /// spans. The relief follows from `heightmap_scale`, as the shader shows it; set `relief_m` if it was exaggerated. Null, and an
-    /// error, where the material has neither a heightmap nor a roughness.
+    /// spans. The relief follows from `heightmap_scale`, as the shader shows it; set `relief_m` if it was exaggerated. Without a heightmap
+    /// it has the heights whose normals the material draws, which takes some tenths of a second for a million texels; normals that are
+    /// none of a surface's are not felt, and a warning says why. Null, and an error, where there is no material.
     #[func]
     fn from_material(material: Option<Gd<BaseMaterial3D>>, width_m: f64, height_m: f64) -> Option<Gd<Self>> {
         let Some(material) = material else {
@@ -70,15 +79,17 @@ impl AsperitySurface {
         {
             let mut made = surface.bind_mut();
             (made.width_m, made.height_m) = (width_m, height_m);
+            let (scale, offset) = (material.get_uv1_scale(), material.get_uv1_offset());
+            (made.uv_scale, made.uv_offset) =
+                (Vector2::new(scale.x, scale.y), Vector2::new(offset.x, offset.y));
             if material.get_feature(Feature::HEIGHT_MAPPING) {
                 made.displacement = material.get_texture(TextureParam::HEIGHTMAP);
-                made.relief_m =
-                    f64::from(material.get_heightmap_scale()).abs() * UV_PER_HEIGHTMAP_SCALE * width_m;
+                made.relief_m = f64::from(material.get_heightmap_scale()).abs()
+                    * UV_PER_HEIGHTMAP_SCALE
+                    * made.spans_m()[0];
             }
-            if made.displacement.is_none() && material.get_texture(TextureParam::NORMAL).is_some() {
-                godot_warn!(
-                    "AsperitySurface.from_material: the normal map is not felt, only a heightmap is; turn it into one with `asperity texture from-normals`"
-                );
+            if made.displacement.is_none() {
+                made.feel_normals(&material);
             }
             made.roughness = f64::from(material.get_roughness());
             made.roughness_map = material.get_texture(TextureParam::ROUGHNESS);
@@ -96,13 +107,43 @@ impl AsperitySurface {
 }
 
 impl AsperitySurface {
+    /// What one repetition of the maps spans along u and v, m.
+    fn spans_m(&self) -> [f64; 2] {
+        let [u, v] = [self.uv_scale.x, self.uv_scale.y].map(|scale| f64::from(scale).abs());
+        [self.width_m / u, self.height_m / v]
+    }
+
+    /// Where a mesh's uv lies on the maps.
+    pub(crate) fn on_maps(&self, uv: Vector2) -> Vector2 {
+        uv * self.uv_scale + self.uv_offset
+    }
+
+    /// Takes the heights of a material's normal map, where it draws one.
+    fn feel_normals(&mut self, material: &Gd<BaseMaterial3D>) {
+        let normals = material.get_texture(TextureParam::NORMAL);
+        let Some(normals) = normals.filter(|_| material.get_feature(Feature::NORMAL_MAPPING)) else { return };
+        let scale = f64::from(material.get_normal_scale());
+        match normal_map::heightmap(&normals, scale >= 0.0) {
+            Ok((heights, relief_px)) => {
+                let texel_m = self.spans_m()[0] / f64::from(normals.get_width().max(1));
+                self.relief_m = relief_px * texel_m * scale.abs();
+                self.displacement = Some(heights.upcast());
+            }
+            Err(why) => godot_warn!("AsperitySurface.from_material: the normal map is not felt: {why}"),
+        }
+    }
+
     /// The keys of a scene file's `[[surface]]`, and the pictures that they name.
     pub(crate) fn told(&self, name: &str) -> Result<(String, ResFiles), String> {
         let mut files = ResFiles::default();
         let mut table = table_of(&self.table.to_string())?;
         let mut say = |key: &str, value: Value| table.insert(key.into(), value);
-        say("width_m", Value::Float(self.width_m));
-        say("height_m", Value::Float(self.height_m));
+        if self.uv_scale.x == 0.0 || self.uv_scale.y == 0.0 {
+            return Err(format!("uv_scale: {} is refused; neither may be 0", self.uv_scale));
+        }
+        let [width_m, height_m] = self.spans_m();
+        say("width_m", Value::Float(width_m));
+        say("height_m", Value::Float(height_m));
         for (key, number) in [("friction", self.friction)] {
             if number >= 0.0 {
                 say(key, Value::Float(number));

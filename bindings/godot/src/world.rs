@@ -273,7 +273,9 @@ impl AsperityWorld {
 impl AsperityWorld {
     /// The world of a tree.
     pub(crate) fn of(tree: &Gd<SceneTree>) -> Option<Gd<Self>> {
-        tree.clone().get_first_node_in_group(GROUP)?.try_cast::<Self>().ok()
+        let worlds = tree.clone().get_nodes_in_group(GROUP);
+        // One that goes at the end of this frame takes nobody in.
+        worlds.iter_shared().find(|world| !world.is_queued_for_deletion())?.try_cast::<Self>().ok()
     }
 
     /// Reads and builds; `live`: for the audio server, else for a render.
