@@ -14,7 +14,6 @@
 //! | `snr`, `told` | recording over difference from the onset on, dB; what the fit says it is |
 //! | `late` | partials at 0.3–0.6 s within 25 dB of the loudest that are more than 20 dB too quiet, of all |
 //! | `decay` | median error of the decays of partials within 25 dB of the loudest, %, by the slope of level and of energy to come |
-//! | `agreed` | the same of those on whose decay in the recording the two agree to 3 %, at the end |
 //! | `split` | strong resonances of several modes of which fewer would do + those that beat, of all ([`resonances`]) |
 //! | `ring` | longest T60 over the length of sound that was seen |
 //! | `modes`, `limit` | how many; whether a warning names the mode limit |
@@ -198,10 +197,6 @@ fn summary(rows: &[Row]) {
     let errors =
         |of: fn(&DecayError) -> f64| rows.iter().flat_map(|r| &r.decays).map(|d| 100.0 * of(d)).collect();
     line("of all", errors(|d| d.both));
-    let agreed =
-        |r: &Row| -> Vec<f64> { r.decays.iter().filter(|d| d.agreed()).map(|d| 100.0 * d.both).collect() };
-    line("agreed %", rows.iter().map(agreed).filter(|d| !d.is_empty()).map(|d| quantile(&d, 0.5)).collect());
-    line("  of all", rows.iter().flat_map(agreed).collect());
     line("  by level", errors(|d| d.level));
     line("  by energy", errors(|d| d.energy));
     let sum = |part: fn(&Row) -> (usize, usize)| {

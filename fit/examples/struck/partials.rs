@@ -74,18 +74,6 @@ pub struct DecayError {
     pub energy: f64,
     /// Of both, their signs kept: the two know of each other no more than that they look at the same partial.
     pub both: f64,
-    /// By how much the two differ on the recording itself, of which both claim to be the slope.
-    pub apart: f64,
-}
-
-/// Two estimators that differ by less than this on the recording agree on what its decay is.
-const AGREED: f64 = 0.03;
-
-impl DecayError {
-    /// Whether the reference is one: a straight line, by both estimators.
-    pub fn agreed(&self) -> bool {
-        self.apart < AGREED
-    }
 }
 
 /// Errors of the decays of the strong partials.
@@ -117,7 +105,6 @@ pub fn decay_errors(sound: &[f64], played: &[f64], rate: f64) -> Vec<DecayError>
                 level: level.abs(),
                 energy: energy.abs(),
                 both: (0.5 * (level + energy)).abs(),
-                apart: (slope(theirs) / slope(&to_come(theirs)) - 1.0).abs(),
             })
         })
         .collect()

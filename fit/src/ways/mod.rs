@@ -16,7 +16,6 @@
 
 pub(crate) mod analysis;
 mod contact;
-mod late_lines;
 mod merging;
 mod one_mode;
 mod ranking;

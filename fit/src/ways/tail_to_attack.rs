@@ -6,22 +6,18 @@
 //!
 //! | stage | from, s | modes may fall until there by | places it may take |
 //! |---|---|---|---|
-//! | 1–4 | 0.2, 0.1, 0.05, 0.012 | 1.5 nepers, or 2 where the sound is there | 45 % of those left |
-//! | 5 | 0 | – | the rest |
+//! | 1–3 | 0.2, 0.05, 0.012 | 1.5 nepers | 45 % of those left |
+//! | 4 | 0 | – | the rest |
 //!
-//! A mode is continued back to the onset, where the engine strikes it, and grows by at most the nepers of the table. One that
-//! falls by more than 1.5 stays only if the sound before the stage bears it out: if it takes half of its own energy off what
-//! is left from the onset on. What falls faster is fitted along with the others, up to three times as fast, so that it does
-//! not bend them; but its place is in a later stage, and it is given up before this one ends. The least squares of a whole
-//! decay follow its loud beginning, and where that falls faster than what rings on (a beat, a room, a striker that stays) the
-//! mode dies too soon: in a bell whose partials all end with 9.0/s, with 10.4 to 11.6. Seen late, they have 9.1.
+//! A mode is continued back to the onset, where the engine strikes it, and grows by at most the nepers of the table. What
+//! falls faster is fitted along with the others, up to three times as fast, so that it does not bend them; but its place is
+//! in a later stage, and it is given up before this one ends.
 //!
 //! Within a stage levels from long to short propose the few strongest poles of every band, all are refitted jointly,
 //! and of more than may be kept those are kept that are heard ([`crate::ways::ranking`]). What is one resonance
 //! becomes one mode ([`crate::ways::merging`]). At the end all but the first stage's, which are the tail, are refitted
 //! together, their energy at a small cost, so that pairs do not grow against each other where nothing is an exponential,
-//! and what several stages found of one resonance becomes one mode (`one_mode`). What then still rings late and was lost
-//! on the way gets the places that are left ([`crate::ways::late_lines`]).
+//! and what several stages found of one resonance becomes one mode (`one_mode`).
 //!
 //! Giving strong partials the slope of their level down to 35 dB instead of the decay by energy was tried: decays of the 14
 //! recordings 3.5 % off for 7.2 (pooled), of 32 others as before, but 15 of 56 late partials absent for 8. So it is not done.
@@ -38,18 +34,14 @@ use crate::sinusoid::amplitudes::fit_amplitudes;
 use crate::sinusoid::partial::Partial;
 use crate::sinusoid::refinement::{Bounds, refine};
 use crate::ways::analysis::{Analysis, subtract};
-use crate::ways::late_lines::late_lines;
 use crate::ways::merging::merge_resonances;
 use crate::ways::one_mode::one_mode_each;
 use crate::ways::ranking::keep_heard;
 
 /// Where the stages begin, s after the onset.
-const STAGES_S: [f64; 5] = [0.2, 0.1, 0.05, 0.012, 0.0];
+const STAGES_S: [f64; 4] = [0.2, 0.05, 0.012, 0.0];
 /// By how much a mode may fall from the onset until its stage begins.
 const BACK_NEPERS: f64 = 1.5;
-/// The same of what takes this part of its own energy off what is left from the onset on.
-const BORNE_OUT_NEPERS: f64 = 2.0;
-const BORNE_OUT: f64 = 0.5;
 /// So many times as fast a mode may fall while a stage is fitted.
 const FASTER: f64 = 3.0;
 /// Part of the places left that a stage but the last may take.
@@ -102,12 +94,12 @@ pub fn analyse_from_the_tail(segment: &[f64], limits: &Limits, progress: &mut dy
         if i == 0 {
             stage.one_mode_each();
         }
-        if i == 0 { &mut tail } else { &mut attack }.extend(stage.borne_out(&residual));
+        if i == 0 { &mut tail } else { &mut attack }.extend(stage.at_onset());
     }
     attack.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     let bounds = Bounds { energy_cost: ENERGY_COST, ..limits.bounds };
     let target = subtract(segment, &tail);
-    let strong = strong(&tail, segment.len(), limits.rate_hz);
+    let strong = strong(&tail, segment.len());
     for _ in 0..ROUNDS {
         refine(&target, &mut attack, &bounds, LAST_STEPS);
         let before = attack.len();
@@ -118,7 +110,6 @@ pub fn analyse_from_the_tail(segment: &[f64], limits: &Limits, progress: &mut dy
     }
     one_mode_each(segment, &target, &tail, &mut attack, limits, &bounds);
     let mut partials = [tail, attack].concat();
-    partials.extend(late_lines(segment, &partials, limits));
     partials.sort_by(|a, b| a.omega.total_cmp(&b.omega));
     let residual = subtract(segment, &partials);
     let noise = NoiseFloor::by_time(&residual, limits.rate_hz, limits.least_noise);
@@ -145,7 +136,7 @@ impl<'a> Stage<'a> {
         if start > 0 {
             limits.bounds.delta_high = limits.bounds.delta_high.min(FASTER * BACK_NEPERS / start as f64);
         }
-        let strong = strong(tail, target.len(), limits.rate_hz);
+        let strong = strong(tail, target.len());
         Self { target, start, limits, places, strong, found: Vec::new(), capped: false }
     }
 
@@ -182,7 +173,7 @@ impl<'a> Stage<'a> {
         let strong = &self.strong;
         self.found.retain(|p| !is_second(p, strong));
         if self.start > 0 {
-            let slow = BORNE_OUT_NEPERS / self.start as f64;
+            let slow = BACK_NEPERS / self.start as f64;
             self.found.retain(|p| p.delta <= slow);
         }
     }
@@ -214,31 +205,6 @@ impl<'a> Stage<'a> {
         more
     }
 
-    /// The partials as the onset has them, without those that fall fast and are not in `left`, the sound from the onset on
-    /// without all earlier stages.
-    fn borne_out(&self, left: &[f64]) -> Vec<Partial> {
-        let early = self.at_onset();
-        if self.start == 0 {
-            return early;
-        }
-        let slow = BACK_NEPERS / self.start as f64;
-        let (mut kept, mut fast): (Vec<Partial>, Vec<Partial>) =
-            early.into_iter().partition(|p| p.delta <= slow);
-        fast.sort_by(|a, b| b.energy(left.len()).total_cmp(&a.energy(left.len())));
-        let energy = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
-        let mut left = subtract(left, &kept);
-        let mut before = energy(&left);
-        for partial in fast {
-            let without = subtract(&left, &[partial]);
-            let after = energy(&without);
-            if before - after >= BORNE_OUT * partial.energy(left.len()) {
-                kept.push(partial);
-                (left, before) = (without, after);
-            }
-        }
-        kept
-    }
-
     /// The partials as the onset has them, none of them absurd there.
     fn at_onset(&self) -> Vec<Partial> {
         let early = self.found.iter().map(|p| p.moved(-(self.start as f64)));
@@ -246,12 +212,10 @@ impl<'a> Stage<'a> {
     }
 }
 
-/// The partials of the tail that no later stage may double. One that falls by more than the stage may go back describes the
-/// end of a decay, and its beginning may be another mode's.
-fn strong(tail: &[Partial], count: usize, rate_hz: f64) -> Vec<Partial> {
+/// The partials of the tail that no later stage may double.
+fn strong(tail: &[Partial], count: usize) -> Vec<Partial> {
     let most = tail.iter().map(|p| p.energy(count)).fold(0.0, f64::max);
-    let slow = BACK_NEPERS / (STAGES_S[0] * rate_hz);
-    tail.iter().filter(|p| p.delta < slow && p.energy(count) > STRONG * most).copied().collect()
+    tail.iter().filter(|p| p.energy(count) > STRONG * most).copied().collect()
 }
 
 /// Whether a partial is a second mode of a resonance that the tail has.
@@ -260,55 +224,4 @@ fn is_second(partial: &Partial, strong: &[Partial]) -> bool {
         let near = (partial.omega - of.omega).abs() < HALF_WIDTHS * of.delta;
         near && partial.delta < OF_THE_ATTACK * of.delta
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sinusoid::projection::synthesise;
-    use nalgebra::Complex;
-    use std::f64::consts::PI;
-
-    const RATE_HZ: f64 = 44_100.0;
-
-    fn partial(hz: f64, decay_per_s: f64, amplitude: f64, phase: f64) -> Partial {
-        Partial {
-            omega: 2.0 * PI * hz / RATE_HZ,
-            delta: decay_per_s / RATE_HZ,
-            c: Complex::from_polar(amplitude, phase),
-        }
-    }
-
-    #[test]
-    fn partials_that_begin_faster_than_they_end_keep_the_decay_they_end_with() {
-        // A bell of 9.05/s, each partial with a part as loud that falls four times as fast and pulls the decay of one
-        // mode for both to 10.4–11.6/s.
-        let bell =
-            [(226.2, 0.15), (424.0, 0.1), (573.3, 0.06), (708.5, 0.03), (1100.8, 0.02), (1135.1, 0.02)];
-        let parts: Vec<Partial> = bell
-            .iter()
-            .enumerate()
-            .flat_map(|(k, &(hz, a))| {
-                [partial(hz, 9.05, a, k as f64), partial(hz + 0.9, 36.2, 0.8 * a, k as f64 + 0.5)]
-            })
-            .collect();
-        let mut segment = synthesise(&parts, 31_000);
-        let mut rng = asperity_dsp::rng::Rng::new(11);
-        segment.iter_mut().for_each(|x| *x += 3e-5 * rng.normal());
-        let limits = Limits {
-            bounds: Bounds { omega_low: 0.003, delta_high: 0.034, amplitude_high: 4.0, ..Bounds::wide() },
-            max_partials: 150,
-            least_energy: 1e-9,
-            threads: 1,
-            rate_hz: RATE_HZ,
-            least_noise: 0.0,
-        };
-        let found = analyse_from_the_tail(&segment, &limits, &mut |_| {}).partials;
-        for (hz, a) in bell {
-            let near =
-                |p: &&Partial| (p.omega * RATE_HZ / (2.0 * PI) - hz).abs() < 2.0 && p.c.norm() > 0.3 * a;
-            let slowest = found.iter().filter(near).map(|p| p.delta * RATE_HZ).fold(f64::INFINITY, f64::min);
-            assert!((slowest / 9.05 - 1.0).abs() < 0.04, "{hz} Hz: {slowest}/s");
-        }
-    }
 }
