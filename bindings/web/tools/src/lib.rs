@@ -75,9 +75,14 @@ fn fitted(rate_hz: f64) -> Result<Fit, String> {
     // Everything that rings after a hit lies behind its loudest sample; what lies long before is not looked at.
     let longest = (LONGEST_S * rate_hz).clamp(0.0, 1e8) as usize;
     samples.truncate(longest);
-    let recording = Recording::from_samples("recording", samples, rate_hz).map_err(|error| error.to_string())?;
-    let options =
-        FitOptions { max_modes: MOST_MODES, least_level_db: FAINTEST_DB, threads: 1, ..FitOptions::default() };
+    let recording =
+        Recording::from_samples("recording", samples, rate_hz).map_err(|error| error.to_string())?;
+    let options = FitOptions {
+        max_modes: MOST_MODES,
+        least_level_db: FAINTEST_DB,
+        threads: 1,
+        ..FitOptions::default()
+    };
     asperity_fit::fit(&recording, &options, &mut |_| {}).map_err(|error| error.to_string())
 }
 
