@@ -8,8 +8,8 @@
 //! min_c  Σ_n w[n] (y[n] − Σ_k Re c_k z_kⁿ)²          w = 1, and W where the body was too loud
 //! ```
 //! to what they played themselves, y, clipped to L where it was louder; W is tripled, and the places where the body still
-//! is too loud are added, until none is left. Long modes are held by the thousands of samples that they ring in; what gives
-//! way is the attack's. If that does not end, all are made quieter alike, so
+//! is too loud are added, until none is left. What rings on after the last sample that was too loud has 100 times the
+//! weight, so that what gives way is the attack's. If that does not end, all are made quieter alike, so
 //! that the limit holds whatever the recording is.
 
 use crate::body::struck::struck;
