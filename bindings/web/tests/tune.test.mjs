@@ -117,6 +117,21 @@ test('what is wrong is refused in words, the scene goes on, and a file that some
   await end();
 });
 
+test('a finger touches the scene while its log plays', async () => {
+  const { state, post, end } = await tuned();
+  assert.equal((await state()).plays, true);
+  const refused = [];
+  // Over the log's second and its beginning anew.
+  for (let n = 0; n < 100; n++) {
+    const rest = { contact: 1_000_000, uv: [0.2 + n / 200, 0.4], normal_force_n: 0.6 };
+    const { error } = await post('touch', { t: performance.now() / 1000, event: n === 0 ? 'begin' : 'move', ...(n === 0 ? { surface: 'granite', actuator: 0 } : {}), ...rest });
+    if (error !== undefined) refused.push(error);
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+  assert.deepEqual(refused, []);
+  await end();
+});
+
 test('the panel turns by slider and number, touches the scene, and keeps; axe-core finds nothing serious', async () => {
   const { url, state, text, end } = await tuned();
   const { context, page, wrong } = await open(chromium, url);

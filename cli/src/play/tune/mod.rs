@@ -26,9 +26,8 @@ use document::Document;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How far ahead of the sound the events of the log are sent, s, and those of a finger on the page.
-const LEAD_S: f64 = 0.25;
-const TOUCH_LEAD_S: f64 = 0.06;
+/// How far ahead of the sound events are sent, s: those of the log as those of a finger on the page, because a scene takes them in order of time.
+const LEAD_S: f64 = 0.06;
 /// How often the page is listened to.
 const STEP: Duration = Duration::from_millis(5);
 /// Frames of a block where nobody hears.
@@ -132,7 +131,7 @@ impl Tuned<'_> {
             }
             // What names a thing that the scene no longer has is passed over.
             if let Ok(event) = line.event.resolve(&self.names)
-                && full(self.scene.report(time_s, event).map_err(|refused| refused.reason))
+                && full(self.report(time_s, event))
             {
                 return;
             }
@@ -146,13 +145,23 @@ impl Tuned<'_> {
         let now_s = self.position_s();
         for line in &log.lines {
             let event: ContactEvent = line.event.resolve(&self.names).map_err(CliError::told)?;
-            let fresh = now_s + TOUCH_LEAD_S - line.t;
+            let fresh = now_s + LEAD_S - line.t;
             let offset_s = self.touch_offset_s.filter(|known| (known - fresh).abs() < 0.2).unwrap_or(fresh);
             self.touch_offset_s = Some(offset_s);
             let time_s = (line.t + offset_s).max(now_s);
-            self.scene.report(time_s, event).map_err(|refused| CliError::told(refused.reason))?;
+            self.report(time_s, event).map_err(CliError::told)?;
         }
         Ok(())
+    }
+
+    /// Reports an event, at the time of the last one at the earliest: the log and a finger take turns, and neither's stamps wait for the other's.
+    fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
+        match self.scene.report(time_s, event).map_err(|refused| refused.reason) {
+            Err(Refusal::TimeBackwards { before_s, .. }) => {
+                self.scene.report(before_s, event).map_err(|refused| refused.reason)
+            }
+            answer => answer,
+        }
     }
 
     /// Makes what sounds what `document` says; where that cannot be, all stays as it was.
