@@ -145,6 +145,7 @@ mod tests {
         let mut sound = synthesise(&modes, 22_050);
         sound[..132].iter_mut().enumerate().for_each(|(n, x)| *x *= n as f64 / 132.0);
         let mut played = modes.clone();
+        // The modes by themselves reach 1.079 of the recording.
         let limit = 1.03;
         let before = no_louder(&sound, &mut played, limit).unwrap();
         assert!(before > limit, "{before}");
