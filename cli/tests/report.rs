@@ -73,11 +73,14 @@ fn every_case_is_a_scene_that_renders() {
     }
 }
 
-/// A column of a trace.
+/// Columns of a trace.
+#[derive(Default)]
 struct Trace {
     begin: usize,
     height_m: Vec<f64>,
     pad_m: Vec<f64>,
+    pad_m_s: Vec<f64>,
+    finger_m: Vec<f64>,
     force_n: Vec<f64>,
 }
 
@@ -87,7 +90,7 @@ fn trace(folder: &Path, scene: &str, more: &[&str], rate_hz: f64) -> Trace {
     let (status, _, err) = told(&asperity(folder, &arguments));
     assert_eq!((status, err.as_str()), (0, ""));
     let text = fs::read_to_string(folder.join("take.trace.csv")).unwrap();
-    let mut trace = Trace { begin: 0, height_m: Vec::new(), pad_m: Vec::new(), force_n: Vec::new() };
+    let mut trace = Trace::default();
     for (index, line) in text.lines().skip(1).enumerate() {
         let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
         if index == 0 {
@@ -95,6 +98,8 @@ fn trace(folder: &Path, scene: &str, more: &[&str], rate_hz: f64) -> Trace {
         }
         trace.height_m.push(fields[4]);
         trace.pad_m.push(fields[6]);
+        trace.pad_m_s.push(fields[7]);
+        trace.finger_m.push(fields[8]);
         trace.force_n.push(fields[9]);
     }
     trace
@@ -117,16 +122,24 @@ fn cubic(h: &[f64], x: f64) -> f64 {
     b + 0.5 * x * (c - a + x * (2.0 * a - 5.0 * b + 4.0 * c - d + x * (3.0 * (b - c) + d - a)))
 }
 
+impl Trace {
+    /// What the probe does at a sample: places and speeds of pad and finger.
+    fn state(&self, sample: usize, rate_hz: f64) -> [f64; 4] {
+        let finger_m_s = 0.5 * (self.finger_m[sample + 1] - self.finger_m[sample - 1]) * rate_hz;
+        [self.pad_m[sample], self.pad_m_s[sample], self.finger_m[sample], finger_m_s]
+    }
+}
+
 /// Pad displacement and mean contact force of each fine step (the mean belongs to the step that ends there), by the classical
-/// Runge–Kutta scheme in four steps each.
-fn integrated(heights_m: &[f64], force_n: f64) -> (Vec<f64>, Vec<f64>) {
+/// Runge–Kutta scheme in four steps each, from what the probe does at a sample: how a contact is led in is not asked here.
+fn integrated(trace: &Trace, from: usize, force_n: f64) -> (Vec<f64>, Vec<f64>) {
     const STEPS: usize = 4;
-    let h = 1.0 / (RATE_HZ * (FINE * STEPS) as f64);
-    let rest = heights_m[1] - force_n / PROBE[4];
-    let mut state = [rest, 0.0, rest - force_n / PROBE[1], 0.0];
-    let (mut pads, mut means) = (vec![rest; 2], vec![force_n; 2]);
+    let fine_hz = RATE_HZ * FINE as f64;
+    let h = 1.0 / (fine_hz * STEPS as f64);
+    let mut state = trace.state(from, fine_hz);
+    let (mut pads, mut means) = (vec![state[0]; from + 1], vec![force_n; from + 1]);
     let add = |a: [f64; 4], b: [f64; 4], s: f64| [0, 1, 2, 3].map(|i| a[i] + s * b[i]);
-    for four in heights_m.windows(4) {
+    for four in trace.height_m[from - 1..].windows(4) {
         let mut sum = 0.0;
         for step in 0..STEPS {
             let at = |part: f64| cubic(four, (step as f64 + part) / STEPS as f64);
@@ -214,7 +227,8 @@ fn stated_errors_hold_within_a_factor_of_two_on_unseen_profiles_by_an_independen
             let fine = trace(&folder, &scene, &["--seed", &seed, "--rate", &fine_hz.to_string()], fine_hz);
             let log = fs::read_to_string(folder.join(format!("{case}.jsonl"))).unwrap();
             let first: Value = serde_json::from_str(log.lines().next().unwrap()).unwrap();
-            let (pads, means) = integrated(&fine.height_m, number(&first["normal_force_n"]));
+            let (pads, means) =
+                integrated(&fine, (0.05 * fine_hz) as usize, number(&first["normal_force_n"]));
             for (row, squares) in integrators.iter().zip(&mut squares) {
                 let choice = row["choice"].as_str().unwrap();
                 let own = trace(&folder, &scene, &["--seed", &seed, "--integrator", choice], RATE_HZ);
