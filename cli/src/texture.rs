@@ -52,11 +52,6 @@ fn grey(path: &Path) -> Result<Raster, CliError> {
     channel(path, Channel::Luma)
 }
 
-/// The brightness of a photograph, 0–1, and how much of it is colour rather than light.
-fn photograph(path: &Path) -> Result<(Raster, f64), CliError> {
-    image_io::load_photograph(path).map(|(image, colour)| (image.raster, colour)).map_err(CliError::told)
-}
-
 /// One channel of a picture, 0–1.
 fn channel(path: &Path, channel: Channel) -> Result<Raster, CliError> {
     image_io::load_channel(path, channel).map(|image| image.raster).map_err(CliError::told)

@@ -8,8 +8,10 @@
 //! p has the detail of the image and tiles; s is harmonic inside and takes the steps. Source: L. Moisan,
 //! "Periodic plus smooth image decomposition", J. Math. Imaging Vis. 39, 2011.
 
-use crate::fft2::{Fft2, angular_frequency};
+use crate::fft2::{RealFft2, Workspace, angular_frequency};
 use crate::raster::Raster;
+use asperity_fft::FftPlanner;
+use asperity_fft::num_complex::Complex64;
 
 /// Ratio of the mean step across a seam to the mean step inside up to which an image tiles. Source:
 /// ours; tileable maps of the corpus stay below 1.3, photographs are above 2.
@@ -117,29 +119,37 @@ impl SplitBorders {
 /// The smooth component s.
 fn smooth_component(image: &Raster) -> Raster {
     let (w, h) = (image.width, image.height);
-    let mut steps = Raster::constant(w, h, 0.0);
-    for x in 0..w {
-        let step = image.at(x, 0) - image.at(x, h - 1);
-        steps.values[x] += step;
-        steps.values[(h - 1) * w + x] -= step;
-    }
-    for y in 0..h {
-        let step = image.at(0, y) - image.at(w - 1, y);
-        steps.values[y * w] += step;
-        steps.values[y * w + w - 1] -= step;
-    }
-    let mut fft = Fft2::new(w, h);
-    let mut spectrum = fft.spectrum(&steps.values);
-    for kx in 0..w {
-        let along_x = 2.0 * angular_frequency(kx, w).cos();
-        for ky in 0..h {
-            // Eigenvalue of the periodic five-point Laplacian; the mean of s is zero.
-            let laplacian = 4.0 - along_x - 2.0 * angular_frequency(ky, h).cos();
-            let gain = if kx + ky == 0 { 0.0 } else { 1.0 / laplacian };
-            spectrum[kx * h + ky] *= gain;
+    let mut planner = FftPlanner::new();
+    let down = transformed((0..w).map(|x| image.at(x, 0) - image.at(x, h - 1)), &mut planner);
+    let across = transformed((0..h).map(|y| image.at(0, y) - image.at(w - 1, y)), &mut planner);
+    // A step stands in the first row (column) and, negative, in the last: 1 − e^(iω) of its spectrum.
+    let pairs = |n: usize| {
+        let pair = |k| Complex64::new(1.0, 0.0) - Complex64::cis(angular_frequency(k, n));
+        (0..n).map(pair).collect::<Vec<_>>()
+    };
+    let (along_x, along_y) = (pairs(w), pairs(h));
+    let fft = RealFft2::new(&mut planner, w, h);
+    let scale = 1.0 / (w * h) as f64;
+    let mut values = Vec::new();
+    fft.inverse_unscaled(fft.half_columns(), &mut Workspace::default(), &mut values, |kx, column| {
+        for ((to, step), pair) in column.iter_mut().zip(&across).zip(&along_y) {
+            // Eigenvalue of the periodic five-point Laplacian, 4 − 2 cos ω_x − 2 cos ω_y.
+            let laplacian = 2.0 * (along_x[kx].re + pair.re);
+            *to = (down[kx] * pair + step * along_x[kx]) * (scale / laplacian);
         }
-    }
-    fft.image(&mut spectrum)
+        if kx == 0 {
+            // The mean of s is zero.
+            column[0] = Complex64::default();
+        }
+    });
+    Raster { width: w, height: h, values }
+}
+
+/// The spectrum of a line.
+fn transformed(line: impl Iterator<Item = f64>, planner: &mut FftPlanner) -> Vec<Complex64> {
+    let mut spectrum: Vec<Complex64> = line.map(|v| Complex64::new(v, 0.0)).collect();
+    planner.plan_fft_forward(spectrum.len()).process(&mut spectrum);
+    spectrum
 }
 
 #[cfg(test)]

@@ -18,9 +18,8 @@
 //! photograph of gravel at 3 % of its contrast keeps 97 %.
 
 use crate::borders::{Borders, SplitBorders};
-use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
-use asperity_fft::num_complex::Complex64;
+use crate::waves::Waves;
 use std::f64::consts::{PI, TAU};
 
 /// Rms of the strongest noise that is taken for a camera's, of white: five levels of 255. Assumed: a telephone indoors.
@@ -45,12 +44,11 @@ pub struct Quiet {
 #[must_use]
 pub fn without_camera_noise(picture: &Raster) -> Quiet {
     let split = SplitBorders::of(picture, Borders::Detect);
-    let (w, h) = (picture.width, picture.height);
-    let mut fft = Fft2::new(w, h);
-    let mut spectrum = fft.spectrum(&split.periodic.values);
+    let mut waves = Waves::of(&split.periodic);
     drop(split.periodic);
-    let rings = Rings::of(&spectrum, w, h);
-    let noise = floor(&spectrum, w, h).clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE);
+    let rings = Rings::of(&waves, picture);
+    let texels = picture.values.len() as f64;
+    let noise = floor(&waves, texels).clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE);
     let gains: Vec<f64> = rings
         .power
         .iter()
@@ -59,10 +57,7 @@ pub fn without_camera_noise(picture: &Raster) -> Quiet {
             if power > least { (1.0 - least / power).sqrt() } else { 0.0 }
         })
         .collect();
-    for (place, value) in spectrum.iter_mut().enumerate().skip(1) {
-        *value *= gains[rings.of_place(place)];
-    }
-    let mut quiet = fft.image(&mut spectrum);
+    let mut quiet = waves.weighed_by_frequency(|r| if r > 0.0 { gains[rings.of_frequency(r)] } else { 1.0 });
     if let Some(smooth) = split.smooth {
         quiet.values.iter_mut().zip(&smooth.values).for_each(|(v, s)| *v += s);
     }
@@ -71,49 +66,46 @@ pub fn without_camera_noise(picture: &Raster) -> Quiet {
 
 /// Mean power of rings of waves.
 struct Rings {
-    width: usize,
-    height: usize,
+    shorter_side: f64,
     power: Vec<(f64, f64)>,
 }
 
 impl Rings {
-    fn of(spectrum: &[Complex64], width: usize, height: usize) -> Self {
-        let last = (width.min(height) as f64 * std::f64::consts::FRAC_1_SQRT_2).ceil() as usize + 1;
-        let mut rings = Self { width, height, power: vec![(0.0, 0.0); last + 1] };
-        let texels = (width * height) as f64;
-        for (place, value) in spectrum.iter().enumerate().skip(1) {
-            let ring = rings.of_place(place);
+    fn of(waves: &Waves, picture: &Raster) -> Self {
+        let shorter_side = picture.width.min(picture.height) as f64;
+        let last = (shorter_side * std::f64::consts::FRAC_1_SQRT_2).ceil() as usize + 1;
+        let mut rings = Self { shorter_side, power: vec![(0.0, 0.0); last + 1] };
+        let texels = picture.values.len() as f64;
+        waves.each(|wave| {
+            let ring = rings.of_frequency(wave.frequency());
             let (power, count) = &mut rings.power[ring];
-            (*power, *count) = (*power + value.norm_sqr() / texels, *count + 1.0);
-        }
+            (*power, *count) = (*power + wave.count * wave.power / texels, *count + wave.count);
+        });
         rings.power.iter_mut().for_each(|(power, count)| *power /= count.max(1.0));
         rings
     }
 
-    /// One ring a wave over the shorter side.
-    fn of_place(&self, place: usize) -> usize {
-        let (w, h) = (self.width, self.height);
-        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h)) / TAU;
-        (r * w.min(h) as f64).round() as usize
+    /// One ring a wave over the shorter side; of a wave of so many radians a texel.
+    fn of_frequency(&self, frequency: f64) -> usize {
+        (frequency / TAU * self.shorter_side + 0.5) as usize
     }
 }
 
 /// Power of the noise: of the corner or of the plateau, whichever is more.
-fn floor(spectrum: &[Complex64], w: usize, h: usize) -> f64 {
+fn floor(waves: &Waves, texels: f64) -> f64 {
     let (mut corner, mut fine, mut coarse) = (Mean::default(), Mean::default(), Mean::default());
-    for (place, value) in spectrum.iter().enumerate().skip(1) {
-        let (x, y) = (angular_frequency(place / h, w).abs(), angular_frequency(place % h, h).abs());
-        let power = value.norm_sqr() / (w * h) as f64;
-        if x.min(y) > TAU * CORNER {
-            corner.add(power);
+    waves.each(|wave| {
+        let power = wave.power / texels;
+        if wave.wx.min(wave.wy.abs()) > TAU * CORNER {
+            corner.add(power, wave.count);
         }
-        let r = x.hypot(y);
+        let r = wave.frequency();
         if (PI / 4.0..PI / 2.0).contains(&r) {
-            fine.add(power);
+            fine.add(power, wave.count);
         } else if (PI / 8.0..PI / 4.0).contains(&r) {
-            coarse.add(power);
+            coarse.add(power, wave.count);
         }
-    }
+    });
     // All of it where both octaves are level, nothing where the coarser has twice the power.
     let level = if fine.get() > 0.0 { (2.0 - coarse.get() / fine.get()).clamp(0.0, 1.0) } else { 0.0 };
     corner.get().max(level * fine.get())
@@ -126,9 +118,9 @@ struct Mean {
 }
 
 impl Mean {
-    fn add(&mut self, value: f64) {
-        self.sum += value;
-        self.count += 1.0;
+    fn add(&mut self, value: f64, count: f64) {
+        self.sum += value * count;
+        self.count += count;
     }
 
     fn get(&self) -> f64 {

@@ -20,8 +20,8 @@
 //! power correlates better with the displacement (median 0.35 where there is any) than brightness itself.
 
 use crate::borders::{Borders, SplitBorders};
-use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
+use crate::waves::Waves;
 use std::f64::consts::TAU;
 
 /// Wavelength at which contrast is slope, texels.
@@ -33,15 +33,12 @@ pub fn dark_is_deep(image: &Raster) -> Raster {
     let mean = image.mean();
     let image = SplitBorders::of(image, Borders::Detect).periodic;
     let (w, h) = (image.width, image.height);
-    let mut fft = Fft2::new(w, h);
-    let mut spectrum = fft.spectrum(&image.values);
     let contrast = if mean > 0.0 { 1.0 / mean } else { 0.0 };
-    for (place, value) in spectrum.iter_mut().enumerate() {
-        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
-        *value *=
-            if r > 0.0 { contrast * (UNIT_SLOPE_PX / TAU / r).sqrt() * high_pass(r, w, h) } else { 0.0 };
-    }
-    fft.image(&mut spectrum)
+    let mut waves = Waves::of(&image);
+    drop(image);
+    waves.weighed_by_frequency(|r| {
+        if r > 0.0 { contrast * (UNIT_SLOPE_PX / TAU / r).sqrt() * high_pass(r, w, h) } else { 0.0 }
+    })
 }
 
 /// What stays of a wave: little when it is longer than a quarter of the shorter side. Slow changes of brightness are the

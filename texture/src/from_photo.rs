@@ -27,11 +27,13 @@
 
 mod heights;
 mod options;
+mod reduced;
 mod residual;
 mod sign;
 
 pub use heights::{Fallback, linear_light};
 pub use options::{PhotoOptions, TEXEL_M};
+pub use reduced::{MOST_TEXELS, reduced};
 pub use sign::{DECIDED, Sign};
 
 use crate::borders::Borders;
@@ -40,8 +42,10 @@ use crate::fractal_dimension::{Condition, conditions, transects};
 use crate::raster::Raster;
 use crate::relief_spectrum::ReliefSpectrum;
 use crate::shape_from_shading::Shape;
+use crate::side_by_side::both;
 use crate::symmetry::{self, Lattice, WallpaperGroup};
 use asperity_dsp::DesignError;
+use reduced::means;
 
 /// [`symmetry::steadiness`] below which the mean cell is not used. Source: ours; at least 0.95 for strict patterns of the tests
 /// and photographs, 0.08 for the skin among the photographs.
@@ -52,8 +56,6 @@ pub const LARGEST_MICRO_RELIEF_M: f64 = 1e-4;
 pub const SMALL_PX: usize = 64;
 /// R where a picture is too small or too even to tell it. Assumed: α of 1.75.
 const UNKNOWN_ROUGHNESS: f64 = 0.5;
-/// Largest picture that is worked on, texels: larger ones are reduced ([`reduced`]).
-pub const MOST_TEXELS: usize = 1 << 22;
 
 /// What repeats in the picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -184,23 +186,29 @@ pub fn surface_from_photo(
     mut progress: impl FnMut(f64),
 ) -> Result<PhotoSurface, DesignError> {
     options::check(picture, options)?;
-    let quiet = without_camera_noise(picture);
-    progress(0.1);
-    let (repetition, parts) = take_apart(picture);
+    let (quiet, (repetition, parts)) = both(|| without_camera_noise(picture), || take_apart(picture));
     progress(0.4);
     let averaged = repetition.as_ref().is_some_and(|found| !found.wanders);
     let shaped = if averaged { &parts.symmetric } else { &quiet.picture };
-    let mut found = heights::heights_of(shaped, &quiet.picture, options, |done| progress(0.4 + 0.4 * done))?;
-    let textured_px = if averaged {
-        let up = if found.sign.bright_is_deep { -1.0 } else { 1.0 };
-        let residual_px = residual::residual_heights(&parts.residual, picture).map(|z| up * z);
-        residual::add_fine_waves(&mut found.shape.height_px, &residual_px);
-        residual_px
-    } else {
-        found.shape.height_px.clone()
+    let (textured_px, found) = both(
+        || averaged.then(|| residual::residual_heights(&parts.residual, picture)),
+        || heights::heights_of(shaped, &quiet.picture, options, |done| progress(0.4 + 0.4 * done)),
+    );
+    let mut found = found?;
+    let noise = quiet.noise;
+    drop(quiet);
+    let textured_px = match textured_px {
+        Some(residual_px) => {
+            let up = if found.sign.bright_is_deep { -1.0 } else { 1.0 };
+            let residual_px = residual_px.map(|z| up * z);
+            residual::add_fine_waves(&mut found.shape.height_px, &residual_px);
+            residual_px
+        }
+        None => found.shape.height_px.clone(),
     };
     let scale = options.scale(&found.shape.height_px);
-    let law = ReliefSpectrum::of(&textured_px);
+    let textured = if averaged { &parts.residual } else { picture };
+    let (input_conditions, law) = both(|| conditions_of(textured), || ReliefSpectrum::of(&textured_px));
     let roughness = match &law {
         Some(law) => law.roughness_map(&textured_px),
         None => Raster::constant(picture.width, picture.height, UNKNOWN_ROUGHNESS),
@@ -211,8 +219,7 @@ pub fn surface_from_photo(
     let cell = repetition.as_ref().filter(|_| averaged).map(|found_pattern| {
         height_cell(&found.shape.height_px, &found_pattern.lattice, scale.metres_per_px, options.texel_m)
     });
-    let mut doubts =
-        doubts_of(picture, averaged.then_some(&parts.residual), &law, quiet.noise, scale.relief_m);
+    let mut doubts = doubts_of(picture, input_conditions, &law, noise, scale.relief_m);
     if let Some(found) = repetition.as_ref().filter(|_| scale.relief_m > 0.0) {
         let confidence = found.lattice.confidence;
         let repeats = Doubt::Repeats(confidence);
@@ -238,7 +245,7 @@ pub fn surface_from_photo(
         shape: found.shape,
         sign: found.sign,
         light_was_found: found.light_was_found,
-        noise: quiet.noise,
+        noise,
         doubts,
         tileable: Borders::Detect.decide(picture) == Borders::Periodic,
     })
@@ -257,27 +264,6 @@ pub fn calibration(sample: &Raster, relief_m: f64, options: &PhotoOptions) -> Re
     let shown = "a sample whose relief rises above the camera's noise";
     DesignError::check("known relief", found_m, shown, |found| found > 0.0)?;
     Ok(relief_m / found_m)
-}
-
-/// A picture of at most [`MOST_TEXELS`] and how many of its texels are one of the result along a side: means of n × n.
-#[must_use]
-pub fn reduced(picture: Raster) -> (Raster, usize) {
-    let n = (1..).find(|n| (picture.width / n) * (picture.height / n) <= MOST_TEXELS).unwrap_or(1);
-    if n == 1 { (picture, 1) } else { (means(&picture, n), n) }
-}
-
-/// Means of n × n texels; what does not fill one at the right and lower border is left out.
-fn means(picture: &Raster, n: usize) -> Raster {
-    let (w, h) = (picture.width / n, picture.height / n);
-    let mut means = Raster::constant(w, h, 0.0);
-    let share = 1.0 / (n * n) as f64;
-    for y in 0..h * n {
-        let row = &mut means.values[y / n * w..][..w];
-        for (mean, texels) in row.iter_mut().zip(picture.row(y).chunks_exact(n)) {
-            *mean += share * texels.iter().sum::<f64>();
-        }
-    }
-    means
 }
 
 /// The lattice of a picture; of a large one, that of its halves, where patterns below 16 texels are not seen.
@@ -300,11 +286,13 @@ fn take_apart(picture: &Raster) -> (Option<Repetition>, symmetry::Separation) {
         };
         return (None, whole);
     };
-    let averaged = symmetry::averaged_cell(picture, &lattice);
+    let even = symmetry::detrended(picture);
+    let averaged = symmetry::averaged_even_cell(&even, &lattice);
+    let wanders = symmetry::even_steadiness(&even, &lattice, &averaged) < STEADY;
+    drop(even);
     let found = symmetry::wallpaper_group(&averaged, &lattice);
     let parts = symmetry::with_cell(picture, &lattice, &found.cell);
     let share = (deviation(&parts.symmetric) / deviation(picture).max(1e-12)).powi(2).min(1.0);
-    let wanders = symmetry::steadiness(picture, &lattice, &averaged) < STEADY;
     (Some(Repetition { lattice, group: found.group, share, wanders }), parts)
 }
 
@@ -321,9 +309,15 @@ fn height_cell(heights_px: &Raster, lattice: &Lattice, metres_per_px: f64, texel
     }
 }
 
+/// The document's input conditions that do not hold.
+fn conditions_of(textured: &Raster) -> Vec<Doubt> {
+    let broken = transects(textured).map(|along| conditions(textured, &along));
+    broken.unwrap_or_default().into_iter().map(Doubt::Condition).collect()
+}
+
 fn doubts_of(
     picture: &Raster,
-    residual: Option<&Raster>,
+    mut doubts: Vec<Doubt>,
     law: &Option<ReliefSpectrum>,
     noise: f64,
     relief_m: f64,
@@ -331,10 +325,6 @@ fn doubts_of(
     if relief_m <= 0.0 {
         return vec![Doubt::Flat];
     }
-    let textured = residual.unwrap_or(picture);
-    let mut doubts: Vec<Doubt> = transects(textured)
-        .map(|along| conditions(textured, &along).into_iter().map(Doubt::Condition).collect())
-        .unwrap_or_default();
     doubts.extend((picture.width.min(picture.height) < SMALL_PX).then_some(Doubt::Small));
     doubts.extend(law.is_none().then_some(Doubt::NoRoughness));
     doubts.extend((noise >= MOST_NOISE).then_some(Doubt::Noisy));

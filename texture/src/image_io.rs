@@ -49,6 +49,39 @@ pub fn load_photograph(path: impl AsRef<Path>) -> Result<(ChannelImage, f64), Im
         .map_err(|problem| ImageError { file: path.to_path_buf(), problem })
 }
 
+/// A photograph as the tools work on it.
+#[cfg(feature = "offline")]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Photograph {
+    /// Brightness 0–1: means of [`Photograph::reduced_by`]² pixels.
+    pub brightness: Raster,
+    /// How many pixels a side are one texel.
+    pub reduced_by: usize,
+    /// Pixels in a row of the file.
+    pub width_px: usize,
+    /// How much of it is colour rather than light ([`ColourSums::fraction`]).
+    pub colour: f64,
+}
+
+/// Reads a photograph reduced to at most `most_texels`, without ever holding all of a larger one as numbers.
+///
+/// # Errors
+/// As [`load_channel`].
+#[cfg(feature = "offline")]
+pub fn load_reduced_photograph(path: impl AsRef<Path>, most_texels: usize) -> Result<Photograph, ImageError> {
+    let path = path.as_ref();
+    let read = || {
+        let image = decode(open(path)?, Channel::Luma)?;
+        let colour = colour_of(&image);
+        let [width, height] = [image.width(), image.height()].map(|side| side as usize);
+        let fits = |n: &usize| (width / n) * (height / n) <= most_texels;
+        let reduced_by = (1..=width.min(height)).find(fits).unwrap_or(1);
+        let brightness = picture(image)?.brightness(reduced_by)?;
+        Ok(Photograph { brightness, reduced_by, width_px: width, colour })
+    };
+    read().map_err(|problem| ImageError { file: path.to_path_buf(), problem })
+}
+
 /// Reads one channel of a picture from the bytes of its file.
 ///
 /// # Errors

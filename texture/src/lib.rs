@@ -73,8 +73,12 @@ pub mod relief_spectrum;
 #[cfg(feature = "offline")]
 pub mod shape_from_shading;
 #[cfg(feature = "offline")]
+mod side_by_side;
+#[cfg(feature = "offline")]
 pub mod spectral_envelope;
 #[cfg(feature = "offline")]
 pub mod spectral_resample;
 #[cfg(feature = "offline")]
 pub mod symmetry;
+#[cfg(feature = "offline")]
+mod waves;

@@ -25,8 +25,8 @@
 //! that is wrong by a factor of √3 at most.
 
 use crate::borders::{Borders, SplitBorders};
-use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
+use crate::waves::Waves;
 use asperity_dsp::DesignError;
 use asperity_fft::num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -118,16 +118,10 @@ pub fn estimate_light(image: &Raster) -> Option<Light> {
 /// What an image has between two wavelengths, texels.
 pub(crate) fn band(image: &Raster, [shortest_px, longest_px]: [f64; 2]) -> Raster {
     let periodic = SplitBorders::of(image, Borders::Detect).periodic;
-    let (w, h) = (image.width, image.height);
-    let mut fft = Fft2::new(w, h);
-    let mut spectrum = fft.spectrum(&periodic.values);
-    for (place, value) in spectrum.iter_mut().enumerate() {
-        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
-        if !(TAU / longest_px..TAU / shortest_px).contains(&r) {
-            *value = Complex64::default();
-        }
-    }
-    fft.image(&mut spectrum)
+    let kept = TAU / longest_px..TAU / shortest_px;
+    let mut waves = Waves::of(&periodic);
+    drop(periodic);
+    waves.weighed_by_frequency(|r| f64::from(u8::from(kept.contains(&r))))
 }
 
 /// Third moment about the mean over σ³; 0 when there is no spread.
@@ -147,34 +141,32 @@ pub(crate) fn skewness(raster: &Raster) -> f64 {
 fn octave_directions(image: &Raster) -> Vec<[Complex64; 2]> {
     let periodic = SplitBorders::of(image, Borders::Detect).periodic;
     let (w, h) = (image.width, image.height);
-    let spectrum = Fft2::new(w, h).spectrum(&periodic.values);
+    let waves = Waves::of(&periodic);
+    drop(periodic);
     let rings = w.min(h) / 2;
     let mut ring_power = vec![(0.0, 0.0); rings + 1];
-    let ring = |place: usize| {
-        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
-        (r, (r / PI * rings as f64).round() as usize)
-    };
-    for (place, value) in spectrum.iter().enumerate() {
-        if let Some(sum) = ring_power.get_mut(ring(place).1) {
-            *sum = (sum.0 + value.norm_sqr(), sum.1 + 1.0);
+    let ring = |r: f64| (r / PI * rings as f64).round() as usize;
+    waves.each(|wave| {
+        if let Some(sum) = ring_power.get_mut(ring(wave.frequency())) {
+            *sum = (sum.0 + wave.power * wave.count, sum.1 + wave.count);
         }
-    }
+    });
     // From half the Nyquist frequency down, while an octave has bins enough to tell directions.
     let count = OCTAVES.min((rings as f64 / 8.0).log2().floor().max(0.0) as usize);
+    let finest = |octave: usize| PI / 2.0_f64.powi(octave as i32 + 1);
     let mut sums = vec![([Complex64::default(); 2], 0.0); count];
-    for (place, value) in spectrum.iter().enumerate().skip(1) {
-        let (r, ring) = ring(place);
-        let octave = (PI / 2.0 / r).log2().floor();
-        let Some(&(power, bins)) = ring_power.get(ring) else { continue };
-        if octave < 0.0 || octave as usize >= count || power == 0.0 {
-            continue;
-        }
-        let theta = angular_frequency(place % h, h).atan2(angular_frequency(place / h, w));
-        let share = value.norm_sqr() * bins / power;
-        let sum = &mut sums[octave as usize];
-        let turned = [2.0, 4.0].map(|m| Complex64::cis(m * theta) * share);
-        *sum = ([sum.0[0] + turned[0], sum.0[1] + turned[1]], sum.1 + share);
-    }
+    waves.each(|wave| {
+        let r = wave.frequency();
+        let within = |&octave: &usize| r <= finest(octave) && r > finest(octave + 1);
+        let Some(octave) = (0..count).find(within) else { return };
+        let Some(&(power, bins)) = ring_power.get(ring(r)).filter(|ring| ring.0 > 0.0) else { return };
+        let share = wave.count * wave.power * bins / power;
+        // e^(iθ), squared.
+        let twice = (Complex64::new(wave.wx, wave.wy) / r).powu(2);
+        let (sums, shares) = &mut sums[octave];
+        *sums = [sums[0] + twice * share, sums[1] + twice * twice * share];
+        *shares += share;
+    });
     sums.into_iter().filter(|s| s.1 > 0.0).map(|s| s.0.map(|c| c / s.1)).collect()
 }
 

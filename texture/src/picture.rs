@@ -2,6 +2,7 @@
 //!
 //! Nothing here decodes a file, so that a game that has its textures in memory already hands them over as they are.
 
+mod brightness;
 mod normals;
 
 use crate::deband::deband;

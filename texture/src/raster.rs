@@ -59,6 +59,24 @@ impl Raster {
         Self { width: self.width, height: self.height, values }
     }
 
+    /// Rows become columns.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        const BLOCK: usize = 16; // texels: a block of both rasters stays in the first cache
+        let (width, height) = (self.width, self.height);
+        let mut values = vec![0.0; width * height];
+        for top in (0..height).step_by(BLOCK) {
+            for left in (0..width).step_by(BLOCK) {
+                for y in top..(top + BLOCK).min(height) {
+                    for x in left..(left + BLOCK).min(width) {
+                        values[x * height + y] = self.values[y * width + x];
+                    }
+                }
+            }
+        }
+        Self { width: height, height: width, values }
+    }
+
     /// Smallest and largest value; (∞, −∞) when there is none.
     #[must_use]
     pub fn range(&self) -> (f64, f64) {
@@ -70,5 +88,18 @@ impl Raster {
     #[must_use]
     pub fn mean(&self) -> f64 {
         self.values.iter().sum::<f64>() / self.values.len().max(1) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_become_columns() {
+        let picture = Raster::from_fn(37, 21, |x, y| (100 * x + y) as f64);
+        let turned = picture.transposed();
+        assert!((turned.width, turned.height) == (21, 37) && turned.at(20, 5) == picture.at(5, 20));
+        assert_eq!(turned.transposed(), picture);
     }
 }

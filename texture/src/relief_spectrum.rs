@@ -14,9 +14,9 @@
 //! ([`FINE_OCTAVE_PX`]) and carried to the octave at 1 mm, where it is told, by the overlay's own law: both join.
 
 use crate::borders::{Borders, SplitBorders};
-use crate::fft2::{Fft2, angular_frequency, signed_bin};
+use crate::fft2::signed_bin;
 use crate::raster::Raster;
-use asperity_fft::num_complex::Complex64;
+use crate::waves::Waves;
 use std::f64::consts::{SQRT_2, TAU};
 
 /// Wavelength at which the engine's micro-noise is calibrated, m.
@@ -90,15 +90,13 @@ impl ReliefSpectrum {
     pub fn roughness_map(&self, heights_px: &Raster) -> Raster {
         let (w, h) = (heights_px.width, heights_px.height);
         let periodic = SplitBorders::of(heights_px, Borders::Detect).periodic;
-        let mut fft = Fft2::new(w, h);
-        let spectrum = fft.spectrum(&periodic.values);
+        let mut waves = Waves::of(&periodic);
         drop(periodic);
         let window = WINDOW_PX.min(w.min(h) / 4).max(2);
         let mut energy = |centre_px: f64| {
-            let mut band = octave(&spectrum, w, h, centre_px);
-            let image = fft.image(&mut band);
-            drop(band);
-            let local = blurred(image.map(|z| z * z), window);
+            let mut local = waves.weighed_by_frequency(|r| octave(r, centre_px));
+            local.values.iter_mut().for_each(|z| *z *= *z);
+            let local = blurred(local, window);
             let mean = local.mean();
             (local, mean)
         };
@@ -123,7 +121,8 @@ fn roughness_of(exponent: f64) -> f64 {
 fn bands(heights_px: &Raster) -> Vec<[f64; 3]> {
     let (w, h) = (heights_px.width, heights_px.height);
     let periodic = SplitBorders::of(heights_px, Borders::Detect).periodic;
-    let spectrum = Fft2::new(w, h).spectrum(&periodic.values);
+    let waves = Waves::of(&periodic);
+    drop(periodic);
     let longest = FITTED_PX[1].min(w.min(h) as f64 / 3.0);
     let count = ((longest / FITTED_PX[0]).log2() * PER_OCTAVE).floor().max(0.0) as usize;
     // Sums of power and of waves along rows and along columns.
@@ -133,22 +132,20 @@ fn bands(heights_px: &Raster) -> Vec<[f64; 3]> {
         let band = ((n as f64 / bin) / FITTED_PX[0]).log2() * PER_OCTAVE;
         (bin > 0.0 && band >= 0.0 && (band as usize) < count).then_some(band as usize)
     };
-    for kx in 0..w {
-        let along_rows = band(kx, w);
-        let mut column = 0.0;
-        for ky in 0..h {
-            let power = spectrum[kx * h + ky].norm_sqr();
-            column += power;
-            if let Some(band) = band(ky, h) {
-                sums[band][1][0] += power;
-            }
+    let bands_of = |n: usize| (0..n).map(|k| band(k, n)).collect::<Vec<_>>();
+    let (along_rows, along_columns) = (bands_of(w), bands_of(h));
+    waves.each(|wave| {
+        let power = wave.power * wave.count;
+        let bin = |frequency: f64, n: usize| (frequency.abs() / TAU * n as f64 + 0.5) as usize;
+        if let Some(band) = along_rows[bin(wave.wx, w)] {
+            sums[band][0][0] += power;
         }
-        if let Some(band) = along_rows {
-            sums[band][0][0] += column;
-            sums[band][0][1] += 1.0;
+        if let Some(band) = along_columns[bin(wave.wy, h)] {
+            sums[band][1][0] += power;
         }
-    }
-    (0..h).filter_map(|ky| band(ky, h)).for_each(|band| sums[band][1][1] += 1.0);
+    });
+    along_rows.iter().flatten().for_each(|&band| sums[band][0][1] += 1.0);
+    along_columns.iter().flatten().for_each(|&band| sums[band][1][1] += 1.0);
     // Two-sided power of a bin, times 2 n for one side per cycle per texel.
     let scale = 2.0 / (w as f64 * h as f64).powi(2);
     let power =
@@ -186,14 +183,10 @@ fn fit(points: &[[f64; 3]], blur: Option<f64>) -> [f64; 3] {
     [my - exponent * mx - rest, exponent, square]
 }
 
-/// The waves of an octave about a wavelength, fading smoothly.
-fn octave(spectrum: &[Complex64], w: usize, h: usize, centre_px: f64) -> Vec<Complex64> {
-    let gain = |place: usize| {
-        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
-        let octaves = (r * centre_px / TAU).max(1e-9).log2();
-        (-0.5 * (octaves / 0.4).powi(2)).exp()
-    };
-    spectrum.iter().enumerate().map(|(place, value)| value * gain(place)).collect()
+/// How much of a wave of so many radians a texel belongs to the octave about a wavelength, fading smoothly.
+fn octave(frequency: f64, centre_px: f64) -> f64 {
+    let octaves = (frequency * centre_px / TAU).max(1e-9).log2();
+    (-0.5 * (octaves / 0.4).powi(2)).exp()
 }
 
 /// A blur of this standard deviation: three moving means, mirrored at the borders.
@@ -201,40 +194,37 @@ fn blurred(mut raster: Raster, deviation: usize) -> Raster {
     let (w, h) = (raster.width, raster.height);
     // Three boxes of 2r + 1 have the variance (2r + 1)² / 4, nearly.
     let radius = deviation.min(w / 2).min(h / 2).max(1);
-    let mut line = Vec::with_capacity(w.max(h));
-    for _ in 0..3 {
-        for y in 0..h {
-            line.clear();
-            line.extend_from_slice(&raster.values[y * w..(y + 1) * w]);
-            moving_mean(&line, radius, |x, value| raster.values[y * w + x] = value);
-        }
-        for x in 0..w {
-            line.clear();
-            line.extend((0..h).map(|y| raster.values[y * w + x]));
-            moving_mean(&line, radius, |y, value| raster.values[y * w + x] = value);
-        }
-    }
-    raster
+    raster.values.chunks_exact_mut(w).for_each(|row| three_moving_means(row, radius));
+    let mut turned = raster.transposed();
+    turned.values.chunks_exact_mut(h).for_each(|column| three_moving_means(column, radius));
+    turned.transposed()
 }
 
-fn moving_mean(line: &[f64], radius: usize, mut put: impl FnMut(usize, f64)) {
-    let n = line.len() as isize;
-    let at = |i: isize| {
-        let i = if i < 0 { -i - 1 } else { i };
-        line[(if i >= n { 2 * n - 1 - i } else { i }) as usize]
-    };
-    let radius = radius as isize;
-    let mut sum: f64 = (-radius..=radius).map(at).sum();
-    for i in 0..n {
-        put(i as usize, sum / (2 * radius + 1) as f64);
-        sum += at(i + radius + 1) - at(i - radius);
+fn three_moving_means(line: &mut [f64], radius: usize) {
+    // The line with what is mirrored at both ends.
+    let mut wide = vec![0.0; line.len() + 2 * radius];
+    for _ in 0..3 {
+        let n = line.len();
+        wide[radius..radius + n].copy_from_slice(line);
+        for i in 0..radius {
+            (wide[radius - 1 - i], wide[radius + n + i]) = (line[i], line[n - 1 - i]);
+        }
+        let mut sum: f64 = wide[..2 * radius].iter().sum();
+        let share = 1.0 / (2 * radius + 1) as f64;
+        for (mean, ends) in line.iter_mut().zip(wide.windows(2 * radius + 1)) {
+            sum += ends[2 * radius];
+            *mean = sum * share;
+            sum -= ends[0];
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fft2::{Fft2, angular_frequency};
     use asperity_dsp::rng::Rng;
+    use asperity_fft::num_complex::Complex64;
 
     /// Heights whose profiles go as 1/f^α, blurred by a lens.
     fn relief(n: usize, exponent: f64, blur_px: f64, seed: u64) -> Raster {

@@ -5,21 +5,21 @@ mod report;
 mod scene;
 
 use super::object::ObjectOptions;
-use super::{bar, grey, photograph, positive, refused};
+use super::{bar, positive, refused};
 use crate::error::CliError;
 use crate::output::{self, Outputs};
 use asperity::ActuatorSettings;
 use asperity_texture::fractal_dimension::{COLOUR_LIMIT, Condition};
 use asperity_texture::from_photo::{
-    Doubt, PhotoOptions, PhotoSurface, TEXEL_M, calibration, reduced, surface_from_photo,
+    Doubt, MOST_TEXELS, PhotoOptions, PhotoSurface, TEXEL_M, calibration, surface_from_photo,
 };
-use asperity_texture::image_io;
+use asperity_texture::image_io::{self, Photograph};
 use asperity_texture::light::Light;
 use asperity_texture::raster::Raster;
 use asperity_texture::shape_from_shading::{Method, STEPS};
 use clap::{Args, ValueEnum};
 use report::{Report, Size};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Steps of the document's solver. Source: ours; more only add noise.
@@ -99,10 +99,10 @@ fn light(text: &str) -> Result<Light, String> {
 /// # Errors
 /// When a photograph cannot be read or is too small, or the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
-    let (picture, colour) = photograph(&options.photo)?;
+    let photograph = load(&options.photo)?;
     options.object.check_destination()?;
     let width_m = options.object.width_mm.map(|mm| 1e-3 * mm).or(options.width_m);
-    let texel_m = width_m.map_or(TEXEL_M, |width_m| width_m / picture.width as f64);
+    let texel_m = width_m.map_or(TEXEL_M, |width_m| width_m / photograph.width_px as f64);
     let mut settings = PhotoOptions {
         light: options.light,
         method: options.method.map(|name| match name {
@@ -118,12 +118,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         exaggeration: options.exaggerate,
     };
     if let (Some(known), Some(relief_m)) = (&options.known, options.known_relief_m) {
-        let (sample, reduced_by) = reduced(grey(known)?);
-        let at_its_size = PhotoOptions { texel_m: texel_m * reduced_by as f64, ..settings };
-        settings.calibration =
-            calibration(&sample, relief_m, &at_its_size).map_err(|error| refused(known, &error))?;
+        let sample = load(known)?;
+        let at_its_size = PhotoOptions { texel_m: texel_m * sample.reduced_by as f64, ..settings };
+        settings.calibration = calibration(&sample.brightness, relief_m, &at_its_size)
+            .map_err(|error| refused(known, &error))?;
     }
-    let (picture, reduced_by) = reduced(picture);
+    let Photograph { brightness: picture, reduced_by, colour, .. } = photograph;
     settings.texel_m *= reduced_by as f64;
     let size = Size { texel_m: settings.texel_m, reduced_by, calibration: settings.calibration };
     output::ensure_folder(&options.output)?;
@@ -139,6 +139,10 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     output::say(&report.in_words(options));
     Ok(())
+}
+
+fn load(path: &Path) -> Result<Photograph, CliError> {
+    image_io::load_reduced_photograph(path, MOST_TEXELS).map_err(CliError::told)
 }
 
 fn write(

@@ -38,13 +38,19 @@ pub fn local_map(picture: &Raster, window: usize, stride: usize) -> Result<Local
     if window < 8 || window > width.min(height) || stride == 0 {
         return Err(DimensionError::TooSmall { width: window, height: window });
     }
-    let tables = [(1, 0), (2, 0), (0, 1), (0, 2)].map(|(dx, dy)| SummedDifferences::new(picture, dx, dy));
     let columns = width.div_ceil(stride);
     let rows = height.div_ceil(stride);
+    // One table after the other: each is as large as the picture.
+    let means = [(1, 0), (2, 0), (0, 1), (0, 2)].map(|(dx, dy)| {
+        let table = SummedDifferences::new(picture, dx, dy);
+        Raster::from_fn(columns, rows, |i, j| {
+            let (left, right) = span(i, stride, window, width);
+            let (top, bottom) = span(j, stride, window, height);
+            table.mean(left, top, right, bottom)
+        })
+    });
     let dimension = Raster::from_fn(columns, rows, |i, j| {
-        let (left, right) = span(i, stride, window, width);
-        let (top, bottom) = span(j, stride, window, height);
-        let [x1, x2, y1, y2] = [0, 1, 2, 3].map(|t| tables[t].mean(left, top, right, bottom));
+        let [x1, x2, y1, y2] = [0, 1, 2, 3].map(|lag| means[lag].at(i, j));
         if x1 * x2 * y1 * y2 > 0.0 { 3.0 - 0.5 * (x2 / x1 * (y2 / y1)).log2() } else { 2.0 }
     });
     Ok(LocalMap { dimension, stride, window })

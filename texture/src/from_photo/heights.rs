@@ -107,7 +107,10 @@ fn by_what_is_found(
     progress: impl FnMut(f64),
 ) -> Result<Found, DesignError> {
     let linear = picture.map(linear_light);
-    let Some(light) = estimate_light(&linear) else { return by_brightness(picture, whole, None) };
+    let Some(light) = estimate_light(&linear) else {
+        drop(linear);
+        return by_brightness(picture, whole, None);
+    };
     let found = by_shading(&linear, Method::Integrable(STEPS), light, false, true, progress)?;
     let (low, high) = found.shape.height_px.range();
     let relief = (high - low) / picture.width.min(picture.height) as f64;
@@ -119,6 +122,7 @@ fn by_what_is_found(
     } else {
         return Ok(found);
     };
+    drop((linear, found));
     by_brightness(picture, whole, Some(fallback))
 }
 

@@ -10,8 +10,8 @@
 use super::heights::contrast;
 use crate::camera_noise::without_camera_noise;
 use crate::dark_is_deep::dark_is_deep;
-use crate::fft2::{Fft2, angular_frequency};
 use crate::raster::Raster;
+use crate::waves::Waves;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Wavelengths up to which the residual stays, and from which nothing of it does, texels. Source: ours; the first is the longest wave
@@ -21,20 +21,15 @@ const FINE_PX: [f64; 2] = [8.0, 16.0];
 /// Heights of what does not repeat, texels, by its contrast against the whole picture.
 pub(super) fn residual_heights(residual: &Raster, picture: &Raster) -> Raster {
     let mean = picture.mean();
-    let quiet = without_camera_noise(&residual.map(|v| v + mean)).picture;
-    dark_is_deep(&contrast(&quiet))
+    let mut picture = residual.map(|v| v + mean);
+    picture = without_camera_noise(&picture).picture;
+    picture = contrast(&picture);
+    dark_is_deep(&picture)
 }
 
 /// Adds the fine waves of the residual's heights to those of the mean cell.
 pub(super) fn add_fine_waves(heights_px: &mut Raster, residual_px: &Raster) {
-    let (w, h) = (residual_px.width, residual_px.height);
-    let mut fft = Fft2::new(w, h);
-    let mut spectrum = fft.spectrum(&residual_px.values);
-    for (place, value) in spectrum.iter_mut().enumerate() {
-        let r = angular_frequency(place / h, w).hypot(angular_frequency(place % h, h));
-        *value *= share(r);
-    }
-    let fine = fft.image(&mut spectrum);
+    let fine = Waves::of(residual_px).weighed_by_frequency(share);
     heights_px.values.iter_mut().zip(&fine.values).for_each(|(height, fine)| *height += fine);
 }
 

@@ -45,17 +45,21 @@ pub struct Separation {
 /// Averages all cells of a picture.
 #[must_use]
 pub fn averaged_cell(picture: &Raster, lattice: &Lattice) -> AveragedCell {
-    let even = detrended(picture);
+    averaged_even_cell(&detrended(picture), lattice)
+}
+
+/// [`averaged_cell`] of a picture without its slow light.
+pub(crate) fn averaged_even_cell(even: &Raster, lattice: &Lattice) -> AveragedCell {
     let longest = length(lattice.t1_px).max(length(lattice.t2_px)).ceil() as usize;
     let side = (longest.div_ceil(SIDE_MULTIPLE).max(2) * SIDE_MULTIPLE).min(LARGEST_SIDE);
     // Four kinds of cells by the parity of m and n: their agreement tells pattern from noise, whichever way it differs.
     let mut kinds = [(); 4].map(|()| (vec![0.0; side * side], vec![0_usize; side * side]));
-    for (m, n) in cells(lattice, picture.width, picture.height) {
+    for (m, n) in cells(lattice, even.width, even.height) {
         let (sums, counts) = &mut kinds[(m.rem_euclid(2) + 2 * n.rem_euclid(2)) as usize];
         for j in 0..side {
             for i in 0..side {
                 let (u, v) = (i as f64 / side as f64 + m as f64, j as f64 / side as f64 + n as f64);
-                if let Some(value) = read(&even, lattice.translation(u, v)) {
+                if let Some(value) = read(even, lattice.translation(u, v)) {
                     sums[j * side + i] += value;
                     counts[j * side + i] += 1;
                 }
@@ -88,12 +92,16 @@ pub fn averaged_cell(picture: &Raster, lattice: &Lattice) -> AveragedCell {
 /// their neighbours but drift, as scales on a bent skin do, and the mean of all of them is a blur.
 #[must_use]
 pub fn steadiness(picture: &Raster, lattice: &Lattice, averaged: &AveragedCell) -> f64 {
-    let even = detrended(picture);
+    even_steadiness(&detrended(picture), lattice, averaged)
+}
+
+/// [`steadiness`] of a picture without its slow light.
+pub(crate) fn even_steadiness(even: &Raster, lattice: &Lattice, averaged: &AveragedCell) -> f64 {
     let [one, other] = [lattice.t1_px, lattice.t2_px].map(|t| {
         let (mut product, mut count) = (0.0, 0.0);
         for y in 0..even.height {
             for x in 0..even.width {
-                if let Some(next) = read(&even, [x as f64 + t[0], y as f64 + t[1]]) {
+                if let Some(next) = read(even, [x as f64 + t[0], y as f64 + t[1]]) {
                     product += even.at(x, y) * next;
                     count += 1.0;
                 }

@@ -10,12 +10,13 @@ use crate::raster::Raster;
 const BLUR: f64 = 0.125;
 
 /// The picture without its slow changes; mean 0.
-pub(super) fn detrended(picture: &Raster) -> Raster {
-    let flat = without_quadratic(picture);
-    let slow = blurred(&flat, BLUR * picture.width.min(picture.height) as f64);
-    let values: Vec<f64> = flat.values.iter().zip(&slow.values).map(|(v, s)| v - s).collect();
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    Raster { width: flat.width, height: flat.height, values: values.iter().map(|v| v - mean).collect() }
+pub(crate) fn detrended(picture: &Raster) -> Raster {
+    let mut level = without_quadratic(picture);
+    let slow = blurred(&level, BLUR * picture.width.min(picture.height) as f64);
+    level.values.iter_mut().zip(&slow.values).for_each(|(v, s)| *v -= s);
+    let mean = level.mean();
+    level.values.iter_mut().for_each(|v| *v -= mean);
+    level
 }
 
 /// Means of `factor` × `factor` texels.
@@ -30,44 +31,65 @@ pub(super) fn decimated(picture: &Raster, factor: usize) -> Raster {
     })
 }
 
-/// Subtracts the least-squares Legendre surface 1, x, y, x², xy, y². On a full grid the terms are orthogonal but for
-/// sampling, which two rounds remove.
+/// Subtracts the least-squares surface 1, u, v, u² − c, u v, v² − c, which are orthogonal on the grid: c is the mean of the squares.
 fn without_quadratic(picture: &Raster) -> Raster {
-    let mut rest = picture.clone();
-    let along = |i: usize, size: usize| (2 * i + 1) as f64 / size as f64 - 1.0;
-    let terms: [fn(f64, f64) -> f64; 6] =
-        [|_, _| 1.0, |x, _| x, |_, y| y, |x, _| x * x - 1.0 / 3.0, |x, y| x * y, |_, y| y * y - 1.0 / 3.0];
-    let across: Vec<f64> = (0..rest.width).map(|x| along(x, rest.width)).collect();
-    let (width, height) = (rest.width, rest.height);
-    for term in terms.iter().chain(&terms) {
-        let (mut product, mut square) = (0.0, 0.0);
-        for (y, row) in rest.values.chunks_exact(width).enumerate() {
-            let v = along(y, height);
-            for (value, &u) in row.iter().zip(&across) {
-                let s = term(u, v);
-                product += s * value;
-                square += s * s;
-            }
+    let (across, down) = (Along::of(picture.width), Along::of(picture.height));
+    // Sums of the picture times each term.
+    let mut products = [0.0; 6];
+    for (y, row) in picture.values.chunks_exact(picture.width).enumerate() {
+        let mut moments = [0.0; 3];
+        for ((value, u), bend) in row.iter().zip(&across.tilt).zip(&across.bend) {
+            moments = [moments[0] + value, moments[1] + u * value, moments[2] + bend * value];
         }
-        let gain = product / square;
-        for (y, row) in rest.values.chunks_exact_mut(width).enumerate() {
-            let v = along(y, height);
-            for (value, &u) in row.iter_mut().zip(&across) {
-                *value -= gain * term(u, v);
-            }
+        let ([sum, tilt, bend], v, curve) = (moments, down.tilt[y], down.bend[y]);
+        let row = [sum, tilt, v * sum, bend, v * tilt, curve * sum];
+        products.iter_mut().zip(row).for_each(|(to, more)| *to += more);
+    }
+    let (x, y) = (&across.squares, &down.squares);
+    let squares = [x[0] * y[0], x[1] * y[0], x[0] * y[1], x[2] * y[0], x[1] * y[1], x[0] * y[2]];
+    let mut gains = [0.0; 6];
+    for ((gain, product), square) in gains.iter_mut().zip(products).zip(squares) {
+        *gain = if square > 0.0 { product / square } else { 0.0 };
+    }
+    let mut rest = picture.clone();
+    for (y, row) in rest.values.chunks_exact_mut(picture.width).enumerate() {
+        let v = down.tilt[y];
+        let (level, tilt) = (gains[0] + gains[2] * v + gains[5] * down.bend[y], gains[1] + gains[4] * v);
+        for ((value, u), bend) in row.iter_mut().zip(&across.tilt).zip(&across.bend) {
+            *value -= level + tilt * u + gains[3] * bend;
         }
     }
     rest
 }
 
-/// A Gaussian blur as three box blurs; at the border each box is cut and averages what is left.
+/// The terms along one side: a tilt from −1 to 1 and its square about the mean.
+struct Along {
+    tilt: Vec<f64>,
+    bend: Vec<f64>,
+    /// Sums of the squares of 1, tilt and bend.
+    squares: [f64; 3],
+}
+
+impl Along {
+    fn of(size: usize) -> Self {
+        let tilt: Vec<f64> = (0..size).map(|i| (2 * i + 1) as f64 / size as f64 - 1.0).collect();
+        let power = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+        let mean = power(&tilt) / size as f64;
+        let bend: Vec<f64> = tilt.iter().map(|t| t * t - mean).collect();
+        let squares = [size as f64, power(&tilt), power(&bend)];
+        Self { tilt, bend, squares }
+    }
+}
+
+/// A Gaussian blur as three box blurs each way; at the border each box is cut and averages what is left.
 pub(super) fn blurred(picture: &Raster, sigma: f64) -> Raster {
-    let mean = RunningMean::of_variance(sigma * sigma / 3.0);
     let mut result = picture.clone();
     if sigma > 0.0 {
-        for _ in 0..3 {
-            result = transposed_row_means(&transposed_row_means(&result, mean), mean);
-        }
+        let mean = RunningMean::of_variance(sigma * sigma / 3.0);
+        result.values.chunks_exact_mut(picture.width).for_each(|row| mean.thrice(row));
+        let mut turned = result.transposed();
+        turned.values.chunks_exact_mut(picture.height).for_each(|column| mean.thrice(column));
+        result = turned.transposed();
     }
     result
 }
@@ -88,33 +110,44 @@ impl RunningMean {
         let end = (2.0 * reach + 1.0) * (variance - reach * (reach + 1.0) / 3.0) / (2.0 * outside);
         Self { reach: reach as usize, end }
     }
-}
 
-/// Means over a box of each row, with rows and columns swapped on the way out.
-fn transposed_row_means(picture: &Raster, mean: RunningMean) -> Raster {
-    let (width, height) = (picture.width, picture.height);
-    let mut values = vec![0.0; width * height];
-    let mut sums = vec![0.0; width + 1];
-    for y in 0..height {
-        let row = picture.row(y);
-        for (x, value) in row.iter().enumerate() {
-            sums[x + 1] = sums[x] + value;
-        }
-        for x in 0..width {
-            let (left, right) = (x.saturating_sub(mean.reach), (x + mean.reach + 1).min(width));
-            let (mut sum, mut weight) = (sums[right] - sums[left], (right - left) as f64);
-            if x > mean.reach {
-                sum += mean.end * row[x - mean.reach - 1];
-                weight += mean.end;
+    /// The line's running mean's running mean's running mean.
+    fn thrice(self, line: &mut [f64]) {
+        let mut sums = vec![0.0; line.len() + 1];
+        let mut before = vec![0.0; line.len()];
+        for _ in 0..3 {
+            before.copy_from_slice(line);
+            for (x, value) in before.iter().enumerate() {
+                sums[x + 1] = sums[x] + value;
             }
-            if x + mean.reach + 1 < width {
-                sum += mean.end * row[x + mean.reach + 1];
-                weight += mean.end;
+            let last = line.len();
+            let whole = self.reach + 1..last.saturating_sub(self.reach + 1).max(self.reach + 1).min(last);
+            let share = 1.0 / ((2 * self.reach + 1) as f64 + 2.0 * self.end);
+            (0..whole.start.min(last))
+                .chain(whole.end..last)
+                .for_each(|x| line[x] = self.cut(&before, &sums, x));
+            for x in whole {
+                let inside = sums[x + self.reach + 1] - sums[x - self.reach];
+                line[x] =
+                    share * (inside + self.end * (before[x - self.reach - 1] + before[x + self.reach + 1]));
             }
-            values[x * height + y] = sum / weight;
         }
     }
-    Raster { width: height, height: width, values }
+
+    /// The mean at a place where the line may end within the box.
+    fn cut(self, line: &[f64], sums: &[f64], x: usize) -> f64 {
+        let (left, right) = (x.saturating_sub(self.reach), (x + self.reach + 1).min(line.len()));
+        let (mut sum, mut weight) = (sums[right] - sums[left], (right - left) as f64);
+        if x > self.reach {
+            sum += self.end * line[x - self.reach - 1];
+            weight += self.end;
+        }
+        if x + self.reach + 1 < line.len() {
+            sum += self.end * line[x + self.reach + 1];
+            weight += self.end;
+        }
+        sum / weight
+    }
 }
 
 #[cfg(test)]

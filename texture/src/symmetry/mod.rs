@@ -31,6 +31,8 @@ mod torus;
 mod wallpaper;
 
 pub use cell::{AveragedCell, Separation, averaged_cell, separate, steadiness, with_cell};
+pub(crate) use cell::{averaged_even_cell, even_steadiness};
+pub(crate) use detrend::detrended;
 pub use document::{DocumentSearch, document_lattice};
 pub use feature_matrix::{Distortion, FeatureMatrix, absolute_feature_matrix, feature_matrix};
 pub use frieze::{Frieze, find_frieze};
