@@ -6,7 +6,7 @@
 //! | symbol | here |
 //! |---|---|
 //! | X | spectrum of the picture under a Hann window |
-//! | K | the ring of the most power near that of the lattice's shortest translation t, 0.7/&#124;t&#124; to 1.6/&#124;t&#124; |
+//! | K | the ring of the most power near that of the lattice's shortest translation t, 0.7/&#124;t&#124; to 1.6/&#124;t&#124;, or of the next few, to 4.5/&#124;t&#124;, where that ring has most of the picture's power |
 //! | N | noise: the median power of 1.45 K to 1.9 K, over ln 2 |
 //!
 //! A lattice's waves lie in a few directions: quiet is 0 to 0.005 for square, hexagonal, rectangular and oblique patterns, clean, noisy and warped, and
@@ -22,6 +22,10 @@ const QUIET: f64 = 0.04;
 const SECTORS: usize = 24;
 /// Where the ring is looked for, over one wave a translation.
 const SOUGHT: [f64; 2] = [0.7, 1.6];
+/// The same of a lattice of several waves a cell, as chance proposes where nothing but the ring is seen.
+const SEVERAL: [f64; 2] = [1.6, 4.5];
+/// Share of the picture's power that the ring then has at least: a pattern's harmonics stand beside its fundamental.
+const MOST_OF_ALL: f64 = 0.6;
 /// The ring, and where the noise is measured, over its middle.
 const RING: [f64; 2] = [0.82, 1.22];
 const NOISE: [f64; 2] = [1.45, 1.9];
@@ -34,26 +38,13 @@ const FEWEST_WAVES: f64 = 6.0;
 pub(super) fn has_waves_of_every_direction(picture: &Raster, translation_px: f64) -> bool {
     let waves = Waves::of(picture);
     let step = TAU / picture.width.min(picture.height) as f64;
-    let Some(middle) = waves.strongest_ring(SOUGHT.map(|share| share * TAU / translation_px), step) else {
-        return false;
-    };
-    if middle < FEWEST_WAVES * step {
-        return false;
-    }
-    let ring: Vec<Wave> = waves.between(RING.map(|share| share * middle)).collect();
-    let noise =
-        median(waves.between(NOISE.map(|share| share * middle)).map(|wave| wave.power).collect()) / LN_2;
-    let mut sectors = [0.0; SECTORS];
-    for wave in &ring {
-        let sector = (wave.turn / PI * SECTORS as f64) as usize;
-        sectors[sector.min(SECTORS - 1)] += wave.power - noise;
-    }
-    let all: f64 = sectors.iter().sum();
-    if all < (CLEAR_OF_NOISE - 1.0) * noise * ring.len() as f64 || all <= 0.0 {
-        return false;
-    }
-    sectors.sort_by(f64::total_cmp);
-    sectors[..SECTORS / 3].iter().sum::<f64>() > QUIET * all
+    let strongest =
+        |sought: [f64; 2]| waves.strongest_ring(sought.map(|share| share * TAU / translation_px), step);
+    let power = |band: [f64; 2]| waves.between(band).map(|wave| wave.power).sum::<f64>();
+    let is_most =
+        |middle: &f64| power(RING.map(|share| share * middle)) >= MOST_OF_ALL * power([0.0, f64::INFINITY]);
+    let near = strongest(SOUGHT).is_some_and(|middle| waves.have_every_direction(middle, step));
+    near || strongest(SEVERAL).filter(is_most).is_some_and(|middle| waves.have_every_direction(middle, step))
 }
 
 /// One wave of the windowed picture.
@@ -69,6 +60,27 @@ struct Wave {
 struct Waves(Vec<Wave>);
 
 impl Waves {
+    /// Whether the ring about this frequency has every direction.
+    fn have_every_direction(&self, middle: f64, step: f64) -> bool {
+        if middle < FEWEST_WAVES * step {
+            return false;
+        }
+        let ring: Vec<Wave> = self.between(RING.map(|share| share * middle)).collect();
+        let noise =
+            median(self.between(NOISE.map(|share| share * middle)).map(|wave| wave.power).collect()) / LN_2;
+        let mut sectors = [0.0; SECTORS];
+        for wave in &ring {
+            let sector = (wave.turn / PI * SECTORS as f64) as usize;
+            sectors[sector.min(SECTORS - 1)] += wave.power - noise;
+        }
+        let all: f64 = sectors.iter().sum();
+        if all < (CLEAR_OF_NOISE - 1.0) * noise * ring.len() as f64 || all <= 0.0 {
+            return false;
+        }
+        sectors.sort_by(f64::total_cmp);
+        sectors[..SECTORS / 3].iter().sum::<f64>() > QUIET * all
+    }
+
     fn of(picture: &Raster) -> Self {
         let (w, h) = (picture.width, picture.height);
         let hann = |i: usize, n: usize| 0.5 - 0.5 * (TAU * (i as f64 + 0.5) / n as f64).cos();
@@ -130,6 +142,9 @@ mod tests {
             assert!(!has_waves_of_every_direction(&waves(3, noise), 13.5), "{noise}");
             assert!(has_waves_of_every_direction(&waves(60, noise), 13.5), "{noise}");
         }
+        // A translation of three waves that chance proposed.
+        assert!(has_waves_of_every_direction(&waves(60, 0.0), 36.0));
+        assert!(!has_waves_of_every_direction(&waves(3, 0.0), 36.0));
         // White noise alone has no ring.
         assert!(!has_waves_of_every_direction(&waves(3, 1e3), 13.5));
     }
