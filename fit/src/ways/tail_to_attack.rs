@@ -23,7 +23,7 @@
 //! Giving strong partials the slope of their level down to 35 dB instead of the decay by energy was tried: decays of the 14
 //! recordings 3.5 % off for 7.2 (pooled), of 32 others as before, but 15 of 56 late partials absent for 8. So it is not done.
 //!
-//! Struck by the engine, against the former single fit of everything (14 recordings): late partials absent 7 of 56 for 19,
+//! Struck by the engine, against the former single fit of everything (14 recordings): late partials absent 6 of 56 for 19,
 //! signal to error from the onset 20 dB for 13.8 (median).
 
 use crate::noise::noise_floor::NoiseFloor;
