@@ -16,6 +16,7 @@
 
 pub(crate) mod analysis;
 mod contact;
+mod late_lines;
 mod merging;
 mod one_mode;
 mod ranking;
