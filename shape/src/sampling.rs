@@ -64,10 +64,13 @@ impl Hasher for CellHasher {
     }
 }
 
+/// A point and the normals of the surface there.
+type Held = (Vec3, [Vec3; 2]);
+
 /// Points by the cell they lie in.
 struct Cells {
     width: f64,
-    cells: HashMap<[i64; 3], Vec<(Vec3, [Vec3; 2])>, BuildHasherDefault<CellHasher>>,
+    cells: HashMap<[i64; 3], Vec<Held>, BuildHasherDefault<CellHasher>>,
 }
 
 impl Cells {
