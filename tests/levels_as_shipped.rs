@@ -9,7 +9,7 @@ use asperity::files::scene_file::SceneFile;
 use asperity::offline::{self, Options, Render};
 use asperity::open::Overrides;
 use asperity::open::levels::{AUDIO_REFERENCE, HAPTIC_REFERENCE};
-use asperity::{Engine, Material};
+use asperity::{Engine, Material, SilentBecause};
 use asperity_measure::corpus::corpus;
 use common::{peak, rms};
 use std::path::Path;
@@ -128,6 +128,45 @@ fn fifty_strikes_a_second_never_clip() {
     }
     println!("{within} of {cells} within 6 dB");
     assert!(20 * within >= 19 * cells);
+}
+
+/// What was open: seventy decibels taken off a strike, and no word of it.
+#[test]
+fn a_limiter_that_takes_much_off_is_told_with_the_keys_that_mend_it() {
+    let struck = |audio: &str, key: &str| {
+        let plate = "name = \"b\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"glass\"";
+        let toml = format!("[[body]]\n{plate}\n{key}\n[[actuator]]\nfull_scale = 1e-4\n[audio]\n{audio}\n");
+        let lines = vec![strike(0.0, "b"), LogLine { t: 0.3, event: LogEvent::End { contact: 9 } }];
+        rendered(&toml, &Memory::new(), &ContactLog { lines })
+    };
+    let told = |render: &Render| {
+        render.why_silent.iter().find_map(|reason| match reason {
+            SilentBecause::TurnedDown { by_db } => Some((*by_db, reason.to_string())),
+            _ => None,
+        })
+    };
+    // The gain with which a strike peaks at full scale.
+    let full = 1e-3 / peak(&struck("gain = 1e-3\nlimit = false", "").audio[0]);
+    for over_db in [20.0f64, 40.0, 70.0] {
+        let gain = full * 10f64.powf(over_db / 20.0);
+        let loud = struck(&format!("gain = {gain}\nlimit = true"), "");
+        assert!(peak(&loud.audio[0]) <= 1.0);
+        let (by_db, words) = told(&loud).expect("a limiter that works so hard is told");
+        println!("{over_db} dB over full scale: {words}");
+        assert!((by_db as f64 - over_db).abs() <= 2.0, "{by_db} of {over_db} dB");
+        for key in ["gain of its bus", "strike_gain", "full_scale"] {
+            assert!(words.contains(key), "{words}");
+        }
+        // What the words name mends it.
+        let mended =
+            struck(&format!("gain = {gain}\nlimit = true"), &format!("strike_gain = {}", full / gain));
+        assert!(told(&mended).is_none() && mended.limiter_db < 1.0, "{} dB", mended.limiter_db);
+    }
+    // A limiter that only rounds peaks off is not a reason to be told.
+    let near = struck(&format!("gain = {}\nlimit = true", 2.0 * full), "");
+    assert!(told(&near).is_none() && near.limiter_db > 3.0, "{} dB", near.limiter_db);
+    // Nor one that is not there.
+    assert!(told(&struck(&format!("gain = {}\nlimit = false", 100.0 * full), "")).is_none());
 }
 
 #[test]

@@ -60,6 +60,21 @@ fn the_demo_writes_scenes_that_sound_with_pictures_and_an_index() {
         rms(&matte_first[slow.clone()]) > 2.0 * rms(&shiny_first[slow]),
         "the matte half is louder than the shiny one"
     );
+    // Every material is heard while it is stroked, not only where the finger lands.
+    let log = fs::read_to_string(demo.join("materials.jsonl")).unwrap();
+    let lines = log.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap());
+    let heard: Vec<(String, f64)> = lines
+        .filter(|line| line["event"] == "begin")
+        .map(|line| {
+            let at = |after_s: f64| ((line["t"].as_f64().unwrap() + after_s) * 44_100.0) as usize;
+            let level_db = 20.0 * rms(&plate("materials")[at(0.35)..at(0.75)]).log10();
+            (line["surface"].as_str().unwrap().to_owned(), level_db)
+        })
+        .collect();
+    assert!(heard.len() == 7 && heard.iter().all(|(_, level_db)| *level_db > -45.0), "{heard:?}");
+    let softest = heard.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+    let loudest = heard.iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+    assert_eq!((softest.0.as_str(), loudest.0.as_str()), ("pebbles", "sandpaper"), "{heard:?}");
 }
 
 #[test]

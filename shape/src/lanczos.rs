@@ -182,14 +182,14 @@ impl<'a> Lanczos<'a> {
     fn make_orthonormal(&mut self, block: &mut Mat<f64>) -> Mat<f64> {
         let mut r = Mat::zeros(BLOCK, BLOCK);
         let mut weighted = vec![0.0; self.system.unknowns()];
+        // M times the columns that are done, which is dearer than a product of two vectors.
+        let mut done: Vec<Vec<f64>> = Vec::with_capacity(BLOCK);
         for j in 0..BLOCK {
             let mut column = block.col_as_slice(j).to_vec();
             let begun = self.norm(&column, &mut weighted);
-            for i in 0..j {
-                let other = block.col_as_slice(i);
-                self.system.times_mass(&column, &mut weighted);
-                let c: f64 = other.iter().zip(&weighted).map(|(a, b)| a * b).sum();
-                column.iter_mut().zip(other).for_each(|(x, v)| *x -= c * v);
+            for (i, heavy) in done.iter().enumerate() {
+                let c: f64 = column.iter().zip(heavy).map(|(a, b)| a * b).sum();
+                column.iter_mut().zip(block.col_as_slice(i)).for_each(|(x, v)| *x -= c * v);
                 r[(i, j)] = c;
             }
             let mut norm = self.norm(&column, &mut weighted);
@@ -201,6 +201,7 @@ impl<'a> Lanczos<'a> {
                 norm = self.norm(&column, &mut weighted);
             }
             block.col_as_slice_mut(j).iter_mut().zip(&column).for_each(|(t, x)| *t = x / norm);
+            done.push(weighted.iter().map(|x| x / norm).collect());
         }
         r
     }

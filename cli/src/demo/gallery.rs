@@ -7,8 +7,17 @@ use asperity::files::contact_log::LogLine;
 
 /// Side of the gallery's surfaces, m.
 const SIDE_M: f64 = 0.12;
-/// The presets of the solid-noise paper, in the order they are stroked.
-const MATERIALS: [&str; 7] = ["sandpaper", "granite", "rough-glass", "wood", "sand", "gravel", "pebbles"];
+/// The presets of the solid-noise paper, in the order they are stroked, and how rough each is where its noise ends (R, assumed): without a finish
+/// granite, rough glass and pebbles are smooth below their own waves, and a finger is heard on them only as it lands.
+const MATERIALS: [(&str, f64); 7] = [
+    ("sandpaper", 0.6),
+    ("granite", 0.4),
+    ("rough-glass", 0.4),
+    ("wood", 0.5),
+    ("sand", 0.5),
+    ("gravel", 0.5),
+    ("pebbles", 0.3),
+];
 
 /// The scenes, in the order of the index.
 pub fn scenes() -> Vec<DemoScene> {
@@ -41,20 +50,20 @@ fn materials() -> DemoScene {
         plate_body()
     );
     let mut start_s = 0.15;
-    for (index, name) in MATERIALS.into_iter().enumerate() {
+    for (index, (name, finish)) in MATERIALS.into_iter().enumerate() {
         toml += &format!(
-            "[[surface]]\nname = \"{name}\"\nbody = \"plate\"\nsolid = \"{name}\"\nroughness = 0.3\nmicro_relief_m = 0.0\n\
+            "[[surface]]\nname = \"{name}\"\nbody = \"plate\"\nsolid = \"{name}\"\nroughness = {finish}\n\
              width_m = {SIDE_M}\nheight_m = {SIDE_M}\n\n"
         );
         lines.extend(there_and_back(index as u64 + 1, name, start_s, [0.15, 0.15]));
         start_s = lines.last().map_or(start_s, |line| line.t) + 0.15;
     }
-    toml += "[[actuator]]\nfull_scale = 0.001\n\n[audio]\ngain = 20.0\n";
+    toml += "[[actuator]]\nfull_scale = 0.001\n\n[audio]\ngain = 5.0\n";
     DemoScene {
         name: "materials",
         title: "Seven materials of solid noise",
         notice: "Sandpaper, granite, rough glass, wood, sand, gravel and pebbles, one stroke across and back each. \
-                 Sandpaper buzzes near 400 Hz, pebbles roll slowly by, wood has grain on rings.",
+                 Sandpaper rasps loudest, worn pebbles are softest and roll slowly by under the finger, wood has grain on rings.",
         toml,
         log: log(lines),
         assets: Vec::new(),

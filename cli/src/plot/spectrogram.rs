@@ -142,10 +142,12 @@ fn columns_of_levels<S: Copy + Into<f64>>(
                 *slot = Complex::new(value, 0.0);
             }
             fft.process_with_scratch(&mut buffer, &mut scratch);
+            // Squares until the last: a root of every bin of every window would cost as much as the transforms.
             for (best, bin) in amplitude.iter_mut().zip(&buffer) {
-                *best = best.max(bin.norm() * scale);
+                *best = best.max(bin.norm_sqr());
             }
         }
+        amplitude.iter_mut().for_each(|square| *square = square.sqrt() * scale);
         levels.extend(edges.windows(2).map(|edge| level(&amplitude, edge[0] / bin_hz, edge[1] / bin_hz)));
     }
     levels

@@ -22,7 +22,7 @@ pub fn geometric_sums(w: C, power: C, count: usize) -> [C; 3] {
     let one = C::new(1.0, 0.0);
     let gap = one - w;
     let n = count as f64;
-    if gap.norm() * n < CANCELLATION {
+    if gap.norm_sqr() * n * n < CANCELLATION * CANCELLATION {
         return doubled(w, count);
     }
     let q = gap.inv();

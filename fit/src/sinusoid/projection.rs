@@ -63,36 +63,38 @@ fn correlate_rows<const ROWS: usize>(signal: &[f64], partials: &[Partial]) -> Ve
     let blocks = signal.len() / BLOCK;
     let (order, stretches) = stretches(partials, blocks);
     let mut table = DMatrix::<f64>::zeros(ROWS * order.len(), BLOCK);
-    for (row, &k) in order.iter().enumerate() {
-        let pole = partials[k].pole();
-        let mut power = C::new(1.0, 0.0);
-        for m in 0..BLOCK {
+    let poles: Vec<C> = order.iter().map(|&k| partials[k].pole()).collect();
+    let mut powers = vec![C::new(1.0, 0.0); order.len()];
+    for (m, column) in table.as_mut_slice().chunks_exact_mut(ROWS * order.len()).enumerate() {
+        for ((power, pole), rows) in powers.iter_mut().zip(&poles).zip(column.chunks_exact_mut(ROWS)) {
             let values = [power.re, power.im, power.re * m as f64, power.im * m as f64];
-            for (i, value) in values.into_iter().take(ROWS).enumerate() {
-                table[(ROWS * row + i, m)] = value;
-            }
-            power *= pole;
+            rows.copy_from_slice(&values[..ROWS]);
+            *power *= pole;
         }
     }
     let view = DMatrixView::from_slice(&signal[..blocks * BLOCK], BLOCK, blocks);
-    for stretch in stretches {
+    for stretch in stretches.iter().filter(|stretch| stretch.sounding > 0) {
         let rows = table.rows(0, ROWS * stretch.sounding);
         let products = rows * view.columns(stretch.from, stretch.to - stretch.from);
-        for (row, &k) in order[..stretch.sounding].iter().enumerate() {
-            let leap = partials[k].power(BLOCK as f64);
-            let mut power = partials[k].power((stretch.from * BLOCK) as f64);
-            let [mut p0, mut p1] = out[k];
-            for (column, block) in products.column_iter().zip(stretch.from..) {
-                let s0 = C::new(column[ROWS * row], column[ROWS * row + 1]);
-                p0 += power * s0;
+        let sounding = &order[..stretch.sounding];
+        let from = (stretch.from * BLOCK) as f64;
+        // Of each: the sums so far, z to the block's first sample, and what takes that to the next block.
+        let mut sums: Vec<([C; 2], C, C)> = sounding
+            .iter()
+            .map(|&k| (out[k], partials[k].power(from), partials[k].power(BLOCK as f64)))
+            .collect();
+        for (column, block) in products.as_slice().chunks_exact(ROWS * stretch.sounding).zip(stretch.from..) {
+            for (([p0, p1], power, leap), rows) in sums.iter_mut().zip(column.chunks_exact(ROWS)) {
+                let s0 = C::new(rows[0], rows[1]);
+                *p0 += *power * s0;
                 if ROWS == 4 {
-                    let s1 = C::new(column[ROWS * row + 2], column[ROWS * row + 3]);
-                    p1 += power * (s1 + s0 * (block * BLOCK) as f64);
+                    let s1 = C::new(rows[2], rows[3]);
+                    *p1 += *power * (s1 + s0 * (block * BLOCK) as f64);
                 }
-                power *= leap;
+                *power *= *leap;
             }
-            out[k] = [p0, p1];
         }
+        sounding.iter().zip(&sums).for_each(|(&k, (sum, ..))| out[k] = *sum);
     }
     for (out, partial) in out.iter_mut().zip(partials) {
         let (pole, mut power) = (partial.pole(), partial.power((blocks * BLOCK) as f64));
@@ -115,22 +117,27 @@ pub fn synthesise(partials: &[Partial], count: usize) -> Vec<f64> {
     let blocks = count.div_ceil(BLOCK);
     let (order, stretches) = stretches(partials, blocks);
     let mut table = DMatrix::<f64>::zeros(BLOCK, 2 * modes);
-    let mut amplitudes = DMatrix::<f64>::zeros(2 * modes, blocks);
-    for (row, &k) in order.iter().enumerate() {
-        let partial = &partials[k];
-        let pole = partial.pole();
+    for (columns, &k) in table.as_mut_slice().chunks_exact_mut(2 * BLOCK).zip(&order) {
+        let (cosines, sines) = columns.split_at_mut(BLOCK);
+        let pole = partials[k].pole();
         let mut power = C::new(1.0, 0.0);
-        for m in 0..BLOCK {
-            table[(m, 2 * row)] = power.re;
-            table[(m, 2 * row + 1)] = -power.im;
+        for (cosine, sine) in cosines.iter_mut().zip(sines) {
+            (*cosine, *sine) = (power.re, -power.im);
             power *= pole;
         }
-        let leap = partial.power(BLOCK as f64);
-        let mut amplitude = partial.c;
-        for block in 0..blocks {
-            amplitudes[(2 * row, block)] = amplitude.re;
-            amplitudes[(2 * row + 1, block)] = amplitude.im;
-            amplitude *= leap;
+    }
+    let mut amplitudes = DMatrix::<f64>::zeros(2 * modes, blocks);
+    let mut now: Vec<(C, C)> =
+        order.iter().map(|&k| (partials[k].c, partials[k].power(BLOCK as f64))).collect();
+    let mut columns = amplitudes.as_mut_slice().chunks_exact_mut(2 * modes);
+    for stretch in &stretches {
+        for column in columns.by_ref().take(stretch.to - stretch.from) {
+            for ((amplitude, leap), rows) in
+                now[..stretch.sounding].iter_mut().zip(column.chunks_exact_mut(2))
+            {
+                (rows[0], rows[1]) = (amplitude.re, amplitude.im);
+                *amplitude *= *leap;
+            }
         }
     }
     let mut samples = DMatrix::<f64>::zeros(BLOCK, blocks);
