@@ -60,7 +60,7 @@ const char *asp_last_error(void);
 
 int main(void) {
     /* config, files, image, mode, body, surface, event, stats of 0.1.0. */
-    const uint32_t sizes[] = {48, 24, 32, 32, sizeof(old_body), 208, sizeof(old_event), sizeof(old_stats)};
+    const uint32_t sizes[] = {48, 24, 32, 32, sizeof(old_body), 168, sizeof(old_event), sizeof(old_stats)};
     MUST(sizeof(old_event) == 248 && sizeof(old_stats) == 192 && sizeof(old_body) == 88);
     MUST(asp_check_abi(1, sizes, 8) == 0);
     static const char scene_file[] = "[[body]]\nname = \"a\"\nstock = \"disc\"\nsize_m = 0.1\n[[surface]]\nname = \"b\"\nbody = \"a\"\n"
