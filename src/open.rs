@@ -175,6 +175,7 @@ fn assemble(
         let id = scene.add_probe(*probe).map_err(|error| place(FileError::told(error)))?;
         names.probes.insert(name.clone(), id);
     }
+    scene.strike_gain = shared(file, levels);
     for (entry, strike_gain) in file.bodies.iter().zip(&levels.strike_gain) {
         let place = |error: FileError| at(error.within(format!("body \"{}\"", entry.name)));
         let body = maker.body(entry, &file.audio, &levels.gain, *strike_gain).map_err(place)?;
@@ -190,6 +191,12 @@ fn assemble(
         names.surfaces.insert(entry.name.clone(), id);
     }
     Ok(Engine { scene, renderer, names, workers: workers.into_inner(), levels: Levels::default() })
+}
+
+/// How loud impacts are on a body that is added later: as on those that share what the level policy has found.
+fn shared(file: &SceneFile, levels: &Levels) -> f64 {
+    let silent = file.bodies.iter().zip(&levels.strike_gain).filter(|(entry, _)| entry.strike_gain.is_none());
+    silent.map(|(_, strike_gain)| *strike_gain).fold(1.0, f64::min)
 }
 
 fn config(file: &SceneFile, overrides: &Overrides<'_>, levels: &Levels) -> Result<Config, FileError> {

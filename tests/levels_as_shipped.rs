@@ -209,6 +209,35 @@ fn strikes_keep_their_balance_from_body_to_body_and_a_word_makes_them_as_loud_as
 }
 
 #[test]
+fn a_body_that_is_added_later_is_struck_as_loudly_as_those_of_the_scene_file() {
+    let body = |name: &str, key: &str| {
+        format!(
+            "[[body]]\nname = \"{name}\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"glass\"\n{key}\n"
+        )
+    };
+    let top = "[[surface]]\nname = \"top\"\nbody = \"a\"\nwidth_m = 0.14\nheight_m = 0.14\nroughness = 0.1\nmicro_relief_m = 1e-6\n";
+    let opened = |toml: &str| {
+        let file = SceneFile::parse(toml, Path::new("one.toml")).unwrap();
+        Engine::from_scene(&file, &Overrides::default()).unwrap()
+    };
+    let added = |toml: &str, key: &str| {
+        let Engine { mut scene, .. } = opened(toml);
+        let table = format!("stock = \"plate\"\nsize_m = 0.14\nmaterial = \"glass\"\n{key}");
+        let body = scene.read_body(&table, Path::new(""), &Overrides::default()).unwrap();
+        let id = scene.add_body(body).unwrap();
+        scene.strike_gain_of(id).unwrap()
+    };
+    let silent = body("a", "") + top;
+    let found = opened(&silent).levels.strike_gain[0];
+    assert!(found < 0.5, "{found}");
+    assert_eq!(added(&silent, ""), found);
+    assert_eq!(added(&silent, "strike_gain = 0.9"), 0.9);
+    // What one body says of itself is no policy for others.
+    assert_eq!(added(&(body("a", "strike_gain = 0.01") + top), ""), 1.0);
+    assert_eq!(added(&(silent + "[audio]\ngain = 2.0\n"), ""), 1.0);
+}
+
+#[test]
 fn bodies_in_pascals_sound_as_loud_as_they_say_and_leave_their_neighbours_alone() {
     let modes = |unit: &str| {
         format!(

@@ -62,6 +62,15 @@
 /// Samples are floating point, taken as they are.
 #define ASP_F32 2
 
+/// Metres, or metres a second squared, at sample value 1.0 of a haptic channel; of: the channel.
+#define ASP_LEVEL_FULL_SCALE 1
+
+/// Linear gain of an audio bus; of: the bus.
+#define ASP_LEVEL_BUS_GAIN 2
+
+/// Linear gain of impacts beside strokes; of: the body's id.
+#define ASP_LEVEL_STRIKE_GAIN 3
+
 /// A surface.
 #define ASP_SURFACE 1
 
@@ -298,6 +307,9 @@ typedef struct asp_body {
     const char *table;
     /// Where files lie that `table` names; NULL = the disk.
     const struct asp_files *files;
+    /// How loud impacts are beside strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as `table` says, else as the level policy has found
+    /// for the bodies of a scene file, else 1. (Since 0.1.1.)
+    double strike_gain;
 } asp_body;
 
 /// How an engine is built; `asp_config_init` fills it.
@@ -381,6 +393,11 @@ typedef struct asp_event {
     double striker_poisson;
     /// Its density, kg/m3.
     double striker_density_kg_m3;
+    /// begin, move: speed at which what touches slides on the ground there, m/s; 0 = it rolls, NAN = as fast as it moves: a stroke. Each
+    /// report tells it anew. (Since 0.1.1.)
+    double slip_m_s;
+    /// begin, move: radius of what rolls, m; NAN = the probe's tip, at least 8 mm. (Since 0.1.1.)
+    double roll_radius_m;
 } asp_event;
 
 /// A decoded picture: rows from the top, samples of a pixel beside each other. All zero = none.
@@ -541,6 +558,10 @@ typedef struct asp_stats {
     uint64_t shed;
     /// Contacts sounding now.
     uint64_t contacts;
+    /// By how much the peak limiters have turned down at most, whole dB. (Since 0.1.1.)
+    uint64_t limiter_db;
+    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64 samples. (Since 0.1.1.)
+    uint64_t rubs_crowded_out;
 } asp_stats;
 
 /// A surface; `asp_surface_init` fills it. A number that is NAN is not told: then `table`, the body's material or the engine's default
@@ -586,8 +607,9 @@ typedef struct asp_surface {
 extern "C" {
 #endif // __cplusplus
 
-/// Fills a body with its size and the defaults.
-void asp_body_init(struct asp_body *body);
+/// Fills a body of `size` bytes, sizeof(asp_body), with that size and the defaults. A size that never was fills nothing.
+void asp_init_body(struct asp_body *body,
+                   uint32_t size);
 
 /// Adds a body and gives its id, which is never 0.
 int32_t asp_add_body(struct asp_scene *scene, const struct asp_body *body, uint64_t *id);
@@ -612,8 +634,10 @@ void asp_config_init(struct asp_config *config);
 /// Builds an engine: one half for the game's thread, one for the audio thread.
 int32_t asp_build(const struct asp_config *config, struct asp_scene **scene, struct asp_renderer **renderer);
 
-/// Fills an event with its size and "not told": a loss-free blow of 4 g of steel at 1 m/s where it is an impact.
-void asp_event_init(struct asp_event *event);
+/// Fills an event of `size` bytes, sizeof(asp_event), with that size and "not told": a loss-free blow of 4 g of steel at 1 m/s where it is an
+/// impact. A size that never was fills nothing.
+void asp_init_event(struct asp_event *event,
+                    uint32_t size);
 
 /// Fills files with its size and the disk.
 void asp_files_init(struct asp_files *files);
@@ -647,6 +671,12 @@ int32_t asp_set_paused(struct asp_scene *scene, uint32_t paused);
 
 /// Every contact ends and what rings is damped within a tenth of a second: for a cut, a menu, the end of a level.
 int32_t asp_fade_all(struct asp_scene *scene);
+
+/// A level in use, whether the program, the scene file or the level policy has said it: ASP_LEVEL_... `of` says of what.
+int32_t asp_get_level(struct asp_scene *scene,
+                      uint32_t kind,
+                      uint64_t of,
+                      double *level);
 
 /// Builds the engine of a scene file. `text` NULL: `path` is read from `files`; else `text` is the scene, and `path` says only where it
 /// would lie. `files` NULL: the disk. Of `config` (NULL: the defaults) clock, rate, seed and kernel count. With a live clock, sand is
@@ -783,8 +813,8 @@ int32_t asp_reset(struct asp_scene *scene);
 /// So many game seconds a second of audio, 0.01 to 100, from the last report on; for the exact clock.
 int32_t asp_set_time_scale(struct asp_scene *scene, double scale);
 
-/// Fills statistics with their size.
-void asp_stats_init(struct asp_stats *stats);
+/// Fills statistics of `size` bytes, sizeof(asp_stats), with that size. A size that never was fills nothing.
+void asp_init_stats(struct asp_stats *stats, uint32_t size);
 
 /// What the engine did so far.
 int32_t asp_get_stats(struct asp_scene *scene, struct asp_stats *stats);
@@ -824,7 +854,7 @@ uint32_t asp_version(void);
 
 /// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`, `sizes` those of its structs in the order
 /// config, files, image, mode, body, surface, event, stats, port_config, point, force, player_config, player_report. One sentence
-/// instead of a crash where a library lies beside another one's header.
+/// instead of a crash where a library lies beside another one's header; structs of an older header of this interface are understood.
 int32_t asp_check_abi(uint32_t abi,
                       const uint32_t *sizes,
                       uint32_t count);
@@ -833,7 +863,16 @@ int32_t asp_check_abi(uint32_t abi,
 }  // extern "C"
 #endif  // __cplusplus
 
-#endif  /* ASPERITY_H */
+/* ---- Structs of this header's size ---- */
+
+/** Fills an event with its size and "not told": a loss-free blow of 4 g of steel at 1 m/s where it is an impact. */
+static inline void asp_event_init(struct asp_event *event) { asp_init_event(event, (uint32_t)sizeof *event); }
+
+/** Fills statistics with their size. */
+static inline void asp_stats_init(struct asp_stats *stats) { asp_init_stats(stats, (uint32_t)sizeof *stats); }
+
+/** Fills a body with its size and the defaults. */
+static inline void asp_body_init(struct asp_body *body) { asp_init_body(body, (uint32_t)sizeof *body); }
 
 /* ---- The usual events ---- */
 
@@ -856,6 +895,13 @@ static inline struct asp_event asp_begin(uint64_t contact, uint64_t surface, int
 static inline struct asp_event asp_move(uint64_t contact, double u, double v, double normal_force_n) {
     struct asp_event event = asp_begin(contact, 0, -1, u, v, normal_force_n);
     event.kind = ASP_MOVE;
+    return event;
+}
+
+/** The same begin or move of what rolls: its radius, and how fast what touches slides where it touches, m/s: 0 = it only rolls. */
+static inline struct asp_event asp_rolling(struct asp_event event, double radius_m, double slip_m_s) {
+    event.roll_radius_m = radius_m;
+    event.slip_m_s = slip_m_s;
     return event;
 }
 
@@ -900,3 +946,5 @@ static inline int32_t asp_check(void) {
         (uint32_t)sizeof(struct asp_player_report)};
     return asp_check_abi(ASP_ABI, sizes, ASP_STRUCTS);
 }
+
+#endif /* ASPERITY_H */

@@ -158,6 +158,10 @@ public:
         port = Port(raw);
         return status;
     }
+    // A level in use, ASP_LEVEL_…: of a haptic channel, a bus, or the id of a body.
+    Status level(std::uint32_t kind, std::uint64_t of, double &level) const {
+        return Status(asp_get_level(get(), kind, of, &level));
+    }
     Status stats(asp_stats &stats) const {
         asp_stats_init(&stats);
         return Status(asp_get_stats(get(), &stats));

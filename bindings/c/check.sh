@@ -60,6 +60,7 @@ found="$(pkg-config --cflags asperity)" libs="$(pkg-config --libs asperity) -lm 
     done
     shown README.md c >"$work/readme.c"
     gcc -std=c99 -pedantic $strict $found "$work/readme.c" -o "$work/readme" $libs
+    gcc -std=c99 -pedantic $strict tests/older.c -o "$work/older" $libs
     gcc -std=c99 -pedantic $strict tests/loading.c -I. -L"$lib" -Wl,--no-as-needed -o "$work/loading" $libs -ldl
     gcc -std=c11 $strict $found tests/audio_thread.c -o "$work/audio_thread" $libs
     gcc -O1 -shared -fPIC tests/malloc_counter.c -o "$work/malloc_counter.so"
@@ -86,6 +87,8 @@ LD_PRELOAD="$work/malloc_counter.so" "$work/audio_thread"
 ok "nothing is allocated or freed on the audio thread"
 "$work/hostile"
 ok "hostile calls"
+"$work/older"
+ok "a program that was compiled with an older header"
 "$work/fuzz" 1 300
 ok "random calls"
 cp "$lib/libasperity.so" "$work/another_copy.so"

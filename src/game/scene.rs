@@ -79,6 +79,8 @@ pub struct Scene {
     recording: Option<Recording>,
     /// Bodies as they were given, for another rate.
     pub(crate) given: HashMap<BodyId, Body>,
+    /// How loud impacts are on a body that does not say: what the level policy has found for those of the scene file.
+    pub(crate) strike_gain: f64,
     /// For [`Scene::why_silent`].
     reported: Reported,
     /// What each contact touches, and the place in its body that its newest report told.
@@ -140,6 +142,7 @@ impl Scene {
             open_ports: 0,
             tips_m: vec![config.probe.tip_radius_m],
             given: HashMap::new(),
+            strike_gain: 1.0,
             reported: Reported::default(),
             held: Vec::new(),
             config,

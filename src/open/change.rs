@@ -52,7 +52,7 @@ impl Scene {
         };
         let at = |error: FileError| error.within(after.path.display());
         let gains: Vec<f64> = self.config().audio.iter().map(|bus| bus.gain).collect();
-        let strike_gain = |name: &String| self.strike_gain_of(names.bodies.get(name));
+        let strike_gain = |name: &String| self.silent_strike_gain(names.bodies.get(name));
         let new = New::make(&maker, (&gains, strike_gain), before, after, overrides.touched).map_err(at)?;
         let mut changes = Changes { waiting: waiting(before, after), ..Changes::default() };
         new.put(self, names, &mut changes).map_err(at)?;
@@ -64,9 +64,8 @@ impl Scene {
 
     /// How loud impacts are on a body that says nothing: as they are on it, and on a new one as on the others, which share what the level policy
     /// has found.
-    fn strike_gain_of(&self, body: Option<&BodyId>) -> f64 {
-        let known = body.and_then(|body| self.given.get(body)).map(|body| body.strike_gain);
-        known.unwrap_or_else(|| self.given.values().map(|body| body.strike_gain).fold(1.0, f64::min))
+    fn silent_strike_gain(&self, body: Option<&BodyId>) -> f64 {
+        body.and_then(|body| self.strike_gain_of(*body).ok()).unwrap_or(self.strike_gain)
     }
 
     fn apply_buses(

@@ -35,7 +35,8 @@ impl std::fmt::Debug for ReadSurface {
 
 impl Scene {
     /// A body from the keys of a scene file's `[[body]]`; `name` may be missing, and `bus` has no place here: say
-    /// [`Body::on_bus`]. Paths lie relative to `folder`.
+    /// [`Body::on_bus`]. Paths lie relative to `folder`. A body that has no `strike_gain` is struck as loudly as those of the scene file, whose
+    /// the level policy has found; 1 where nothing was found.
     ///
     /// ```
     /// use asperity::open::Overrides;
@@ -62,7 +63,7 @@ impl Scene {
             return Err(FileError::new("body: bus", "is a name, and a body by itself knows no names", right));
         }
         let entry = BodyEntry::read(table, folder)?;
-        self.maker(overrides, &Maps::default(), None).body(&entry, &[], &[], 1.0)
+        self.maker(overrides, &Maps::default(), None).body(&entry, &[], &[], self.strike_gain)
     }
 
     /// A surface from the keys of a scene file's `[[surface]]`; `name` may be missing. It rings `on`, or the body that the table

@@ -70,6 +70,41 @@ fn a_block_that_slides_over_a_plate_is_heard_and_felt_and_the_recording_renders_
 }
 
 #[test]
+fn a_ball_that_rolls_tells_its_radius_and_that_it_hardly_slips_and_a_block_that_slides_tells_nothing() {
+    let (mut app, _) = world();
+    app.world_mut().spawn((
+        RigidBody::Dynamic,
+        Collider::ball(0.01),
+        ColliderMassProperties::Density(7800.0),
+        Friction::coefficient(0.6),
+        Transform::from_xyz(-0.15, 0.0201, 0.0),
+        Velocity { linvel: Vec3::new(0.2, 0.0, 0.0), angvel: Vec3::new(0.0, 0.0, -20.0) },
+        TouchThing::of(Material::STEEL),
+    ));
+    run(&mut app);
+    let log = assert_same_bits(&mut app, 1);
+    let Slid { begins, samples, .. } = slid(&log);
+    assert_eq!(begins.len(), 1, "{begins:?}");
+    for (t, sample) in samples.iter().skip(5).filter(|(t, _)| *t < 1.0) {
+        let (slip_m_s, radius_m) = (sample.slip_m_s.unwrap(), sample.roll_radius_m.unwrap());
+        assert!(slip_m_s < 0.02 && (radius_m - 0.01).abs() < 1e-6, "{sample:?} at {t} s");
+    }
+    let (mut app, _) = world();
+    app.world_mut().spawn((
+        RigidBody::Dynamic,
+        Collider::cuboid(0.01, 0.01, 0.01),
+        Friction::coefficient(0.05),
+        Transform::from_xyz(-0.15, 0.021, 0.0),
+        Velocity::linear(Vec3::new(0.3, 0.0, 0.0)),
+        TouchThing::of(Material::STEEL),
+    ));
+    run(&mut app);
+    let log = assert_same_bits(&mut app, 1);
+    let Slid { samples, .. } = slid(&log);
+    assert!(samples.iter().all(|(_, sample)| sample.slip_m_s.is_none()) && samples.len() > 20);
+}
+
+#[test]
 fn a_plate_despawned_under_a_sliding_block_is_no_panic() {
     let (mut app, plate) = world();
     app.world_mut().spawn((

@@ -10,6 +10,7 @@ use crate::text;
 use asperity::open::Overrides;
 use asperity::{AddError, Body, BodyId, ModalModel, Mode};
 use std::ffi::c_char;
+use std::mem::offset_of;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -62,9 +63,12 @@ pub struct asp_body {
     pub table: *const c_char,
     /// Where files lie that `table` names; NULL = the disk.
     pub files: *const asp_files,
+    /// How loud impacts are beside strokes, linear, 0 to 1000, 1 = as mechanics says; NAN = as `table` says, else as the level policy has found
+    /// for the bodies of a scene file, else 1. (Since 0.1.1.)
+    pub strike_gain: f64,
 }
 
-sized!(asp_body, "asp_body", |struct_size| Self {
+sized!(asp_body, "asp_body", [offset_of!(asp_body, strike_gain)], |struct_size| Self {
     struct_size,
     material: material::ASP_MATERIAL_DEFAULT,
     bus: 0,
@@ -78,6 +82,7 @@ sized!(asp_body, "asp_body", |struct_size| Self {
     modes_json: std::ptr::null(),
     table: std::ptr::null(),
     files: std::ptr::null(),
+    strike_gain: f64::NAN,
 });
 
 /// What the engine refused to add, as a status.
@@ -130,7 +135,8 @@ impl asp_body {
         let overrides = Overrides { files: &given, live: half.live, ..Overrides::default() };
         let body = half.scene.read_body(&written(&table)?, Path::new(""), &overrides);
         let body = body.map_err(|error| Failure::new(ASP_REFUSED, error))?;
-        Ok(body.on_bus(self.bus as usize).gain(self.gain))
+        let body = body.on_bus(self.bus as usize).gain(self.gain);
+        Ok(if self.strike_gain.is_nan() { body } else { body.strike_gain(self.strike_gain) })
     }
 
     /// Modes that are given in memory, as the text of a modes file.
@@ -157,10 +163,16 @@ impl asp_body {
     }
 }
 
-/// Fills a body with its size and the defaults.
+/// Fills a body of `size` bytes, sizeof(asp_body), with that size and the defaults. A size that never was fills nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_init_body(body: *mut asp_body, size: u32) {
+    sized::init_as(body, size);
+}
+
+/// The same of programs that were compiled with 0.1.0, whose body is shorter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_body_init(body: *mut asp_body) {
-    sized::init(body);
+    sized::init_as(body, <asp_body as sized::Sized32>::SHIPPED[0]);
 }
 
 /// Adds a body and gives its id, which is never 0.

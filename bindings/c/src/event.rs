@@ -9,6 +9,7 @@ use asperity::{
     Actuator, BodyId, ContactEvent, ContactId, ContactSample, Emphasis, Impact, Material, ProbeId, SurfaceId,
     Touching,
 };
+use std::mem::offset_of;
 
 /// A contact lands on a surface.
 pub const ASP_BEGIN: u32 = 1;
@@ -79,11 +80,16 @@ pub struct asp_event {
     pub striker_poisson: f64,
     /// Its density, kg/m³.
     pub striker_density_kg_m3: f64,
+    /// begin, move: speed at which what touches slides on the ground there, m/s; 0 = it rolls, NAN = as fast as it moves: a stroke. Each
+    /// report tells it anew. (Since 0.1.1.)
+    pub slip_m_s: f64,
+    /// begin, move: radius of what rolls, m; NAN = the probe's tip, at least 8 mm. (Since 0.1.1.)
+    pub roll_radius_m: f64,
 }
 
 const NOT_TOLD: f64 = f64::NAN;
 
-sized!(asp_event, "asp_event", |struct_size| Self {
+sized!(asp_event, "asp_event", [offset_of!(asp_event, slip_m_s)], |struct_size| Self {
     struct_size,
     kind: 0,
     contact: 0,
@@ -112,6 +118,8 @@ sized!(asp_event, "asp_event", |struct_size| Self {
     striker_young_pa: NOT_TOLD,
     striker_poisson: NOT_TOLD,
     striker_density_kg_m3: NOT_TOLD,
+    slip_m_s: NOT_TOLD,
+    roll_radius_m: NOT_TOLD,
 });
 
 fn told(number: f64) -> Option<f64> {
@@ -156,7 +164,8 @@ impl asp_event {
             closing_m_s: self.closing_m_s,
             at_m: all_told(self.at_m),
             depth_m,
-            ..ContactSample::default()
+            slip_m_s: told(self.slip_m_s),
+            roll_radius_m: told(self.roll_radius_m),
         }
     }
 
@@ -247,6 +256,8 @@ impl asp_event {
         self.closing_m_s = sample.closing_m_s;
         self.at_m = sample.at_m.unwrap_or([NOT_TOLD; 3]);
         self.depth_m = sample.depth_m.unwrap_or(NOT_TOLD);
+        self.slip_m_s = sample.slip_m_s.unwrap_or(NOT_TOLD);
+        self.roll_radius_m = sample.roll_radius_m.unwrap_or(NOT_TOLD);
     }
 
     fn strike(&mut self, impact: &Impact) {
@@ -266,8 +277,15 @@ impl asp_event {
     }
 }
 
-/// Fills an event with its size and "not told": a loss-free blow of 4 g of steel at 1 m/s where it is an impact.
+/// Fills an event of `size` bytes, sizeof(asp_event), with that size and "not told": a loss-free blow of 4 g of steel at 1 m/s where it is an
+/// impact. A size that never was fills nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_init_event(event: *mut asp_event, size: u32) {
+    sized::init_as(event, size);
+}
+
+/// The same of programs that were compiled with 0.1.0, whose event is shorter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_event_init(event: *mut asp_event) {
-    sized::init(event);
+    sized::init_as(event, <asp_event as sized::Sized32>::SHIPPED[0]);
 }

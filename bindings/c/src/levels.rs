@@ -1,10 +1,17 @@
 //! Levels: gains, mute, pause, and an end to everything.
 
 use crate::body::refused;
-use crate::entry::enter;
+use crate::entry::{enter, out};
 use crate::handles::{SCENES, asp_scene};
-use crate::status::{ASP_UNKNOWN, Failure};
-use asperity::{Actuator, AddError, Scene};
+use crate::status::{ASP_BAD_ARGUMENT, ASP_UNKNOWN, Failure};
+use asperity::{Actuator, AddError, BodyId, Scene};
+
+/// Metres, or metres a second squared, at sample value 1.0 of a haptic channel; of: the channel.
+pub const ASP_LEVEL_FULL_SCALE: u32 = 1;
+/// Linear gain of an audio bus; of: the bus.
+pub const ASP_LEVEL_BUS_GAIN: u32 = 2;
+/// Linear gain of impacts beside strokes; of: the body's id.
+pub const ASP_LEVEL_STRIKE_GAIN: u32 = 3;
 
 fn set(scene: *mut asp_scene, set: impl FnOnce(&mut Scene) -> Result<(), AddError>) -> i32 {
     enter(|| set(&mut SCENES.hold(scene as usize)?.scene).map_err(|error| refused(&error)))
@@ -45,4 +52,34 @@ pub unsafe extern "C" fn asp_set_paused(scene: *mut asp_scene, paused: u32) -> i
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_fade_all(scene: *mut asp_scene) -> i32 {
     set(scene, Scene::fade_all)
+}
+
+/// A level in use, whether the program, the scene file or the level policy has said it: ASP_LEVEL_… `of` says of what.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_get_level(scene: *mut asp_scene, kind: u32, of: u64, level: *mut f64) -> i32 {
+    enter(|| {
+        let level = out(level, "level")?;
+        let half = SCENES.hold(scene as usize)?;
+        let (config, place) = (half.scene.config(), usize::try_from(of).unwrap_or(usize::MAX));
+        let unknown = |what: &str, count: usize| {
+            Failure::new(ASP_UNKNOWN, format!("of: {of} is no {what} of this scene; must be below {count}"))
+        };
+        *level = match kind {
+            ASP_LEVEL_FULL_SCALE => {
+                let settings = config.actuators.get(place);
+                settings.ok_or_else(|| unknown("haptic channel", config.actuators.len()))?.full_scale
+            }
+            ASP_LEVEL_BUS_GAIN => {
+                config.audio.get(place).ok_or_else(|| unknown("audio bus", config.audio.len()))?.gain
+            }
+            ASP_LEVEL_STRIKE_GAIN => {
+                half.scene.strike_gain_of(BodyId::from_bits(of)).map_err(|error| refused(&error))?
+            }
+            other => {
+                let right = "must be ASP_LEVEL_FULL_SCALE, ASP_LEVEL_BUS_GAIN or ASP_LEVEL_STRIKE_GAIN";
+                return Err(Failure::new(ASP_BAD_ARGUMENT, format!("kind: {other} is refused; {right}")));
+            }
+        };
+        Ok(())
+    })
 }

@@ -1,9 +1,9 @@
 //! Contact logs: what a game reported, read into the structs that `asp_report` takes.
 
-use crate::entry::{array_mut, enter, out};
+use crate::entry::{aligned, array_mut, enter, out};
 use crate::event::asp_event;
 use crate::handles::{SCENES, asp_scene};
-use crate::sized::Sized32;
+use crate::sized::{self, Sized32};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_FILE, ASP_UNKNOWN, Failure};
 use crate::text;
 use asperity::files::contact_log::{ContactLog, LogEvent};
@@ -25,13 +25,15 @@ pub unsafe extern "C" fn asp_read_log(
     enter(|| {
         let (text, count) = (text::needed(text, "text")?, out(count, "count")?);
         *count = 0;
-        if size as usize != size_of::<asp_event>() || !asp_event::SHIPPED.contains(&size) {
+        if !asp_event::SHIPPED.contains(&size) {
             let right = format!("give sizeof(asp_event), {} in this library", size_of::<asp_event>());
             return Err(Failure::new(ASP_BAD_ARGUMENT, format!("size: {size} is refused; {right}")));
         }
         let log = ContactLog::parse(text, "log").map_err(|error| Failure::new(ASP_FILE, error))?;
         let room = log.lines.len().min(capacity as usize);
-        let events = array_mut(events, room, usize::MAX, "events")?;
+        if room > 0 {
+            aligned(events, "events")?;
+        }
         let times_s = array_mut(times_s, room, usize::MAX, "times_s")?;
         let half = SCENES.hold(scene as usize)?;
         for (index, line) in log.lines.iter().enumerate() {
@@ -42,7 +44,10 @@ pub unsafe extern "C" fn asp_read_log(
             }
             let event = line.event.resolve(&half.names).map_err(|error| Failure::new(ASP_UNKNOWN, error))?;
             if index < room {
-                (events[index], times_s[index]) = (asp_event::of(&event), line.t);
+                // An older program's events are shorter.
+                let place = events.wrapping_byte_add(index * size as usize);
+                sized::put(&asp_event::of(&event), place, size);
+                times_s[index] = line.t;
             }
         }
         *count = log.lines.len() as u32;

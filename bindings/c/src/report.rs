@@ -53,7 +53,7 @@ pub unsafe extern "C" fn asp_report(
         let mut first = None;
         for at in 0..count {
             let event = events.wrapping_byte_add(at as usize * size as usize);
-            let done = sized::read(event, "event").and_then(|event| event.engines());
+            let done = sized::read_within(event, size, "event").and_then(|event| event.engines());
             let done = done.and_then(|event| {
                 half.scene.report(time_s, event).map_err(|error| refusal(at, &error.reason))
             });

@@ -1,7 +1,8 @@
 //! Sized structs: each begins with its own size, so that a program and a library of different ages understand each other.
 //!
 //! A struct only ever grows at its end. The library knows every size it has shipped: what a program's older struct lacks has its default,
-//! and a size that never was is refused instead of read.
+//! and a size that never was is refused instead of read. From the day on which a struct grows it is filled by `asp_init_…`, which is told the
+//! size and which the header calls; `asp_…_init` of the library goes on for programs of before, and fills what they have room for.
 
 use crate::entry::aligned;
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
@@ -28,10 +29,15 @@ fn refused<T: Sized32>(size: u32) -> Failure {
 
 /// Copies a program's struct, whatever its age.
 pub(crate) fn read<T: Sized32>(from: *const T, name: &str) -> Result<T, Failure> {
+    read_within(from, u32::MAX, name)
+}
+
+/// Copies one of a program's structs that lie `room` bytes apart, whatever their age.
+pub(crate) fn read_within<T: Sized32>(from: *const T, room: u32, name: &str) -> Result<T, Failure> {
     aligned(from, name)?;
     // SAFETY: not null and aligned; the first field is a u32 in every age of the struct.
     let size = unsafe { from.cast::<u32>().read() };
-    if !T::SHIPPED.contains(&size) {
+    if size > room || !T::SHIPPED.contains(&size) {
         return Err(refused::<T>(size));
     }
     let mut copy = T::initial();
@@ -50,15 +56,28 @@ pub(crate) fn write<T: Sized32>(value: &T, to: *mut T, name: &str) -> Result<(),
     if !T::SHIPPED.contains(&size) {
         return Err(refused::<T>(size));
     }
-    // SAFETY: as in `read`; the size in front stays the program's own.
+    put(value, to, size);
+    Ok(())
+}
+
+/// Writes a struct of that size, which was shipped.
+pub(crate) fn put<T: Sized32>(value: &T, to: *mut T, size: u32) {
+    // SAFETY: a size that was shipped is at most our own, and the caller's struct has it; the fields follow the size in front.
     unsafe {
+        to.cast::<u32>().write(size);
         std::ptr::copy_nonoverlapping(
             std::ptr::from_ref(value).cast::<u8>().add(4),
             to.cast::<u8>().add(4),
             size as usize - 4,
         );
     }
-    Ok(())
+}
+
+/// Fills a struct of that size that a program has just made; a size that never was fills nothing.
+pub(crate) fn init_as<T: Sized32>(to: *mut T, size: u32) {
+    if !to.is_null() && to.is_aligned() && T::SHIPPED.contains(&size) {
+        put(&T::initial(), to, size);
+    }
 }
 
 /// Fills a struct that a program has just made.
@@ -69,13 +88,13 @@ pub(crate) fn init<T: Sized32>(to: *mut T) {
     }
 }
 
-/// Says how a struct of the header begins.
+/// Says how a struct of the header begins; the sizes that it had before stand in brackets.
 macro_rules! sized {
-    ($type:ty, $name:literal, $($older:literal,)* |$size:ident| $initial:expr) => {
+    ($type:ty, $name:literal, $([$($older:expr),*],)? |$size:ident| $initial:expr) => {
         // SAFETY: `repr(C)`, the size comes first, and all fields are numbers and pointers.
         unsafe impl $crate::sized::Sized32 for $type {
             const NAME: &'static str = $name;
-            const SHIPPED: &'static [u32] = &[$($older,)* size_of::<Self>() as u32];
+            const SHIPPED: &'static [u32] = &[$($($older as u32,)*)? size_of::<Self>() as u32];
 
             fn initial() -> Self {
                 let $size = size_of::<Self>() as u32;

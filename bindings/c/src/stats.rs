@@ -6,6 +6,7 @@ use crate::sized::{self, sized};
 use crate::status::{ASP_BAD_ARGUMENT, Failure};
 use crate::text;
 use std::ffi::c_char;
+use std::mem::offset_of;
 
 /// Counts since the engine was built; `asp_stats_init` fills in the size.
 #[repr(C)]
@@ -61,9 +62,13 @@ pub struct asp_stats {
     pub shed: u64,
     /// Contacts sounding now.
     pub contacts: u64,
+    /// By how much the peak limiters have turned down at most, whole dB. (Since 0.1.1.)
+    pub limiter_db: u64,
+    /// Contacts that would have rubbed a body that another one rubs already, a count for each 64 samples. (Since 0.1.1.)
+    pub rubs_crowded_out: u64,
 }
 
-sized!(asp_stats, "asp_stats", |struct_size| Self {
+sized!(asp_stats, "asp_stats", [offset_of!(asp_stats, limiter_db)], |struct_size| Self {
     struct_size,
     load: 0.0,
     position: 0,
@@ -89,6 +94,8 @@ sized!(asp_stats, "asp_stats", |struct_size| Self {
     ahead: 0,
     shed: 0,
     contacts: 0,
+    limiter_db: 0,
+    rubs_crowded_out: 0,
 });
 
 impl asp_stats {
@@ -118,6 +125,8 @@ impl asp_stats {
             ahead: stats.ahead,
             shed: stats.shed,
             contacts: stats.contacts,
+            limiter_db: stats.limiter_db,
+            rubs_crowded_out: stats.rubs_crowded_out,
             ..sized::Sized32::initial()
         }
     }
@@ -126,10 +135,16 @@ impl asp_stats {
 /// Most characters of a text that is asked for.
 const MAX_TEXT: usize = 1 << 20;
 
-/// Fills statistics with their size.
+/// Fills statistics of `size` bytes, sizeof(asp_stats), with that size. A size that never was fills nothing.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_init_stats(stats: *mut asp_stats, size: u32) {
+    sized::init_as(stats, size);
+}
+
+/// The same of programs that were compiled with 0.1.0, whose statistics are shorter.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_stats_init(stats: *mut asp_stats) {
-    sized::init(stats);
+    sized::init_as(stats, <asp_stats as sized::Sized32>::SHIPPED[0]);
 }
 
 /// What the engine did so far.

@@ -8,6 +8,7 @@ use crate::files::asp_files;
 use crate::image::asp_image;
 use crate::player::{asp_player_config, asp_player_report};
 use crate::port::{asp_force, asp_point, asp_port_config};
+use crate::sized::Sized32;
 use crate::stats::asp_stats;
 use crate::status::{ASP_ABI_MISMATCH, Failure};
 use crate::surface::asp_surface;
@@ -19,20 +20,25 @@ pub const ASP_ABI: u32 = 1;
 /// How many structs the header has, in the order in which `asp_check_abi` takes their sizes.
 pub const ASP_STRUCTS: u32 = 13;
 
-const STRUCTS: [(&str, usize); ASP_STRUCTS as usize] = [
-    ("asp_config", size_of::<asp_config>()),
-    ("asp_files", size_of::<asp_files>()),
-    ("asp_image", size_of::<asp_image>()),
-    ("asp_mode", size_of::<asp_mode>()),
-    ("asp_body", size_of::<asp_body>()),
-    ("asp_surface", size_of::<asp_surface>()),
-    ("asp_event", size_of::<asp_event>()),
-    ("asp_stats", size_of::<asp_stats>()),
-    ("asp_port_config", size_of::<asp_port_config>()),
-    ("asp_point", size_of::<asp_point>()),
-    ("asp_force", size_of::<asp_force>()),
-    ("asp_player_config", size_of::<asp_player_config>()),
-    ("asp_player_report", size_of::<asp_player_report>()),
+/// Name and sizes of a struct that begins with its size: all that it ever had.
+const fn ages<T: Sized32>() -> (&'static str, &'static [u32]) {
+    (T::NAME, T::SHIPPED)
+}
+
+const STRUCTS: [(&str, &[u32]); ASP_STRUCTS as usize] = [
+    ages::<asp_config>(),
+    ages::<asp_files>(),
+    ("asp_image", &[size_of::<asp_image>() as u32]),
+    ("asp_mode", &[size_of::<asp_mode>() as u32]),
+    ages::<asp_body>(),
+    ages::<asp_surface>(),
+    ages::<asp_event>(),
+    ages::<asp_stats>(),
+    ages::<asp_port_config>(),
+    ("asp_point", &[size_of::<asp_point>() as u32]),
+    ("asp_force", &[size_of::<asp_force>() as u32]),
+    ages::<asp_player_config>(),
+    ages::<asp_player_report>(),
 ];
 
 /// Version of the library: major · 65536 + minor · 256 + patch.
@@ -46,7 +52,7 @@ pub extern "C" fn asp_version() -> u32 {
 
 /// Whether a program and this library understand each other: `abi` is the header's `ASP_ABI`, `sizes` those of its structs in the order
 /// config, files, image, mode, body, surface, event, stats, port_config, point, force, player_config, player_report. One sentence
-/// instead of a crash where a library lies beside another one's header.
+/// instead of a crash where a library lies beside another one's header; structs of an older header of this interface are understood.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_check_abi(abi: u32, sizes: *const u32, count: u32) -> i32 {
     enter(|| {
@@ -56,8 +62,8 @@ pub unsafe extern "C" fn asp_check_abi(abi: u32, sizes: *const u32, count: u32) 
             return Err(mismatch(format!("the header is of interface {abi}, the library of {ASP_ABI}")));
         }
         let sizes = array(sizes, count as usize, STRUCTS.len(), "sizes")?;
-        for (size, (name, own)) in sizes.iter().zip(STRUCTS) {
-            if *size as usize != own {
+        for (size, (name, ages)) in sizes.iter().zip(STRUCTS) {
+            if let Some(own) = ages.last().filter(|_| !ages.contains(size)) {
                 return Err(mismatch(format!("{name} has {size} bytes in the header, {own} in the library")));
             }
         }

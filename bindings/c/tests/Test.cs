@@ -37,10 +37,9 @@ static class Test
             sizes[i] -= 8;
         }
         // Fields lie where the library has them: defaults that it writes are found again.
-        Event e;
-        Native.asp_event_init(out e);
+        var e = Event.New();
         Must(e.Actuator == -1 && double.IsNaN(e.U) && double.IsNaN(e.Importance) && e.MassKg == 0.004 && e.RadiusM == 0.005 && e.Restitution == 1 &&
-             double.IsNaN(e.StrikerDensityKgM3), "the fields of an event");
+             double.IsNaN(e.StrikerDensityKgM3) && double.IsNaN(e.SlipMS) && double.IsNaN(e.RollRadiusM), "the fields of an event");
         NativeSurface s;
         Native.asp_surface_init(out s);
         Must(double.IsNaN(s.WidthM) && s.RoughnessMap.Channels == 1 && double.IsNaN(s.ComplianceMN) && s.Table == IntPtr.Zero, "the fields of a surface");
@@ -80,6 +79,11 @@ static class Test
                         Must(pcm[i] == block[2 * i + 1], "the port gives the samples of the channel");
                     }
                 }
+                double full, gain, strike;
+                full = scene.LevelOf(Level.FullScale, 1); gain = scene.LevelOf(Level.BusGain, 0); strike = scene.LevelOf(Level.StrikeGain, plate);
+                Must(full == 1e-4 && gain == 1 && strike == 1, "levels: " + full + ", " + gain + ", " + strike);
+                ulong soft = scene.Add(new Body { Stock = "bar", SizeM = 0.2, StrikeGain = 0.25 });
+                Must(scene.LevelOf(Level.StrikeGain, soft) == 0.25, "a body's own gain of strikes");
                 Must(heard > 1e-4 && felt > 1e-4, "the stroke is heard and felt: " + heard + ", " + felt);
                 Must(scene.Stats().MicroCollisions > 0 && scene.Stats().Impacts == 1 && scene.WhySilent() == "", scene.WhySilent());
                 string refusal;

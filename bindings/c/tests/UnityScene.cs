@@ -45,6 +45,34 @@ static class UnityScene
         Must(struck > 2f * stroked && struck <= 1f, "a blow is heard: " + struck + " beside " + stroked);
         Must(world.Scene.Stats().Impacts == 1 && world.Scene.Stats().Refused == 0 && Debug.Warned == "", "nothing is refused");
 
+        // A ball of 2 cm that slides over the plate at 0.5 m/s, and one that rolls: softer, and each ends where it leaves.
+        Physics.Ground = null;
+        Second(step => { });
+        var moving = new GameObject("Marble");
+        var marble = moving.AddComponent<Rigidbody>();
+        var slider = moving.AddComponent<AsperitySlider>();
+        var heard = new float[2];
+        for (int rolls = 0; rolls < 2; rolls++)
+        {
+            slider.RollRadiusM = 0.01f;
+            marble.Velocity = new Vector3(0.5f, 0, 0);
+            marble.Spin = new Vector3(0, 0, -50f * rolls);
+            var on = new Collision { collider = plate.GetComponent<Collider>(), impulse = new Vector3(0, 0.02f, 0) };
+            heard[rolls] = Second(step =>
+            {
+                on.Point = new Vector3(0.01f * step, 0.01f, 0);
+                marble.Centre = on.Point + new Vector3(0, 0.01f, 0);
+                Messages.Send(slider, "OnCollisionStay", on);
+            });
+            Must(world.Scene.Stats().Contacts == 1, "it touches");
+            Messages.Send(slider, "OnCollisionExit", on);
+            Second(step => { });
+            Must(world.Scene.Stats().Contacts == 0, "it has left");
+        }
+        Must(heard[1] > 1e-6f && heard[1] < 0.7f * heard[0], "what rolls is softer than what slides: " + heard[1] + " beside " + heard[0]);
+        Must(world.Scene.Stats().Refused == 0 && Debug.Warned == "", "nothing is refused");
+        Physics.Ground = plate.GetComponent<Collider>();
+
         // With a mixer the world leaves its own object silent and tells the effect which engine is its.
         var mixer = new UnityEngine.Audio.AudioMixer();
         mixer.Exposed["AsperityEngine"] = 0f;

@@ -2,6 +2,8 @@
 #ifndef COMMON_H
 #define COMMON_H
 #include <asperity.h>
+/* Twice, as through two headers of a program. */
+#include <asperity.h>
 
 #include <stdio.h>
 #include <stdlib.h>

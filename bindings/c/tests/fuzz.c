@@ -33,7 +33,10 @@ static const char *text(void) {
     return texts[rnd(sizeof texts / sizeof *texts)];
 }
 
-static uint32_t size_of(size_t right) { return rnd(8) ? (uint32_t)right : (rnd(2) ? rnd(300) : UINT32_MAX - rnd(3)); }
+static uint32_t size_of(size_t right) {
+    /* The right one, that of an older header, where the struct has grown, or nonsense. */
+    return rnd(8) ? (uint32_t)right : (rnd(3) ? (uint32_t)right - 8 * rnd(3) : rnd(2) ? rnd(300) : UINT32_MAX - rnd(3));
+}
 
 #define POOL 8
 static asp_scene *scenes[POOL];
@@ -127,7 +130,7 @@ static void body_or_surface(void) {
             body.stock = rnd(5) ? "bar" : text(), body.size_m = rnd(3) ? 0.2 : number();
         else
             body.modes_json = text();
-        body.table = rnd(4) ? NULL : text(), body.files = rnd(2) ? &files : NULL;
+        body.table = rnd(4) ? NULL : text(), body.files = rnd(2) ? &files : NULL, body.strike_gain = rnd(3) ? NAN : number();
         told(rnd(3) ? asp_add_body(scene(), &body, to) : asp_replace_body(scene(), id(), &body));
         return;
     }
@@ -165,6 +168,8 @@ static void report(void) {
             e->direction[0] = number(), e->direction[1] = number(), e->direction[2] = number();
         if (rnd(4) == 0)
             e->gain = number(), e->importance = number();
+        if (rnd(4) == 0)
+            e->slip_m_s = number(), e->roll_radius_m = rnd(2) ? NAN : number();
         if (rnd(3) == 0)
             e->speed_m_s = number(), e->mass_kg = number(), e->radius_m = number(), e->restitution = number();
         if (rnd(9) == 0)
@@ -241,9 +246,10 @@ static void rest(void) {
     uint64_t to;
     char words[200];
     float peaks[64];
+    double number_;
     asp_stats stats;
     asp_stats_init(&stats);
-    switch (rnd(22)) {
+    switch (rnd(23)) {
     case 0: told(asp_remove_body(scene(), id())); break;
     case 1: told(asp_remove_surface(scene(), id())); break;
     case 2: told(asp_set_body_bus(scene(), id(), rnd(4))); break;
@@ -265,6 +271,7 @@ static void rest(void) {
     case 18: told(asp_collect(scene(), &n)); break;
     case 19: told(asp_set_sample_rate(scene(), renderer(), rnd(2) ? 48000 : number() * 1e5)); break;
     case 20: told(asp_signals(renderer(), &n, &n, NULL, rnd(2) ? &n : NULL)), told(asp_unity_slot(renderer(), &n)); break;
+    case 21: told(asp_get_level(scene(), rnd(5), rnd(2) ? rnd(4) : id(), rnd(9) ? &number_ : NULL)); break;
     default: {
         asp_event events[4];
         double times_s[4];

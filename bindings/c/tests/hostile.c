@@ -70,6 +70,7 @@ static void nulls(void) {
     asp_body_init(&body), asp_surface_init(&surface), asp_event_init(&event), asp_stats_init(&stats);
     asp_port_config_init(&port);
     asp_config_init(NULL), asp_files_init(NULL), asp_body_init(NULL), asp_surface_init(NULL), asp_event_init(NULL);
+    asp_init_event(NULL, sizeof event), asp_init_stats(NULL, 0), asp_init_body(NULL, UINT32_MAX);
     asp_stats_init(NULL), asp_port_config_init(NULL), asp_player_config_init(NULL), asp_player_report_init(NULL);
     uint64_t id;
     uint32_t number;
@@ -126,6 +127,9 @@ static void nulls(void) {
     REFUSED(asp_set_time_scale(NULL, 1), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_haptic_gain(NULL, 0, 1), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_bus_gain(NULL, 0, 1), ASP_BAD_HANDLE, "scene");
+    double level;
+    REFUSED(asp_get_level(NULL, ASP_LEVEL_BUS_GAIN, 0, &level), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_get_level(scene, ASP_LEVEL_BUS_GAIN, 0, NULL), ASP_BAD_ARGUMENT, "level");
     REFUSED(asp_set_muted(NULL, 1), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_paused(NULL, 1), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_fade_all(NULL), ASP_BAD_HANDLE, "scene");
@@ -173,6 +177,11 @@ static void sizes(void) {
         REFUSED(asp_report(scene, 0, &event, 1, wrong[i], NULL), ASP_BAD_ARGUMENT, "sizeof(asp_event)");
         event.struct_size = wrong[i];
         REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_BAD_ARGUMENT, "struct_size");
+        /* Nothing is written into what never was. */
+        asp_event untouched;
+        memset(&untouched, 0x55, sizeof untouched);
+        asp_init_event(&untouched, wrong[i]);
+        MUST(untouched.struct_size == 0x55555555 && untouched.contact == 0x5555555555555555);
         uint32_t bad[1] = {wrong[i]};
         REFUSED(asp_check_abi(ASP_ABI, bad, 1), ASP_ABI_MISMATCH, "asp_config");
     }
@@ -250,7 +259,11 @@ static void ids_and_numbers(void) {
     REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "uv");
     event.uv[0] = 0, event.kind = 9;
     REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_BAD_ARGUMENT, "kind");
-    event.kind = ASP_BEGIN, event.depth_m = 0.001;
+    event.kind = ASP_BEGIN, event.slip_m_s = -1;
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "slip_m_s");
+    event = asp_rolling(event, 11, 0);
+    REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "roll_radius_m");
+    event.slip_m_s = event.roll_radius_m = NAN, event.depth_m = 0.001;
     REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "depth_m");
     event = asp_impact(body2, 1, 0.01, 0.005), event.striker = 99;
     REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "material");
@@ -283,6 +296,15 @@ static void ids_and_numbers(void) {
     REFUSED(asp_set_haptic_gain(scene, 70000, 1), ASP_UNKNOWN, "channel");
     REFUSED(asp_set_haptic_gain(scene, 0, NAN), ASP_REFUSED, "gain");
     REFUSED(asp_set_bus_gain(scene, 5, 1), ASP_UNKNOWN, "bus");
+    double level;
+    REFUSED(asp_get_level(scene, 0, 0, &level), ASP_BAD_ARGUMENT, "ASP_LEVEL_FULL_SCALE");
+    REFUSED(asp_get_level(scene, ASP_LEVEL_FULL_SCALE, 9, &level), ASP_UNKNOWN, "haptic channel");
+    REFUSED(asp_get_level(scene, ASP_LEVEL_BUS_GAIN, UINT64_MAX, &level), ASP_UNKNOWN, "audio bus");
+    REFUSED(asp_get_level(scene, ASP_LEVEL_STRIKE_GAIN, body, &level), ASP_UNKNOWN, "body");
+    asp_body loud;
+    asp_body_init(&loud);
+    loud.stock = "bar", loud.size_m = 0.2, loud.strike_gain = 1e9;
+    REFUSED(asp_add_body(scene, &loud, &id), ASP_REFUSED, "strike_gain");
     REFUSED(asp_set_time_scale(scene, -1), ASP_REFUSED, "time_scale");
     REFUSED(asp_set_sample_rate(scene, renderer, NAN), ASP_REFUSED, "sample_rate_hz");
     asp_body wrong;

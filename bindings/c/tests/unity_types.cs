@@ -66,6 +66,7 @@ namespace UnityEngine
         public float magnitude { get { return (float)Math.Sqrt(Dot(this, this)); } }
         public static float Dot(Vector3 a, Vector3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
         public static Vector3 operator *(Vector3 a, float b) { return new Vector3(a.x * b, a.y * b, a.z * b); }
+        public static Vector3 operator -(Vector3 a, Vector3 b) { return a + b * -1; }
         public static Vector3 operator +(Vector3 a, Vector3 b) { return new Vector3(a.x + b.x, a.y + b.y, a.z + b.z); }
     }
     public struct Vector2
@@ -85,13 +86,25 @@ namespace UnityEngine
     public static class Time
     {
         public static double fixedTimeAsDouble;
+        public static float fixedDeltaTime { get { return 0.02f; } }
         public static float fixedTime { get { return (float)fixedTimeAsDouble; } }
     }
     public static class Debug { public static string Warned = ""; public static void LogWarning(object what) { Warned += what + "\n"; } }
     public static class AudioSettings { public static int outputSampleRate { get { return 48000; } } }
     public class AudioSource : Behaviour { }
     public class AudioListener : Behaviour { }
-    public class Rigidbody : Component { public float mass; }
+    /// <summary>A ball about Centre that moves and spins.</summary>
+    public class Rigidbody : Component
+    {
+        public float mass;
+        public Vector3 Centre, Velocity, Spin;
+        public Vector3 worldCenterOfMass { get { return Centre; } }
+        public Vector3 GetPointVelocity(Vector3 at)
+        {
+            var r = at - Centre;
+            return Velocity + new Vector3(Spin.y * r.z - Spin.z * r.y, Spin.z * r.x - Spin.x * r.z, Spin.x * r.y - Spin.y * r.x);
+        }
+    }
     public class Collider : Component { }
     public class MeshCollider : Collider { }
     public struct RaycastHit
@@ -112,15 +125,19 @@ namespace UnityEngine
             return Ground != null && along.y < 0 && from.y > Top && hit.distance <= reach;
         }
     }
-    public struct ContactPoint { public Vector3 normal { get { return new Vector3(0, 1, 0); } } }
+    public struct ContactPoint { public Vector3 point { get; set; } public Vector3 normal { get { return new Vector3(0, 1, 0); } } }
     public class Collision
     {
         public Vector3 impulse { get; set; }
         public Vector3 relativeVelocity { get; set; }
-        public ContactPoint GetContact(int index) { return new ContactPoint(); }
+        public Collider collider { get; set; }
+        public Rigidbody rigidbody { get { return null; } }
+        public Vector3 Point;
+        public ContactPoint GetContact(int index) { return new ContactPoint { point = Point }; }
     }
     public class TextAsset : Object { public string text { get { return ""; } } }
     [AttributeUsage(AttributeTargets.Field)] public class TooltipAttribute : Attribute { public TooltipAttribute(string words) { } }
+    [AttributeUsage(AttributeTargets.Class)] public class RequireComponent : Attribute { public RequireComponent(Type type) { } }
     [AttributeUsage(AttributeTargets.Field)] public class TextAreaAttribute : Attribute { }
     [AttributeUsage(AttributeTargets.Class)] public class DefaultExecutionOrderAttribute : Attribute { public DefaultExecutionOrderAttribute(int order) { } }
 }

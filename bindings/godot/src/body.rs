@@ -2,7 +2,7 @@
 
 use crate::res_files::ResFiles;
 use crate::surface::{AsperitySurface, table_of, written};
-use crate::world::AsperityWorld;
+use crate::world::{AsperityWorld, BODIES};
 use godot::classes::INode3D;
 use godot::prelude::*;
 use toml::Value;
@@ -31,6 +31,10 @@ pub struct AsperityBody {
     #[export]
     #[init(val = 1.0)]
     gain: f64,
+    /// How loud blows are beside strokes, linear, 0 to 1000; 1: as mechanics says. Below 0: as `table` says, or as the world's scene file has it.
+    #[export]
+    #[init(val = -1.0)]
+    strike_gain: f64,
     /// Audio bus of the world, from 0.
     #[export]
     bus: i64,
@@ -41,6 +45,8 @@ pub struct AsperityBody {
     #[export]
     surface: Option<Gd<AsperitySurface>>,
     world: Option<Gd<AsperityWorld>>,
+    /// Which of the world's engines the ids belong to.
+    build: u64,
     body_id: i64,
     surface_id: i64,
     base: Base<Node3D>,
@@ -49,6 +55,7 @@ pub struct AsperityBody {
 #[godot_api]
 impl INode3D for AsperityBody {
     fn ready(&mut self) {
+        self.base_mut().add_to_group(BODIES);
         self.join();
     }
 
@@ -58,7 +65,10 @@ impl INode3D for AsperityBody {
         self.base_mut().request_ready();
         // A world that is freed with the scene has taken everything along.
         let Some(mut world) = self.world.take().filter(Gd::is_instance_valid) else { return };
-        world.bind_mut().leave(body, surface);
+        let mut held = world.bind_mut();
+        if held.builds() == self.build {
+            held.leave(body, surface);
+        }
     }
 }
 
@@ -93,22 +103,34 @@ impl AsperityBody {
             godot_error!("AsperityBody: there is no AsperityWorld in the tree; add one");
             return;
         };
+        let id = world.instance_id();
+        self.join_in(&mut world.bind_mut(), id);
+    }
+
+    /// Whether the world of that instance is the one to join, once it is built.
+    pub(crate) fn waits_for(&self, world: InstanceId) -> bool {
+        self.world.as_ref().is_none_or(|mine| !mine.is_instance_valid() || mine.instance_id() == world)
+    }
+
+    /// Joins the engine that the world has now; `id` is the world's instance.
+    pub(crate) fn join_in(&mut self, world: &mut AsperityWorld, id: InstanceId) {
         let name = self.base().get_name().to_string();
+        self.surface_id = 0;
+        self.body_id = world.join_body(self, &name);
+        if self.body_id != 0
+            && let Some(surface) = self.surface.clone()
         {
-            let mut held = world.bind_mut();
-            self.body_id = held.join_body(self, &name);
-            if self.body_id != 0
-                && let Some(surface) = self.surface.clone()
-            {
-                self.surface_id = held.join_surface(&surface, self.body_id, &name);
-            }
+            self.surface_id = world.join_surface(&surface, self.body_id, &name);
         }
-        self.world = Some(world);
+        (self.build, self.world) = (world.builds(), Some(Gd::from_instance_id(id)));
     }
 
     /// The keys of a scene file's `[[body]]`, and where its files lie.
     pub(crate) fn told(&self, name: &str) -> Result<(String, ResFiles, usize, f64), String> {
         let mut table = table_of(&self.table.to_string())?;
+        if self.strike_gain >= 0.0 {
+            table.insert("strike_gain".into(), Value::Float(self.strike_gain));
+        }
         let mut say = |key: &str, text: &GString| {
             if !text.is_empty() {
                 table.insert(key.into(), Value::String(text.to_string()));

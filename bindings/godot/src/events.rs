@@ -19,12 +19,35 @@ pub(crate) fn channel(number: i64) -> Result<Option<Actuator>, String> {
     }
 }
 
+/// What a script leaves out.
+pub(crate) const NOT_TOLD: f64 = f64::NAN;
+
+/// How much of a contact's motion is slip, m/s, and the radius of what rolls, m; not told: it is a stroke, with the probe's tip.
+#[derive(Clone, Copy)]
+pub(crate) struct Rolling {
+    pub slip_m_s: f64,
+    pub radius_m: f64,
+}
+
+impl Rolling {
+    /// A stroke.
+    pub(crate) const NONE: Self = Self { slip_m_s: NOT_TOLD, radius_m: NOT_TOLD };
+}
+
 /// A contact at a place, pressed by so many newtons; how fast it moves, the engine finds out unless it is told.
-pub(crate) fn sample(uv: Vector2, force_n: f64, velocity_m_s: Option<Vector2>) -> ContactSample {
+pub(crate) fn sample(
+    uv: Vector2,
+    force_n: f64,
+    velocity_m_s: Option<Vector2>,
+    rolling: Rolling,
+) -> ContactSample {
+    let told = |number: f64| Some(number).filter(|number| !number.is_nan());
     ContactSample {
         uv: [f64::from(uv.x), f64::from(uv.y)],
         velocity_m_s: velocity_m_s.map(|v| [f64::from(v.x), f64::from(v.y)]),
         normal_force_n: force_n,
+        slip_m_s: told(rolling.slip_m_s),
+        roll_radius_m: told(rolling.radius_m),
         ..ContactSample::default()
     }
 }

@@ -1,6 +1,7 @@
 //! `AsperityFinger3D`: touches the meshes of a scene.
 
 use crate::body::AsperityBody;
+use crate::events::Rolling;
 use crate::triangles::Triangles;
 use crate::world::AsperityWorld;
 use godot::classes::{INode3D, Mesh, MeshInstance3D, PhysicsRayQueryParameters3D};
@@ -33,6 +34,8 @@ pub struct AsperityFinger3D {
     /// The surface that is touched, and by which world; 0: none.
     touched: i64,
     world: Option<Gd<AsperityWorld>>,
+    /// Which of the world's engines it touches in.
+    build: u64,
     mesh: Option<Gd<Mesh>>,
     triangles: Triangles,
     base: Base<Node3D>,
@@ -85,11 +88,20 @@ impl AsperityFinger3D {
 
     fn touch(&mut self, mut world: Gd<AsperityWorld>, surface: i64, uv: Vector2) {
         let contact = self.contact();
-        if self.touched == surface && world.bind_mut().report_move(contact, uv, self.force_n) {
+        let builds = world.bind().builds();
+        if self.build != builds {
+            // Of an engine that is gone nothing is left to be lifted from.
+            (self.touched, self.build) = (0, builds);
+        }
+        let Rolling { slip_m_s, radius_m } = Rolling::NONE;
+        if self.touched == surface
+            && world.bind_mut().report_move(contact, uv, self.force_n, slip_m_s, radius_m)
+        {
             return;
         }
         self.lift();
-        if world.bind_mut().report_begin(contact, surface, uv, self.force_n, self.channel) {
+        let (force_n, channel) = (self.force_n, self.channel);
+        if world.bind_mut().report_begin(contact, surface, uv, force_n, channel, slip_m_s, radius_m) {
             self.touched = surface;
         }
     }
@@ -99,7 +111,9 @@ impl AsperityFinger3D {
             return;
         }
         let contact = self.contact();
-        if let Some(world) = self.world.as_mut().filter(|world| world.is_instance_valid()) {
+        if let Some(world) = self.world.as_mut().filter(|world| world.is_instance_valid())
+            && world.bind().builds() == self.build
+        {
             world.bind_mut().report_end(contact);
         }
     }

@@ -1,7 +1,7 @@
 //! `AsperityWorld`: the engine of a scene tree.
 
 use crate::body::AsperityBody;
-use crate::events;
+use crate::events::{self, Rolling};
 use crate::haptic_stream::AsperityHapticStream;
 use crate::res_files::ResFiles;
 use crate::stream::{AsperityStream, MOST_CHANNELS};
@@ -18,6 +18,8 @@ use std::path::Path;
 
 /// The group by which bodies and fingers find their world.
 const GROUP: &str = "asperity_world";
+/// The group by which a world that is built finds the bodies that are in the tree already.
+pub(crate) const BODIES: &str = "asperity_bodies";
 
 /// How far a stamp may lead the audio, s: Godot catches up with up to 8 physics ticks in one frame, 133 ms at 60 Hz.
 const CLOCK: ClockMode = ClockMode::Live { max_lead_s: 0.2 };
@@ -54,6 +56,10 @@ pub struct AsperityWorld {
     haptic_bus: StringName,
     running: Option<Running>,
     stream: Option<Gd<AsperityStream>>,
+    /// The players that it made for its buses.
+    players: Vec<Gd<AudioStreamPlayer>>,
+    /// How often it was built: ids of before belong to no engine any more.
+    builds: u64,
     latency_frames: usize,
     time_s: f64,
     error: String,
@@ -72,17 +78,7 @@ impl INode for AsperityWorld {
     }
 
     fn ready(&mut self) {
-        if self.running.is_none() {
-            return;
-        }
-        if let Some(stream) = self.stream.clone().filter(|_| !self.audio_bus.is_empty()) {
-            self.play(&stream.upcast(), &self.audio_bus.clone());
-        }
-        if !self.haptic_bus.is_empty()
-            && let Some(stream) = self.haptic_stream(0, 1)
-        {
-            self.play(&stream.upcast(), &self.haptic_bus.clone());
-        }
+        self.play_all();
     }
 
     fn physics_process(&mut self, delta: f64) {
@@ -95,11 +91,17 @@ impl INode for AsperityWorld {
 
 #[godot_api]
 impl AsperityWorld {
-    /// Opens the engine anew, at the audio server's rate; ids of before are no longer known. False, and an error, where it cannot.
+    /// Opens the engine anew, at the audio server's rate. Bodies in the tree join it and the world's own buses play it; ids and streams of
+    /// before are no longer known, and silent. False, and an error, where it cannot.
     #[func]
     fn build(&mut self) -> bool {
         self.running = None;
         self.stream = None;
+        self.builds += 1;
+        for mut player in self.players.drain(..) {
+            player.stop();
+            player.queue_free();
+        }
         let made = self.open(true);
         let Some(engine) = self.said("build", made) else { return false };
         let Engine { scene, renderer, names, workers, .. } = engine;
@@ -115,6 +117,10 @@ impl AsperityWorld {
         self.stream = Some(stream);
         self.running =
             Some(Running { scene, names, sand: workers.into_iter().map(SandWorker::spawn).collect() });
+        self.take_in_bodies();
+        if self.base().is_node_ready() {
+            self.play_all();
+        }
         true
     }
 
@@ -183,7 +189,8 @@ impl AsperityWorld {
     }
 
     /// A contact begins: a number of your own, the surface, where (uv), how hard (N), which haptic channel feels it (-1: none). Report once a
-    /// physics tick; the time is the tick's. False, and an error, where it is refused.
+    /// physics tick; the time is the tick's. What rolls tells with every report how fast it slips where it touches, m/s (0: it only rolls), and
+    /// its radius, m; left out, it is a stroke. False, and an error, where it is refused.
     #[func]
     pub(crate) fn report_begin(
         &mut self,
@@ -192,30 +199,46 @@ impl AsperityWorld {
         uv: Vector2,
         force_n: f64,
         channel: i64,
+        #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
+        #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
     ) -> bool {
         self.report("report_begin", || {
             let touching = events::touching(surface, channel)?;
-            Ok(ContactEvent::begin_with(
-                events::contact(contact)?,
-                touching,
-                events::sample(uv, force_n, None),
-            ))
+            let sample = events::sample(uv, force_n, None, Rolling { slip_m_s, radius_m: roll_radius_m });
+            Ok(ContactEvent::begin_with(events::contact(contact)?, touching, sample))
         })
     }
 
-    /// A contact has moved.
+    /// A contact has moved; what rolls tells it as in `report_begin`.
     #[func]
-    pub(crate) fn report_move(&mut self, contact: i64, uv: Vector2, force_n: f64) -> bool {
+    pub(crate) fn report_move(
+        &mut self,
+        contact: i64,
+        uv: Vector2,
+        force_n: f64,
+        #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
+        #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
+    ) -> bool {
         self.report("report_move", || {
-            Ok(ContactEvent::moved(events::contact(contact)?, events::sample(uv, force_n, None)))
+            let sample = events::sample(uv, force_n, None, Rolling { slip_m_s, radius_m: roll_radius_m });
+            Ok(ContactEvent::moved(events::contact(contact)?, sample))
         })
     }
 
-    /// A contact has moved at a velocity that is known, m/s along u and v.
+    /// A contact has moved at a velocity that is known, m/s along u and v; what rolls tells it as in `report_begin`.
     #[func]
-    fn report_move_at(&mut self, contact: i64, uv: Vector2, force_n: f64, velocity_m_s: Vector2) -> bool {
+    fn report_move_at(
+        &mut self,
+        contact: i64,
+        uv: Vector2,
+        force_n: f64,
+        velocity_m_s: Vector2,
+        #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
+        #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
+    ) -> bool {
         self.report("report_move_at", || {
-            let sample = events::sample(uv, force_n, Some(velocity_m_s));
+            let rolling = Rolling { slip_m_s, radius_m: roll_radius_m };
+            let sample = events::sample(uv, force_n, Some(velocity_m_s), rolling);
             Ok(ContactEvent::moved(events::contact(contact)?, sample))
         })
     }
@@ -243,7 +266,8 @@ impl AsperityWorld {
         })
     }
 
-    /// What has happened so far; `clock_jumps` and `refused` should be 0. `why_silent` says what speaks against anything being heard.
+    /// What has happened so far; `clock_jumps` and `refused` should be 0. `limiter_db` is by how much limiters have turned down at most;
+    /// `why_silent` says what speaks against anything being heard.
     #[func]
     fn stats(&self) -> VarDictionary {
         let mut told = VarDictionary::new();
@@ -255,6 +279,8 @@ impl AsperityWorld {
             ("late", stats.late),
             ("clock_jumps", stats.clock_jumps),
             ("refused", stats.refused),
+            ("contacts", stats.contacts),
+            ("limiter_db", stats.limiter_db),
         ] {
             told.set(name, count as i64);
         }
@@ -309,12 +335,49 @@ impl AsperityWorld {
         Engine::from_scene(&file, &overrides).map_err(|error| error.to_string())
     }
 
+    /// How often it was built.
+    pub(crate) fn builds(&self) -> u64 {
+        self.builds
+    }
+
+    /// Bodies of the tree that were here before the engine was.
+    fn take_in_bodies(&mut self) {
+        if !self.base().is_inside_tree() {
+            return;
+        }
+        let me = self.base().instance_id();
+        for node in self.base().get_tree().get_nodes_in_group(BODIES).iter_shared() {
+            if let Ok(mut body) = node.try_cast::<AsperityBody>()
+                && body.is_node_ready()
+                && body.bind().waits_for(me)
+            {
+                body.bind_mut().join_in(self, me);
+            }
+        }
+    }
+
+    /// Lets its buses sound and vibrate.
+    fn play_all(&mut self) {
+        if self.running.is_none() {
+            return;
+        }
+        if let Some(stream) = self.stream.clone().filter(|_| !self.audio_bus.is_empty()) {
+            self.play(&stream.upcast(), &self.audio_bus.clone());
+        }
+        if !self.haptic_bus.is_empty()
+            && let Some(stream) = self.haptic_stream(0, 1)
+        {
+            self.play(&stream.upcast(), &self.haptic_bus.clone());
+        }
+    }
+
     fn play(&mut self, stream: &Gd<godot::classes::AudioStream>, bus: &StringName) {
         let mut player = AudioStreamPlayer::new_alloc();
         player.set_stream(stream);
         player.set_bus(bus);
         self.base_mut().add_child(&player);
         player.play();
+        self.players.push(player);
     }
 
     /// Puts a body into the scene; 0 where it is refused.

@@ -64,7 +64,7 @@ pub fn open(
     kernel: Option<&str>,
     integrator: Option<&str>,
     live: bool,
-) -> PyResult<(LiveScene, LiveRenderer, Vec<f64>, Vec<f64>)> {
+) -> PyResult<(LiveScene, LiveRenderer, Vec<f64>, Vec<f64>, Vec<f64>)> {
     let (kernel, integrator) = (sources::kernel(kernel)?, sources::integrator(integrator)?);
     let sources = Sources::of(files)?;
     let engine = py.detach(|| {
@@ -93,7 +93,8 @@ pub fn open(
     };
     let sand = workers.into_iter().map(SandWorker::spawn).collect();
     let game = Game { scene, names, _sand: sand };
-    Ok((LiveScene { inner: Mutex::new(game) }, half, levels.full_scale, levels.gain))
+    let game = LiveScene { inner: Mutex::new(game) };
+    Ok((game, half, levels.full_scale, levels.gain, levels.strike_gain))
 }
 
 /// A half that another thread holds is told so at once: waiting here could wait for the GIL.

@@ -10,6 +10,7 @@ use asperity::files::scene_file::SceneFile;
 use asperity::files::{FileError, Files};
 use asperity::offline::{self, Options, Render};
 use asperity::open::Overrides;
+use asperity::open::levels::Levels;
 use asperity::{Engine, SilentBecause};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -35,7 +36,7 @@ struct Wanted<'a> {
 struct Made {
     render: Render,
     kernel: &'static str,
-    levels: (Vec<f64>, Vec<f64>),
+    levels: Levels,
     surfaces: Vec<(String, asperity::SurfaceId)>,
     unread: Vec<String>,
     watch: Watch,
@@ -102,7 +103,7 @@ fn made(wanted: &Wanted<'_>, pulse: Pulse) -> PyResult<Made> {
     check_length(&name, (log.end_s() + file.tail_s) * rate_hz, channels, rate_hz)?;
     check_force_rate(wanted.force_rate_hz, rate_hz)?;
     let kernel = engine.renderer.kernel().name();
-    let levels = (engine.levels.full_scale.clone(), engine.levels.gain.clone());
+    let levels = engine.levels.clone();
     let surfaces = engine.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
     let mut watch = Watch::new(pulse, wanted.trace, wanted.force_rate_hz, rate_hz);
     let options = Options { block_frames: wanted.block_frames, tail_s: file.tail_s, clock_s: None };
@@ -161,8 +162,9 @@ fn in_python(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
     let result = PyDict::new(py);
     result.set_item("sr", render.sample_rate_hz)?;
     result.set_item("kernel", kernel)?;
-    result.set_item("full_scale", levels.0)?;
-    result.set_item("gain", levels.1)?;
+    result.set_item("full_scale", levels.full_scale)?;
+    result.set_item("gain", levels.gain)?;
+    result.set_item("strike_gain", levels.strike_gain)?;
     result.set_item("limiter_db", render.limiter_db)?;
     result.set_item("stats", serde_json::to_string(&render.stats).map_err(refused)?)?;
     let in_words = |reason: &SilentBecause| match (reason, render.first_refused) {

@@ -91,6 +91,7 @@ def test_contacts_come_back_from_a_log_as_they_were(tmp_path):
     rows["contact"] = 2**63
     rows["uv"][:2], rows["normal_force_n"][:2] = [[0.1, 0.2], [0.3, 0.1 + 0.2]], [0.5, 1 / 7]
     rows["surface"][0], rows["actuator"][0], rows["body"][2] = "plate", 0, "tile"
+    rows["slip_m_s"][:2], rows["roll_radius_m"][:2] = [0.0, 0.05], [np.nan, 0.008]
     for key, value in {"speed_m_s": 0.5, "mass_kg": 0.01, "radius_m": 0.005, "restitution": 0.7}.items():
         rows[key][2] = value
     rows["striker"][2] = "steel"
@@ -100,6 +101,22 @@ def test_contacts_come_back_from_a_log_as_they_were(tmp_path):
     assert back.dtype == rows.dtype
     for name in rows.dtype.names:
         np.testing.assert_array_equal(back[name], rows[name], err_msg=name)
+
+
+def test_what_rolls_is_softer_than_what_slides_and_strikes_have_a_level_of_their_own(heights_m):
+    surface = asp.Surface(heights_m, 0.14, name="top").on(asp.Body.stock("plate", 0.14, "glass"))
+    rows = asp.contacts.stroke(speed=0.2, duration=0.5, extent=surface.extent, surface="top")
+    scene = asp.SceneFile(surface, actuators=[{"full_scale": 1e-4}])
+    slides = asp.render(scene, rows)
+    rows["slip_m_s"], rows["roll_radius_m"] = 0.0, 0.008
+    rolls = asp.render(scene, rows)
+    assert 1e-6 < rms(rolls.audio) < 0.7 * rms(slides.audio)
+    # The level policy turns strikes down beside strokes, and the result says by how much.
+    (strike_gain,) = slides.stats["strike_gain"]
+    assert 0.0 < strike_gain < 0.5
+    loud = asp.Body(None, "glass", keys={"stock": "plate", "size_m": 0.14, "strike_gain": 1.0})
+    assert asp.stroke(surface.on(loud), duration=0.1).stats["strike_gain"] == [1.0]
+    assert asp.Scene(scene).strike_gain == [strike_gain]
 
 
 def test_dictionaries_and_arrays_and_files_render_alike(heights_m, tmp_path):

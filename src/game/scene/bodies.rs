@@ -43,6 +43,14 @@ impl Scene {
         Ok(())
     }
 
+    /// How loud impacts on a body are beside strokes, whether its own [`Body::strike_gain`], the scene file or the level policy has said it.
+    ///
+    /// # Errors
+    /// When the body is not in this scene.
+    pub fn strike_gain_of(&self, id: BodyId) -> Result<f64, AddError> {
+        self.given.get(&id).map(|body| body.strike_gain).ok_or(AddError::Unknown("body"))
+    }
+
     /// Lets a body sound on another bus from now on, without a click.
     ///
     /// # Errors

@@ -23,6 +23,8 @@ namespace Asperity
     public enum Format : uint { U8 = 0, U16 = 1, F32 = 2 }
     public enum PortKind : uint { Pcm = 1, Points = 2, Levels = 3, Forces = 4 }
     public enum Feed : uint { Haptic = 0, Bus = 1 }
+    /// <summary>m or m/s2 at sample value 1 of a haptic channel; gain of a bus; gain of impacts on a body.</summary>
+    public enum Level : uint { FullScale = 1, BusGain = 2, StrikeGain = 3 }
     public enum Material : uint
     {
         Default = 0, Steel, Iron, Aluminium, Brass, Copper, Glass, Ceramic, Stone, Concrete, Brick, Wood, Softwood, Pla, Plastic, Acrylic, Rubber,
@@ -56,7 +58,7 @@ namespace Asperity
     {
         public uint StructSize; public Material Material; public uint Bus; public uint ModeCount; public double Gain;
         public IntPtr Name; public IntPtr Stock; public double SizeM; public IntPtr Modes; public double ImpulseNS;
-        public IntPtr ModesJson; public IntPtr Table; public IntPtr Files;
+        public IntPtr ModesJson; public IntPtr Table; public IntPtr Files; public double StrikeGain;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -76,6 +78,15 @@ namespace Asperity
         public double U, V, VelocityU, VelocityV, NormalForceN, ClosingMS, DepthM;
         public double AtX, AtY, AtZ, DirectionX, DirectionY, DirectionZ, Gain, Importance;
         public double SpeedMS, MassKg, RadiusM, Restitution, StrikerYoungPa, StrikerPoisson, StrikerDensityKgM3;
+        public double SlipMS, RollRadiusM;
+
+        /// <summary>One that tells nothing yet.</summary>
+        public static Event New()
+        {
+            Event e;
+            Native.asp_init_event(out e, (uint)Marshal.SizeOf(typeof(Event)));
+            return e;
+        }
 
         /// <summary>A contact lands, felt by a haptic channel (-1: by nobody).</summary>
         public static Event Begin(ulong contact, ulong surface, int actuator, double u, double v, double normalForceN)
@@ -87,24 +98,29 @@ namespace Asperity
 
         public static Event Move(ulong contact, double u, double v, double normalForceN)
         {
-            Event e;
-            Native.asp_event_init(out e);
+            var e = New();
             e.Kind = EventKind.Move; e.Contact = contact; e.U = u; e.V = v; e.NormalForceN = normalForceN;
+            return e;
+        }
+
+        /// <summary>The same begin or move of what rolls: its radius, and how fast what touches slides where it touches; 0 = it only rolls.</summary>
+        public Event Rolling(double radiusM, double slipMS = 0)
+        {
+            var e = this;
+            e.RollRadiusM = radiusM; e.SlipMS = slipMS;
             return e;
         }
 
         public static Event End(ulong contact)
         {
-            Event e;
-            Native.asp_event_init(out e);
+            var e = New();
             e.Kind = EventKind.End; e.Contact = contact;
             return e;
         }
 
         public static Event Impact(ulong body, double speedMS, double massKg, double radiusM)
         {
-            Event e;
-            Native.asp_event_init(out e);
+            var e = New();
             e.Kind = EventKind.Impact; e.Body = body; e.SpeedMS = speedMS; e.MassKg = massKg; e.RadiusM = radiusM;
             return e;
         }
@@ -123,7 +139,7 @@ namespace Asperity
     {
         public uint StructSize; public float Load;
         public ulong Position, Events, Impacts, Shortened, ShortenedCollisions, MicroCollisions, Blows, Dropped, Superseded, Orphaned, Stolen, Debounced,
-            Lapsed, Jumps, Unpressed, Refused, Quarantined, Late, ClockJumps, ClockPaces, Ahead, Shed, Contacts;
+            Lapsed, Jumps, Unpressed, Refused, Quarantined, Late, ClockJumps, ClockPaces, Ahead, Shed, Contacts, LimiterDb, RubsCrowdedOut;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -177,7 +193,7 @@ namespace Asperity
         [DllImport(Library, CallingConvention = C)] public static extern int asp_scene_free(IntPtr scene);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_renderer_free(IntPtr renderer);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_port_free(IntPtr port);
-        [DllImport(Library, CallingConvention = C)] public static extern void asp_body_init(out NativeBody body);
+        [DllImport(Library, CallingConvention = C)] public static extern void asp_init_body(out NativeBody body, uint size);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_add_body(IntPtr scene, ref NativeBody body, out ulong id);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_replace_body(IntPtr scene, ulong id, ref NativeBody body);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_remove_body(IntPtr scene, ulong id);
@@ -188,13 +204,14 @@ namespace Asperity
         [DllImport(Library, CallingConvention = C)] public static extern int asp_replace_surface(IntPtr scene, ulong id, ref NativeSurface surface);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_remove_surface(IntPtr scene, ulong id);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_add_probe(IntPtr scene, byte[] table, byte[] name, out ulong id);
-        [DllImport(Library, CallingConvention = C)] public static extern void asp_event_init(out Event e);
+        [DllImport(Library, CallingConvention = C)] public static extern void asp_init_event(out Event e, uint size);
         [DllImport(Library, CallingConvention = C)]
         public static extern int asp_report(IntPtr scene, double timeS, [In] Event[] events, uint count, uint size, out uint taken);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_reset(IntPtr scene);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_time_scale(IntPtr scene, double scale);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_haptic_gain(IntPtr scene, uint channel, double gain);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_bus_gain(IntPtr scene, uint bus, double gain);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_get_level(IntPtr scene, Level kind, ulong of, out double level);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_muted(IntPtr scene, uint muted);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_paused(IntPtr scene, uint paused);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_fade_all(IntPtr scene);
@@ -311,6 +328,8 @@ namespace Asperity
     {
         public string Name, Stock, ModesJson, Table;
         public double SizeM, Gain = 1, ImpulseNS = 1;
+        /// <summary>How loud impacts are beside strokes, 1 = as mechanics says; NaN = as Table, the scene file or its level policy says, else 1.</summary>
+        public double StrikeGain = double.NaN;
         public Material Material;
         public uint Bus;
         public Mode[] Modes;
@@ -320,10 +339,10 @@ namespace Asperity
         internal NativeBody Native(Pins pins)
         {
             NativeBody body;
-            Asperity.Native.asp_body_init(out body);
+            Asperity.Native.asp_init_body(out body, (uint)Marshal.SizeOf(typeof(NativeBody)));
             body.Material = Material; body.Bus = Bus; body.Gain = Gain; body.Name = pins.Of(Name); body.Stock = pins.Of(Stock); body.SizeM = SizeM;
             body.Modes = pins.Of(Modes); body.ModeCount = (uint)(Modes == null ? 0 : Modes.Length); body.ImpulseNS = ImpulseNS;
-            body.ModesJson = pins.Of(ModesJson); body.Table = pins.Of(Table); body.Files = pins.Of(Files);
+            body.ModesJson = pins.Of(ModesJson); body.Table = pins.Of(Table); body.Files = pins.Of(Files); body.StrikeGain = StrikeGain;
             return body;
         }
     }
@@ -496,6 +515,14 @@ namespace Asperity
         public void Reset() { Native.Must(Native.asp_reset(handle)); }
         public void StartRecording() { Native.Must(Native.asp_record_start(handle)); }
         public void StopRecording(string path) { Native.Must(Native.asp_record_stop(handle, Native.Bytes(path))); }
+
+        /// <summary>A level in use: of a haptic channel, a bus, or the id of a body.</summary>
+        public double LevelOf(Level kind, ulong of)
+        {
+            double level;
+            Native.Must(Native.asp_get_level(handle, kind, of, out level));
+            return level;
+        }
 
         public Stats Stats()
         {

@@ -16,6 +16,8 @@ namespace Asperity
         [TextArea] public string SurfaceTable = "";
         [Tooltip("What texture coordinates 0 to 1 span, m")]
         public float UvSizeM = 1f;
+        [Tooltip("How loud blows are beside strokes; 1: as mechanics says; below 0: as the engine has it")]
+        public float StrikeGain = -1f;
         [Tooltip("Weaker collisions are not reported, N s")]
         public float LeastImpulseNS = 1e-4f;
 
@@ -39,12 +41,15 @@ namespace Asperity
             if (world.Scene == scene) return Body != 0;
             scene = world.Scene;
             Body = Surface = 0;
-            var body = new Body { SizeM = SizeM, Material = Made };
+            var body = new Body { SizeM = SizeM, Material = Made, StrikeGain = StrikeGain < 0f ? double.NaN : StrikeGain };
             if (ModesJson != null) body.ModesJson = ModesJson.text; else body.Stock = Stock;
             Body = scene.Add(body);
             Surface = scene.Add(new Surface { WidthM = UvSizeM, HeightM = UvSizeM, Body = Body, Table = SurfaceTable });
             return true;
         }
+
+        /// <summary>Where a place lies on it that knows no texture coordinates: on a plane in the world, u along x and y, v along z.</summary>
+        public Vector2 PlaneUv(Vector3 point) { return new Vector2(point.x + point.y, point.z) / UvSizeM; }
 
         void OnCollisionEnter(Collision collision)
         {

@@ -26,7 +26,7 @@ namespace Asperity
             if (found != touched || world.Scene != scene) Lift(world);
             if (found == null || !found.Join() || found.Surface == 0) return;
             // Mesh colliders know texture coordinates; any other is a plane in the world.
-            uv = hit.collider is MeshCollider ? hit.textureCoord : new Vector2(hit.point.x + hit.point.y, hit.point.z) / found.UvSizeM;
+            uv = hit.collider is MeshCollider ? hit.textureCoord : found.PlaneUv(hit.point);
             double force = StiffnessNM * (ReachM - hit.distance);
             if (touched == null)
             {

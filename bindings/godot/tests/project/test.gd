@@ -32,6 +32,9 @@ func _initialize() -> void:
 	a_normal_map_that_is_none_says_why_it_is_not_felt()
 	await a_finger_feels_the_mesh_under_it()
 	await what_a_material_repeats_is_felt_repeated()
+	await what_rolls_is_softer_than_what_slides()
+	await a_strike_gain_turns_blows_down()
+	await a_world_that_is_built_again_takes_everything_along()
 	await a_scene_is_freed_while_it_plays()
 	OS.remove_logger(heard)
 	print("%d passed, %d failed" % [passed, failed])
@@ -462,6 +465,105 @@ func what_a_material_repeats_is_felt_repeated() -> void:
 		finger.queue_free()
 		await gone(world)
 	check("what a material repeats four times is met four times as often", spans[0] > 0.5 and absf(spans[1] / maxf(spans[0], 1e-9) - 4.0) < 0.4, spans)
+
+
+# The same motion on the same plate, mixed by the test.
+func heard_rolling(slip_m_s: float) -> float:
+	var world := made("res://plate.toml", "", "")
+	var sound := world.audio_stream().instantiate_playback()
+	var frames := PackedVector2Array()
+	var plate := world.find_surface("plate")
+	for tick in 60:
+		var uv := Vector2(0.2 + 0.01 * tick, 0.5)
+		if tick == 0 and is_nan(slip_m_s):
+			world.report_begin(1, plate, uv, 0.6, 0)
+		elif tick == 0:
+			world.report_begin(1, plate, uv, 0.6, 0, slip_m_s, 0.01)
+		elif is_nan(slip_m_s):
+			world.report_move(1, uv, 0.6)
+		else:
+			world.report_move(1, uv, 0.6, slip_m_s, 0.01)
+		await physics_frame
+		frames.append_array(sound.mix_audio(1.0, 735))
+	check("rolling is taken", world.stats().refused == 0 and world.stats().contacts == 1, world.last_error())
+	check("a slip that cannot be is refused by name", not world.report_move(1, Vector2.ZERO, 0.6, -1.0) and "slip_m_s" in world.last_error(), world.last_error())
+	await gone(world)
+	return rms(frames, 0)
+
+
+func what_rolls_is_softer_than_what_slides() -> void:
+	var slides: float = await heard_rolling(NAN)
+	var rolls: float = await heard_rolling(0.0)
+	check("what rolls is softer than what slides", rolls > 1e-6 and rolls < 0.7 * slides, "rms %.6f beside %.6f" % [rolls, slides])
+
+
+func a_strike_gain_turns_blows_down() -> void:
+	var peaks := []
+	for strike_gain in [-1.0, 0.25]:
+		var world := made("", "", "")
+		var sound := world.audio_stream().instantiate_playback()
+		var body := AsperityBody.new()
+		body.gain = 0.001
+		body.strike_gain = strike_gain
+		world.add_child(body)
+		world.report_impact(body.body_id(), 0.5, 0.01, 0.005, "steel", -1)
+		var peak := 0.0
+		for tick in 10:
+			await physics_frame
+			for frame in sound.mix_audio(1.0, 735):
+				peak = maxf(peak, absf(frame.x))
+		check("no limiter works", world.stats().limiter_db == 0, world.stats())
+		peaks.append(peak)
+		await gone(world)
+	check("a strike gain of a quarter makes a blow a quarter as loud", peaks[0] > 1e-6 and absf(peaks[1] / peaks[0] - 0.25) < 0.01, peaks)
+
+
+func a_world_that_is_built_again_takes_everything_along() -> void:
+	var world := made("res://plate.toml")
+	var drawn := MeshInstance3D.new()
+	drawn.mesh = PlaneMesh.new()
+	drawn.mesh.size = Vector2(0.3, 0.3)
+	var shape := CollisionShape3D.new()
+	shape.shape = BoxShape3D.new()
+	shape.shape.size = Vector3(0.3, 0.02, 0.3)
+	shape.position.y = -0.01
+	var body := AsperityBody.new()
+	body.name = "Table"
+	body.surface = AsperitySurface.from_material(ridged(0.1), 0.3, 0.3)
+	var collider := StaticBody3D.new()
+	for child in [drawn, shape, body]:
+		collider.add_child(child)
+	root.add_child(collider)
+	var finger := AsperityFinger3D.new()
+	finger.position.y = 0.05
+	root.add_child(finger)
+	for tick in 30:
+		finger.position.x = -0.1 + 0.003 * tick
+		await physics_frame
+	check("a finger touches before", finger.is_touching(), world.last_error())
+	var told := heard.sentences.size()
+	var old_plate := world.find_surface("plate")
+	check("a world is built a second time", world.build(), world.last_error())
+	check("its bodies are in the new engine", body.body_id() != 0 and world.find_body("Table") == body.body_id() and world.find_surface("Table") == body.surface_id())
+	check("the file's are too", world.find_surface("plate") != 0, old_plate)
+	await physics_frame
+	taken("Sound")
+	taken("Haptics")
+	for tick in 60:
+		finger.position.x = -0.1 + 0.003 * tick
+		await physics_frame
+	check("the finger goes on", finger.is_touching() and world.stats().contacts == 1, world.stats())
+	check("the world's buses play the new engine", rms(taken("Sound"), 0) > 1e-6 and rms(taken("Haptics"), 0) > 1e-4)
+	check("a blow rings", world.report_impact(body.body_id(), 1, 0.01, 0.005, "steel", 0) and world.stats().refused == 0, world.last_error())
+	check("nothing is said of what was before", heard.sentences.size() == told, heard.sentences.slice(told))
+	check("the old engine's players are gone", world.get_child_count() == 2, world.get_child_count())
+	world.scene_file = ""
+	check("and again, without the file", world.build() and world.find_surface("plate") == 0 and body.body_id() != 0)
+	root.remove_child(collider)
+	check("a body leaves the engine that it is in", world.find_body("Table") == 0)
+	finger.queue_free()
+	collider.queue_free()
+	await gone(world)
 
 
 func a_scene_is_freed_while_it_plays() -> void:

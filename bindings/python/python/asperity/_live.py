@@ -91,7 +91,7 @@ class Scene:
         if clock not in ("live", "exact"):
             raise ValueError(f'clock: "{clock}" is unknown; must be live or exact')
         path, files = sources(scene)
-        self._native, half, self.full_scale, self.gain = _native.open(
+        self._native, half, self.full_scale, self.gain, self.strike_gain = _native.open(
             path, files, sr=sr, seed=seed, kernel=kernel, integrator=integrator, live=clock == "live"
         )
         self.renderer = Renderer(half)
@@ -111,13 +111,13 @@ class Scene:
     def begin(
         self, t: float, contact: int, surface: str, uv: Sequence[float], normal_force_n: float, actuator: int | None = 0, **keys: Any
     ) -> None:
-        """A contact lands. Further keys: velocity_m_s, closing_m_s, probe, holder, gain, importance, at_m, depth_m."""
+        """A contact lands. Further keys: velocity_m_s, closing_m_s, probe, holder, gain, importance, at_m, depth_m, slip_m_s, roll_radius_m."""
         felt = {} if actuator is None else {"actuator": actuator}
         told = {"contact": contact, "surface": surface, "uv": list(uv), "normal_force_n": normal_force_n}
         self.report(t, {"event": "begin", **told, **felt, **keys})
 
     def move(self, t: float, contact: int, uv: Sequence[float], normal_force_n: float, **keys: Any) -> None:
-        """A contact goes on. Further keys: velocity_m_s, gain, importance, at_m, depth_m."""
+        """A contact goes on. Further keys: velocity_m_s, gain, importance, at_m, depth_m, slip_m_s, roll_radius_m."""
         self.report(t, {"event": "move", "contact": contact, "uv": list(uv), "normal_force_n": normal_force_n, **keys})
 
     def end(self, t: float, contact: int) -> None:

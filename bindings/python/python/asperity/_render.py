@@ -109,7 +109,7 @@ def _log(contacts: ContactsLike) -> tuple[str, str]:
 def _take(made: dict[str, Any], force_rate: float | None) -> Take:
     sr = float(made["sr"])
     audio: npt.NDArray[np.float32] = made["audio"]
-    stats = json.loads(made["stats"]) | {key: made[key] for key in ("kernel", "full_scale", "gain", "limiter_db")}
+    stats = json.loads(made["stats"]) | {key: made[key] for key in ("kernel", "full_scale", "gain", "strike_gain", "limiter_db")}
     told = [f"{place}: is a key of the format, but this version does not act on it" for place in made["unread"]]
     told += made["lost"]
     loudest = max(float(np.max(np.abs(part), initial=0.0)) for part in (audio, made["haptic"]))

@@ -26,7 +26,8 @@ Contacts = npt.NDArray[np.void]
 
 _NAMES = ("surface", "probe", "holder", "body", "other", "striker")
 _NUMBERS = (
-    "normal_force_n", "closing_m_s", "depth_m", "gain", "importance", "speed_m_s", "mass_kg", "radius_m", "restitution",
+    "normal_force_n", "closing_m_s", "depth_m", "slip_m_s", "roll_radius_m", "gain", "importance", "speed_m_s", "mass_kg", "radius_m",
+    "restitution",
 )  # fmt: skip
 _VECTORS = {"uv": 2, "velocity_m_s": 2, "at_m": 3, "direction": 3}
 _COUNTS = ("actuator", "position")
