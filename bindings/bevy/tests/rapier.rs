@@ -78,7 +78,7 @@ fn a_ball_that_rolls_tells_its_radius_and_that_it_hardly_slips_and_a_block_that_
         ColliderMassProperties::Density(7800.0),
         Friction::coefficient(0.6),
         Transform::from_xyz(-0.15, 0.0201, 0.0),
-        Velocity { linvel: Vec3::new(0.2, 0.0, 0.0), angvel: Vec3::new(0.0, 0.0, -20.0) },
+        Velocity { linear: Vec3::new(0.2, 0.0, 0.0), angular: Vec3::new(0.0, 0.0, -20.0) },
         TouchThing::of(Material::STEEL),
     ));
     run(&mut app);
@@ -93,6 +93,7 @@ fn a_ball_that_rolls_tells_its_radius_and_that_it_hardly_slips_and_a_block_that_
     app.world_mut().spawn((
         RigidBody::Dynamic,
         Collider::cuboid(0.01, 0.01, 0.01),
+        ColliderMassProperties::Density(2000.0),
         Friction::coefficient(0.05),
         Transform::from_xyz(-0.15, 0.021, 0.0),
         Velocity::linear(Vec3::new(0.3, 0.0, 0.0)),
