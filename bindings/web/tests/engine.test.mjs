@@ -29,6 +29,25 @@ for (const surface of SURFACES) {
   });
 }
 
+test('a ball that rolls has the bits of the program, and sounds of another thing than a finger that slides', () => {
+  const surface = SURFACES.find(({ id }) => id === 'granite');
+  const { text: scene } = sceneOf(surface, 'x');
+  const rolls = stroke(surface).map((line) => (line.uv ? { ...line, slip_m_s: 0, roll_radius_m: 0.012 } : line));
+  const [ours, slid] = [rolls, stroke(surface)].map((log) => renderLog(module, { scene, log }));
+  const native = render({ 'x.toml': scene, 'x.jsonl': text(rolls) }, 'x.toml');
+  assert.ok(native.audio.equals(ours.audio) && native.haptic.equals(ours.haptic));
+  assert.ok(!native.audio.equals(slid.audio));
+});
+
+test('an engine tells its level policy and what its limiters took', () => {
+  const engine = new Engine(module);
+  const { strike_gain, gain } = engine.open(sceneOf(SURFACES[0], 'x').text.replace(/^gain = .*$/m, ''), { pictures: sceneOf(SURFACES[0], 'x').pictures });
+  assert.ok(strike_gain.length === 1 && strike_gain[0] > 0 && strike_gain[0] <= 1 && gain.length === 1);
+  engine.render(1024);
+  assert.equal(engine.stats().stats.limiter_db, 0);
+  assert.throws(() => engine.report(0, { event: 'begin', contact: 1, surface: 'surface', actuator: 0, uv: [0, 0], normal_force_n: 1, slip_m_s: -1 }), /slip_m_s/);
+});
+
 /** Plays live in blocks of random size, with times that jitter; answers what left and the log. */
 function live(prepared, surface, seed) {
   const engine = Engine.shell(module, prepared.image.length);
