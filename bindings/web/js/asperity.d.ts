@@ -20,6 +20,10 @@ export interface Sample {
   depth_m?: number;
   /** Place in the body's frame. */
   at_m?: [number, number, number];
+  /** How fast what touches slides on the ground there; missing: as fast as it moves, a stroke; 0: it rolls. */
+  slip_m_s?: number;
+  /** Radius of what rolls; missing: of the probe's tip, at least 8 mm. */
+  roll_radius_m?: number;
   /** Factor of what is felt and heard, 0 to 1000. */
   gain?: number;
   importance?: number;
@@ -63,6 +67,8 @@ export interface Told {
   latency_samples: number;
   full_scale: number[];
   gain: number[];
+  /** Of each body: gain of its impacts beside strokes. */
+  strike_gain: number[];
   tail_s: number;
 }
 
@@ -108,6 +114,16 @@ export function parseLog(text: string): Event[];
 /** A WAV file of 32-bit floating point. */
 export function wav(channels: Float32Array[], rate: number): Uint8Array;
 
+/** Counts since the scene was opened. */
+export interface Stats extends Record<string, unknown> {
+  contacts: number;
+  events: number;
+  impacts: number;
+  refused: number;
+  /** The most that limiters took away. */
+  limiter_db: number;
+}
+
 /** One engine in one instance: in a worker, in an AudioWorklet of your own, in node. */
 export class Engine {
   constructor(module: WebAssembly.Module);
@@ -138,7 +154,7 @@ export class Engine {
   openPicture(surface: string): { columns: number; rows: number; cell_m: number };
   /** Tiles that have changed: column, row, columns, rows, then heights, m; null when none has. */
   picture(): Float32Array | null;
-  stats(): { stats: Record<string, unknown>; why_silent: string[] };
+  stats(): { stats: Stats; why_silent: string[] };
   image(): Uint8Array;
   fill(image: Uint8Array, from: number, to: number): void;
   know(told: Told): void;
@@ -166,7 +182,7 @@ export interface Frame {
   time: number;
 }
 
-/** A running engine: events `frame` (detail: Frame), `refused`, `error`, `taken`, `lacking` (a part of the engine could not go on: `take` the scene again). */
+/** A running engine: events `frame` (detail: Frame), `refused`, `error`, `taken`, `lacking` (a part of the engine could not go on; the whole is fetched, catches up and goes on). */
 export class WebEngine extends EventTarget {
   readonly context: BaseAudioContext;
   readonly node: AudioWorkletNode;
@@ -194,7 +210,7 @@ export class WebEngine extends EventTarget {
   fadeAll(): Promise<void>;
   setAudioGain(bus: number, gain: number): Promise<void>;
   setHapticGain(channel: number, gain: number): Promise<void>;
-  stats(): Promise<{ stats: Record<string, unknown>; why_silent: string[]; memory: number }>;
+  stats(): Promise<{ stats: Stats; why_silent: string[]; memory: number }>;
   /** All that was reported, as a contact log that `asperity render` plays again. */
   log(): Promise<string>;
   close(): void;

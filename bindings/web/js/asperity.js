@@ -121,7 +121,7 @@ export class WebEngine extends EventTarget {
     this.lines = [];
   }
 
-  /** Goes on with the whole engine, where a part of it has begun to play (`wasm`), as soon as nothing touches. */
+  /** Goes on with the whole engine (`wasm`), where a part of it has begun to play: it does all that was done since, and then what comes. */
   complete(wasm) {
     if (!this.isPart) return Promise.resolve();
     this.completing ??= load(wasm).then(({ bytes }) => this.call({ do: 'complete', wasm: bytes })).then(() => { this.isPart = false; });
@@ -131,6 +131,7 @@ export class WebEngine extends EventTarget {
 
   /** Changes the scene that sounds into the one of this text: numbers of surfaces and bodies, their maps. */
   async apply(scene, { files, pictures } = {}) {
+    await this.complete();
     const changes = await this.call({ do: 'apply', scene, files, pictures });
     this.scene = scene;
     return changes;
@@ -193,7 +194,10 @@ export class WebEngine extends EventTarget {
     else if (data.refused !== undefined) this.tell('refused', data);
     else if (data.heard !== undefined) this.tell('heard', data);
     else if (data.taken !== undefined) this.tell('taken', data);
-    else if (data.lacking !== undefined) this.tell('lacking', data);
+    else if (data.lacking !== undefined) {
+      this.tell('lacking', data);
+      this.complete().catch((error) => this.tell('error', error));
+    }
   }
 
   /** Every part of a recording begins with the version; the whole says it once. */

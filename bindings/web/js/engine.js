@@ -7,7 +7,7 @@ const KINDS = { begin: 1, move: 2, end: 3, impact: 4 };
 /** Places of a row of numbers; src/events.rs says what each holds. */
 const NUMBERS = {
   contact: 2, actuator: 4, normal_force_n: 11, closing_m_s: 12, depth_m: 13, gain: 20, importance: 21,
-  speed_m_s: 22, mass_kg: 23, radius_m: 24, restitution: 25, position: 27,
+  speed_m_s: 22, mass_kg: 23, radius_m: 24, restitution: 25, position: 27, slip_m_s: 29, roll_radius_m: 30,
 };
 const VECTORS = { uv: 7, velocity_m_s: 9, at_m: 14, direction: 17 };
 const THINGS = {

@@ -5,6 +5,8 @@ import { Engine, SCOPE_NUMBERS } from './engine.js';
 const COPIED_A_BLOCK = 1 << 20;
 /** How long one engine fades into the next, s. */
 const FADE_S = 0.03;
+/** Blocks that an engine which catches up renders beside one that sounds, and in its place. */
+const CAUGHT_UP = { beside: 3, alone: 8 };
 /** How often the page is told what contacts do, and what was recorded, s. */
 const TOLD_S = 0.016;
 const LOG_TOLD_S = 0.5;
@@ -13,8 +15,9 @@ class AsperityProcessor extends AudioWorkletProcessor {
   constructor({ processorOptions }) {
     super();
     const { wasm, part, prepared, log } = processorOptions;
-    this.part = part === true;
-    this.moves = false;
+    // While only a part of the engine is here: what it began with and all that was done to it since, block by block.
+    this.past = part === true ? { image: prepared.image, told: prepared.told, done: [], blocks: 0 } : null;
+    this.whole = null;
     this.module = wasm instanceof WebAssembly.Module ? wasm : new WebAssembly.Module(wasm);
     this.engine = null;
     this.old = null;
@@ -28,6 +31,7 @@ class AsperityProcessor extends AudioWorkletProcessor {
     this.sinceTold = 0;
     this.sinceLog = 0;
     this.stamps = [];
+    this.rises = false;
     this.alive = true;
     this.port.onmessage = ({ data }) => this.hear(data);
     if (prepared) {
@@ -38,7 +42,8 @@ class AsperityProcessor extends AudioWorkletProcessor {
 
   hear(message) {
     if (message.do === 'events') {
-      if (this.engine === null || this.coming !== null) this.waiting.push(message);
+      // An engine that has stopped takes its events later; where there is none yet they wait.
+      if ((this.engine === null && this.past === null) || this.coming !== null) this.waiting.push(message);
       else this.report(message);
       return;
     }
@@ -56,28 +61,59 @@ class AsperityProcessor extends AudioWorkletProcessor {
     this.port.postMessage({ error: error.message, id });
   }
 
-  /** The whole engine, of which a part plays: compiled beside the sound, gone over to as soon as nothing touches. */
+  /** The whole engine, of which a part plays: compiled beside the sound, it does all that was done since the beginning and goes on from there. */
   complete({ wasm }) {
     return WebAssembly.compile(wasm).then((module) => {
       this.module = module;
-      this.moves = this.part;
-      this.part = false;
+      if (this.past === null) return;
+      this.whole = { engine: Engine.shell(module, this.past.image.length), copied: 0, next: 0, blocks: 0 };
+      return new Promise((resolve) => { this.whole.plays = resolve; });
     });
   }
 
-  /** What a part of the engine does not have stops it; the page then brings the whole one. */
+  /** Does something to the engine, and keeps it for the whole engine where a part plays. */
+  act(what) {
+    this.past?.done.push({ at: this.past.blocks, what });
+    return what(this.engine);
+  }
+
+  /** Some blocks of what the whole engine has to catch up with; then it plays. */
+  catchUp(frames) {
+    const { past, whole } = this;
+    if (whole.copied < past.image.length) {
+      whole.engine.fill(past.image, whole.copied, whole.copied + COPIED_A_BLOCK);
+      whole.copied += COPIED_A_BLOCK;
+      if (whole.copied >= past.image.length) whole.engine.know(past.told);
+      return;
+    }
+    const most = this.engine === null ? CAUGHT_UP.alone : CAUGHT_UP.beside;
+    for (let n = 0; ; n++) {
+      for (; past.done[whole.next]?.at === whole.blocks; whole.next++) {
+        // What was refused then is refused again.
+        try { past.done[whole.next].what(whole.engine); } catch { /* The page has been told. */ }
+      }
+      if (whole.blocks === past.blocks) break;
+      if (n === most) return;
+      whole.engine.render(frames);
+      whole.blocks++;
+    }
+    this.rises = this.engine === null;
+    [this.engine, this.past, this.whole] = [whole.engine, null, null];
+    whole.plays();
+  }
+
+  /** What a part of the engine does not have stops it; silence, until the whole one has caught up. */
   lacks(error) {
-    if (!(error instanceof WebAssembly.RuntimeError) || !(this.part || this.moves)) return false;
-    [this.engine, this.moves] = [null, false];
+    if (!(error instanceof WebAssembly.RuntimeError) || this.past === null) return false;
+    this.engine = null;
     this.port.postMessage({ lacking: error.stack });
     return true;
   }
 
   report({ events, stamp }) {
     for (const event of events) {
-      if (this.engine === null) return;
       try {
-        this.engine.report(event.t, event);
+        this.act((engine) => engine?.report(event.t, event));
       } catch (error) {
         if (!this.lacks(error)) this.port.postMessage({ refused: error.message, event });
       }
@@ -101,9 +137,10 @@ class AsperityProcessor extends AudioWorkletProcessor {
     if (this.engine !== null) {
       this.tellLog();
       [this.old, this.fading] = [this.engine, 0];
+      this.whole?.plays();
+      [this.past, this.whole] = [null, null];
     }
     this.engine = engine;
-    this.moves = false;
     this.watches = this.coming.picture !== null;
     this.records = this.coming.record;
     this.coming = null;
@@ -116,7 +153,11 @@ class AsperityProcessor extends AudioWorkletProcessor {
   }
 
   command({ what, value, index }) {
-    this.engine?.do(what, value, index);
+    try {
+      this.act((engine) => engine?.do(what, value, index));
+    } catch (error) {
+      if (!this.lacks(error)) throw error;
+    }
   }
 
   stats() {
@@ -135,8 +176,11 @@ class AsperityProcessor extends AudioWorkletProcessor {
   tellLog() {
     this.sinceLog = 0;
     if (!this.records || this.engine === null) return;
-    const lines = this.engine.recorded();
-    this.engine.record();
+    const lines = this.act((engine) => {
+      const recorded = engine.recorded();
+      engine.record();
+      return recorded;
+    });
     if (lines.length > 0) this.port.postMessage({ log: lines }, [lines.buffer]);
   }
 
@@ -154,20 +198,31 @@ class AsperityProcessor extends AudioWorkletProcessor {
     const [audio, haptic] = outputs;
     const frames = audio[0].length;
     if (this.coming !== null) this.copy(COPIED_A_BLOCK);
+    if (this.whole !== null) this.catchUp(frames);
+    if (this.engine !== null) this.render(frames);
+    if (this.past !== null) this.past.blocks++;
     if (this.engine === null) return this.alive;
-    if (this.moves && this.engine.scope()[0] === 0) [this.engine, this.moves] = [this.engine.moved(this.module), false];
+    this.mix(audio, (index) => this.engine.audio(index, frames));
+    if (haptic) haptic.forEach((channel, index) => this.lay(channel, this.engine.haptic(index, frames)));
+    if (this.old !== null) this.fade(audio, frames);
+    if (this.rises) this.rise([...audio, ...(haptic ?? [])], frames);
+    this.watch(frames);
+    return this.alive;
+  }
+
+  render(frames) {
     try {
       this.play(frames);
       this.engine?.render(frames);
     } catch (error) {
       if (!this.lacks(error)) throw error;
     }
-    if (this.engine === null) return this.alive;
-    this.mix(audio, (index) => this.engine.audio(index, frames));
-    if (haptic) haptic.forEach((channel, index) => this.lay(channel, this.engine.haptic(index, frames)));
-    if (this.old !== null) this.fade(audio, frames);
-    this.watch(frames);
-    return this.alive;
+  }
+
+  /** After a silence: from nothing, within a block. */
+  rise(channels, frames) {
+    this.rises = false;
+    for (const channel of channels) for (let i = 0; i < frames; i++) channel[i] *= i / frames;
   }
 
   lay(channel, signal) {

@@ -122,7 +122,7 @@ async function begin() {
   engine.addEventListener('frame', ({ detail }) => frame(detail));
   engine.addEventListener('refused', ({ detail }) => say(`Not played: ${detail.refused}`));
   engine.addEventListener('error', ({ detail }) => refuse(detail));
-  engine.addEventListener('lacking', ({ detail }) => { state.lacked = detail.lacking; choose(state.surface, state.modes).catch(refuse); });
+  engine.addEventListener('lacking', ({ detail }) => { state.lacked = detail.lacking; });
   engine.addEventListener('heard', ({ detail }) => { state.latency_ms = detail.at - detail.heard; });
   feel.tell(context);
   $('wide').disabled = context.destination.maxChannelCount < 4;

@@ -53,6 +53,10 @@ pub const STRIKER: usize = 26;
 pub const POSITION: usize = 27;
 /// Number of the striker's own body.
 pub const OTHER: usize = 28;
+/// Speed at which what touches slides on the ground, m/s; 0: it rolls.
+pub const SLIP_M_S: usize = 29;
+/// Radius of what rolls, m.
+pub const ROLL_RADIUS_M: usize = 30;
 
 thread_local! {
     static EVENT: RefCell<[f64; EVENT_NUMBERS]> = const { RefCell::new([f64::NAN; EVENT_NUMBERS]) };
@@ -146,7 +150,8 @@ impl Row {
             closing_m_s: self.told(CLOSING_M_S).unwrap_or(0.0),
             at_m: self.several(AT_M),
             depth_m,
-            ..ContactSample::default()
+            slip_m_s: self.told(SLIP_M_S),
+            roll_radius_m: self.told(ROLL_RADIUS_M),
         }
     }
 

@@ -114,6 +114,7 @@ fn told(file: &SceneFile, engine: &Engine) -> serde_json::Value {
     told["haptic_channels"] = engine.renderer.haptic_channels().into();
     told["full_scale"] = engine.levels.full_scale.clone().into();
     told["gain"] = engine.levels.gain.clone().into();
+    told["strike_gain"] = engine.levels.strike_gain.clone().into();
     told["tail_s"] = file.tail_s.into();
     told["materials"] = Material::PRESETS.iter().map(|preset| preset.name).collect();
     told

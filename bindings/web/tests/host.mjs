@@ -59,3 +59,23 @@ export async function drag(page, places, ms = 16) {
   }
   await page.mouse.up();
 }
+
+/** Waits until a surface, or any, is there to be touched. */
+export const ready = (page, id) => page.waitForFunction((wanted) => {
+  const { ready } = document.getElementById('surfaces').dataset;
+  return wanted ? ready === wanted : ready;
+}, id, { timeout: 60000 });
+
+/** Places in a row. */
+export const line = (y, count = 40, from = 200, step = 10) => Array.from({ length: count }, (_, i) => [from + step * i, y]);
+
+export const stats = (page) => page.evaluate(async () => (await window.asperity.state.engine.stats()));
+
+/** The page, and sound that has begun. */
+export async function heard(chromium, url, options) {
+  const opened = await open(chromium, url, options);
+  await ready(opened.page);
+  await drag(opened.page, line(250, 6));
+  await opened.page.waitForFunction(() => window.asperity.state.engine && window.asperity.state.frames > 3, null, { timeout: 30000 });
+  return opened;
+}
