@@ -1,9 +1,14 @@
 // What a visitor does with the first surface: opening it, and everything that hands, keys, pads and buttons of the page report. `build` notes which
 // parts of the engine that needs.
 import { Engine } from '../js/engine.js';
+import { Hand } from '../page/hand.js';
 import { LEVELS_HZ, RATE_HZ, SURFACES, sceneOf } from '../page/surfaces.js';
 
 const BLOCK = 128;
+/** As the page draws. */
+const PIXELS_A_METRE = 6500;
+/** Of so many visitors one leads the page's own hand by a mouse. */
+const MICE = 3;
 
 /** Whole numbers from a seed, 0 to 1. */
 function seeded(seed) {
@@ -92,6 +97,58 @@ export function play(engine, seed, seconds) {
   stalls = 0;
   for (const contact of fingers.keys()) tell(2000, { event: 'end', contact });
 }
+
+/** A mouse that strokes in straight lines, bends, rests and leaps, as the page's hand tells it: places in whole pixels, speeds from the last of them. */
+export function mouse(engine, seed, seconds) {
+  const random = seeded(seed);
+  const { size_m } = SURFACES[0];
+  const waiting = [];
+  const hand = Object.assign(Object.create(Hand.prototype), {
+    fingers: new Map(), contacts: 0, pixelsAMetre: PIXELS_A_METRE, show() {},
+    page: {
+      force: () => 1,
+      picture: { uvOf: (at) => at.map((x, axis) => x / (size_m[axis] * PIXELS_A_METRE)) },
+      report: (events) => waiting.push(...events),
+    },
+  });
+  let at = [500, 300];
+  let way = [0, 0];
+  let next = 1000 + 0.02 * random();
+  let [isDown, isStraight] = [false, true];
+  const frame_s = random() < 0.5 ? 0.0167 : 0.008;
+  for (let block = 0; block < (seconds * RATE_HZ) / BLOCK; block++) {
+    const clock = 1000 + (block * BLOCK) / RATE_HZ;
+    while (next <= clock) {
+      if (!isDown) { hand.land('mouse', at.map(Math.round), next); isDown = true; }
+      else if (random() < 0.006) { hand.lift('mouse', next); isDown = false; }
+      else hand.slide(hand.fingers.get('mouse'), at.map(Math.round), next);
+      if (random() < 0.04) {
+        way = random() < 0.2 ? [0, 0] : [1500 * (random() - 0.5), 1500 * (random() - 0.5)];
+        // Keys, and hands that follow an edge, go along one axis.
+        if (random() < 0.4) way[Math.floor(2 * random())] = 0;
+        isStraight = random() < 0.6;
+      } else if (!isStraight) way = way.map((speed) => speed + 40 * (random() - 0.5));
+      const step = frame_s * (random() < 0.1 ? 3 * random() : 0.9 + 0.2 * random());
+      // A page that is busy hears nothing for a while; meanwhile the finger has gone on, or not.
+      const stalls = random() < 0.02;
+      if (!stalls || random() < 0.5) at = at.map((x, axis) => x + way[axis] * step);
+      next += step + (stalls ? 0.6 * random() : 0);
+    }
+    for (const event of waiting.splice(0)) {
+      try { engine.report(event.t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; }
+    }
+    engine.render(BLOCK);
+    engine.scope();
+    if (block % 6 === 0) engine.levels();
+    if (block % 188 === 0) { engine.recorded(); engine.record(); }
+  }
+  if (isDown) hand.lift('mouse', 1000 + seconds);
+  for (const event of waiting) engine.report(event.t, event);
+  for (let block = 0; block < 40; block++) engine.render(BLOCK);
+}
+
+/** One visitor: a mouse, or anything. */
+export const visit = (engine, seed, seconds) => (seed % MICE === 0 ? mouse : play)(engine, seed, seconds);
 
 /** What a page may say wrongly, and every button. */
 export function trouble(engine) {

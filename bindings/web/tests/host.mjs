@@ -9,15 +9,16 @@ import { gzipSync } from 'node:zlib';
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm' };
 const { chromium } = createRequire(`${process.env.WORK ?? process.cwd()}/node_modules/`)('playwright-core');
 
-/** Serves a folder; tells how many bytes it has sent, gzipped. */
+/** Serves a folder; tells what was asked for, in that order, and how many bytes each took, gzipped. */
 export async function host(folder) {
-  const sent = { bytes: 0, paths: [] };
+  const sent = [];
   const server = createServer(async (request, response) => {
     const path = normalize(decodeURIComponent(new URL(request.url, 'http://host').pathname)).replace(/\/$/, '/index.html');
+    const asked = { path, bytes: 0 };
+    sent.push(asked);
     try {
       const body = gzipSync(await readFile(join(folder, path)), { level: 9 });
-      sent.bytes += body.length;
-      sent.paths.push(path);
+      asked.bytes = body.length;
       // Ten minutes: what static hosts say who are told nothing, GitHub's pages among them.
       response.writeHead(200, { 'content-type': TYPES[extname(path)] ?? 'application/octet-stream', 'content-encoding': 'gzip', 'cache-control': 'max-age=600' });
       response.end(body);

@@ -5,14 +5,14 @@ use crate::raster::Raster;
 
 impl Picture {
     /// Means of the brightness ([`Channel::Luma`]) of `n` × `n` pixels, at least 1, as 0–1; what does not fill one at the right and
-    /// lower border is left out.
+    /// lower border is left out. To the bit the means of [`Picture::channel`]: whoever reads all of a picture first finds the same surface.
     ///
     /// # Errors
     /// When a value is not finite.
     pub fn brightness(&self, n: usize) -> Result<Raster, Problem> {
         let raster = match &self.samples {
-            Samples::U8(samples) => self.means(samples, 1.0 / 255.0, n),
-            Samples::U16(samples) => self.means(samples, 1.0 / 65_535.0, n),
+            Samples::U8(samples) => self.means(samples, 255.0, n),
+            Samples::U16(samples) => self.means(samples, 65_535.0, n),
             Samples::F32(samples) => {
                 // Says where a value is not finite.
                 if samples.iter().any(|v| !v.is_finite()) {
@@ -24,22 +24,23 @@ impl Picture {
         Ok(raster)
     }
 
-    fn means<T: Copy + Into<f64>>(&self, samples: &[T], unit: f64, n: usize) -> Raster {
+    fn means<T: Copy + Into<f64>>(&self, samples: &[T], white: f64, n: usize) -> Raster {
         match self.channels {
-            1 | 2 => self.means_by(samples, unit, n, |pixel| pixel[0].into()),
+            1 | 2 => self.means_by(samples, white, n, |pixel| pixel[0].into()),
             _ => self
-                .means_by(samples, unit, n, |pixel| luma(pixel[0].into(), pixel[1].into(), pixel[2].into())),
+                .means_by(samples, white, n, |pixel| luma(pixel[0].into(), pixel[1].into(), pixel[2].into())),
         }
     }
 
-    fn means_by<T: Copy>(&self, samples: &[T], unit: f64, n: usize, bright: impl Fn(&[T]) -> f64) -> Raster {
+    fn means_by<T: Copy>(&self, samples: &[T], white: f64, n: usize, bright: impl Fn(&[T]) -> f64) -> Raster {
         let (width, height) = (self.width / n, self.height / n);
         let mut means = Raster::constant(width, height, 0.0);
-        let share = unit / (n * n) as f64;
+        let share = 1.0 / (n * n) as f64;
         for (y, row) in samples.chunks_exact(self.width * self.channels).take(height * n).enumerate() {
             let to = &mut means.values[y / n * width..][..width];
             for (mean, pixels) in to.iter_mut().zip(row.chunks_exact(n * self.channels)) {
-                *mean += pixels.chunks_exact(self.channels).map(&bright).sum::<f64>() * share;
+                *mean += share
+                    * pixels.chunks_exact(self.channels).map(|pixel| bright(pixel) / white).sum::<f64>();
             }
         }
         means
@@ -68,9 +69,9 @@ mod tests {
                     assert_eq!((found.width, found.height), (w / n, h / n));
                     for y in 0..h / n {
                         for x in 0..w / n {
-                            let square = (0..n * n).map(|i| whole.at(x * n + i % n, y * n + i / n));
-                            let mean = square.sum::<f64>() / (n * n) as f64;
-                            assert!((found.at(x, y) - mean).abs() < 1e-7, "{channels} channels, {n}");
+                            let row = |j: usize| (0..n).map(|i| whole.at(x * n + i, y * n + j)).sum::<f64>();
+                            let mean = (0..n).fold(0.0, |mean, j| mean + 1.0 / (n * n) as f64 * row(j));
+                            assert_eq!(found.at(x, y), mean, "{channels} channels, {n}");
                         }
                     }
                 }
