@@ -7,8 +7,7 @@ use crate::feature_lines::{FeatureLine, feature_lines};
 use crate::surface_mesh::SurfaceMesh;
 use crate::triangle_tree::{TriangleTree, area_vector};
 use crate::vector::{Vec3, add_scaled, bounds, distance, dot, length, sub, unit};
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
+use rustc_hash::FxHashMap;
 
 /// Points on faces keep this part of the spacing from points on sharp edges.
 const FROM_EDGE: f64 = 0.75;
@@ -41,36 +40,13 @@ impl Dice {
     }
 }
 
-/// Hash of a cell's numbers: a multiplication a word. Every dart asks for 27 cells or more, and nobody sends keys that collide on purpose.
-#[derive(Debug, Clone, Copy, Default)]
-struct CellHasher(u64);
-
-impl Hasher for CellHasher {
-    fn write(&mut self, bytes: &[u8]) {
-        for word in bytes.chunks(8) {
-            let mut padded = [0; 8];
-            padded[..word.len()].copy_from_slice(word);
-            self.write_u64(u64::from_ne_bytes(padded));
-        }
-    }
-
-    fn write_u64(&mut self, word: u64) {
-        self.0 = (self.0.rotate_left(23) ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    }
-
-    fn finish(&self) -> u64 {
-        // The map takes its place from the low bits, which a product mixes least.
-        self.0 ^ (self.0 >> 32)
-    }
-}
-
 /// A point and the normals of the surface there.
 type Held = (Vec3, [Vec3; 2]);
 
 /// Points by the cell they lie in.
 struct Cells {
     width: f64,
-    cells: HashMap<[i64; 3], Vec<Held>, BuildHasherDefault<CellHasher>>,
+    cells: FxHashMap<[i64; 3], Vec<Held>>,
 }
 
 impl Cells {
@@ -168,7 +144,7 @@ impl Spread {
 /// Points at `spacing_m`.
 #[must_use]
 pub fn sample(mesh: &SurfaceMesh, tree: &TriangleTree, spacing_m: f64) -> Samples {
-    let mut cells = Cells { width: spacing_m, cells: HashMap::default() };
+    let mut cells = Cells { width: spacing_m, cells: FxHashMap::default() };
     let mut samples =
         Samples { surface: Vec::new(), segments: Vec::new(), lines: feature_lines(mesh), inside: Vec::new() };
     put_on_lines(&mut samples, &mut cells, tree, spacing_m);
@@ -184,7 +160,7 @@ fn divides(tree: &TriangleTree, p: Vec3, normal: Vec3, spacing_m: f64) -> bool {
 }
 
 fn put_on_lines(samples: &mut Samples, cells: &mut Cells, tree: &TriangleTree, spacing_m: f64) {
-    let mut numbers: HashMap<[u64; 3], usize> = HashMap::new();
+    let mut numbers: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     // Corners come first, so that no point of a line takes their place.
     let ends = |line: &FeatureLine| [line.at(0.0), line.at(line.length_m())];
     let lines = samples.lines.clone();
@@ -253,7 +229,7 @@ fn put_on_faces(
 
 fn put_inside(samples: &mut Samples, mesh: &SurfaceMesh, tree: &TriangleTree, spacing_m: f64) {
     let Some((low, high)) = bounds(&mesh.points) else { return };
-    let mut taken = Cells { width: spacing_m, cells: HashMap::default() };
+    let mut taken = Cells { width: spacing_m, cells: FxHashMap::default() };
     let mut dice = Dice::new(3);
     let step = 0.5 * spacing_m;
     let count = |c: usize| ((high[c] - low[c]) / step).ceil() as usize;

@@ -74,8 +74,7 @@ pub fn load_reduced_photograph(path: impl AsRef<Path>, most_texels: usize) -> Re
         let image = decode(open(path)?, Channel::Luma)?;
         let colour = colour_of(&image);
         let [width, height] = [image.width(), image.height()].map(|side| side as usize);
-        let fits = |n: &usize| (width / n) * (height / n) <= most_texels;
-        let reduced_by = (1..=width.min(height)).find(fits).unwrap_or(1);
+        let reduced_by = Raster::reduction(width, height, most_texels);
         let brightness = picture(image)?.brightness(reduced_by)?;
         Ok(Photograph { brightness, reduced_by, width_px: width, colour })
     };

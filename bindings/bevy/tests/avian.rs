@@ -95,18 +95,7 @@ fn a_ball_that_rolls_takes_its_place_of_contact_along_and_a_finger_lands_as_a_co
         TouchThing::of(Material::STEEL),
     ));
     run(&mut app);
-    let log = assert_same_bits(&mut app, 1);
-    let Slid { begins, samples, .. } = slid(&log);
-    assert_eq!(begins.len(), 1, "{begins:?}");
-    for (t, sample) in samples.iter().skip(5).filter(|(t, _)| *t < 1.0) {
-        let (u_m, along_m_s) = (0.4 * sample.uv[0], sample.velocity_m_s.unwrap()[0]);
-        assert!((along_m_s - 0.2).abs() < 0.02, "{along_m_s} m/s at {t} s");
-        assert!((u_m - (0.05 + 0.2 * t)).abs() < 0.012, "{u_m} m at {t} s");
-        assert!(
-            sample.slip_m_s.unwrap() < 0.02 && (sample.roll_radius_m.unwrap() - 0.01).abs() < 1e-6,
-            "{sample:?}"
-        );
-    }
+    assert_rolls(&assert_same_bits(&mut app, 1));
     // A finger that comes down.
     let (mut app, _) = world();
     app.world_mut().spawn((

@@ -2,11 +2,10 @@
 // parts of the engine that needs.
 import { Engine } from '../js/engine.js';
 import { Hand } from '../page/hand.js';
+import { PIXELS_A_METRE } from '../page/look.js';
 import { LEVELS_HZ, RATE_HZ, SURFACES, sceneOf } from '../page/surfaces.js';
 
 const BLOCK = 128;
-/** As the page draws. */
-const PIXELS_A_METRE = 6500;
 /** Of so many visitors one leads the page's own hand by a mouse. */
 const MICE = 3;
 
@@ -41,6 +40,21 @@ export function taken(module, engine) {
   return other;
 }
 
+/** Reports what may be refused; whether the engine lacks something is another matter. */
+function report(engine, t, event) {
+  try { engine.report(t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; }
+}
+
+/** A block, and what the audio thread asks the engine for beside. */
+function hear(engine, block) {
+  if (!(engine.position >= 0)) throw new Error('the engine has no position');
+  engine.render(BLOCK);
+  for (const signal of [engine.scope(), engine.audio(0, BLOCK), engine.haptic(0, BLOCK)]) if (!signal.every((x) => !Number.isNaN(x))) throw new Error('not a number');
+  if (block % 6 === 0) engine.levels();
+  if (block % 188 === 0) { engine.recorded(); engine.record(); }
+  if (block % 400 === 0) engine.stats();
+}
+
 /** Plays for so many seconds: up to ten fingers that slide, rest, leap, press, are forgotten and come back; blows; all buttons. */
 export function play(engine, seed, seconds) {
   const random = seeded(seed);
@@ -52,9 +66,8 @@ export function play(engine, seed, seconds) {
   const tell = (t, event) => {
     // A page that is busy reports nothing for a while, and then all at once.
     late.push([t, event]);
-    if (stalls === 0) for (const [then, what] of late.splice(0)) now(then, what);
+    if (stalls === 0) for (const [then, what] of late.splice(0)) report(engine, then, what);
   };
-  const now = (t, event) => { try { engine.report(t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; } };
   // Every other visitor has one finger only and leads it evenly, as keys do.
   const isCalm = seed % 2 === 1;
   const pace = () => [0, 0.02, 0.1, 0.3, 1, 3][Math.floor(random() * 6)];
@@ -87,12 +100,7 @@ export function play(engine, seed, seconds) {
     }
     if (random() < 0.02) tell(t, { event: 'impact', body: 'body', speed_m_s: 0.1 + 2.9 * random(), position: Math.floor(3 * random()), actuator: 0, ...SURFACES[0].blow });
     if (random() < 0.002) tell(t, { event: 'end', contact: 1 + Math.floor(random() * name) });
-    if (!(engine.position >= 0)) throw new Error('the engine has no position');
-    engine.render(BLOCK);
-    for (const signal of [engine.scope(), engine.audio(0, BLOCK), engine.haptic(0, BLOCK)]) if (!signal.every((x) => !Number.isNaN(x))) throw new Error('not a number');
-    if (block % 6 === 0) engine.levels();
-    if (block % 188 === 0) { engine.recorded(); engine.record(); }
-    if (block % 400 === 0) engine.stats();
+    hear(engine, block);
   }
   stalls = 0;
   for (const contact of fingers.keys()) tell(2000, { event: 'end', contact });
@@ -134,16 +142,11 @@ export function mouse(engine, seed, seconds) {
       if (!stalls || random() < 0.5) at = at.map((x, axis) => x + way[axis] * step);
       next += step + (stalls ? 0.6 * random() : 0);
     }
-    for (const event of waiting.splice(0)) {
-      try { engine.report(event.t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; }
-    }
-    engine.render(BLOCK);
-    engine.scope();
-    if (block % 6 === 0) engine.levels();
-    if (block % 188 === 0) { engine.recorded(); engine.record(); }
+    for (const event of waiting.splice(0)) report(engine, event.t, event);
+    hear(engine, block);
   }
   if (isDown) hand.lift('mouse', 1000 + seconds);
-  for (const event of waiting) engine.report(event.t, event);
+  for (const event of waiting) report(engine, event.t, event);
   for (let block = 0; block < 40; block++) engine.render(BLOCK);
 }
 
@@ -159,9 +162,7 @@ export function trouble(engine) {
     { ...good, uv: [1e300, 0] }, { ...good, contact: -1 }, { ...good, actuator: 9 }, { ...good, closing_m_s: -1 }, { ...blow, speed_m_s: 1e9 },
     { ...blow, mass_kg: -1 }, { ...blow, radius_m: 0 }, { ...blow, restitution: 7 }, { ...blow, position: 99 }, { event: 'move', contact: 123456, uv: [0, 0], normal_force_n: 1 },
   ]) {
-    for (const t of [1500, NaN]) {
-      try { engine.report(t, event); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; }
-    }
+    for (const t of [1500, NaN]) report(engine, t, event);
   }
   for (const what of ['mute', 'pause', 'resume', 'audioGain', 'hapticGain', 'timeScale', 'fadeAll']) {
     for (const value of [1, 0, NaN]) {

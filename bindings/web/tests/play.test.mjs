@@ -8,7 +8,8 @@ import { DIST, seeded } from './native.mjs';
 
 test('minutes of random play leave the memory flat, nothing stuck, no error', async (t) => {
   const [server, chromium] = [await host(join(DIST, 'page')), await browser()];
-  const { context, page, wrong } = await heard(chromium, server.url);
+  t.after(async () => { await chromium.close(); server.close(); });
+  const { page, wrong } = await heard(chromium, server.url);
   const random = seeded(9);
   const minutes = Number(process.env.ASPERITY_WEB_PLAY_MINUTES ?? 3);
   const until = Date.now() + minutes * 60000;
@@ -32,7 +33,4 @@ test('minutes of random play leave the memory flat, nothing stuck, no error', as
   assert.deepEqual([after.stats.contacts, after.stats.refused], [0, 0]);
   assert.equal(await page.evaluate(() => window.asperity.hand.fingers.size), 0);
   assert.deepEqual(wrong, []);
-  await context.close();
-  await chromium.close();
-  server.close();
 });

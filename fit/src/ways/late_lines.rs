@@ -14,17 +14,14 @@
 //!
 //! The modes that are there stay as they are. Where they leave less than 32 dB of that part nothing is looked for.
 
-use crate::noise::noise_floor::NoiseFloor;
-use crate::proof::pruning::prune;
-use crate::search::candidates::Search;
 use crate::search::limits::Limits;
 use crate::search::sub_band::Level;
-use crate::sinusoid::amplitudes::fit_amplitudes;
 use crate::sinusoid::partial::Partial;
 use crate::sinusoid::refinement::refine;
 use crate::ways::analysis::subtract;
-use crate::ways::merging::{MERGED_LOSS, merge_resonances};
+use crate::ways::merging::MERGED_LOSS;
 use crate::ways::ranking::keep_heard;
+use crate::ways::rounds::{Rounds, add_proposed};
 
 /// Where the late part begins, s after the onset; the fewest samples of it.
 const FROM_S: f64 = 0.2;
@@ -35,11 +32,10 @@ const LEFT: f64 = 6e-4;
 const LEVELS: usize = 2;
 /// Places while they are looked for, over those that are left.
 const UNREFINED: f64 = 1.5;
-/// Steps of a level, and after removals; rounds of these; the Wald statistic of a mode of twice its standard deviation.
+/// Steps of a joint refinement in a level.
 const LEVEL_STEPS: usize = 5;
-const PLAIN_STEPS: usize = 3;
-const ROUNDS: usize = 3;
-const PROVEN: f64 = 4.0;
+/// A mode is proven from twice its standard deviation on.
+const ROUNDS: Rounds = Rounds { most: 3, merged_loss: MERGED_LOSS, proven: 4.0, steps: 3 };
 /// By how many nepers a line may have fallen when the late part begins, and what that costs of its own energy.
 const BACK_NEPERS: f64 = 4.5;
 const ENERGY_COST: f64 = 1e-3;
@@ -76,26 +72,12 @@ fn lines(late: &[f64], start: usize, places: usize, limits: &Limits) -> Vec<Part
     let most = (UNREFINED * places as f64) as usize;
     let mut found: Vec<Partial> = Vec::new();
     for level in Level::ladder(late.len()).into_iter().take(LEVELS) {
-        let left = subtract(late, &found);
-        let noise = NoiseFloor::of_residual(&left, limits.rate_hz, limits.least_noise);
-        let (proposed, _) = Search::strongest(&limits, &noise).candidates(level, &left);
-        if proposed.is_empty() {
-            continue;
+        if add_proposed(late, &mut found, level, &limits) {
+            keep_heard(&mut found, late.len(), most, limits.rate_hz);
+            refine(late, &mut found, &limits.bounds, LEVEL_STEPS);
         }
-        found.extend(proposed);
-        fit_amplitudes(late, &mut found);
-        keep_heard(&mut found, late.len(), most, limits.rate_hz);
-        refine(late, &mut found, &limits.bounds, LEVEL_STEPS);
     }
-    for _ in 0..ROUNDS {
-        let merged = merge_resonances(late, &mut found, &limits.bounds, MERGED_LOSS);
-        let left = subtract(late, &found);
-        let noise = NoiseFloor::by_time(&left, limits.rate_hz, limits.least_noise);
-        if prune(&mut found, &noise, late.len(), PROVEN) + merged == 0 {
-            break;
-        }
-        refine(late, &mut found, &limits.bounds, PLAIN_STEPS);
-    }
+    ROUNDS.run(late, &mut found, &limits);
     found
 }
 

@@ -20,6 +20,7 @@ mod late_lines;
 mod merging;
 mod one_mode;
 mod ranking;
+mod rounds;
 mod tail_to_attack;
 
 use crate::noise::noise_floor::NoiseFloor;

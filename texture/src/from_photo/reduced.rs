@@ -8,7 +8,7 @@ pub const MOST_TEXELS: usize = 1 << 22;
 /// A picture of at most [`MOST_TEXELS`] and how many of its texels are one of the result along a side: means of n × n.
 #[must_use]
 pub fn reduced(picture: Raster) -> (Raster, usize) {
-    let n = (1..).find(|n| (picture.width / n) * (picture.height / n) <= MOST_TEXELS).unwrap_or(1);
+    let n = Raster::reduction(picture.width, picture.height, MOST_TEXELS);
     if n == 1 { (picture, 1) } else { (means(&picture, n), n) }
 }
 

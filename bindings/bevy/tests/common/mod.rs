@@ -159,6 +159,19 @@ pub fn assert_bounces(log: &ContactLog) {
     assert!(last[0] - blows[0][0] < 1.0, "a ball that lies still strikes at {} s", last[0]);
 }
 
+/// A ball of 1 cm that rolled from 5 cm on at 0.2 m/s.
+pub fn assert_rolls(log: &ContactLog) {
+    let Slid { begins, samples, .. } = slid(log);
+    assert_eq!(begins.len(), 1, "{begins:?}");
+    for (t, sample) in samples.iter().skip(5).filter(|(t, _)| *t < 1.0) {
+        let (u_m, along_m_s) = (0.4 * sample.uv[0], sample.velocity_m_s.unwrap()[0]);
+        assert!((along_m_s - 0.2).abs() < 0.02, "{along_m_s} m/s at {t} s");
+        assert!((u_m - (0.05 + 0.2 * t)).abs() < 0.012, "{u_m} m at {t} s");
+        let (slip_m_s, radius_m) = (sample.slip_m_s.unwrap(), sample.roll_radius_m.unwrap());
+        assert!(slip_m_s < 0.02 && (radius_m - 0.01).abs() < 1e-6, "{sample:?} at {t} s");
+    }
+}
+
 /// A block of 16 g that slid over the plate from 5 cm on with 0.3 m/s and friction 0.05 until it rested.
 pub fn assert_slides(log: &ContactLog, probe: Option<&str>) {
     let Slid { begins, ends, samples } = slid(log);

@@ -370,8 +370,8 @@ func a_normal_map_that_is_none_says_why_it_is_not_felt() -> void:
 	check("a photograph instead of a normal map is not felt, and says why", surface.displacement == null and heard.has("photograph"))
 
 
-func a_finger_feels_the_mesh_under_it() -> void:
-	var world := made("")
+# A ridged table of 30 cm that a finger finds and the world rings; the ground of tests.
+func table() -> StaticBody3D:
 	var drawn := MeshInstance3D.new()
 	drawn.mesh = PlaneMesh.new()
 	drawn.mesh.size = Vector2(0.3, 0.3)
@@ -386,9 +386,21 @@ func a_finger_feels_the_mesh_under_it() -> void:
 	for child in [drawn, shape, body]:
 		collider.add_child(child)
 	root.add_child(collider)
+	return collider
+
+
+func finger_above() -> AsperityFinger3D:
 	var finger := AsperityFinger3D.new()
 	finger.position.y = 0.05
 	root.add_child(finger)
+	return finger
+
+
+func a_finger_feels_the_mesh_under_it() -> void:
+	var world := made("")
+	var collider := table()
+	var body: AsperityBody = collider.get_node("Table")
+	var finger := finger_above()
 	for tick in 60:
 		finger.position.x = -0.1 + 0.003 * tick
 		await physics_frame
@@ -520,23 +532,9 @@ func a_strike_gain_turns_blows_down() -> void:
 
 func a_world_that_is_built_again_takes_everything_along() -> void:
 	var world := made("res://plate.toml")
-	var drawn := MeshInstance3D.new()
-	drawn.mesh = PlaneMesh.new()
-	drawn.mesh.size = Vector2(0.3, 0.3)
-	var shape := CollisionShape3D.new()
-	shape.shape = BoxShape3D.new()
-	shape.shape.size = Vector3(0.3, 0.02, 0.3)
-	shape.position.y = -0.01
-	var body := AsperityBody.new()
-	body.name = "Table"
-	body.surface = AsperitySurface.from_material(ridged(0.1), 0.3, 0.3)
-	var collider := StaticBody3D.new()
-	for child in [drawn, shape, body]:
-		collider.add_child(child)
-	root.add_child(collider)
-	var finger := AsperityFinger3D.new()
-	finger.position.y = 0.05
-	root.add_child(finger)
+	var collider := table()
+	var body: AsperityBody = collider.get_node("Table")
+	var finger := finger_above()
 	for tick in 30:
 		finger.position.x = -0.1 + 0.003 * tick
 		await physics_frame
