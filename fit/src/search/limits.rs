@@ -14,6 +14,9 @@ const LOWEST_HZ: f64 = 20.0;
 const BACK_NEPERS: f64 = 1.5;
 /// Nothing so far below the strongest mode's energy is looked for, dB.
 const FAINTEST_DB: f64 = -90.0;
+/// So many times what is kept is far more: which of them are heard is told before the last of them are found and all have
+/// converged (a tile in a room, of whose 84 or 111 modes 32 may be kept).
+const FAR_MORE: usize = 2;
 
 /// What bounds an analysis, in units of samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,6 +25,8 @@ pub struct Limits {
     pub bounds: Bounds,
     /// Most partials.
     pub max_partials: usize,
+    /// Most of these that are kept.
+    pub kept: usize,
     /// Partials whose energy lies further than this below the strongest are dropped, as a ratio.
     pub least_energy: f64,
     /// Threads to use.
@@ -33,6 +38,11 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Whether `partials` are so many that most will not be kept.
+    pub(crate) fn far_more_than_kept(&self, partials: usize) -> bool {
+        partials > FAR_MORE * self.kept
+    }
+
     /// What bounds the analysis of `segment`, which begins `offset` samples after the onset.
     pub(crate) fn of(segment: &[f64], offset: usize, recording: &Recording, options: &FitOptions) -> Self {
         let rate = recording.sample_rate_hz;
@@ -50,6 +60,7 @@ impl Limits {
                 energy_cost: 0.0,
             },
             max_partials: options.max_modes,
+            kept: options.max_modes,
             least_energy: 10.0_f64.powf(0.1 * options.least_level_db.min(FAINTEST_DB)),
             threads: match options.threads {
                 0 => std::thread::available_parallelism().map_or(1, |n| n.get().min(8)),

@@ -10,7 +10,8 @@
 //!    and remove what is not proven. Long modes are thus known before short ones are looked for, and
 //!    one window never has to suit both.
 //! 2. Joint refinement over the whole segment, proof, refinement.
-//! 3. The same on the residual, with the noise measured again in the residual, until nothing is added.
+//! 3. The same on the residual, with the noise measured again in the residual, until nothing is added, or until what is
+//!    there explains a segment that dies away and is far more than is kept.
 //! 4. Proof once more where the noise is steep over frequency.
 
 use crate::noise::noise_floor::NoiseFloor;
@@ -27,6 +28,8 @@ use crate::sinusoid::refinement::refine;
 use crate::ways::merging::merge_cancelling;
 use std::f64::consts::PI;
 
+/// A segment of so many times the energy that its quiet end has is one that dies away, and no noise.
+const DYING: f64 = 100.0;
 /// Most passes over the levels.
 const PASSES: usize = 3;
 /// Accepted steps of a refinement within a level, after removals, and at the end.
@@ -71,7 +74,7 @@ impl Analysis {
     }
 }
 
-/// Analyses `segment`; `progress` hears the part done, 0 to 1.
+/// Analyses `segment`; `progress` hears the part done, 0 to 1. What explains it is proven, but not converged: [`settle`].
 pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
     let mut work = Work {
         segment,
@@ -91,20 +94,35 @@ pub fn analyse(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) 
     if !work.capped {
         work.follow_tilt();
     }
-    let mut explained = !work.capped && !work.leaves_more_than_noise();
-    if explained {
-        work.settle(LAST_STEPS);
-        for _ in 0..MERGING_ROUNDS {
-            if merge_cancelling(segment, &mut work.partials, &work.limits.bounds) == 0 {
-                break;
-            }
-            work.settle(FINAL_STEPS);
-        }
-        explained = !work.leaves_more_than_noise();
-    }
+    let explained = !work.capped && !work.leaves_more_than_noise();
     let residual = subtract(segment, &work.partials);
     progress(1.0);
     Analysis { partials: work.partials, noise: work.noise, residual, capped: work.capped, explained }
+}
+
+/// Refits what explains `segment` until it has converged, and merges what cancels.
+pub fn settle(analysis: &mut Analysis, segment: &[f64], limits: &Limits) {
+    if analysis.partials.is_empty() {
+        return;
+    }
+    let mut work = Work {
+        segment,
+        limits: *limits,
+        noise: analysis.noise.clone(),
+        partials: std::mem::take(&mut analysis.partials),
+        capped: analysis.capped,
+        missed: Vec::new(),
+    };
+    work.settle(LAST_STEPS);
+    for _ in 0..MERGING_ROUNDS {
+        if merge_cancelling(segment, &mut work.partials, &work.limits.bounds) == 0 {
+            break;
+        }
+        work.settle(FINAL_STEPS);
+    }
+    analysis.explained = !work.leaves_more_than_noise();
+    analysis.residual = subtract(segment, &work.partials);
+    analysis.partials = work.partials;
 }
 
 /// `signal` minus `partials`.
@@ -129,6 +147,8 @@ impl Work<'_> {
     /// All levels, joint refinement and proof, until nothing is added or more is there than may be.
     fn passes(&mut self, progress: &mut dyn FnMut(f64)) {
         let levels = Level::ladder(self.segment.len());
+        let energy = self.segment.iter().map(|x| x * x).sum::<f64>();
+        let dies_away = energy > DYING * self.noise.mean_variance() * self.segment.len() as f64;
         for pass in 0..PASSES {
             let known = self.partials.len();
             let mut added = 0;
@@ -149,6 +169,12 @@ impl Work<'_> {
                 self.settle(LEVEL_STEPS);
             }
             if pass > 0 && self.partials.len() <= known {
+                break;
+            }
+            if self.limits.far_more_than_kept(self.partials.len())
+                && dies_away
+                && !self.leaves_more_than_noise()
+            {
                 break;
             }
         }

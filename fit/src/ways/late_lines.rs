@@ -138,6 +138,7 @@ mod tests {
         Limits {
             bounds: Bounds { delta_high: 0.03, omega_low: 0.003, ..Bounds::wide() },
             max_partials,
+            kept: max_partials,
             least_energy: 0.0,
             threads: 1,
             rate_hz: RATE_HZ,

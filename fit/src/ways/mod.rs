@@ -29,7 +29,7 @@ use crate::recording::{FEWEST_SAMPLES, Recording};
 use crate::search::limits::Limits;
 use crate::search::sum_of_modes::may_be_sum_of_modes;
 use crate::sinusoid::refinement::refine;
-use crate::ways::analysis::{Analysis, analyse, subtract};
+use crate::ways::analysis::{Analysis, analyse, settle, subtract};
 use crate::ways::contact::{LONGEST_S, contact_samples, release_samples};
 use crate::ways::merging::{MERGED_LOSS, merge_resonances};
 use crate::ways::ranking::keep_heard;
@@ -56,6 +56,8 @@ const MODES_OF_A_PUSH: usize = 80;
 /// than that and fewer giants, it is a recording of many modes, and another fit would take as long.
 const GIANT: f64 = 0.2;
 const GIANTS: usize = 5;
+/// Modes of a sum are nearer than those of the tail even if they leave a decibel more: theirs are decays without a bend.
+const CONVERGED: f64 = 1.26;
 /// An end of the contact this much earlier than where the fit began is worth a fit from there, s.
 const EARLIER_S: f64 = 0.000_15;
 
@@ -74,19 +76,27 @@ impl Sound<'_> {
             return (0, analyse_from_the_tail(self.samples, &limits, progress));
         }
         let whole = analysed_as_sum(self.samples, &limits, progress);
+        // A sum of more modes than may be kept is none of those.
+        let right = whole.explained && !whole.capped;
         if whole.explained && !self.disguised(&whole, self.proposed()[0]) {
-            return (0, whole);
+            return (0, if right { whole } else { self.nearer(whole, &limits, progress) });
         }
         if let Some(pushed) = self.pushed(&whole, progress) {
             return pushed;
         }
-        if whole.explained {
-            return (0, whole);
-        }
-        // Neither is right; the one that leaves less is nearer.
-        let staged = analyse_from_the_tail(self.samples, &limits, progress);
+        (0, if right { whole } else { self.nearer(whole, &limits, progress) })
+    }
+
+    /// Of `whole` and a fit from the tail, neither of which is right, the one that leaves less.
+    fn nearer(&self, whole: Analysis, limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
+        let staged = analyse_from_the_tail(self.samples, limits, progress);
         let left = |analysis: &Analysis| analysis.residual.iter().map(|x| x * x).sum::<f64>();
-        (0, if !whole.capped && left(&whole) < left(&staged) { whole } else { staged })
+        let allowed = match (whole.explained, whole.capped) {
+            (true, _) => CONVERGED,
+            (false, true) => 0.0,
+            (false, false) => 1.0,
+        };
+        if left(&whole) < allowed * left(&staged) { whole } else { staged }
     }
 
     /// The modes of what follows the first `offset` samples, whatever it is.
@@ -129,11 +139,8 @@ impl Sound<'_> {
             let (segment, limits) = (&self.samples[offset..], self.limits(offset));
             let sum = if whole.capped {
                 // A push of few modes, or a recording, of which a fit of many is long.
-                analyse(
-                    segment,
-                    &Limits { max_partials: MODES_OF_A_PUSH.min(limits.max_partials), ..limits },
-                    progress,
-                )
+                let few = Limits { max_partials: MODES_OF_A_PUSH.min(limits.max_partials), ..limits };
+                settled(segment, &few, progress)
             } else {
                 analysed_as_sum(segment, &limits, progress)
             };
@@ -171,12 +178,25 @@ fn saves(whole: &Analysis, pushed: &Analysis) -> bool {
     pushed.partials.len() + SAVED_MODES.max((SAVED_SHARE * most as f64) as usize) <= most
 }
 
+/// As a sum of modes, converged if it is one.
+fn settled(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
+    let mut sum = analyse(segment, limits, progress);
+    if sum.explained {
+        settle(&mut sum, segment, limits);
+    }
+    sum
+}
+
 /// As a sum of modes; of more than may be kept those are kept that are heard best, and refitted.
 fn analysed_as_sum(segment: &[f64], limits: &Limits, progress: &mut dyn FnMut(f64)) -> Analysis {
     let most = limits.max_partials;
     // A limit is one of what is kept: a sum of modes is recognised by all of them.
     let all = Limits { max_partials: most.max(MODES_OF_A_SUM), ..*limits };
     let mut sum = analyse(segment, &all, progress);
+    // What is cut far need not have converged before.
+    if sum.explained && !limits.far_more_than_kept(sum.partials.len()) {
+        settle(&mut sum, segment, &all);
+    }
     if sum.explained && sum.partials.len() > most {
         // What is one resonance takes one place.
         for _ in 0..LIMITED_ROUNDS {

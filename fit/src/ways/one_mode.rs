@@ -165,6 +165,7 @@ mod tests {
         let limits = Limits {
             bounds: Bounds::wide(),
             max_partials: 10,
+            kept: 10,
             least_energy: 0.0,
             threads: 1,
             rate_hz: RATE_HZ,
