@@ -56,8 +56,8 @@ const MODES_OF_A_PUSH: usize = 80;
 /// than that and fewer giants, it is a recording of many modes, and another fit would take as long.
 const GIANT: f64 = 0.2;
 const GIANTS: usize = 5;
-/// Modes of a sum are nearer than those of the tail even if they leave a decibel more: theirs are decays without a bend.
-const CONVERGED: f64 = 1.26;
+/// Modes of a sum are nearer than those of the tail even if they leave 3 dB more: a resonance is one of them.
+const CONVERGED: f64 = 2.0;
 /// An end of the contact this much earlier than where the fit began is worth a fit from there, s.
 const EARLIER_S: f64 = 0.000_15;
 
