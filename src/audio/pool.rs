@@ -35,7 +35,13 @@ pub(crate) trait Job: Send + 'static {
 /// Threads beside the one that owns this.
 pub(crate) struct Pool<J> {
     queues: Arc<Queues<J>>,
-    helpers: Vec<JoinHandle<()>>,
+    helpers: Vec<Helper>,
+}
+
+struct Helper {
+    thread: JoinHandle<()>,
+    /// The process that has it: threads do not come along into a child of `fork`.
+    process: u32,
 }
 
 struct Queues<J> {
@@ -61,9 +67,10 @@ impl<J: Job> Pool<J> {
         let mut pool = Self { queues, helpers: Vec::with_capacity(rooms.len()) };
         for (index, mut room) in rooms.into_iter().enumerate() {
             let queues = pool.queues.clone();
-            let helper = Builder::new().name(format!("asperity-{}", index + 1));
+            let named = Builder::new().name(format!("asperity-{}", index + 1));
             // If one cannot be had, those there are end with the pool.
-            pool.helpers.push(helper.spawn(move || queues.help(index, &mut room))?);
+            let thread = named.spawn(move || queues.help(index, &mut room))?;
+            pool.helpers.push(Helper { thread, process: std::process::id() });
         }
         Ok(pool)
     }
@@ -112,7 +119,7 @@ impl<J: Job> Pool<J> {
         fence(SeqCst);
         for (helper, asleep) in self.helpers.iter().zip(&self.queues.asleep).take(wanted) {
             if asleep.load(SeqCst) {
-                helper.thread().unpark();
+                helper.thread.thread().unpark();
             }
         }
     }
@@ -165,10 +172,15 @@ fn look_again(looks: &mut u32) {
 impl<J> Drop for Pool<J> {
     fn drop(&mut self) {
         self.queues.ends.store(true, SeqCst);
-        for helper in self.helpers.drain(..) {
-            helper.thread().unpark();
+        for Helper { thread, process } in self.helpers.drain(..) {
+            if process != std::process::id() {
+                // Nothing is there to wait for or to let go.
+                std::mem::forget(thread);
+                continue;
+            }
+            thread.thread().unpark();
             // It does not panic: what its jobs throw is caught and handed over.
-            let _ = helper.join();
+            let _ = thread.join();
         }
     }
 }

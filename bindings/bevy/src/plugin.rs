@@ -7,7 +7,7 @@ use crate::null::{self, NullOutput};
 use crate::output::Output;
 use crate::touch::Touch;
 use asperity::files::contact_log::Names;
-use asperity::{AudioBus, Config, Engine, Renderer};
+use asperity::{ActuatorSettings, AudioBus, Config, Engine, Renderer};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time, Virtual};
@@ -25,7 +25,8 @@ pub enum TouchSystems {
 /// reason is logged as an error.
 #[derive(Debug, Clone)]
 pub struct AsperityPlugin {
-    /// How the engine is built; a device's rate wins over its own. By default live, 48 kHz, one bus at a gain of 0.1 with its limiter on.
+    /// How the engine is built; a device's rate wins over its own. By default live, 48 kHz, one bus at a gain of 0.1 and one
+    /// haptic channel of 0.1 mm at full scale, with their limiters on.
     pub config: Config,
     /// Where it plays.
     pub output: Output,
@@ -33,9 +34,10 @@ pub struct AsperityPlugin {
 
 impl Default for AsperityPlugin {
     fn default() -> Self {
-        // Blows of a physics engine reach 20 times full scale, and a sound card clips at 1.
+        // Blows of a physics engine reach 20 times full scale where they are heard, more where they are felt, and a sound card clips at 1.
         let audio = vec![AudioBus { gain: 0.1, limit: true }];
-        Self { config: Config { audio, ..Config::live(48_000.0) }, output: Output::default() }
+        let actuators = vec![ActuatorSettings { limit_peaks: true, ..ActuatorSettings::default() }];
+        Self { config: Config { audio, actuators, ..Config::live(48_000.0) }, output: Output::default() }
     }
 }
 

@@ -213,6 +213,21 @@ fn what_is_refused_is_told_as_a_message_in_the_engines_words() {
 }
 
 #[test]
+fn a_blow_that_a_finger_feels_stays_within_full_scale() {
+    let mut app = app();
+    let [_, body] = finger_and_plate(&mut app);
+    let of_a_hammer = Impact { mass_kg: 0.02, ..Impact::on(asperity::BodyId::from_bits(0)) };
+    let impact = Impact { speed_m_s: 1.0, actuator: Some(asperity::Actuator(0)), ..of_a_hammer };
+    tell(&mut app, TouchEvent::Impact { body, impact });
+    for _ in 0..30 {
+        app.update();
+    }
+    assert_eq!(errors(&mut app), [""; 0]);
+    let felt = peak(&app.world().resource::<NullOutput>().haptic[0]);
+    assert!(felt > 0.5 && felt <= 1.0, "{felt}");
+}
+
+#[test]
 fn an_impossible_config_is_no_panic_and_the_app_runs_on_in_silence() {
     let mut app = App::new();
     let config = asperity::Config { sample_rate_hz: -1.0, ..asperity::Config::default() };

@@ -44,6 +44,16 @@ static class UnityScene
         float struck = Second(step => { if (step == 5) Messages.Send(plate, "OnCollisionEnter", blow); });
         Must(struck > 2f * stroked && struck <= 1f, "a blow is heard: " + struck + " beside " + stroked);
         Must(world.Scene.Stats().Impacts == 1 && world.Scene.Stats().Refused == 0 && Debug.Warned == "", "nothing is refused");
+        var port = world.Scene.Open(PortKind.Pcm, Feed.Haptic, 1, holdsS: 2.0);
+        var tapped = Asperity.Event.Impact(plate.Body, 1.0, 0.02, 0.005);
+        tapped.Actuator = 1;
+        Second(step => { if (step == 5) world.Report(tapped); });
+        var felt = new float[96000];
+        port.Pcm(felt);
+        port.Dispose();
+        float most = 0f;
+        foreach (var x in felt) most = Math.Max(most, Math.Abs(x));
+        Must(most > 0.5f && most <= 1f, "a blow that a finger feels stays within full scale: " + most);
 
         // A ball of 2 cm that slides over the plate at 0.5 m/s, and one that rolls: softer, and each ends where it leaves.
         Physics.Ground = null;

@@ -155,9 +155,12 @@ static void forked(copy *c) {
         asp_player *player = play(c, &other);
         MUST(struck(c, scene, renderer, body) > 0);
         rest(20);
+        FILE *said = tmpfile();
+        MUST(said);
         pid_t child = fork();
         MUST(child >= 0);
         if (child == 0) {
+            MUST(dup2(fileno(said), 2) == 2);
             alarm(20);
             MUST(struck(c, scene, renderer, body) > 0);
             MUST(c->scene_free(scene) == ASP_OK && c->renderer_free(renderer) == ASP_OK && c->scene_free(other) == ASP_OK);
@@ -172,7 +175,14 @@ static void forked(copy *c) {
         }
         int status;
         MUST(waitpid(child, &status, 0) == child);
-        if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        /* Panics that were caught count too. */
+        rewind(said);
+        char line[512];
+        int silent = 1;
+        for (; fgets(line, sizeof line, said); silent = 0)
+            fputs(line, stderr);
+        fclose(said);
+        if (!silent || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
             fprintf(stderr, "%d threads: a child of fork ended with %x\n", threads, (unsigned)status);
             exit(1);
         }

@@ -11,7 +11,9 @@ use asperity::files::scene_file::SceneFile;
 use asperity::live::ports::{Feed, Pcm, PcmPort};
 use asperity::open::{Overrides, ReadSurface};
 use asperity::texture::sand::{SandThread, SandWorker};
-use asperity::{ActuatorSettings, BodyId, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId};
+use asperity::{
+    ActuatorSettings, AudioBus, BodyId, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId,
+};
 use godot::classes::{AudioServer, AudioStreamPlayer, INode, SceneTree};
 use godot::prelude::*;
 use std::path::Path;
@@ -47,6 +49,15 @@ pub struct AsperityWorld {
     #[export]
     #[init(val = 2)]
     haptic_channels: i64,
+    /// What full scale of a haptic channel stands for, m, where no scene file says it; strokes move a fingertip by hundredths of a millimetre to
+    /// tenths, blows by millimetres, and a limiter keeps them within full scale.
+    #[export]
+    #[init(val = 5e-4)]
+    haptic_full_scale_m: f64,
+    /// Loudness before the limiter, linear, where no scene file says it: blows reach many times full scale.
+    #[export]
+    #[init(val = 0.2)]
+    gain: f64,
     /// Godot's audio bus on which it sounds; empty: a player of the project's own plays `audio_stream()`.
     #[export]
     #[init(val = "Master".into())]
@@ -315,10 +326,19 @@ impl AsperityWorld {
                 .ok_or_else(|| {
                     format!("haptic_channels: {} is refused; must be 0 to 16", self.haptic_channels)
                 })?;
-            let mut config = Config { sample_rate_hz: rate_hz, clock, ..Config::default() };
-            config.actuators.resize(channels, ActuatorSettings::default());
-            // As before a sound card.
-            config.audio.iter_mut().for_each(|bus| bus.limit = true);
+            // Limited as before a sound card, what is felt too.
+            let felt = ActuatorSettings {
+                full_scale: self.haptic_full_scale_m,
+                limit_peaks: true,
+                ..ActuatorSettings::default()
+            };
+            let config = Config {
+                sample_rate_hz: rate_hz,
+                clock,
+                actuators: vec![felt; channels],
+                audio: vec![AudioBus { gain: self.gain, limit: true }],
+                ..Config::default()
+            };
             return config.build().map_err(|error| error.to_string());
         }
         let files = ResFiles::default();

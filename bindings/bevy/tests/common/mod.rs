@@ -103,7 +103,9 @@ pub fn assert_same_bits(app: &mut App, plates: usize) -> ContactLog {
         let first = (0..frames).find(|i| played[*i].to_bits() != rendered[*i].to_bits());
         assert_eq!(first, None, "{what}: the first sample that differs, of {frames}");
     }
-    assert!(peak(&output.audio[0]) > 1e-6, "silence");
+    let peaks = [peak(&output.audio[0]), peak(&output.haptic[0])];
+    assert!(peaks[0] > 1e-6, "silence");
+    assert!(peaks.iter().all(|peak| *peak <= 1.0), "beyond full scale: {peaks:?}");
     log
 }
 

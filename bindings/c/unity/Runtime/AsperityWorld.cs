@@ -31,8 +31,12 @@ namespace Asperity
         void OnEnable()
         {
             Renderer renderer;
-            string audio = "audio = [{ gain = " + Gain.ToString("R", System.Globalization.CultureInfo.InvariantCulture) + ", limit = true }]";
-            Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels, more: audio);
+            string audio = "audio = [{ gain = " + Gain.ToString("R", System.Globalization.CultureInfo.InvariantCulture) + ", limit = true }]\n";
+            // What is felt is limited as well: a blow moves a fingertip by millimetres, and full scale is a tenth of one.
+            var channels = new string[System.Math.Min(System.Math.Max(1u, HapticChannels), 64u)];
+            for (int channel = 0; channel < channels.Length; channel++) channels[channel] = "{ limit_peaks = true }";
+            string haptics = "actuators = [" + string.Join(", ", channels) + "]\n";
+            Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels, more: audio + haptics);
             Renderer = renderer;
             Current = this;
             // Unity hears an object only where one of these is on it.

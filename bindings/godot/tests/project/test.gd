@@ -34,6 +34,7 @@ func _initialize() -> void:
 	await what_a_material_repeats_is_felt_repeated()
 	await what_rolls_is_softer_than_what_slides()
 	await a_strike_gain_turns_blows_down()
+	await a_blow_that_is_felt_stays_within_full_scale()
 	await a_world_that_is_built_again_takes_everything_along()
 	await a_scene_is_freed_while_it_plays()
 	OS.remove_logger(heard)
@@ -515,7 +516,7 @@ func a_strike_gain_turns_blows_down() -> void:
 		var world := made("", "", "")
 		var sound := world.audio_stream().instantiate_playback()
 		var body := AsperityBody.new()
-		body.gain = 0.001
+		body.gain = 0.005
 		body.strike_gain = strike_gain
 		world.add_child(body)
 		world.report_impact(body.body_id(), 0.5, 0.01, 0.005, "steel", -1)
@@ -528,6 +529,34 @@ func a_strike_gain_turns_blows_down() -> void:
 		peaks.append(peak)
 		await gone(world)
 	check("a strike gain of a quarter makes a blow a quarter as loud", peaks[0] > 1e-6 and absf(peaks[1] / peaks[0] - 0.25) < 0.01, peaks)
+
+
+# Without a scene file nobody has set levels: strokes are within full scale by themselves, blows by limiters.
+func a_blow_that_is_felt_stays_within_full_scale() -> void:
+	var world := made("", "", "")
+	var sound := world.audio_stream().instantiate_playback()
+	var touch := world.haptic_stream(0, 1).instantiate_playback()
+	var body := AsperityBody.new()
+	body.surface = AsperitySurface.from_material(ridged(0.1), 0.3, 0.3)
+	world.add_child(body)
+	var peaks := [0.0, 0.0]
+	for tick in 90:
+		var uv := Vector2(0.2 + 0.01 * tick, 0.5)
+		if tick == 0:
+			world.report_begin(1, body.surface_id(), uv, 0.8, 0)
+		elif tick < 60:
+			world.report_move(1, uv, 0.8)
+		elif tick == 60:
+			check("a stroke keeps within full scale without its limiters", world.stats().limiter_db == 0 and peaks[0] > 0.005 and peaks[1] > 0.02, [peaks, world.stats()])
+			world.report_end(1)
+			world.report_impact(body.body_id(), 1.0, 0.02, 0.005, "wood", 0)
+		await physics_frame
+		for frame in sound.mix_audio(1.0, 735):
+			peaks[0] = maxf(peaks[0], absf(frame.x))
+		for frame in touch.mix_audio(1.0, 735):
+			peaks[1] = maxf(peaks[1], absf(frame.x))
+	check("a blow is held within full scale, heard and felt", peaks[0] > 0.1 and peaks[0] <= 1.0 and peaks[1] > 0.5 and peaks[1] <= 1.0, [peaks, world.stats()])
+	await gone(world)
 
 
 func a_world_that_is_built_again_takes_everything_along() -> void:
