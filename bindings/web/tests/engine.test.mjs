@@ -14,7 +14,7 @@ import { DIST, fromPhoto, render, seeded, stroke, text, wasm } from './native.mj
 
 const module = wasm();
 /** Files of the page that are asked for when the first surface sounds, or when something is saved. */
-const LATER = ['asperity.wasm', 'save.js', 'tools.wasm', 'tools.js', 'own.js', 'listen.js', 'link.js'];
+const LATER = ['asperity.wasm', 'save.js', 'tools.wasm', 'tools.js', 'own.js', 'listen.js', 'link.js', 'solid.js', 'shape.js', 'shape.wasm'];
 
 for (const surface of SURFACES) {
   test(`a stroke over ${surface.id} has the bits of the program`, async () => {
