@@ -89,9 +89,9 @@ async function choose(surface, modes) {
 async function solve(surface) {
   say('The bowl is being solved from its mesh …', 60);
   const { bowl, solved } = await import('./solid.js');
-  const { modes, sentence } = await solved((work) => ask(work, SHAPE), 'bowl.obj', new TextEncoder().encode(bowl()));
+  const { modes, found } = await solved((work) => ask(work, SHAPE), 'bowl.obj', new TextEncoder().encode(bowl()));
   surface.modes = modes;
-  say(sentence, 10);
+  say(`The bowl is solved: ${found}. Hit it in different places.`, 10);
   return modes;
 }
 

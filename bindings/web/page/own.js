@@ -13,13 +13,19 @@ const LISTENED_S = 4;
 export async function bring(file, { isMap, ask, askShape }) {
   if (file.size > MOST_FILE_BYTES) throw new Error(`${file.name}: has ${Math.round(file.size / 1e6)} MB; must be at most 64 MB.`);
   if (/\.json$/i.test(file.name)) return ringing(file.name, await file.text());
-  if (/\.(obj|stl|msh)$/i.test(file.name)) return solid(file.name, await solved(askShape, file.name, new Uint8Array(await file.arrayBuffer())));
+  if (/\.(obj|stl|msh)$/i.test(file.name)) return mesh(file, askShape);
   if (/\.(wav|flac|ogg|mp3|m4a|opus|webm)$/i.test(file.name) || file.type.startsWith('audio/')) return hit(file.name, await decoded(file), ask);
   return picture(file, isMap, ask);
 }
 
-/** A body of one's own, from its mesh. */
-function solid(name, { modes, sentence }) {
+/** A mesh becomes a body. */
+async function mesh(file, ask) {
+  const { modes, told, found } = await solved(ask, file.name, new Uint8Array(await file.arrayBuffer()));
+  return solid(file.name, modes, [`${file.name} is solved: ${found}. Hit it in different places.`, ...told.map((line) => `(${line}.)`)].join(' '));
+}
+
+/** A body of one's own, with its shape. */
+function solid(name, modes, sentence) {
   return { surface: { ...solidSurface('own', name.slice(0, 24), 'Your own body. Drag beside it to turn it.'), isOwn: true, modes }, sentence };
 }
 
@@ -28,7 +34,7 @@ function ringing(name, modes) {
   let shapes;
   try { ({ shapes } = JSON.parse(modes)); } catch { /* The engine says what is wrong. */ }
   const sentence = `${name} rings now.`;
-  return shapes?.points_m && shapes.triangles ? solid(name, { modes, sentence }) : { modes, sentence };
+  return shapes?.points_m && shapes.triangles ? solid(name, modes, sentence) : { modes, sentence };
 }
 
 async function decoded(file) {

@@ -9,24 +9,27 @@ const SMOOTH = 0.8;
 /** How it is looked at first: around and from above, rad. */
 const FIRST = [0.4, 0.55];
 const TINT = [0.84, 0.8, 0.72];
+/** Half of it is glazed: one sees it turn. */
+const GLAZE = [0.3, 0.47, 0.56];
 
 const VERTEX = `#version 300 es
 in vec3 place, normal; uniform mat3 turned; uniform vec3 middle; uniform vec2 size; uniform float pixels, depth;
-out vec3 n; out vec2 pixel;
+out vec3 n; out vec2 pixel; out float side;
 void main() {
   vec3 p = turned * (place - middle);
   n = turned * normal;
+  side = (place.x - middle.x) * pixels + 0.1 * (place.z - middle.z) * pixels;
   pixel = vec2(0.5 * size.x + p.x * pixels, 0.5 * size.y - p.y * pixels);
   gl_Position = vec4(2.0 * p.x * pixels / size.x, 2.0 * p.y * pixels / size.y, -p.z / depth, 1.0);
 }`;
 const FRAGMENT = `#version 300 es
 precision highp float;
-in vec3 n; in vec2 pixel; uniform vec2 light; uniform vec3 tint, touches[4]; out vec4 shown;
+in vec3 n; in vec2 pixel; in float side; uniform vec2 light; uniform vec3 tint, glaze, touches[4]; out vec4 shown;
 void main() {
   vec3 l = normalize(vec3(light.x - pixel.x, pixel.y - light.y, 260.0));
   vec3 m = normalize(n);
   float gloss = pow(max(dot(reflect(-l, m), vec3(0.0, 0.0, 1.0)), 0.0), 40.0);
-  vec3 c = tint * (0.3 + 0.25 * max(m.z, 0.0) + 0.5 * max(dot(m, l), 0.0)) + 0.35 * gloss;
+  vec3 c = mix(tint, glaze, smoothstep(-1.5, 1.5, side)) * (0.3 + 0.25 * max(m.z, 0.0) + 0.5 * max(dot(m, l), 0.0)) + 0.35 * gloss;
   for (int i = 0; i < 4; i++) if (touches[i].z > 0.0) c = mix(c, c * 0.5, 0.8 * (1.0 - smoothstep(touches[i].z * 0.5, touches[i].z, length(pixel - touches[i].xy))));
   shown = vec4(c, 1.0);
 }`;
@@ -56,12 +59,12 @@ export function bowl([radius, wall, rim, rings, around] = [0.07, 0.006, -0.1, 9,
   return `${lines.join('\n')}\n`;
 }
 
-/** Lets the worker solve a mesh; the text of its modes file, and a sentence about it. */
+/** Lets the worker solve a mesh; the text of its modes file, what was mended or is doubted, and what was found. */
 export async function solved(ask, name, bytes) {
   const { modes, told, mass_kg } = await ask({ solve: { name, bytes } });
   const hz = JSON.parse(modes).modes.map(({ frequency_hz }) => Math.round(frequency_hz));
-  const doubts = told.map((line) => ` (${line}.)`).join('');
-  return { modes, sentence: `${name} is solved: ${hz.length} modes from ${hz[0]} to ${hz.at(-1)} Hz, ${Math.round(1e3 * mass_kg)} g of stoneware. Hit it in different places.${doubts}` };
+  const found = `${hz.length} modes from ${hz[0]} to ${hz.at(-1)} Hz, ${Math.round(1e3 * mass_kg)} g of stoneware`;
+  return { modes, told, found };
 }
 
 /** Corners of triangles, three numbers each, with normals that are smooth where the surface is. */
@@ -224,6 +227,7 @@ export class Solid {
     gl.uniform1f(this.at.depth, 1.1 * this.reach);
     gl.uniform2fv(this.at.light, picture.light);
     gl.uniform3fv(this.at.tint, TINT);
+    gl.uniform3fv(this.at.glaze, GLAZE);
     const rings = new Float32Array(12);
     [...picture.touches.values()].slice(0, 4).forEach((ring, i) => rings.set(ring, 3 * i));
     gl.uniform3fv(this.at.touches, rings);

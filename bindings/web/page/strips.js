@@ -13,6 +13,7 @@ export class Strips {
     this.columns = [];
     this.told = 0;
     this.spans = [1e-5, 1e-5];
+    this.middles = [0, 0];
     this.colours();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.colours());
   }
@@ -69,8 +70,10 @@ export class Strips {
     const { context, inks } = this;
     [['ground', inks.relief], ['skin', inks.skin]].forEach(([name, ink], strip) => {
       if (!column[name]) return;
-      const [low, high] = column[name];
-      this.spans[strip] = Math.max(this.spans[strip] * 0.995, Math.abs(low), Math.abs(high), 1e-7);
+      // Slow ups and downs are followed, so that what is fine fills the strip.
+      const middle = this.middles[strip] += 0.15 * ((column[name][0] + column[name][1]) / 2 - this.middles[strip]);
+      const [low, high] = column[name].map((m) => m - middle);
+      this.spans[strip] = Math.max(this.spans[strip] * 0.99, Math.abs(low), Math.abs(high), 1e-7);
       const at = (m) => lines[strip] + height * 0.12 * (1 - 0.9 * (m / this.spans[strip]));
       context.fillStyle = ink;
       context.fillRect(x, at(high), step, Math.max(1.5, at(low) - at(high)));
