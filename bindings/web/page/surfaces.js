@@ -151,7 +151,7 @@ export function solidSurface(id, name, note) {
     id, name, note, size_m: [0.3, 0.3], isSolid: true,
     body: 'stock = "bowl"\nsize_m = 0.14\nmaterial = "ceramic"',
     surface: () => 'solid = "granite"\nwidth_m = 0.3\nheight_m = 0.3',
-    fullScale: 1.5e-4, gain: 10, blow: WOOD, colour: between([52, 60, 66], [92, 102, 108]), shine: 0,
+    fullScale: 1.5e-4, gain: 10, blow: STEEL, colour: between([52, 60, 66], [92, 102, 108]), shine: 0,
   };
 }
 

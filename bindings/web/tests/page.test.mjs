@@ -143,17 +143,17 @@ test('a sound device that changes, goes and comes back under a finger leaves it 
     await page.waitForFunction((frames) => window.asperity.state.frames > frames + 5 && window.asperity.state.touching, before, { timeout: 20000 });
   };
   await stroked(300);
-  // Another device, none, and the usual one again: Chromium restarts the context's output each time.
+  // Another device, and the usual one again, which a machine without a sound card does not have: Chromium begins its output anew.
   const sinks = await page.evaluate(async () => {
     const { context } = window.asperity.state;
     if (!context.setSinkId) return 'this browser cannot choose a device';
     await context.setSinkId({ type: 'none' });
     navigator.mediaDevices?.dispatchEvent(new Event('devicechange'));
-    return JSON.stringify(context.sinkId);
+    return context.sinkId.type;
   });
   t.diagnostic(`sink ${sinks}`);
   await stroked(400);
-  await page.evaluate(async () => { await window.asperity.state.context.setSinkId?.(''); navigator.mediaDevices?.dispatchEvent(new Event('devicechange')); });
+  await page.evaluate(async () => { await window.asperity.state.context.setSinkId?.('').catch(() => {}); navigator.mediaDevices?.dispatchEvent(new Event('devicechange')); });
   await stroked(500);
   await page.mouse.up();
   // The system takes the device away; the next touch asks for it again.
@@ -295,7 +295,7 @@ test('a bowl is solved from its mesh, turned beside, rings otherwise where it is
   const { modes } = JSON.parse(new TextDecoder().decode(files['asperity-bowl.modes.json']));
   const shares = blows.slice(0, 2).map((blow) => {
     const audio = samples(render({ ...files, 'asperity-bowl.jsonl': text([{ ...blow, t: 0.05 }]) }, 'asperity-bowl.toml').audio).subarray(2600, 16000);
-    const levels = modes.slice(0, 12).map(({ frequency_hz }) => {
+    const levels = modes.map(({ frequency_hz }) => {
       const turn = (2 * Math.PI * frequency_hz) / 48000;
       const [re, im] = [Math.cos, Math.sin].map((wave) => audio.reduce((sum, x, i) => sum + x * wave(turn * i), 0));
       return Math.hypot(re, im);
