@@ -140,7 +140,7 @@ function button(surface) {
   button.addEventListener('click', () => choose(surface).catch(refuse));
   $('surfaces').append(button);
   // Drawn when nothing else is to do.
-  const draw = () => thumbnail(canvas, lookOf(surface, surface.draw ? null : stand()));
+  const draw = () => thumbnail(canvas, lookOf(surface.icon ?? surface, surface.draw ? null : stand()));
   (window.requestIdleCallback ?? setTimeout)(draw);
   return button;
 }
@@ -192,6 +192,7 @@ async function replay() {
 
 function touched() {
   $('hint').classList.add('gone');
+  $('more').open = false;
   if (!state.context) begin().catch(refuse);
   else if (state.context.state !== 'running') state.context.resume().catch(() => {});
 }

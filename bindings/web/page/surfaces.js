@@ -152,6 +152,8 @@ export function solidSurface(id, name, note) {
     body: 'stock = "bowl"\nsize_m = 0.14\nmaterial = "ceramic"',
     surface: () => 'solid = "granite"\nwidth_m = 0.3\nheight_m = 0.3',
     fullScale: 1.5e-4, gain: 10, blow: STEEL, colour: between([52, 60, 66], [92, 102, 108]), shine: 0,
+    // Seen from above, half of it glazed.
+    icon: { size_m: [0.3, 0.3], colour: (h, u) => (u < 0.25 ? [214, 204, 184] : [76, 120, 143]) },
   };
 }
 
