@@ -11,8 +11,6 @@ use crate::system::System;
 use crate::vector::{distance, longest_side};
 use crate::volume_mesh::{EDGES, MOST_DEGREES_OF_FREEDOM, VolumeMesh};
 
-/// Unknowns of a mesh that neither walls nor waves want finer: a cup's upper modes are 2 % off at 24,000, 0.6 % at this.
-const ORDINARY_UNKNOWNS: f64 = 55_000.0;
 /// Spacings to the shortest wave through the body and along a wall: the highest mode is then right to about 1 %.
 const PER_SHEAR_WAVE: f64 = 6.0;
 const PER_BENDING_WAVE: f64 = 11.0;
@@ -32,6 +30,23 @@ pub struct Making {
     pub thickness_m: Option<f64>,
     /// Which modes are wanted.
     pub wanted: Wanted,
+}
+
+/// How fine a surface is filled: what a solve may cost, which grows with about the square.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fineness {
+    /// Unknowns of a mesh that neither walls nor waves want finer.
+    pub ordinary_unknowns: f64,
+    /// Unknowns that short waves may ask for; walls may ask for more.
+    pub most_unknowns: f64,
+}
+
+impl Fineness {
+    /// For a solve that somebody waits for: a cup's upper modes are 0.6 % off.
+    pub const FULL: Self =
+        Self { ordinary_unknowns: 55_000.0, most_unknowns: 0.8 * MOST_DEGREES_OF_FREEDOM as f64 };
+    /// For a preview, in some hundredths of the time: upper modes are some per cent too high.
+    pub const PREVIEW: Self = Self { ordinary_unknowns: 10_000.0, most_unknowns: 10_000.0 };
 }
 
 /// A solved body.
@@ -78,6 +93,19 @@ impl SolvedBody {
 /// When the mesh is no body (open, empty, in parts, with walls too thin), a number is out of its range, or the modes cannot be
 /// solved for.
 pub fn make(mesh: Mesh, making: &Making, progress: &mut dyn FnMut(f64)) -> Result<SolvedBody, ShapeError> {
+    make_as_fine_as(mesh, making, &Fineness::FULL, progress)
+}
+
+/// The same as fine as is told, where the mesh is a surface; a solid is solved as it is.
+///
+/// # Errors
+/// Those of [`make`].
+pub fn make_as_fine_as(
+    mesh: Mesh,
+    making: &Making,
+    fineness: &Fineness,
+    progress: &mut dyn FnMut(f64),
+) -> Result<SolvedBody, ShapeError> {
     let material = making.material.checked()?;
     let mut told = Vec::new();
     let mut mesh = mesh;
@@ -101,7 +129,7 @@ pub fn make(mesh: Mesh, making: &Making, progress: &mut dyn FnMut(f64)) -> Resul
         }
         Mesh::Surface(surface) => {
             let body = Body::new(closed(surface, making.thickness_m, &mut told)?)?;
-            from_surface(&body, &material, making, told, progress)
+            from_surface(&body, &material, (making, fineness), told, progress)
         }
     }
 }
@@ -125,7 +153,7 @@ fn closed(
 fn from_surface(
     body: &Body,
     material: &Elastic,
-    making: &Making,
+    (making, fineness): (&Making, &Fineness),
     mut told: Vec<String>,
     progress: &mut dyn FnMut(f64),
 ) -> Result<SolvedBody, ShapeError> {
@@ -133,7 +161,7 @@ fn from_surface(
         let bending_m = material.bending_wave_m(body.wall_m, hz) / PER_BENDING_WAVE;
         bending_m.min(material.shear_wave_m(hz) / PER_SHEAR_WAVE)
     };
-    let mut spacing_m = body.spacing_m(ORDINARY_UNKNOWNS).min(body.longest_spacing_m());
+    let mut spacing_m = body.spacing_m(fineness.ordinary_unknowns).min(body.longest_spacing_m());
     if let Some(hz) = making.wanted.up_to_hz.filter(|_| making.wanted.most > MOST_MODES) {
         spacing_m = spacing_m.min(wave(hz));
         let unknowns = body.expected_unknowns(spacing_m);
@@ -151,8 +179,7 @@ fn from_surface(
     let mut modes = solved(&volume, material, &making.wanted, &mut |done| progress(0.6 * done))?;
     let finer_m = modes.1.frequency_hz.last().map_or(spacing_m, |top| wave(*top));
     if finer_m < 0.95 * spacing_m {
-        let most = 0.8 * MOST_DEGREES_OF_FREEDOM as f64;
-        let finest_m = body.spacing_m(most).max(finer_m);
+        let finest_m = body.spacing_m(fineness.most_unknowns).max(finer_m);
         if finest_m > 1.05 * finer_m {
             told.push(format!(
                 "the mesh allowed has points every {:.2} mm, the highest modes want {:.2} mm: they are too high",
@@ -160,9 +187,11 @@ fn from_surface(
                 1e3 * finer_m
             ));
         }
-        repairs.clear();
-        volume = body.fill(finest_m, &mut repairs)?;
-        modes = solved(&volume, material, &making.wanted, &mut |done| progress(0.6 + 0.4 * done))?;
+        if finest_m < 0.95 * spacing_m {
+            repairs.clear();
+            volume = body.fill(finest_m, &mut repairs)?;
+            modes = solved(&volume, material, &making.wanted, &mut |done| progress(0.6 + 0.4 * done))?;
+        }
     }
     told.append(&mut repairs);
     Ok(finished(&volume, modes, told))

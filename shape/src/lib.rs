@@ -25,6 +25,7 @@ pub mod mesh_file;
 mod msh;
 mod obj;
 mod quadratic_tet;
+pub mod ringing;
 mod sampling;
 mod stl;
 pub mod surface_field;
@@ -34,8 +35,8 @@ mod triangle_tree;
 pub mod vector;
 pub mod volume_mesh;
 
-pub use body::{Making, SolvedBody, make};
+pub use body::{Fineness, Making, SolvedBody, make, make_as_fine_as};
 pub use elastic::Elastic;
 pub use error::ShapeError;
 pub use mesh::Mesh;
-pub use mesh_file::load;
+pub use mesh_file::{load, parse};

@@ -15,14 +15,23 @@ const LARGEST: u64 = 1 << 30;
 pub fn load(path: &Path) -> Result<Mesh, ShapeError> {
     let name = path.display().to_string();
     let bytes = read(path).map_err(|error| error.within(&name))?;
+    parse(path, &bytes)
+}
+
+/// Reads a mesh that was loaded already; `path` is what it is called, and its ending says what it is.
+///
+/// # Errors
+/// When the bytes are not what the ending says, or end too early; the error names file and line.
+pub fn parse(path: &Path, bytes: &[u8]) -> Result<Mesh, ShapeError> {
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     let mesh = match ending.as_str() {
-        "msh" => msh::parse(&bytes),
-        "obj" => obj::parse(&bytes).map(Mesh::Surface),
-        "stl" => stl::parse(&bytes).map(Mesh::Surface),
+        _ if bytes.is_empty() => Err(ShapeError::new("", "is empty", "give a mesh")),
+        "msh" => msh::parse(bytes),
+        "obj" => obj::parse(bytes).map(Mesh::Surface),
+        "stl" => stl::parse(bytes).map(Mesh::Surface),
         _ => Err(ShapeError::new("", "is no kind of mesh that is read", "must end in .obj, .stl or .msh")),
     };
-    mesh.map_err(|error| error.within(&name))
+    mesh.map_err(|error| error.within(&path.display().to_string()))
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, ShapeError> {
@@ -32,9 +41,6 @@ fn read(path: &Path) -> Result<Vec<u8>, ShapeError> {
     let size = std::fs::metadata(path).map_err(readable)?.len();
     if size > LARGEST {
         return Err(ShapeError::new("", format!("has {size} bytes"), "at most 1 GiB is read"));
-    }
-    if size == 0 {
-        return Err(ShapeError::new("", "is empty", "give a mesh"));
     }
     std::fs::read(path).map_err(readable)
 }

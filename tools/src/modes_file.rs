@@ -5,9 +5,9 @@ use asperity::{ModeShapes, ShapeUnit, shapes_to_file};
 use asperity_dsp::damping::Damping;
 use asperity_dsp::radiation::{EquivalentSphere, Surface};
 use asperity_shape::SolvedBody;
+use asperity_shape::ringing::{Ringing, ringing};
 use asperity_shape::surface_field::SurfaceField;
 use serde::Serialize;
-use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
 
 /// What the file holds.
@@ -48,6 +48,12 @@ pub struct FileMode {
     pub phase_rad: f64,
 }
 
+impl FileMode {
+    fn of(&Ringing { frequency_hz, decay_per_s, amplitude, phase_rad, .. }: &Ringing) -> Self {
+        Self { frequency_hz, decay_per_s, amplitude, phase_rad }
+    }
+}
+
 /// Six digits: shapes are good to three.
 fn rounded(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
@@ -64,35 +70,16 @@ impl ModesFile {
         radiation: bool,
         source: &Path,
     ) -> Result<Self, FileError> {
-        let field = &body.field;
-        let air = radiation.then(|| Air::around(field)).flatten();
-        let mut gains = Vec::new();
-        let struck_point = field.lively_point().unwrap_or(0);
-        let mut modes = Vec::new();
-        let mut kept = Vec::new();
-        for (m, hz) in body.frequency_hz.iter().enumerate() {
-            let (gain, loss_per_s) = match &air {
-                Some(air) => air.gain_and_loss(field, m, *hz),
-                None => (field.gains[m], 0.0),
-            };
-            let (omega, decay_per_s) = (TAU * hz, damping.decay_per_s(*hz) + loss_per_s);
-            if decay_per_s >= omega {
-                continue;
-            }
-            kept.push(m);
-            gains.push(gain);
-            modes.push(FileMode {
-                frequency_hz: (omega * omega - decay_per_s * decay_per_s).sqrt() / TAU,
-                decay_per_s,
-                amplitude: gain * field.along_normal(m, struck_point),
-                // Heard is the velocity, which begins at its peak.
-                phase_rad: FRAC_PI_2,
-            });
-        }
-        if kept.len() < body.frequency_hz.len() {
-            let lost = body.frequency_hz.len() - kept.len();
-            body.told.push(format!("{lost} modes are damped so much that they do not swing; left out"));
-        }
+        let struck_point = body.field.lively_point().unwrap_or(0);
+        let ringing = {
+            let field = body.field.clone();
+            let air = radiation.then(|| Air::around(&field)).flatten();
+            ringing(body, damping, struck_point, |mode, hz| match &air {
+                Some(air) => air.gain_and_loss(&field, mode, hz),
+                None => (field.gains[mode], 0.0),
+            })
+        };
+        let modes: Vec<FileMode> = ringing.iter().map(FileMode::of).collect();
         if modes.is_empty() {
             let right = "ask for higher modes, or give a stiffer or less damped material";
             return Err(FileError::file(source, "has no mode there that rings", right));
@@ -106,10 +93,10 @@ impl ModesFile {
                 .map(|p| p.map(rounded))
                 .collect(),
             triangles: field.triangles.clone(),
-            gains,
-            phi_per_sqrt_kg: kept
+            gains: ringing.iter().map(|one| one.gain).collect(),
+            phi_per_sqrt_kg: ringing
                 .iter()
-                .map(|&m| field.shapes[m].iter().map(|s| s.map(|x| rounded(x) as f32)).collect())
+                .map(|one| field.shapes[one.mode].iter().map(|s| s.map(|x| rounded(x) as f32)).collect())
                 .collect(),
             struck_point,
         };

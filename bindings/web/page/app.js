@@ -10,6 +10,8 @@ import { LEVELS_HZ, RATE_HZ, SURFACES, sceneOf } from './surfaces.js';
 const $ = (id) => document.getElementById(id);
 /** The offline tools, for what visitors bring. */
 const TOOLS = String(new URL('./tools.wasm', import.meta.url));
+/** The solver of meshes. */
+const SHAPE = String(new URL('./shape.wasm', import.meta.url));
 /** What of the engine the first surface needs: half of it. The whole comes when that sounds, or when somebody wants more. */
 const FIRST = String(new URL('./first.wasm', import.meta.url));
 /** The whole engine is asked for when the first has told so much, frames: a second of sound. */
@@ -17,20 +19,25 @@ const COMPLETED_AFTER = 60;
 /** A take longer than this begins anew when no finger touches, lines of its log. */
 const LONGEST_TAKE = 20000;
 
-const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
 const asked = new Map();
-worker.onmessage = ({ data: { id, answer, error } }) => {
-  const { resolve, reject } = asked.get(id);
-  asked.delete(id);
-  if (error === undefined) resolve(answer);
-  else reject(new Error(error));
-};
+function helper() {
+  const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
+  worker.onmessage = ({ data: { id, answer, error } }) => {
+    const { resolve, reject } = asked.get(id);
+    asked.delete(id);
+    if (error === undefined) resolve(answer);
+    else reject(new Error(error));
+  };
+  return worker;
+}
+const worker = helper();
 
-/** Lets the worker make or render something, with the whole engine if that is not said otherwise. */
+/** Lets the worker make or render something, with the whole engine if that is not said otherwise; what takes seconds has another one. */
 async function ask(work, wasm) {
   const { module } = await load(wasm);
   const id = (ask.count = (ask.count ?? 0) + 1);
-  worker.postMessage({ id, module, ...work });
+  const who = wasm === TOOLS || wasm === SHAPE ? (ask.slow ??= helper()) : worker;
+  who.postMessage({ id, module, ...work });
   return new Promise((resolve, reject) => asked.set(id, { resolve, reject }));
 }
 
@@ -61,11 +68,14 @@ function make(surface, modes) {
 /** Another surface: under the fingers without a click. */
 async function choose(surface, modes) {
   const turn = (choose.turn = (choose.turn ?? 0) + 1);
+  if (surface.isSolid) modes ??= surface.modes ?? await solve(surface);
+  if (turn !== choose.turn) return;
   const prepared = await make(surface, modes);
   if (turn !== choose.turn) return;
   hand.release();
   const isNew = state.surface !== surface;
   [state.surface, state.modes, state.relief] = [surface, modes, prepared.relief];
+  if (isNew) await body(surface, modes);
   if (isNew || surface.watch) picture.show(lookOf(surface, surface.watch ? flat(prepared) : prepared.relief));
   $('note').textContent = surface.note;
   $('surface').setAttribute('aria-label', `Surface: ${surface.name}. Arrow keys stroke, Space hits.`);
@@ -73,6 +83,38 @@ async function choose(surface, modes) {
   if (state.engine) await state.engine.take({ prepared });
   else state.prepared = prepared;
   $('surfaces').dataset.ready = surface.id;
+}
+
+/** Solves the bowl, once; the sentence about it goes when it rings. */
+async function solve(surface) {
+  say('The bowl is being solved from its mesh …', 60);
+  const { bowl, solved } = await import('./solid.js');
+  const { modes, found } = await solved((work) => ask(work, SHAPE), 'bowl.obj', new TextEncoder().encode(bowl()));
+  surface.modes = modes;
+  say(`The bowl is solved: ${found}. Hit it in different places.`, 10);
+  return modes;
+}
+
+/** A body is seen and hit where it is; other surfaces fill the window. */
+async function body(surface, modes) {
+  state.solid?.hide();
+  if (surface.isSolid) {
+    const { Solid } = await import('./solid.js');
+    solid ??= new Solid(picture, scaled);
+    solid.show(modes);
+  }
+  state.solid = surface.isSolid ? solid : null;
+  if (!state.solid) scaled(PIXELS_A_METRE);
+}
+let solid;
+
+/** So large is what is shown, CSS pixels a metre. */
+function scaled(pixels) {
+  hand.pixelsAMetre = pixels;
+  const bar = $('scale').firstElementChild;
+  const long_m = pixels < 4000 ? 0.05 : 0.01;
+  bar.textContent = length(long_m);
+  bar.style.width = `${long_m * pixels}px`;
 }
 
 /** A bed of sand before anything has touched it. */
@@ -98,7 +140,7 @@ function button(surface) {
   button.addEventListener('click', () => choose(surface).catch(refuse));
   $('surfaces').append(button);
   // Drawn when nothing else is to do.
-  const draw = () => thumbnail(canvas, lookOf(surface, surface.draw ? null : stand()));
+  const draw = () => thumbnail(canvas, lookOf(surface.icon ?? surface, surface.draw ? null : stand()));
   (window.requestIdleCallback ?? setTimeout)(draw);
   return button;
 }
@@ -150,6 +192,7 @@ async function replay() {
 
 function touched() {
   $('hint').classList.add('gone');
+  $('more').open = false;
   if (!state.context) begin().catch(refuse);
   else if (state.context.state !== 'running') state.context.resume().catch(() => {});
 }
@@ -203,6 +246,9 @@ const waiting = [];
 const hand = new Hand($('surface'), {
   picture,
   touched,
+  place: (at) => state.solid?.place(at) ?? { uv: picture.uvOf(at) },
+  turns: (at) => state.solid?.hit(at) === null,
+  turn: (x, y) => state.solid?.turn(x, y),
   force: () => Number($('force').value),
   blow: () => Number($('blow').value),
   tool: () => state.tool,
@@ -213,8 +259,12 @@ const hand = new Hand($('surface'), {
     cut();
   },
   strike([x, y], speed_m_s) {
+    // A body without shapes has three places.
+    const { on = true, at_m } = this.place([x, y]);
+    if (!on) return;
+    const where = at_m ? { at_m } : { position: Math.floor((x + y) / 90) % 3 };
     const blow = state.surface.blow ?? { striker: 'wood', mass_kg: 0.02, radius_m: 0.012, restitution: 0.3 };
-    this.report([{ t: performance.now() / 1000, event: 'impact', body: 'body', speed_m_s, position: Math.floor((x + y) / 90) % 3, actuator: 0, ...blow }], Date.now());
+    this.report([{ t: performance.now() / 1000, event: 'impact', body: 'body', speed_m_s, ...where, actuator: 0, ...blow }], Date.now());
     picture.touches.set('blow', [x, y, 34]);
     picture.dirty = true;
     setTimeout(() => { picture.touches.delete('blow'); picture.dirty = true; }, 120);
@@ -272,13 +322,14 @@ async function save() {
 
 async function link() {
   const words = new URLSearchParams({ s: state.surface.id, force: $('force').value, blow: $('blow').value, tool: state.tool });
-  const stroke = state.engine ? await (await import('./link.js')).pack(parseLog(await state.engine.log())) : '';
+  // Places on a body are not in a link.
+  const stroke = state.engine && !state.solid ? await (await import('./link.js')).pack(parseLog(await state.engine.log())) : '';
   if (stroke !== '') words.set('stroke', stroke);
   return `${location.origin}${location.pathname}#${words}`;
 }
 
 async function share() {
-  if (state.surface.isOwn || state.modes !== undefined) throw new Error('What you brought yourself is not in a link: save it instead.');
+  if (state.surface.isOwn || (state.modes !== undefined && !state.solid)) throw new Error('What you brought yourself is not in a link: save it instead.');
   const made = await link();
   history.replaceState(null, '', made);
   const what = made.includes('stroke=') ? 'The link, with your last strokes in it,' : 'The link';
@@ -314,7 +365,7 @@ function opened() {
 async function take(file) {
   say(`${file.name} is looked at …`, 60);
   const own = await import('./own.js');
-  await wear(await own.bring(file, { isMap: $('map').checked, ask: (work) => ask(work, TOOLS) }));
+  await wear(await own.bring(file, { isMap: $('map').checked, ask: (work) => ask(work, TOOLS), askShape: (work) => ask(work, SHAPE) }));
 }
 
 async function listen() {
@@ -327,7 +378,8 @@ async function wear({ surface, modes, sentence }) {
     [...$('surfaces').children].find((child) => child.dataset.id === 'own')?.remove();
     button(surface).scrollIntoView({ block: 'nearest' });
   }
-  await choose(surface ?? state.surface, modes);
+  // A recorded hit has no shape to be seen.
+  await choose(surface ?? (state.solid ? SURFACES[0] : state.surface), modes);
   say(sentence);
 }
 
@@ -343,6 +395,7 @@ function keys(event) {
 }
 
 function paint() {
+  state.solid?.draw();
   picture.draw();
   strips.draw();
   readout();
@@ -365,8 +418,7 @@ addEventListener('drop', (event) => { event.preventDefault(); const [file] = eve
 addEventListener('hashchange', () => choose(opened()).catch(refuse));
 navigator.mediaDevices?.addEventListener?.('devicechange', () => state.context && feel.tell(state.context));
 new ResizeObserver(() => { picture.dirty = true; if (picture.look && !picture.gl) picture.showFlat(picture.look); }).observe($('surface'));
-$('scale').firstElementChild.textContent = length(0.01);
-$('scale').firstElementChild.style.width = `${0.01 * PIXELS_A_METRE}px`;
+scaled(PIXELS_A_METRE);
 
 SURFACES.forEach(button);
 choose(opened()).then(() => { if (state.stroke) say('A stroke came with this link: touch to hear it.', 30); }).catch(refuse);

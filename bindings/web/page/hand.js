@@ -17,7 +17,7 @@ const HELD = { times: 2, after_s: 1 };
 const KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Hand {
-  /** `page`: picture, force, blow, tool, report(events, stamp), strike(place, speed), touched(). */
+  /** `page`: picture, place(at), turns(at), turn(x, y), force, blow, tool, report(events, stamp), strike(place, speed), touched(). */
   constructor(canvas, page, pixelsAMetre) {
     Object.assign(this, { canvas, page, pixelsAMetre });
     this.fingers = new Map();
@@ -48,6 +48,10 @@ export class Hand {
     try { this.canvas.setPointerCapture(event.pointerId); } catch { /* A pointer that is gone already. */ }
     const at = this.place(event);
     this.page.touched();
+    if (this.page.turns(at)) {
+      this.turning = { pointer: event.pointerId, at };
+      return;
+    }
     if (this.page.tool() === 'hit') {
       this.page.strike(at, this.page.blow());
       return;
@@ -59,6 +63,11 @@ export class Hand {
     const at = this.place(event);
     this.page.picture.light = at;
     this.page.picture.dirty = true;
+    if (this.turning?.pointer === event.pointerId) {
+      this.page.turn(at[0] - this.turning.at[0], at[1] - this.turning.at[1]);
+      this.turning.at = at;
+      return;
+    }
     const finger = this.fingers.get(event.pointerId);
     if (!finger) return;
     const parts = event.getCoalescedEvents?.() ?? [];
@@ -69,6 +78,7 @@ export class Hand {
   }
 
   up(event) {
+    if (this.turning?.pointer === event.pointerId) this.turning = null;
     const finger = this.fingers.get(event.pointerId);
     if (!finger) return;
     const t = this.seconds(event);
@@ -140,7 +150,9 @@ export class Hand {
   }
 
   sample(finger, t) {
-    return { uv: this.page.picture.uvOf(finger.at), normal_force_n: this.force(finger, t) };
+    // Beside a body there is nothing to press on.
+    const { on = true, ...place } = this.page.place(finger.at);
+    return { ...place, normal_force_n: on ? this.force(finger, t) : 0 };
   }
 
   /** Fingers that rest are told again, and those of keys go on. */
@@ -158,6 +170,8 @@ export class Hand {
       this.keys.add(event.key);
       this.fast = event.shiftKey;
       this.page.touched();
+    } else if (event.key === ',' || event.key === '.') {
+      this.page.turn(event.key === ',' ? -30 : 30, 0);
     } else if (event.key === ' ' && !event.repeat) {
       this.page.touched();
       this.page.strike(this.fingers.get('keys')?.at ?? this.middle(), this.page.blow());

@@ -1,6 +1,7 @@
 // What visitors bring: pictures become surfaces, recorded hits and files of modes bodies. Loaded when somebody brings something.
 import { ofImage } from './pictures.js';
-import { ownSurface, photoSurface } from './surfaces.js';
+import { solved } from './solid.js';
+import { ownSurface, photoSurface, solidSurface } from './surfaces.js';
 
 const MOST_FILE_BYTES = 64 << 20;
 /** Rate at which recordings are decoded, Hz. */
@@ -8,12 +9,32 @@ const RATE_HZ = 48000;
 /** How long a hit is listened for, s. */
 const LISTENED_S = 4;
 
-/** What a file is: `{ surface }` or `{ modes }`, with a sentence. `ask(work)` lets the worker's tools do something. */
-export async function bring(file, { isMap, ask }) {
+/** What a file is: `{ surface }` or `{ modes }`, with a sentence. `ask(work)` lets the worker's tools do something, `askShape(work)` its solver. */
+export async function bring(file, { isMap, ask, askShape }) {
   if (file.size > MOST_FILE_BYTES) throw new Error(`${file.name}: has ${Math.round(file.size / 1e6)} MB; must be at most 64 MB.`);
-  if (/\.json$/i.test(file.name)) return { modes: await file.text(), sentence: `${file.name} rings now.` };
+  if (/\.json$/i.test(file.name)) return ringing(file.name, await file.text());
+  if (/\.(obj|stl|msh)$/i.test(file.name)) return mesh(file, askShape);
   if (/\.(wav|flac|ogg|mp3|m4a|opus|webm)$/i.test(file.name) || file.type.startsWith('audio/')) return hit(file.name, await decoded(file), ask);
   return picture(file, isMap, ask);
+}
+
+/** A mesh becomes a body. */
+async function mesh(file, ask) {
+  const { modes, told, found } = await solved(ask, file.name, new Uint8Array(await file.arrayBuffer()));
+  return solid(file.name, modes, [`${file.name} is solved: ${found}. Hit it in different places.`, ...told.map((line) => `(${line}.)`)].join(' '));
+}
+
+/** A body of one's own, with its shape. */
+function solid(name, modes, sentence) {
+  return { surface: { ...solidSurface('own', name.slice(0, 24), 'Your own body. Drag beside it to turn it.'), isOwn: true, modes }, sentence };
+}
+
+/** A file of modes; where it has shapes, the body can be seen and hit anywhere. */
+function ringing(name, modes) {
+  let shapes;
+  try { ({ shapes } = JSON.parse(modes)); } catch { /* The engine says what is wrong. */ }
+  const sentence = `${name} rings now.`;
+  return shapes?.points_m && shapes.triangles ? solid(name, modes, sentence) : { modes, sentence };
 }
 
 async function decoded(file) {
@@ -43,7 +64,7 @@ async function picture(file, isMap, ask) {
   try {
     image = await createImageBitmap(file);
   } catch {
-    throw new Error(`${file.name}: is no picture that this browser reads; must be a picture, a recorded hit or a .modes.json.`);
+    throw new Error(`${file.name}: is no picture that this browser reads; must be a picture, a recorded hit, a mesh (.obj, .stl) or a .modes.json.`);
   }
   const drawn = ofImage(image);
   image.close();

@@ -2,8 +2,8 @@
 
 /** Numbers of a row of the engine's scope: see src/blocks.rs. */
 const ROW = 16;
-/** What the spectrogram shows, Hz. */
-const BAND_HZ = [10, 12000];
+/** What the spectrogram shows up to, Hz, and how its axis bends: rhythms of 10 Hz have some of it, what rings at 3 kHz and more half. */
+const [HIGHEST_HZ, BEND] = [16000, 0.35];
 const FLOOR_DB = -95;
 
 export class Strips {
@@ -13,6 +13,7 @@ export class Strips {
     this.columns = [];
     this.told = 0;
     this.spans = [1e-5, 1e-5];
+    this.middles = [0, 0];
     this.colours();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.colours());
   }
@@ -69,8 +70,10 @@ export class Strips {
     const { context, inks } = this;
     [['ground', inks.relief], ['skin', inks.skin]].forEach(([name, ink], strip) => {
       if (!column[name]) return;
-      const [low, high] = column[name];
-      this.spans[strip] = Math.max(this.spans[strip] * 0.995, Math.abs(low), Math.abs(high), 1e-7);
+      // Slow ups and downs are followed, so that what is fine fills the strip.
+      const middle = this.middles[strip] += 0.15 * ((column[name][0] + column[name][1]) / 2 - this.middles[strip]);
+      const [low, high] = column[name].map((m) => m - middle);
+      this.spans[strip] = Math.max(this.spans[strip] * 0.99, Math.abs(low), Math.abs(high), 1e-7);
       const at = (m) => lines[strip] + height * 0.12 * (1 - 0.9 * (m / this.spans[strip]));
       context.fillStyle = ink;
       context.fillRect(x, at(high), step, Math.max(1.5, at(low) - at(high)));
@@ -79,7 +82,7 @@ export class Strips {
     const bins = column.spectrum.length;
     context.fillStyle = inks.heard;
     for (let y = 0; y < rows; y += 2) {
-      const hz = BAND_HZ[1] * (BAND_HZ[0] / BAND_HZ[1]) ** (y / rows);
+      const hz = HIGHEST_HZ * (1 - y / rows) ** (1 / BEND);
       const bin = Math.min(bins - 1, Math.round((hz / (column.rate / 2)) * bins));
       const level = (column.spectrum[bin] - FLOOR_DB) / -FLOOR_DB;
       if (level <= 0.02) continue;
@@ -87,8 +90,8 @@ export class Strips {
       context.fillRect(x, lines[2] + y, step, 2);
     }
     context.globalAlpha = 1;
-    if (column.marker > BAND_HZ[0] && column.marker < BAND_HZ[1]) {
-      const y = lines[2] + rows * (Math.log(BAND_HZ[1] / column.marker) / Math.log(BAND_HZ[1] / BAND_HZ[0]));
+    if (column.marker > 1 && column.marker < HIGHEST_HZ) {
+      const y = lines[2] + rows * (1 - (column.marker / HIGHEST_HZ) ** BEND);
       context.fillStyle = inks.ink;
       context.fillRect(x, y, step, 2);
     }

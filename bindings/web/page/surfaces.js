@@ -142,7 +142,20 @@ wrap = "clamp"`,
     surface: map('displacement = "MAP"\nrelief_m = 0.0006\nroughness = 0.4\nwidth_m = 0.016\nheight_m = 0.001'),
     fullScale: 0.003, gain: 0.045, tail: 3, blow: STEEL, colour: between([128, 92, 30], [248, 214, 122]), shine: 1,
   },
+  solidSurface('bowl', 'Bowl', 'Solved from its mesh here: rim, wall and bottom ring differently. Drag beside it to turn it.'),
 ];
+
+/** A body of unglazed stoneware, from a mesh: `modes`, once it is solved, are its own, with shapes. */
+export function solidSurface(id, name, note) {
+  return {
+    id, name, note, size_m: [0.3, 0.3], isSolid: true,
+    body: 'stock = "bowl"\nsize_m = 0.14\nmaterial = "ceramic"',
+    surface: () => 'solid = "granite"\nwidth_m = 0.3\nheight_m = 0.3',
+    fullScale: 1.5e-4, gain: 10, blow: STEEL, colour: between([52, 60, 66], [92, 102, 108]), shine: 0,
+    // Seen from above, half of it glazed.
+    icon: { size_m: [0.3, 0.3], colour: (h, u) => (u < 0.25 ? [214, 204, 184] : [76, 120, 143]) },
+  };
+}
 
 /** A surface of somebody's own picture. */
 export function ownSurface({ picture, colours }) {

@@ -1,9 +1,10 @@
 // Makes engines, renders logs and does the offline tools' work beside the page, so that neither drawing nor sound waits.
 import { prepare, renderLog } from './engine.js';
 
-async function work({ module, make, render, fit, photo }) {
+async function work({ module, make, render, fit, photo, solve }) {
   if (make) return prepare(module, make);
   if (render) return renderLog(module, render);
+  if (solve) return (await import('./shape.js')).solve(module, solve);
   const tools = await import('./tools.js');
   return fit ? tools.fit(module, fit) : tools.photo(module, photo);
 }

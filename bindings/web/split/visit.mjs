@@ -115,7 +115,7 @@ export function mouse(engine, seed, seconds) {
     fingers: new Map(), contacts: 0, pixelsAMetre: PIXELS_A_METRE, show() {},
     page: {
       force: () => 1,
-      picture: { uvOf: (at) => at.map((x, axis) => x / (size_m[axis] * PIXELS_A_METRE)) },
+      place: (at) => ({ uv: at.map((x, axis) => x / (size_m[axis] * PIXELS_A_METRE)) }),
       report: (events) => waiting.push(...events),
     },
   });

@@ -8,13 +8,15 @@ import { Engine, decode, encode, parseLog, prepare, renderLog } from '../js/engi
 import { SURFACES, sceneOf } from '../page/surfaces.js';
 import { png } from '../page/save.js';
 import { MOST_LETTERS, pack, unpack } from '../page/link.js';
+import { solve } from '../page/shape.js';
+import { bowl } from '../page/solid.js';
 import { fit, photo } from '../page/tools.js';
 import { opened, play, taken, trouble } from '../split/visit.mjs';
-import { DIST, fromPhoto, render, seeded, stroke, text, wasm } from './native.mjs';
+import { DIST, fromMesh, fromPhoto, render, seeded, stroke, text, wasm } from './native.mjs';
 
 const module = wasm();
 /** Files of the page that are asked for when the first surface sounds, or when something is saved. */
-const LATER = ['asperity.wasm', 'save.js', 'tools.wasm', 'tools.js', 'own.js', 'listen.js', 'link.js'];
+const LATER = ['asperity.wasm', 'save.js', 'tools.wasm', 'tools.js', 'own.js', 'listen.js', 'link.js', 'solid.js', 'shape.js', 'shape.wasm'];
 
 for (const surface of SURFACES) {
   test(`a stroke over ${surface.id} has the bits of the program`, async () => {
@@ -211,6 +213,21 @@ test('the part of the engine that the first surface needs plays like the whole, 
   t.diagnostic(`${stopped} of 8 visitors needed more`);
   assert.ok(stopped <= 1);
   assert.throws(() => new Engine(part).open(sceneOf(SURFACES[7], 'x').text, { rate: 48000 }), WebAssembly.RuntimeError);
+});
+
+test('a bowl solved in the page has the modes that the program finds, within 2 %', (t) => {
+  const solver = new WebAssembly.Module(readFileSync(join(DIST, 'page/shape.wasm')));
+  const began = process.cpuUsage();
+  const { modes, unknowns } = solve(solver, { name: 'bowl.obj', bytes: encode(bowl()) });
+  t.diagnostic(`${unknowns} unknowns in ${(process.cpuUsage(began).user / 1e6).toFixed(1)} s`);
+  const [ours, theirs] = [JSON.parse(modes), fromMesh(bowl(), 'ceramic', 10)];
+  theirs.modes.forEach(({ frequency_hz, decay_per_s }, i) => {
+    assert.ok(Math.abs(ours.modes[i].frequency_hz / frequency_hz - 1) < 0.02, `mode ${i}: ${ours.modes[i].frequency_hz} and ${frequency_hz} Hz`);
+    assert.ok(Math.abs(ours.modes[i].decay_per_s / decay_per_s - 1) < 0.02);
+    assert.ok(Math.abs(ours.shapes.gains[i] / theirs.shapes.gains[i] - 1) < 0.05, `gain ${i}`);
+  });
+  for (const bytes of [encode(''), encode('v 0 0'), encode('f 1 2 3'), new Uint8Array(1000)]) assert.throws(() => solve(solver, { name: 'x.obj', bytes }), /x\.obj/);
+  assert.throws(() => solve(solver, { name: 'x.ply', bytes: encode('ply') }), /\.obj, \.stl/);
 });
 
 test('a stroke goes into a link and comes back as it was played, however long it was', async () => {

@@ -26,6 +26,14 @@ export function fromPhoto(photo, width_m) {
   return { report: JSON.parse(readFileSync(join(folder, 'made/report.json'))), displacement: grey16(readFileSync(join(folder, 'made/displacement.png'))) };
 }
 
+/** The modes file that the program makes of the text of an OBJ file. */
+export function fromMesh(obj, material, most) {
+  const folder = mkdtempSync(join(tmpdir(), 'asperity-web-'));
+  writeFileSync(join(folder, 'body.obj'), obj);
+  execFileSync(PROGRAM, ['modes', join(folder, 'body.obj'), '--material', material, '--max-modes', String(most), '-o', join(folder, 'body.modes.json')]);
+  return JSON.parse(readFileSync(join(folder, 'body.modes.json')));
+}
+
 /** Samples of a grey PNG of 16 bits. */
 function grey16(bytes) {
   const [parts, [width, height]] = [[], [bytes.readUInt32BE(16), bytes.readUInt32BE(20)]];

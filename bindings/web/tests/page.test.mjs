@@ -130,10 +130,40 @@ test('a frozen page, a hidden one and another size leave no contact behind and n
   await page.waitForTimeout(400);
   const after = await stats(page);
   assert.deepEqual([after.stats.contacts, after.stats.refused, wrong.length], [0, 0, 0], wrong.join());
-  // The sound device goes and comes back.
-  await page.evaluate(async () => { await window.asperity.state.context.suspend(); navigator.mediaDevices?.dispatchEvent(new Event('devicechange')); });
+  await context.close();
+});
+
+test('a sound device that changes, goes and comes back under a finger leaves it stroking', async (t) => {
+  const { context, page, wrong } = await sounding();
+  await page.mouse.move(300, 250);
+  await page.mouse.down();
+  const stroked = async (from) => {
+    const before = await page.evaluate(() => window.asperity.state.frames);
+    for (const place of line(250, 10, from)) { await page.mouse.move(...place); await page.waitForTimeout(16); }
+    await page.waitForFunction((frames) => window.asperity.state.frames > frames + 5 && window.asperity.state.touching, before, { timeout: 20000 });
+  };
+  await stroked(300);
+  // Another device, and the usual one again, which a machine without a sound card does not have: Chromium begins its output anew.
+  const sinks = await page.evaluate(async () => {
+    const { context } = window.asperity.state;
+    if (!context.setSinkId) return 'this browser cannot choose a device';
+    await context.setSinkId({ type: 'none' });
+    navigator.mediaDevices?.dispatchEvent(new Event('devicechange'));
+    return context.sinkId.type;
+  });
+  t.diagnostic(`sink ${sinks}`);
+  await stroked(400);
+  await page.evaluate(async () => { await window.asperity.state.context.setSinkId?.('').catch(() => {}); navigator.mediaDevices?.dispatchEvent(new Event('devicechange')); });
+  await stroked(500);
+  await page.mouse.up();
+  // The system takes the device away; the next touch asks for it again.
+  await page.evaluate(() => window.asperity.state.context.suspend());
   await drag(page, line(150, 12));
-  assert.equal(await page.evaluate(() => window.asperity.state.context.state), 'running');
+  await page.waitForFunction(() => window.asperity.state.context.state === 'running', null, { timeout: 10000 });
+  await page.waitForTimeout(400);
+  const { stats: after } = await stats(page);
+  assert.deepEqual([after.contacts, after.refused, after.quarantined], [0, 0, 0]);
+  assert.deepEqual(wrong, []);
   await context.close();
 });
 
@@ -144,7 +174,7 @@ test('everything is reached and done by the keyboard alone', async () => {
   assert.equal(await page.evaluate(() => document.activeElement.id), 'mute');
   const reached = new Set();
   await page.evaluate(() => { document.getElementById('more').open = true; });
-  for (let i = 0; i < 44; i++) {
+  for (let i = 0; i < 48; i++) {
     reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.dataset.id || document.activeElement.tagName));
     await page.keyboard.press('Tab');
   }
@@ -223,6 +253,70 @@ test('a recorded hit rings and a photograph is stroked, and both are saved as th
   await context.close();
 });
 
+/** A closed box in millimetres, as programs that draw bodies write it. */
+const BOX = `${[0, 1, 2, 3, 4, 5, 6, 7].map((i) => `v ${(i & 1) * 160} ${((i >> 1) & 1) * 40} ${(i >> 2) * 15}`).join('\n')}
+${['1 3 4 2', '5 6 8 7', '1 2 6 5', '3 7 8 4', '1 5 7 3', '2 4 8 6'].map((face) => `f ${face}`).join('\n')}\n`;
+
+test('a bowl is solved from its mesh, turned beside, rings otherwise where it is hit elsewhere, and is saved as the program renders it', async (t) => {
+  const { context, page, wrong } = await sounding();
+  const began = Date.now();
+  await page.click('[data-id=bowl]');
+  await ready(page, 'bowl');
+  t.diagnostic(`there after ${Date.now() - began} ms: ${await page.textContent('#status')}`);
+  // Its highest and its lowest place that is seen, and a place beside it.
+  const { high, low, beside } = await page.evaluate(() => {
+    const { left, top, width, height } = document.getElementById('surface').getBoundingClientRect();
+    const found = [];
+    for (let x = 0; x < width; x += 6) for (let y = 0; y < height; y += 6) { const hit = window.asperity.state.solid.hit([x, y]); if (hit) found.push([hit[2], left + x, top + y]); }
+    found.sort((a, b) => a[0] - b[0]);
+    return { high: found.at(-1).slice(1), low: found[0].slice(1), beside: [left + 40, top + 40] };
+  });
+  await page.click('#hit');
+  for (const place of [high, low, high]) { await page.mouse.click(...place); await page.waitForTimeout(250); }
+  const turned = () => page.evaluate(() => [...window.asperity.state.solid.turned]);
+  const before = [await turned(), (await stats(page)).stats.events];
+  await drag(page, Array.from({ length: 10 }, (_, i) => [beside[0] + 6 * i, beside[1] + 4 * i]));
+  assert.notDeepEqual(await turned(), before[0]);
+  assert.equal((await stats(page)).stats.events, before[1], 'beside the bowl nothing is touched');
+  await page.click('#stroke');
+  await drag(page, Array.from({ length: 20 }, (_, i) => [low[0] - 40 + 4 * i, low[1] - 60]));
+  await page.waitForTimeout(300);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save')]);
+  const files = unzip(readFileSync(await download.path()));
+  const native = render(files, 'asperity-bowl.toml');
+  assert.ok(native.audio.equals(files['asperity-bowl.wav']) && native.haptic.equals(files['asperity-bowl.haptic.wav']), 'what is saved differs');
+  const lines = new TextDecoder().decode(files['asperity-bowl.jsonl']).split('\n').filter(Boolean).map((line) => JSON.parse(line));
+  assert.ok(lines.some(({ event, at_m }) => event === 'move' && at_m), 'a finger is on the body');
+  const blows = lines.filter(({ event }) => event === 'impact');
+  assert.equal(blows.length, 3);
+  assert.deepEqual(blows[0].at_m, blows[2].at_m);
+  assert.ok(blows[0].at_m[2] > 0.05 && blows[1].at_m[2] < 0.02, JSON.stringify(blows));
+  // Each blow by itself: how its energy lies in the modes.
+  const { modes } = JSON.parse(new TextDecoder().decode(files['asperity-bowl.modes.json']));
+  const shares = blows.slice(0, 2).map((blow) => {
+    const audio = samples(render({ ...files, 'asperity-bowl.jsonl': text([{ ...blow, t: 0.05 }]) }, 'asperity-bowl.toml').audio).subarray(2600, 16000);
+    const levels = modes.map(({ frequency_hz }) => {
+      const turn = (2 * Math.PI * frequency_hz) / 48000;
+      const [re, im] = [Math.cos, Math.sin].map((wave) => audio.reduce((sum, x, i) => sum + x * wave(turn * i), 0));
+      return Math.hypot(re, im);
+    });
+    const all = Math.hypot(...levels);
+    return levels.map((level) => level / all);
+  });
+  const alike = shares[0].reduce((sum, x, i) => sum + x * shares[1][i], 0);
+  t.diagnostic(`rim and bottom are alike by ${alike.toFixed(2)}`);
+  assert.ok(alike < 0.8, `${JSON.stringify(shares)}`);
+  // A body of one's own, in other units.
+  await page.setInputFiles('#file', { name: 'bar.obj', mimeType: '', buffer: Buffer.from(BOX) });
+  await page.waitForFunction(() => /bar\.obj is solved.*taken as 0\.15 m/.test(document.getElementById('status').textContent), null, { timeout: 60000 });
+  await page.mouse.click(512, 250);
+  await page.waitForTimeout(200);
+  const { stats: after } = await stats(page);
+  assert.deepEqual([after.impacts, after.refused], [1, 0]);
+  assert.deepEqual(wrong, []);
+  await context.close();
+});
+
 test('a link brings the strokes of whoever sent it', async () => {
   const { context, page, wrong } = await sounding();
   await drag(page, line(250, 20));
@@ -275,6 +369,10 @@ test('hostile links and files are answered in words, and the engine goes on', as
   assert.match(await drop('x.modes.json', 'application/json', '{"format":"other"}'), /modes/);
   assert.match(await drop('y.modes.json', 'application/json', '['.repeat(100000)), /modes/);
   assert.match(await drop('bomb.svg', 'image/svg+xml', '<svg xmlns="http://www.w3.org/2000/svg"/>'), /./);
+  assert.match(await drop('noise.stl', '', noise), /noise\.stl: ./);
+  assert.match(await drop('noise.obj', '', noise), /noise\.obj: ./);
+  assert.match(await drop('open.obj', '', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n'), /open\.obj: ./);
+  assert.match(await drop('odd.modes.json', '', '{"format":"asperity.modes","version":2,"shapes":{"points_m":[[0]],"triangles":[[7,8,9]]}}'), /modes/);
   const good = await png({ width: 64, height: 64, samples: Uint16Array.from({ length: 4096 }, (_, i) => (i % 9) * 7000) });
   await page.evaluate(() => { document.getElementById('map').checked = true; });
   assert.match(await drop('mine.png', 'image/png', good), /bright is high/);
