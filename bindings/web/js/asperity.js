@@ -161,12 +161,14 @@ export class WebEngine extends EventTarget {
     return this.call({ do: 'command', what: 'hapticGain', index: channel, value: gain });
   }
 
-  stats() {
+  async stats() {
+    await this.complete();
     return this.call({ do: 'stats' });
   }
 
   /** All that was reported since the engine or its scene was made, as a contact log. */
   async log() {
+    await this.complete();
     await this.call({ do: 'log' });
     return this.lines.join('');
   }

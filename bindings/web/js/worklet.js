@@ -161,7 +161,8 @@ class AsperityProcessor extends AudioWorkletProcessor {
   }
 
   stats() {
-    return { stats: {}, why_silent: [], ...this.engine?.stats(), memory: this.engine?.wasm.memory.buffer.byteLength };
+    const told = this.past === null ? this.engine?.stats() : undefined;
+    return { stats: {}, why_silent: [], ...told, memory: this.engine?.wasm.memory.buffer.byteLength };
   }
 
   /** The rest of the recording, at once. */
@@ -175,12 +176,10 @@ class AsperityProcessor extends AudioWorkletProcessor {
 
   tellLog() {
     this.sinceLog = 0;
-    if (!this.records || this.engine === null) return;
-    const lines = this.act((engine) => {
-      const recorded = engine.recorded();
-      engine.record();
-      return recorded;
-    });
+    // The whole engine does all that a part of it did, so the log from the beginning is told by that: writing numbers is left out of the part.
+    if (!this.records || this.engine === null || this.past !== null) return;
+    const lines = this.engine.recorded();
+    this.engine.record();
     if (lines.length > 0) this.port.postMessage({ log: lines }, [lines.buffer]);
   }
 

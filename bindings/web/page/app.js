@@ -275,7 +275,11 @@ const hand = new Hand($('surface'), {
 hand.again = () => {
   const t = performance.now() / 1000;
   const blows = waiting.splice(0).filter((event) => event.event === 'impact').slice(-1);
-  const lands = [...hand.fingers.values()].map((finger) => ({ event: 'begin', contact: finger.contact, surface: 'surface', actuator: 0, closing_m_s: 0.04, ...hand.sample(finger, t) }));
+  const lands = [...hand.fingers.values()].map((finger) => {
+    // What a busy page hears of it later and was before, was before it landed.
+    finger.t = t;
+    return { event: 'begin', contact: finger.contact, surface: 'surface', actuator: 0, closing_m_s: 0.04, ...hand.sample(finger, t) };
+  });
   if (blows.length + lands.length > 0) state.engine.report(...[...blows, ...lands].map((event) => ({ ...event, t })));
 };
 

@@ -1,7 +1,7 @@
 // A WebAssembly module as bytes: its sections, its functions, their instructions.
 
 const MAGIC = 8;
-export const SECTION = { global: 6, export: 7, code: 10 };
+export const SECTION = { global: 6, export: 7, code: 10, data: 11 };
 
 /** A number as LEB128. */
 export function leb(number) {
@@ -111,6 +111,19 @@ export function bodies({ content }) {
 /** A code section of bodies. */
 export function code(all) {
   return { id: SECTION.code, content: Uint8Array.from(Buffer.concat([Uint8Array.from(leb(all.length)), ...all.flatMap((body) => [Uint8Array.from(leb(body.length)), body])])) };
+}
+
+/** A module whose data name no folder of the machine that built it: what a panic would say of them nobody hears in a page. */
+export function withoutPaths(bytes, folders) {
+  const escaped = folders.map((folder) => folder.replace(/[^\w/]/g, '\\$&'));
+  const path = new RegExp(`(?:${escaped.join('|')})/[\\w.+/-]*?\\.rs`, 'g');
+  const all = sections(bytes).map(({ id, content }) => {
+    if (id !== SECTION.data) return { id, content };
+    const blank = Buffer.from(content);
+    for (const { index, 0: { length } } of blank.toString('latin1').matchAll(path)) blank.fill(0, index, index + length);
+    return { id, content: Uint8Array.from(blank) };
+  });
+  return assemble(bytes, all);
 }
 
 /** How many things a vector section holds. */

@@ -1,11 +1,11 @@
 // Which places in a module control reaches, and the module without the others.
 import { Reader, SECTION, append, assemble, bodies, code, count, leb, sections } from './binary.mjs';
 
-const [BLOCK, LOOP, IF, ELSE, END, BR_IF] = [0x02, 0x03, 0x04, 0x05, 0x0b, 0x0d];
+const [TRAP, BLOCK, LOOP, IF, ELSE, END, BR_IF, CALL] = [0x00, 0x02, 0x03, 0x04, 0x05, 0x0b, 0x0d, 0x10];
 const GLOBAL = 0x03; // a kind of export
 const MUTABLE_I32_OF_0 = [0x7f, 0x01, 0x41, 0x00, 0x0b];
-const UNREACHABLE = Uint8Array.of(0x00);
-const STUB = Uint8Array.of(0x00, 0x00, END);
+const UNREACHABLE = Uint8Array.of(TRAP);
+const STUB = Uint8Array.of(0x00, TRAP, END);
 
 /**
  * Walks a body from point to point: places that control may reach in its own right (a function's start, a branch, what follows a block or a
@@ -57,13 +57,26 @@ export function marked(bytes) {
   return { bytes: assemble(bytes, all), entries, points };
 }
 
+/** Functions that a body calls and that come back: what is called for a panic stops anyway. */
+export function calls({ body, begin }) {
+  const reader = new Reader(body, begin);
+  const called = new Set();
+  while (reader.at < body.length) {
+    const code = body[reader.at];
+    const operand = new Reader(body, reader.at + 1);
+    reader.instruction();
+    if (code === CALL && body[reader.at] !== TRAP) called.add(operand.leb());
+  }
+  return called;
+}
+
 /** Which points an instance of a marked module has reached. */
 export function ran(exports, points) {
   return Uint8Array.from({ length: points }, (_, i) => exports[`ran${i}`].value);
 }
 
 /**
- * The module without what is not needed: functions in `whole` stay as they are with all they call, of others those points stay that `reached` has,
+ * The module without what is not needed: functions in `whole` stay as they are, of others those points stay that `reached` has,
  * and everything else stops when control gets there.
  */
 export function trimmed(bytes, { entries, reached, whole }) {

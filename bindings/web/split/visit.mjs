@@ -51,8 +51,6 @@ function hear(engine, block) {
   engine.render(BLOCK);
   for (const signal of [engine.scope(), engine.audio(0, BLOCK), engine.haptic(0, BLOCK)]) if (!signal.every((x) => !Number.isNaN(x))) throw new Error('not a number');
   if (block % 6 === 0) engine.levels();
-  if (block % 188 === 0) { engine.recorded(); engine.record(); }
-  if (block % 400 === 0) engine.stats();
 }
 
 /** Plays for so many seconds: up to ten fingers that slide, rest, leap, press, are forgotten and come back; blows; all buttons. */
@@ -85,12 +83,15 @@ export function play(engine, seed, seconds) {
     finger.uv = [finger.uv[0] + finger.v[0] * dt / 0.028, finger.uv[1] + finger.v[1] * dt / 0.007];
     tell(t, { event: 'move', contact, uv: finger.uv, velocity_m_s: random() < 0.9 ? finger.v : undefined, normal_force_n: finger.force });
   };
-  // The first touch may well be there before the first block.
+  // The first touch may well be there before the first block, or long after.
   if (isCalm) begin(1000.003);
+  else if (random() < 0.3) for (let idle = Math.floor(300 * random()); idle > 0; idle--) hear(engine, idle);
   for (let block = 0; block < (seconds * RATE_HZ) / BLOCK; block++) {
     const clock = 1000 + (block * BLOCK) / RATE_HZ;
     stalls = stalls > 0 ? stalls - 1 : random() < 0.002 ? Math.floor(600 * random() ** 2) : 0;
+    // Clocks differ, and where the processor has too much to do the sound falls behind them.
     if (random() < 0.002) skew = 0.3 * (random() - 0.5);
+    if (!isCalm && random() < 0.0005) skew += random();
     const t = clock + skew + 0.004 * random();
     if (random() < 0.03 && fingers.size < (isCalm ? 1 : 10)) begin(t);
     for (const [contact, finger] of fingers) {
@@ -100,6 +101,7 @@ export function play(engine, seed, seconds) {
     }
     if (random() < 0.02) tell(t, { event: 'impact', body: 'body', speed_m_s: 0.1 + 2.9 * random(), position: Math.floor(3 * random()), actuator: 0, ...SURFACES[0].blow });
     if (random() < 0.002) tell(t, { event: 'end', contact: 1 + Math.floor(random() * name) });
+    if (!isCalm && random() < 0.01) for (const [contact, { uv, force }] of fingers) tell(t - 0.5 * random() ** 3, { event: 'move', contact, uv, normal_force_n: force });
     hear(engine, block);
   }
   stalls = 0;
