@@ -16,6 +16,8 @@ const SHAPE = String(new URL('./shape.wasm', import.meta.url));
 const FIRST = String(new URL('./first.wasm', import.meta.url));
 /** The whole engine is asked for when the first has told so much, frames: a second of sound. */
 const COMPLETED_AFTER = 60;
+/** Who has not struck anything after so much sound is told how, frames. */
+const HINTED_AFTER = 300;
 /** A take longer than this begins anew when no finger touches, lines of its log. */
 const LONGEST_TAKE = 20000;
 
@@ -44,11 +46,11 @@ async function ask(work, wasm) {
 const picture = new Picture($('surface'));
 const strips = new Strips($('strips'));
 const feel = new Feel($('feel'));
-const state = { surface: null, engine: null, context: null, muted: false, tool: 'stroke', modes: undefined, frames: 0, speed: 0, force: 0, hints: 0 };
+const state = { surface: null, engine: null, context: null, muted: false, tool: 'stroke', modes: undefined, frames: 0, speed: 0, force: 0, struck: false };
 let spectrum = new Float32Array(2048).fill(-200);
 
-/** Says something, for eyes and for screen readers; an empty sentence goes. */
-function say(sentence, seconds = 6) {
+/** Says something, for eyes and for screen readers, as long as it takes to read; an empty sentence goes. */
+function say(sentence, seconds = Math.max(6, sentence.length / 12)) {
   $('status').textContent = sentence;
   clearTimeout(say.timer);
   say.timer = setTimeout(() => { $('status').textContent = ''; }, seconds * 1000);
@@ -208,12 +210,16 @@ function frame({ rows, levels, tiles }) {
   state.frames++;
   // What nobody hears yet may load now.
   if (state.frames === COMPLETED_AFTER) state.engine.complete().catch(refuse);
+  if (state.frames === HINTED_AFTER && !state.struck) {
+    $('hint').textContent = 'now tap it';
+    $('hint').className = 'tap';
+  }
 }
 
 function readout() {
   const { speed, surface, touching } = state;
   const wave = surface?.wavelength_m;
-  const hz = touching && wave && speed > 0.005 ? ` · v/λ = ${Math.round(speed / wave)} Hz` : '';
+  const hz = touching && wave && speed > 0.005 ? ` · ${(speed / wave).toFixed(speed < 10 * wave ? 1 : 0)} ridges/s` : '';
   $('readout').textContent = touching ? `${Math.round(speed * 1000)} mm/s · ${state.force.toFixed(1)} N${hz}` : '';
 }
 
@@ -262,6 +268,7 @@ const hand = new Hand($('surface'), {
     // A body without shapes has three places.
     const { on = true, at_m } = this.place([x, y]);
     if (!on) return;
+    state.struck = true;
     const where = at_m ? { at_m } : { position: Math.floor((x + y) / 90) % 3 };
     const blow = state.surface.blow ?? { striker: 'wood', mass_kg: 0.02, radius_m: 0.012, restitution: 0.3 };
     this.report([{ t: performance.now() / 1000, event: 'impact', body: 'body', speed_m_s, ...where, actuator: 0, ...blow }], Date.now());

@@ -100,17 +100,21 @@ export class Strips {
   labels(height) {
     const { context, inks } = this;
     context.font = '11px system-ui, sans-serif';
-    [['relief', this.spans[0], inks.relief, 12], ['skin', this.spans[1], inks.skin, height * 0.24 + 12], ['sound, — v/λ', null, inks.heard, height * 0.48 + 12]].forEach(([name, span, ink, y]) => {
+    const [skin, sound] = [0.24, 0.48].map((part) => height * part + 12);
+    [
+      ['relief', this.spans[0], inks.relief, 12, 6], ['skin', this.spans[1], inks.skin, skin, 6],
+      ['sound', null, inks.heard, sound, 6], ['— ridges a second, v/λ', null, inks.ink, sound, 44],
+    ].forEach(([name, span, ink, y, x]) => {
       const text = span === null || this.columns.length + this.told === 0 ? name : `${name} ±${length(span)}`;
       context.fillStyle = inks.strip;
-      context.fillRect(0, y - 10, context.measureText(text).width + 12, 13);
+      context.fillRect(x - 6, y - 10, context.measureText(text).width + 12, 13);
       context.fillStyle = ink;
-      context.fillText(text, 6, y);
+      context.fillText(text, x, y);
     });
   }
 }
 
 /** A length in a unit that suits it. */
 export function length(m) {
-  return m >= 1e-3 ? `${(m * 1e3).toFixed(1)} mm` : `${(m * 1e6).toFixed(m < 1e-5 ? 1 : 0)} µm`;
+  return m >= 1e-3 ? `${Number((m * 1e3).toFixed(1))} mm` : `${(m * 1e6).toFixed(m < 1e-5 ? 1 : 0)} µm`;
 }

@@ -127,6 +127,10 @@ test('a frozen page, a hidden one and another size leave no contact behind and n
     await page.setViewportSize({ width, height });
     await drag(page, line(150, 8, 60));
   }
+  // Who has only stroked so far is told how to hit.
+  await page.waitForFunction(() => document.getElementById('hint').textContent === 'now tap it', null, { timeout: 20000 });
+  await page.mouse.click(300, 200);
+  assert.ok(await page.evaluate(() => document.getElementById('hint').classList.contains('gone')));
   await page.waitForTimeout(400);
   const after = await stats(page);
   assert.deepEqual([after.stats.contacts, after.stats.refused, wrong.length], [0, 0, 0], wrong.join());
