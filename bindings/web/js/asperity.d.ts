@@ -211,7 +211,7 @@ export class WebEngine extends EventTarget {
   setAudioGain(bus: number, gain: number): Promise<void>;
   setHapticGain(channel: number, gain: number): Promise<void>;
   stats(): Promise<{ stats: Stats; why_silent: string[]; memory: number }>;
-  /** All that was reported, as a contact log that `asperity render` plays again. */
+  /** All that was reported, as a contact log that `asperity render` plays again; of a part of an engine when the whole one has come. */
   log(): Promise<string>;
   close(): void;
 }
