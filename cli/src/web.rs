@@ -14,7 +14,8 @@ pub struct Options {
     /// Folder to write the page to; any static host serves it
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Serve the page on the loopback address, until the program is ended, and print where; also what happens without -o
+    /// Serve the page on the loopback address, until the program is ended, and show it in a browser (what BROWSER names, or else the system's);
+    /// without it and without -o it is served only
     #[arg(long)]
     pub open: bool,
     /// Port to serve on; 0 = one that is free
@@ -57,8 +58,9 @@ mod carried {
 mod carried {
     use super::{CliError, Options, PAGE};
     use crate::output::{self, Outputs};
-    use std::fs;
     use std::path::Path;
+    use std::process::{Command, Stdio};
+    use std::{env, fs, thread};
     use tiny_http::{Header, Method, Request, Response, Server};
 
     pub fn run(options: &Options) -> Result<(), CliError> {
@@ -66,7 +68,7 @@ mod carried {
             write(folder)?;
         }
         if options.open || options.output.is_none() {
-            serve(options.port)?;
+            serve(options.port, options.open)?;
         }
         Ok(())
     }
@@ -82,14 +84,37 @@ mod carried {
         Ok(())
     }
 
-    fn serve(port: u16) -> Result<(), CliError> {
+    fn serve(port: u16, shown: bool) -> Result<(), CliError> {
         let server = Server::http(("127.0.0.1", port)).map_err(|error| {
             CliError::new("--port", format!("{port} cannot be served on ({error})"), "give another one, or 0")
         })?;
-        output::say(&format!("serving http://{}/ until ended (Ctrl-C)", server.server_addr()));
+        let address = format!("http://{}/", server.server_addr());
+        output::say(&format!("serving {address} until ended (Ctrl-C)"));
+        if shown && let Err(reason) = show(&address) {
+            output::say(&format!("{reason}: open the address in a browser"));
+        }
         for request in server.incoming_requests() {
             answer(request);
         }
+        Ok(())
+    }
+
+    /// Shows an address in a browser, which goes on by itself; or says why not.
+    fn show(address: &str) -> Result<(), String> {
+        let told = |name| env::var(name).ok().filter(|value| !value.is_empty());
+        let program = match (told("BROWSER"), env::consts::OS) {
+            (Some(program), _) => program,
+            (None, "macos") => "open".to_owned(),
+            (None, "windows") => "explorer".to_owned(),
+            _ if told("DISPLAY").or_else(|| told("WAYLAND_DISPLAY")).is_some() => "xdg-open".to_owned(),
+            _ => return Err("there is no screen here and no BROWSER".to_owned()),
+        };
+        let silent = || Stdio::null();
+        let begun =
+            Command::new(&program).arg(address).stdin(silent()).stdout(silent()).stderr(silent()).spawn();
+        let mut browser = begun.map_err(|error| format!("{program} cannot be started ({error})"))?;
+        // A starter that has done its work is not kept as a dead process.
+        thread::spawn(move || browser.wait());
         Ok(())
     }
 

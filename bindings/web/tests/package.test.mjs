@@ -1,7 +1,7 @@
 // What a stranger does first: the README's blocks, the package, the program's verb.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
-import { cpSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -63,10 +63,15 @@ test('the program writes the page and serves it on the loopback address, or says
   }
   assert.equal(written.status, 0, written.stderr);
   assert.deepEqual(readdirSync(join(folder, 'page')).sort(), readdirSync(join(DIST, 'page')).sort());
-  const server = spawn(PROGRAM, ['web', '--open']);
+  // A browser that only writes down where it was sent.
+  const [browser, sent] = [join(folder, 'browser'), join(folder, 'sent')];
+  writeFileSync(browser, `#!/bin/sh\necho "$1" >'${sent}.part' && mv '${sent}.part' '${sent}'\n`, { mode: 0o755 });
+  const server = spawn(PROGRAM, ['web', '--open'], { env: { ...process.env, BROWSER: browser } });
   try {
     const said = await new Promise((resolve) => server.stdout.once('data', (bytes) => resolve(String(bytes))));
     const [url] = said.match(/http:\/\/127\.0\.0\.1:\d+\//);
+    for (let tries = 0; tries < 200 && !existsSync(sent); tries++) await new Promise((resolve) => setTimeout(resolve, 50));
+    assert.equal(readFileSync(sent, 'utf8'), `${url}\n`);
     const page = await fetch(url);
     assert.match(page.headers.get('content-type'), /text\/html/);
     assert.equal(await page.text(), readFileSync(join(folder, 'page/index.html'), 'utf8'));
@@ -77,5 +82,13 @@ test('the program writes the page and serves it on the loopback address, or says
     assert.equal((await fetch(url, { method: 'POST', body: 'x' })).status, 405);
   } finally {
     server.kill();
+  }
+  const alone = spawn(PROGRAM, ['web', '--open'], { env: { ...process.env, BROWSER: join(folder, 'none') } });
+  try {
+    let words = '';
+    for await (const bytes of alone.stdout) { words += bytes; if (words.split('\n').length > 2) break; }
+    assert.match(words, /serving http.*\n.*none cannot be started .*: open the address in a browser\n/);
+  } finally {
+    alone.kill();
   }
 });
