@@ -129,6 +129,8 @@ test('a finger touches the scene while its log plays', async () => {
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
   assert.deepEqual(refused, []);
+  // Nothing was lost, and nothing is said to be.
+  assert.doesNotMatch(JSON.stringify(await state()), /refused/);
   await end();
 });
 

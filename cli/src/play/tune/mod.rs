@@ -48,6 +48,8 @@ struct Tuned<'a> {
     rate_hz: f64,
     heard: String,
     log: Log,
+    /// Time of the newest event, s.
+    latest_s: f64,
     /// Engine time minus the page's clock, s, of the finger that touches.
     touch_offset_s: Option<f64>,
     /// What was said last: what changed, what waits.
@@ -95,6 +97,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         rate_hz,
         heard: sounding.heard(),
         log: Log { lines: log, next: 0, begins_s: 0.0, ends_s, plays },
+        latest_s: 0.0,
         touch_offset_s: None,
         said: Vec::new(),
     };
@@ -155,13 +158,12 @@ impl Tuned<'_> {
     }
 
     /// Reports an event, at the time of the last one at the earliest: the log and a finger take turns, and neither's stamps wait for the other's.
+    /// (Asked first, the scene would refuse the later one, and tell whoever looks that it was lost.)
     fn report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
-        match self.scene.report(time_s, event).map_err(|refused| refused.reason) {
-            Err(Refusal::TimeBackwards { before_s, .. }) => {
-                self.scene.report(before_s, event).map_err(|refused| refused.reason)
-            }
-            answer => answer,
-        }
+        let time_s = time_s.max(self.latest_s);
+        self.scene.report(time_s, event).map_err(|refused| refused.reason)?;
+        self.latest_s = time_s;
+        Ok(())
     }
 
     /// Makes what sounds what `document` says; where that cannot be, all stays as it was.
