@@ -16,6 +16,8 @@
 //!
 //! Exit status: 0 done, 1 bad input or a failed run, 2 wrong usage.
 
+#[cfg(feature = "web")]
+mod answer;
 mod batch;
 mod bench_scene;
 mod csv;

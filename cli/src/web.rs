@@ -57,11 +57,12 @@ mod carried {
 #[cfg(feature = "web")]
 mod carried {
     use super::{CliError, Options, PAGE};
+    use crate::answer::{WORDS, answer};
     use crate::output::{self, Outputs};
     use std::path::Path;
     use std::process::{Command, Stdio};
     use std::{env, fs, thread};
-    use tiny_http::{Header, Method, Request, Response, Server};
+    use tiny_http::{Method, Request, Server};
 
     pub fn run(options: &Options) -> Result<(), CliError> {
         if let Some(folder) = &options.output {
@@ -94,7 +95,7 @@ mod carried {
             output::say(&format!("{reason}: open the address in a browser"));
         }
         for request in server.incoming_requests() {
-            answer(request);
+            respond(request);
         }
         Ok(())
     }
@@ -118,27 +119,15 @@ mod carried {
         Ok(())
     }
 
-    /// Whoever hangs up meanwhile is not missed.
-    fn answer(request: Request) {
+    fn respond(request: Request) {
         let path = request.url().split(['?', '#']).next().unwrap_or_default().trim_start_matches('/');
         let wanted = if path.is_empty() { "index.html" } else { path };
         let file = PAGE.iter().find(|(name, _)| *name == wanted);
-        let _ = match (request.method(), file) {
-            (Method::Get | Method::Head, Some((name, content))) => {
-                let response = Response::from_data(*content);
-                request.respond(
-                    header("Content-Type", kind(name)).into_iter().fold(response, Response::with_header),
-                )
-            }
-            (Method::Get | Method::Head, None) => {
-                request.respond(Response::from_string("no such file").with_status_code(404))
-            }
-            _ => request.respond(Response::from_string("only GET").with_status_code(405)),
-        };
-    }
-
-    fn header(name: &str, value: &str) -> Option<Header> {
-        Header::from_bytes(name, value).ok()
+        match (request.method(), file) {
+            (Method::Get | Method::Head, Some((name, content))) => answer(request, 200, kind(name), content),
+            (Method::Get | Method::Head, None) => answer(request, 404, WORDS, b"no such file"),
+            _ => answer(request, 405, WORDS, b"only GET"),
+        }
     }
 
     /// What a file is, by its ending; browsers insist on it for scripts and engines.

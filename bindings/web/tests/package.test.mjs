@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { Agent, get } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
@@ -80,6 +81,15 @@ test('the program writes the page and serves it on the loopback address, or says
     assert.deepEqual(new Uint8Array(await wasm.arrayBuffer()), new Uint8Array(readFileSync(join(folder, 'page/asperity.wasm'))));
     for (const path of ['../Cargo.toml', '%2e%2e/x', 'nothing']) assert.equal((await fetch(url + path)).status, 404);
     assert.equal((await fetch(url, { method: 'POST', body: 'x' })).status, 405);
+    // As many connections at once as browsers open, all of which would like to stay open: one in some was never answered, and the page stayed white.
+    const agent = new Agent({ keepAlive: true, maxSockets: 12 });
+    for (let round = 0; round < 40; round++) {
+      await Promise.all(['', 'app.js', 'look.js', 'style.css', 'engine.js', 'hand.js', 'feel.js', 'strips.js', 'worker.js', 'surfaces.js', 'pictures.js', 'asperity.js'].map((path) => new Promise((resolve, reject) => {
+        const request = get(url + path, { agent, timeout: 20000 }, (response) => { response.resume().on('end', () => resolve(assert.equal(response.headers.connection, 'close'))); });
+        request.on('timeout', () => request.destroy(new Error(`${path} is not answered`))).on('error', reject);
+      })));
+    }
+    agent.destroy();
   } finally {
     server.kill();
   }

@@ -13,11 +13,12 @@
 //! A request that another page sends is refused: its `Host` or `Origin` is not this address.
 
 use super::Tuned;
+use crate::answer::{WORDS, answer};
 use crate::error::CliError;
 use serde::Deserialize;
 use serde_json::json;
 use std::io::Read;
-use tiny_http::{Header, Method, Request, Response, Server};
+use tiny_http::{Method, Request, Server};
 
 /// Files of the page, by their addresses.
 const PAGE: &[(&str, &str, &str)] = &[
@@ -77,14 +78,13 @@ impl Desk {
     fn one(&self, mut request: Request, tuned: &mut Tuned<'_>) -> bool {
         let path = request.url().split(['?', '#']).next().unwrap_or_default().to_owned();
         if !self.is_ours(&request) {
-            let _ = request
-                .respond(Response::from_string("only the page itself is answered").with_status_code(403));
+            answer(request, 403, WORDS, b"only the page itself is answered");
             return true;
         }
         if *request.method() == Method::Get
             && let Some((_, kind, content)) = PAGE.iter().find(|(name, _, _)| *name == path)
         {
-            let _ = request.respond(with_kind(Response::from_string(*content), kind));
+            answer(request, 200, kind, content.as_bytes());
             return true;
         }
         let mut body = String::new();
@@ -99,7 +99,7 @@ impl Desk {
             (Method::Post, "/log") => plays(tuned, &body),
             (Method::Post, "/end") => Ok(()),
             _ => {
-                let _ = request.respond(Response::from_string("no such address").with_status_code(404));
+                answer(request, 404, WORDS, b"no such address");
                 return true;
             }
         };
@@ -108,8 +108,7 @@ impl Desk {
             (Ok(()), "/touch") => (json!({}), 200),
             (Ok(()), _) => (state(tuned), 200),
         };
-        let response = Response::from_string(text.to_string()).with_status_code(status);
-        let _ = request.respond(with_kind(response, "application/json"));
+        answer(request, status, "application/json", text.to_string().as_bytes());
         path != "/end" || done.is_err()
     }
 
@@ -128,10 +127,6 @@ impl Desk {
         });
         is_host && is_origin
     }
-}
-
-fn with_kind<R: Read>(response: Response<R>, kind: &str) -> Response<R> {
-    Header::from_bytes("Content-Type", kind).into_iter().fold(response, Response::with_header)
 }
 
 fn set(tuned: &mut Tuned<'_>, body: &str) -> Result<(), CliError> {

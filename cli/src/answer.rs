@@ -1,0 +1,28 @@
+//! Answers of the servers on the loopback address: each whole, and the last of its connection.
+//!
+//! A browser keeps half a dozen connections open, and the server has a thread for each as long as it is open. Of two that come at the same moment it
+//! may leave one to a thread that is taken already; where connections stay open that one is never heard, and a page waits for a file for ever. So
+//! none stays open.
+
+use std::io::{self, Write};
+use tiny_http::{Method, Request, StatusCode};
+
+/// Plain words.
+pub const WORDS: &str = "text/plain; charset=utf-8";
+
+/// Answers a request; whoever hangs up meanwhile is not missed.
+pub fn answer(request: Request, status: u16, kind: &str, body: &[u8]) {
+    let is_body_wanted = *request.method() != Method::Head;
+    let mut to = request.into_writer();
+    let _ = write(&mut to, status, kind, body.len(), if is_body_wanted { body } else { &[] });
+}
+
+fn write(to: &mut dyn Write, status: u16, kind: &str, bytes: usize, body: &[u8]) -> io::Result<()> {
+    let reason = StatusCode(status).default_reason_phrase();
+    write!(
+        to,
+        "HTTP/1.1 {status} {reason}\r\nContent-Type: {kind}\r\nContent-Length: {bytes}\r\nConnection: close\r\n\r\n"
+    )?;
+    to.write_all(body)?;
+    to.flush()
+}
