@@ -14,6 +14,7 @@ export class Strips {
     this.told = 0;
     this.spans = [1e-5, 1e-5];
     this.middles = [0, 0];
+    this.marks = true;
     this.colours();
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.colours());
   }
@@ -36,6 +37,7 @@ export class Strips {
       column.speed = Math.hypot(row[7], row[8]);
     }
     column ??= {};
+    this.marks = Boolean(wavelength_m);
     column.spectrum = spectrum.slice();
     column.rate = rate;
     column.marker = wavelength_m && column.speed > 0.005 ? column.speed / wavelength_m : 0;
@@ -103,7 +105,7 @@ export class Strips {
     const [skin, sound] = [0.24, 0.48].map((part) => height * part + 12);
     [
       ['relief', this.spans[0], inks.relief, 12, 6], ['skin', this.spans[1], inks.skin, skin, 6],
-      ['sound', null, inks.heard, sound, 6], ['— ridges a second, v/λ', null, inks.ink, sound, 44],
+      ['sound', null, inks.heard, sound, 6], ...(this.marks ? [['— ridges a second, v/λ', null, inks.ink, sound, 44]] : []),
     ].forEach(([name, span, ink, y, x]) => {
       const text = span === null || this.columns.length + this.told === 0 ? name : `${name} ±${length(span)}`;
       context.fillStyle = inks.strip;
