@@ -2,13 +2,14 @@
 //!
 //! ```text
 //! X'(k) = X(k) √max(0, 1 − N/P(r) · (1 + 3/√n))       r = |k|
-//! N = min(N_most, max(N_step, N_corner, N_plateau))
+//! N = min(N_most, max(N_step, N_corner, N_plateau, N_level))
 //! ```
 //! | symbol | here |
 //! |---|---|
 //! | P, n | mean power of a ring of waves of one length, and how many they are: what a ring has beyond three standard errors of noise is kept |
 //! | N_corner | mean power where both frequencies are above `CORNER`: a lens leaves nothing there, white noise is as strong as elsewhere |
 //! | N_plateau | power of 4–8 texels where 8–16 texels have no more: JPEG takes noise out of the corner, not out of the middle |
+//! | N_level | power of three octaves that are level, of 8–64 or of 16–128 texels: a sensor's mosaic and its sharpening colour noise below 8 texels and leave longer waves white; a surface's rise or have a hump there |
 //! | N_step | an eighth bit's rounding |
 //! | N_most | [`MOST_NOISE`]: what is stronger is not a camera's, but a rough surface under a low light, which is white as well |
 //!
@@ -28,6 +29,14 @@ pub const MOST_NOISE: f64 = 0.02;
 pub const LEAST_NOISE: f64 = 0.288_7 / 255.0;
 /// Frequency of the corner, cycles per texel in both directions.
 const CORNER: f64 = 0.4;
+/// Octaves of waves that are looked at, from 4 to 128 texels.
+const OCTAVES: usize = 5;
+/// Waves that an octave needs to be judged by.
+const FEWEST_WAVES: f64 = 40.0;
+/// Most over least power of octaves that are level for certain, and of those that are not. Walls under a mosaic, sharpened, reduced or as JPEG
+/// 1.0–1.5; gravel, the most level of real grounds looked at, 1.85.
+const LEVEL: f64 = 1.45;
+const NOT_LEVEL: f64 = 1.7;
 /// Standard errors that a ring's noise may be above its mean.
 const DOUBT: f64 = 3.0;
 
@@ -91,24 +100,40 @@ impl Rings {
     }
 }
 
-/// Power of the noise: of the corner or of the plateau, whichever is more.
+/// Power of the noise: of the corner, of the plateau or of level octaves, whichever is most.
 fn floor(waves: &Waves, texels: f64) -> f64 {
-    let (mut corner, mut fine, mut coarse) = (Mean::default(), Mean::default(), Mean::default());
+    let mut corner = Mean::default();
+    let mut octaves: [Mean; OCTAVES] = Default::default();
     waves.each(|wave| {
         let power = wave.power / texels;
         if wave.wx.min(wave.wy.abs()) > TAU * CORNER {
             corner.add(power, wave.count);
         }
-        let r = wave.frequency();
-        if (PI / 4.0..PI / 2.0).contains(&r) {
-            fine.add(power, wave.count);
-        } else if (PI / 8.0..PI / 4.0).contains(&r) {
-            coarse.add(power, wave.count);
+        // Octave 0: waves of 4 to 8 texels.
+        let octave = (PI / 2.0 / wave.frequency()).log2().ceil();
+        if (1.0..=OCTAVES as f64).contains(&octave) {
+            octaves[octave as usize - 1].add(power, wave.count);
         }
     });
-    // All of it where both octaves are level, nothing where the coarser has twice the power.
-    let level = if fine.get() > 0.0 { (2.0 - coarse.get() / fine.get()).clamp(0.0, 1.0) } else { 0.0 };
-    corner.get().max(level * fine.get())
+    let level = octaves[1..].windows(3).map(of_level_octaves).fold(0.0, f64::max);
+    corner.get().max(plateau(&octaves)).max(level)
+}
+
+/// All of 4–8 texels where 8–16 have no more, nothing where they have twice the power.
+fn plateau(octaves: &[Mean]) -> f64 {
+    let (fine, coarse) = (octaves[0].get(), octaves[1].get());
+    if fine > 0.0 { (2.0 - coarse / fine).clamp(0.0, 1.0) * fine } else { 0.0 }
+}
+
+/// The most power of three octaves if they are level, nothing of it if they are not.
+fn of_level_octaves(octaves: &[Mean]) -> f64 {
+    let powers = || octaves.iter().map(Mean::get);
+    let (least, most) = (powers().fold(f64::INFINITY, f64::min), powers().fold(0.0, f64::max));
+    if least <= 0.0 || octaves.iter().any(|octave| octave.count < FEWEST_WAVES) {
+        return 0.0;
+    }
+    let doubt = (most / least - LEVEL) / (NOT_LEVEL - LEVEL);
+    (1.0 - doubt).clamp(0.0, 1.0) * most
 }
 
 #[derive(Default)]
@@ -149,6 +174,29 @@ mod tests {
         let noisy = Raster::from_fn(200, 160, |x, y| wall.at(x, y) + wave(x));
         let left = rms(&without_camera_noise(&noisy).picture) / (0.02 / 2.0_f64.sqrt());
         assert!((left - 1.0).abs() < 0.05, "{left}");
+    }
+
+    /// What was open: a sensor's mosaic blurs noise over a texel or two, so that neither its corner nor 4–8 texels tell how strong it is.
+    #[test]
+    fn a_wall_loses_noise_that_a_mosaic_has_blurred() {
+        let mut rng = Rng::new(7);
+        let white = Raster::from_fn(401, 301, |_, _| rng.normal());
+        let blurred = Raster::from_fn(400, 300, |x, y| {
+            let sum = white.at(x, y) + white.at(x + 1, y) + white.at(x, y + 1) + white.at(x + 1, y + 1);
+            0.7 + 0.006 * sum / 2.0
+        });
+        let left = rms(&without_camera_noise(&blurred).picture) / rms(&blurred);
+        assert!(left < 0.1, "{left}");
+        // A ground that has more of longer waves keeps them, however faint.
+        let rising = |long: f64| {
+            let mut rng = Rng::new(8);
+            let coarse = Raster::from_fn(41, 31, |_, _| rng.normal());
+            Raster::from_fn(400, 300, |x, y| {
+                0.7 + 0.003 * (white.at(x, y) + long * coarse.at(x / 10, y / 10))
+            })
+        };
+        let kept = rms(&without_camera_noise(&rising(1.0)).picture) / rms(&rising(1.0));
+        assert!(kept > 0.6, "{kept}");
     }
 
     #[test]
