@@ -37,6 +37,10 @@ const FEWEST_WAVES: f64 = 40.0;
 /// 1.0–1.5; gravel, the most level of real grounds looked at, 1.85.
 const LEVEL: f64 = 1.45;
 const NOT_LEVEL: f64 = 1.7;
+/// How much more than the mean of a level floor is taken for noise: JPEG leaves it uneven by a tenth.
+const MARGIN: f64 = 1.15;
+/// Euler's and Mascheroni's.
+const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 /// Standard errors that a ring's noise may be above its mean.
 const DOUBT: f64 = 3.0;
 
@@ -127,29 +131,38 @@ fn plateau(octaves: &[Mean]) -> f64 {
 
 /// The most power of three octaves if they are level, nothing of it if they are not.
 fn of_level_octaves(octaves: &[Mean]) -> f64 {
-    let powers = || octaves.iter().map(Mean::get);
+    let powers = || octaves.iter().map(Mean::of_noise);
     let (least, most) = (powers().fold(f64::INFINITY, f64::min), powers().fold(0.0, f64::max));
-    if least <= 0.0 || octaves.iter().any(|octave| octave.count < FEWEST_WAVES) {
+    // What is stronger than a camera's is a surface.
+    if most > MOST_NOISE * MOST_NOISE || octaves.iter().any(|octave| octave.count < FEWEST_WAVES) {
         return 0.0;
     }
     let doubt = (most / least - LEVEL) / (NOT_LEVEL - LEVEL);
-    (1.0 - doubt).clamp(0.0, 1.0) * most
+    (1.0 - doubt).clamp(0.0, 1.0) * MARGIN * most
 }
 
 #[derive(Default)]
 struct Mean {
     sum: f64,
+    logarithms: f64,
     count: f64,
 }
 
 impl Mean {
     fn add(&mut self, value: f64, count: f64) {
         self.sum += value * count;
+        self.logarithms += value.max(f64::MIN_POSITIVE).ln() * count;
         self.count += count;
     }
 
     fn get(&self) -> f64 {
         self.sum / self.count.max(1.0)
+    }
+
+    /// The mean of noise that these are powers of, whatever a few strong waves among them have: powers of noise are
+    /// exponentially distributed, and E ln P = ln N − γ.
+    fn of_noise(&self) -> f64 {
+        (self.logarithms / self.count.max(1.0) + EULER_GAMMA).exp()
     }
 }
 
