@@ -155,7 +155,7 @@ if need mcs mono-mcs && need mono mono-runtime libmono-system-core4.0-cil; then
     # Unity's components and the package's sample, against the few of Unity's types that they use; nothing of Unity runs here.
     cp "$lib/libasperity.so" "$work/libaudioplugin_asperity.so"
     shown unity/README.md csharp >"$work/Shown.cs"
-    mcs -langversion:7 -define:ASPERITY_UNITY -out:"$work/UnityScene.exe" tests/unity_types.cs tests/UnityScene.cs unity/Runtime/*.cs \
+    mcs -langversion:7 -define:UNITY_5_3_OR_NEWER -out:"$work/UnityScene.exe" tests/unity_types.cs tests/UnityScene.cs unity/Runtime/*.cs \
         unity/Samples~/FirstTouch/FirstTouch.cs "$work/Shown.cs"
     LD_LIBRARY_PATH="$work:$lib" mono "$work/UnityScene.exe"
     ok "C# under Mono; Unity's components and the package's sample with stand-ins for Unity's types"
