@@ -204,11 +204,13 @@ else
     echo "skipped: Windows, where Rust's library for it, mingw and Wine can be had (rustup target add x86_64-pc-windows-gnu)"
 fi
 
-# As far as other systems can be reached without their linkers: the static libraries of the recipes in release/.
+# As far as other systems can be reached without their linkers: the static libraries of the recipes in release/, unoptimised, because nothing
+# here can run them.
 if [ "${TARGETS:-}" = 1 ]; then
     for system in x86_64-apple-darwin aarch64-apple-darwin aarch64-apple-ios aarch64-linux-android x86_64-pc-windows-msvc; do
         if has_target "$system"; then
-            (cd "$root" && cargo rustc --release -q -p asperity-c --crate-type staticlib --target "$system" --target-dir "$target/targets")
+            (cd "$root" && CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_DEBUG=0 \
+                cargo rustc --release -q -p asperity-c --crate-type staticlib --target "$system" --target-dir "$target/targets")
             ls "$target/targets/$system/release/"*asperity_c.{a,lib} 2>/dev/null
             ok "$system: a static library is built; nothing of it has run"
         else
