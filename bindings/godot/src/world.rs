@@ -202,6 +202,10 @@ impl AsperityWorld {
     /// physics tick; the time is the tick's. What rolls tells with every report how fast it slips where it touches, m/s (0: it only rolls), and
     /// its radius, m; left out, it is a stroke. False, and an error, where it is refused.
     #[func]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "a script calls it, and scripts have no structs to name things in"
+    )]
     pub(crate) fn report_begin(
         &mut self,
         contact: i64,
