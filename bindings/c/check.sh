@@ -211,7 +211,9 @@ if [ "${TARGETS:-}" = 1 ]; then
         if has_target "$system"; then
             (cd "$root" && CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_DEBUG=0 \
                 cargo rustc --release -q -p asperity-c --crate-type staticlib --target "$system" --target-dir "$target/targets")
-            ls "$target/targets/$system/release/"*asperity_c.{a,lib} 2>/dev/null
+            # Windows calls it .lib.
+            built="$(find "$target/targets/$system/release" -maxdepth 1 -name 'libasperity_c.a' -o -maxdepth 1 -name 'asperity_c.lib')"
+            [ -s "$built" ] || fail "$system: no static library"
             ok "$system: a static library is built; nothing of it has run"
         else
             echo "skipped: no standard library of $system"
