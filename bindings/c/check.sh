@@ -151,11 +151,11 @@ if need mcs mono-mcs && need mono mono-runtime libmono-system-core4.0-cil; then
     mcs -warnaserror -langversion:7 -out:"$work/Test.exe" unity/Runtime/Asperity.cs tests/Test.cs
     mono "$work/Test.exe"
     mcs -warnaserror -langversion:7 -out:"$work/Stroke.exe" unity/Runtime/Asperity.cs example/Stroke.cs
-    mono "$work/Stroke.exe"
+    (cd "$work" && rm -f stroke.wav && mono Stroke.exe && [ -s stroke.wav ])
     # Unity's components and the package's sample, against the few of Unity's types that they use; nothing of Unity runs here.
     cp "$lib/libasperity.so" "$work/libaudioplugin_asperity.so"
     shown unity/README.md csharp >"$work/Shown.cs"
-    mcs -langversion:7 -define:ASPERITY_UNITY -out:"$work/UnityScene.exe" tests/unity_types.cs tests/UnityScene.cs unity/Runtime/*.cs \
+    mcs -langversion:7 -define:UNITY_5_3_OR_NEWER -out:"$work/UnityScene.exe" tests/unity_types.cs tests/UnityScene.cs unity/Runtime/*.cs \
         unity/Samples~/FirstTouch/FirstTouch.cs "$work/Shown.cs"
     LD_LIBRARY_PATH="$work:$lib" mono "$work/UnityScene.exe"
     ok "C# under Mono; Unity's components and the package's sample with stand-ins for Unity's types"
@@ -204,12 +204,16 @@ else
     echo "skipped: Windows, where Rust's library for it, mingw and Wine can be had (rustup target add x86_64-pc-windows-gnu)"
 fi
 
-# As far as other systems can be reached without their linkers: the static libraries of the recipes in release/.
+# As far as other systems can be reached without their linkers: the static libraries of the recipes in release/, unoptimised, because nothing
+# here can run them.
 if [ "${TARGETS:-}" = 1 ]; then
     for system in x86_64-apple-darwin aarch64-apple-darwin aarch64-apple-ios aarch64-linux-android x86_64-pc-windows-msvc; do
         if has_target "$system"; then
-            (cd "$root" && cargo rustc --release -q -p asperity-c --crate-type staticlib --target "$system" --target-dir "$target/targets")
-            ls "$target/targets/$system/release/"*asperity_c.{a,lib} 2>/dev/null
+            (cd "$root" && CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_DEBUG=0 \
+                cargo rustc --release -q -p asperity-c --crate-type staticlib --target "$system" --target-dir "$target/targets")
+            # Windows calls it .lib.
+            built="$(find "$target/targets/$system/release" -maxdepth 1 -name 'libasperity_c.a' -o -maxdepth 1 -name 'asperity_c.lib')"
+            [ -s "$built" ] || fail "$system: no static library"
             ok "$system: a static library is built; nothing of it has run"
         else
             echo "skipped: no standard library of $system"

@@ -1,15 +1,11 @@
 //! Any bytes as a scene file: read or refused, never a panic.
 #![no_main]
-#![allow(dead_code)]
 
-#[path = "../../cli/src/error.rs"]
-mod error;
-#[path = "../../cli/src/scene_file/mod.rs"]
-mod scene_file;
+use asperity::files::scene_file::SceneFile;
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| {
     let Ok(text) = std::str::from_utf8(data) else { return };
-    if let Err(refused) = scene_file::SceneFile::parse(text, std::path::Path::new("fuzz/scene.toml")) {
+    if let Err(refused) = SceneFile::parse(text, std::path::Path::new("fuzz/scene.toml")) {
         assert!(!refused.to_string().contains('\n'), "an error is one line");
     }
 });

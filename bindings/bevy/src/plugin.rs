@@ -22,7 +22,7 @@ pub enum TouchSystems {
 /// Touch as sound and vibration.
 ///
 /// When the settings or the device are refused, the app goes on in silence: without the resource [`Touch`] nothing is touched, and the
-/// reason is logged as an error.
+/// reason is logged as an error and comes as a [`TouchError`].
 #[derive(Debug, Clone)]
 pub struct AsperityPlugin {
     /// How the engine is built; a device's rate wins over its own. By default live, 48 kHz, one bus at a gain of 0.1 and one
@@ -57,7 +57,7 @@ impl Plugin for AsperityPlugin {
                 app.insert_resource(Touch::new(scene, Names::default()));
                 self.start(app, renderer);
             }
-            Err(why) => log::error!("asperity plays nothing: {why}"),
+            Err(why) => silent(app, why),
         }
         app.add_observer(in_step::body_came)
             .add_observer(in_step::body_went)
@@ -92,14 +92,24 @@ impl AsperityPlugin {
             #[cfg(feature = "device")]
             Output::Device(options) => match asperity::live::device::play_on(renderer, options) {
                 Ok(player) => {
+                    if let Some(why) = player.silent_because() {
+                        silent(app, why);
+                    }
                     app.insert_resource(Playing(std::sync::Mutex::new(player)));
                 }
-                Err(why) => log::error!("asperity plays nothing: {why}"),
+                Err(why) => silent(app, why),
             },
             #[cfg(feature = "seedling")]
             Output::Seedling => crate::seedling::start(app, renderer),
         }
     }
+}
+
+/// Says that nobody will hear anything: as a line of the log, and to systems that read refusals in the app's first frame.
+fn silent(app: &mut App, why: impl std::fmt::Display) {
+    let text = format!("asperity plays nothing: {why}");
+    log::error!("{text}");
+    app.world_mut().write_message(TouchError { entity: None, text });
 }
 
 /// The running device; dropped with the app.

@@ -1,6 +1,5 @@
 //! `AsperityWorld`: the engine of a scene tree.
 
-use crate::body::AsperityBody;
 use crate::events::{self, Rolling};
 use crate::haptic_stream::AsperityHapticStream;
 use crate::res_files::ResFiles;
@@ -9,14 +8,14 @@ use crate::surface::AsperitySurface;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;
 use asperity::live::ports::{Feed, Pcm, PcmPort};
-use asperity::open::{Overrides, ReadSurface};
+use asperity::open::Overrides;
 use asperity::texture::sand::{SandThread, SandWorker};
-use asperity::{
-    ActuatorSettings, AudioBus, BodyId, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId,
-};
+use asperity::{ActuatorSettings, AudioBus, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId};
 use godot::classes::{AudioServer, AudioStreamPlayer, INode, SceneTree};
 use godot::prelude::*;
 use std::path::Path;
+
+mod members;
 
 /// The group by which bodies and fingers find their world.
 const GROUP: &str = "asperity_world";
@@ -203,6 +202,10 @@ impl AsperityWorld {
     /// physics tick; the time is the tick's. What rolls tells with every report how fast it slips where it touches, m/s (0: it only rolls), and
     /// its radius, m; left out, it is a stroke. False, and an error, where it is refused.
     #[func]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "a script calls it, and scripts have no structs to name things in"
+    )]
     pub(crate) fn report_begin(
         &mut self,
         contact: i64,
@@ -360,22 +363,6 @@ impl AsperityWorld {
         self.builds
     }
 
-    /// Bodies of the tree that were here before the engine was.
-    fn take_in_bodies(&mut self) {
-        if !self.base().is_inside_tree() {
-            return;
-        }
-        let me = self.base().instance_id();
-        for node in self.base().get_tree().get_nodes_in_group(BODIES).iter_shared() {
-            if let Ok(mut body) = node.try_cast::<AsperityBody>()
-                && body.is_node_ready()
-                && body.bind().waits_for(me)
-            {
-                body.bind_mut().join_in(self, me);
-            }
-        }
-    }
-
     /// Lets its buses sound and vibrate.
     fn play_all(&mut self) {
         if self.running.is_none() {
@@ -398,51 +385,6 @@ impl AsperityWorld {
         self.base_mut().add_child(&player);
         player.play();
         self.players.push(player);
-    }
-
-    /// Puts a body into the scene; 0 where it is refused.
-    pub(crate) fn join_body(&mut self, body: &AsperityBody, name: &str) -> i64 {
-        let told = body.told(name);
-        let Some((table, files, bus, gain)) = self.said("AsperityBody", told) else { return 0 };
-        let id = self.tried("AsperityBody", |running| {
-            let overrides = Overrides { files: &files, live: true, ..Overrides::default() };
-            let read = running.scene.read_body(&table, Path::new(""), &overrides);
-            let body = read.map_err(|error| error.to_string())?.on_bus(bus).gain(gain);
-            let id = running.scene.add_body(body).map_err(|error| error.to_string())?;
-            running.names.bodies.insert(name.into(), id);
-            Ok(id.to_bits() as i64)
-        });
-        id.unwrap_or(0)
-    }
-
-    /// Puts a surface into the scene; 0 where it is refused.
-    pub(crate) fn join_surface(&mut self, surface: &Gd<AsperitySurface>, body: i64, name: &str) -> i64 {
-        let told = surface.bind().told(name);
-        let Some((table, files)) = self.said("AsperitySurface", told) else { return 0 };
-        let id = self.tried("AsperitySurface", |running| {
-            let overrides = Overrides { files: &files, live: true, ..Overrides::default() };
-            let on = Some(body).filter(|id| *id != 0).map(|id| BodyId::from_bits(id as u64));
-            let read = running.scene.read_surface(&table, Path::new(""), on, &running.names, &overrides);
-            let ReadSurface { surface, workers, .. } = read.map_err(|error| error.to_string())?;
-            let id = running.scene.add_surface(surface).map_err(|error| error.to_string())?;
-            running.sand.extend(workers.into_iter().map(SandWorker::spawn));
-            if !name.is_empty() {
-                running.names.surfaces.insert(name.into(), id);
-            }
-            Ok(id.to_bits() as i64)
-        });
-        id.unwrap_or(0)
-    }
-
-    /// Takes a body and its surface away. Nothing is said of what is gone already.
-    pub(crate) fn leave(&mut self, body: i64, surface: i64) {
-        let Some(running) = &mut self.running else { return };
-        let (body, surface) = (BodyId::from_bits(body as u64), SurfaceId::from_bits(surface as u64));
-        // The world was built anew since, or never knew them: nothing is left to be taken away.
-        let _ = running.scene.remove_surface(surface);
-        let _ = running.scene.remove_body(body);
-        running.names.surfaces.retain(|_, known| *known != surface);
-        running.names.bodies.retain(|_, known| *known != body);
     }
 
     fn report(&mut self, what: &str, event: impl FnOnce() -> Result<ContactEvent, String>) -> bool {

@@ -1,5 +1,5 @@
 // asperity for C#: plain P/Invoke, no engine's types, C# 7. The native library is called "asperity" (libasperity.so, asperity.dll,
-// libasperity.dylib); in Unity it is "audioplugin_asperity", by the symbol ASPERITY_UNITY.
+// libasperity.dylib); in Unity it is "audioplugin_asperity", by a symbol that every Unity defines.
 //
 // Every refusal is an AsperityException with the engine's sentence. A Scene belongs to one thread at a time; Renderer.Render is for the audio
 // thread: it neither throws nor allocates.
@@ -171,9 +171,9 @@ namespace Asperity
 
     public static class Native
     {
-#if ASPERITY_UNITY && (UNITY_IOS || UNITY_TVOS) && !UNITY_EDITOR
+#if (UNITY_IOS || UNITY_TVOS) && !UNITY_EDITOR
         public const string Library = "__Internal";
-#elif ASPERITY_UNITY
+#elif UNITY_5_3_OR_NEWER
         public const string Library = "audioplugin_asperity";
 #else
         public const string Library = "asperity";
@@ -294,7 +294,7 @@ namespace Asperity
         static readonly ReadFile Answer = Read;
         Exception thrown;
 
-#if ASPERITY_UNITY
+#if UNITY_5_3_OR_NEWER
         [AOT.MonoPInvokeCallback(typeof(ReadFile))]
 #endif
         static int Read(IntPtr user, IntPtr path, IntPtr sink)

@@ -8,8 +8,8 @@
 mod ring;
 
 use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, design_group};
-use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::mode::Mode;
+use asperity_dsp::simd::{Isa, Level};
 use fundsp::biquad::BiquadCoefs;
 use fundsp::biquad_bank::BiquadBank;
 use fundsp::prelude32::*;
