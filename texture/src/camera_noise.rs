@@ -37,8 +37,8 @@ const FEWEST_WAVES: f64 = 40.0;
 /// 1.0–1.5; gravel, the most level of real grounds looked at, 1.85.
 const LEVEL: f64 = 1.45;
 const NOT_LEVEL: f64 = 1.7;
-/// How much more than the mean of a level floor is taken for noise: JPEG leaves it uneven by a tenth.
-const MARGIN: f64 = 1.15;
+/// How much more than the mean of level octaves is taken off: a mosaic and JPEG leave them uneven by a fifth.
+const MARGIN: f64 = 1.3;
 /// Euler's and Mascheroni's.
 const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 /// Standard errors that a ring's noise may be above its mean.
@@ -61,12 +61,13 @@ pub fn without_camera_noise(picture: &Raster) -> Quiet {
     drop(split.periodic);
     let rings = Rings::of(&waves, picture);
     let texels = picture.values.len() as f64;
-    let noise = floor(&waves, texels).clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE);
+    let [noise, taken] =
+        floor(&waves, texels).map(|power| power.clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE));
     let gains: Vec<f64> = rings
         .power
         .iter()
         .map(|&(power, count)| {
-            let least = noise * (1.0 + DOUBT / count.max(1.0).sqrt());
+            let least = taken * (1.0 + DOUBT / count.max(1.0).sqrt());
             if power > least { (1.0 - least / power).sqrt() } else { 0.0 }
         })
         .collect();
@@ -104,8 +105,8 @@ impl Rings {
     }
 }
 
-/// Power of the noise: of the corner, of the plateau or of level octaves, whichever is most.
-fn floor(waves: &Waves, texels: f64) -> f64 {
+/// Power of the noise, of the corner, of the plateau or of level octaves, whichever is most; and what is to be taken off.
+fn floor(waves: &Waves, texels: f64) -> [f64; 2] {
     let mut corner = Mean::default();
     let mut octaves: [Mean; OCTAVES] = Default::default();
     waves.each(|wave| {
@@ -120,7 +121,8 @@ fn floor(waves: &Waves, texels: f64) -> f64 {
         }
     });
     let level = octaves[1..].windows(3).map(of_level_octaves).fold(0.0, f64::max);
-    corner.get().max(plateau(&octaves)).max(level)
+    let noise = corner.get().max(plateau(&octaves));
+    [noise.max(level), noise.max(MARGIN * level)]
 }
 
 /// All of 4–8 texels where 8–16 have no more, nothing where they have twice the power.
@@ -129,7 +131,7 @@ fn plateau(octaves: &[Mean]) -> f64 {
     if fine > 0.0 { (2.0 - coarse / fine).clamp(0.0, 1.0) * fine } else { 0.0 }
 }
 
-/// The most power of three octaves if they are level, nothing of it if they are not.
+/// The power of three octaves if they are level, nothing of it if they are not.
 fn of_level_octaves(octaves: &[Mean]) -> f64 {
     let powers = || octaves.iter().map(Mean::of_noise);
     let (least, most) = (powers().fold(f64::INFINITY, f64::min), powers().fold(0.0, f64::max));
@@ -138,7 +140,9 @@ fn of_level_octaves(octaves: &[Mean]) -> f64 {
         return 0.0;
     }
     let doubt = (most / least - LEVEL) / (NOT_LEVEL - LEVEL);
-    (1.0 - doubt).clamp(0.0, 1.0) * MARGIN * most
+    let count: f64 = octaves.iter().map(|octave| octave.count).sum();
+    let mean = octaves.iter().map(|octave| octave.of_noise() * octave.count).sum::<f64>() / count;
+    (1.0 - doubt).clamp(0.0, 1.0) * mean
 }
 
 #[derive(Default)]
