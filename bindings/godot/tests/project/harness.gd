@@ -107,8 +107,8 @@ func felt_on(surface: AsperitySurface) -> float:
 	return rms(frames, 0)
 
 
-# A ridged table of 30 cm that a finger finds and the world rings; the ground of tests.
-func table() -> StaticBody3D:
+# A table of 30 cm that a finger finds and the world rings, ridged where no material is given; the ground of tests.
+func table(material: StandardMaterial3D = null) -> StaticBody3D:
 	var drawn := MeshInstance3D.new()
 	drawn.mesh = PlaneMesh.new()
 	drawn.mesh.size = Vector2(0.3, 0.3)
@@ -118,7 +118,7 @@ func table() -> StaticBody3D:
 	shape.position.y = -0.01
 	var body := AsperityBody.new()
 	body.name = "Table"
-	body.surface = AsperitySurface.from_material(ridged(0.1), 0.3, 0.3)
+	body.surface = AsperitySurface.from_material(material if material else ridged(0.1), 0.3, 0.3)
 	var collider := StaticBody3D.new()
 	for child in [drawn, shape, body]:
 		collider.add_child(child)

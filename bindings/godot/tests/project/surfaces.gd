@@ -140,22 +140,9 @@ func what_a_material_repeats_is_felt_repeated() -> void:
 		var material := ridged(0.02)
 		material.uv1_scale = Vector3(repeats, repeats, 1)
 		material.uv1_offset = Vector3(0.25, 0, 0)
-		var drawn := MeshInstance3D.new()
-		drawn.mesh = PlaneMesh.new()
-		drawn.mesh.size = Vector2(0.3, 0.3)
-		var shape := CollisionShape3D.new()
-		shape.shape = BoxShape3D.new()
-		shape.shape.size = Vector3(0.3, 0.02, 0.3)
-		shape.position.y = -0.01
-		var body := AsperityBody.new()
-		body.surface = AsperitySurface.from_material(material, 0.3, 0.3)
-		var collider := StaticBody3D.new()
-		for child in [drawn, shape, body]:
-			collider.add_child(child)
-		root.add_child(collider)
-		var finger := AsperityFinger3D.new()
-		finger.position = Vector3(-0.12, 0.05, 0)
-		root.add_child(finger)
+		var collider := table(material)
+		var finger := finger_above()
+		finger.position.x = -0.12
 		world.record_start()
 		for tick in 60:
 			finger.position.x = -0.12 + 0.004 * tick
