@@ -199,6 +199,8 @@ parameters! {
     mod actuator = "actuator" {
         FULL_SCALE: "full_scale", "m (or m/s²)", limits::output::FULL_SCALE,
             "What sample value 1.0 stands for; missing: by the level policy", changes(Opened);
+        FELT_FORCE_EXPONENT: "felt_force_exponent", "", limits::output::FELT_FORCE_EXPONENT,
+            "n of a finger's displacement ∝ Fⁿ; missing: 1/3 where full_scale is missing, otherwise 0, the pad's own motion", changes(Opened);
         LOWPASS_HZ: "lowpass_hz", "Hz", limits::output::LOWPASS_HZ,
             "Low-pass to what skin feels; missing: 1000 Hz for acceleration, off for displacement", changes(Opened);
         HIGHPASS_HZ: "highpass_hz", "Hz", limits::output::HIGHPASS_HZ,

@@ -180,6 +180,8 @@ pub mod output {
     pub const HAPTIC_GAIN: Range = Range::new(0.0, 10.0, "0 to 10");
     /// Metres, or m/s², at sample value 1.
     pub const FULL_SCALE: Range = Range::new(1e-12, 1e12, "1e-12 to 1e12 m (or m/s²)");
+    /// n of a finger's displacement ∝ Fⁿ; 0 is the pad's own motion.
+    pub const FELT_FORCE_EXPONENT: Range = Range::new(0.0, 1.0, "0 to 1, 0 = the pad's own motion");
     /// Cutoff of an actuator's low-pass; 0 is off.
     pub const LOWPASS_HZ: Range = Range::new(0.0, 2e4, "0 to 20000 Hz, 0 = off");
     /// High-pass about the mean surface; at low sample rates, below 0.49 of the rate as well.

@@ -348,7 +348,7 @@ impl Voice {
             self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
         }
         if !dragged {
-            self.skin.pass(&mut out.haptic[..n]);
+            self.skin.pass(position, shared.slow_step, &mut out.haptic[..n]);
         }
         let (reaction, sample_rate_hz) = (self.reaction, shared.sample_rate_hz);
         let slow_step = shared.slow_step;

@@ -7,7 +7,7 @@ use crate::files::actuator_profile::ActuatorPreset;
 use crate::files::contact_log::{LogSurface, Names};
 use crate::files::scene_file::{ActuatorEntry, AudioEntry, BodyEntry, RoughnessEntry, Source, SurfaceEntry};
 use crate::files::{FileError, Files};
-use crate::model::actuator::{ActuatorSettings, DeviceProfile};
+use crate::model::actuator::{ActuatorSettings, DeviceProfile, FELT_FORCE_EXPONENT, Quantity};
 use crate::model::body::Body;
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
@@ -140,11 +140,18 @@ pub(crate) fn actuator(
     let folder = scene.parent().unwrap_or(Path::new(""));
     Ok(ActuatorSettings {
         full_scale,
+        felt_force_exponent: felt_force_exponent(entry),
         limit_peaks: entry.limit_peaks.unwrap_or(entry.full_scale.is_none() && entry.limit.is_none()),
         equalise: device(files, "equalise", entry.equalise.as_deref(), folder)?,
         limit: device(files, "limit", entry.limit.as_deref(), folder)?,
         ..entry.settings
     })
+}
+
+/// How a finger's displacement grows with what presses: metres that a scene writes are the pad's own.
+pub(crate) fn felt_force_exponent(entry: &ActuatorEntry) -> f64 {
+    let by_policy = entry.full_scale.is_none() && entry.settings.output == Quantity::Displacement;
+    entry.felt_force_exponent.unwrap_or(if by_policy { FELT_FORCE_EXPONENT } else { 0.0 })
 }
 
 /// A shipped profile by name, or a profile's file, relative to the scene's.

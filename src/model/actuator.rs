@@ -6,6 +6,14 @@ pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
 /// plate would spend 26 dB of head room there.
 pub const ACCELERATION_BAND_HZ: f64 = 1000.0;
 
+/// How the displacement of a finger is felt to grow with what presses where the level policy sets the channel: ∝ F^⅓.
+///
+/// The pad of a finger that is pressed harder follows the same ground, so its displacement stays as it is; what is felt grows
+/// (Lederman 1974: roughness of gratings grows with the force of the finger). The virtual finger touches with more skin, A ∝ F^⅔
+/// (Hertz), and vibration is felt by the sum over the skin it reaches: above 40 Hz thresholds fall by 3 dB as the area doubles (Verrillo 1963; less
+/// at the fingertip: Gescheider and others 2005). An actuator always reaches the same skin, so its amplitude has to make up for √A.
+pub const FELT_FORCE_EXPONENT: f64 = 1.0 / 3.0;
+
 /// One haptic channel.
 ///
 /// ```
@@ -24,6 +32,8 @@ pub struct ActuatorSettings {
     pub output: Quantity,
     /// m (or m/s²) at sample value 1.0; 1.0 gives SI units.
     pub full_scale: f64,
+    /// n of a finger's displacement ∝ (F / 1 N)ⁿ, 0 to 1; 0 is the pad's own motion (the paper), ⅓ [`FELT_FORCE_EXPONENT`].
+    pub felt_force_exponent: f64,
     /// Cutoff of the high-pass that turns pad positions into movement about the mean surface, Hz;
     /// 0 = off.
     pub highpass_hz: f64,
@@ -45,6 +55,7 @@ impl Default for ActuatorSettings {
         Self {
             output: Quantity::Displacement,
             full_scale: 1e-4,
+            felt_force_exponent: 0.0,
             highpass_hz: 10.0,
             lowpass_hz: None,
             soft_start_s: 0.0,

@@ -161,6 +161,7 @@ impl Config {
         self.probe.check()?;
         for actuator in &self.actuators {
             limits::FULL_SCALE.check("full_scale", actuator.full_scale)?;
+            limits::FELT_FORCE_EXPONENT.check("felt_force_exponent", actuator.felt_force_exponent)?;
             limits::HIGHPASS_HZ.check("highpass_hz", actuator.highpass_hz)?;
         }
         for bus in &self.audio {

@@ -5,6 +5,8 @@
 pub struct Levels {
     /// m or m/s² at sample value 1.0 of each actuator.
     pub full_scale: Vec<f64>,
+    /// n of a finger's displacement ∝ (F / 1 N)ⁿ of each actuator.
+    pub felt_force_exponent: Vec<f64>,
     /// Linear gain of each bus.
     pub gain: Vec<f64>,
     /// Linear gain of impacts beside strokes, of each body.

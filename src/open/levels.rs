@@ -28,6 +28,7 @@ use crate::engine::Engine;
 use crate::files::FileError;
 use crate::files::contact_log::{ContactLog, LogEdit, LogEvent, LogHand, LogLine, Striker};
 use crate::files::scene_file::{SceneFile, Source};
+use crate::made::maker::felt_force_exponent;
 use crate::model::actuator::Quantity;
 use crate::model::event::ContactSample;
 pub use crate::model::levels::Levels;
@@ -70,6 +71,7 @@ impl Levels {
     fn written(file: &SceneFile) -> Self {
         Self {
             full_scale: file.actuators.iter().map(|entry| entry.full_scale.unwrap_or(f64::NAN)).collect(),
+            felt_force_exponent: file.actuators.iter().map(felt_force_exponent).collect(),
             gain: file.audio.iter().map(|entry| entry.gain.unwrap_or(f64::NAN)).collect(),
             strike_gain: file.bodies.iter().map(|entry| entry.strike_gain.unwrap_or(1.0)).collect(),
         }

@@ -38,6 +38,8 @@ pub struct Report {
     pub orphaned: u64,
     /// m or m/s² at sample value 1 of each haptic channel, written or by the level policy.
     pub full_scale: Vec<f64>,
+    /// n of a finger's displacement ∝ Fⁿ of each haptic channel, written or by the level policy.
+    pub felt_force_exponent: Vec<f64>,
     /// Gain of the audio, written or by the level policy; a list where there are several buses.
     pub gain: Value,
     /// Gain of impacts beside strokes of each body, written or by the level policy.
@@ -97,6 +99,7 @@ pub(super) fn report(render: &Render, kernel: Isa, levels: Levels, watching: Dur
         bus_peak: render.audio.iter().map(|bus| peak(bus)).collect(),
         haptic_peak: render.haptic.iter().map(|channel| peak(channel)).collect(),
         full_scale: levels.full_scale,
+        felt_force_exponent: levels.felt_force_exponent,
         gain: one_or_all(levels.gain),
         strike_gain: levels.strike_gain,
         limiter_db: render.limiter_db,

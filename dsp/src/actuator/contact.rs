@@ -27,6 +27,7 @@ pub struct ContactOutput {
     highpass: Option<Butterworth>,
     sample_rate_hz: f64,
     through_skin: bool,
+    felt_force_exponent: f64,
 }
 
 /// Memory of one contact.
@@ -51,7 +52,7 @@ impl ContactOutput {
             let named = |e: DesignError| DesignError { field: "highpass_hz", ..e };
             Some(Butterworth::new(highpass_hz, rate).map_err(named)?)
         };
-        Ok(Self { quantity, highpass, sample_rate_hz: rate, through_skin: false })
+        Ok(Self { quantity, highpass, sample_rate_hz: rate, through_skin: false, felt_force_exponent: 0.0 })
     }
 
     /// Whether an acceleration is what the skin of a finger lets through ([`super::Skin`]), and not its point's.
@@ -64,6 +65,21 @@ impl ContactOutput {
     #[must_use]
     pub const fn minds_skin(&self) -> bool {
         self.through_skin && matches!(self.quantity, Quantity::Acceleration)
+    }
+
+    /// How the displacement of a finger grows with what presses, (F / 1 N)ⁿ with n from 0 to 1; 0 is the pad's own motion.
+    ///
+    /// # Errors
+    /// When n is out of range.
+    pub fn growing_with_force(self, felt_force_exponent: f64) -> Result<Self, DesignError> {
+        limits::FELT_FORCE_EXPONENT.check("felt_force_exponent", felt_force_exponent)?;
+        Ok(Self { felt_force_exponent, ..self })
+    }
+
+    /// n of [`growing_with_force`](Self::growing_with_force) where a displacement is played, otherwise 0.
+    #[must_use]
+    pub const fn felt_force_exponent(&self) -> f64 {
+        if matches!(self.quantity, Quantity::Displacement) { self.felt_force_exponent } else { 0.0 }
     }
 
     /// The high-pass, where there is one.

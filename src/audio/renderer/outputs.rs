@@ -82,7 +82,8 @@ impl HapticChannel {
         };
         Ok(Self {
             output: ContactOutput::new(settings.output, settings.highpass_hz, sample_rate_hz)?
-                .through_skin(settings.lowpass_hz.is_none()),
+                .through_skin(settings.lowpass_hz.is_none())
+                .growing_with_force(settings.felt_force_exponent)?,
             design: actuator::Channel::new(&options, sample_rate_hz)?,
             control: ChannelControl::default(),
             state: ChannelState::default(),

@@ -15,6 +15,7 @@ mod loudness;
 mod pulses;
 
 pub(super) use force::ForceRun;
+pub(super) use loudness::Loudness;
 
 use super::PadSample;
 use super::PathPoint;
@@ -27,7 +28,6 @@ use collisions::Collisions;
 use force::ContactForce;
 use friction::Rubbing;
 use grains::Grains;
-use loudness::Loudness;
 use pulses::Pulses;
 
 /// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms, against jelly 20.
@@ -122,7 +122,9 @@ impl Exciters {
         let (impulse_n_s, force_n_s) = (&mut out.impulse_n_s[..rows.len()], &mut out.force_n_s[..rows.len()]);
         self.pulses.take(by.position, impulse_n_s, force_n_s);
         self.force.add(force, impulse_n_s, force_n_s);
-        self.loudness.weigh(by.position, by.slow_step, impulse_n_s, force_n_s);
+        for sent in [impulse_n_s, force_n_s] {
+            self.loudness.weigh(by.position, by.slow_step, sent);
+        }
         (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
     }
 

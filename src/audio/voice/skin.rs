@@ -1,6 +1,11 @@
-//! Skin between the point that slides and what a fingertip is shaken by: for acceleration channels.
+//! Skin between the point that slides and what a fingertip feels.
+//!
+//! An acceleration goes through ridge and tissue (`dsp::actuator::Skin`). A displacement stays the pad's; where the channel asks for it, it
+//! grows with the area of contact, ∝ (F / 1 N)ⁿ (`model::actuator::FELT_FORCE_EXPONENT`). A tool has no skin, and neither happens.
 
+use super::exciters::Loudness;
 use crate::prepared::probe::PreparedProbe;
+use crate::prepared::stiffness::within;
 use asperity_dsp::actuator::{ContactOutput, Skin, SkinState};
 use asperity_dsp::trajectory::PathPoint;
 
@@ -11,6 +16,8 @@ const STILL_M_S2: f64 = 1e-6;
 #[derive(Default)]
 pub(super) struct ContactSkin {
     now: Option<(Skin, SkinState)>,
+    /// How much more of it touches than at 1 N.
+    growth: Option<Loudness>,
     last_m_s2: f64,
 }
 
@@ -23,7 +30,13 @@ impl ContactSkin {
         at: &PathPoint,
         sample_rate_hz: f64,
     ) {
-        let ridge_m = probe.ridge_m();
+        let (ridge_m, exponent) = (probe.ridge_m(), output.felt_force_exponent());
+        if ridge_m > 0.0 && exponent > 0.0 {
+            let grown = libm::pow(within(at.normal_force_n), exponent);
+            self.growth.get_or_insert_with(|| Loudness::of(grown)).set_out(grown);
+        } else {
+            self.growth = None;
+        }
         if ridge_m == 0.0 || !output.minds_skin() {
             self.now = None;
             return;
@@ -34,8 +47,11 @@ impl ContactSkin {
         self.now = Some((skin, state));
     }
 
-    /// What it lets through.
-    pub(super) fn pass(&mut self, felt: &mut [f64]) {
+    /// What it lets through, from a sample of the absolute grid on, `slow_step` of which lie between two calls of [`soften`](Self::soften).
+    pub(super) fn pass(&mut self, position: u64, slow_step: u64, felt: &mut [f64]) {
+        if let Some(growth) = &self.growth {
+            growth.weigh(position, slow_step, felt);
+        }
         let Some((skin, state)) = &mut self.now else { return };
         felt.iter_mut().for_each(|felt| *felt = state.tick(skin, *felt));
         self.last_m_s2 = felt.last().copied().unwrap_or(self.last_m_s2);

@@ -66,10 +66,13 @@ pub struct SceneFile {
 /// One haptic channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ActuatorEntry {
-    /// All that needs no other file and no level of the scene: its `full_scale` and `limit_peaks` do not count.
+    /// All that needs no other file and no level of the scene: its `full_scale`, `felt_force_exponent` and `limit_peaks` do not count.
     pub settings: ActuatorSettings,
     /// Metres or m/s² at sample value 1; none = by the level policy.
     pub full_scale: Option<f64>,
+    /// n of a finger's displacement ∝ Fⁿ; none = [`FELT_FORCE_EXPONENT`](crate::model::actuator::FELT_FORCE_EXPONENT) where the level is by
+    /// policy, otherwise 0.
+    pub felt_force_exponent: Option<f64>,
     /// Keeps the channel within ±1, whatever the device; none = where the level is by policy.
     pub limit_peaks: Option<bool>,
     /// Name or file of the device whose response is inverted; none = no equaliser.
@@ -303,11 +306,12 @@ fn read_actuator(mut fields: Fields) -> Result<ActuatorEntry, FileError> {
         }
     };
     let full_scale = fields.number(&parameters::actuator::FULL_SCALE)?;
+    let felt_force_exponent = fields.number(&parameters::actuator::FELT_FORCE_EXPONENT)?;
     let lowpass_hz = fields.number(&parameters::actuator::LOWPASS_HZ)?;
     let highpass_hz = fields.number_or(&parameters::actuator::HIGHPASS_HZ, default.highpass_hz)?;
     fields.finish()?;
     let settings = ActuatorSettings { output, lowpass_hz, highpass_hz, ..default };
-    Ok(ActuatorEntry { settings, full_scale, limit_peaks, equalise, limit })
+    Ok(ActuatorEntry { settings, full_scale, felt_force_exponent, limit_peaks, equalise, limit })
 }
 
 /// `[audio]`, one bus for all, or `[[audio]]`, one table a bus.

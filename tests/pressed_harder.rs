@@ -1,0 +1,147 @@
+//! What is pressed harder is felt more, in displacement as in acceleration, where nobody wrote a level; metres that a scene writes are the pad's own.
+
+mod common;
+
+use asperity::Engine;
+use asperity::files::Memory;
+use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
+use asperity::files::scene_file::SceneFile;
+use asperity::offline::{self, Options, Render};
+use asperity::open::Overrides;
+use asperity_measure::corpus::corpus;
+use common::rms;
+use std::path::Path;
+
+const FORCES_N: [f64; 5] = [0.3, 0.6, 1.0, 2.0, 5.0];
+const STROKE_S: f64 = 0.6;
+
+/// A slanting stroke of 0.1 m/s under a force that may change on its way.
+fn stroke(normal_force_n: impl Fn(f64) -> f64) -> ContactLog {
+    let (u, v) = (0.08, 0.06);
+    let sample = |t: f64| ContactSample {
+        uv: [0.05 + u * t / 0.14, 0.1 + v * t / 0.14],
+        velocity_m_s: Some([u, v]),
+        normal_force_n: normal_force_n(t),
+        ..ContactSample::default()
+    };
+    let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "s", 0, sample(0.0)) }];
+    lines.extend((1..36).map(|step| {
+        let t = f64::from(step) / 60.0;
+        LogLine { t, event: LogEvent::moved(1, sample(t)) }
+    }));
+    lines.push(LogLine { t: STROKE_S, event: LogEvent::End { contact: 1 } });
+    ContactLog { lines }
+}
+
+fn scene(probe: &str, ground: &str, actuator: &str) -> String {
+    format!(
+        "[[body]]\nname = \"b\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"ceramic\"\n\
+         [[surface]]\nname = \"s\"\nbody = \"b\"\n{ground}\nwidth_m = 0.14\nheight_m = 0.14\n\
+         [probe]\npreset = \"{probe}\"\n[[actuator]]\n{actuator}\n"
+    )
+}
+
+fn open(toml: &str, files: &Memory) -> Engine {
+    let file = SceneFile::parse(toml, Path::new("scene.toml")).unwrap();
+    Engine::from_scene(&file, &Overrides { files, ..Overrides::default() }).unwrap()
+}
+
+fn rendered(toml: &str, files: &Memory, log: &ContactLog, block: usize) -> Render {
+    let Engine { scene, renderer, names, .. } = open(toml, files);
+    let options = Options { tail_s: 0.0, block_frames: block, ..Options::default() };
+    offline::render(scene, renderer, log, &names, &options).unwrap()
+}
+
+fn grounds(files: &mut Memory) -> Vec<(String, String)> {
+    let mut grounds: Vec<(String, String)> =
+        [0.2, 0.5, 0.9].iter().map(|r| (format!("R {r}"), format!("roughness = {r}"))).collect();
+    grounds.push(("granite".to_owned(), "solid = \"granite\"".to_owned()));
+    for name in ["Rock003_1K-PNG_Displacement.png", "Fabric061_1K-PNG_Displacement.png"] {
+        if let Some(file) = corpus(&format!("textures/{name}")) {
+            files.add(name, std::fs::read(file).unwrap());
+            grounds.push((name[..7].to_owned(), format!("displacement = \"{name}\"\nrelief_m = 2e-4")));
+        }
+    }
+    grounds
+}
+
+/// n of y ∝ Fⁿ, by least squares.
+fn exponent(levels: &[f64]) -> f64 {
+    let mean = |x: &[f64]| x.iter().map(|x| x.ln()).sum::<f64>() / x.len() as f64;
+    let (force, level) = (mean(&FORCES_N), mean(levels));
+    let (mut both, mut forces) = (0.0, 0.0);
+    for (f, y) in FORCES_N.iter().zip(levels) {
+        both += (f.ln() - force) * (y.ln() - level);
+        forces += (f.ln() - force).powi(2);
+    }
+    both / forces
+}
+
+#[test]
+fn a_finger_that_is_pressed_harder_is_felt_more_step_by_step_on_every_ground() {
+    let mut files = Memory::new();
+    for (name, ground) in grounds(&mut files) {
+        let growth = |output: &str| {
+            let toml = scene("fingertip", &ground, &format!("output = \"{output}\"\nlimit = false"));
+            let levels = FORCES_N.map(|force_n| {
+                let render = rendered(&toml, &files, &stroke(|_| force_n), 512);
+                rms(&render.haptic[0][8820..])
+            });
+            println!("{name:>8} {output:>12}: F^{:.2}, {levels:.3?}", exponent(&levels));
+            (exponent(&levels), levels)
+        };
+        let (n, levels) = growth("displacement");
+        assert!(levels.windows(2).all(|pair| pair[1] > pair[0]), "{name}: {levels:?}");
+        assert!((0.3..=0.4).contains(&n), "{name}: F^{n}");
+        // An accelerometer on a finger, whose tissue stiffens: a clean line near its resonance grows least.
+        let (n, _) = growth("acceleration");
+        assert!((0.0..=0.3).contains(&n), "{name}, acceleration: F^{n}");
+    }
+}
+
+#[test]
+fn metres_that_a_scene_writes_are_the_pad_s_own_and_one_newton_is_the_same_either_way() {
+    let files = Memory::new();
+    let ground = "roughness = 0.7";
+    let full_scale = open(&scene("fingertip", ground, ""), &files).levels.full_scale[0];
+    let written = |more: &str| scene("fingertip", ground, &format!("full_scale = {full_scale:e}\n{more}"));
+    let haptic =
+        |toml: &str, force_n: f64| rendered(toml, &files, &stroke(|_| force_n), 512).haptic[0].clone();
+    let by_policy = |force_n| haptic(&scene("fingertip", ground, "limit = false"), force_n);
+    assert!(by_policy(1.0) == haptic(&written(""), 1.0), "one newton differs");
+    assert!(haptic(&written(""), 2.0) == haptic(&written("felt_force_exponent = 0"), 2.0));
+    let growing = haptic(&written("felt_force_exponent = 0.3333333333333333"), 8.0);
+    assert!(by_policy(8.0) == growing, "the key and the policy differ");
+    let twice = haptic(&written(""), 8.0)
+        .iter()
+        .zip(&growing)
+        .all(|(own, grown)| (2.0 * own - grown).abs() <= 1e-6 * own.abs());
+    assert!(twice, "eight newtons are not felt twice as strongly");
+    let tool = |more: &str| haptic(&scene("stylus", ground, &format!("full_scale = 1e-4\n{more}")), 4.0);
+    assert!(tool("") == tool("felt_force_exponent = 0.5"), "a tool has no skin");
+}
+
+#[test]
+fn a_force_that_changes_is_felt_to_the_same_bits_in_any_blocks_and_without_a_step() {
+    let files = Memory::new();
+    let toml = scene("fingertip", "roughness = 0.5", "limit = false");
+    let swelling = stroke(|t| 0.2 + 8.0 * t * t);
+    let whole = rendered(&toml, &files, &swelling, 4096).haptic[0].clone();
+    for block in [1, 64, 333] {
+        assert!(rendered(&toml, &files, &swelling, block).haptic[0] == whole, "blocks of {block} show");
+    }
+    // The same stroke through the pad's own motion: their ratio is the growth, and it bends nowhere by more than a report can make it.
+    let own = rendered(&toml.replace("limit", "felt_force_exponent = 0\nlimit"), &files, &swelling, 512)
+        .haptic[0]
+        .clone();
+    let growth: Vec<f64> = own
+        .iter()
+        .zip(&whole)
+        .filter(|(own, _)| own.abs() > 1e-4)
+        .map(|(own, grown)| f64::from(*grown / *own))
+        .collect();
+    let steepest = growth.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    println!("from {:.3} to {:.3}, at most {steepest:.1e} a sample", growth[0], growth[growth.len() - 1]);
+    assert!(growth.len() > 5000 && steepest < 2e-3, "{} samples, a step of {steepest}", growth.len());
+    assert!(growth[growth.len() - 1] > 1.9 * growth[0]);
+}
