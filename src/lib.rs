@@ -99,7 +99,7 @@ pub use game::scene::Scene;
 pub use game::silence::SilentBecause;
 pub use link::stats::Stats;
 pub use link::tap::{ContactBlock, NoTap, Tap};
-pub use model::actuator::{ActuatorSettings, DeviceProfile, Quantity};
+pub use model::actuator::{ActuatorSettings, DeviceProfile, FELT_FORCE_EXPONENT, Quantity};
 pub use model::bad_value::BadValue;
 pub use model::body::Body;
 pub use model::bus::{AudioBus, BusLevels, MAX_BUSES};
