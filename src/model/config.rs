@@ -165,6 +165,9 @@ impl Config {
         }
         for bus in &self.audio {
             limits::AUDIO_GAIN.check("audio.gain", bus.gain)?;
+            if let Some(pascals) = bus.pascals_at_full_scale {
+                limits::PASCALS.check("audio.pascals_at_full_scale", pascals)?;
+            }
         }
         if let Some(culling) = self.culling {
             // Without end is allowed: nothing is too quiet.

@@ -106,6 +106,7 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
                 .map(|(take, reference)| reference.errors(take, integrator))
                 .collect();
             let [displacement, contact_force, output] = rms(&errors);
+            let (displacement, contact_force) = (Some(displacement), Some(contact_force));
             cases.push(CaseError { name: case.name, displacement, contact_force, output });
             let all = after_the_lead_in(takes[0].height_m.len(), SAMPLE_RATE_HZ);
             profiles.push((case.force_n, takes[0].height_m[all].to_vec()));

@@ -183,6 +183,54 @@ pub fn strokes_table(strokes: &[Stroke]) -> String {
     text
 }
 
+/// An error in dB.
+fn decibels(error: f64) -> String {
+    if error > 0.0 { format!("{:.1}", 20.0 * error.log10()) } else { "exact".to_owned() }
+}
+
+/// The choices of an axis; where they have them, how late they are, what the ear misses, and the worst of each named case, dB.
+fn axis_table(members: &[&Row]) -> String {
+    let late = members.iter().any(|row| row.latency_ms.is_some());
+    let heard = members.iter().any(|row| row.excitation_db.is_some());
+    let names = || members.iter().flat_map(|row| &row.cases).map(|case| case.name);
+    let mut cases: Vec<&str> = Vec::new();
+    names().for_each(|name| {
+        if !cases.contains(&name) {
+            cases.push(name);
+        }
+    });
+    let mut text = "| choice | ns a sample | error | dB |".to_owned();
+    text += if late { " late, ms |" } else { "" };
+    text += if heard { " 99 % of ERB × 20 ms cells within |" } else { "" };
+    cases.iter().for_each(|case| {
+        let _ = write!(text, " {case} |");
+    });
+    text += &format!("\n|---|{}\n", "--:|".repeat(3 + usize::from(late) + usize::from(heard) + cases.len()));
+    for row in members {
+        let (choice, ns, error) = (&row.choice, row.ns_per_sample, row.error);
+        let _ = write!(text, "| {choice}{} | {ns:.2} | {error:.2e} | {} |", note(row), decibels(error));
+        if late {
+            let _ = write!(text, " {} |", row.latency_ms.map_or_else(String::new, |ms| format!("{ms:.1}")));
+        }
+        if heard {
+            let _ =
+                write!(text, " {} |", row.excitation_db.map_or_else(String::new, |db| format!("{db:.1} dB")));
+        }
+        for name in &cases {
+            let of = row.cases.iter().find(|case| case.name == *name);
+            let worst = of.map(|case| {
+                [case.displacement, case.contact_force, Some(case.output)]
+                    .into_iter()
+                    .flatten()
+                    .fold(0.0, f64::max)
+            });
+            let _ = write!(text, " {} |", worst.map_or_else(String::new, decibels));
+        }
+        text.push('\n');
+    }
+    text
+}
+
 /// One table an axis.
 #[must_use]
 pub fn markdown(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
@@ -192,22 +240,8 @@ pub fn markdown(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
     text += &presets_table(presets);
     for (axis, members) in axes(rows) {
         let reference = members.first().map_or("", |row| row.reference);
-        let _ = write!(
-            text,
-            "\n## {axis}\n\nReference: {reference}.\n\n| choice | ns a sample | error | dB |\n|---|--:|--:|--:|\n"
-        );
-        for row in members {
-            let decibels =
-                if row.error > 0.0 { format!("{:.1}", 20.0 * row.error.log10()) } else { "exact".to_owned() };
-            let _ = writeln!(
-                text,
-                "| {}{} | {:.2} | {:.2e} | {decibels} |",
-                row.choice,
-                note(row),
-                row.ns_per_sample,
-                row.error
-            );
-        }
+        let _ = write!(text, "\n## {axis}\n\nReference: {reference}.\n\n");
+        text += &axis_table(&members);
     }
     text
 }
