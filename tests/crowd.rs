@@ -137,7 +137,11 @@ fn blocks_of_any_size_and_any_number_of_threads_sound_the_same_to_the_bit() {
     assert_eq!(whole.iter().zip(&cut).position(|(a, b)| a != b), None, "the first sample that differs");
     let threads = Config { threads: 3, ..config };
     let shared_out = sound(&walkers, &threads, 0.7, true, &[735]).0;
-    assert_eq!(whole.iter().zip(&shared_out).position(|(a, b)| a != b), None, "the first sample that differs");
+    assert_eq!(
+        whole.iter().zip(&shared_out).position(|(a, b)| a != b),
+        None,
+        "the first sample that differs"
+    );
 }
 
 #[test]

@@ -62,6 +62,13 @@ fn plate() -> Option<HeightMap> {
     HeightMap::new(&waves, extent, Wrap::Repeat).ok()?.with_roughness_map(&rough).ok()
 }
 
+/// Tells a renderer that it is late until its governor is at this level.
+pub fn be_late(renderer: &mut Renderer, level: usize) {
+    // Its own work takes most of its time; then it is late once for each level.
+    (0..31).for_each(|_| renderer.report_load(0.7));
+    (0..level).for_each(|_| renderer.report_load(0.9));
+}
+
 impl Bench {
     /// Builds the scene; none only if the engine refuses what it should accept.
     pub fn new(load: Load, config: Config) -> Option<Self> {
@@ -93,6 +100,11 @@ impl Bench {
         let began = Instant::now();
         self.renderer.render(&mut [haptic], &mut [audio]);
         began.elapsed().as_secs_f64()
+    }
+
+    /// The machine is so late that its governor goes to this level.
+    pub fn be_late(&mut self, level: usize) {
+        be_late(&mut self.renderer, level);
     }
 
     /// What every finger did since the last report.

@@ -94,6 +94,15 @@ fn levels_db(samples: &[f64]) -> Vec<f64> {
     levels
 }
 
+/// Third-octave levels of a whole, 63 Hz–2 kHz: means over frames of [`FRAME_S`], dB.
+pub fn third_octaves_db(samples: &[f64]) -> Vec<f64> {
+    let (levels, bands) = (levels_db(samples), BANDS.count());
+    let frames = (levels.len() / bands).max(1) as f64;
+    let mean =
+        |band| levels.iter().skip(band).step_by(bands).map(|db| 10f64.powf(0.1 * db)).sum::<f64>() / frames;
+    (0..bands).map(|band| 10.0 * mean(band).max(1e-300).log10()).collect()
+}
+
 /// Median difference of levels, dB.
 fn median_apart_db(a: &[f64], b: &[f64]) -> f64 {
     let mut apart: Vec<f64> = levels_db(a).iter().zip(levels_db(b)).map(|(a, b)| (a - b).abs()).collect();

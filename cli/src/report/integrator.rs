@@ -14,7 +14,7 @@ use asperity::{Integrator, Preset, Probe};
 use asperity_dsp::micro_contact::{ContactSample, MicroContact};
 
 /// The reference runs this much faster.
-const OVERSAMPLING: usize = 8;
+pub const OVERSAMPLING: usize = 8;
 const REFERENCE: &str = "exact-event at 8 times the rate over the same ground, profiles of four seeds a case, which an independent \
                          Runge–Kutta integration confirms; lag taken out of what is heard";
 
@@ -24,7 +24,7 @@ fn is_centred(integrator: Integrator) -> bool {
 }
 
 /// A reference as a row of each quantity at the coarse rate.
-struct Reference {
+pub struct Reference {
     pad_m: Vec<f64>,
     /// Means over the sample that ends at the row, and is centred on it.
     force_n: [Vec<f64>; 2],
@@ -34,7 +34,8 @@ struct Reference {
 }
 
 impl Reference {
-    fn new(fine: &Take) -> Self {
+    /// Of what was rendered, or would be, at the higher rate.
+    pub fn new(fine: &Take) -> Self {
         let count = fine.audio.len() / OVERSAMPLING;
         let each = |signal: &[f64]| signal.iter().step_by(OVERSAMPLING).copied().collect();
         // The fine row m holds the mean over the fine step that ends there.
@@ -61,7 +62,7 @@ impl Reference {
     }
 
     /// Errors of a render: displacement, force, output.
-    fn errors(&self, take: &Take, integrator: Integrator) -> [f64; 3] {
+    pub fn errors(&self, take: &Take, integrator: Integrator) -> [f64; 3] {
         let which = usize::from(is_centred(integrator));
         let error = |signal, reference: &[f64]| {
             let all = after_the_lead_in(reference.len(), SAMPLE_RATE_HZ);
@@ -77,16 +78,19 @@ impl Reference {
     }
 }
 
-/// References of every case and seed.
-fn references() -> Result<Vec<Vec<Reference>>, CliError> {
+/// References of every case and seed, where this excites the body; none: the contact's force.
+///
+/// # Errors
+/// Never but by a defect.
+pub fn references(excitation: Option<&'static str>) -> Result<Vec<Vec<Reference>>, CliError> {
     let rate_hz = Some(SAMPLE_RATE_HZ * OVERSAMPLING as f64);
-    let fine = Chain { rate_hz, preset: Preset::Default, ..Chain::default() };
+    let fine = Chain { rate_hz, preset: Preset::Default, excitation, ..Chain::default() };
     let of = |case: &Case| SEEDS.map(|seed| Ok(Reference::new(&take(case, seed, &fine, None)?))).collect();
     CASES.iter().map(of).collect()
 }
 
 /// Root mean square over the seeds of each of three errors.
-fn rms(errors: &[[f64; 3]]) -> [f64; 3] {
+pub fn rms(errors: &[[f64; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|which| {
         (errors.iter().map(|error| error[which].powi(2)).sum::<f64>() / errors.len() as f64).sqrt()
     })
@@ -94,7 +98,7 @@ fn rms(errors: &[[f64; 3]]) -> [f64; 3] {
 
 /// Measures the axis.
 pub fn rows() -> Result<Vec<Row>, CliError> {
-    let references = references()?;
+    let references = references(None)?;
     let row = |integrator: Integrator| {
         let chain = Chain { integrator: Some(integrator), ..Chain::default() };
         let (mut cases, mut profiles) = (Vec::new(), Vec::new());

@@ -5,6 +5,7 @@
 
 mod blocks;
 mod cases;
+mod choices;
 mod end_to_end;
 mod excitation;
 mod from_reports;
@@ -14,9 +15,11 @@ mod modes;
 mod noise;
 mod path;
 mod resampled;
+mod shed;
 mod stability;
 mod stability_picture;
 mod strokes;
+mod through;
 mod write;
 
 use crate::error::CliError;
@@ -134,21 +137,28 @@ struct Report {
     rows: Vec<Row>,
     end_to_end: Vec<end_to_end::Preset>,
     from_reports: Vec<from_reports::Stroke>,
+    load: Vec<shed::LoadLevel>,
     stability: Vec<stability::Cell>,
 }
 
 type Axis = fn() -> Result<Vec<Row>, CliError>;
 
 /// Every axis, in the order of the report.
-const AXES: [Axis; 12] = [
+const AXES: [Axis; 18] = [
     integrator::rows,
+    choices::preset_rows,
+    choices::oversampling_rows,
+    choices::exciter_rows,
     path::rows,
     from_reports::rows,
     map_filter::rows,
+    map_filter::rows_on_cases,
     noise::rows,
+    noise::rows_on_cases,
     modes::culling_rows,
     modes::struck_culling_rows,
     modes::sleep_rows,
+    modes::stroked_sleep_rows,
     modes::shedding_rows,
     modes::struck_shedding_rows,
     modes::format_rows,
@@ -161,7 +171,7 @@ const AXES: [Axis; 12] = [
 /// When the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     ensure_folder(&options.output)?;
-    let mut progress = Progress::new("measuring", AXES.len() as u64 + 2);
+    let mut progress = Progress::new("measuring", AXES.len() as u64 + 3);
     let mut rows = Vec::new();
     for axis in AXES {
         rows.extend(axis()?);
@@ -170,10 +180,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let end_to_end = end_to_end::presets()?;
     let from_reports = from_reports::strokes()?;
     progress.advance(1);
+    let load = shed::levels()?;
+    progress.advance(1);
     let stability = stability::cells()?;
     drop(progress);
-    let report =
-        Report { cpu: cpu_name(), sample_rate_hz: SAMPLE_RATE_HZ, rows, end_to_end, from_reports, stability };
+    let (cpu, sample_rate_hz) = (cpu_name(), SAMPLE_RATE_HZ);
+    let report = Report { cpu, sample_rate_hz, rows, end_to_end, from_reports, load, stability };
     let json = serde_json::to_string_pretty(&report).map_err(CliError::told)?;
     let mut outputs = Outputs::new();
     let path = |name: &str| options.output.join(name);
@@ -184,13 +196,14 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     )?;
     let text = write::markdown(&report.cpu, &report.rows, &report.end_to_end)
         + &write::strokes_table(&report.from_reports)
+        + &write::load_table(&report.load)
         + &stability_picture::markdown(&report.stability);
     outputs.write(&path("speed_vs_error.md"), text.as_bytes())?;
     outputs.write(&path("stability.svg"), stability_picture::svg(&report.stability).as_bytes())?;
     let folder = path("cases");
     ensure_folder(&folder)?;
     for case in &CASES {
-        for (name, bytes) in cases::files(case, *SEEDS.start())? {
+        for (name, bytes) in cases::files(case, *SEEDS.start(), None)? {
             // The body is the same in all of them.
             if case.name == CASES[0].name || !name.ends_with("modes.json") {
                 outputs.write(&folder.join(name), &bytes)?;

@@ -8,7 +8,7 @@ use crate::measure::{ns_per_item, relative_error};
 use asperity::Mode;
 use asperity_dsp::masking::Ranked;
 use asperity_dsp::modal_bank::{
-    Culling, GroupOptions, GroupState, Inputs, LANES, LOUDEST_DB_SPL, MODE_LEVELS, ModalBank, ModeGroup,
+    Culling, GroupOptions, GroupState, Inputs, LOUDEST_DB_SPL, MODE_LEVELS, ModalBank, ModeGroup,
     ReferenceMode, ReferenceState, SLEEP_AMPLITUDE, SheddingLevels, audible, design_groups, ringing_s,
     shedding_order, sort_by_decay,
 };
@@ -117,6 +117,29 @@ pub fn sleep_rows() -> Result<Vec<Row>, CliError> {
     Ok(rows)
 }
 
+/// The same under the strokes of the cases, in which little falls asleep.
+pub fn stroked_sleep_rows() -> Result<Vec<Row>, CliError> {
+    let strokes = Strokes::new()?;
+    let mut modes = body();
+    modes.sort_by(|a, b| ringing_s(b, 1e-6).total_cmp(&ringing_s(a, 1e-6)));
+    let groups = designed(&modes)?;
+    let run = |threshold: f32, sent: &[f32]| sleeping_bank(&groups, groups.len(), threshold, sent);
+    let reference = strokes.heard(|sent| run(0.0, sent));
+    let rows = [-160.0, -120.0, -100.0, -80.0].into_iter().map(|level_db: f32| {
+        let threshold = 10f32.powf(level_db / 20.0);
+        let cases = strokes.errors(&strokes.heard(|sent| run(threshold, sent)), &reference);
+        let note = if threshold == SLEEP_AMPLITUDE { " (the engine)" } else { "" };
+        let ns = ns(|| run(threshold, &white().into_iter().map(|u| 1e-6 * u).collect::<Vec<_>>()));
+        Row::on_cases(
+            ("mode sleep, on the cases", format!("−{} dB{note}", -level_db)),
+            ns,
+            cases,
+            "256 modes under the strokes of the named cases that all ring on",
+        )
+    });
+    Ok(rows.collect())
+}
+
 /// A body in the order in which the engine leaves modes out, and how many groups hear at each level.
 fn in_order_of_need(modes: &[Mode]) -> (Vec<Mode>, SheddingLevels) {
     let mut order = vec![Ranked::default(); modes.len()];
@@ -137,7 +160,10 @@ pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
         let cases = strokes.errors(&strokes.heard(|sent| run(driven, sent)), &reference);
         let name = format!("level {level}: {driven} of {} groups", groups.len());
         let ns = ns(|| run(driven, &impulses));
-        let excitation_db = Some(excitation::apart_db(&modes, driven * LANES, LOUDEST_DB_SPL));
+        let missed = strokes.heard_of("rough", |sent| run(driven, sent));
+        let excitation_db = missed.zip(strokes.heard_of("rough", |sent| run(groups.len(), sent)));
+        let excitation_db = excitation_db
+            .map(|(less, whole)| excitation::missed(&less, &whole, SAMPLE_RATE_HZ).excitation_db);
         Row { excitation_db, ..Row::on_cases(("load shedding", name), ns, cases, SHEDDING_REFERENCE) }
     });
     Ok(rows.collect())
@@ -156,10 +182,11 @@ pub fn struck_shedding_rows() -> Result<Vec<Row>, CliError> {
         let found: Vec<f64> = wide(run(driven)).collect();
         let louder_db = 10.0 * (power(&found) / power(&reference)).log10();
         let name = format!("level {level}: {driven} of {} groups, {louder_db:+.1} dB", groups.len());
+        let excitation_db = Some(excitation::missed(&found, &reference, SAMPLE_RATE_HZ).excitation_db);
         let error = relative_error(found, &reference);
         let row =
             Row::of(("load shedding, a strike", name), ns(|| run(driven)), error, STRUCK_SHEDDING_REFERENCE);
-        Row { excitation_db: Some(excitation::apart_db(&modes, driven * LANES, LOUDEST_DB_SPL)), ..row }
+        Row { excitation_db, ..row }
     });
     Ok(rows.collect())
 }

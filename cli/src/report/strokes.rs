@@ -27,6 +27,12 @@ impl Strokes {
         self.0.iter().map(|(_, sent)| bank(sent).into_iter().map(Into::into).collect()).collect()
     }
 
+    /// What sounds under the case of this name.
+    pub fn heard_of(&self, name: &str, bank: impl Fn(&[f32]) -> Vec<f32>) -> Option<Vec<f64>> {
+        let (_, sent) = self.0.iter().find(|(case, _)| *case == name)?;
+        Some(bank(sent).into_iter().map(f64::from).collect())
+    }
+
     /// How far it is from a reference.
     pub fn errors(&self, found: &[Vec<f64>], reference: &[Vec<f64>]) -> Vec<CaseError> {
         let pairs = self.0.iter().zip(found.iter().zip(reference));
