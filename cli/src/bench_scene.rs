@@ -72,6 +72,11 @@ pub fn be_late(renderer: &mut Renderer, level: usize) {
 impl Bench {
     /// Builds the scene; none only if the engine refuses what it should accept.
     pub fn new(load: Load, config: Config) -> Option<Self> {
+        Self::of(load, config, &modes(load.modes_per_body))
+    }
+
+    /// The same with bodies of these modes; without any, where `load` has none.
+    pub fn of(load: Load, config: Config, model: &ModalModel) -> Option<Self> {
         let rate_hz = config.sample_rate_hz;
         let asperity::Engine { mut scene, renderer, .. } = config.build().ok()?;
         let map = plate()?;
@@ -79,9 +84,7 @@ impl Bench {
         for _ in 0..load.bodies.max(1) {
             let surface = Surface::new(map.clone(), 0.14, 0.14).ok()?;
             let surface = if load.modes_per_body > 0 {
-                surface.on(scene
-                    .add_body(asperity::Body::new(modes(load.modes_per_body)).of(Material::CERAMIC))
-                    .ok()?)
+                surface.on(scene.add_body(asperity::Body::new(model.clone()).of(Material::CERAMIC)).ok()?)
             } else {
                 surface
             };

@@ -58,7 +58,7 @@ pub struct CaseLevel {
 }
 
 /// The chain of a preset with an exact contact at 16 times the rate.
-fn with_exact_contact(preset: EnginePreset) -> Chain {
+pub fn with_exact_contact(preset: EnginePreset) -> Chain {
     let integrator = Some(Integrator::ExactEvent);
     Chain { preset, integrator, oversampling: Some(INNER), ..Chain::default() }
 }
@@ -118,7 +118,7 @@ fn rung(impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
 }
 
 /// By how much what a preset is heard of is behind, s: its forces are means over the inner sample that ends at a row.
-fn late_s(take: &Take) -> f64 {
+pub fn late_s(take: &Take) -> f64 {
     0.5 / take.inner_rate_hz
 }
 

@@ -61,7 +61,24 @@ fn excited(bands: &[f64], loudest: f64) -> impl Iterator<Item = f64> {
 
 /// What is missed of a sound; both begin together.
 pub fn missed(less: &[f64], whole: &[f64], rate_hz: f64) -> Missed {
-    let (less, whole) = (frames(less, rate_hz), frames(whole, rate_hz));
+    missed_in_the_mean([(less, whole)].into_iter(), rate_hz)
+}
+
+/// The same in the mean over several, as strikes whose modes begin at other phases: two tones within an ERB beat, and of a beat it is chance which
+/// frame it falls in.
+pub fn missed_in_the_mean<'a>(pairs: impl Iterator<Item = (&'a [f64], &'a [f64])>, rate_hz: f64) -> Missed {
+    let [mut less, mut whole] = [Vec::new(), Vec::new()];
+    for (one, other) in pairs {
+        for (sum, sound) in [(&mut less, one), (&mut whole, other)] {
+            let frames = frames(sound, rate_hz);
+            if sum.is_empty() {
+                *sum = frames;
+            } else {
+                let both = sum.iter_mut().flatten().zip(frames.into_iter().flatten());
+                both.for_each(|(sum, power): (&mut f64, f64)| *sum += power);
+            }
+        }
+    }
     let loudest = whole.iter().map(|bands| bands.iter().sum::<f64>()).fold(f64::MIN_POSITIVE, f64::max);
     let cells = less.iter().zip(&whole).flat_map(|(less, whole)| {
         let pairs = excited(less, loudest).zip(excited(whole, loudest));

@@ -73,18 +73,17 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
 
 /// Micro-relief of the cases, m.
 const CASE_RMS_AT_1_MM_M: f64 = 2.2e-5;
-const CASES_REFERENCE: &str = "the same relief sampled at 8 times the rate, its octaves as the finer footprint has them, through the same contact; cases \
+const CASES_REFERENCE: &str = "the relief that a footprint at the engine's own rate leaves, sampled at 8 times that rate, through the same contact; cases \
                                without micro-relief have their own axis";
 
 /// The same on the named cases that have micro-relief: what the contact makes of it.
 pub fn rows_on_cases() -> Result<Vec<Row>, CliError> {
-    // The relief itself needs most octaves, of which none is left out.
     let read = |level: Option<Level>, footprints: f64| {
-        move |case: &Case, seed: u64, places_m: &[f64], rate_hz: f64| {
+        move |case: &Case, seed: u64, places_m: &[f64], _: f64| {
             let noise = FractalNoise::new(seed);
             let noise = level.map_or(noise.clone(), |level| noise.on(level));
             let places: Vec<[f64; 2]> = places_m.iter().map(|x| [*x, 0.017]).collect();
-            let footprint_m = footprints * case.speed_m_s / rate_hz;
+            let footprint_m = footprints * case.speed_m_s / SAMPLE_RATE_HZ;
             let roughness = case.roughness().unwrap_or(0.0);
             Ok(relief(&noise, &places, footprint_m, roughness, CASE_RMS_AT_1_MM_M))
         }

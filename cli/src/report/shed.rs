@@ -1,11 +1,12 @@
 //! What each level of load leaves out, as the engine renders it: what the ear and the finger are said to miss, and what it saves.
 
-use super::excitation::{Missed, missed};
+use super::excitation::{Missed, missed, missed_in_the_mean};
 use super::{SAMPLE_RATE_HZ, refused};
 use crate::bench_scene::{self, Bench, Load};
 use crate::error::CliError;
 use crate::measure::Timing;
-use asperity::{Config, ContactEvent, Impact, Material};
+use asperity::{Config, ContactEvent, Impact, Material, ModalModel, Mode};
+use asperity_dsp::rng::Rng;
 use serde::Serialize;
 
 /// Ten fingers on one body of 256 modes.
@@ -48,9 +49,24 @@ fn leaves_out(level: usize) -> &'static str {
     }
 }
 
+/// Strikes whose modes begin at other phases.
+const STRIKES: u64 = 8;
+
+/// A body as a fit gives it: modes that differ by 60 dB, of which louder ones hide many.
+fn body(phases: u64) -> ModalModel {
+    let (mut rng, mut phase) = (Rng::new(3), Rng::new(phases));
+    let modes = (0..LOAD.modes_per_body).map(|_| Mode {
+        frequency_hz: 60.0 * 250f64.powf(rng.uniform()),
+        decay_per_s: 1.0 + 80.0 * rng.uniform(),
+        amplitude: 0.1 * 10f64.powf(-3.0 * rng.uniform()),
+        phase_rad: std::f64::consts::TAU * phase.uniform(),
+    });
+    ModalModel { impulse_n_s: 0.01, modes: modes.collect(), ..ModalModel::silent() }
+}
+
 /// Sound and feel of ten fingers at a level, and the median time of a block, s.
 fn stroke(level: usize) -> Result<(Vec<f64>, Vec<f64>, f64), CliError> {
-    let mut bench = Bench::new(LOAD, Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() })
+    let mut bench = Bench::of(LOAD, Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() }, &body(1))
         .ok_or_else(|| refused("scene: cannot be built; please report it"))?;
     let (mut heard, mut felt, mut times_s) = (Vec::new(), Vec::new(), Vec::new());
     for block in 0..SKIPPED + BLOCKS {
@@ -68,11 +84,15 @@ fn stroke(level: usize) -> Result<(Vec<f64>, Vec<f64>, f64), CliError> {
     Ok((heard, felt, Timing::of(times_s).median))
 }
 
-/// Sound of a strike at a level.
-fn strike(level: usize) -> Result<Vec<f64>, CliError> {
+/// Sounds of strikes at a level.
+fn strikes(level: usize) -> Result<Vec<Vec<f64>>, CliError> {
+    (1..=STRIKES).map(|phases| strike(level, phases)).collect()
+}
+
+fn strike(level: usize, phases: u64) -> Result<Vec<f64>, CliError> {
     let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
     let asperity::Engine { mut scene, mut renderer, .. } = config.build().map_err(refused)?;
-    let body = asperity::Body::new(bench_scene::modes(LOAD.modes_per_body)).of(Material::CERAMIC);
+    let body = asperity::Body::new(body(phases)).of(Material::CERAMIC);
     let body = scene.add_body(body).map_err(refused)?;
     bench_scene::be_late(&mut renderer, level);
     let impact = Impact::from_impulse(body, 1e-3, 2.0, 1.0).by(Material::STEEL, 2.5e-4, 1e-3);
@@ -102,7 +122,7 @@ fn third_octaves_apart(less: &[f64], whole: &[f64]) -> (f64, f64) {
 /// Never but by a defect.
 pub fn levels() -> Result<Vec<LoadLevel>, CliError> {
     let (heard, felt, _) = stroke(0)?;
-    let struck = strike(0)?;
+    let struck = strikes(0)?;
     (0..=HIGHEST)
         .map(|level| {
             let (less_heard, less_felt, took_s) = stroke(level)?;
@@ -112,7 +132,10 @@ pub fn levels() -> Result<Vec<LoadLevel>, CliError> {
                 leaves_out: leaves_out(level),
                 ns_per_sample: took_s * 1e9 / BLOCK as f64,
                 stroke: missed(&less_heard, &heard, SAMPLE_RATE_HZ),
-                strike: missed(&strike(level)?, &struck, SAMPLE_RATE_HZ),
+                strike: missed_in_the_mean(
+                    strikes(level)?.iter().zip(&struck).map(|(less, whole)| (&less[..], &whole[..])),
+                    SAMPLE_RATE_HZ,
+                ),
                 felt_worst_db,
                 felt_mean_db,
             })

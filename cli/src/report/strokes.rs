@@ -6,6 +6,9 @@ use super::{CaseError, SAMPLE_RATE_HZ};
 use crate::error::CliError;
 use crate::measure::relative_error;
 
+/// What the amplitudes of the body stand for, N·s.
+const IMPULSE_N_S: f64 = 0.01;
+
 /// The six cases as a bank hears them.
 pub struct Strokes(Vec<(&'static str, Vec<f32>)>);
 
@@ -17,7 +20,7 @@ impl Strokes {
     pub fn new() -> Result<Self, CliError> {
         let sent = CASES.iter().map(|case| {
             let take = take(case, *SEEDS.start(), &Chain::default(), None)?;
-            Ok((case.name, take.impulse_n_s.iter().map(|impulse| *impulse as f32).collect()))
+            Ok((case.name, take.impulse_n_s.iter().map(|impulse| (impulse / IMPULSE_N_S) as f32).collect()))
         });
         sent.collect::<Result<_, _>>().map(Self)
     }

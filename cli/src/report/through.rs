@@ -42,7 +42,7 @@ fn through(case: &Case, heights: &[f64], rate_hz: f64) -> Result<Take, CliError>
     Ok(take)
 }
 
-/// The plate of the cases under a force, mode by mode.
+/// The plate of the cases under a force, mode by mode; half a sample late, as a mean over the sample that ends there is.
 fn rung(force_n: &[f64], rate_hz: f64) -> Vec<f64> {
     let model = plate();
     let mut out = vec![0.0; force_n.len()];
@@ -52,8 +52,8 @@ fn rung(force_n: &[f64], rate_hz: f64) -> Vec<f64> {
         let gain = mode.amplitude / model.impulse_n_s / rate_hz;
         let [mut re, mut im] = [0.0; 2];
         for (y, force_n) in out.iter_mut().zip(force_n) {
-            re += force_n;
             [re, im] = [re * cos - im * sin, re * sin + im * cos];
+            re += force_n;
             *y += gain * im;
         }
     }

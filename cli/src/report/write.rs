@@ -187,7 +187,7 @@ pub fn strokes_table(strokes: &[Stroke]) -> String {
 /// What each level of load leaves out.
 #[must_use]
 pub fn load_table(levels: &[LoadLevel]) -> String {
-    let mut text = "\n## levels of load\n\nReference: level 0. Ten fingers on one body of 256 modes, and a strike on it; the ear by a masking model at 70 dB SPL: share of the cells of an ERB \
+    let mut text = "\n## levels of load\n\nReference: level 0. Ten fingers on one body of 256 modes that differ by 60 dB, and a strike on it; the ear by a masking model at 70 dB SPL: share of the cells of an ERB \
                     and 20 ms within 1 dB, and what 99 % are within. Felt: third octaves, 63 Hz–2 kHz, worst and mean.\n\n| level | leaves out | ns a sample | stroke | strike | felt |\n|--:|---|--:|--:|--:|--:|\n"
         .to_owned();
     for LoadLevel { level, leaves_out, ns_per_sample, stroke, strike, felt_worst_db, felt_mean_db } in levels
