@@ -2,7 +2,7 @@
 //!
 //! | level | what is left out |
 //! |---|---|
-//! | 1–4 | modes by a published masking model (`dsp::masking`, `dsp::modal_bank::shedding_order`): those that nobody hears, with 6 dB of safety; with none; those that stick out by up to 6, by up to 12 dB; from level 2 on at least a fifth of each body a level. They hear nothing more and ring out, without a click |
+//! | 1–4 | modes by a published masking model (`dsp::masking`, `dsp::modal_bank::shedding_order`): those that nobody hears, with 6 dB of safety; with none; those that stick out by up to 6, by up to 12 dB; from level 2 on at least a fifth of each body a level, where nothing is hidden those that would fall asleep first. They hear nothing more and ring out, without a click |
 //! | 5–8 | the finest octave of the micro-noise that still sounds, one a level |
 //! | 9–16 | the contacts of lowest priority, an eighth at a time; they fade, and a move revives them later |
 //!

@@ -1,109 +1,97 @@
 //! Choices of the whole engine on the named cases: how many inner samples, which preset, what excites the body.
 
 use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, take};
-use super::integrator::{references, rms};
+use super::end_to_end::Reference;
+use super::integrator::rms;
 use super::resampled::after_the_lead_in;
 use super::{CaseError, Row, SAMPLE_RATE_HZ, end_to_end};
 use crate::error::CliError;
 use crate::measure::relative_error;
-use asperity::{Integrator, Preset};
+use asperity::Preset;
 
-const WHOLE_REFERENCE: &str = "the whole chain at 16 inner samples, the bank in f64, profiles of four seeds a case; the whole renderer, one contact, is timed";
-const EXCITER_REFERENCE: &str = "the same exciter at 8 times the rate; what is felt and how the contact moves do not depend on it. Collisions of a \
+const REFERENCE: &str = "the whole chain at 16 inner samples, the bank in f64, profiles of four seeds a case; the whole renderer, one contact, is timed";
+const EXCITER_REFERENCE: &str = "the same exciter, the whole chain at 16 inner samples; what is felt and how the contact moves do not depend on it. Collisions of a \
                                  contact that leaps are another sound wherever they fall a moment later";
 
-/// Times an exciter is timed.
-const ROUNDS: usize = 3;
-
-/// The whole chain of every case and seed at sixteen inner samples.
-fn truths() -> Result<Vec<Vec<(Take, end_to_end::Reference)>>, CliError> {
-    let of = |case: &Case| {
-        SEEDS
-            .map(|seed| {
-                let exact = end_to_end::with_exact_contact(Preset::Accurate);
-                Ok((take(case, seed, &exact, None)?, end_to_end::Reference::new(case, seed, None)?))
-            })
-            .collect::<Result<Vec<_>, CliError>>()
-    };
+/// The whole chain of every case and seed at sixteen inner samples, where this excites the body.
+///
+/// # Errors
+/// Never but by a defect.
+pub fn truths(excitation: Option<&'static str>) -> Result<Vec<Vec<Reference>>, CliError> {
+    let of = |case: &Case| SEEDS.map(|seed| Reference::excited_by(case, seed, None, excitation)).collect();
     CASES.iter().map(of).collect()
 }
 
-/// A choice against the whole chain.
-fn whole_row(
+/// Errors against the truth: displacement, force, felt, heard.
+fn errors(take: &Take, truth: &Reference) -> [f64; 4] {
+    let error = |found: &[f64], reference: &[f64]| {
+        let all = after_the_lead_in(reference.len().min(found.len()), SAMPLE_RATE_HZ);
+        relative_error(found[all.clone()].iter().copied(), &reference[all])
+    };
+    let [pad_m, force_n] = end_to_end::contact_of(take);
+    let heard = truth.heard(end_to_end::late_s(take));
+    [
+        error(&pad_m, &truth.contact[0]),
+        error(&force_n, &truth.contact[1]),
+        error(take.signal(Signal::Felt), &truth.felt),
+        error(take.signal(Signal::Heard), &heard),
+    ]
+}
+
+/// A choice against the whole chain. Of an exciter: pad, force and what is felt do not depend on it.
+fn row(
     name: (&'static str, String),
     chain: &Chain,
-    truths: &[Vec<(Take, end_to_end::Reference)>],
+    truths: &[Vec<Reference>],
+    reference: &'static str,
 ) -> Result<Row, CliError> {
     let (mut cases, mut best_ns) = (Vec::new(), Vec::new());
     for (case, truths) in CASES.iter().zip(truths) {
-        let (mut errors, mut best) = (Vec::new(), f64::INFINITY);
-        for (seed, (fine, truth)) in SEEDS.zip(truths) {
-            let take = take(case, seed, chain, None)?;
-            let heard = truth.heard(end_to_end::late_s(&take));
-            let error = |signal: Signal, reference: &[f64]| {
-                let all = after_the_lead_in(reference.len(), SAMPLE_RATE_HZ);
-                relative_error(take.signal(signal)[all.clone()].iter().copied(), &reference[all])
-            };
-            errors.push([
-                error(Signal::Displacement, &fine.pad_m),
-                error(Signal::ContactForce, &fine.force_n),
-                error(Signal::Felt, &truth.felt).max(error(Signal::Heard, &heard)),
-            ]);
-            best = f64::min(best, take.processing_s * 1e9 / take.audio.len() as f64);
+        let (mut found, mut best) = (Vec::new(), f64::INFINITY);
+        for (seed, truth) in SEEDS.zip(truths) {
+            let shown = take(case, seed, &Chain { inner_rows: true, ..*chain }, None)?;
+            let [displacement, contact_force, felt, heard] = errors(&shown, truth);
+            let output = if chain.excitation.is_some() { heard } else { felt.max(heard) };
+            found.push([displacement, contact_force, output]);
+            let timed = take(case, seed, chain, None)?;
+            best = f64::min(best, timed.processing_s * 1e9 / timed.audio.len() as f64);
         }
-        let [displacement, contact_force, output] = rms(&errors);
-        let (displacement, contact_force) = (Some(displacement), Some(contact_force));
+        let [displacement, contact_force, output] = rms(&found);
+        let reached = |error: f64| chain.excitation.is_none().then_some(error);
+        let (displacement, contact_force) = (reached(displacement), reached(contact_force));
         cases.push(CaseError { name: case.name, displacement, contact_force, output });
         best_ns.push(best);
     }
     best_ns.sort_by(f64::total_cmp);
-    Ok(Row::on_cases(name, crate::measure::quantile(&best_ns, 0.5), cases, WHOLE_REFERENCE))
+    Ok(Row::on_cases(name, crate::measure::quantile(&best_ns, 0.5), cases, reference))
 }
 
 /// Inner samples where there would be one.
 pub fn oversampling_rows() -> Result<Vec<Row>, CliError> {
-    let truths = truths()?;
-    [1, 2, 4, 8]
-        .into_iter()
-        .map(|inner| {
-            let chain = Chain { oversampling: Some(inner), ..Chain::default() };
-            let note = if inner == 1 { " (default)" } else { "" };
-            whole_row(("oversampling", format!("{inner} inner samples{note}")), &chain, &truths)
-        })
-        .collect()
+    let truths = truths(None)?;
+    let choice = |inner: usize| {
+        let chain = Chain { oversampling: Some(inner), ..Chain::default() };
+        let note = if inner == 1 { " (default)" } else { "" };
+        row(("oversampling", format!("{inner} inner samples{note}")), &chain, &truths, REFERENCE)
+    };
+    [1, 2, 4, 8].into_iter().map(choice).collect()
 }
 
 /// Engine presets.
 pub fn preset_rows() -> Result<Vec<Row>, CliError> {
-    let truths = truths()?;
-    let row = |preset: Preset| {
-        whole_row(("preset", preset.name().to_owned()), &Chain { preset, ..Chain::default() }, &truths)
+    let truths = truths(None)?;
+    let choice = |preset: Preset| {
+        let chain = Chain { preset, ..Chain::default() };
+        row(("preset", preset.name().to_owned()), &chain, &truths, REFERENCE)
     };
-    Preset::ALL.into_iter().map(row).collect()
+    Preset::ALL.into_iter().map(choice).collect()
 }
 
 /// What of a contact excites the body.
 pub fn exciter_rows() -> Result<Vec<Row>, CliError> {
-    let row = |excitation: &'static str| {
-        let (references, chain) =
-            (references(Some(excitation))?, Chain { excitation: Some(excitation), ..Chain::default() });
-        let (mut cases, mut best_ns) = (Vec::new(), Vec::new());
-        for (case, references) in CASES.iter().zip(&references) {
-            let (mut errors, mut best) = (Vec::new(), f64::INFINITY);
-            for (seed, reference) in SEEDS.zip(references) {
-                errors.push(reference.errors(&take(case, seed, &chain, None)?, Integrator::default()));
-            }
-            for _ in 0..ROUNDS {
-                let timed = take(case, *SEEDS.start(), &chain, None)?;
-                best = f64::min(best, timed.processing_s * 1e9 / timed.audio.len() as f64);
-            }
-            let [_, _, output] = rms(&errors);
-            cases.push(CaseError { name: case.name, displacement: None, contact_force: None, output });
-            best_ns.push(best);
-        }
-        best_ns.sort_by(f64::total_cmp);
-        let ns = crate::measure::quantile(&best_ns, 0.5);
-        Ok(Row::on_cases(("exciter", excitation), ns, cases, EXCITER_REFERENCE))
+    let choice = |excitation: &'static str| {
+        let chain = Chain { excitation: Some(excitation), ..Chain::default() };
+        row(("exciter", excitation.to_owned()), &chain, &truths(Some(excitation))?, EXCITER_REFERENCE)
     };
-    ["force", "collisions", "both"].into_iter().map(row).collect()
+    ["force", "collisions", "both"].into_iter().map(choice).collect()
 }

@@ -30,9 +30,14 @@ fn through(case: &Case, heights: &[f64], rate_hz: f64) -> Result<Take, CliError>
     let probe = Probe { leash_m: Probe::default().leash_m, ..PROBE };
     let model = MicroContact::new(&probe, Integrator::ExactEvent, rate_hz).map_err(refused)?;
     let mut state = model.at_rest(heights.first().copied().unwrap_or(0.0), case.force_n);
+    let mut heights = heights.to_vec();
+    // Rows lag behind heights.
+    let late = model.latency_samples();
+    heights.extend(heights.last().copied().into_iter().cycle().take(late));
     let (force_n, mut rows) =
         (vec![case.force_n; heights.len()], vec![ContactSample::default(); heights.len()]);
-    model.run(&mut state, heights, &force_n, &mut rows);
+    model.run(&mut state, &heights, &force_n, &mut rows);
+    rows.drain(..late);
     let mut take = Take::default();
     take.rate_hz = rate_hz;
     take.pad_m = rows.iter().map(|row| row.pad_m).collect();
