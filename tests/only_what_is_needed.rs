@@ -5,8 +5,8 @@ mod common;
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Culling, MAX_POSITIONS, ModalModel, Mode,
-    Renderer, Scene,
+    Actuator, AudioBus, Config, ContactEvent, ContactId, ContactSample, Culling, MAX_POSITIONS, ModalModel,
+    Mode, Renderer, Scene,
 };
 use asperity_dsp::rng::Rng;
 use common::{SIDE_M, plate, stroke};
@@ -255,6 +255,28 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
     let error = error_db(&found, &wanted);
     println!("after recovery: error {error:.1} dB");
     assert!(error < -60.0, "{error} dB");
+}
+
+#[test]
+fn how_loud_a_body_is_decides_which_of_its_modes_nobody_hears() {
+    let shed = |pascals_at_full_scale| {
+        let audio = vec![AudioBus { pascals_at_full_scale, ..AudioBus::default() }];
+        let asperity::Engine { mut scene, mut renderer, .. } =
+            Config { audio, culling: None, ..Config::default() }.build().unwrap();
+        let body = scene.add_body(body(400)).unwrap();
+        // Busy, and late once.
+        (0..31).for_each(|_| renderer.report_load(0.7));
+        renderer.report_load(0.9);
+        let impact = asperity::Impact::from_impulse(body, 1e-3, 1.0, 1.0);
+        scene.report(0.0, ContactEvent::Impact(impact)).unwrap();
+        let (mut haptic, mut audio) = (vec![0.0; 6400], vec![0.0; 6400]);
+        renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+        scene.stats().shed
+    };
+    // Its loudest mode is at 30 dB SPL and less, at what nobody knows, and at 100.
+    let [quiet, unknown, loud] = [Some(1e-4), None, Some(10.0)].map(shed);
+    println!("left out in 6400 samples, groups: {quiet}, {unknown}, {loud}");
+    assert!(quiet > unknown && unknown >= loud && loud > 0, "{quiet}, {unknown}, {loud}");
 }
 
 #[test]

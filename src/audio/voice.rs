@@ -174,17 +174,6 @@ impl Voice {
         }
     }
 
-    /// How hard it presses at its last sample, N, and where it goes, m/s.
-    pub(crate) fn going(&self) -> (f64, [f64; 2]) {
-        (self.path.last.normal_force_n, self.path.last.velocity_m_s)
-    }
-
-    /// Where it is on a surface of this size.
-    pub(crate) fn uv(&self, [width_m, height_m]: [f64; 2]) -> [f64; 2] {
-        let [x_m, y_m] = self.path.last.position_m;
-        [x_m / width_m, y_m / height_m]
-    }
-
     /// What presses on the touched body: the probe, as stiff as its ground and the force make it, to a quarter of an octave. None while nothing
     /// presses.
     pub(crate) fn pressing(&self, shared: &Shared, slot: &SurfaceSlot) -> Option<Probe> {

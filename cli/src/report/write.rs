@@ -10,6 +10,9 @@ use std::fmt::Write;
 /// Errors below this are drawn here: a logarithmic axis has no zero.
 const FLOOR: f64 = 1e-8;
 
+/// Choices of an axis whose panel stands beside another.
+const MOST_BESIDE_ANOTHER: usize = 10;
+
 fn axes(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
     let mut axes: Vec<(&'static str, Vec<&Row>)> = Vec::new();
     for row in rows {
@@ -126,10 +129,16 @@ pub fn svg(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
     if !presets.is_empty() {
         figure.row(420.0, [overview(rows, presets)]);
     }
-    let mut panels: Vec<Panel> = axes(rows).iter().map(|(axis, members)| panel(axis, members)).collect();
-    while !panels.is_empty() {
-        let rest = panels.split_off(panels.len().min(2));
-        figure.row(230.0, std::mem::replace(&mut panels, rest));
+    // Many names need room.
+    let (crowded, mut others): (Vec<_>, Vec<_>) =
+        axes(rows).into_iter().partition(|(_, members)| members.len() > MOST_BESIDE_ANOTHER);
+    while !others.is_empty() {
+        let rest = others.split_off(others.len().min(2));
+        figure.row(230.0, others.iter().map(|(axis, members)| panel(axis, members)).collect::<Vec<_>>());
+        others = rest;
+    }
+    for (axis, members) in &crowded {
+        figure.row(420.0, [panel(axis, members)]);
     }
     figure.svg()
 }
