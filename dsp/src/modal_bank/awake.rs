@@ -99,7 +99,9 @@ impl Awake {
             {
                 self.wake(driven);
             }
-            let y = &mut out[part.clone()];
+            // Several runs are added up first: what `out` holds already must not come between them, or bits would depend on who rings first.
+            let (mut together, several) = (SILENCE, self.takes_several_calls(driven));
+            let y = if several { &mut together[..len] } else { &mut out[part.clone()] };
             self.each_run(|run| {
                 let (to_hear, deaf) = (run.start..run.end.min(driven), run.start.max(driven)..run.end);
                 if !deaf.is_empty() {
@@ -118,6 +120,9 @@ impl Awake {
                     _ => kernel.render_mixed(now, groups, states, heard, y),
                 }
             });
+            if several {
+                out[part].iter_mut().zip(&together).for_each(|(sum, x)| *sum += x);
+            }
             if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
                 for (from, awake) in self.bounds.iter().zip(&mut self.groups) {
                     let ringing = *from..from + *awake;
@@ -140,6 +145,13 @@ impl Awake {
         for (awake, ends) in self.groups.iter_mut().zip(self.bounds.windows(2)) {
             *awake = (*awake).max(driven.clamp(ends[0], ends[1]) - ends[0]);
         }
+    }
+
+    /// Whether more than one run is rendered, or one that hears in part.
+    fn takes_several_calls(&self, driven: usize) -> bool {
+        let mut calls = 0;
+        self.each_run(|run| calls += usize::from(run.start < driven) + usize::from(run.end > driven));
+        calls > 1
     }
 
     /// Groups that are rendered together, run after run.
