@@ -276,10 +276,10 @@ fn grains(
         let now = shifted + at as u64;
         let (age, number) = ((now % grain as u64) as usize, now / grain as u64);
         let until = (at + grain - age).min(n);
-        let bits = hash_u32(hash_u32(number as u32 ^ (surface as u32) << 20).wrapping_add(j as u32));
+        let bits = hash_u32(hash_u32(number as u32 ^ ((surface as u32) << 20)).wrapping_add(j as u32));
         let sign = if bits & 1 == 0 { 1.0 } else { -1.0 };
         // From an eighth of a hop on, so that nothing is in step with the speaker itself.
-        let delay = hop / 8 + ((bits >> 1) as u64 * grain as u64 >> 31) as usize;
+        let delay = hop / 8 + ((u64::from(bits >> 1) * grain as u64) >> 31) as usize;
         (at..until).for_each(|i| each(i, age + i - at, sign, delay));
         at = until;
     }
