@@ -236,7 +236,7 @@ fn bus_of(entry: &AudioEntry, gain: f64, file: &SceneFile, overrides: &Overrides
     let names_device =
         file.actuators.iter().any(|actuator| actuator.equalise.is_some() || actuator.limit.is_some());
     let limit = entry.limit.unwrap_or(overrides.live || names_device || entry.gain.is_none());
-    AudioBus { gain, limit: limit || overrides.live }
+    AudioBus { gain, limit: limit || overrides.live, pascals_at_full_scale: entry.pascals_at_full_scale }
 }
 
 /// Heights of a surface on a grid over its extent, the longer edge `longest` points; none where the heights

@@ -62,9 +62,21 @@ fn plate() -> Option<HeightMap> {
     HeightMap::new(&waves, extent, Wrap::Repeat).ok()?.with_roughness_map(&rough).ok()
 }
 
+/// Tells a renderer that it is late until its governor is at this level.
+pub fn be_late(renderer: &mut Renderer, level: usize) {
+    // Its own work takes most of its time; then it is late once for each level.
+    (0..31).for_each(|_| renderer.report_load(0.7));
+    (0..level).for_each(|_| renderer.report_load(0.9));
+}
+
 impl Bench {
     /// Builds the scene; none only if the engine refuses what it should accept.
     pub fn new(load: Load, config: Config) -> Option<Self> {
+        Self::of(load, config, &modes(load.modes_per_body))
+    }
+
+    /// The same with bodies of these modes; without any, where `load` has none.
+    pub fn of(load: Load, config: Config, model: &ModalModel) -> Option<Self> {
         let rate_hz = config.sample_rate_hz;
         let asperity::Engine { mut scene, renderer, .. } = config.build().ok()?;
         let map = plate()?;
@@ -72,9 +84,7 @@ impl Bench {
         for _ in 0..load.bodies.max(1) {
             let surface = Surface::new(map.clone(), 0.14, 0.14).ok()?;
             let surface = if load.modes_per_body > 0 {
-                surface.on(scene
-                    .add_body(asperity::Body::new(modes(load.modes_per_body)).of(Material::CERAMIC))
-                    .ok()?)
+                surface.on(scene.add_body(asperity::Body::new(model.clone()).of(Material::CERAMIC)).ok()?)
             } else {
                 surface
             };
@@ -93,6 +103,11 @@ impl Bench {
         let began = Instant::now();
         self.renderer.render(&mut [haptic], &mut [audio]);
         began.elapsed().as_secs_f64()
+    }
+
+    /// The machine is so late that its governor goes to this level.
+    pub fn be_late(&mut self, level: usize) {
+        be_late(&mut self.renderer, level);
     }
 
     /// What every finger did since the last report.

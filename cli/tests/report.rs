@@ -317,3 +317,68 @@ fn sixty_reports_a_second_leave_gratings_of_2_mm_and_more_their_waveform_and_a_r
     }
     assert_eq!(strokes.len(), 6);
 }
+
+#[test]
+fn every_choice_has_its_errors_on_the_named_cases_in_all_that_it_reaches() {
+    let contact = ["displacement", "contact_force", "output"].as_slice();
+    for (axis, fields, some) in [
+        ("integrator", contact, None),
+        ("preset", contact, None),
+        ("oversampling", contact, None),
+        ("path, on the cases", contact, None),
+        ("map filter, on the cases", contact, Some(["smooth", "bouncing", "steep"])),
+        ("noise octaves, on the cases", contact, Some(["rough", "fast", "light"])),
+        ("exciter", &["output"], None),
+        ("mode culling", &["output"], None),
+        ("mode sleep, on the cases", &["output"], None),
+        ("load shedding", &["output"], None),
+        ("number format", &["output"], None),
+    ] {
+        let rows = rows(axis);
+        assert!(rows.len() >= 3, "{axis}");
+        let wanted: Vec<&str> = some.map_or(CASES.to_vec(), |some| some.to_vec());
+        for row in rows {
+            let cases = row["cases"].as_array().unwrap();
+            let names: Vec<&str> = cases.iter().map(|case| case["name"].as_str().unwrap()).collect();
+            assert_eq!(names, wanted, "{axis}");
+            let errors: Vec<f64> =
+                cases.iter().flat_map(|case| fields.iter().map(|of| number(&case[*of]))).collect();
+            assert_eq!(number(&row["worst"]), errors.iter().copied().fold(0.0, f64::max), "{axis}");
+            assert_eq!(row["latency_ms"].is_number(), axis.starts_with("path"), "{axis}");
+            println!(
+                "{axis}, {}: {:.1e} worst, {:.1e}",
+                row["choice"],
+                number(&row["worst"]),
+                number(&row["geometric_mean"])
+            );
+        }
+    }
+}
+
+#[test]
+fn more_inner_samples_err_less_and_the_finer_way_to_read_a_map_wins() {
+    let means = |axis| -> Vec<f64> { rows(axis).iter().map(|row| number(&row["geometric_mean"])).collect() };
+    let inner = means("oversampling");
+    assert!(inner.windows(2).all(|pair| pair[1] < 0.7 * pair[0]), "{inner:?}");
+    let maps = means("map filter, on the cases");
+    assert!(maps[2] < 0.3 * maps[1] && maps[1] < maps[0], "{maps:?}");
+}
+
+#[test]
+fn every_level_of_load_tells_what_the_ear_and_the_finger_miss() {
+    let levels = report().1["load"].as_array().unwrap();
+    assert_eq!(levels.len(), 17);
+    for level in levels {
+        println!("{level}");
+    }
+    for of in ["stroke", "strike"] {
+        let within: Vec<f64> = levels.iter().map(|level| number(&level[of]["within_1_db"])).collect();
+        assert_eq!(within[0], 1.0);
+        assert!(within[1] >= 0.99, "the first level is not heard: {within:?}");
+        assert_eq!(number(&levels[0][of]["excitation_db"]), 0.0);
+    }
+    // Modes are not felt.
+    assert!(levels[..5].iter().all(|level| number(&level["felt_worst_db"]) == 0.0));
+    let text = fs::read_to_string(report().0.join("speed_vs_error.md")).unwrap();
+    assert!(text.contains("## levels of load"));
+}

@@ -33,6 +33,8 @@ const OFFSET: f64 = 0.1;
 const DOWN_DB: f64 = 27.0;
 /// Excitation below this hides nothing, dB SPL.
 const NOTHING_DB: f64 = -40.0;
+/// A mode is heard for sure, and hides others for good, where it is less than this below what hides it, dB.
+const SAFE_DB: f64 = 6.0;
 /// Power of the quietest level that is told apart: −600 dB.
 const LEAST: f64 = 1e-60;
 
@@ -56,7 +58,7 @@ pub struct Ranked {
 /// Ranks modes from the most to the least important, where the loudest starts at `loudest_db_spl`; `order` has a place for each of them.
 ///
 /// The time grows with the square of `most`: of more modes than that only those that stick out most over the threshold in quiet are compared with
-/// each other, and the others follow behind.
+/// each other, and the others follow behind, by how far they stick out of what those excite that are heard.
 ///
 /// ```
 /// use asperity_dsp::masking::{Ranked, audible_count, perceptual_order};
@@ -80,9 +82,9 @@ pub fn perceptual_order(modes: &[Mode], loudest_db_spl: f64, most: usize, order:
     }
     if count > most {
         order.sort_unstable_by(|a, b| a.hidden().total_cmp(&b.hidden()).then(a.index.cmp(&b.index)));
-        order[most..].iter_mut().for_each(|ranked| ranked.margin_db = 10.0 * libm::log10(ranked.hidden()));
     }
     let count = count.min(most);
+    let (order, others) = order.split_at_mut(count);
     for from in 0..count {
         let source = order[from];
         for to in (0..count).filter(|to| *to != from) {
@@ -99,6 +101,11 @@ pub fn perceptual_order(modes: &[Mode], loudest_db_spl: f64, most: usize, order:
         let gone = order[left];
         order[..left].iter_mut().for_each(|other| excite(&gone, other, -1.0));
     }
+    for heard in order.iter().filter(|ranked| ranked.margin_db < SAFE_DB) {
+        others.iter_mut().for_each(|other| excite(heard, other, 1.0));
+    }
+    others.iter_mut().for_each(|ranked| ranked.margin_db = 10.0 * libm::log10(ranked.hidden()));
+    others.sort_unstable_by(|a, b| a.margin_db.total_cmp(&b.margin_db).then(a.index.cmp(&b.index)));
 }
 
 /// How many modes of an order are left when all that are `safety_db` below what hides them are gone.

@@ -4,7 +4,7 @@ use crate::model::click::Click;
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, MODE_LEVELS, Owner, groups_at};
+use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, MODE_LEVELS, Owner, SheddingLevels};
 use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
 use crate::prepared::body_rub::{BodyRub, RubAsked};
 use crate::prepared::bursts::Bursts;
@@ -13,6 +13,7 @@ use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
+use asperity_dsp::masking::Ranked;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
     self, FirstSamples, ForceTaps, GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank,
@@ -36,6 +37,8 @@ const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
 /// A body as the audio half owns it.
 pub(crate) struct BodySlot {
     bank: Bank,
+    /// How many of its groups hear anything at each level of modes left out.
+    levels: SheddingLevels,
     places: Vec<Place>,
     /// For a body that can be touched anywhere.
     field: Option<BodyField>,
@@ -111,22 +114,22 @@ impl Place {
 
 impl BodySlot {
     /// Designs the bank at the engine's inner rate; modes at or above half of the `output_rate_hz` stay silent. A body without shapes
-    /// can be rubbed if its mass is known.
+    /// can be rubbed if its mass is known. Where machines are late its modes are left out as they are missed at this level, that of the loudest.
     pub(crate) fn new(
         model: &ModalModel,
         mass_kg: Option<f64>,
+        loudest_db_spl: f64,
         kernel: Level,
-        output_rate_hz: f64,
-        sample_rate_hz: f64,
+        (output_rate_hz, sample_rate_hz): (f64, f64),
     ) -> Result<Self, DesignError> {
         let heard = |mode: &Mode| mode.amplitude != 0.0 && mode.frequency_hz < 0.5 * output_rate_hz;
         let numbered = model.unit_modes().enumerate().filter(|(_, (mode, _))| heard(mode));
-        let mut modes: Vec<(usize, (Mode, [f32; MAX_POSITIONS]))> = numbered.collect();
-        // What rings longest comes first, so that the groups still awake are always a prefix.
-        let rings = |mode: &Mode| modal_bank::ringing_s(mode, TYPICAL_IMPULSE_N_S);
-        modes.sort_by(|(_, (a, _)), (_, (b, _))| {
-            rings(b).total_cmp(&rings(a)).then(a.frequency_hz.total_cmp(&b.frequency_hz))
-        });
+        let modes: Vec<(usize, (Mode, [f32; MAX_POSITIONS]))> = numbered.collect();
+        // What nobody would miss comes last; between two levels what rings longest comes first, so that the groups still awake are the first ones.
+        let mut order = vec![Ranked::default(); modes.len()];
+        let plain: Vec<Mode> = modes.iter().map(|(_, (mode, _))| *mode).collect();
+        let levels = modal_bank::shedding_order(&plain, TYPICAL_IMPULSE_N_S, loudest_db_spl, &mut order);
+        let modes: Vec<_> = order.iter().map(|ranked| modes[ranked.index]).collect();
         let unit: Vec<(usize, Mode)> = modes.iter().map(|(number, (mode, _))| (*number, *mode)).collect();
         let modes: Vec<_> = modes.into_iter().map(|(_, mode)| mode).collect();
         let plain: Vec<Mode> = unit.iter().map(|(_, mode)| *mode).collect();
@@ -135,7 +138,7 @@ impl BodySlot {
         let states = vec![GroupState::REST; groups.len()].into();
         let count = model.position_count();
         let mixed = count > 1 || model.shapes.is_some();
-        let first_samples = first_samples(&modes, count, groups.len(), sample_rate_hz)?;
+        let first_samples = first_samples(&modes, count, &levels, sample_rate_hz)?;
         let places = first_samples.into_iter().enumerate().map(|(position, first_samples)| {
             let shares = modes.iter().filter(|_| mixed).map(|(_, shares)| shares[position]);
             Place::new(modal_bank::lane_gains(shares).collect(), first_samples, sample_rate_hz)
@@ -144,7 +147,7 @@ impl BodySlot {
         let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
         let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
-        let field = BodyField::new(model, &unit, &groups, sample_rate_hz)?;
+        let field = BodyField::new(model, &unit, &groups, levels, sample_rate_hz)?;
         let units = match (&field, mass_kg) {
             (Some(field), _) => Some(field.unit_motion().into()),
             (None, Some(mass_kg)) => Some(vec![(ANTINODE / mass_kg).sqrt(); plain.len()].into()),
@@ -158,7 +161,8 @@ impl BodySlot {
         let rub = rub.transpose()?.map(Box::new);
         let ones = vec![LaneGains([1.0; modal_bank::LANES]); groups.len()].into();
         Ok(Self {
-            bank: ModalBank::new(kernel, groups, states),
+            bank: ModalBank::new(kernel, groups, states).in_sections(&levels),
+            levels,
             places,
             field,
             rub,
@@ -193,7 +197,7 @@ impl BodySlot {
     ) {
         let pulse = &HertzPulse { impulse_n_s: self.strike_gain * pulse.impulse_n_s, ..*pulse };
         let end = pulse.end_sample(stamp.sample(), sample_rate_hz);
-        let driven = groups_at(mode_level, self.bank.groups());
+        let driven = self.levels[mode_level];
         let anywhere = self.field.as_mut().zip(spot.place.as_ref());
         let missing = match anywhere {
             Some((field, place)) => field.strike(place, pulse, stamp, driven),
@@ -330,7 +334,7 @@ impl BodySlot {
             }
         }
         let groups = self.bank.groups();
-        let driven = groups_at(terms.mode_level, groups);
+        let driven = self.levels[terms.mode_level];
         if let Some(rub) = self.rub.as_deref_mut().filter(|rub| rub.rubs()) {
             // Beside another input the only position of a body needs gains too.
             let plain = inputs[..count].iter_mut().filter(|input| input.gains.is_empty());

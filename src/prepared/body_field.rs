@@ -5,7 +5,7 @@
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner, groups_at};
+use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner, SheddingLevels};
 use crate::prepared::early::Sent;
 use crate::prepared::holding::{HeldModes, Holding};
 use crate::prepared::impulse_ring::ImpulseRing;
@@ -32,6 +32,8 @@ pub(crate) struct BodyField {
     missing: Box<[MissingSamples]>,
     /// The same for forces.
     force_taps: Box<[ForceTaps]>,
+    /// How many groups of the bank hear anything at each level of modes left out.
+    levels: SheddingLevels,
     holding: Holding,
     strikes: Box<[Struck]>,
     sliders: Box<[Slider]>,
@@ -55,6 +57,7 @@ impl BodyField {
         model: &ModalModel,
         modes: &[(usize, Mode)],
         groups: &[ModeGroup],
+        levels: SheddingLevels,
         sample_rate_hz: f64,
     ) -> Result<Option<Self>, DesignError> {
         let Some(shapes) = &model.shapes else { return Ok(None) };
@@ -75,6 +78,7 @@ impl BodyField {
             points: shapes.points_m.len(),
             force_taps: missing.iter().map(|missing| missing.first_samples().of_force()).collect(),
             missing,
+            levels,
             holding: Holding::new(shapes, modes, groups, sample_rate_hz),
             strikes: (0..STRIKES).map(|_| struck()).collect(),
             sliders: (0..SLIDERS).map(|_| Slider::new(groups.len())).collect(),
@@ -119,7 +123,7 @@ impl BodyField {
         let slider = &mut self.sliders[index];
         slider.be_at(owner, place, |gains| {
             fill(&self.motion, self.points, place, gains);
-            place_taps(&self.force_taps, gains)
+            place_taps(&self.force_taps, &self.levels, gains)
         });
         slider.add(sent.impulse_n_s, sent.force_n_s);
         true
@@ -205,8 +209,7 @@ impl BodyField {
 }
 
 /// What the bank leaves out of forces at a place with these gains.
-fn place_taps(modes: &[ForceTaps], gains: &[LaneGains]) -> PlaceTaps {
-    let groups = gains.len();
+fn place_taps(modes: &[ForceTaps], levels: &SheddingLevels, gains: &[LaneGains]) -> PlaceTaps {
     let (mut all, mut sum) = (NO_TAPS, NO_TAPS[0]);
     for (group, (modes, gains)) in modes.chunks(LANES).zip(gains).enumerate() {
         for (taps, gain) in modes.iter().zip(gains.0) {
@@ -214,10 +217,8 @@ fn place_taps(modes: &[ForceTaps], gains: &[LaneGains]) -> PlaceTaps {
                 *sum += f64::from(gain) * tap;
             }
         }
-        for (level, to) in all.iter_mut().enumerate() {
-            if groups_at(level, groups) == group + 1 {
-                *to = sum;
-            }
+        for (to, _) in all.iter_mut().zip(levels).filter(|(_, heard)| **heard == group + 1) {
+            *to = sum;
         }
     }
     all
@@ -277,7 +278,7 @@ mod tests {
         let modes: Vec<(usize, Mode)> = model.unit_modes().map(|(mode, _)| mode).enumerate().collect();
         let groups = design_groups(&model.modes, RATE_HZ, &GroupOptions::IMPULSE_RING);
         let groups: Box<[ModeGroup]> = groups.collect::<Result<_, _>>().unwrap();
-        let mut field = BodyField::new(&model, &modes, &groups, RATE_HZ).unwrap().unwrap();
+        let mut field = BodyField::new(&model, &modes, &groups, [groups.len(); 5], RATE_HZ).unwrap().unwrap();
         let states: Box<[GroupState]> = vec![GroupState::REST; groups.len()].into();
         let mut bank: Bank = ModalBank::new(Level::PORTABLE, groups, states);
         let (mut last, mut worst, mut place) = ([None; 6], 0.0_f32, None);

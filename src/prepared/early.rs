@@ -5,7 +5,7 @@
 //! are added up sample by sample, and the last of them are remembered by the place, so that no split into blocks changes a sample.
 
 use crate::model::modal_model::MAX_POSITIONS;
-use crate::prepared::bank::{MODE_LEVELS, groups_at};
+use crate::prepared::bank::{MODE_LEVELS, SheddingLevels};
 use asperity_dsp::DesignError;
 use asperity_dsp::modal_bank::{
     EARLY_HISTORY, FirstSamples, ForceTaps, LANES, MissingSamples, add_early_force,
@@ -97,19 +97,19 @@ impl EarlySamples {
 pub(crate) fn first_samples(
     modes: &[(Mode, [f32; MAX_POSITIONS])],
     places: usize,
-    groups: usize,
+    levels: &SheddingLevels,
     sample_rate_hz: f64,
 ) -> Result<Vec<[FirstSamples; MODE_LEVELS]>, DesignError> {
     let mut sums = vec![MissingSamples::NOTHING; places];
     let mut all = vec![[FirstSamples::NOTHING; MODE_LEVELS]; places];
-    for group in 0..groups {
-        for (mode, shares) in modes.chunks(LANES).nth(group).into_iter().flatten() {
+    for (group, modes) in modes.chunks(LANES).enumerate() {
+        for (mode, shares) in modes {
             let missing = MissingSamples::of(mode, sample_rate_hz)?;
             for (sum, share) in sums.iter_mut().zip(shares) {
                 sum.add(&missing, f64::from(*share));
             }
         }
-        for level in (0..MODE_LEVELS).filter(|level| groups_at(*level, groups) == group + 1) {
+        for level in (0..MODE_LEVELS).filter(|level| levels[*level] == group + 1) {
             for (place, sum) in all.iter_mut().zip(&sums) {
                 place[level] = sum.first_samples();
             }

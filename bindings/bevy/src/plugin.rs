@@ -35,7 +35,7 @@ pub struct AsperityPlugin {
 impl Default for AsperityPlugin {
     fn default() -> Self {
         // Blows of a physics engine reach 20 times full scale where they are heard, more where they are felt, and a sound card clips at 1.
-        let audio = vec![AudioBus { gain: 0.1, limit: true }];
+        let audio = vec![AudioBus { gain: 0.1, limit: true, ..AudioBus::default() }];
         let actuators = vec![ActuatorSettings { limit_peaks: true, ..ActuatorSettings::default() }];
         Self { config: Config { audio, actuators, ..Config::live(48_000.0) }, output: Output::default() }
     }

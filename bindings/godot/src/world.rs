@@ -339,7 +339,7 @@ impl AsperityWorld {
                 sample_rate_hz: rate_hz,
                 clock,
                 actuators: vec![felt; channels],
-                audio: vec![AudioBus { gain: self.gain, limit: true }],
+                audio: vec![AudioBus { gain: self.gain, limit: true, ..AudioBus::default() }],
                 ..Config::default()
             };
             return config.build().map_err(|error| error.to_string());

@@ -58,7 +58,7 @@ pub struct CaseLevel {
 }
 
 /// The chain of a preset with an exact contact at 16 times the rate.
-fn with_exact_contact(preset: EnginePreset) -> Chain {
+pub fn with_exact_contact(preset: EnginePreset) -> Chain {
     let integrator = Some(Integrator::ExactEvent);
     Chain { preset, integrator, oversampling: Some(INNER), ..Chain::default() }
 }
@@ -69,6 +69,8 @@ pub struct Reference {
     pub felt: Vec<f64>,
     /// At the inner ones.
     heard: Vec<f64>,
+    /// Of the contact, at the engine's samples: the pad's displacement, and the mean force over the sample that ends there.
+    pub contact: [Vec<f64>; 2],
 }
 
 impl Reference {
@@ -77,9 +79,23 @@ impl Reference {
     /// # Errors
     /// Never but by a defect.
     pub fn new(case: &Case, seed: u64, log: Option<&ContactLog>) -> Result<Self, CliError> {
-        let chain = Chain { inner_rows: true, ..with_exact_contact(EnginePreset::Accurate) };
-        let Take { haptic, impulse_n_s, inner_rate_hz, .. } = take(case, seed, &chain, log)?;
-        Ok(Self { felt: haptic, heard: rung(&impulse_n_s, inner_rate_hz) })
+        Self::excited_by(case, seed, log, None)
+    }
+
+    /// The same where this excites the body in place of the contact's force.
+    ///
+    /// # Errors
+    /// Never but by a defect.
+    pub fn excited_by(
+        case: &Case,
+        seed: u64,
+        log: Option<&ContactLog>,
+        excitation: Option<&'static str>,
+    ) -> Result<Self, CliError> {
+        let chain = Chain { inner_rows: true, excitation, ..with_exact_contact(EnginePreset::Accurate) };
+        let take = take(case, seed, &chain, log)?;
+        let (heard, contact) = (rung(&take.impulse_n_s, take.inner_rate_hz), contact_of(&take));
+        Ok(Self { felt: take.haptic, heard, contact })
     }
 
     /// What is heard at each of the engine's samples, so much later, s.
@@ -87,6 +103,18 @@ impl Reference {
         let later = later_s * SAMPLE_RATE_HZ * INNER as f64;
         (0..self.heard.len() / INNER).map(|n| between(&self.heard, (n * INNER) as f64 - later)).collect()
     }
+}
+
+/// Pad and force of a render with inner rows, at the engine's samples: where the pad is, and the mean force over the sample that ends there.
+pub fn contact_of(take: &Take) -> [Vec<f64>; 2] {
+    let every = (take.inner_rate_hz / take.rate_hz).round().max(1.0) as usize;
+    let mean = |n: usize| {
+        let end = (n * every + 1).min(take.force_n.len());
+        let over = &take.force_n[end.saturating_sub(every)..end];
+        over.iter().sum::<f64>() / over.len().max(1) as f64
+    };
+    let count = take.audio.len();
+    [take.pad_m.iter().step_by(every).copied().collect(), (0..count).map(mean).collect()]
 }
 
 /// A body under impulses as the tap tells them, in f64 and closed form.
@@ -118,7 +146,7 @@ fn rung(impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
 }
 
 /// By how much what a preset is heard of is behind, s: its forces are means over the inner sample that ends at a row.
-fn late_s(take: &Take) -> f64 {
+pub fn late_s(take: &Take) -> f64 {
     0.5 / take.inner_rate_hz
 }
 

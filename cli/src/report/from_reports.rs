@@ -4,9 +4,9 @@
 //! path is the hand's but for the filter's delay, which both have. On a grating waveforms are compared; on a rough plate, where no tracker
 //! knows the finger well enough for that, third-octave levels in frames of 100 ms.
 
-use super::SAMPLE_RATE_HZ;
-use super::cases::{Case, Chain, FROM_REPORTS, LENGTH_M, STROKE_S, Signal, Take, take};
+use super::cases::{CASES, Case, Chain, FROM_REPORTS, LENGTH_M, SEEDS, STROKE_S, Signal, Take, take};
 use super::resampled::after_the_lead_in;
+use super::{CaseError, Row, SAMPLE_RATE_HZ};
 use crate::error::CliError;
 use crate::measure::relative_error;
 use asperity::PathMode;
@@ -17,6 +17,8 @@ use serde::Serialize;
 const REPORT_RATE_HZ: f64 = 60.0;
 /// Of the reference.
 const DENSE_RATE_HZ: f64 = 2_000.0;
+const REFERENCE: &str = "the same mode, told of the same hand 2000 times a second: what 60 reports a second cost. On rough ground no path is near enough \
+                         for waveforms; there levels count (the table from 60 reports a second)";
 /// How far the hand goes, m.
 const REACH_M: f64 = 0.09;
 /// Frames in which levels are compared, s.
@@ -92,11 +94,52 @@ fn levels_db(samples: &[f64]) -> Vec<f64> {
     levels
 }
 
+/// Third-octave levels of a whole, 63 Hz–2 kHz: means over frames of [`FRAME_S`], dB.
+pub fn third_octaves_db(samples: &[f64]) -> Vec<f64> {
+    let (levels, bands) = (levels_db(samples), BANDS.count());
+    let frames = (levels.len() / bands).max(1) as f64;
+    let mean =
+        |band| levels.iter().skip(band).step_by(bands).map(|db| 10f64.powf(0.1 * db)).sum::<f64>() / frames;
+    (0..bands).map(|band| 10.0 * mean(band).max(1e-300).log10()).collect()
+}
+
 /// Median difference of levels, dB.
 fn median_apart_db(a: &[f64], b: &[f64]) -> f64 {
     let mut apart: Vec<f64> = levels_db(a).iter().zip(levels_db(b)).map(|(a, b)| (a - b).abs()).collect();
     apart.sort_by(f64::total_cmp);
     crate::measure::quantile(&apart, 0.5)
+}
+
+/// The path modes on the named cases: each against itself, told of the hand 2000 times a second, so that its delay is taken out.
+///
+/// # Errors
+/// Never but by a defect.
+pub fn rows() -> Result<Vec<Row>, CliError> {
+    let row = |(name, mode): (&'static str, PathMode)| {
+        let chain = Chain { path: Some(mode), ..Chain::default() };
+        let cases = CASES.iter().map(|case| {
+            let render = |rate_hz| take(case, *SEEDS.start(), &chain, Some(&log(case, rate_hz)));
+            let (found, truth) = (render(REPORT_RATE_HZ)?, render(DENSE_RATE_HZ)?);
+            let all = after_the_lead_in(truth.audio.len().min(found.audio.len()), SAMPLE_RATE_HZ);
+            let error = |signal: Signal| {
+                relative_error(
+                    found.signal(signal)[all.clone()].iter().copied(),
+                    &truth.signal(signal)[all.clone()],
+                )
+            };
+            Ok(CaseError {
+                name: case.name,
+                displacement: Some(error(Signal::Displacement)),
+                contact_force: Some(error(Signal::ContactForce)),
+                output: error(Signal::Felt).max(error(Signal::Heard)),
+            })
+        });
+        let cases = cases.collect::<Result<Vec<_>, CliError>>()?;
+        let (ns_per_sample, lag_s) = super::path::cost(mode)?;
+        let row = Row::on_cases(("path, on the cases", name), ns_per_sample, cases, REFERENCE);
+        Ok(Row { latency_ms: Some(1e3 * lag_s), ..row })
+    };
+    super::path::MODES.into_iter().map(row).collect()
 }
 
 /// Measures the path modes that do not wait.

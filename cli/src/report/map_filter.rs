@@ -1,5 +1,7 @@
 //! Map filters compared: the error of reading heights between the texels of a map.
 
+use super::cases::{Case, LENGTH_M};
+use super::through::Truth;
 use super::{BLOCK, Row, SAMPLE_RATE_HZ, refused};
 use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
@@ -30,12 +32,12 @@ enum Baseline {
 }
 
 impl Baseline {
-    fn read(self, map: &Raster, [x_m, y_m]: [f64; 2]) -> f64 {
-        let texels = SIDE as f64 / SIDE_M;
+    fn read(self, map: &Raster, width_m: f64, [x_m, y_m]: [f64; 2]) -> f64 {
+        let texels = map.width as f64 / width_m;
         let (x, y) = (x_m * texels - 0.5, y_m * texels - 0.5);
         let at = |i: f64, j: f64| {
-            let wrap = |k: f64| (k as i64).rem_euclid(SIDE as i64) as usize;
-            map.values[wrap(j) * SIDE + wrap(i)]
+            let wrap = |k: f64, size: usize| (k as i64).rem_euclid(size as i64) as usize;
+            map.values[wrap(j, map.height) * map.width + wrap(i, map.width)]
         };
         match self {
             Self::Nearest => at(x.round(), y.round()),
@@ -66,9 +68,9 @@ fn course() -> Course {
 }
 
 /// The engine's way.
-fn spline(map: &mut HeightMap, course: &Course) -> Vec<f64> {
+fn spline(map: &mut HeightMap, course: &Course, step_m: f64) -> Vec<f64> {
     let velocity_m_s = [course.velocity_m_s; BLOCK];
-    let footprint_m = [SPEED_M_S / SAMPLE_RATE_HZ; BLOCK];
+    let footprint_m = [step_m; BLOCK];
     let mut out = SurfaceBlock::default();
     let mut heights = Vec::with_capacity(course.position_m.len());
     for (index, part) in course.position_m.chunks(BLOCK).enumerate() {
@@ -108,17 +110,65 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
     for (choice, baseline) in
         [("nearest texel (not offered)", Baseline::Nearest), ("bilinear (not offered)", Baseline::Bilinear)]
     {
-        let read =
-            || -> Vec<f64> { course.position_m.iter().map(|place| baseline.read(&raster, *place)).collect() };
+        let read = || -> Vec<f64> {
+            course.position_m.iter().map(|place| baseline.read(&raster, SIDE_M, *place)).collect()
+        };
         let ns = ns_per_item(exact.len(), || {
             std::hint::black_box(read());
         });
         rows.push(row(choice, &read(), ns));
     }
-    let heights = spline(&mut map, &course);
+    let heights = spline(&mut map, &course, SPEED_M_S / SAMPLE_RATE_HZ);
     let ns = ns_per_item(exact.len(), || {
-        std::hint::black_box(spline(&mut map, &course));
+        std::hint::black_box(spline(&mut map, &course, SPEED_M_S / SAMPLE_RATE_HZ));
     });
     rows.push(row("cubic B-spline with slope and mip levels", &heights, ns));
     Ok(rows)
+}
+
+const CASES_REFERENCE: &str = "the equation that the map of the case is drawn from (2048 texels on 140 mm, 16 bits), through the same contact at 8 times \
+                               the rate; cases without a map have their own axis";
+
+/// The 16-bit map of a case, with a height of 1.
+fn map_of(case: &Case, seed: u64) -> Option<(Raster, f64)> {
+    let (heights, _, relief_m) = case.relief(seed)?;
+    let width = heights.len();
+    let row = heights.iter().map(|height| (height * 65_535.0).round() / 65_535.0).collect::<Vec<_>>();
+    Some((Raster { width, height: 4, values: row.repeat(4) }, relief_m))
+}
+
+/// The same on the named cases that have a map: what the contact makes of it.
+pub fn rows_on_cases() -> Result<Vec<Row>, CliError> {
+    let none = || refused("case: has no map; please report it");
+    let truth = Truth::new(|case| case.roughness().is_none(), &|case, seed, places_m, _| {
+        let (_, height, relief_m) = case.relief(seed).ok_or_else(none)?;
+        Ok(places_m.iter().map(|x| relief_m * height((x / LENGTH_M).rem_euclid(1.0))).collect())
+    })?;
+    let course_of = |case: &Case, places_m: &[f64]| Course {
+        position_m: places_m.iter().map(|x| [*x, 0.5 * LENGTH_M * 4.0 / 2048.0]).collect(),
+        velocity_m_s: [case.speed_m_s, 0.0],
+    };
+    let costs = rows()?;
+    let ns = |which: usize| costs.get(which).map_or(0.0, |row| row.ns_per_sample);
+    let row = |which: usize, name: &str, read: &super::through::Heights<'_>| {
+        truth.row(("map filter, on the cases", name.to_owned()), ns(which), CASES_REFERENCE, read)
+    };
+    let plain = |baseline: Baseline| {
+        move |case: &Case, seed: u64, places_m: &[f64], _: f64| {
+            let (map, relief_m) = map_of(case, seed).ok_or_else(none)?;
+            let at = |place: &[f64; 2]| relief_m * baseline.read(&map, LENGTH_M, *place);
+            Ok(course_of(case, places_m).position_m.iter().map(at).collect())
+        }
+    };
+    let engine = |case: &Case, seed: u64, places_m: &[f64], rate_hz: f64| {
+        let (raster, relief_m) = map_of(case, seed).ok_or_else(none)?;
+        let extent = Extent { width_m: LENGTH_M, height_m: LENGTH_M * 4.0 / 2048.0, relief_m };
+        let mut map = HeightMap::new(&raster, extent, Wrap::Repeat).map_err(refused)?;
+        Ok(spline(&mut map, &course_of(case, places_m), case.speed_m_s / rate_hz))
+    };
+    Ok(vec![
+        row(0, "nearest texel (not offered)", &plain(Baseline::Nearest))?,
+        row(1, "bilinear (not offered)", &plain(Baseline::Bilinear))?,
+        row(2, "cubic B-spline with slope and mip levels", &engine)?,
+    ])
 }

@@ -5,7 +5,9 @@
 
 mod blocks;
 mod cases;
+mod choices;
 mod end_to_end;
+mod excitation;
 mod from_reports;
 mod integrator;
 mod map_filter;
@@ -13,8 +15,11 @@ mod modes;
 mod noise;
 mod path;
 mod resampled;
+mod shed;
 mod stability;
 mod stability_picture;
+mod strokes;
+mod through;
 mod write;
 
 use crate::error::CliError;
@@ -65,6 +70,9 @@ pub struct Row {
     /// How far what comes out is behind the reports, ms; of a path.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latency_ms: Option<f64>,
+    /// Where modes of a struck body are left out: within this 99 of 100 cells of an ERB and 20 ms excite the ear as all modes do, dB.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excitation_db: Option<f64>,
 }
 
 /// A choice on a named case ([`cases`]).
@@ -72,10 +80,12 @@ pub struct Row {
 pub struct CaseError {
     /// Of the case.
     pub name: &'static str,
-    /// Of the pad's displacement.
-    pub displacement: f64,
-    /// Of the contact force.
-    pub contact_force: f64,
+    /// Of the pad's displacement, where the choice reaches it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<f64>,
+    /// Of the contact force, where the choice reaches it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_force: Option<f64>,
     /// Of what leaves the engine: the worse of felt and heard.
     pub output: f64,
 }
@@ -98,6 +108,7 @@ impl Row {
             worst: error,
             geometric_mean: error,
             latency_ms: None,
+            excitation_db: None,
         }
     }
 
@@ -108,7 +119,10 @@ impl Row {
         cases: Vec<CaseError>,
         reference: &'static str,
     ) -> Self {
-        let errors = || cases.iter().flat_map(|case| [case.displacement, case.contact_force, case.output]);
+        let errors = || {
+            let of = |case: &CaseError| [case.displacement, case.contact_force, Some(case.output)];
+            cases.iter().flat_map(of).flatten()
+        };
         let worst = errors().fold(0.0, f64::max);
         let mean = errors().map(|error| error.max(1e-16).ln()).sum::<f64>() / errors().count().max(1) as f64;
         let row = Self::of((axis, choice), ns_per_sample, worst, reference);
@@ -123,19 +137,28 @@ struct Report {
     rows: Vec<Row>,
     end_to_end: Vec<end_to_end::Preset>,
     from_reports: Vec<from_reports::Stroke>,
+    load: Vec<shed::LoadLevel>,
     stability: Vec<stability::Cell>,
 }
 
 type Axis = fn() -> Result<Vec<Row>, CliError>;
 
 /// Every axis, in the order of the report.
-const AXES: [Axis; 10] = [
+const AXES: [Axis; 18] = [
     integrator::rows,
+    choices::preset_rows,
+    choices::oversampling_rows,
+    choices::exciter_rows,
     path::rows,
+    from_reports::rows,
     map_filter::rows,
+    map_filter::rows_on_cases,
     noise::rows,
+    noise::rows_on_cases,
     modes::culling_rows,
+    modes::struck_culling_rows,
     modes::sleep_rows,
+    modes::stroked_sleep_rows,
     modes::shedding_rows,
     modes::struck_shedding_rows,
     modes::format_rows,
@@ -148,7 +171,7 @@ const AXES: [Axis; 10] = [
 /// When the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     ensure_folder(&options.output)?;
-    let mut progress = Progress::new("measuring", AXES.len() as u64 + 2);
+    let mut progress = Progress::new("measuring", AXES.len() as u64 + 3);
     let mut rows = Vec::new();
     for axis in AXES {
         rows.extend(axis()?);
@@ -157,10 +180,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let end_to_end = end_to_end::presets()?;
     let from_reports = from_reports::strokes()?;
     progress.advance(1);
+    let load = shed::levels()?;
+    progress.advance(1);
     let stability = stability::cells()?;
     drop(progress);
-    let report =
-        Report { cpu: cpu_name(), sample_rate_hz: SAMPLE_RATE_HZ, rows, end_to_end, from_reports, stability };
+    let (cpu, sample_rate_hz) = (cpu_name(), SAMPLE_RATE_HZ);
+    let report = Report { cpu, sample_rate_hz, rows, end_to_end, from_reports, load, stability };
     let json = serde_json::to_string_pretty(&report).map_err(CliError::told)?;
     let mut outputs = Outputs::new();
     let path = |name: &str| options.output.join(name);
@@ -171,13 +196,14 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     )?;
     let text = write::markdown(&report.cpu, &report.rows, &report.end_to_end)
         + &write::strokes_table(&report.from_reports)
+        + &write::load_table(&report.load)
         + &stability_picture::markdown(&report.stability);
     outputs.write(&path("speed_vs_error.md"), text.as_bytes())?;
     outputs.write(&path("stability.svg"), stability_picture::svg(&report.stability).as_bytes())?;
     let folder = path("cases");
     ensure_folder(&folder)?;
     for case in &CASES {
-        for (name, bytes) in cases::files(case, *SEEDS.start())? {
+        for (name, bytes) in cases::files(case, *SEEDS.start(), None)? {
             // The body is the same in all of them.
             if case.name == CASES[0].name || !name.ends_with("modes.json") {
                 outputs.write(&folder.join(name), &bytes)?;

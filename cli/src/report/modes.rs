@@ -1,13 +1,16 @@
 //! Modal bank: which modes are left out, and in which numbers the rest are computed.
 
-use super::{BLOCK, Row, SAMPLE_RATE_HZ, refused};
+use super::strokes::Strokes;
+use super::{BLOCK, Row, SAMPLE_RATE_HZ, excitation, refused};
 use crate::bench_scene;
 use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
 use asperity::Mode;
+use asperity_dsp::masking::Ranked;
 use asperity_dsp::modal_bank::{
-    Culling, GroupOptions, GroupState, Inputs, ModalBank, ModeGroup, ReferenceMode, ReferenceState,
-    SLEEP_AMPLITUDE, audible, design_groups, ringing_s, sort_by_decay,
+    Culling, GroupOptions, GroupState, Inputs, LOUDEST_DB_SPL, MODE_LEVELS, ModalBank, ModeGroup,
+    ReferenceMode, ReferenceState, SLEEP_AMPLITUDE, SheddingLevels, audible, design_groups, ringing_s,
+    shedding_order, sort_by_decay,
 };
 use asperity_dsp::rng::Rng;
 use asperity_dsp::simd::{Isa, Level};
@@ -15,14 +18,19 @@ use asperity_dsp::simd::{Isa, Level};
 const MODES: usize = 256;
 const SAMPLES: usize = 16_384;
 const OPTIONS: GroupOptions = GroupOptions { impulse_kernel_compensation: false, true_t60: true };
-const CULLING_REFERENCE: &str = "all 256 modes of a struck body, same numbers";
+const CULLING_REFERENCE: &str = "all 256 modes of a body under the strokes of the named cases, same numbers";
+const STRUCK_CULLING_REFERENCE: &str = "all 256 modes of a struck body, same numbers";
 const SLEEP_REFERENCE: &str = "256 modes of a body struck once that all ring on for 6 s";
-const SHEDDING_REFERENCE: &str = "all 256 modes of a body under white force";
+const SHEDDING_REFERENCE: &str =
+    "all 256 modes of a body under the strokes of the named cases; a masking model orders what is left out";
 const STRUCK_SHEDDING_REFERENCE: &str =
     "all 256 modes of a body struck once, 0.37 s; levels from 5 on leave no more modes out";
 /// What is rendered of a struck body that falls asleep.
 const SLEEP_SAMPLES: usize = 6 * 44_100;
-const FORMAT_REFERENCE: &str = "the paper's two-pole filter in f64, 256 modes, white force in every sample";
+const FORMAT_REFERENCE: &str =
+    "the paper's two-pole filter in f64, 256 modes under the strokes of the named cases";
+/// As the engine orders modes: between what a stroke sends in a sample and a strike, N·s.
+const TYPICAL_IMPULSE_N_S: f64 = 1e-4;
 
 /// A body whose modes differ in loudness by 100 dB.
 fn body() -> Vec<Mode> {
@@ -109,58 +117,106 @@ pub fn sleep_rows() -> Result<Vec<Row>, CliError> {
     Ok(rows)
 }
 
-/// A stroked body of which some groups no longer hear the force, as the governor's first levels leave it.
-pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
+/// The same under the strokes of the cases, in which little falls asleep.
+pub fn stroked_sleep_rows() -> Result<Vec<Row>, CliError> {
+    let strokes = Strokes::new()?;
     let mut modes = body();
-    modes.sort_by(|a, b| ringing_s(b, 1e-4).total_cmp(&ringing_s(a, 1e-4)));
+    modes.sort_by(|a, b| ringing_s(b, 1e-6).total_cmp(&ringing_s(a, 1e-6)));
     let groups = designed(&modes)?;
-    let impulses: Vec<f32> = white().into_iter().map(|u| 1e-6 * u).collect();
-    let run = |driven: usize| sleeping_bank(&groups, driven, SLEEP_AMPLITUDE, &impulses);
-    let reference: Vec<f64> = wide(run(groups.len())).collect();
-    let rows = (0..5).map(|level| {
-        let driven = groups.len() - groups.len() * level / 5;
-        Row::of(
-            ("load shedding", format!("level {level}: {driven} of {} groups", groups.len())),
-            ns(|| run(driven)),
-            relative_error(wide(run(driven)), &reference),
-            SHEDDING_REFERENCE,
+    let run = |threshold: f32, sent: &[f32]| sleeping_bank(&groups, groups.len(), threshold, sent);
+    let reference = strokes.heard(|sent| run(0.0, sent));
+    let rows = [-160.0, -120.0, -100.0, -80.0].into_iter().map(|level_db: f32| {
+        let threshold = 10f32.powf(level_db / 20.0);
+        let cases = strokes.errors(&strokes.heard(|sent| run(threshold, sent)), &reference);
+        let note = if threshold == SLEEP_AMPLITUDE { " (the engine)" } else { "" };
+        let ns = ns(|| run(threshold, &white().into_iter().map(|u| 1e-6 * u).collect::<Vec<_>>()));
+        Row::on_cases(
+            ("mode sleep, on the cases", format!("−{} dB{note}", -level_db)),
+            ns,
+            cases,
+            "256 modes under the strokes of the named cases that all ring on",
         )
     });
     Ok(rows.collect())
 }
 
-/// The same of a body that is struck once: a strike's brightness goes first, where under a steady force what goes first sounds least.
+/// A body in the order in which the engine leaves modes out, and how many groups hear at each level.
+fn in_order_of_need(modes: &[Mode]) -> (Vec<Mode>, SheddingLevels) {
+    let mut order = vec![Ranked::default(); modes.len()];
+    let levels = shedding_order(modes, TYPICAL_IMPULSE_N_S, LOUDEST_DB_SPL, &mut order);
+    (order.iter().map(|ranked| modes[ranked.index]).collect(), levels)
+}
+
+/// A stroked body of which some groups no longer hear the force, as the governor's first levels leave it.
+pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
+    let strokes = Strokes::new()?;
+    let (modes, levels) = in_order_of_need(&body());
+    let groups = designed(&modes)?;
+    let run = |driven: usize, sent: &[f32]| sleeping_bank(&groups, driven, SLEEP_AMPLITUDE, sent);
+    let reference = strokes.heard(|sent| run(groups.len(), sent));
+    let impulses: Vec<f32> = white().into_iter().map(|u| 1e-6 * u).collect();
+    let rows = (0..MODE_LEVELS).map(|level| {
+        let driven = levels[level];
+        let cases = strokes.errors(&strokes.heard(|sent| run(driven, sent)), &reference);
+        let name = format!("level {level}: {driven} of {} groups", groups.len());
+        let ns = ns(|| run(driven, &impulses));
+        let missed = strokes.heard_of("rough", |sent| run(driven, sent));
+        let excitation_db = missed.zip(strokes.heard_of("rough", |sent| run(groups.len(), sent)));
+        let excitation_db = excitation_db
+            .map(|(less, whole)| excitation::missed(&less, &whole, SAMPLE_RATE_HZ).excitation_db);
+        Row { excitation_db, ..Row::on_cases(("load shedding", name), ns, cases, SHEDDING_REFERENCE) }
+    });
+    Ok(rows.collect())
+}
+
+/// The same of a body that is struck once.
 pub fn struck_shedding_rows() -> Result<Vec<Row>, CliError> {
-    let mut modes = bench_scene::modes(MODES).modes;
-    modes.sort_by(|a, b| ringing_s(b, 1e-4).total_cmp(&ringing_s(a, 1e-4)));
+    let (modes, levels) = in_order_of_need(&bench_scene::modes(MODES).modes);
     let groups = designed(&modes)?;
     let impulses: Vec<f32> = strike().into_iter().map(|u| 1e-2 * u).collect();
     let run = |driven: usize| sleeping_bank(&groups, driven, SLEEP_AMPLITUDE, &impulses);
     let reference: Vec<f64> = wide(run(groups.len())).collect();
     let power = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
-    let rows = (0..5).map(|level| {
-        let driven = groups.len() - groups.len() * level / 5;
+    let rows = (0..MODE_LEVELS).map(|level| {
+        let driven = levels[level];
         let found: Vec<f64> = wide(run(driven)).collect();
         let louder_db = 10.0 * (power(&found) / power(&reference)).log10();
-        Row::of(
-            (
-                "load shedding, a strike",
-                format!("level {level}: {driven} of {} groups, {louder_db:+.1} dB", groups.len()),
-            ),
-            ns(|| run(driven)),
-            relative_error(found, &reference),
-            STRUCK_SHEDDING_REFERENCE,
-        )
+        let name = format!("level {level}: {driven} of {} groups, {louder_db:+.1} dB", groups.len());
+        let excitation_db = Some(excitation::missed(&found, &reference, SAMPLE_RATE_HZ).excitation_db);
+        let error = relative_error(found, &reference);
+        let row =
+            Row::of(("load shedding, a strike", name), ns(|| run(driven)), error, STRUCK_SHEDDING_REFERENCE);
+        Row { excitation_db, ..row }
     });
     Ok(rows.collect())
 }
 
-/// Measures what leaving modes out saves and costs.
+/// Measures what leaving modes out saves and costs under strokes.
 pub fn culling_rows() -> Result<Vec<Row>, CliError> {
-    let all = body();
+    let strokes = Strokes::new()?;
+    let whole = designed(&body())?;
+    let reference = strokes.heard(|sent| bank(&whole, Level::detect(), sent));
+    culled(|name, groups| {
+        let cases = strokes.errors(&strokes.heard(|sent| bank(groups, Level::detect(), sent)), &reference);
+        let ns = ns(|| bank(groups, Level::detect(), &strike()));
+        Row::on_cases(("mode culling", name), ns, cases, CULLING_REFERENCE)
+    })
+}
+
+/// The same of a body that is struck once.
+pub fn struck_culling_rows() -> Result<Vec<Row>, CliError> {
     let impulses = strike();
-    let kernel = Level::detect();
-    let reference: Vec<f64> = wide(bank(&designed(&all)?, kernel, &impulses)).collect();
+    let reference: Vec<f64> = wide(bank(&designed(&body())?, Level::detect(), &impulses)).collect();
+    culled(|name, groups| {
+        let run = || bank(groups, Level::detect(), &impulses);
+        let error = relative_error(wide(run()), &reference);
+        Row::of(("mode culling, a strike", name), ns(run), error, STRUCK_CULLING_REFERENCE)
+    })
+}
+
+/// A row for what each way to leave modes out keeps.
+fn culled(row: impl Fn(String, &[ModeGroup]) -> Row) -> Result<Vec<Row>, CliError> {
+    let all = body();
     let cullings = [
         ("none", Culling { level_db: f64::INFINITY, masking: false, ..Culling::default() }),
         ("below −80 dB", Culling { level_db: 80.0, masking: false, ..Culling::default() }),
@@ -175,14 +231,7 @@ pub fn culling_rows() -> Result<Vec<Row>, CliError> {
             let count = audible(&all, SAMPLE_RATE_HZ, &culling, &mut keep);
             let kept: Vec<Mode> =
                 all.iter().zip(&keep).filter(|(_, keep)| **keep).map(|(mode, _)| *mode).collect();
-            let groups = designed(&kept)?;
-            let found = bank(&groups, kernel, &impulses);
-            Ok(Row::of(
-                ("mode culling", format!("{name}: {count} of {MODES} modes")),
-                ns(|| bank(&groups, kernel, &impulses)),
-                relative_error(wide(found), &reference),
-                CULLING_REFERENCE,
-            ))
+            Ok(row(format!("{name}: {count} of {MODES} modes"), &designed(&kept)?))
         })
         .collect()
 }
@@ -219,6 +268,7 @@ fn direct_f32(modes: &[Mode], impulses: &[f32]) -> Vec<f32> {
 
 /// Measures number formats and instruction sets.
 pub fn format_rows() -> Result<Vec<Row>, CliError> {
+    let strokes = Strokes::new()?;
     let modes = bench_scene::modes(MODES).modes;
     let impulses = white();
     let filters = modes
@@ -226,32 +276,28 @@ pub fn format_rows() -> Result<Vec<Row>, CliError> {
         .map(|mode| ReferenceMode::new(mode, SAMPLE_RATE_HZ, &OPTIONS))
         .collect::<Result<Vec<_>, _>>()
         .map_err(refused)?;
-    let reference = direct_f64(&filters, &impulses);
-    let row = |choice: String, ns_per_sample: f64, error: f64| {
-        Row::of(("number format", choice), ns_per_sample, error, FORMAT_REFERENCE)
+    let reference = strokes.heard(|sent| direct_f64(&filters, sent));
+    let row = |choice: String, ns_per_sample: f64, found: &[Vec<f64>]| {
+        let cases = strokes.errors(found, &reference);
+        Row::on_cases(("number format", choice), ns_per_sample, cases, FORMAT_REFERENCE)
     };
+    let direct_ns = ns_per_item(SAMPLES, || {
+        std::hint::black_box(direct_f64(&filters, &impulses));
+    });
     let mut rows = vec![
-        row(
-            "direct form, f64 (the reference itself)".to_owned(),
-            ns_per_item(SAMPLES, || {
-                std::hint::black_box(direct_f64(&filters, &impulses));
-            }),
-            0.0,
-        ),
+        row("direct form, f64 (the reference itself)".to_owned(), direct_ns, &reference),
         row(
             "direct form, f32 (not offered)".to_owned(),
-            ns_per_item(SAMPLES, || {
-                std::hint::black_box(direct_f32(&modes, &impulses));
-            }),
-            relative_error(wide(direct_f32(&modes, &impulses)), &reference),
+            ns(|| direct_f32(&modes, &impulses)),
+            &strokes.heard(|sent| direct_f32(&modes, sent)),
         ),
     ];
     let groups = designed(&modes)?;
     for isa in Isa::ALL {
         if let Some(kernel) = Level::find(isa) {
-            let run = || bank(&groups, kernel, &impulses);
-            let error = relative_error(wide(run()), &reference);
-            rows.push(row(format!("delta form, f32, {isa:?}"), ns(run), error));
+            let ns = ns(|| bank(&groups, kernel, &impulses));
+            let found = strokes.heard(|sent| bank(&groups, kernel, sent));
+            rows.push(row(format!("delta form, f32, {isa:?}"), ns, &found));
         }
     }
     Ok(rows)

@@ -1,5 +1,7 @@
 //! Octaves of the micro-relief: those that the footprint cannot resolve are left out.
 
+use super::cases::Case;
+use super::through::Truth;
 use super::{BLOCK, Row, SAMPLE_RATE_HZ};
 use crate::error::CliError;
 use crate::measure::{ns_per_item, relative_error};
@@ -12,14 +14,24 @@ const ROUGHNESS: f64 = 0.5;
 const REFERENCE: &str = "all twelve octaves at the same places, which alias where the footprint is too long";
 
 fn heights(noise: &FractalNoise, position_m: &[[f64; 2]], footprint_m: f64) -> Vec<f64> {
-    let (footprints, roughness) = ([footprint_m; BLOCK], [ROUGHNESS; BLOCK]);
+    relief(noise, position_m, footprint_m, ROUGHNESS, RMS_AT_1_MM_M)
+}
+
+fn relief(
+    noise: &FractalNoise,
+    position_m: &[[f64; 2]],
+    footprint_m: f64,
+    roughness: f64,
+    rms_at_1_mm_m: f64,
+) -> Vec<f64> {
+    let (footprints, roughness) = ([footprint_m; BLOCK], [roughness; BLOCK]);
     let mut heights = vec![0.0; position_m.len()];
     for (places, out) in position_m.chunks(BLOCK).zip(heights.chunks_mut(BLOCK)) {
         let path = NoisePath { position_m: places, footprint_m: &footprints[..places.len()] };
         noise.add(
             &path,
             &roughness[..places.len()],
-            &OctaveWeights::pinned(RMS_AT_1_MM_M, f64::INFINITY),
+            &OctaveWeights::pinned(rms_at_1_mm_m, f64::INFINITY),
             out,
         );
     }
@@ -57,4 +69,35 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
         measure(choice, &widest, speed_m_s, speed_m_s / SAMPLE_RATE_HZ);
     }
     Ok(rows)
+}
+
+/// Micro-relief of the cases, m.
+const CASE_RMS_AT_1_MM_M: f64 = 2.2e-5;
+const CASES_REFERENCE: &str = "the relief that a footprint at the engine's own rate leaves, sampled at 8 times that rate, through the same contact; cases \
+                               without micro-relief have their own axis";
+
+/// The same on the named cases that have micro-relief: what the contact makes of it.
+pub fn rows_on_cases() -> Result<Vec<Row>, CliError> {
+    let read = |level: Option<Level>, footprints: f64| {
+        move |case: &Case, seed: u64, places_m: &[f64], _: f64| {
+            let noise = FractalNoise::new(seed);
+            let noise = level.map_or(noise.clone(), |level| noise.on(level));
+            let places: Vec<[f64; 2]> = places_m.iter().map(|x| [*x, 0.017]).collect();
+            let footprint_m = footprints * case.speed_m_s / SAMPLE_RATE_HZ;
+            let roughness = case.roughness().unwrap_or(0.0);
+            Ok(relief(&noise, &places, footprint_m, roughness, CASE_RMS_AT_1_MM_M))
+        }
+    };
+    let truth = Truth::new(|case| case.roughness().is_some(), &read(None, 1.0))?;
+    let costs = rows()?;
+    let ns = |which: usize| costs.get(which).map_or(0.0, |row| row.ns_per_sample);
+    let row = |ns: f64, name: &str, heights: &super::through::Heights<'_>| {
+        truth.row(("noise octaves, on the cases", name.to_owned()), ns, CASES_REFERENCE, heights)
+    };
+    Ok(vec![
+        row(ns(0), "12 octaves, portable code (not offered)", &read(Some(Level::PORTABLE), 0.0))?,
+        row(ns(1), "12 octaves, whatever passes (not offered)", &read(None, 0.0))?,
+        row(ns(2), "by footprint (the engine)", &read(None, 1.0))?,
+        row(ns(3), "by twice the footprint (not offered)", &read(None, 2.0))?,
+    ])
 }

@@ -19,6 +19,14 @@ const REACH_M: f64 = 0.1;
 const REFERENCE: &str =
     "the hand's true velocity, delayed by the mode's own lag, by how the hand is reported";
 
+/// Every mode, as on the command line.
+pub const MODES: [(&str, PathMode); 4] = [
+    ("extrapolate", PathMode::Extrapolate),
+    ("hold", PathMode::Hold),
+    ("hermite", PathMode::Hermite),
+    ("band-limited", PathMode::BandLimited),
+];
+
 /// A reach: when it begins, how long it takes, from where and how far.
 struct Reach {
     begin_s: f64,
@@ -88,14 +96,19 @@ fn velocities(design: &TrajectoryDesign, events: &[PathEvent]) -> Vec<f64> {
     out
 }
 
+/// What a mode costs a sample where velocities are reported, and by how much it is behind, s.
+pub fn cost(mode: PathMode) -> Result<(f64, f64), CliError> {
+    let design = TrajectoryDesign::new(mode, 30.0, SAMPLE_RATE_HZ, [f64::INFINITY; 2]).map_err(refused)?;
+    let events = events(&reaches(), true, 0.0);
+    let count = (SECONDS * SAMPLE_RATE_HZ) as usize;
+    let ns = ns_per_item(count, || {
+        std::hint::black_box(velocities(&design, &events));
+    });
+    Ok((ns, design.lag_s()))
+}
+
 /// Measures the axis: a row for each mode and way of reporting.
 pub fn rows() -> Result<Vec<Row>, CliError> {
-    let modes = [
-        ("extrapolate", PathMode::Extrapolate),
-        ("hold", PathMode::Hold),
-        ("hermite", PathMode::Hermite),
-        ("band-limited", PathMode::BandLimited),
-    ];
     let reports = [
         ("", true, 0.0),
         (", 50 µm of noise", true, NOISE_M),
@@ -104,7 +117,7 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
     ];
     let reaches = reaches();
     let mut rows = Vec::new();
-    for (name, mode) in modes {
+    for (name, mode) in MODES {
         let design =
             TrajectoryDesign::new(mode, 30.0, SAMPLE_RATE_HZ, [f64::INFINITY; 2]).map_err(refused)?;
         for (how, with_velocity, noise_m) in reports {

@@ -3,25 +3,58 @@
 use super::design::{GRID_SAMPLES, GroupState, ModeGroup};
 use super::job::{Input, MAX_INPUTS};
 use super::kernel::Kernel;
+use super::shedding::{MODE_LEVELS, SheddingLevels};
+use core::ops::Range;
 
 /// Inputs of an ordinary call.
 const FEW_INPUTS: usize = 4;
 
-/// How many leading groups ring.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// Which groups ring: of each section of the bank, one between two levels of modes left out, how many leading ones. Within a section what
+/// rings longest stands first, and the sections stand in the order of need ([`super::shedding_order`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Awake {
-    groups: usize,
+    /// Where the sections begin, and where the last ends.
+    bounds: [usize; MODE_LEVELS + 1],
+    groups: [usize; MODE_LEVELS],
+    /// Whether a section is rendered together with the one behind it. It changes on the grid only, because groups that are rendered together
+    /// share what a turn that is cut keeps.
+    joined: [bool; MODE_LEVELS],
 }
 
 impl Awake {
-    /// So many groups ring.
-    pub(super) const fn of(groups: usize) -> Self {
-        Self { groups }
+    /// As states are, where modes are left out at these levels.
+    pub(super) fn of(states: &[GroupState], levels: &SheddingLevels) -> Self {
+        let mut bounds = [0; MODE_LEVELS + 1];
+        for (section, level) in (1..MODE_LEVELS).zip((1..MODE_LEVELS).rev()) {
+            bounds[section] = levels[level].clamp(bounds[section - 1], states.len());
+        }
+        bounds[MODE_LEVELS] = states.len();
+        let mut awake = Self { bounds, groups: [0; MODE_LEVELS], joined: [true; MODE_LEVELS] };
+        for (groups, ends) in awake.groups.iter_mut().zip(bounds.windows(2)) {
+            let states = &states[ends[0]..ends[1]];
+            *groups = states.iter().rposition(|state| !state.is_at_rest()).map_or(0, |last| last + 1);
+        }
+        awake.join();
+        awake
     }
 
-    /// Groups that are rendered at the moment.
-    pub(super) const fn groups(&self) -> usize {
-        self.groups
+    /// Nothing rings any more.
+    pub(super) fn sleep(&mut self) {
+        (self.groups, self.joined) = ([0; MODE_LEVELS], [true; MODE_LEVELS]);
+    }
+
+    /// How many leading groups it takes to have all that are rendered at the moment.
+    pub(super) fn groups(&self) -> usize {
+        let last = self.groups.iter().rposition(|groups| *groups > 0);
+        last.map_or(0, |section| self.bounds[section] + self.groups[section])
+    }
+
+    /// A section whose groups all ring goes on in the one behind, and so does one that sleeps before one that sleeps.
+    fn join(&mut self) {
+        for (section, joined) in self.joined.iter_mut().enumerate() {
+            let (awake, next) = (self.groups[section], self.groups.get(section + 1).copied().unwrap_or(0));
+            *joined = awake == self.bounds[section + 1] - self.bounds[section] || (awake == 0 && next == 0);
+        }
     }
 
     /// Renders what rings, skipping what sleeps: groups wake with the first impulse that is not zero and are settled on the absolute
@@ -51,37 +84,94 @@ impl Awake {
         out: &mut [f32],
     ) {
         let Bank { kernel, groups, states, driven, threshold } = bank;
+        let all = groups.len().min(states.len());
+        let (groups, states, driven) = (&groups[..all], &mut states[..all], driven.min(all));
         let mut heard = [Input { impulses: &[], gains: &[] }; MOST];
         let heard = &mut heard[..inputs.len().min(MOST)];
         let samples = inputs.iter().fold(out.len(), |n, input| n.min(input.impulses.len()));
-        let driven = driven.min(groups.len()).min(states.len());
         let mut at = 0;
         while at < samples {
             let now = first_sample.wrapping_add(at as u64);
             let len = ((GRID_SAMPLES - now % GRID_SAMPLES) as usize).min(samples - at);
-            for (heard, input) in heard.iter_mut().zip(inputs) {
-                *heard = Input { impulses: &input.impulses[at..at + len], gains: input.gains };
+            let part = at..at + len;
+            if self.sleeps(driven)
+                && inputs[..heard.len()].iter().any(|input| is_struck(&input.impulses[part.clone()]))
+            {
+                self.wake(driven);
             }
-            let y = &mut out[at..at + len];
-            if self.groups < driven && heard.iter().any(|input| is_struck(input.impulses)) {
-                self.groups = driven;
-            }
-            let awake = self.groups.min(groups.len()).min(states.len());
-            let (groups, states) = (&groups[..awake], &mut states[..awake]);
-            let driven = driven.min(awake);
-            let (deaf, deaf_states) = (&groups[driven..], &mut states[driven..]);
-            if !deaf.is_empty() {
-                kernel.render(now, deaf, deaf_states, &SILENCE[..len], y);
-            }
-            let (groups_heard, states_heard) = (&groups[..driven], &mut states[..driven]);
-            match heard {
-                [input] if shared => kernel.render(now, groups_heard, states_heard, input.impulses, y),
-                _ => kernel.render_mixed(now, groups_heard, states_heard, heard, y),
+            // Several runs are added up first: what `out` holds already must not come between them, or bits would depend on who rings first.
+            let (mut together, several) = (SILENCE, self.takes_several_calls(driven));
+            let y = if several { &mut together[..len] } else { &mut out[part.clone()] };
+            self.each_run(|run| {
+                let (to_hear, deaf) = (run.start..run.end.min(driven), run.start.max(driven)..run.end);
+                if !deaf.is_empty() {
+                    kernel.render(now, &groups[deaf.clone()], &mut states[deaf], &SILENCE[..len], y);
+                }
+                if to_hear.is_empty() {
+                    return;
+                }
+                for (heard, input) in heard.iter_mut().zip(inputs) {
+                    let gains = input.gains.get(to_hear.start..).unwrap_or_default();
+                    *heard = Input { impulses: &input.impulses[part.clone()], gains };
+                }
+                let (groups, states) = (&groups[to_hear.clone()], &mut states[to_hear]);
+                match heard {
+                    [input] if shared => kernel.render(now, groups, states, input.impulses, y),
+                    _ => kernel.render_mixed(now, groups, states, heard, y),
+                }
+            });
+            if several {
+                out[part].iter_mut().zip(&together).for_each(|(sum, x)| *sum += x);
             }
             if now.wrapping_add(len as u64).is_multiple_of(GRID_SAMPLES) {
-                self.groups = kernel.settle(groups, states, threshold);
+                for (from, awake) in self.bounds.iter().zip(&mut self.groups) {
+                    let ringing = *from..from + *awake;
+                    *awake = kernel.settle(&groups[ringing.clone()], &mut states[ringing], threshold);
+                }
+                self.join();
             }
             at += len;
+        }
+    }
+
+    /// Whether any of the first `driven` groups sleeps.
+    fn sleeps(&self, driven: usize) -> bool {
+        let mut sections = self.groups.iter().zip(self.bounds.windows(2));
+        sections.any(|(awake, ends)| ends[0] + awake < ends[1].min(driven))
+    }
+
+    /// Wakes the first `driven` groups.
+    fn wake(&mut self, driven: usize) {
+        for (awake, ends) in self.groups.iter_mut().zip(self.bounds.windows(2)) {
+            *awake = (*awake).max(driven.clamp(ends[0], ends[1]) - ends[0]);
+        }
+    }
+
+    /// Whether more than one run is rendered, or one that hears in part.
+    fn takes_several_calls(&self, driven: usize) -> bool {
+        let mut calls = 0;
+        self.each_run(|run| calls += usize::from(run.start < driven) + usize::from(run.end > driven));
+        calls > 1
+    }
+
+    /// Groups that are rendered together, run after run.
+    fn each_run(&self, mut render: impl FnMut(Range<usize>)) {
+        let mut section = 0;
+        while section < MODE_LEVELS {
+            let (start, mut end) = (self.bounds[section], self.bounds[section]);
+            loop {
+                if self.groups[section] > 0 {
+                    end = self.bounds[section] + self.groups[section];
+                }
+                if !self.joined[section] || section + 1 == MODE_LEVELS {
+                    break;
+                }
+                section += 1;
+            }
+            if start < end {
+                render(start..end);
+            }
+            section += 1;
         }
     }
 }
@@ -91,7 +181,7 @@ impl Awake {
 pub(super) struct Bank<'a> {
     /// The instructions.
     pub(super) kernel: Kernel,
-    /// The modes, slowest decay first.
+    /// The modes, in the order of need.
     pub(super) groups: &'a [ModeGroup],
     /// Their states.
     pub(super) states: &'a mut [GroupState],

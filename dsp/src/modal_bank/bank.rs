@@ -11,6 +11,7 @@ use super::ahead::{self, AheadGroup};
 use super::awake::Awake;
 use super::design::{GRID_SAMPLES, GroupState, LaneGains, ModeGroup};
 use super::kernel::Kernel;
+use super::shedding::{MODE_LEVELS, SheddingLevels};
 use super::{Input, SLEEP_AMPLITUDE, retune, sleep};
 use crate::simd::Level;
 
@@ -60,11 +61,19 @@ pub struct ModalBank<G, S> {
 impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalBank<G, S> {
     /// A bank as its states say. Groups beyond the states are silent.
     ///
-    /// Modes are best in falling order of [`ringing_s`](super::ringing_s), so that the groups that still ring are the first ones.
+    /// Modes are best in falling order of [`ringing_s`](super::ringing_s), so that the groups that still ring are the first ones, or in the order
+    /// of [`shedding_order`](super::shedding_order) and [`in_sections`](Self::in_sections).
     pub fn new(level: Level, groups: G, states: S) -> Self {
-        let at_rest = states.as_ref().iter().rposition(|state| !state.is_at_rest());
-        let awake = Awake::of(at_rest.map_or(0, |last| last + 1));
+        let count = groups.as_ref().len().min(states.as_ref().len());
+        let awake = Awake::of(&states.as_ref()[..count], &[count; MODE_LEVELS]);
         Self { kernel: Kernel(level), groups, states, awake, threshold: SLEEP_AMPLITUDE }
+    }
+
+    /// Falls asleep section by section, between each two levels at which groups are left out, because in each what rings longest stands first.
+    #[must_use]
+    pub fn in_sections(self, levels: &SheddingLevels) -> Self {
+        let awake = Awake::of(&self.states.as_ref()[..self.groups()], levels);
+        Self { awake, ..self }
     }
 
     /// A mode is put exactly to rest once its amplitude is below this, in units of the output; 0 lets it ring on to the last bit. Without it,
@@ -110,7 +119,7 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
     /// Forgets all that rings.
     pub fn silence(&mut self) {
         self.states.as_mut().fill(GroupState::REST);
-        self.awake = Awake::default();
+        self.awake.sleep();
     }
 
     /// Groups of [`LANES`](super::LANES) modes.
@@ -118,7 +127,7 @@ impl<G: AsRef<[ModeGroup]>, S: AsRef<[GroupState]> + AsMut<[GroupState]>> ModalB
         self.groups.as_ref().len().min(self.states.as_ref().len())
     }
 
-    /// How many leading groups are rendered at the moment; the rest sleep until the next impulse.
+    /// How many leading groups it takes to have all that are rendered at the moment; the rest sleep until the next impulse.
     pub fn awake(&self) -> usize {
         self.awake.groups()
     }

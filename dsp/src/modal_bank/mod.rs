@@ -70,6 +70,7 @@ mod kernel;
 mod reference;
 mod retune;
 mod set;
+mod shedding;
 mod sleep;
 mod sums;
 mod vector;
@@ -85,6 +86,7 @@ pub use early_force::{EARLY_HISTORY, ForceTaps, add_early_force};
 pub use first_samples::{FirstSamples, MissingSamples};
 pub use job::{Input, MAX_INPUTS};
 pub use reference::{ReferenceMode, ReferenceState};
+pub use shedding::{LOUDEST_DB_SPL, MODE_LEVELS, RANKED, SAFETY_DB, SheddingLevels, shedding_order};
 pub use sleep::{SLEEP_AMPLITUDE, ringing_s};
 
 /// Modes in a group.

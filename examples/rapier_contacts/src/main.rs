@@ -91,7 +91,7 @@ struct Heard {
 fn engine(clock: ClockMode) -> Result<(Scene, Renderer, Names, Adapter), Box<dyn Error>> {
     let actuators = vec![ActuatorSettings::default(); 2];
     // A dropped ball is fifty times louder than a finger; a sound card clips at ±1.
-    let audio = vec![AudioBus { gain: 0.1, limit: true }];
+    let audio = vec![AudioBus { gain: 0.1, limit: true, ..AudioBus::default() }];
     let config = Config { clock, sample_rate_hz: RATE_HZ, actuators, audio, ..Config::default() };
     let asperity::Engine { mut scene, renderer, .. } = config.build()?;
     let mut names = Names::default();

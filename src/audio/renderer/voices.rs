@@ -5,6 +5,7 @@ use super::outputs::HapticChannel;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::occupied::Occupied;
 use crate::audio::seat::Seat;
+use crate::audio::stand_in::StandIns;
 use crate::audio::voice::{At, Company, Member, Phase, Scratch, Shared, Stretch, Voice, VoiceBlock};
 use crate::link::stats::Counters;
 use crate::link::tap::Tap;
@@ -41,6 +42,7 @@ struct Gathering<'a> {
     channels: &'a mut [HapticChannel],
     bodies: &'a mut [BodySeat],
     placed: &'a [Option<StrikePlace>],
+    stand_ins: &'a mut StandIns,
     collisions: u64,
     shortened: u64,
     resets: u64,
@@ -86,6 +88,11 @@ impl Gathering<'_> {
             self.bodies[holder.index()].touch(holder, 0, out.sent(n), -1.0);
         }
         if let Some((body, slot)) = touched {
+            if self.stand_ins.are_on() {
+                let sent = out.sent(n);
+                let sent = [sent.impulse_n_s, sent.force_n_s];
+                self.stand_ins.hear(index, voice.surface, self.at.position, sent);
+            }
             let spot = Spot { place: self.placed[index], position: slot.surface.strike_position };
             self.bodies[body.index()].touch_at(body, owner, &spot, out.sent(n));
         }
@@ -126,6 +133,7 @@ impl Renderer {
             channels: &mut self.channels,
             bodies: &mut self.bodies,
             placed: &self.placed,
+            stand_ins: &mut self.stand_ins,
             collisions: 0,
             shortened: 0,
             resets: 0,
@@ -171,6 +179,9 @@ impl Renderer {
             render(&mut company, &mut gathering);
         }
         gathering.count(&self.counters);
+        if self.stand_ins.are_on() {
+            self.render_crowds(n);
+        }
         let channels = &mut self.channels;
         self.blows.render(&self.shared, self.position, n, |channel, output, moves| {
             let HapticChannel { output: design, sum, .. } = &mut channels[channel];

@@ -26,6 +26,17 @@ const TREND_S: f64 = 0.025;
 const LEAD_IN_S: f64 = 64.0 / 44_100.0;
 
 impl Voice {
+    /// How hard it presses at its last sample, N, and where it goes, m/s.
+    pub(crate) fn going(&self) -> (f64, [f64; 2]) {
+        (self.path.last.normal_force_n, self.path.last.velocity_m_s)
+    }
+
+    /// Where it is on a surface of this size.
+    pub(crate) fn uv(&self, [width_m, height_m]: [f64; 2]) -> [f64; 2] {
+        let [x_m, y_m] = self.path.last.position_m;
+        [x_m / width_m, y_m / height_m]
+    }
+
     /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed. `at` begins at the stamp.
     pub(crate) fn begin(
         &mut self,

@@ -11,8 +11,12 @@ use crate::model::strike_field::StrikeField;
 use crate::prepared::body::BodySlot;
 use crate::prepared::probe::colliding_kg;
 use crate::prepared::stroking::Stroking;
+use asperity_dsp::modal_bank::LOUDEST_DB_SPL;
 use asperity_dsp::{DesignError, limits};
 use std::sync::Arc;
+
+/// Levels at which the order of modes is asked for, dB SPL: between a whisper and what hurts.
+const HEARD_DB_SPL: (f64, f64) = (30.0, 100.0);
 
 impl Scene {
     /// Adds a body that rings: a [`Body`]; or a [`ModalModel`](crate::ModalModel), which becomes a body of PLA on the first bus.
@@ -88,7 +92,7 @@ impl Scene {
         let mass_kg = body.mass_kg.map(|kg| within("mass_kg", kg, limits::material::MASS_KG)).transpose()?;
         let rubs_on = self.surfaces.iter().any(|(_, known)| known.body == Some(id) && known.rubs);
         let heard = audible.as_ref().unwrap_or(model);
-        let body = BodySlot::new(heard, mass_kg, self.kernel, rate, inner)?;
+        let body = BodySlot::new(heard, mass_kg, self.loudest_db_spl(body), self.kernel, (rate, inner))?;
         let body = Box::new(body.struck_with(strike_gain));
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
@@ -99,6 +103,17 @@ impl Scene {
         }
         let stroking = self.stroking(&known)?;
         Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
+    }
+
+    /// Sound pressure level of a body's loudest mode under the strike that its modes stand for, dB; where nobody knows, that of speech.
+    fn loudest_db_spl(&self, body: &Body) -> f64 {
+        let loudest = body.model.modes.iter().fold(0.0, |most, mode| f64::max(most, mode.amplitude.abs()));
+        let known = self
+            .config
+            .audio
+            .get(body.bus)
+            .and_then(|bus| bus.db_spl(loudest * body.gain * body.strike_gain));
+        known.map_or(LOUDEST_DB_SPL, |db| db.clamp(HEARD_DB_SPL.0, HEARD_DB_SPL.1))
     }
 
     /// How strokes excite a body.

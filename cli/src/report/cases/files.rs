@@ -40,7 +40,8 @@ pub fn plate() -> ModalModel {
 }
 
 /// The scene file: everything that a re-integration has to know stands in it.
-fn toml(case: &Case, seed: u64) -> String {
+fn toml(case: &Case, seed: u64, excitation: Option<&str>) -> String {
+    let excitation = excitation.unwrap_or("force");
     let name = case.name;
     let height_m = LENGTH_M * ROWS as f64 / TEXELS as f64;
     let ground = match case.ground.map(seed) {
@@ -67,7 +68,7 @@ fn toml(case: &Case, seed: u64) -> String {
          width_m = {LENGTH_M}\n\
          height_m = {height_m}\n\
          wrap = \"repeat\"\n\
-         excitation = \"force\"\n\n\
+         excitation = \"{excitation}\"\n\n\
          [probe]                            # a fingertip of constant stiffness\n\
          pad_mass_kg = 0.15e-3\n\
          pad_stiffness_n_m = 1000.0\n\
@@ -133,14 +134,14 @@ fn log(case: &Case) -> ContactLog {
 ///
 /// # Errors
 /// Never but by a defect.
-pub fn files(case: &Case, seed: u64) -> Result<Vec<(String, Vec<u8>)>, CliError> {
+pub fn files(case: &Case, seed: u64, excitation: Option<&str>) -> Result<Vec<(String, Vec<u8>)>, CliError> {
     let name = case.name;
     let mut lines = Vec::new();
     log(case).write(&mut lines).map_err(CliError::told)?;
     let mut files = vec![
         (MODES.to_owned(), plate().to_json().into_bytes()),
         (format!("{name}.jsonl"), lines),
-        (format!("{name}.toml"), toml(case, seed).into_bytes()),
+        (format!("{name}.toml"), toml(case, seed, excitation).into_bytes()),
     ];
     if let Some((heights, _)) = case.ground.map(seed) {
         let grey: Vec<u16> = heights.iter().map(|height| (height * 65_535.0).round() as u16).collect();
@@ -153,9 +154,9 @@ pub fn files(case: &Case, seed: u64) -> Result<Vec<(String, Vec<u8>)>, CliError>
 ///
 /// # Errors
 /// As [`files`].
-pub fn memory(case: &Case, seed: u64) -> Result<(Memory, ContactLog), CliError> {
+pub fn memory(case: &Case, seed: u64, excitation: Option<&str>) -> Result<(Memory, ContactLog), CliError> {
     let mut memory = Memory::new();
-    for (name, bytes) in files(case, seed)? {
+    for (name, bytes) in files(case, seed, excitation)? {
         memory.add(Path::new(&name), bytes);
     }
     Ok((memory, log(case)))

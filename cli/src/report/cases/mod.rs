@@ -91,6 +91,29 @@ pub const FROM_REPORTS: [Case; 3] = [
     Case { name: "rough plate", ground: Ground::Rough(0.5), speed_m_s: 0.1, force_n: 0.5 },
 ];
 
+/// Heights over places.
+type Height = Box<dyn Fn(f64) -> f64>;
+
+impl Case {
+    /// The ground as a map along the stroke, 0–1, the equation that the map is drawn from, and the height of 1 over 0, m.
+    pub fn relief(&self, seed: u64) -> Option<(Vec<f64>, Height, f64)> {
+        let (heights, _) = self.ground.map(seed)?;
+        self.ground.height(seed).map(|(height, relief_m)| (heights, height, relief_m))
+    }
+
+    /// Roughness of its micro-relief, where that is all there is.
+    pub fn roughness(&self) -> Option<f64> {
+        self.ground.roughness()
+    }
+
+    /// Places along u at this rate, m, from the beginning of a render to the finger's going.
+    pub fn places_m(&self, rate_hz: f64) -> Vec<f64> {
+        let (begin_s, end_s) = STROKE_S;
+        let at = |n: usize| 0.1 * LENGTH_M + self.speed_m_s * (n as f64 / rate_hz - begin_s);
+        (0..(end_s * rate_hz) as usize).map(at).collect()
+    }
+}
+
 impl Ground {
     /// Roughness of the overlay; none where a map is all there is.
     fn roughness(self) -> Option<f64> {
@@ -102,8 +125,14 @@ impl Ground {
 
     /// The heights of a map along the stroke, 0–1, and their height of 1 over 0, m.
     fn map(self, seed: u64) -> Option<(Vec<f64>, f64)> {
-        let mut rng = Rng::new(seed);
+        let (height, relief_m) = self.height(seed)?;
         let places = (0..TEXELS).map(|texel| (texel as f64 + 0.5) / TEXELS as f64);
+        Some((places.map(height).collect(), relief_m))
+    }
+
+    /// Height at a share of the map's length, 0–1, as the map is drawn from it, and the height of 1 over 0, m.
+    fn height(self, seed: u64) -> Option<(Height, f64)> {
+        let mut rng = Rng::new(seed);
         match self {
             Self::Rough(_) => None,
             Self::Waves { periods: (fewest, most), count, amplitude_m } => {
@@ -113,20 +142,20 @@ impl Ground {
                         [periods, rng.uniform()]
                     })
                     .collect();
-                let height = |x: f64| -> f64 {
+                let height = move |x: f64| -> f64 {
                     waves.iter().map(|[periods, phase]| (2.0 * PI * (periods * x + phase)).sin()).sum()
                 };
                 let relief_m = 2.0 * amplitude_m * count as f64;
-                Some((places.map(|x| 0.5 + 0.5 * height(x) / count as f64).collect(), relief_m))
+                Some((Box::new(move |x| 0.5 + 0.5 * height(x) / count as f64), relief_m))
             }
             Self::Teeth { about, height_m, fall } => {
                 let teeth = about as f64 - 3.0 + (6.0 * rng.uniform()).round();
                 let phase = rng.uniform();
-                let height = |x: f64| {
+                let height = move |x: f64| {
                     let along = (teeth * x + phase).fract();
                     if along < 1.0 - fall { along / (1.0 - fall) } else { (1.0 - along) / fall }
                 };
-                Some((places.map(height).collect(), height_m))
+                Some((Box::new(height), height_m))
             }
         }
     }

@@ -23,6 +23,8 @@ pub struct Chain {
     pub oversampling: Option<usize>,
     /// None: extrapolate.
     pub path: Option<PathMode>,
+    /// What excites the body, in place of the contact's force.
+    pub excitation: Option<&'static str>,
     /// Rows of the contact at the rate inside.
     pub inner_rows: bool,
 }
@@ -99,7 +101,7 @@ impl Tap for Take {
 /// # Errors
 /// Never but by a defect.
 pub fn take(case: &Case, seed: u64, chain: &Chain, log: Option<&ContactLog>) -> Result<Take, CliError> {
-    let (files, own) = memory(case, seed)?;
+    let (files, own) = memory(case, seed, chain.excitation)?;
     let file =
         SceneFile::load_from(&files, &PathBuf::from(format!("{}.toml", case.name))).map_err(refused)?;
     let overrides = Overrides {

@@ -1,0 +1,144 @@
+//! What each level of load leaves out, as the engine renders it: what the ear and the finger are said to miss, and what it saves.
+
+use super::excitation::{Missed, missed, missed_in_the_mean};
+use super::{SAMPLE_RATE_HZ, refused};
+use crate::bench_scene::{self, Bench, Load};
+use crate::error::CliError;
+use crate::measure::Timing;
+use asperity::{Config, ContactEvent, Impact, Material, ModalModel, Mode};
+use asperity_dsp::rng::Rng;
+use serde::Serialize;
+
+/// Ten fingers on one body of 256 modes.
+const LOAD: Load = Load { contacts: 10, bodies: 1, modes_per_body: 256, lift: false };
+const BLOCK: usize = 64;
+/// What is compared, after a quarter of a second in which the fingers begin.
+const BLOCKS: usize = 689;
+const SKIPPED: usize = 172;
+/// The highest level.
+const HIGHEST: usize = 16;
+
+/// A level of load.
+#[derive(Debug, Clone, Serialize)]
+pub struct LoadLevel {
+    /// 0: nothing is left out.
+    pub level: usize,
+    /// What goes at it, beside all of the levels below.
+    pub leaves_out: &'static str,
+    /// Ten fingers, median of the blocks.
+    pub ns_per_sample: f64,
+    /// What is missed of ten fingers that stroke.
+    pub stroke: Missed,
+    /// What is missed of a strike.
+    pub strike: Missed,
+    /// The most that a third octave of what is felt differs, 63 Hz–2 kHz, dB.
+    pub felt_worst_db: f64,
+    /// Their mean difference, dB.
+    pub felt_mean_db: f64,
+}
+
+fn leaves_out(level: usize) -> &'static str {
+    match level {
+        0 => "nothing",
+        1 => "modes that nobody hears, with 6 dB of safety",
+        2 => "modes that nobody hears",
+        3 => "modes heard by up to 6 dB",
+        4 => "modes heard by up to 12 dB",
+        5..=8 => "the finest octave of micro-relief that sounds",
+        _ => "the least important contacts",
+    }
+}
+
+/// Strikes whose modes begin at other phases.
+const STRIKES: u64 = 8;
+
+/// A body as a fit gives it: modes that differ by 60 dB, of which louder ones hide many.
+fn body(phases: u64) -> ModalModel {
+    let (mut rng, mut phase) = (Rng::new(3), Rng::new(phases));
+    let modes = (0..LOAD.modes_per_body).map(|_| Mode {
+        frequency_hz: 60.0 * 250f64.powf(rng.uniform()),
+        decay_per_s: 1.0 + 80.0 * rng.uniform(),
+        amplitude: 0.1 * 10f64.powf(-3.0 * rng.uniform()),
+        phase_rad: std::f64::consts::TAU * phase.uniform(),
+    });
+    ModalModel { impulse_n_s: 0.01, modes: modes.collect(), ..ModalModel::silent() }
+}
+
+/// Sound and feel of ten fingers at a level, and the median time of a block, s.
+fn stroke(level: usize) -> Result<(Vec<f64>, Vec<f64>, f64), CliError> {
+    let mut bench = Bench::of(LOAD, Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() }, &body(1))
+        .ok_or_else(|| refused("scene: cannot be built; please report it"))?;
+    let (mut heard, mut felt, mut times_s) = (Vec::new(), Vec::new(), Vec::new());
+    for block in 0..SKIPPED + BLOCKS {
+        let (mut haptic, mut audio) = ([0.0; BLOCK], [0.0; BLOCK]);
+        let took_s = bench.block(&mut haptic, &mut audio);
+        if block == SKIPPED / 2 {
+            bench.be_late(level);
+        }
+        if block >= SKIPPED {
+            times_s.push(took_s);
+            heard.extend(audio.map(f64::from));
+            felt.extend(haptic.map(f64::from));
+        }
+    }
+    Ok((heard, felt, Timing::of(times_s).median))
+}
+
+/// Sounds of strikes at a level.
+fn strikes(level: usize) -> Result<Vec<Vec<f64>>, CliError> {
+    (1..=STRIKES).map(|phases| strike(level, phases)).collect()
+}
+
+fn strike(level: usize, phases: u64) -> Result<Vec<f64>, CliError> {
+    let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
+    let asperity::Engine { mut scene, mut renderer, .. } = config.build().map_err(refused)?;
+    let body = asperity::Body::new(body(phases)).of(Material::CERAMIC);
+    let body = scene.add_body(body).map_err(refused)?;
+    bench_scene::be_late(&mut renderer, level);
+    let impact = Impact::from_impulse(body, 1e-3, 2.0, 1.0).by(Material::STEEL, 2.5e-4, 1e-3);
+    scene.report(0.0, ContactEvent::Impact(impact)).map_err(refused)?;
+    let mut audio = vec![0.0; BLOCK * BLOCKS];
+    let mut haptic = audio.clone();
+    renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+    Ok(audio.into_iter().map(f64::from).collect())
+}
+
+/// Worst and mean difference of third octaves, dB; of those within 40 dB of the strongest.
+fn third_octaves_apart(less: &[f64], whole: &[f64]) -> (f64, f64) {
+    let [less, whole] = [less, whole].map(super::from_reports::third_octaves_db);
+    let loudest = whole.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let apart: Vec<f64> = less
+        .iter()
+        .zip(&whole)
+        .filter(|(_, whole)| **whole > loudest - 40.0)
+        .map(|(less, whole)| (less - whole).abs())
+        .collect();
+    (apart.iter().copied().fold(0.0, f64::max), apart.iter().sum::<f64>() / apart.len().max(1) as f64)
+}
+
+/// Measures every level.
+///
+/// # Errors
+/// Never but by a defect.
+pub fn levels() -> Result<Vec<LoadLevel>, CliError> {
+    let (heard, felt, _) = stroke(0)?;
+    let struck = strikes(0)?;
+    (0..=HIGHEST)
+        .map(|level| {
+            let (less_heard, less_felt, took_s) = stroke(level)?;
+            let (felt_worst_db, felt_mean_db) = third_octaves_apart(&less_felt, &felt);
+            Ok(LoadLevel {
+                level,
+                leaves_out: leaves_out(level),
+                ns_per_sample: took_s * 1e9 / BLOCK as f64,
+                stroke: missed(&less_heard, &heard, SAMPLE_RATE_HZ),
+                strike: missed_in_the_mean(
+                    strikes(level)?.iter().zip(&struck).map(|(less, whole)| (&less[..], &whole[..])),
+                    SAMPLE_RATE_HZ,
+                ),
+                felt_worst_db,
+                felt_mean_db,
+            })
+        })
+        .collect()
+}
