@@ -6,7 +6,8 @@
 
 use asperity::dsp::simd::Isa;
 use asperity::{
-    Actuator, Config, ContactEvent, ContactId, ContactSample, Extent, Renderer, Scene, Surface, SurfaceId, Wrap,
+    Actuator, Config, ContactEvent, ContactId, ContactSample, Extent, Renderer, Scene, Surface, SurfaceId,
+    Wrap,
 };
 use asperity_texture::height_map::HeightMap;
 use asperity_texture::raster::Raster;
@@ -73,7 +74,9 @@ impl Strokes {
         let (mut haptic, mut audio) = ([0.0f32; 256], [0.0f32; 256]);
         let mut ns = 0.0;
         for _ in 0..256 / frames {
-            while self.reports as f64 / REPORT_HZ * 44_100.0 < (self.renderer.position() + frames as u64) as f64 {
+            while self.reports as f64 / REPORT_HZ * 44_100.0
+                < (self.renderer.position() + frames as u64) as f64
+            {
                 self.report()?;
             }
             let began = Instant::now();

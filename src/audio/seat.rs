@@ -7,10 +7,11 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
+use crate::prepared::overlay::TileCells;
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
-use asperity_dsp::fractal_noise::{FractalNoise, NoiseCells, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
 use std::any::Any;
@@ -40,7 +41,7 @@ pub(crate) struct Noise<'a> {
     /// Radius of the sphere that rides there, m; 0 is a point.
     pub(crate) tip_radius_m: f64,
     /// Where the contact was last.
-    pub(crate) cells: &'a mut NoiseCells,
+    pub(crate) cells: &'a mut TileCells,
 }
 
 /// What setting a surface means for the contacts on it.

@@ -40,11 +40,11 @@ use crate::link::tap::Tap;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::excitation::Exciter;
 use crate::prepared::area::{loudness, nestling};
+use crate::prepared::overlay::TileCells;
 use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use ac_coupling::{AcCoupling, ForceCoupling};
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
-use asperity_dsp::fractal_noise::NoiseCells;
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
@@ -95,7 +95,7 @@ pub(crate) struct Voice {
     unshown_n_s: f64,
     path: Path,
     /// Where in the micro-relief it is.
-    cells: NoiseCells,
+    cells: TileCells,
     rolling: Rolling,
     tip: Tip,
     pad: Pad,
@@ -135,7 +135,7 @@ impl Voice {
             reaction: Reaction::default(),
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
-            cells: NoiseCells::default(),
+            cells: TileCells::default(),
             rolling: Rolling::default(),
             tip: Tip::default(),
             pad: Pad::idle(&shared.own_probe),

@@ -54,6 +54,9 @@ struct Tip {
 /// The four copies of a tile that can meet in its corner: how many tiles back along u and v.
 const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
+/// The cells that a contact was last in on each copy of the tile.
+pub(crate) type TileCells = [NoiseCells; COPIES.len()];
+
 impl Overlay {
     /// The overlay of a surface that is the same after `period_m`, ∞ for never.
     pub(crate) fn new(period_m: [f64; 2], longest_m: f64, (rms_m, outer_scale_m): (f64, f64)) -> Self {
@@ -97,7 +100,7 @@ impl Overlay {
         roughness: &[f64],
         local_power_m2: &[f64],
         height_m: &mut [f64],
-        cells: &mut NoiseCells,
+        cells: &mut TileCells,
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let mut shares = [1.0; MAX_BLOCK];
@@ -135,7 +138,7 @@ impl Overlay {
         roughness: &[f64],
         weights: &[&OctaveWeights; W],
         mut heights_m: [&mut [f64]; W],
-        cells: &mut NoiseCells,
+        cells: &mut TileCells,
     ) {
         let walked_m = path.position_m;
         let n = walked_m.len().min(MAX_BLOCK);
@@ -147,7 +150,7 @@ impl Overlay {
                 *at_m = [u_m - begin_u_m, v_m - begin_v_m];
             }
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            return field.add_each(&path, roughness, weights, &mut heights_m, cells);
+            return field.add_each(&path, roughness, weights, &mut heights_m, &mut cells[0]);
         }
         let mut places = [[Place::default(); 2]; MAX_BLOCK];
         let places = &mut places[..n];
@@ -160,9 +163,14 @@ impl Overlay {
         }
         if meets == [false; 2] {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            return field.add_each(&path, roughness, weights, &mut heights_m, cells);
+            return field.add_each(&path, roughness, weights, &mut heights_m, &mut cells[0]);
         }
-        for copy in COPIES.into_iter().filter(|copy| (0..2).all(|axis| copy[axis] == 0 || meets[axis])) {
+        let mut gains = [[[1.0; 2]; 2]; MAX_BLOCK];
+        gains_along(places, &mut gains);
+        for (copy, cells) in COPIES.into_iter().zip(cells) {
+            if (0..2).any(|axis| copy[axis] == 1 && !meets[axis]) {
+                continue;
+            }
             let back_m = [0, 1].map(|axis| if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 });
             for (at_m, place) in position_m.iter_mut().zip(&*places) {
                 *at_m = [place[0].at_m - back_m[0], place[1].at_m - back_m[1]];
@@ -171,8 +179,8 @@ impl Overlay {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
             let mut into_m = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
             field.add_each(&path, roughness, weights, &mut into_m, cells);
-            for (i, place) in places.iter().enumerate() {
-                let gain = gain(place, copy);
+            for (i, gains) in gains.iter().enumerate().take(n) {
+                let gain = gains[0][copy[0]] * gains[1][copy[1]];
                 for (height_m, part_m) in heights_m.iter_mut().zip(&parts_m) {
                     height_m[i] += gain * part_m[i];
                 }
@@ -187,12 +195,23 @@ fn room(power_m2: f64, rms_m: f64) -> f64 {
     room * room * (3.0 - 2.0 * room)
 }
 
-/// Gain of one copy.
-fn gain(places: &[Place; 2], copy: [usize; 2]) -> f64 {
-    let along = |axis: usize| match (copy[axis], places[axis].weight) {
-        (0, 0.0) => 1.0,
-        (0, weight) => libm::cos(FRAC_PI_2 * weight),
-        (_, weight) => libm::sin(FRAC_PI_2 * weight),
-    };
-    along(0) * along(1)
+/// Gains along u and v, each of the tile and of the one before: worked out once for all copies, and anew only where the place differs.
+fn gains_along(places: &[[Place; 2]], gains: &mut [[[f64; 2]; 2]; MAX_BLOCK]) {
+    let mut last = [(0.0, [1.0, 0.0]); 2];
+    for (gains, places) in gains.iter_mut().zip(places) {
+        for ((gain, (known, last)), place) in gains.iter_mut().zip(&mut last).zip(places) {
+            if place.weight != *known {
+                (*known, *last) = (place.weight, gains_at(place.weight));
+            }
+            *gain = *last;
+        }
+    }
+}
+
+fn gains_at(weight: f64) -> [f64; 2] {
+    if weight == 0.0 {
+        return [1.0, 0.0];
+    }
+    let (sine, cosine) = (libm::sin(FRAC_PI_2 * weight), libm::cos(FRAC_PI_2 * weight));
+    [cosine, sine]
 }

@@ -2,7 +2,7 @@
 
 use super::shared::Shared;
 use crate::audio::seat::{Noise, Seat};
-use asperity_dsp::fractal_noise::NoiseCells;
+use crate::prepared::overlay::TileCells;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
 
@@ -61,7 +61,7 @@ impl Profile {
         seat: &mut Seat,
         along: Along<'_>,
         points: &[PathPoint],
-        cells: &mut NoiseCells,
+        cells: &mut TileCells,
     ) {
         let n = points.len();
         self.lay_out(along.shared, points);

@@ -32,7 +32,7 @@ pub(super) struct Place {
 }
 
 /// [`Place`]s of a block along one axis, each number on its own so that lanes fill vectors.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct AxisPlaces {
     texel: [f64; ROOM],
     fraction: [f64; ROOM],
@@ -40,7 +40,7 @@ pub(super) struct AxisPlaces {
 }
 
 /// Where the positions of a block lie; found once for all maps of one grid.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Places {
     /// The grid that they were found for.
     axes: Option<[Axis; 2]>,
