@@ -162,3 +162,75 @@ fn filter<S: Set>(
         lows[lane] = last.map(|low| low[lane]);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::super::PathEvent;
+    use super::*;
+    use crate::rng::Rng;
+    use std::{vec, vec::Vec};
+
+    #[test]
+    fn paths_of_four_contacts_have_the_bits_of_each_alone_wherever_blocks_are_cut() {
+        let mut rng = Rng::new(31);
+        let modes = [PathMode::Extrapolate, PathMode::Hermite, PathMode::Hold, PathMode::BandLimited];
+        for level in Level::available() {
+            for only in [LANES, 1] {
+                let designs: Vec<TrajectoryDesign> = (0..LANES)
+                    .map(|i| {
+                        let cutoff_hz = 20.0 + 20.0 * rng.uniform();
+                        TrajectoryDesign::new(modes[i % only], cutoff_hz, 44_100.0, [0.14, f64::INFINITY])
+                            .unwrap()
+                    })
+                    .collect();
+                let mut report = |sample: u64| PathEvent {
+                    sample,
+                    fraction: rng.uniform(),
+                    position_m: [0.14 * rng.uniform(), 0.002 * rng.uniform()],
+                    velocity_m_s: (rng.uniform() < 0.7).then(|| [0.0, 0.1 * rng.normal()]),
+                    normal_force_n: rng.uniform(),
+                };
+                let mut alone: Vec<Trajectory> =
+                    designs.iter().map(|design| Trajectory::begin(design, &report(0))).collect();
+                let mut beside = alone.clone();
+                let mut cuts = Rng::new(7);
+                let (mut at, mut rested) = (0, 0);
+                while at < 30_000 {
+                    // Never beyond the grid, as the engine's stretches; for a while nobody reports, and they come to rest.
+                    let n = (1 + (70.0 * cuts.uniform()) as u64).min(64 - at % 64);
+                    for (i, design) in designs.iter().enumerate() {
+                        if cuts.uniform() < 0.03 && !(8_000..26_000).contains(&at) {
+                            let event = report(at);
+                            alone[i].moved(design, &event);
+                            beside[i].moved(design, &event);
+                        }
+                    }
+                    rested += alone.iter().filter(|path| path.is_still()).count();
+                    let mut expected = vec![[PathPoint::default(); LONGEST]; LANES];
+                    let mut points = expected.clone();
+                    for ((path, design), out) in alone.iter_mut().zip(&designs).zip(&mut expected) {
+                        path.advance(design, &mut out[..n as usize]);
+                    }
+                    let count = 1 + (4.0 * cuts.uniform()) as usize;
+                    let mut paths: Vec<Beside<'_>> = beside
+                        .iter_mut()
+                        .zip(&designs)
+                        .zip(&mut points)
+                        .map(|((path, design), out)| Beside {
+                            design: *design,
+                            path,
+                            out: &mut out[..n as usize],
+                        })
+                        .collect();
+                    let (first, others) = paths.split_at_mut(count.min(LANES));
+                    advance_side_by_side(level, first);
+                    advance_side_by_side(level, others);
+                    assert_eq!((&points, &beside), (&expected, &alone), "{level:?}, sample {at}");
+                    at += n;
+                }
+                assert!(rested > 0, "nobody came to rest");
+            }
+        }
+    }
+}
