@@ -54,6 +54,22 @@ struct Tip {
 /// The four copies of a tile that can meet in its corner: how many tiles back along u and v.
 const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
+/// Memory that the overlay works in; it holds nothing between two paths.
+pub(crate) struct Room {
+    /// What relief the source really has at each sample, m².
+    pub(crate) local_power_m2: [f64; MAX_BLOCK],
+    shares: [f64; MAX_BLOCK],
+    position_m: [[f64; 2]; MAX_BLOCK],
+    parts_m: [[f64; MAX_BLOCK]; 2],
+}
+
+impl Room {
+    pub(crate) const fn new() -> Self {
+        let none = [0.0; MAX_BLOCK];
+        Self { local_power_m2: none, shares: none, position_m: [[0.0; 2]; MAX_BLOCK], parts_m: [none; 2] }
+    }
+}
+
 /// The cells that a contact was last in on each copy of the tile.
 pub(crate) type TileCells = [NoiseCells; COPIES.len()];
 
@@ -92,23 +108,24 @@ impl Overlay {
     }
 
     /// Adds the relief along a path to `height_m`; all slices are equally long, at most [`MAX_BLOCK`].
-    /// `local_power_m2` is what relief the source really has at each sample.
+    /// [`Room::local_power_m2`] is told before.
     pub(crate) fn add(
         &self,
         field: &FractalNoise,
         path: &NoisePath<'_>,
         roughness: &[f64],
-        local_power_m2: &[f64],
         height_m: &mut [f64],
-        cells: &mut TileCells,
+        (cells, own): (&mut TileCells, &mut Room),
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
-        let mut shares = [1.0; MAX_BLOCK];
+        let Room { local_power_m2, shares, position_m, parts_m } = own;
+        let cells = (cells, position_m);
+        if !self.longest_m.is_finite() {
+            return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
+        }
         let shares = &mut shares[..height_m.len().min(MAX_BLOCK)];
-        if self.longest_m.is_finite() {
-            for (share, power_m2) in shares.iter_mut().zip(local_power_m2) {
-                *share = room(*power_m2, self.ordinary_m);
-            }
+        for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
+            *share = room(*power_m2, self.ordinary_m);
         }
         if shares.iter().all(|share| *share == 1.0) {
             return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
@@ -116,12 +133,15 @@ impl Overlay {
         if shares.iter().all(|share| *share == 0.0) {
             return self.add_tile(field, path, roughness, &[below], [height_m], cells);
         }
-        let (mut below_m, mut all_m) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
         let n = shares.len();
-        let parts_m = [&mut below_m[..n], &mut all_m[..n]];
-        self.add_tile(field, path, roughness, &[below, whole], parts_m, cells);
-        for (i, (height_m, share)) in height_m.iter_mut().zip(shares).enumerate() {
-            *height_m += (1.0 - *share) * below_m[i] + *share * all_m[i];
+        let [below_m, all_m] = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
+        below_m.fill(0.0);
+        all_m.fill(0.0);
+        self.add_tile(field, path, roughness, &[below, whole], [&mut *below_m, &mut *all_m], cells);
+        for ((height_m, share), (below_m, all_m)) in
+            height_m.iter_mut().zip(shares).zip(below_m.iter().zip(&*all_m))
+        {
+            *height_m += (1.0 - *share) * below_m + *share * all_m;
         }
     }
 
@@ -138,11 +158,10 @@ impl Overlay {
         roughness: &[f64],
         weights: &[&OctaveWeights; W],
         mut heights_m: [&mut [f64]; W],
-        cells: &mut TileCells,
+        (cells, position_m): (&mut TileCells, &mut [[f64; 2]; MAX_BLOCK]),
     ) {
         let walked_m = path.position_m;
         let n = walked_m.len().min(MAX_BLOCK);
-        let mut position_m = [[0.0; 2]; MAX_BLOCK];
         let [low_m, high_m] = bounds(&walked_m[..n]);
         let begin_m = [0, 1].map(|axis: usize| self.axes[axis].begin_of_all_m(low_m[axis], high_m[axis]));
         if let [Some(begin_u_m), Some(begin_v_m)] = begin_m {
@@ -156,7 +175,7 @@ impl Overlay {
         let places = &mut places[..n];
         let mut meets = [false; 2];
         let mut turns = [0.0; 2];
-        for ((place, at_m), path_m) in places.iter_mut().zip(&mut position_m).zip(walked_m) {
+        for ((place, at_m), path_m) in places.iter_mut().zip(&mut *position_m).zip(walked_m) {
             *place = [0, 1].map(|axis: usize| self.axes[axis].place_after(path_m[axis], &mut turns[axis]));
             *at_m = place.map(|place| place.at_m);
             meets = [meets[0] | (place[0].weight > 0.0), meets[1] | (place[1].weight > 0.0)];

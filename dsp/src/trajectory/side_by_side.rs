@@ -12,6 +12,8 @@ use fearless_simd::{Simd, f64x4};
 
 /// How many go side by side.
 const LANES: usize = 4;
+/// Samples of a short stretch.
+const FEW: usize = 16;
 /// Samples of a stretch at most.
 const LONGEST: usize = STILL_GRID as usize;
 
@@ -33,8 +35,18 @@ pub fn advance_side_by_side(level: Level, paths: &mut [Beside<'_>]) {
         }
         return;
     }
-    let n = paths[0].out.len();
-    let mut inputs = [[[0.0; 3]; LONGEST]; LANES];
+    // What is not used would have to be cleared as well.
+    if paths[0].out.len() <= FEW {
+        go_on::<FEW>(level, paths);
+    } else {
+        go_on::<LONGEST>(level, paths);
+    }
+}
+
+/// Goes on over at most N samples.
+fn go_on<const N: usize>(level: Level, paths: &mut [Beside<'_>]) {
+    let n = paths[0].out.len().min(N);
+    let mut inputs = [[[0.0; 3]; N]; LANES];
     for (Beside { design, path, .. }, inputs) in paths.iter_mut().zip(&mut inputs) {
         path.inputs(design, &mut inputs[..n]);
     }
@@ -114,10 +126,10 @@ impl<S: Simd> States<S> {
 
 /// Runs the filters; the last low responses go to `lows`.
 #[inline(always)]
-fn filter<S: Set>(
+fn filter<S: Set, const N: usize>(
     s: S,
     paths: &mut [Beside<'_>],
-    inputs: &[[[f64; 3]; LONGEST]; LANES],
+    inputs: &[[[f64; 3]; N]; LANES],
     lows: &mut [[f64; 3]; LANES],
 ) {
     let number = |of: fn(&Butterworth) -> f64| each(s, paths, |beside| of(&beside.design.filter));
