@@ -1,4 +1,4 @@
-//! Rows that compare two things: in turn, a few hundred samples of the one and of the other, so that both see the same machine; the median of the pairs.
+//! Rows that compare two things: in turn, a block's time of the one and of the other, so that both see the same machine; the median of the pairs.
 
 use super::{BLOCK_FRAMES, GROWTH_S, SAMPLE_RATE_HZ, refused};
 use crate::bench_scene::{Bench, Load};
@@ -11,8 +11,8 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Frames rendered at a time, of either.
-const TURN_FRAMES: usize = 256;
+/// Frames rendered at a time, of either: so few that little else comes between them.
+const TURN_FRAMES: usize = BLOCK_FRAMES;
 /// Frames of the shortest blocks that sound cards ask for.
 const SHORT_FRAMES: usize = 16;
 /// Contacts that are many.
