@@ -4,6 +4,8 @@
 //! every block is timed; the kernels are timed alone in many short repetitions. Every figure is the median of its blocks or
 //! repetitions, with the range of the middle eight tenths beside it.
 
+mod paired;
+
 use crate::bench_scene::{Bench, Load, modes};
 use crate::error::CliError;
 use crate::measure::{Timing, cpu_name, ns_spread, quantile};
@@ -15,6 +17,7 @@ use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, desi
 use asperity_dsp::rng::Rng;
 use asperity_dsp::simd::Level;
 use clap::Args;
+use paired::Paired;
 use serde::Serialize;
 
 const SAMPLE_RATE_HZ: f64 = 44_100.0;
@@ -48,7 +51,7 @@ struct Report {
     modal_bank: Vec<BankRow>,
     contact: Vec<ContactRow>,
     growth: Vec<GrowthRow>,
-    short_blocks: Vec<ShortBlockRow>,
+    paired: Paired,
 }
 
 #[derive(Debug, Serialize)]
@@ -79,16 +82,6 @@ struct ContactRow {
     ns_per_sample: f64,
     ns_per_sample_p10: f64,
     ns_per_sample_p90: f64,
-}
-
-/// What a short block costs a sample.
-#[derive(Debug, Serialize)]
-struct ShortBlockRow {
-    name: &'static str,
-    block_frames: usize,
-    ns_per_sample: f64,
-    /// Against blocks of 64 frames, in turn with them: the median of the pairs.
-    times_that_of_64: f64,
 }
 
 /// How the cost of a whole scene grows.
@@ -143,7 +136,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     let growth = growth()?;
     progress.advance(1);
-    let short_blocks = short_blocks()?;
+    let paired = paired::rows()?;
     progress.advance(1);
     drop(progress);
     let report = Report {
@@ -157,7 +150,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         modal_bank,
         contact,
         growth,
-        short_blocks,
+        paired,
     };
     if options.json {
         return output::say_json(&report);
@@ -217,43 +210,6 @@ fn growth() -> Result<Vec<GrowthRow>, CliError> {
     for count in [16, 64, 256, 1024, 4096] {
         let ns = block_ns(load(count))? - without;
         rows.push(GrowthRow { axis: "modes", count, ns_per_sample_each: ns / count as f64 });
-    }
-    Ok(rows)
-}
-
-/// Frames of the shortest blocks that sound cards ask for.
-const SHORT_FRAMES: usize = 16;
-/// Frames rendered at a time, of either kind.
-const TURN_FRAMES: usize = 256;
-
-/// Blocks of [`SHORT_FRAMES`] in turn with blocks of [`BLOCK_FRAMES`] of the same scene, so that both see the same machine.
-fn short_blocks() -> Result<Vec<ShortBlockRow>, CliError> {
-    let mut rows = Vec::new();
-    let scenes = [("one finger, silent plate", 1, 1, 0), ("ten fingers on ten bodies", 10, 10, 100)];
-    for (name, contacts, bodies, modes_per_body) in scenes {
-        let load = Load { contacts, bodies, modes_per_body, lift: false };
-        let bench = || {
-            let config = Config { sample_rate_hz: SAMPLE_RATE_HZ, ..Config::default() };
-            Bench::new(load, config).ok_or_else(|| refused("scene: cannot be built; please report it"))
-        };
-        let (mut short, mut long) = (bench()?, bench()?);
-        let turn = |bench: &mut Bench, frames: usize| {
-            let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
-            let (haptic, audio) = (&mut haptic[..frames], &mut audio[..frames]);
-            let times_s = (0..TURN_FRAMES / frames).map(|_| bench.block(haptic, audio));
-            times_s.sum::<f64>() * 1e9 / TURN_FRAMES as f64
-        };
-        let turns = (2.0 * GROWTH_S * SAMPLE_RATE_HZ) as usize / TURN_FRAMES;
-        let pairs: Vec<[f64; 2]> = (0..turns)
-            .map(|_| [turn(&mut short, SHORT_FRAMES), turn(&mut long, BLOCK_FRAMES)])
-            .skip(turns / 8)
-            .collect();
-        let times = Timing::of(pairs.iter().map(|[short, long]| short / long).collect()).median;
-        let median_ns = |which: usize| Timing::of(pairs.iter().map(|pair| pair[which]).collect()).median;
-        for (which, block_frames, times_that_of_64) in [(0, SHORT_FRAMES, times), (1, BLOCK_FRAMES, 1.0)] {
-            let ns_per_sample = median_ns(which);
-            rows.push(ShortBlockRow { name, block_frames, ns_per_sample, times_that_of_64 });
-        }
     }
     Ok(rows)
 }
@@ -381,11 +337,6 @@ fn table(report: &Report) -> String {
             let _ = writeln!(text, "{:<34}{:>22.3}{change:>+12.1} %", row.count, row.ns_per_sample_each);
         }
     }
-    let _ =
-        writeln!(text, "\n{:<28}{:>9}{:>19}{:>18}", "short blocks", "frames", "ns a sample", "× that of 64");
-    for row in &report.short_blocks {
-        let (frames, ns) = (row.block_frames, row.ns_per_sample);
-        let _ = writeln!(text, "{:<28}{frames:>9}{ns:>19.1}{:>18.2}", row.name, row.times_that_of_64);
-    }
+    report.paired.table(&mut text);
     text.trim_end().to_owned()
 }

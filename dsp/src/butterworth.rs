@@ -37,22 +37,22 @@ pub use side_by_side::{LANES, SideBySide, Signals};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Butterworth {
-    a1: f64,
-    a2: f64,
-    a3: f64,
+    pub(crate) a1: f64,
+    pub(crate) a2: f64,
+    pub(crate) a3: f64,
     /// What moves the state: 2 a₁ − 1, 2 a₂, 2 a₃. Written so, a sample waits for its predecessor half
     /// as long as when the state is mirrored about the output.
-    band_to_band: f64,
-    cross: f64,
-    input_to_low: f64,
+    pub(crate) band_to_band: f64,
+    pub(crate) cross: f64,
+    pub(crate) input_to_low: f64,
     angular_cutoff_per_s: f64,
 }
 
 /// Memory of one channel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct State {
-    band: f64,
-    low: f64,
+    pub(crate) band: f64,
+    pub(crate) low: f64,
 }
 
 /// The three responses to one input sample.

@@ -109,7 +109,7 @@ impl Renderer {
             own_probe: probe,
             probes: (0..config.max_probes).map(|_| None).collect(),
             row_latency,
-            noise: FractalNoise::new(config.seed),
+            noise: FractalNoise::new(config.seed).on(kernel),
             noise_octaves_gone: 0,
             fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
         };

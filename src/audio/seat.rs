@@ -7,11 +7,12 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
+use crate::prepared::overlay::{Room, TileCells};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
-use asperity_dsp::fractal_noise::{FractalNoise, NoiseCells, NoisePath};
-use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
+use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
+use asperity_texture::height_field::{HeightField, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
 use std::any::Any;
 
@@ -40,7 +41,8 @@ pub(crate) struct Noise<'a> {
     /// Radius of the sphere that rides there, m; 0 is a point.
     pub(crate) tip_radius_m: f64,
     /// Where the contact was last.
-    pub(crate) cells: &'a mut NoiseCells,
+    pub(crate) cells: &'a mut TileCells,
+    pub(crate) room: &'a mut Room,
 }
 
 /// What setting a surface means for the contacts on it.
@@ -283,18 +285,18 @@ impl SurfaceSlot {
             out.compliance_m_n[..n].fill(surface.compliance_m_n);
         }
         if surface.micro_relief_m > 0.0 {
-            let mut local_power_m2 = [0.0; MAX_BLOCK];
             if self.overlay.minds_relief() {
-                surface.source.add_local_power(path.position_m, &mut local_power_m2[..n]);
+                let local_power_m2 = &mut noise.room.local_power_m2[..n];
+                local_power_m2.fill(0.0);
+                surface.source.add_local_power(path.position_m, local_power_m2);
             }
             self.overlay.tune(noise.tip_radius_m);
             self.overlay.add(
                 noise.field,
                 &NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m },
                 &out.roughness[..n],
-                &local_power_m2[..n],
                 &mut out.height_m[..n],
-                noise.cells,
+                (&mut *noise.cells, &mut *noise.room),
             );
         }
     }

@@ -40,11 +40,11 @@ use crate::link::tap::Tap;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::excitation::Exciter;
 use crate::prepared::area::{loudness, nestling};
+use crate::prepared::overlay::TileCells;
 use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use ac_coupling::{AcCoupling, ForceCoupling};
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
-use asperity_dsp::fractal_noise::NoiseCells;
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
@@ -95,7 +95,7 @@ pub(crate) struct Voice {
     unshown_n_s: f64,
     path: Path,
     /// Where in the micro-relief it is.
-    cells: NoiseCells,
+    cells: TileCells,
     rolling: Rolling,
     tip: Tip,
     pad: Pad,
@@ -135,7 +135,7 @@ impl Voice {
             reaction: Reaction::default(),
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
-            cells: NoiseCells::default(),
+            cells: TileCells::default(),
             rolling: Rolling::default(),
             tip: Tip::default(),
             pad: Pad::idle(&shared.own_probe),
@@ -195,7 +195,7 @@ impl Voice {
         scratch: &mut Scratch,
         tap: &mut T,
     ) {
-        let pass = self.approach(stretch, tap.is_watching(), seat, scratch, 0);
+        let pass = self.approach(stretch, (tap.is_watching(), false), seat, scratch, 0);
         if pass.slides {
             let Lane { height_m, force_n, rows, .. } = &mut scratch.lanes[0];
             self.pad.run(&height_m[..pass.n], &force_n[..pass.n], &mut rows[..pass.n]);
@@ -204,11 +204,16 @@ impl Voice {
         self.finish(stretch, pass, seat, scratch, 0, tap);
     }
 
-    /// The part of a stretch that asks the surface: from reports to the profile under `lane`.
+    /// Whether it moves through a whole stretch on its surface, whatever that does: its path asks nobody.
+    fn sets_out(&self) -> bool {
+        self.phase == Phase::Sounding && !self.asleep && !self.path.is_in_body()
+    }
+
+    /// The part of a stretch that asks the surface: from reports to the profile under `lane`, whose points are there if it has `set_out`.
     fn approach(
         &mut self,
         stretch: Stretch<'_>,
-        slopes: bool,
+        (slopes, set_out): (bool, bool),
         seat: &mut Seat,
         scratch: &mut Scratch,
         lane: usize,
@@ -225,7 +230,8 @@ impl Voice {
             self.reaction = seat.react(&self.touch_at(position));
             self.asleep &= !self.reaction.stirs;
         }
-        let slides = !self.asleep && self.slide_to(Stretch { n, ..stretch }, slopes, seat, scratch, lane);
+        let slides =
+            !self.asleep && self.slide_to(Stretch { n, ..stretch }, (slopes, set_out), seat, scratch, lane);
         Pass { n, slides, coupled: false }
     }
 
@@ -233,7 +239,7 @@ impl Voice {
     fn slide_to(
         &mut self,
         stretch: Stretch<'_>,
-        slopes: bool,
+        (slopes, set_out): (bool, bool),
         seat: &mut Seat,
         scratch: &mut Scratch,
         lane: usize,
@@ -261,7 +267,9 @@ impl Voice {
                 self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
             }
         }
-        self.path.run(slot, points, &mut profile.at_m);
+        if !set_out {
+            self.path.run(slot, points, &mut profile.at_m);
+        }
         let along = self.along(shared, position, slopes || dragged);
         profile.run(seat, along, points, &mut self.cells);
         self.rolling.run(position, shared.slow_step, &mut profile.surface, n);

@@ -54,6 +54,25 @@ struct Tip {
 /// The four copies of a tile that can meet in its corner: how many tiles back along u and v.
 const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
+/// Memory that the overlay works in; it holds nothing between two paths.
+pub(crate) struct Room {
+    /// What relief the source really has at each sample, m².
+    pub(crate) local_power_m2: [f64; MAX_BLOCK],
+    shares: [f64; MAX_BLOCK],
+    position_m: [[f64; 2]; MAX_BLOCK],
+    parts_m: [[f64; MAX_BLOCK]; 2],
+}
+
+impl Room {
+    pub(crate) const fn new() -> Self {
+        let none = [0.0; MAX_BLOCK];
+        Self { local_power_m2: none, shares: none, position_m: [[0.0; 2]; MAX_BLOCK], parts_m: [none; 2] }
+    }
+}
+
+/// The cells that a contact was last in on each copy of the tile.
+pub(crate) type TileCells = [NoiseCells; COPIES.len()];
+
 impl Overlay {
     /// The overlay of a surface that is the same after `period_m`, ∞ for never.
     pub(crate) fn new(period_m: [f64; 2], longest_m: f64, (rms_m, outer_scale_m): (f64, f64)) -> Self {
@@ -89,23 +108,24 @@ impl Overlay {
     }
 
     /// Adds the relief along a path to `height_m`; all slices are equally long, at most [`MAX_BLOCK`].
-    /// `local_power_m2` is what relief the source really has at each sample.
+    /// [`Room::local_power_m2`] is told before.
     pub(crate) fn add(
         &self,
         field: &FractalNoise,
         path: &NoisePath<'_>,
         roughness: &[f64],
-        local_power_m2: &[f64],
         height_m: &mut [f64],
-        cells: &mut NoiseCells,
+        (cells, own): (&mut TileCells, &mut Room),
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
-        let mut shares = [1.0; MAX_BLOCK];
+        let Room { local_power_m2, shares, position_m, parts_m } = own;
+        let cells = (cells, position_m);
+        if !self.longest_m.is_finite() {
+            return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
+        }
         let shares = &mut shares[..height_m.len().min(MAX_BLOCK)];
-        if self.longest_m.is_finite() {
-            for (share, power_m2) in shares.iter_mut().zip(local_power_m2) {
-                *share = room(*power_m2, self.ordinary_m);
-            }
+        for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
+            *share = room(*power_m2, self.ordinary_m);
         }
         if shares.iter().all(|share| *share == 1.0) {
             return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
@@ -113,12 +133,15 @@ impl Overlay {
         if shares.iter().all(|share| *share == 0.0) {
             return self.add_tile(field, path, roughness, &[below], [height_m], cells);
         }
-        let (mut below_m, mut all_m) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
         let n = shares.len();
-        let parts_m = [&mut below_m[..n], &mut all_m[..n]];
-        self.add_tile(field, path, roughness, &[below, whole], parts_m, cells);
-        for (i, (height_m, share)) in height_m.iter_mut().zip(shares).enumerate() {
-            *height_m += (1.0 - *share) * below_m[i] + *share * all_m[i];
+        let [below_m, all_m] = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
+        below_m.fill(0.0);
+        all_m.fill(0.0);
+        self.add_tile(field, path, roughness, &[below, whole], [&mut *below_m, &mut *all_m], cells);
+        for ((height_m, share), (below_m, all_m)) in
+            height_m.iter_mut().zip(shares).zip(below_m.iter().zip(&*all_m))
+        {
+            *height_m += (1.0 - *share) * below_m + *share * all_m;
         }
     }
 
@@ -135,11 +158,10 @@ impl Overlay {
         roughness: &[f64],
         weights: &[&OctaveWeights; W],
         mut heights_m: [&mut [f64]; W],
-        cells: &mut NoiseCells,
+        (cells, position_m): (&mut TileCells, &mut [[f64; 2]; MAX_BLOCK]),
     ) {
         let walked_m = path.position_m;
         let n = walked_m.len().min(MAX_BLOCK);
-        let mut position_m = [[0.0; 2]; MAX_BLOCK];
         let [low_m, high_m] = bounds(&walked_m[..n]);
         let begin_m = [0, 1].map(|axis: usize| self.axes[axis].begin_of_all_m(low_m[axis], high_m[axis]));
         if let [Some(begin_u_m), Some(begin_v_m)] = begin_m {
@@ -147,22 +169,27 @@ impl Overlay {
                 *at_m = [u_m - begin_u_m, v_m - begin_v_m];
             }
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            return field.add_each(&path, roughness, weights, &mut heights_m, cells);
+            return field.add_each(&path, roughness, weights, &mut heights_m, &mut cells[0]);
         }
         let mut places = [[Place::default(); 2]; MAX_BLOCK];
         let places = &mut places[..n];
         let mut meets = [false; 2];
         let mut turns = [0.0; 2];
-        for ((place, at_m), path_m) in places.iter_mut().zip(&mut position_m).zip(walked_m) {
+        for ((place, at_m), path_m) in places.iter_mut().zip(&mut *position_m).zip(walked_m) {
             *place = [0, 1].map(|axis: usize| self.axes[axis].place_after(path_m[axis], &mut turns[axis]));
             *at_m = place.map(|place| place.at_m);
             meets = [meets[0] | (place[0].weight > 0.0), meets[1] | (place[1].weight > 0.0)];
         }
         if meets == [false; 2] {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            return field.add_each(&path, roughness, weights, &mut heights_m, cells);
+            return field.add_each(&path, roughness, weights, &mut heights_m, &mut cells[0]);
         }
-        for copy in COPIES.into_iter().filter(|copy| (0..2).all(|axis| copy[axis] == 0 || meets[axis])) {
+        let mut gains = [[[1.0; 2]; 2]; MAX_BLOCK];
+        gains_along(places, &mut gains);
+        for (copy, cells) in COPIES.into_iter().zip(cells) {
+            if (0..2).any(|axis| copy[axis] == 1 && !meets[axis]) {
+                continue;
+            }
             let back_m = [0, 1].map(|axis| if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 });
             for (at_m, place) in position_m.iter_mut().zip(&*places) {
                 *at_m = [place[0].at_m - back_m[0], place[1].at_m - back_m[1]];
@@ -171,8 +198,8 @@ impl Overlay {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
             let mut into_m = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
             field.add_each(&path, roughness, weights, &mut into_m, cells);
-            for (i, place) in places.iter().enumerate() {
-                let gain = gain(place, copy);
+            for (i, gains) in gains.iter().enumerate().take(n) {
+                let gain = gains[0][copy[0]] * gains[1][copy[1]];
                 for (height_m, part_m) in heights_m.iter_mut().zip(&parts_m) {
                     height_m[i] += gain * part_m[i];
                 }
@@ -187,12 +214,23 @@ fn room(power_m2: f64, rms_m: f64) -> f64 {
     room * room * (3.0 - 2.0 * room)
 }
 
-/// Gain of one copy.
-fn gain(places: &[Place; 2], copy: [usize; 2]) -> f64 {
-    let along = |axis: usize| match (copy[axis], places[axis].weight) {
-        (0, 0.0) => 1.0,
-        (0, weight) => libm::cos(FRAC_PI_2 * weight),
-        (_, weight) => libm::sin(FRAC_PI_2 * weight),
-    };
-    along(0) * along(1)
+/// Gains along u and v, each of the tile and of the one before: worked out once for all copies, and anew only where the place differs.
+fn gains_along(places: &[[Place; 2]], gains: &mut [[[f64; 2]; 2]; MAX_BLOCK]) {
+    let mut last = [(0.0, [1.0, 0.0]); 2];
+    for (gains, places) in gains.iter_mut().zip(places) {
+        for ((gain, (known, last)), place) in gains.iter_mut().zip(&mut last).zip(places) {
+            if place.weight != *known {
+                (*known, *last) = (place.weight, gains_at(place.weight));
+            }
+            *gain = *last;
+        }
+    }
+}
+
+fn gains_at(weight: f64) -> [f64; 2] {
+    if weight == 0.0 {
+        return [1.0, 0.0];
+    }
+    let (sine, cosine) = (libm::sin(FRAC_PI_2 * weight), libm::cos(FRAC_PI_2 * weight));
+    [cosine, sine]
 }

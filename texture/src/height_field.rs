@@ -7,6 +7,7 @@
 
 use crate::answer::{Answer, AnswerAt};
 pub use crate::block::{MAX_BLOCK, bounds};
+use crate::height_map::Working;
 use asperity_dsp::DesignError;
 use std::any::Any;
 
@@ -70,6 +71,8 @@ pub struct SurfaceBlock {
     pub compliance_m_n: [f64; MAX_BLOCK],
     /// The force with which it answers; only where somebody looks at [slopes](PathBlock::slopes).
     pub answer: Answer,
+    /// In which maps are worked out: memory that is at hand anyway, and that nobody clears.
+    pub(crate) working: Working,
 }
 
 impl SurfaceBlock {
@@ -103,6 +106,7 @@ impl Default for SurfaceBlock {
             friction: [0.0; MAX_BLOCK],
             compliance_m_n: [0.0; MAX_BLOCK],
             answer: Answer::default(),
+            working: Working::new(),
         }
     }
 }

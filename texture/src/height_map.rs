@@ -18,7 +18,7 @@
 mod blend;
 mod extent;
 mod sampling;
-mod short;
+mod working;
 
 pub use extent::{Extent, MapError};
 
@@ -33,9 +33,8 @@ use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
 use blend::Blend;
 use extent::check;
-use sampling::widest_m;
-use short::{SHORT, Short};
 use std::sync::Arc;
+pub(crate) use working::Working;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
 /// Assumed; measured values range from 0.2 to above 1.
@@ -69,7 +68,6 @@ pub struct HeightMap {
     /// What tips of some radii ride on, and the one that rides now.
     tips: Vec<(f64, Pyramid)>,
     tip: Option<usize>,
-    short: Option<Box<Short>>,
 }
 
 #[derive(Debug, Clone)]
@@ -119,7 +117,6 @@ impl HeightMap {
             friction: FRICTION,
             tips: Vec::new(),
             tip: None,
-            short: Some(Short::new()),
         })
     }
 
@@ -211,7 +208,7 @@ impl Pyramid {
         places: &mut Places,
         out: &mut Samples,
     ) {
-        let Some(finest) = self.levels.first() else { return out.fill(self.constant) };
+        let Some(finest) = self.levels.first() else { return out.fill::<SLOPES>(self.constant) };
         if is_sharp(widest_m, finest.texels_per_metre()) {
             return finest.sample_block::<SLOPES>(path.position_m, places, out);
         }
@@ -235,6 +232,25 @@ impl Pyramid {
             self.blend_block::<SLOPES>(level, position_m, blur, start, out, &mut between);
             start += same;
         }
+    }
+
+    /// What [`Self::sample_block`] gives at a few places that all have one footprint and no speed, each by itself: for so few the memory of a block
+    /// would have to be made first.
+    fn at_rest<const N: usize>(&self, path: &PathBlock<'_>) -> [f64; N] {
+        let (Some(finest), Some(position_m)) = (self.levels.first(), path.position_m.first_chunk()) else {
+            return [self.constant; N];
+        };
+        let footprint_m = path.footprint_m.first().copied().unwrap_or_default();
+        if is_sharp(footprint_m, finest.texels_per_metre()) {
+            return finest.values(position_m);
+        }
+        let (level, blend) = self.blur(finest, [0.0; 2], footprint_m);
+        let mut values = self.levels[level].values(position_m);
+        let coarser = self.levels.get(level + 1).map_or([0.0; N], |next| next.values(position_m));
+        for (value, coarser) in values.iter_mut().zip(coarser) {
+            *value += blend * (coarser - *value);
+        }
+        values
     }
 
     /// The level that a footprint asks for, and how much of the next one is blended in.
@@ -268,7 +284,7 @@ impl Pyramid {
             places.forget();
             next.sample_block::<SLOPES>(position_m, places, coarser);
         } else {
-            coarser.fill(0.0);
+            coarser.fill::<SLOPES>(0.0);
         }
         for (n, (_, blend)) in blur.iter().enumerate() {
             let mix = |a: f64, b: f64| a + blend * (b - a);
@@ -333,13 +349,7 @@ impl HeightField for HeightMap {
         if self.heights.levels.is_empty() {
             return 0.0;
         }
-        // Nothing but heights is asked for.
-        hollow_between_m(touch, reach_m, |path| {
-            let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
-            let widest_m = widest_m(path.footprint_m);
-            self.ridden().sample_block::<false>(path, widest_m, &mut places, &mut samples);
-            std::array::from_fn(|i| samples.value[i])
-        })
+        hollow_between_m(touch, reach_m, |path| self.ridden().at_rest(path))
     }
 
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
@@ -357,15 +367,6 @@ impl HeightField for HeightMap {
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        if path.len() <= SHORT
-            && let Some(mut own) = self.short.take()
-        {
-            let Short { places, samples } = &mut *own;
-            self.sample_in(places, samples, path, out);
-            self.short = Some(own);
-        } else {
-            let (mut places, mut samples) = (Places::new(), Samples::EMPTY);
-            self.sample_in(&mut places, &mut samples, path, out);
-        }
+        self.sample_in(path, out);
     }
 }

@@ -96,6 +96,18 @@ impl Spline {
         );
     }
 
+    /// The values at a few positions, with the bits of [`Self::sample_block`].
+    pub fn values<const N: usize>(&self, position_m: &[[f64; 2]; N]) -> [f64; N] {
+        at_level!(self.level.at_most_256_bits(), s => {
+            let mut values = [0.0; N];
+            for (value, [x_m, y_m]) in values.iter_mut().zip(position_m) {
+                let (x, y) = (self.axes[0].place(*x_m), self.axes[1].place(*y_m));
+                *value = self.cell(Four(s), x.texel, y.texel).value(Four(s), [x.fraction, y.fraction]);
+            }
+            values
+        })
+    }
+
     /// [`Self::sample_block`], N positions side by side. A slow finger stays in a cell for many samples, whose
     /// polynomial is found once.
     #[inline(always)]

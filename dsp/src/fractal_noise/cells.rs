@@ -80,6 +80,8 @@ pub(super) struct LastCell<W> {
     /// Positions within these are in it, however they were rounded.
     bounds: Bounds,
     pub(super) corners: Corners<W>,
+    /// It is another than at the beginning.
+    moved: bool,
 }
 
 /// A [`LastCell`] between two calls, whatever their vectors.
@@ -97,12 +99,14 @@ impl KnownCell {
 impl<W: Copy> LastCell<W> {
     #[inline(always)]
     pub(super) fn of<const N: usize, V: Vector<N, Word = W>>(v: V, known: &KnownCell) -> Self {
-        Self { bounds: known.bounds, corners: Corners::splat(v, &known.corners) }
+        Self { bounds: known.bounds, corners: Corners::splat(v, &known.corners), moved: false }
     }
 
     #[inline(always)]
-    pub(super) fn known<const N: usize, V: Vector<N, Word = W>>(&self, v: V) -> KnownCell {
-        KnownCell { bounds: self.bounds, corners: self.corners.last(v) }
+    pub(super) fn tell<const N: usize, V: Vector<N, Word = W>>(&self, v: V, known: &mut KnownCell) {
+        if self.moved {
+            *known = KnownCell { bounds: self.bounds, corners: self.corners.last(v) };
+        }
     }
 
     #[inline(always)]
@@ -127,6 +131,7 @@ impl<W: Copy> LastCell<W> {
             self.bounds[axis + 2] = inner(-(last + i64::from(!place >> i)));
         }
         self.corners = corners.splat_last(v);
+        self.moved = true;
     }
 }
 

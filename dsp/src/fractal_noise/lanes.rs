@@ -260,7 +260,8 @@ pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
     for (last, known) in last.iter_mut().zip(known.iter()) {
         *last = LastCell::of(v, known);
     }
-    let mut rough = Rough::new(v, sets, v.splat(f32::NAN));
+    let first = first_of(roughness, roughness_left);
+    let mut rough = Rough::new(v, sets, v.load(&first));
     let inputs = positions.iter().zip(footprints).zip(roughness).take(whole);
     for (n, ((position, footprint), roughness)) in inputs.enumerate() {
         let lanes = Lanes::new(v, noise, position, footprint, roughness, sets, &mut rough);
@@ -292,8 +293,14 @@ pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
         }
     }
     for (last, known) in last.iter().zip(known) {
-        *known = last.known(v);
+        last.tell(v, known);
     }
+}
+
+/// The first N values of some in chunks of N and what is left of them.
+#[inline(always)]
+fn first_of<const N: usize>(chunks: &[[f64; N]], left: &[f64]) -> [f64; N] {
+    chunks.first().copied().unwrap_or_else(|| padded(left, 0.0))
 }
 
 /// Fewer than N values, and the last of them again and again: spare lanes make no work of their own.

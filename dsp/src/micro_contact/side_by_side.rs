@@ -15,6 +15,9 @@ use fearless_simd::{f64x4, mask64x4};
 /// How many contacts go side by side.
 pub const LANES: usize = 4;
 
+/// Rows of a short stretch.
+const FEW: usize = 16;
+
 /// A number of each contact.
 type Lane = [f64; LANES];
 
@@ -41,26 +44,34 @@ pub fn run_side_by_side(contacts: &mut [Beside<'_>]) {
         }
         return;
     };
+    // What is not used would have to be cleared as well.
+    if contacts[0].out.len() <= FEW {
+        let [mut heights, mut forces] = [[[0.0; LANES]; FEW]; 2];
+        run_through(contacts, &schemes, [&mut heights, &mut forces]);
+    } else {
+        let [mut heights, mut forces] = [[[0.0; LANES]; GRID]; 2];
+        run_through(contacts, &schemes, [&mut heights, &mut forces]);
+    }
+}
+
+/// Runs contacts from grid to grid, given room for the inputs of a grid cell or of all rows.
+fn run_through(
+    contacts: &mut [Beside<'_>],
+    schemes: &[&ExactEvent; LANES],
+    [heights, forces]: [&mut [Lane]; 2],
+) {
     let level = contacts[0].design.level.at_most_256_bits();
     let (mut at, wanted) = (0, contacts[0].out.len());
-    let (mut block, mut inputs) = (CleanBlock::EMPTY, [[[0.0; LANES]; GRID]; 2]);
     while at < wanted {
         let to_grid = |contact: &Beside<'_>| GRID - contact.state.clock as usize % GRID;
         let count = contacts.iter().map(to_grid).fold(wanted - at, usize::min);
         for (lane, contact) in contacts.iter_mut().enumerate() {
-            block.fill(
-                contact.state,
-                &contact.height_m[at..at + count],
-                &contact.normal_force_n[at..at + count],
-            );
-            let [heights, forces] = &mut inputs;
-            for (to, (height_m, force_n)) in
-                heights.iter_mut().zip(forces).zip(block.height_m.iter().zip(&block.force_n)).take(count)
-            {
-                (to.0[lane], to.1[lane]) = (*height_m, *force_n);
-            }
+            let rows = at..at + count;
+            let inputs = (&contact.height_m[rows.clone()], &contact.normal_force_n[rows]);
+            CleanBlock::fill_lane(contact.state, inputs, (&mut *heights, &mut *forces), lane);
         }
-        at_level!(level, s => Together::of(contacts, &schemes).run(s, contacts, &inputs, at..at + count));
+        let inputs = [&*heights, &*forces];
+        at_level!(level, s => Together::of(contacts, schemes).run(s, contacts, inputs, at..at + count));
         for contact in contacts.iter_mut() {
             contact.state.clock = contact.state.clock.wrapping_add(count as u32);
             if (contact.state.clock as usize).is_multiple_of(GRID) {
@@ -172,7 +183,7 @@ impl<'a> Together<'a> {
         mut self,
         s: S,
         contacts: &mut [Beside<'_>],
-        [heights, forces]: &[[Lane; GRID]; 2],
+        [heights, forces]: [&[Lane]; 2],
         rows: core::ops::Range<usize>,
     ) {
         let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };

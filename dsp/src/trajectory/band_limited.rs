@@ -23,8 +23,8 @@
 //! **Where it fails.** A finger that meets an edge and goes on elsewhere between two reports moves in no band: the estimate overshoots for some
 //! milliseconds. Jittered stamps of a straight stroke lead it by up to 2 ms. It is a choice for hands on smooth strokes, and not the default.
 
-use super::TrajectoryDesign;
 use super::reckoning::Belief;
+use super::{PathMode, TrajectoryDesign};
 
 /// Reports that count.
 const KEPT: usize = 6;
@@ -96,7 +96,10 @@ impl Estimate {
             rest: [[0.0; 2]; 2],
             glide: None,
         };
-        estimate.settle(design);
+        // Nobody asks an estimate that the mode does not use.
+        if design.mode == PathMode::BandLimited {
+            estimate.settle(design);
+        }
         estimate
     }
 

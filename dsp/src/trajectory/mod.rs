@@ -45,6 +45,7 @@ mod design;
 mod history;
 mod reckoning;
 mod reports;
+mod side_by_side;
 mod standstill;
 #[cfg(test)]
 mod tests;
@@ -59,6 +60,7 @@ use history::History;
 use reckoning::Reckoning;
 pub use reports::{Moved, PathEvent, TELEPORT_FACTOR, TELEPORT_MARGIN_M, UNREPORTED_SPEED_M_S};
 use reports::{carried_back, is_sane};
+pub use side_by_side::{Beside, advance_side_by_side};
 use standstill::Standstill;
 
 /// Below this a reported or decayed velocity is rest, m/s.
@@ -236,8 +238,21 @@ impl Trajectory {
         }
         (self.axes, self.force) = (axes.states(), pressing);
         let end = if design.mode == PathMode::BandLimited { self.estimated(design, out) } else { None };
+        if let Some(input) = inputs.last() {
+            self.come_to(design, (input, low), out, end);
+        }
+    }
+
+    /// Has made these points, of which the filters were given `input` for the last, and falls still if nothing moves any more; `end`: where an estimate ends.
+    fn come_to(
+        &mut self,
+        design: &TrajectoryDesign,
+        (input, low): (&[f64; 3], [f64; 3]),
+        out: &[PathPoint],
+        end: Option<[f64; 2]>,
+    ) {
         self.sample += out.len() as u64;
-        if let (Some(input), Some(point)) = (inputs.last(), out.last())
+        if let Some(point) = out.last()
             && self.sample.is_multiple_of(STILL_GRID)
             && is_settled(input, low, point)
             && self.has_arrived(design)

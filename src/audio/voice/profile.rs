@@ -2,7 +2,7 @@
 
 use super::shared::Shared;
 use crate::audio::seat::{Noise, Seat};
-use asperity_dsp::fractal_noise::NoiseCells;
+use crate::prepared::overlay::{Room, TileCells};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
 
@@ -39,6 +39,7 @@ pub(super) struct Profile {
     /// What lies there.
     pub(super) surface: SurfaceBlock,
     rough: SurfaceBlock,
+    room: Room,
 }
 
 impl Profile {
@@ -52,6 +53,7 @@ impl Profile {
             force_n: [0.0; MAX_BLOCK],
             surface: SurfaceBlock::default(),
             rough: SurfaceBlock::default(),
+            room: Room::new(),
         }
     }
 
@@ -61,7 +63,7 @@ impl Profile {
         seat: &mut Seat,
         along: Along<'_>,
         points: &[PathPoint],
-        cells: &mut NoiseCells,
+        cells: &mut TileCells,
     ) {
         let n = points.len();
         self.lay_out(along.shared, points);
@@ -79,6 +81,7 @@ impl Profile {
             footprint_m: &self.noise_footprint_m[..n],
             tip_radius_m: along.tip_radius_m,
             cells,
+            room: &mut self.room,
         };
         if along.in_body {
             seat.lie_at(&self.at_m[..n]);

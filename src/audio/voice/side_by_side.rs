@@ -2,7 +2,7 @@
 //! the lanes of one vector (`dsp::micro_contact::run_side_by_side`).
 //!
 //! ```text
-//! path, profile of each, in order → pads of all at once → high-passes of all at once → the rest of each, in order
+//! paths of all at once → profile of each, in order → pads of all at once → high-passes of all at once → the rest of each, in order
 //! ```
 //! Surfaces are asked in the order of the contacts, and what contacts do is handed on in that order: the bits are those of one after the other.
 
@@ -12,6 +12,7 @@ use crate::audio::seat::Seat;
 use crate::link::tap::NoTap;
 use asperity_dsp::actuator::{ContactOutput, Quantity};
 use asperity_dsp::micro_contact::{LANES, Probe, run_side_by_side};
+use asperity_dsp::trajectory::advance_side_by_side;
 
 /// The surfaces that contacts lie on.
 pub(crate) trait Seats {
@@ -94,6 +95,7 @@ impl<'a, W> Company<'a, W> {
         let At { position, n } = at;
         let mut passes = [Pass { n: 0, slides: false, coupled: false }; LANES];
         let mut pressing = [None; LANES];
+        let set_out = self.set_out(shared, n, seats, &mut scratch.lanes);
         for (lane, member) in self.members.iter_mut().flatten().enumerate() {
             let Member { voice, output, .. } = member;
             let seat = seats.seat(voice.surface);
@@ -101,7 +103,7 @@ impl<'a, W> Company<'a, W> {
             let slot = seat.current().filter(|_| at.is_on_grid());
             pressing[lane] = slot.and_then(|slot| voice.pressing(shared, slot));
             let stretch = Stretch { shared, output, position, n };
-            passes[lane] = voice.approach(stretch, false, seat, scratch, lane);
+            passes[lane] = voice.approach(stretch, (false, set_out[lane]), seat, scratch, lane);
         }
         self.touch_down(n, &passes, &mut scratch.lanes);
         self.couple(shared, n, &mut passes, seats, scratch);
@@ -113,6 +115,39 @@ impl<'a, W> Company<'a, W> {
             done(Done { voice, seat, pressing: pressing[lane], out: &mut scratch.out, who });
         }
         self.count = 0;
+    }
+
+    /// The points of those that move through the whole stretch; who they are. A path neither asks its surface nor is asked by one, so that it may be
+    /// ahead of both.
+    fn set_out(
+        &mut self,
+        shared: &Shared,
+        n: usize,
+        seats: &mut (impl Seats + ?Sized),
+        lanes: &mut [Lane; LANES],
+    ) -> [bool; LANES] {
+        let mut gone = [false; LANES];
+        if self.count < 2 {
+            return gone;
+        }
+        let mut beside = [const { None }; LANES];
+        let mut count = 0;
+        for ((member, own), gone) in self.members.iter_mut().flatten().zip(lanes).zip(&mut gone) {
+            let voice = &mut *member.voice;
+            if let (true, Some(slot)) = (voice.sets_out(), seats.seat(voice.surface).current()) {
+                beside[count] = Some(voice.path.beside(slot, &mut own.points[..n]));
+                (*gone, count) = (true, count + 1);
+            }
+        }
+        let level = shared.noise.level();
+        match beside {
+            [Some(a), Some(b), Some(c), Some(d)] => advance_side_by_side(level, &mut [a, b, c, d]),
+            [Some(a), Some(b), Some(c), None] => advance_side_by_side(level, &mut [a, b, c]),
+            [Some(a), Some(b), ..] => advance_side_by_side(level, &mut [a, b]),
+            [Some(a), ..] => advance_side_by_side(level, &mut [a]),
+            [None, ..] => {}
+        }
+        gone
     }
 
     /// The rows of those that slide, and the high-passes of those that have company.

@@ -1,18 +1,13 @@
 //! A block of a map: heights, slopes and roughness along a path.
 
+use super::Working;
 use super::{HeightMap, Roughness};
 use crate::height_field::{PathBlock, SurfaceBlock};
-use crate::spline::{Places, Samples};
 
 impl HeightMap {
-    /// What a path meets, worked out in some memory.
-    pub(super) fn sample_in(
-        &self,
-        places: &mut Places,
-        samples: &mut Samples,
-        path: &PathBlock<'_>,
-        out: &mut SurfaceBlock,
-    ) {
+    /// What a path meets, worked out in the memory that the block has for it.
+    pub(super) fn sample_in(&self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        let Working { places, samples } = &mut out.working;
         let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
         places.forget();
         let heights = self.ridden();

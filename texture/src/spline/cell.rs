@@ -4,7 +4,7 @@ use super::place::{AxisPlaces, ROOM};
 use super::vector::{Rows, Vector};
 
 /// Values and slopes of a block, each on its own so that lanes fill vectors.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Samples {
     /// Values of the map.
     pub value: [f64; ROOM],
@@ -18,9 +18,13 @@ impl Samples {
     /// Nothing yet.
     pub const EMPTY: Self = Self { value: [0.0; ROOM], slope_u: [0.0; ROOM], slope_v: [0.0; ROOM] };
 
-    /// The same value everywhere, level.
-    pub fn fill(&mut self, value: f64) {
-        *self = Self { value: [value; ROOM], ..Self::EMPTY };
+    /// The same value everywhere, level where anybody looks at slopes.
+    pub fn fill<const SLOPES: bool>(&mut self, value: f64) {
+        self.value.fill(value);
+        if SLOPES {
+            self.slope_u.fill(0.0);
+            self.slope_v.fill(0.0);
+        }
     }
 }
 
@@ -55,6 +59,17 @@ impl Cell {
             v.store(row, to);
         }
         Self { powers }
+    }
+
+    /// The value at one place.
+    #[inline(always)]
+    pub(super) fn value<V: Rows>(&self, v: V, [t, u]: [f64; 2]) -> f64 {
+        // The four powers of y side by side.
+        let [a, b, c, d] = &self.powers;
+        let mut level = [0.0; 4];
+        v.store(cubic(v, [v.load(a), v.load(b), v.load(c), v.load(d)], v.splat(t)), &mut level);
+        let [a, b, c, d] = level;
+        ((d * u + c) * u + b) * u + a
     }
 
     /// Values, and slopes if `SLOPES`, at the places `start..end`, N side by side. What is written beyond `end`, up to whole

@@ -32,7 +32,7 @@ pub(super) struct Place {
 }
 
 /// [`Place`]s of a block along one axis, each number on its own so that lanes fill vectors.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct AxisPlaces {
     texel: [f64; ROOM],
     fraction: [f64; ROOM],
@@ -40,7 +40,7 @@ pub(super) struct AxisPlaces {
 }
 
 /// Where the positions of a block lie; found once for all maps of one grid.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Places {
     /// The grid that they were found for.
     axes: Option<[Axis; 2]>,
@@ -68,18 +68,22 @@ impl Places {
         }
         self.axes = Some(*axes);
         self.len = position_m.len().min(MAX_BLOCK);
-        let mut along = [[0.0; ROOM]; 2];
-        for (n, [u, v]) in position_m.iter().take(MAX_BLOCK).enumerate() {
-            (along[0][n], along[1][n]) = (*u, *v);
-        }
         // So many as fill vectors; two sizes, because loops of known length do without a remainder.
         if self.len <= FEW {
-            axes[0].places::<FEW>(&along[0], &mut self.columns);
-            axes[1].places::<FEW>(&along[1], &mut self.rows);
+            self.find_first::<FEW>(axes, position_m);
         } else {
-            axes[0].places::<ROOM>(&along[0], &mut self.columns);
-            axes[1].places::<ROOM>(&along[1], &mut self.rows);
+            self.find_first::<ROOM>(axes, position_m);
         }
+    }
+
+    #[inline(always)]
+    fn find_first<const N: usize>(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]]) {
+        let mut along = [[0.0; N]; 2];
+        for (n, [u, v]) in position_m.iter().take(self.len).enumerate() {
+            (along[0][n], along[1][n]) = (*u, *v);
+        }
+        axes[0].places(&along[0], &mut self.columns);
+        axes[1].places(&along[1], &mut self.rows);
     }
 
     pub(super) fn len(&self) -> usize {
@@ -172,17 +176,17 @@ impl Axis {
 
     /// Where the positions of a block are; for the usual maps, which repeat, in a loop without branches.
     #[inline(always)]
-    fn places<const N: usize>(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
+    fn places<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
         if self.wrap == Wrap::Repeat {
-            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one::<N>(position_m, out);
+            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out);
         } else {
-            self.places_one_by_one::<N>(position_m, out);
+            self.places_one_by_one(position_m, out);
         }
     }
 
     #[inline(always)]
-    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; ROOM], out: &mut AxisPlaces) {
-        for (n, position_m) in position_m.iter().take(N).enumerate() {
+    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
+        for (n, position_m) in position_m.iter().enumerate() {
             let place = self.place(*position_m);
             (out.texel[n], out.fraction[n], out.slope[n]) = (place.texel, place.fraction, place.slope);
         }

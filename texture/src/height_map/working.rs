@@ -1,0 +1,19 @@
+//! Memory in which a block of a map is worked out.
+//!
+//! It belongs to the block that is filled, which whoever asks has at hand: one of every map's own would be far away, one on the stack would have to be
+//! cleared for every block.
+
+use crate::spline::{Places, Samples};
+
+/// It holds nothing between two blocks.
+#[derive(Debug, Clone)]
+pub(crate) struct Working {
+    pub(super) places: Places,
+    pub(super) samples: Samples,
+}
+
+impl Working {
+    pub(crate) const fn new() -> Self {
+        Self { places: Places::new(), samples: Samples::EMPTY }
+    }
+}
