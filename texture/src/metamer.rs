@@ -43,6 +43,7 @@ mod arrangement;
 mod bands;
 mod feel;
 mod level;
+mod terraces;
 
 pub use feel::Feel;
 

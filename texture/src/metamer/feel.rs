@@ -3,6 +3,7 @@
 use super::arrangement::{Correlation, correlation};
 use super::bands::{Parts, Scratch};
 use super::level::{Gait, Level, Task, add, on_grid};
+use super::terraces::are_terraces;
 use super::{BORROWED, Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, REACH, check_finite};
 use crate::borders::{Borders, SplitBorders};
 use crate::fft2::Fft2;
@@ -25,6 +26,7 @@ pub struct Feel {
     reference: SplitBorders,
     range: (f64, f64),
     level: Level,
+    has_terraces: bool,
     scratch: Scratch,
 }
 
@@ -49,7 +51,7 @@ impl Feel {
         let reference = SplitBorders::of(&whole, borders);
         let mut scratch = Scratch::default();
         let level = Level::new(&reference, [width, height], [bands, orientations], &mut scratch)?;
-        Ok(Self { options: *options, reference, range, level, scratch })
+        Ok(Self { options: *options, reference, range, level, has_terraces: are_terraces(&whole), scratch })
     }
 
     /// Lowest and highest height of the reference.
@@ -163,9 +165,37 @@ impl Feel {
         Ok(pyramid.join(&split))
     }
 
+    /// Of terraces with a memory; of other surfaces, and where that does not come near enough, by a search.
+    fn iterate(
+        &mut self,
+        original: &Raster,
+        seam: Option<&Raster>,
+        task: Task,
+        progress: &mut impl FnMut(f64),
+    ) -> Made {
+        let Some(by_memory) = self.by_memory(original, seam, task) else {
+            return self.search(original, seam, task, progress);
+        };
+        if by_memory.mean <= self.goal() {
+            return by_memory;
+        }
+        let searched = self.search(original, seam, task, progress);
+        if by_memory.mean < searched.mean { by_memory } else { searched }
+    }
+
+    /// Passes with a memory from the original itself, if the reference is terraces: others come to nothing there. Of a large surface only where
+    /// its coarser copy comes near.
+    fn by_memory(&mut self, original: &Raster, seam: Option<&Raster>, task: Task) -> Option<Made> {
+        let remembering = Task { gait: Gait::Remembering, ..task };
+        let is_large = self.level.of_moderate_size().1 > 0;
+        let is_hopeless = !self.has_terraces
+            || is_large && self.try_coarsely(original, seam, remembering, 0.0).mean > self.goal();
+        (!is_hopeless).then(|| self.try_out(original.clone(), seam, remembering, 0.0))
+    }
+
     /// Passes from the original, then with a memory, then with momentum, then from surfaces that have more and more of the reference's own
     /// arrangement, until the result is near enough. Of large maps this is tried on a coarser grid.
-    fn iterate(
+    fn search(
         &mut self,
         original: &Raster,
         seam: Option<&Raster>,
