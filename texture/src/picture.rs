@@ -330,6 +330,10 @@ mod tests {
         let weighted = (0.2126 * 51.0 + 0.7152 * 102.0 + 0.0722 * 204.0) / 255.0;
         let luma = rgba.channel(Channel::Luma).unwrap();
         assert!((luma.raster.values[0] - weighted).abs() < 1e-12);
+        let coded = (0.299 * 51.0 + 0.587 * 102.0 + 0.114 * 204.0) / 255.0;
+        let jpeg = rgba.clone().of_jpeg();
+        assert!((jpeg.channel(Channel::Luma).unwrap().raster.values[0] - coded).abs() < 1e-12);
+        assert!((jpeg.brightness(1).unwrap().values[0] - coded).abs() < 1e-12);
         let rgb = Picture::new(1, 1, Samples::U8(pixel[..3].to_vec())).unwrap();
         assert!(matches!(rgb.channel(Channel::A), Err(Problem::NoAlpha)));
     }
