@@ -5,8 +5,8 @@
 
 use asperity_texture::dark_is_deep::high_pass;
 use asperity_texture::fft2::{Fft2, angular_frequency};
-use asperity_texture::from_photo::{PhotoOptions, PhotoSurface, reduced, surface_from_photo};
-use asperity_texture::image_io::{Channel, load_channel, save_gray16};
+use asperity_texture::from_photo::{MOST_TEXELS, PhotoOptions, PhotoSurface, surface_from_photo};
+use asperity_texture::image_io::{Channel, load_channel, load_reduced_photograph, save_gray16};
 use asperity_texture::raster::Raster;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -23,9 +23,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for argument in &arguments {
         let (photo, displacement) =
             argument.split_once(',').map_or((argument.as_str(), None), |(p, d)| (p, Some(d)));
-        let (picture, _) = reduced(load_channel(photo, Channel::Luma)?.raster);
+        let photograph = load_reduced_photograph(photo, MOST_TEXELS)?;
+        let picture = photograph.brightness;
+        let options = PhotoOptions { jpeg_divisor: photograph.jpeg_divisor, ..PhotoOptions::default() };
         let start = std::time::Instant::now();
-        let surface = surface_from_photo(&picture, &PhotoOptions::default(), |_| {})?;
+        let surface = surface_from_photo(&picture, &options, |_| {})?;
         let seconds = start.elapsed().as_secs_f64();
         let r = displacement.map(|map| load_channel(map, Channel::Luma)).transpose()?;
         let r =

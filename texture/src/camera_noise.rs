@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! X'(k) = X(k) √max(0, 1 − N/P(r) · (1 + 3/√n))       r = |k|
-//! N = min(N_most, max(N_step, N_corner, N_plateau, N_level))
+//! N = min(N_most, max(N_step, N_corner, N_plateau, N_level, N_jpeg))
 //! ```
 //! | symbol | here |
 //! |---|---|
@@ -10,6 +10,7 @@
 //! | N_corner | mean power where both frequencies are above `CORNER`: a lens leaves nothing there, white noise is as strong as elsewhere |
 //! | N_plateau | power of 4–8 texels where 8–16 texels have no more: JPEG takes noise out of the corner, not out of the middle |
 //! | N_level | power of three octaves that are level, of 8–64 or of 16–128 texels: a sensor's mosaic and its sharpening colour noise below 8 texels and leave longer waves white; a surface's rise or have a hump there |
+//! | N_jpeg | the most of the octaves of 8–64 texels (of 64–128 too, where they are as weak) where none has more than what JPEG hides: noise below its divisors, and the steps between its blocks. A surface that has nothing there has nothing in shorter waves |
 //! | N_step | an eighth bit's rounding |
 //! | N_most | [`MOST_NOISE`]: what is stronger is not a camera's, but a rough surface under a low light, which is white as well |
 //!
@@ -39,6 +40,9 @@ const LEVEL: f64 = 1.45;
 const NOT_LEVEL: f64 = 1.7;
 /// How much more than the mean of level octaves is taken off: a mosaic and JPEG leave them uneven by a fifth.
 const MARGIN: f64 = 1.3;
+/// Rms of the white noise that a JPEG of divisor 1 hides, levels of 255: quantisation takes what is below half a divisor, and steps of its
+/// block means are white noise of 1/√12 of it. Source: ours, above what walls of quality 76–92 keep (0.35–0.7).
+const HIDDEN: f64 = 0.8;
 /// Euler's and Mascheroni's.
 const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 /// Standard errors that a ring's noise may be above its mean.
@@ -53,16 +57,24 @@ pub struct Quiet {
     pub noise: f64,
 }
 
-/// Takes the noise off a picture of values 0–1.
+/// Takes the noise off a picture of values 0–1 that was no JPEG, or of which nobody knows.
 #[must_use]
 pub fn without_camera_noise(picture: &Raster) -> Quiet {
+    without_noise_and_steps(picture, 0.0)
+}
+
+/// Takes the noise off a picture of values 0–1 that came from a JPEG of this divisor
+/// ([`PhotoOptions::jpeg_divisor`](crate::from_photo::PhotoOptions::jpeg_divisor)).
+#[must_use]
+pub fn without_noise_and_steps(picture: &Raster, jpeg_divisor: f64) -> Quiet {
     let split = SplitBorders::of(picture, Borders::Detect);
     let mut waves = Waves::of(&split.periodic);
     drop(split.periodic);
     let rings = Rings::of(&waves, picture);
     let texels = picture.values.len() as f64;
-    let [noise, taken] =
-        floor(&waves, texels).map(|power| power.clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE));
+    let hidden = HIDDEN * jpeg_divisor / 255.0;
+    let [noise, taken] = floor(&waves, texels, hidden * hidden)
+        .map(|power| power.clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE));
     let gains: Vec<f64> = rings
         .power
         .iter()
@@ -105,8 +117,9 @@ impl Rings {
     }
 }
 
-/// Power of the noise, of the corner, of the plateau or of level octaves, whichever is most; and what is to be taken off.
-fn floor(waves: &Waves, texels: f64) -> [f64; 2] {
+/// Power of the noise, of the corner, of the plateau, of level octaves or of what JPEG hides (at most `hidden`), whichever is most; and what
+/// is to be taken off.
+fn floor(waves: &Waves, texels: f64, hidden: f64) -> [f64; 2] {
     let mut corner = Mean::default();
     let mut octaves: [Mean; OCTAVES] = Default::default();
     waves.each(|wave| {
@@ -121,8 +134,18 @@ fn floor(waves: &Waves, texels: f64) -> [f64; 2] {
         }
     });
     let level = octaves[1..].windows(3).map(of_level_octaves).fold(0.0, f64::max);
+    let level = level.max(of_hidden_octaves(&octaves[1..], hidden));
     let noise = corner.get().max(plateau(&octaves));
     [noise.max(level), noise.max(MARGIN * level)]
+}
+
+/// The most power of the octaves from the first on that are no stronger than what JPEG hides, if there are three of them.
+fn of_hidden_octaves(octaves: &[Mean], hidden: f64) -> f64 {
+    let are_hidden =
+        octaves.iter().take_while(|octave| octave.count >= FEWEST_WAVES && octave.of_noise() <= hidden);
+    let (count, most) =
+        are_hidden.fold((0, 0.0_f64), |(n, most), octave| (n + 1, most.max(octave.of_noise())));
+    if count >= 3 { most } else { 0.0 }
 }
 
 /// All of 4–8 texels where 8–16 have no more, nothing where they have twice the power.

@@ -37,7 +37,7 @@ pub use reduced::{MOST_TEXELS, reduced};
 pub use sign::{DECIDED, Sign};
 
 use crate::borders::Borders;
-use crate::camera_noise::{MOST_NOISE, without_camera_noise};
+use crate::camera_noise::{MOST_NOISE, without_noise_and_steps};
 use crate::fractal_dimension::{Condition, conditions, transects};
 use crate::raster::Raster;
 use crate::relief_spectrum::ReliefSpectrum;
@@ -186,12 +186,13 @@ pub fn surface_from_photo(
     mut progress: impl FnMut(f64),
 ) -> Result<PhotoSurface, DesignError> {
     options::check(picture, options)?;
-    let (quiet, (repetition, parts)) = both(|| without_camera_noise(picture), || take_apart(picture));
+    let (quiet, (repetition, parts)) =
+        both(|| without_noise_and_steps(picture, options.jpeg_divisor), || take_apart(picture));
     progress(0.4);
     let averaged = repetition.as_ref().is_some_and(|found| !found.wanders);
     let shaped = if averaged { &parts.symmetric } else { &quiet.picture };
     let (textured_px, found) = both(
-        || averaged.then(|| residual::residual_heights(&parts.residual, picture)),
+        || averaged.then(|| residual::residual_heights(&parts.residual, picture, options.jpeg_divisor)),
         || heights::heights_of(shaped, &quiet.picture, options, |done| progress(0.4 + 0.4 * done)),
     );
     let mut found = found?;

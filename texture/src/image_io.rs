@@ -5,6 +5,8 @@
 //! have any shape, 16 bits stay 16 bits, a picture that EXIF calls turned is turned back, of a moving GIF the first frame counts. A header is believed only within [`MAX_SIDE`] and
 //! [`MAX_TEXELS`], before any pixel is decoded.
 
+#[cfg(feature = "offline")]
+mod jpeg;
 #[cfg(test)]
 mod tests;
 
@@ -18,7 +20,7 @@ use crate::raster::Raster;
 #[cfg(feature = "offline")]
 use image::ColorType;
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, BufWriter, Cursor, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -41,11 +43,8 @@ pub fn load_channel(path: impl AsRef<Path>, channel: Channel) -> Result<ChannelI
 pub fn load_photograph(path: impl AsRef<Path>) -> Result<(ChannelImage, f64), ImageError> {
     let path = path.as_ref();
     open(path)
-        .and_then(|file| decode(file, Channel::Luma))
-        .and_then(|image| {
-            let colour = colour_of(&image);
-            Ok((picture(image)?.channel(Channel::Luma)?, colour))
-        })
+        .and_then(decode_photograph)
+        .and_then(|(photograph, colour)| Ok((photograph.channel(Channel::Luma)?, colour)))
         .map_err(|problem| ImageError { file: path.to_path_buf(), problem })
 }
 
@@ -61,6 +60,8 @@ pub struct Photograph {
     pub width_px: usize,
     /// How much of it is colour rather than light ([`ColourSums::fraction`]).
     pub colour: f64,
+    /// [`PhotoOptions::jpeg_divisor`](crate::from_photo::PhotoOptions::jpeg_divisor).
+    pub jpeg_divisor: f64,
 }
 
 /// Reads a photograph reduced to at most `most_texels`, without ever holding all of a larger one as numbers.
@@ -71,12 +72,19 @@ pub struct Photograph {
 pub fn load_reduced_photograph(path: impl AsRef<Path>, most_texels: usize) -> Result<Photograph, ImageError> {
     let path = path.as_ref();
     let read = || {
-        let image = decode(open(path)?, Channel::Luma)?;
-        let colour = colour_of(&image);
-        let [width, height] = [image.width(), image.height()].map(|side| side as usize);
+        let mut file = open(path)?;
+        let divisor = jpeg::divisor(&mut file).unwrap_or(0.0);
+        let (photograph, colour) = decode_photograph(file)?;
+        let [width, height] = photograph.size();
         let reduced_by = Raster::reduction(width, height, most_texels);
-        let brightness = picture(image)?.brightness(reduced_by)?;
-        Ok(Photograph { brightness, reduced_by, width_px: width, colour })
+        let brightness = photograph.brightness(reduced_by)?;
+        Ok(Photograph {
+            brightness,
+            reduced_by,
+            width_px: width,
+            colour,
+            jpeg_divisor: divisor / reduced_by as f64,
+        })
     };
     read().map_err(|problem| ImageError { file: path.to_path_buf(), problem })
 }
@@ -133,13 +141,27 @@ fn open(path: &Path) -> Result<BufReader<File>, Problem> {
     Ok(BufReader::new(file))
 }
 
+/// The picture of a photograph's file, with the brightness that the file itself has, and how much of it is colour.
+#[cfg(feature = "offline")]
+fn decode_photograph(file: impl BufRead + Seek) -> Result<(Picture, f64), Problem> {
+    let (image, format) = decode_as(file, Channel::Luma)?;
+    let colour = colour_of(&image);
+    let photograph = picture(image)?;
+    Ok((if format == ImageFormat::Jpeg { photograph.of_jpeg() } else { photograph }, colour))
+}
+
 /// The picture of a file that has this channel, turned as EXIF says.
 fn decode(file: impl BufRead + Seek, channel: Channel) -> Result<DynamicImage, Problem> {
+    Ok(decode_as(file, channel)?.0)
+}
+
+/// The same, and what kind of file it is.
+fn decode_as(file: impl BufRead + Seek, channel: Channel) -> Result<(DynamicImage, ImageFormat), Problem> {
     let mut reader = ImageReader::new(file).with_guessed_format().map_err(Problem::Io)?;
-    match reader.format() {
-        Some(format) if format.reading_enabled() => {}
+    let format = match reader.format() {
+        Some(format) if format.reading_enabled() => format,
         _ => return Err(Problem::UnknownFormat),
-    }
+    };
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_TEXELS * 16 + MAX_FILE_BYTES);
     reader.limits(limits);
@@ -158,7 +180,7 @@ fn decode(file: impl BufRead + Seek, channel: Channel) -> Result<DynamicImage, P
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     let mut image = DynamicImage::from_decoder(decoder).map_err(translate)?;
     image.apply_orientation(orientation);
-    Ok(image)
+    Ok((image, format))
 }
 
 /// How much of a picture is colour; 0 of a grey one.

@@ -22,7 +22,8 @@
 //! how the power lies within it. The heights come last in each pass: plateaus stay flat, and no height leaves the reference's
 //! range. Coarse grids settle before fine ones (`metamer/level.rs`).
 //!
-//! A surface that does not come within [`REACH`] so is tried again with a memory of what the heights took back, which terraces need, then
+//! A surface that does not come within [`REACH`] so is tried again with a memory of what the heights took back (terraces, surfaces of at most 64 heights, begin
+//! so, with more passes on fine grids), then
 //! with momentum, which gives up more of the original's arrangement, and then from mixtures of the original and the reference: of bars or holes of two heights that repeat
 //! exactly hardly any other arrangement has the same sub-bands. [`Metamer::borrowed`] tells how much was taken, and
 //! [`MetamerOptions::borrow`] limits it. [`Method::Spectrum`] takes
@@ -43,6 +44,8 @@ mod arrangement;
 mod bands;
 mod feel;
 mod level;
+mod spectrum;
+mod terraces;
 
 pub use feel::Feel;
 

@@ -70,6 +70,7 @@ pub struct Picture {
     height: usize,
     channels: usize,
     samples: Samples,
+    luma: Luma,
 }
 
 impl Picture {
@@ -90,7 +91,20 @@ impl Picture {
         if !(1..=4).contains(&channels) || channels * texels != count {
             return Err(Problem::Samples { count, width, height });
         }
-        Ok(Self { width: width as usize, height: height as usize, channels, samples })
+        Ok(Self { width: width as usize, height: height as usize, channels, samples, luma: Luma::default() })
+    }
+
+    /// The same picture, whose brightness is that of a JPEG: 0.299 R + 0.587 G + 0.114 B, which is what the file holds beside two colours that are
+    /// coarser. By other weights, the colours' errors would be brightness.
+    #[must_use]
+    pub fn of_jpeg(self) -> Self {
+        Self { luma: Luma::Jpeg, ..self }
+    }
+
+    /// Pixels in a row, and rows.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
     }
 
     /// One channel as a map of a surface: [`channel`](Self::channel), but the brightness of a normal map is no map of anything.
@@ -115,13 +129,15 @@ impl Picture {
         }
         let shape = [width * height, self.channels];
         let (values, step) = match &self.samples {
-            Samples::U8(samples) => integers(samples.iter().map(|&s| u16::from(s)), shape, 255, channel),
-            Samples::U16(samples) => integers(samples.iter().copied(), shape, 65_535, channel),
+            Samples::U8(samples) => {
+                integers(samples.iter().map(|&s| u16::from(s)), shape, 255, channel, self.luma)
+            }
+            Samples::U16(samples) => integers(samples.iter().copied(), shape, 65_535, channel, self.luma),
             Samples::F32(samples) => {
                 let mut pixel = [0.0; 4];
                 let values = samples.chunks_exact(self.channels).map(|stored| {
                     pixel.iter_mut().zip(stored).for_each(|(to, &from)| *to = f64::from(from));
-                    channel_of(&pixel[..self.channels], channel)
+                    channel_of(&pixel[..self.channels], channel, self.luma)
                 });
                 (values.collect(), 0.0)
             }
@@ -239,6 +255,7 @@ fn integers(
     [texels, channels]: [usize; 2],
     white: u16,
     channel: Channel,
+    luma: Luma,
 ) -> (Vec<f64>, f64) {
     let mut pixel = [0.0; 4];
     let mut filled = 0;
@@ -249,7 +266,7 @@ fn integers(
         filled += 1;
         if filled == channels {
             filled = 0;
-            let value = channel_of(&pixel[..channels], channel);
+            let value = channel_of(&pixel[..channels], channel, luma);
             if common != 1 {
                 common = greatest_common_divisor(common, value.round() as u16);
             }
@@ -266,20 +283,36 @@ fn greatest_common_divisor(mut a: u16, mut b: u16) -> u16 {
     a
 }
 
-fn channel_of(pixel: &[f64], channel: Channel) -> f64 {
+fn channel_of(pixel: &[f64], channel: Channel, luma: Luma) -> f64 {
     let is_grey = pixel.len() < 3;
     match channel {
         Channel::A => pixel[pixel.len() - 1],
-        Channel::Luma if !is_grey => luma(pixel[0], pixel[1], pixel[2]),
+        Channel::Luma if !is_grey => luma.of(pixel[0], pixel[1], pixel[2]),
         Channel::G if !is_grey => pixel[1],
         Channel::B if !is_grey => pixel[2],
         _ => pixel[0],
     }
 }
 
-/// Weighted so that a grey pixel keeps its number exactly.
-fn luma(r: f64, g: f64, b: f64) -> f64 {
-    g + 0.2126 * (r - g) + 0.0722 * (b - g)
+/// How colours become brightness.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Luma {
+    /// As eyes weigh them (Rec. 709).
+    #[default]
+    Seen,
+    /// As JPEG does (Rec. 601).
+    Jpeg,
+}
+
+impl Luma {
+    /// Weighted so that a grey pixel keeps its number exactly.
+    fn of(self, r: f64, g: f64, b: f64) -> f64 {
+        let [red, blue] = match self {
+            Self::Seen => [0.2126, 0.0722],
+            Self::Jpeg => [0.299, 0.114],
+        };
+        g + red * (r - g) + blue * (b - g)
+    }
 }
 
 #[cfg(test)]
@@ -297,6 +330,10 @@ mod tests {
         let weighted = (0.2126 * 51.0 + 0.7152 * 102.0 + 0.0722 * 204.0) / 255.0;
         let luma = rgba.channel(Channel::Luma).unwrap();
         assert!((luma.raster.values[0] - weighted).abs() < 1e-12);
+        let coded = (0.299 * 51.0 + 0.587 * 102.0 + 0.114 * 204.0) / 255.0;
+        let jpeg = rgba.clone().of_jpeg();
+        assert!((jpeg.channel(Channel::Luma).unwrap().raster.values[0] - coded).abs() < 1e-12);
+        assert!((jpeg.brightness(1).unwrap().values[0] - coded).abs() < 1e-12);
         let rgb = Picture::new(1, 1, Samples::U8(pixel[..3].to_vec())).unwrap();
         assert!(matches!(rgb.channel(Channel::A), Err(Problem::NoAlpha)));
     }

@@ -58,6 +58,7 @@ pub fn from_photo<'py>(
         relief_m,
         calibration,
         exaggeration: exaggerate,
+        ..plain
     };
     let pulse = Pulse::new(progress);
     let surface =

@@ -116,10 +116,15 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         relief_m: options.relief_m,
         calibration: options.calibration.unwrap_or(1.0),
         exaggeration: options.exaggerate,
+        jpeg_divisor: photograph.jpeg_divisor,
     };
     if let (Some(known), Some(relief_m)) = (&options.known, options.known_relief_m) {
         let sample = load(known)?;
-        let at_its_size = PhotoOptions { texel_m: texel_m * sample.reduced_by as f64, ..settings };
+        let at_its_size = PhotoOptions {
+            texel_m: texel_m * sample.reduced_by as f64,
+            jpeg_divisor: sample.jpeg_divisor,
+            ..settings
+        };
         settings.calibration = calibration(&sample.brightness, relief_m, &at_its_size)
             .map_err(|error| refused(known, &error))?;
     }

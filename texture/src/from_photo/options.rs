@@ -26,6 +26,9 @@ pub struct PhotoOptions {
     pub calibration: f64,
     /// Factor on the heights, whatever gave them.
     pub exaggeration: f64,
+    /// The coarsest divisor of a JPEG's slow waves of brightness, levels of 255, over the pixels that a texel's side has; 0 where the
+    /// picture was none. What such a file cannot hold is no relief.
+    pub jpeg_divisor: f64,
 }
 
 impl Default for PhotoOptions {
@@ -38,6 +41,7 @@ impl Default for PhotoOptions {
             relief_m: None,
             calibration: 1.0,
             exaggeration: 1.0,
+            jpeg_divisor: 0.0,
         }
     }
 }
@@ -79,6 +83,8 @@ pub(super) fn check(picture: &Raster, options: &PhotoOptions) -> Result<(), Desi
     DesignError::check("exaggeration", options.exaggeration, range, |e| e > 0.0 && e <= 100.0)?;
     let range = "above 0 and at most 1e6";
     DesignError::check("calibration", options.calibration, range, |c| c > 0.0 && c <= 1e6)?;
+    let range = "0 to 65535";
+    DesignError::check("jpeg_divisor", options.jpeg_divisor, range, |d| (0.0..=65_535.0).contains(&d))?;
     if let Some(relief_m) = options.relief_m {
         DesignError::check("relief_m", relief_m, "above 0 m and at most 1 m", |r| r > 0.0 && r <= 1.0)?;
     }

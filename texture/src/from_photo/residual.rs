@@ -8,7 +8,7 @@
 //! the cell. Longer waves of the residual are dirt, wear and uneven light, which is what averaging is for.
 
 use super::heights::contrast;
-use crate::camera_noise::without_camera_noise;
+use crate::camera_noise::without_noise_and_steps;
 use crate::dark_is_deep::dark_is_deep;
 use crate::raster::Raster;
 use crate::waves::Waves;
@@ -19,10 +19,10 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const FINE_PX: [f64; 2] = [8.0, 16.0];
 
 /// Heights of what does not repeat, texels, by its contrast against the whole picture.
-pub(super) fn residual_heights(residual: &Raster, picture: &Raster) -> Raster {
+pub(super) fn residual_heights(residual: &Raster, picture: &Raster, jpeg_divisor: f64) -> Raster {
     let mean = picture.mean();
     let mut picture = residual.map(|v| v + mean);
-    picture = without_camera_noise(&picture).picture;
+    picture = without_noise_and_steps(&picture, jpeg_divisor).picture;
     picture = contrast(&picture);
     dark_is_deep(&picture)
 }

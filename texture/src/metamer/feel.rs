@@ -3,14 +3,13 @@
 use super::arrangement::{Correlation, correlation};
 use super::bands::{Parts, Scratch};
 use super::level::{Gait, Level, Task, add, on_grid};
+use super::spectrum::with_amplitudes;
+use super::terraces::are_terraces;
 use super::{BORROWED, Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, REACH, check_finite};
 use crate::borders::{Borders, SplitBorders};
-use crate::fft2::Fft2;
 use crate::pyramid::{Kind, Pyramid, Sampling, Subband};
 use crate::raster::Raster;
-use crate::spectral_resample::resample_spectrum;
 use asperity_dsp::DesignError;
-use asperity_fft::num_complex::Complex64;
 
 /// Most that an original without relief is raised before it is mixed with the reference.
 const MOST_GAIN: f64 = 1e6;
@@ -25,6 +24,7 @@ pub struct Feel {
     reference: SplitBorders,
     range: (f64, f64),
     level: Level,
+    has_terraces: bool,
     scratch: Scratch,
 }
 
@@ -49,7 +49,7 @@ impl Feel {
         let reference = SplitBorders::of(&whole, borders);
         let mut scratch = Scratch::default();
         let level = Level::new(&reference, [width, height], [bands, orientations], &mut scratch)?;
-        Ok(Self { options: *options, reference, range, level, scratch })
+        Ok(Self { options: *options, reference, range, level, has_terraces: are_terraces(&whole), scratch })
     }
 
     /// Lowest and highest height of the reference.
@@ -163,9 +163,47 @@ impl Feel {
         Ok(pyramid.join(&split))
     }
 
+    /// Of terraces with a memory; of other surfaces, and where that does not come near enough, by a search.
+    fn iterate(
+        &mut self,
+        original: &Raster,
+        seam: Option<&Raster>,
+        task: Task,
+        progress: &mut impl FnMut(f64),
+    ) -> Made {
+        let Some(by_memory) = self.by_memory(original, seam, task) else {
+            return self.search(original, seam, task, progress);
+        };
+        if by_memory.mean <= self.goal() {
+            return by_memory;
+        }
+        let searched = self.search(original, seam, task, progress);
+        if by_memory.mean < searched.mean { by_memory } else { searched }
+    }
+
+    /// Passes with a memory from the original itself, if the reference is terraces: others come to nothing there. Twice as many, where that is what
+    /// lacks; of a large surface only where its coarser copy comes near.
+    fn by_memory(&mut self, original: &Raster, seam: Option<&Raster>, task: Task) -> Option<Made> {
+        let remembering = Task { gait: Gait::Remembering, ..task };
+        let is_large = self.level.of_moderate_size().1 > 0;
+        let is_hopeless = !self.has_terraces
+            || is_large && self.try_coarsely(original, seam, remembering, 0.0).mean > 2.0 * self.goal();
+        if is_hopeless {
+            return None;
+        }
+        let made = self.try_out(original.clone(), seam, remembering, 0.0);
+        let comes_nearer = made.mean > self.goal() && made.mean <= 2.0 * self.goal();
+        if !comes_nearer {
+            return Some(made);
+        }
+        let patiently = Task { passes: 2 * task.passes, ..remembering };
+        let again = self.try_out(original.clone(), seam, patiently, 0.0);
+        Some(if again.mean < made.mean { again } else { made })
+    }
+
     /// Passes from the original, then with a memory, then with momentum, then from surfaces that have more and more of the reference's own
     /// arrangement, until the result is near enough. Of large maps this is tried on a coarser grid.
-    fn iterate(
+    fn search(
         &mut self,
         original: &Raster,
         seam: Option<&Raster>,
@@ -351,20 +389,6 @@ fn mean(level: &Level, distances: &[f64]) -> f64 {
 fn scaled(reference: &Raster, scale: f64, borders: Borders) -> Raster {
     let side = |n: usize| ((n as f64 / scale).round() as usize).max(1);
     on_grid(reference, borders, [side(reference.width), side(reference.height)])
-}
-
-/// The original's phases with the reference's amplitudes.
-fn with_amplitudes(original: &Raster, reference: &Raster) -> Raster {
-    let mut fft = Fft2::new(original.width, original.height);
-    let amplitudes = resample_spectrum(reference, original.width, original.height);
-    let mut spectrum = fft.spectrum(&original.values);
-    for (value, &amplitude) in spectrum.iter_mut().zip(&amplitudes) {
-        let norm = value.norm();
-        *value = if norm > 0.0 { *value * (amplitude / norm) } else { Complex64::default() };
-    }
-    // The mean is a height, not an amplitude: it keeps its sign.
-    spectrum[0] = Complex64::new(reference.mean() * original.values.len() as f64, 0.0);
-    fft.image(&mut spectrum)
 }
 
 #[cfg(test)]

@@ -148,9 +148,10 @@ impl Level {
         })
     }
 
-    /// Passes on this grid, of those asked for.
-    pub fn passes(&self, asked: usize) -> usize {
+    /// Passes on this grid, of those asked for. Terraces get more of them where others need few: their edges are on the fine grid alone.
+    pub fn passes(&self, asked: usize, gait: Gait) -> usize {
         let share = (SIDE / texels_a_side(self.size)).min(MOST_PASSES);
+        let share = if gait == Gait::Remembering && share < 1.0 { share.sqrt() } else { share };
         ((asked as f64 * share).round() as usize).max(asked.min(FEWEST_PASSES))
     }
 
@@ -179,7 +180,7 @@ impl Level {
         enough: &mut dyn FnMut(&mut Self, &Raster, &mut Scratch) -> bool,
     ) -> usize {
         self.settle_coarser(image, seam, task, scratch);
-        let passes = self.passes(task.passes);
+        let passes = self.passes(task.passes, task.gait);
         let power = self.power_of(task.parts);
         let mut carried = image.values.clone();
         let mut made = Vec::new();

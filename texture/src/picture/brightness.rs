@@ -1,6 +1,6 @@
 //! The brightness of a large picture: means of n × n pixels, without all of it as numbers first.
 
-use super::{Channel, Picture, Problem, Samples, luma};
+use super::{Channel, Picture, Problem, Samples};
 use crate::raster::Raster;
 
 impl Picture {
@@ -27,8 +27,9 @@ impl Picture {
     fn means<T: Copy + Into<f64>>(&self, samples: &[T], white: f64, n: usize) -> Raster {
         match self.channels {
             1 | 2 => self.means_by(samples, white, n, |pixel| pixel[0].into()),
-            _ => self
-                .means_by(samples, white, n, |pixel| luma(pixel[0].into(), pixel[1].into(), pixel[2].into())),
+            _ => self.means_by(samples, white, n, |pixel| {
+                self.luma.of(pixel[0].into(), pixel[1].into(), pixel[2].into())
+            }),
         }
     }
 
