@@ -234,7 +234,7 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
         shed = late.scene.stats().shed;
         assert_eq!(late.scene.stats().contacts, 10);
     }
-    // What nobody hears goes first, which is not what errs least by waveform (`cli/tests/perceptual_shedding.rs` holds what is heard); then the last
+    // What nobody hears goes first, which is not what errs least by waveform (`cli/tests/perceptual_order.rs` holds what is heard); then the last
     // but sixteen, and octaves of the relief.
     assert!(errors[..3].iter().all(|error| *error < -35.0) && errors[3] < -8.0, "{errors:?}");
     assert!(
