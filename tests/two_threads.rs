@@ -1,0 +1,48 @@
+//! What a second thread is worth. A file of its own, because a test that runs beside it would take the second processor away.
+
+mod common;
+#[path = "common/many_bodies.rs"]
+mod many_bodies;
+
+use many_bodies::Strokes;
+use std::time::Instant;
+
+/// Least share of the best possible gain that sharing one engine's work has to reach.
+const LEAST_SHARE: f64 = 0.7;
+
+/// Seconds of 200 blocks of 64 frames.
+fn run_s(strokes: &mut Strokes) -> f64 {
+    let (mut haptic, mut audio) = ([0.0f32; 64], [0.0f32; 64]);
+    let began = Instant::now();
+    for _ in 0..200 {
+        strokes.block(&mut haptic, &mut audio);
+    }
+    began.elapsed().as_secs_f64()
+}
+
+#[test]
+fn two_threads_on_one_engine_come_near_to_two_engines_that_share_nothing() {
+    let (mut one, mut other) = (Strokes::new(10, 1000, 1), Strokes::new(10, 1000, 1));
+    let mut shared = Strokes::new(10, 1000, 2);
+    let (mut possible, mut gains) = (Vec::new(), Vec::new());
+    for _ in 0..15 {
+        let alone_s = run_s(&mut one);
+        let began = Instant::now();
+        std::thread::scope(|scope| {
+            scope.spawn(|| run_s(&mut one));
+            run_s(&mut other);
+        });
+        possible.push(2.0 * alone_s / began.elapsed().as_secs_f64());
+        gains.push(alone_s / run_s(&mut shared));
+    }
+    gains.sort_by(f64::total_cmp);
+    possible.sort_by(f64::total_cmp);
+    let (gain, possible) = (gains[7], possible[7]);
+    println!(
+        "ten bodies of 1000 modes, two threads: {gain:.2} times as fast; two engines at once: {possible:.2}"
+    );
+    assert!(
+        gain >= LEAST_SHARE * possible,
+        "{gain:.2} where two engines do {possible:.2} times the work of one"
+    );
+}
