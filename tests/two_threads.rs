@@ -10,6 +10,9 @@ use std::time::Instant;
 /// Least share of the best possible gain that sharing one engine's work has to reach.
 const LEAST_SHARE: f64 = 0.7;
 
+/// What two engines at once have to reach for there to be two processors.
+const TWO_PROCESSORS: f64 = 1.5;
+
 /// Seconds of 200 blocks of 64 frames.
 fn run_s(strokes: &mut Strokes) -> f64 {
     let (mut haptic, mut audio) = ([0.0f32; 64], [0.0f32; 64]);
@@ -41,6 +44,10 @@ fn two_threads_on_one_engine_come_near_to_two_engines_that_share_nothing() {
     println!(
         "ten bodies of 1000 modes, two threads: {gain:.2} times as fast; two engines at once: {possible:.2}"
     );
+    if possible < TWO_PROCESSORS {
+        println!("skipped: this machine has no two processors to give now");
+        return;
+    }
     assert!(
         gain >= LEAST_SHARE * possible,
         "{gain:.2} where two engines do {possible:.2} times the work of one"
