@@ -1,9 +1,10 @@
 // What a visitor does with the first surface: opening it, and everything that hands, keys, pads and buttons of the page report. `build` notes which
-// parts of the engine that needs.
-import { Engine } from '../js/engine.js';
-import { Hand } from '../page/hand.js';
-import { PIXELS_A_METRE } from '../page/look.js';
-import { LEVELS_HZ, RATE_HZ, SURFACES, sceneOf } from '../page/surfaces.js';
+// parts of the engine that needs. The files are those that the page loads, whose lines are not indented as the sources' are: a scene of another length
+// takes another way through the allocator.
+import { Engine } from '../dist/page/engine.js';
+import { Hand } from '../dist/page/hand.js';
+import { PIXELS_A_METRE } from '../dist/page/look.js';
+import { LEVELS_HZ, RATE_HZ, SURFACES, sceneOf } from '../dist/page/surfaces.js';
 
 const BLOCK = 128;
 /** Of so many visitors one leads the page's own hand by a mouse. */
