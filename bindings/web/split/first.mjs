@@ -11,8 +11,8 @@ import { calls, marked, ran, trimmed } from './split.mjs';
 import { opened, taken, trouble, visit } from './visit.mjs';
 
 /** What the part may take, gzipped: with the rest of the page 250 kB. */
-const MOST_BYTES = 217_500;
-const SEEDS = [1, 2, 3, 6];
+const MOST_BYTES = 219_000;
+const SEEDS = [1, 2, 3, 6, 7, 8, 9, 10, 11, 12];
 /** The whole engine is asked for after a second of sound. */
 const SECONDS = 3;
 const VISITORS = 120;
