@@ -2,45 +2,23 @@
 //! keeps it so, is seldom heard, and what nobody would feel or hear is listed and not lifted.
 
 mod common;
+#[path = "common/slanting.rs"]
+mod slanting;
 
-use asperity::Engine;
 use asperity::files::Memory;
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
-use asperity::files::scene_file::SceneFile;
-use asperity::offline::{self, Options, Render};
-use asperity::open::Overrides;
-use asperity_measure::corpus::corpus;
+use asperity::files::contact_log::ContactLog;
+use asperity::offline::Render;
 use asperity_observer::constants::{LISTENING_PA, hearing_threshold_db, touch_threshold_m};
 use common::peak;
 use common::strokes::{power, third_octaves_db};
+use slanting::{ceramic_scene, grounds, open, slanting_stroke};
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// The grid's ends; all nine cells of seven grounds and three probes are within 1.7 dB (189 of 189).
 const SPEEDS_M_S: [f64; 2] = [0.04, 0.24];
 const FORCES_N: [f64; 2] = [0.3, 5.0];
 /// What a limiter may take off in nineteen strokes of twenty, dB.
 const SELDOM_MORE_DB: f64 = 6.0;
-
-/// Slanting, and over another place than the reference strokes.
-fn stroke(speed_m_s: f64, normal_force_n: f64) -> ContactLog {
-    const SECONDS: f64 = 0.6;
-    let (u, v) = (0.8 * speed_m_s, 0.6 * speed_m_s);
-    let sample = |t: f64| ContactSample {
-        uv: [0.05 + u * t / 0.14, 0.1 + v * t / 0.14],
-        velocity_m_s: Some([u, v]),
-        normal_force_n,
-        closing_m_s: 0.0,
-        ..ContactSample::default()
-    };
-    let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "s", 0, sample(0.0)) }];
-    lines.extend((1..36).map(|step| {
-        let t = f64::from(step) / 60.0;
-        LogLine { t, event: LogEvent::moved(1, sample(t)) }
-    }));
-    lines.push(LogLine { t: SECONDS, event: LogEvent::End { contact: 1 } });
-    ContactLog { lines }
-}
 
 /// How far the strongest third octave of an acceleration, m/s² at sample value 1, lies above what fingers feel, dB.
 fn felt_db(render: &Render, full_scale_m_s2: f64) -> f64 {
@@ -65,37 +43,23 @@ fn heard_db(render: &Render) -> f64 {
 
 /// A stroke, and what full scale of its channel stands for.
 fn rendered(probe: &str, ground: &str, files: &Memory, log: &ContactLog) -> (Render, f64) {
-    let toml = format!(
-        "[[body]]\nname = \"b\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"ceramic\"\n\
-         [[surface]]\nname = \"s\"\nbody = \"b\"\n{ground}\nwidth_m = 0.14\nheight_m = 0.14\n\
-         [probe]\npreset = \"{probe}\"\n[[actuator]]\noutput = \"acceleration\"\n"
-    );
-    let file = SceneFile::parse(&toml, Path::new("scene.toml")).unwrap();
-    let overrides = Overrides { files, ..Overrides::default() };
-    let Engine { scene, renderer, names, levels, .. } = Engine::from_scene(&file, &overrides).unwrap();
-    let options = Options { tail_s: 0.0, ..Options::default() };
-    (offline::render(scene, renderer, log, &names, &options).unwrap(), levels.full_scale[0])
+    let engine = open(&ceramic_scene(probe, ground, "output = \"acceleration\""), files);
+    let full_scale = engine.levels.full_scale[0];
+    (slanting::rendered(engine, log, asperity::offline::Options::default().block_frames), full_scale)
 }
 
 #[test]
 fn no_stroke_passes_full_scale_and_the_limiter_takes_6_db_off_one_in_twenty_at_most() {
     let mut files = Memory::new();
-    let mut grounds: Vec<(String, String)> =
-        [0.2, 0.9].iter().map(|r| (format!("R {r}"), format!("roughness = {r}"))).collect();
-    grounds.push(("granite".to_owned(), "solid = \"granite\"".to_owned()));
-    for name in ["Rock003_1K-PNG_Displacement.png", "Fabric061_1K-PNG_Displacement.png"] {
-        if let Some(file) = corpus(&format!("textures/{name}")) {
-            files.add(name, std::fs::read(file).unwrap());
-            grounds.push((name[..7].to_owned(), format!("displacement = \"{name}\"\nrelief_m = 1e-3")));
-        }
-    }
+    let grounds = grounds(&[0.2, 0.9], 1e-3, &mut files);
     let (mut seldom, mut cells, mut below) = (0, 0, Vec::new());
     for probe in ["fingertip", "stylus", "rigid"] {
         for (name, ground) in &grounds {
             let (mut by_db, mut least_db) = (Vec::new(), Vec::new());
             for speed_m_s in SPEEDS_M_S {
                 for force_n in FORCES_N {
-                    let (render, full_scale) = rendered(probe, ground, &files, &stroke(speed_m_s, force_n));
+                    let (render, full_scale) =
+                        rendered(probe, ground, &files, &slanting_stroke(speed_m_s, |_| force_n));
                     let over_db = [felt_db(&render, full_scale), heard_db(&render)];
                     for (sense, over_db) in ["felt", "heard"].into_iter().zip(over_db) {
                         least_db.push(over_db);

@@ -1,68 +1,23 @@
 //! What is pressed harder is felt more, in displacement as in acceleration, where nobody wrote a level; metres that a scene writes are the pad's own.
 
 mod common;
+#[path = "common/slanting.rs"]
+mod slanting;
 
-use asperity::Engine;
 use asperity::files::Memory;
-use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
-use asperity::files::scene_file::SceneFile;
-use asperity::offline::{self, Options, Render};
-use asperity::open::Overrides;
-use asperity_measure::corpus::corpus;
+use asperity::files::contact_log::ContactLog;
+use asperity::offline::Render;
 use common::rms;
-use std::path::Path;
+use slanting::{ceramic_scene as scene, grounds, open, slanting_stroke};
 
 const FORCES_N: [f64; 5] = [0.3, 0.6, 1.0, 2.0, 5.0];
-const STROKE_S: f64 = 0.6;
 
-/// A slanting stroke of 0.1 m/s under a force that may change on its way.
 fn stroke(normal_force_n: impl Fn(f64) -> f64) -> ContactLog {
-    let (u, v) = (0.08, 0.06);
-    let sample = |t: f64| ContactSample {
-        uv: [0.05 + u * t / 0.14, 0.1 + v * t / 0.14],
-        velocity_m_s: Some([u, v]),
-        normal_force_n: normal_force_n(t),
-        ..ContactSample::default()
-    };
-    let mut lines = vec![LogLine { t: 0.0, event: LogEvent::begin(1, "s", 0, sample(0.0)) }];
-    lines.extend((1..36).map(|step| {
-        let t = f64::from(step) / 60.0;
-        LogLine { t, event: LogEvent::moved(1, sample(t)) }
-    }));
-    lines.push(LogLine { t: STROKE_S, event: LogEvent::End { contact: 1 } });
-    ContactLog { lines }
-}
-
-fn scene(probe: &str, ground: &str, actuator: &str) -> String {
-    format!(
-        "[[body]]\nname = \"b\"\nstock = \"plate\"\nsize_m = 0.14\nmaterial = \"ceramic\"\n\
-         [[surface]]\nname = \"s\"\nbody = \"b\"\n{ground}\nwidth_m = 0.14\nheight_m = 0.14\n\
-         [probe]\npreset = \"{probe}\"\n[[actuator]]\n{actuator}\n"
-    )
-}
-
-fn open(toml: &str, files: &Memory) -> Engine {
-    let file = SceneFile::parse(toml, Path::new("scene.toml")).unwrap();
-    Engine::from_scene(&file, &Overrides { files, ..Overrides::default() }).unwrap()
+    slanting_stroke(0.1, normal_force_n)
 }
 
 fn rendered(toml: &str, files: &Memory, log: &ContactLog, block: usize) -> Render {
-    let Engine { scene, renderer, names, .. } = open(toml, files);
-    let options = Options { tail_s: 0.0, block_frames: block, ..Options::default() };
-    offline::render(scene, renderer, log, &names, &options).unwrap()
-}
-
-fn grounds(files: &mut Memory) -> Vec<(String, String)> {
-    let mut grounds: Vec<(String, String)> =
-        [0.2, 0.5, 0.9].iter().map(|r| (format!("R {r}"), format!("roughness = {r}"))).collect();
-    grounds.push(("granite".to_owned(), "solid = \"granite\"".to_owned()));
-    for name in ["Rock003_1K-PNG_Displacement.png", "Fabric061_1K-PNG_Displacement.png"] {
-        if let Some(file) = corpus(&format!("textures/{name}")) {
-            files.add(name, std::fs::read(file).unwrap());
-            grounds.push((name[..7].to_owned(), format!("displacement = \"{name}\"\nrelief_m = 2e-4")));
-        }
-    }
-    grounds
+    slanting::rendered(open(toml, files), log, block)
 }
 
 /// n of y ∝ Fⁿ, by least squares.
@@ -80,7 +35,7 @@ fn exponent(levels: &[f64]) -> f64 {
 #[test]
 fn a_finger_that_is_pressed_harder_is_felt_more_step_by_step_on_every_ground() {
     let mut files = Memory::new();
-    for (name, ground) in grounds(&mut files) {
+    for (name, ground) in grounds(&[0.2, 0.5, 0.9], 2e-4, &mut files) {
         let growth = |output: &str| {
             let toml = scene("fingertip", &ground, &format!("output = \"{output}\"\nlimit = false"));
             let levels = FORCES_N.map(|force_n| {
