@@ -196,15 +196,23 @@ mod tests {
     }
 
     #[test]
-    fn four_thousand_modes_are_ordered_in_a_fraction_of_a_second() {
-        let modes = body(4096);
-        let mut order = std::vec![Ranked::default(); modes.len()];
-        let since = std::time::Instant::now();
-        let levels = ordered(&modes, &mut order);
-        let took = since.elapsed();
-        std::println!("4096 modes: {took:?}, groups at each level {levels:?}");
-        // 45 ms on a quiet machine.
-        assert!(took.as_millis() < 1000, "{took:?}");
+    fn ordering_eight_times_the_modes_takes_far_less_than_sixty_four_times_the_time() {
+        let timed = |count: usize| {
+            let modes = body(count);
+            let mut order = std::vec![Ranked::default(); count];
+            let mut least_s = f64::INFINITY;
+            let mut levels = [0; MODE_LEVELS];
+            for _ in 0..3 {
+                let since = std::time::Instant::now();
+                levels = ordered(&modes, &mut order);
+                least_s = since.elapsed().as_secs_f64().min(least_s);
+            }
+            std::println!("{count} modes: {:.0} ms, groups at each level {levels:?}", 1e3 * least_s);
+            (least_s, levels)
+        };
+        // 4096 take 45 ms on a quiet machine, and twenty times as long where an emulator runs this: growth is the same on both.
+        let ((few_s, _), (many_s, levels)) = (timed(512), timed(4096));
+        assert!(many_s < 24.0 * few_s, "{few_s} s, {many_s} s");
         assert!(levels[1] < levels[0] / 2, "most are hidden: {levels:?}");
     }
 
