@@ -52,6 +52,8 @@ pub struct HapticChannel<'a> {
     pub unit: &'a str,
     /// What sample value 1 means.
     pub full_scale: f64,
+    /// n, where it grows beside the pad's own motion, ∝ Fⁿ.
+    pub felt_force_exponent: f64,
     /// The samples.
     pub samples: &'a [f32],
 }
@@ -100,7 +102,10 @@ pub fn draw(take: &Take<'_>) -> String {
     if take.contacts.iter().any(|contact| !contact.height_m.is_empty()) {
         figure.row(80.0, [force_panel(take), speed_panel(take)]);
         figure.row(120.0, [profile_panel(take)]);
-        figure.row(70.0, [impulse_panel(take)]);
+        // What bows a body drives it by friction and sends no impulses.
+        if take.contacts.iter().any(|contact| contact.impulses.iter().any(|[_, impulse]| *impulse != 0.0)) {
+            figure.row(70.0, [impulse_panel(take)]);
+        }
         figure.row(190.0, zoom_panels(take));
         for row in take.grounds.chunks(GROUNDS_A_ROW).filter(|_| take.grounds.len() > 1) {
             figure.row(130.0, row.iter().map(|ground| ground_panel(take, ground)).collect::<Vec<_>>());
@@ -363,8 +368,12 @@ fn levels_panel(take: &Take<'_>) -> Panel {
 fn haptic_rows(figure: &mut Figure, take: &Take<'_>, index: usize, channel: &HapticChannel<'_>) {
     let number = if take.haptic.len() > 1 { format!(" {index}") } else { String::new() };
     let values = channel.samples.iter().map(|&sample| f64::from(sample) * channel.full_scale);
+    let growing = match channel.felt_force_exponent {
+        0.0 => String::new(),
+        exponent => format!(", as felt: its own by (F / 1 N)^{exponent:.2}"),
+    };
     let wave = Panel::new(
-        format!("haptic channel{number}: pad {}", channel.quantity),
+        format!("haptic channel{number}: pad {}{growing}", channel.quantity),
         time(take).without_numbers(),
         Axis::new(channel.quantity, channel.unit),
     )

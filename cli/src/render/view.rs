@@ -21,14 +21,19 @@ pub fn draw(
     report: &Report,
     names: &[(String, SurfaceId)],
 ) -> String {
-    let haptic = file.actuators.iter().zip(&render.haptic).map(|(actuator, samples)| {
-        let (quantity, unit) = match actuator.settings.output {
-            Quantity::Displacement => ("displacement", "m"),
-            Quantity::Acceleration => ("acceleration", "m/s²"),
-            Quantity::Tangential => ("tangential displacement", "m"),
-        };
-        HapticChannel { quantity, unit, full_scale: actuator.full_scale.unwrap_or(1.0), samples }
-    });
+    let has_skin = file.probe.ridge_m > 0.0;
+    let exponents = report.felt_force_exponent.iter().map(|exponent| if has_skin { *exponent } else { 0.0 });
+    let haptic = file.actuators.iter().zip(&render.haptic).zip(exponents).map(
+        |((actuator, samples), felt_force_exponent)| {
+            let (quantity, unit) = match actuator.settings.output {
+                Quantity::Displacement => ("displacement", "m"),
+                Quantity::Acceleration => ("acceleration", "m/s²"),
+                Quantity::Tangential => ("tangential displacement", "m"),
+            };
+            let full_scale = actuator.full_scale.unwrap_or(1.0);
+            HapticChannel { quantity, unit, full_scale, felt_force_exponent, samples }
+        },
+    );
     let impacts_s = log
         .lines
         .iter()
