@@ -28,9 +28,7 @@ impl At {
         tap: &mut T,
     ) -> Option<Probe> {
         let stretch = Stretch { shared, output, position: self.position, n: self.n };
-        // Before it is rendered: how it presses at the end of a stretch would depend on where the blocks are cut.
-        let on_grid = self.is_on_grid();
-        let pressing = seat.current().filter(|_| on_grid).and_then(|slot| voice.pressing(shared, slot));
+        let pressing = voice.pressing_at(self, shared, seat);
         voice.render(stretch, seat, scratch, tap);
         pressing
     }

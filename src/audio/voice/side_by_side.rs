@@ -89,19 +89,24 @@ impl<'a, W> Company<'a, W> {
         scratch: &mut Scratch,
         mut done: impl FnMut(Done<'_, W>),
     ) {
-        if self.count == 0 {
-            return;
-        }
         let At { position, n } = at;
+        if self.count < 2 {
+            // Nobody to keep in step with.
+            self.count = 0;
+            let Some(Member { voice, output, who }) = self.members[0].take() else { return };
+            let seat = seats.seat(voice.surface);
+            let stretch = Stretch { shared, output: &output, position, n };
+            let pressing = voice.pressing_at(at, shared, seat);
+            voice.render(stretch, seat, scratch, &mut NoTap);
+            return done(Done { voice, seat, pressing, out: &mut scratch.out, who });
+        }
         let mut passes = [Pass { n: 0, slides: false, coupled: false }; LANES];
         let mut pressing = [None; LANES];
         let set_out = self.set_out(shared, n, seats, &mut scratch.lanes);
         for (lane, member) in self.members.iter_mut().flatten().enumerate() {
             let Member { voice, output, .. } = member;
             let seat = seats.seat(voice.surface);
-            // Before it is rendered: how it presses at the end of a stretch would depend on where the blocks are cut.
-            let slot = seat.current().filter(|_| at.is_on_grid());
-            pressing[lane] = slot.and_then(|slot| voice.pressing(shared, slot));
+            pressing[lane] = voice.pressing_at(at, shared, seat);
             let stretch = Stretch { shared, output, position, n };
             passes[lane] = voice.approach(stretch, (false, set_out[lane]), seat, scratch, lane);
         }
@@ -127,9 +132,6 @@ impl<'a, W> Company<'a, W> {
         lanes: &mut [Lane; LANES],
     ) -> [bool; LANES] {
         let mut gone = [false; LANES];
-        if self.count < 2 {
-            return gone;
-        }
         let mut beside = [const { None }; LANES];
         let mut count = 0;
         for ((member, own), gone) in self.members.iter_mut().flatten().zip(lanes).zip(&mut gone) {
@@ -140,13 +142,7 @@ impl<'a, W> Company<'a, W> {
             }
         }
         let level = shared.noise.level();
-        match beside {
-            [Some(a), Some(b), Some(c), Some(d)] => advance_side_by_side(level, &mut [a, b, c, d]),
-            [Some(a), Some(b), Some(c), None] => advance_side_by_side(level, &mut [a, b, c]),
-            [Some(a), Some(b), ..] => advance_side_by_side(level, &mut [a, b]),
-            [Some(a), ..] => advance_side_by_side(level, &mut [a]),
-            [None, ..] => {}
-        }
+        in_one_row(beside, |all| advance_side_by_side(level, all));
         gone
     }
 
@@ -194,12 +190,17 @@ impl<'a, W> Company<'a, W> {
                 voice.pad.run(height_m, force_n, rows);
             }
         }
-        match beside {
-            [Some(a), Some(b), Some(c), Some(d)] => run_side_by_side(&mut [a, b, c, d]),
-            [Some(a), Some(b), Some(c), None] => run_side_by_side(&mut [a, b, c]),
-            [Some(a), Some(b), ..] => run_side_by_side(&mut [a, b]),
-            [Some(a), ..] => run_side_by_side(&mut [a]),
-            [None, ..] => {}
-        }
+        in_one_row(beside, |all| run_side_by_side(all));
+    }
+}
+
+/// Those that are there, without gaps: the first so many of them.
+fn in_one_row<T>(all: [Option<T>; LANES], run: impl FnOnce(&mut [T])) {
+    match all {
+        [Some(a), Some(b), Some(c), Some(d)] => run(&mut [a, b, c, d]),
+        [Some(a), Some(b), Some(c), None] => run(&mut [a, b, c]),
+        [Some(a), Some(b), ..] => run(&mut [a, b]),
+        [Some(a), ..] => run(&mut [a]),
+        [None, ..] => {}
     }
 }
