@@ -36,14 +36,6 @@ struct Rough<F, const W: usize> {
 }
 
 impl<F: Copy, const W: usize> Rough<F, W> {
-    /// Of no roughness: any that comes is another.
-    #[inline(always)]
-    fn unknown<const N: usize, V: Vector<N, Single = F>>(v: V) -> Self {
-        let (none, zero) = (v.splat(f32::NAN), v.splat(0.0));
-        let gains = Gains { finest: zero, coarser: zero, tail_boost: zero };
-        Self { roughness: none, gains, weights: [[zero; OCTAVES]; W] }
-    }
-
     /// Plain loops: what goes through `map` is compiled without the instruction set, a call for each operation.
     #[inline(always)]
     fn new<const N: usize, V: Vector<N, Single = F>>(v: V, sets: &[&OctaveWeights; W], roughness: F) -> Self {
@@ -264,7 +256,7 @@ pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
     for (coarsest, weights) in coarsest.iter_mut().zip(sets) {
         *coarsest = weights.coarsest;
     }
-    let mut rough = Rough::unknown(v);
+    let mut rough = Rough::new(v, sets, v.load(from(roughness, 0, &mut roughness_left)));
     let mut start = 0;
     while start < n {
         let position_m = from(path.position_m, start, &mut positions_left);

@@ -40,7 +40,12 @@ impl Voice {
     }
 
     /// Over what it rolls at its last sample, to whoever minds.
-    pub(super) fn roll(&mut self, shared: &Shared, seat: &Seat, then: impl FnOnce(&mut Rolling, RolledOver<'_>)) {
+    pub(super) fn roll(
+        &mut self,
+        shared: &Shared,
+        seat: &Seat,
+        then: impl FnOnce(&mut Rolling, RolledOver<'_>),
+    ) {
         let Some(slot) = seat.current() else { return };
         let over = RolledOver {
             slot,

@@ -89,17 +89,10 @@ impl<'a, W> Company<'a, W> {
         scratch: &mut Scratch,
         mut done: impl FnMut(Done<'_, W>),
     ) {
-        let At { position, n } = at;
-        if self.count < 2 {
-            // Nobody to keep in step with.
-            self.count = 0;
-            let Some(Member { voice, output, who }) = self.members[0].take() else { return };
-            let seat = seats.seat(voice.surface);
-            let stretch = Stretch { shared, output: &output, position, n };
-            let pressing = voice.pressing_at(at, shared, seat);
-            voice.render(stretch, seat, scratch, &mut NoTap);
-            return done(Done { voice, seat, pressing, out: &mut scratch.out, who });
+        if self.count == 0 {
+            return;
         }
+        let At { position, n } = at;
         let mut passes = [Pass { n: 0, slides: false, coupled: false }; LANES];
         let mut pressing = [None; LANES];
         let set_out = self.set_out(shared, n, seats, &mut scratch.lanes);
@@ -132,6 +125,9 @@ impl<'a, W> Company<'a, W> {
         lanes: &mut [Lane; LANES],
     ) -> [bool; LANES] {
         let mut gone = [false; LANES];
+        if self.count < 2 {
+            return gone;
+        }
         let mut beside = [const { None }; LANES];
         let mut count = 0;
         for ((member, own), gone) in self.members.iter_mut().flatten().zip(lanes).zip(&mut gone) {

@@ -7,8 +7,6 @@ use crate::wrap::Wrap;
 
 /// Most positions that a processor looks at side by side.
 const MOST_LANES: usize = 8;
-/// Places of a short block.
-const FEW: usize = 2 * MOST_LANES;
 /// Places of a block and of the lanes beyond its end.
 pub(super) const ROOM: usize = MAX_BLOCK + MOST_LANES;
 
@@ -68,22 +66,9 @@ impl Places {
         }
         self.axes = Some(*axes);
         self.len = position_m.len().min(MAX_BLOCK);
-        // So many as fill vectors; two sizes, because loops of known length do without a remainder.
-        if self.len <= FEW {
-            self.find_first::<FEW>(axes, position_m);
-        } else {
-            self.find_first::<ROOM>(axes, position_m);
-        }
-    }
-
-    #[inline(always)]
-    fn find_first<const N: usize>(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]]) {
-        let mut along = [[0.0; N]; 2];
-        for (n, [u, v]) in position_m.iter().take(self.len).enumerate() {
-            (along[0][n], along[1][n]) = (*u, *v);
-        }
-        axes[0].places(&along[0], &mut self.columns);
-        axes[1].places(&along[1], &mut self.rows);
+        let position_m = position_m.get(..self.len).unwrap_or_default();
+        axes[0].places::<0>(position_m, &mut self.columns);
+        axes[1].places::<1>(position_m, &mut self.rows);
     }
 
     pub(super) fn len(&self) -> usize {
@@ -174,21 +159,32 @@ impl Axis {
         }
     }
 
-    /// Where the positions of a block are; for the usual maps, which repeat, in a loop without branches.
+    /// Where the positions of a block are along the coordinate `C`; for the usual maps, which repeat, in a loop without branches.
     #[inline(always)]
-    fn places<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
+    fn places<const C: usize>(&self, position_m: &[[f64; 2]], out: &mut AxisPlaces) {
         if self.wrap == Wrap::Repeat {
-            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out);
+            Self { wrap: Wrap::Repeat, ..*self }.places_by_lanes::<C>(position_m, out);
         } else {
-            self.places_one_by_one(position_m, out);
+            self.places_by_lanes::<C>(position_m, out);
         }
     }
 
+    /// As many at a time as fill vectors: loops of known length do without a remainder, and read no number that they have just written.
     #[inline(always)]
-    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
-        for (n, position_m) in position_m.iter().enumerate() {
-            let place = self.place(*position_m);
-            (out.texel[n], out.fraction[n], out.slope[n]) = (place.texel, place.fraction, place.slope);
+    fn places_by_lanes<const C: usize>(&self, position_m: &[[f64; 2]], out: &mut AxisPlaces) {
+        let AxisPlaces { texel, fraction, slope } = out;
+        let mut last = [[0.0; 2]; MOST_LANES];
+        let (full, left) = position_m.as_chunks::<MOST_LANES>();
+        last.iter_mut().zip(left).for_each(|(to, from)| *to = *from);
+        let chunks = full.iter().chain((!left.is_empty()).then_some(&last));
+        let texel = texel.as_chunks_mut::<MOST_LANES>().0.iter_mut();
+        let others =
+            fraction.as_chunks_mut::<MOST_LANES>().0.iter_mut().zip(slope.as_chunks_mut::<MOST_LANES>().0);
+        for ((position_m, texel), (fraction, slope)) in chunks.zip(texel).zip(others) {
+            for n in 0..MOST_LANES {
+                let place = self.place(position_m[n][C]);
+                (texel[n], fraction[n], slope[n]) = (place.texel, place.fraction, place.slope);
+            }
         }
     }
 
