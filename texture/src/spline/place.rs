@@ -66,9 +66,15 @@ impl Places {
         }
         self.axes = Some(*axes);
         self.len = position_m.len().min(MAX_BLOCK);
-        let position_m = position_m.get(..self.len).unwrap_or_default();
-        axes[0].places::<0>(position_m, &mut self.columns);
-        axes[1].places::<1>(position_m, &mut self.rows);
+        // As many as fill vectors at a time: loops of known length do without a remainder, and read no number that they have just written.
+        let (full, left) = position_m.get(..self.len).unwrap_or_default().as_chunks();
+        let mut last = [[0.0; 2]; MOST_LANES];
+        last.iter_mut().zip(left).for_each(|(to, from)| *to = *from);
+        let chunks = full.iter().chain((!left.is_empty()).then_some(&last));
+        for (n, position_m) in chunks.enumerate() {
+            axes[0].places(&position_m.map(|[u, _]| u), &mut self.columns, MOST_LANES * n);
+            axes[1].places(&position_m.map(|[_, v]| v), &mut self.rows, MOST_LANES * n);
+        }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -138,6 +144,12 @@ fn room<const N: usize>(values: &[f64; ROOM], n: usize) -> &[f64; N] {
     values.get(n..).and_then(<[f64]>::first_chunk).unwrap_or(const { &[0.0; N] })
 }
 
+/// The same to write to.
+#[inline(always)]
+fn room_mut<const N: usize>(values: &mut [f64; ROOM], n: usize) -> Option<&mut [f64; N]> {
+    values.get_mut(n..).and_then(<[f64]>::first_chunk_mut)
+}
+
 /// Largest whole number not above x, for |x| < 2⁵¹: adding a large number rounds. `f64::floor` is a
 /// library call on plain x86-64.
 #[inline(always)]
@@ -159,32 +171,24 @@ impl Axis {
         }
     }
 
-    /// Where the positions of a block are along the coordinate `C`; for the usual maps, which repeat, in a loop without branches.
+    /// Where some positions are, from place `n` on; for the usual maps, which repeat, in a loop without branches.
     #[inline(always)]
-    fn places<const C: usize>(&self, position_m: &[[f64; 2]], out: &mut AxisPlaces) {
+    fn places<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces, n: usize) {
         if self.wrap == Wrap::Repeat {
-            Self { wrap: Wrap::Repeat, ..*self }.places_by_lanes::<C>(position_m, out);
+            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out, n);
         } else {
-            self.places_by_lanes::<C>(position_m, out);
+            self.places_one_by_one(position_m, out, n);
         }
     }
 
-    /// As many at a time as fill vectors: loops of known length do without a remainder, and read no number that they have just written.
     #[inline(always)]
-    fn places_by_lanes<const C: usize>(&self, position_m: &[[f64; 2]], out: &mut AxisPlaces) {
+    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces, n: usize) {
         let AxisPlaces { texel, fraction, slope } = out;
-        let mut last = [[0.0; 2]; MOST_LANES];
-        let (full, left) = position_m.as_chunks::<MOST_LANES>();
-        last.iter_mut().zip(left).for_each(|(to, from)| *to = *from);
-        let chunks = full.iter().chain((!left.is_empty()).then_some(&last));
-        let texel = texel.as_chunks_mut::<MOST_LANES>().0.iter_mut();
-        let others =
-            fraction.as_chunks_mut::<MOST_LANES>().0.iter_mut().zip(slope.as_chunks_mut::<MOST_LANES>().0);
-        for ((position_m, texel), (fraction, slope)) in chunks.zip(texel).zip(others) {
-            for n in 0..MOST_LANES {
-                let place = self.place(position_m[n][C]);
-                (texel[n], fraction[n], slope[n]) = (place.texel, place.fraction, place.slope);
-            }
+        let room = (room_mut::<N>(texel, n), room_mut::<N>(fraction, n), room_mut::<N>(slope, n));
+        let (Some(texel), Some(fraction), Some(slope)) = room else { return };
+        for (n, position_m) in position_m.iter().enumerate() {
+            let place = self.place(*position_m);
+            (texel[n], fraction[n], slope[n]) = (place.texel, place.fraction, place.slope);
         }
     }
 
