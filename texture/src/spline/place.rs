@@ -7,6 +7,8 @@ use crate::wrap::Wrap;
 
 /// Most positions that a processor looks at side by side.
 const MOST_LANES: usize = 8;
+/// Places of a short block.
+const FEW: usize = 2 * MOST_LANES;
 /// Places of a block and of the lanes beyond its end.
 pub(super) const ROOM: usize = MAX_BLOCK + MOST_LANES;
 
@@ -66,15 +68,29 @@ impl Places {
         }
         self.axes = Some(*axes);
         self.len = position_m.len().min(MAX_BLOCK);
-        // As many as fill vectors at a time: loops of known length do without a remainder, and read no number that they have just written.
-        let (full, left) = position_m.get(..self.len).unwrap_or_default().as_chunks();
-        let mut last = [[0.0; 2]; MOST_LANES];
-        last.iter_mut().zip(left).for_each(|(to, from)| *to = *from);
-        let chunks = full.iter().chain((!left.is_empty()).then_some(&last));
-        for (n, position_m) in chunks.enumerate() {
-            axes[0].places(&position_m.map(|[u, _]| u), &mut self.columns, MOST_LANES * n);
-            axes[1].places(&position_m.map(|[_, v]| v), &mut self.rows, MOST_LANES * n);
+        // So many as fill vectors; two sizes, because loops of known length do without a remainder.
+        if self.len <= FEW {
+            self.find_first::<FEW>(axes, position_m);
+        } else {
+            self.find_first::<ROOM>(axes, position_m);
         }
+    }
+
+    #[inline(always)]
+    fn find_first<const N: usize>(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]]) {
+        let [mut along_u, mut along_v] = [[0.0; N]; 2];
+        // Whole vectors are written, because whole vectors are read at once.
+        let (full, left) = position_m.get(..self.len).unwrap_or_default().as_chunks::<MOST_LANES>();
+        let rooms = along_u.as_chunks_mut().0.iter_mut().zip(along_v.as_chunks_mut().0);
+        for (some, (along_u, along_v)) in full.iter().zip(rooms) {
+            (*along_u, *along_v) = (some.map(|[u, _]| u), some.map(|[_, v]| v));
+        }
+        let rooms = along_u.iter_mut().zip(&mut along_v).skip(full.len() * MOST_LANES);
+        for ([u, v], (along_u, along_v)) in left.iter().zip(rooms) {
+            (*along_u, *along_v) = (*u, *v);
+        }
+        axes[0].places(&along_u, &mut self.columns);
+        axes[1].places(&along_v, &mut self.rows);
     }
 
     pub(super) fn len(&self) -> usize {
@@ -144,12 +160,6 @@ fn room<const N: usize>(values: &[f64; ROOM], n: usize) -> &[f64; N] {
     values.get(n..).and_then(<[f64]>::first_chunk).unwrap_or(const { &[0.0; N] })
 }
 
-/// The same to write to.
-#[inline(always)]
-fn room_mut<const N: usize>(values: &mut [f64; ROOM], n: usize) -> Option<&mut [f64; N]> {
-    values.get_mut(n..).and_then(<[f64]>::first_chunk_mut)
-}
-
 /// Largest whole number not above x, for |x| < 2⁵¹: adding a large number rounds. `f64::floor` is a
 /// library call on plain x86-64.
 #[inline(always)]
@@ -171,24 +181,21 @@ impl Axis {
         }
     }
 
-    /// Where some positions are, from place `n` on; for the usual maps, which repeat, in a loop without branches.
+    /// Where the positions of a block are; for the usual maps, which repeat, in a loop without branches.
     #[inline(always)]
-    fn places<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces, n: usize) {
+    fn places<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
         if self.wrap == Wrap::Repeat {
-            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out, n);
+            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out);
         } else {
-            self.places_one_by_one(position_m, out, n);
+            self.places_one_by_one(position_m, out);
         }
     }
 
     #[inline(always)]
-    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces, n: usize) {
-        let AxisPlaces { texel, fraction, slope } = out;
-        let room = (room_mut::<N>(texel, n), room_mut::<N>(fraction, n), room_mut::<N>(slope, n));
-        let (Some(texel), Some(fraction), Some(slope)) = room else { return };
+    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
         for (n, position_m) in position_m.iter().enumerate() {
             let place = self.place(*position_m);
-            (texel[n], fraction[n], slope[n]) = (place.texel, place.fraction, place.slope);
+            (out.texel[n], out.fraction[n], out.slope[n]) = (place.texel, place.fraction, place.slope);
         }
     }
 
