@@ -22,7 +22,8 @@ use std::sync::atomic::Ordering::{Relaxed, SeqCst};
 use std::sync::atomic::{AtomicBool, fence};
 use std::thread::{Builder, JoinHandle, park, yield_now};
 
-/// How often a thread that has nothing to do looks again before it sleeps: some 20–50 µs, longer than from one job of a block to the next.
+/// How often a thread that has nothing to do looks again before it sleeps: some 30–100 µs, longer than from the last job of a block to the first of the
+/// next where blocks are rendered one after the other.
 const LOOKS: u32 = 2048;
 
 /// Something that any thread can do.

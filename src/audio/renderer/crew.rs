@@ -40,7 +40,7 @@ pub(super) struct VoiceShare {
     voice: Box<Voice>,
     output: ContactOutput,
     pub(super) pressing: Option<Probe>,
-    pub(super) out: VoiceBlock,
+    pub(super) out: Box<VoiceBlock>,
 }
 
 /// A surface with its contacts.
@@ -86,7 +86,7 @@ impl SurfaceShare {
         let mut company = Company::new();
         let mut render = |company: &mut Company<'_, _>| {
             company.render(shared, self.at, &mut self.seat, scratch, |done| {
-                let (pressing, out): (&mut Option<Probe>, &mut VoiceBlock) = done.who;
+                let (pressing, out): (&mut Option<Probe>, &mut Box<VoiceBlock>) = done.who;
                 *pressing = done.pressing;
                 std::mem::swap(out, done.out);
             });
@@ -156,7 +156,7 @@ impl Crew {
                 voice: Box::new(Voice::stand_in(shared)),
                 output: shared.idle_output,
                 pressing: None,
-                out: VoiceBlock::new(),
+                out: Box::new(VoiceBlock::new()),
             })
         };
         let body_share = |_| {

@@ -46,7 +46,7 @@ pub(crate) struct Done<'a, W> {
     pub(crate) voice: &'a Voice,
     pub(crate) seat: &'a Seat,
     pub(crate) pressing: Option<Probe>,
-    pub(crate) out: &'a mut VoiceBlock,
+    pub(crate) out: &'a mut Box<VoiceBlock>,
     pub(crate) who: W,
 }
 
