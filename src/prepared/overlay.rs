@@ -68,8 +68,11 @@ struct Lap {
     position_m: [[f64; 2]; MAX_BLOCK],
     places: [[Place; 2]; MAX_BLOCK],
     gains: [[[f64; 2]; 2]; MAX_BLOCK],
-    parts_m: [[f64; MAX_BLOCK]; 2],
+    parts_m: [[f64; MAX_BLOCK]; MOST_SETS],
 }
+
+/// Sets of weights that a lap is worked out for at a time.
+const MOST_SETS: usize = 3;
 
 impl Room {
     pub(crate) const fn new() -> Self {
@@ -79,7 +82,7 @@ impl Room {
             position_m: [[0.0; 2]; MAX_BLOCK],
             places: [[nowhere; 2]; MAX_BLOCK],
             gains: [[[1.0; 2]; 2]; MAX_BLOCK],
-            parts_m: [none; 2],
+            parts_m: [none; MOST_SETS],
         };
         Self { local_power_m2: none, shares: none, parts_m: [none; 2], lap }
     }
@@ -175,6 +178,7 @@ impl Overlay {
         mut heights_m: [&mut [f64]; W],
         (cells, lap): (&mut TileCells, &mut Lap),
     ) {
+        const { assert!(W <= MOST_SETS, "each set has memory of its own") };
         let Lap { position_m, places, gains, parts_m } = lap;
         let walked_m = path.position_m;
         let n = walked_m.len().min(MAX_BLOCK);
