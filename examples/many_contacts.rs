@@ -69,21 +69,19 @@ impl Strokes {
         Ok(())
     }
 
-    /// Renders 256 samples; ns a sample.
+    /// Renders 256 samples, or as many whole blocks as fit; ns a sample.
     fn turn(&mut self, frames: usize) -> Result<f64, Box<dyn Error>> {
         let (mut haptic, mut audio) = ([0.0f32; 256], [0.0f32; 256]);
-        let mut ns = 0.0;
-        for _ in 0..256 / frames {
-            while self.reports as f64 / REPORT_HZ * 44_100.0
-                < (self.renderer.position() + frames as u64) as f64
-            {
-                self.report()?;
-            }
-            let began = Instant::now();
-            self.renderer.render(&mut [&mut haptic[..frames]], &mut [&mut audio[..frames]]);
-            ns += began.elapsed().as_secs_f64() * 1e9;
+        let blocks = 256 / frames;
+        let end = self.renderer.position() + (blocks * frames) as u64;
+        while self.reports as f64 / REPORT_HZ * 44_100.0 < end as f64 {
+            self.report()?;
         }
-        Ok(ns / 256.0)
+        let began = Instant::now();
+        for _ in 0..blocks {
+            self.renderer.render(&mut [&mut haptic[..frames]], &mut [&mut audio[..frames]]);
+        }
+        Ok(began.elapsed().as_secs_f64() * 1e9 / (blocks * frames) as f64)
     }
 }
 

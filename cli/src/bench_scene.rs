@@ -95,13 +95,20 @@ impl Bench {
 
     /// Renders `audio.len()` samples and returns how long the audio half took, s.
     pub fn block(&mut self, haptic: &mut [f32], audio: &mut [f32]) -> f64 {
-        while self.next_event < self.renderer.position() + audio.len() as u64 {
+        self.blocks(1, haptic, audio)
+    }
+
+    /// The same of some blocks in a row, of which the last stays: looking at the clock takes as long as a stage of a short one.
+    pub fn blocks(&mut self, count: usize, haptic: &mut [f32], audio: &mut [f32]) -> f64 {
+        while self.next_event < self.renderer.position() + (count * audio.len()) as u64 {
             self.report();
             self.event += 1;
             self.next_event = (self.event as f64 / EVENT_RATE_HZ * self.rate_hz).ceil() as u64;
         }
         let began = Instant::now();
-        self.renderer.render(&mut [haptic], &mut [audio]);
+        for _ in 0..count {
+            self.renderer.render(&mut [haptic], &mut [audio]);
+        }
         began.elapsed().as_secs_f64()
     }
 

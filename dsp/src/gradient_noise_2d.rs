@@ -85,18 +85,6 @@ impl<W: Copy> Corners<W> {
         }
         cell
     }
-
-    /// The cell of the last lane in all lanes.
-    #[inline(always)]
-    pub(crate) fn splat_last<const N: usize, V: Vector<N, Word = W>>(&self, v: V) -> Self {
-        let [a, b, c, d] = self.0;
-        Self([splat_last(v, a), splat_last(v, b), splat_last(v, c), splat_last(v, d)])
-    }
-}
-
-#[inline(always)]
-fn splat_last<const N: usize, V: Vector<N>>(v: V, [x, y]: Gradient<V::Word>) -> Gradient<V::Word> {
-    [v.splat_last(x), v.splat_last(y)]
 }
 
 /// The gradient of a corner from what its column and its row contribute: the top bits of two products

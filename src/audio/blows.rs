@@ -20,6 +20,8 @@ const AT_ONCE: usize = 16;
 /// What is felt at present, in memory made at the start.
 pub(crate) struct Blows {
     pairs: [Pair; AT_ONCE],
+    /// How many of them feel anything: mostly none, and looking at each would cost a short block as much as a stage does.
+    busy: usize,
 }
 
 /// The blows that one probe sends to one channel.
@@ -36,7 +38,7 @@ struct Pair {
 impl Blows {
     pub(crate) fn new(sample_rate_hz: f64) -> Self {
         let samples = ((LONGEST_CONTACT_S * sample_rate_hz) as usize + 16).next_power_of_two();
-        Self { pairs: std::array::from_fn(|_| Pair::new(samples)) }
+        Self { pairs: std::array::from_fn(|_| Pair::new(samples)), busy: 0 }
     }
 
     /// A blow whose contact begins at `stamp`.
@@ -56,6 +58,7 @@ impl Blows {
         });
         let Some(pair) = index.map(|index| &mut self.pairs[index]) else { return };
         if pair.felt != Some(felt) {
+            self.busy += usize::from(pair.felt.is_none());
             pair.begin(felt, output);
         }
         pair.struck = position;
@@ -71,6 +74,9 @@ impl Blows {
         n: usize,
         mut add: impl FnMut(usize, &mut ContactOutputState, &[[f64; 2]]),
     ) {
+        if self.busy == 0 {
+            return;
+        }
         for pair in &mut self.pairs {
             let Some(Felt { channel, probe }) = pair.felt else { continue };
             let design = &shared.probe(probe).mobility;
@@ -89,6 +95,7 @@ impl Blows {
             // On the absolute grid, so that it ends in the same sample however time is cut.
             if end.is_multiple_of(MAX_BLOCK as u64) && pair.busy_until <= end && pair.state.is_still() {
                 pair.felt = None;
+                self.busy -= 1;
             }
         }
     }

@@ -4,6 +4,8 @@
 //! audio thread   jobs → waiting ─┬─ runs some itself ─┬→ home, in any order
 //! helpers                        └─ run the others ───┘
 //! ```
+//! Jobs may go out while others are on their way: there is one wait, for the last of them.
+//!
 //! A job owns what it works on, so who runs it changes nothing but the time: whoever adds results up does so in an order of its own.
 //!
 //! *No lock.* Both queues are lock-free rings made at the start. A helper looks for work [`LOOKS`] times, then sleeps; the audio thread wakes a
@@ -20,8 +22,9 @@ use std::sync::atomic::Ordering::{Relaxed, SeqCst};
 use std::sync::atomic::{AtomicBool, fence};
 use std::thread::{Builder, JoinHandle, park, yield_now};
 
-/// How often a thread that has nothing to do looks again before it sleeps: some 20–50 µs, longer than from one job of a block to the next.
-const LOOKS: u32 = 1024;
+/// How often a thread that has nothing to do looks again before it sleeps: some 30–100 µs, longer than from the last job of a block to the first of the
+/// next where blocks are rendered one after the other.
+const LOOKS: u32 = 2048;
 
 /// Something that any thread can do.
 pub(crate) trait Job: Send + 'static {
@@ -36,6 +39,8 @@ pub(crate) trait Job: Send + 'static {
 pub(crate) struct Pool<J> {
     queues: Arc<Queues<J>>,
     helpers: Vec<Helper>,
+    /// Jobs that were sent out and have not come home.
+    out: usize,
 }
 
 struct Helper {
@@ -64,7 +69,7 @@ impl<J: Job> Pool<J> {
             ends: AtomicBool::new(false),
             asleep: rooms.iter().map(|_| AtomicBool::new(false)).collect(),
         });
-        let mut pool = Self { queues, helpers: Vec::with_capacity(rooms.len()) };
+        let mut pool = Self { queues, helpers: Vec::with_capacity(rooms.len()), out: 0 };
         for (index, mut room) in rooms.into_iter().enumerate() {
             let queues = pool.queues.clone();
             let named = Builder::new().name(format!("asperity-{}", index + 1));
@@ -75,53 +80,47 @@ impl<J: Job> Pool<J> {
         Ok(pool)
     }
 
-    /// Runs all jobs, the last of them first, on all threads; they come back in any order.
-    pub(crate) fn run(&mut self, jobs: &mut Vec<J>, room: &mut J::Room) {
-        // Never more than the way home has room for, however many helpers have taken meanwhile.
-        let most = self.queues.done.capacity();
-        let mut out = 0;
-        while out < most {
-            let Some(job) = jobs.pop() else { break };
-            if let Err(job) = self.queues.waiting.push(job) {
-                jobs.push(job);
-                break;
-            }
-            out += 1;
+    /// Sends a job out; it comes [home](Self::next) done. Nobody takes more of them than there is room for: what is too many comes back.
+    pub(crate) fn send(&mut self, job: J) -> Result<(), J> {
+        // Nor more than the way home has room for, however many helpers have taken meanwhile.
+        if self.out == self.queues.done.capacity() {
+            return Err(job);
         }
-        // One job is for this thread.
-        self.wake(out.saturating_sub(1));
-        let mut at_home = jobs.len();
-        jobs.iter_mut().for_each(|job| job.run(room));
-        let wanted = at_home + out;
-        let mut looks = 0;
-        while at_home < wanted {
-            if let Some(mut job) = self.queues.waiting.pop() {
-                job.run(room);
-                jobs.push(job);
-            } else if let Some(done) = self.queues.done.pop() {
-                match done {
-                    Ok(job) => jobs.push(job),
-                    // As if it had been run here.
-                    Err(panic) => resume_unwind(panic),
-                }
-            } else {
-                look_again(&mut looks);
-                continue;
-            }
-            at_home += 1;
-            looks = 0;
-        }
+        self.queues.waiting.push(job)?;
+        self.out += 1;
+        Ok(())
     }
 
-    /// Wakes helpers that sleep, as many as there is work for.
-    fn wake(&self, wanted: usize) {
+    /// Wakes helpers that sleep, as many as there is work for beside this thread. To be called after some were sent: waking takes as long as a
+    /// short job.
+    pub(crate) fn wake(&self) {
         // Either a helper that falls asleep sees the jobs, or its mark is seen here.
         fence(SeqCst);
+        let wanted = self.queues.waiting.len().saturating_sub(1);
         for (helper, asleep) in self.helpers.iter().zip(&self.queues.asleep).take(wanted) {
             if asleep.load(SeqCst) {
                 helper.thread.thread().unpark();
             }
         }
+    }
+
+    /// A job that is done, whoever did it; none if all are home. While none is, this thread does one of those that wait.
+    pub(crate) fn next(&mut self, room: &mut J::Room) -> Option<J> {
+        let mut looks = 0;
+        while self.out > 0 {
+            if let Some(done) = self.queues.done.pop() {
+                self.out -= 1;
+                // As if it had been run here.
+                return Some(done.unwrap_or_else(|panic| resume_unwind(panic)));
+            }
+            if let Some(mut job) = self.queues.waiting.pop() {
+                self.out -= 1;
+                job.run(room);
+                return Some(job);
+            }
+            look_again(&mut looks);
+        }
+        None
     }
 }
 
@@ -209,6 +208,22 @@ mod tests {
         (0..count).map(|from| Count { from, sum: 0, fails: false }).collect()
     }
 
+    /// Sends jobs out while others come home, as the crew does.
+    fn run(pool: &mut Pool<Count>, jobs: Vec<Count>, room: &mut u64) -> Vec<Count> {
+        let mut home = Vec::new();
+        for mut job in jobs {
+            while let Err(back) = pool.send(job) {
+                job = back;
+                home.extend(pool.next(room));
+            }
+            pool.wake();
+        }
+        while let Some(job) = pool.next(room) {
+            home.push(job);
+        }
+        home
+    }
+
     #[test]
     fn all_jobs_come_home_done_whoever_runs_them_and_however_often_helpers_have_slept() {
         for helpers in [0, 1, 2, 7] {
@@ -216,8 +231,7 @@ mod tests {
             let mut room = 0;
             for round in 0..300_u64 {
                 let count = round % 21;
-                let mut jobs = jobs(count);
-                pool.run(&mut jobs, &mut room);
+                let mut jobs = run(&mut pool, jobs(count), &mut room);
                 jobs.sort_by_key(|job| job.from);
                 assert_eq!(jobs.len() as u64, count, "{helpers} helpers, round {round}");
                 for (from, job) in (0..).zip(&jobs) {
@@ -235,7 +249,7 @@ mod tests {
         let mut pool = Pool::new(vec![0, 0], 16).unwrap();
         let mut failing = jobs(8);
         failing[0].fails = true;
-        let told = catch_unwind(AssertUnwindSafe(|| pool.run(&mut failing, &mut 0)));
+        let told = catch_unwind(AssertUnwindSafe(|| run(&mut pool, failing, &mut 0)));
         assert!(told.is_err());
         drop(pool);
     }

@@ -14,6 +14,7 @@ mod drag;
 mod events;
 mod exciters;
 mod fades;
+mod ground;
 mod pad;
 mod path;
 mod profile;
@@ -39,22 +40,19 @@ use crate::audio::seat::Seat;
 use crate::link::tap::Tap;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::excitation::Exciter;
-use crate::prepared::area::{loudness, nestling};
 use crate::prepared::overlay::TileCells;
-use crate::prepared::stiffness::stiffness_n_m;
-use crate::prepared::surface::SurfaceSlot;
 use ac_coupling::{AcCoupling, ForceCoupling};
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
-use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
+use asperity_dsp::micro_contact::ContactSample as PadSample;
 use asperity_dsp::trajectory::PathPoint;
-use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
+use asperity_texture::height_field::{MAX_BLOCK, Reaction};
 use blows::Blows;
 use drag::Drag;
 use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
 use path::Path;
-use rolling::{RolledOver, Rolling};
+use rolling::Rolling;
 use scratch::Lane;
 use shared::Pass;
 use skin::ContactSkin;
@@ -172,19 +170,6 @@ impl Voice {
             Phase::Free | Phase::Fading { .. } => -1.0,
             Phase::Sounding => self.role.importance * self.path.last.normal_force_n * (1e-3 + speed_m_s),
         }
-    }
-
-    /// What presses on the touched body: the probe, as stiff as its ground and the force make it, to a quarter of an octave. None while nothing
-    /// presses.
-    pub(crate) fn pressing(&self, shared: &Shared, slot: &SurfaceSlot) -> Option<Probe> {
-        let force_n = self.path.last.normal_force_n;
-        if self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
-            return None;
-        }
-        let probe = shared.probe(self.role.probe).micro_contact.probe();
-        let stiffness_n_m = stiffness_n_m(probe, &slot.stroking.ground, force_n);
-        let contact_stiffness_n_m = libm::exp2((4.0 * libm::log2(stiffness_n_m)).round() / 4.0);
-        Some(Probe { contact_stiffness_n_m, ..*probe })
     }
 
     /// Renders a stretch into `scratch.out`.
@@ -366,38 +351,6 @@ impl Voice {
         self.rolling.soften(position, slow_step, sent);
         self.exciters.rub(&by, points, rows, out);
         self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
-    }
-
-    /// How much of the contact sounds: the more, the harder it is pressed and the closer it nestles to the ground.
-    fn loudness(&self, shared: &Shared, position: u64, seat: &mut Seat) -> f64 {
-        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
-        let touch = self.touch_at(position);
-        let hollow_m = |reach_m| seat.hollow_m(&touch, reach_m, tip_radius_m);
-        loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
-    }
-
-    /// Over what it rolls at its last sample, to whoever minds.
-    fn roll(&mut self, shared: &Shared, seat: &Seat, then: impl FnOnce(&mut Rolling, RolledOver<'_>)) {
-        let Some(slot) = seat.current() else { return };
-        let over = RolledOver {
-            slot,
-            source_power_m2: seat.power_m2(self.path.last.position_m),
-            probe: shared.probe(self.role.probe).micro_contact.probe(),
-            at: &self.path.last,
-            sample_rate_hz: shared.sample_rate_hz,
-        };
-        then(&mut self.rolling, over);
-    }
-
-    /// How the contact pressed at its last sample.
-    fn touch_at(&self, position: u64) -> Touch {
-        Touch {
-            contact: self.slot,
-            sample: position,
-            position_m: self.path.last.position_m,
-            velocity_m_s: self.path.last.velocity_m_s,
-            normal_force_n: self.path.last.normal_force_n,
-        }
     }
 
     fn show<T: Tap>(

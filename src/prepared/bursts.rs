@@ -11,6 +11,8 @@ pub(crate) struct Bursts {
     /// The burst of an impulse of 1 N·s at the engine's rate.
     burst: Box<[f32]>,
     playing: [Playing; AT_ONCE],
+    /// The sample from which on none plays.
+    busy_until: u64,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -26,7 +28,7 @@ impl Bursts {
     pub(crate) fn new(residual: Option<&Residual>, impulse_n_s: f64, sample_rate_hz: f64) -> Self {
         let mut burst = residual.map_or_else(Box::default, |residual| residual.at_rate(sample_rate_hz));
         burst.iter_mut().for_each(|x| *x = (f64::from(*x) / impulse_n_s) as f32);
-        Self { burst, playing: [Playing::default(); AT_ONCE] }
+        Self { burst, playing: [Playing::default(); AT_ONCE], busy_until: 0 }
     }
 
     /// A strike of `impulse_n_s` whose contact begins at absolute sample `start`.
@@ -37,21 +39,25 @@ impl Bursts {
         let next = Playing { start, end: start + self.burst.len() as u64, gain: impulse_n_s as f32 };
         if let Some(oldest) = self.playing.iter_mut().min_by_key(|playing| playing.end) {
             *oldest = next;
+            self.busy_until = self.busy_until.max(next.end);
         }
     }
 
     /// Whether nothing sounds from `position` on.
     pub(crate) fn silence(&mut self) {
-        self.playing = [Playing::default(); AT_ONCE];
+        (self.playing, self.busy_until) = ([Playing::default(); AT_ONCE], 0);
     }
 
     /// Whether none plays or will.
     pub(crate) fn is_silent(&self, position: u64) -> bool {
-        self.playing.iter().all(|playing| playing.end <= position)
+        self.busy_until <= position
     }
 
     /// Adds the samples from `position` on to `out`.
     pub(crate) fn render(&self, position: u64, out: &mut [f32]) {
+        if self.is_silent(position) {
+            return;
+        }
         let end = position + out.len() as u64;
         for playing in &self.playing {
             let (from, to) = (playing.start.max(position), playing.end.min(end));

@@ -62,7 +62,7 @@ impl EarlyForce {
     pub(crate) fn end_stretch(&mut self, n: usize) {
         if self.busy {
             self.force_n_s.copy_within(n..n + EARLY_HISTORY, 0);
-            self.force_n_s[EARLY_HISTORY..].fill(0.0);
+            self.force_n_s[EARLY_HISTORY..EARLY_HISTORY + n].fill(0.0);
             self.busy = self.force_n_s[..EARLY_HISTORY].iter().any(|x| *x != 0.0);
         }
     }

@@ -59,14 +59,32 @@ pub(crate) struct Room {
     /// What relief the source really has at each sample, m².
     pub(crate) local_power_m2: [f64; MAX_BLOCK],
     shares: [f64; MAX_BLOCK],
-    position_m: [[f64; 2]; MAX_BLOCK],
     parts_m: [[f64; MAX_BLOCK]; 2],
+    lap: Lap,
 }
+
+/// Where a path lies in its lap of the tile, and what meets there.
+struct Lap {
+    position_m: [[f64; 2]; MAX_BLOCK],
+    places: [[Place; 2]; MAX_BLOCK],
+    gains: [[[f64; 2]; 2]; MAX_BLOCK],
+    parts_m: [[f64; MAX_BLOCK]; MOST_SETS],
+}
+
+/// Sets of weights that a lap is worked out for at a time.
+const MOST_SETS: usize = 3;
 
 impl Room {
     pub(crate) const fn new() -> Self {
         let none = [0.0; MAX_BLOCK];
-        Self { local_power_m2: none, shares: none, position_m: [[0.0; 2]; MAX_BLOCK], parts_m: [none; 2] }
+        let nowhere = Place { at_m: 0.0, weight: 0.0, slope_per_m: 0.0 };
+        let lap = Lap {
+            position_m: [[0.0; 2]; MAX_BLOCK],
+            places: [[nowhere; 2]; MAX_BLOCK],
+            gains: [[[1.0; 2]; 2]; MAX_BLOCK],
+            parts_m: [none; MOST_SETS],
+        };
+        Self { local_power_m2: none, shares: none, parts_m: [none; 2], lap }
     }
 }
 
@@ -118,8 +136,8 @@ impl Overlay {
         (cells, own): (&mut TileCells, &mut Room),
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
-        let Room { local_power_m2, shares, position_m, parts_m } = own;
-        let cells = (cells, position_m);
+        let Room { local_power_m2, shares, parts_m, lap } = own;
+        let cells = (cells, lap);
         if !self.longest_m.is_finite() {
             return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
         }
@@ -158,8 +176,10 @@ impl Overlay {
         roughness: &[f64],
         weights: &[&OctaveWeights; W],
         mut heights_m: [&mut [f64]; W],
-        (cells, position_m): (&mut TileCells, &mut [[f64; 2]; MAX_BLOCK]),
+        (cells, lap): (&mut TileCells, &mut Lap),
     ) {
+        const { assert!(W <= MOST_SETS, "each set has memory of its own") };
+        let Lap { position_m, places, gains, parts_m } = lap;
         let walked_m = path.position_m;
         let n = walked_m.len().min(MAX_BLOCK);
         let [low_m, high_m] = bounds(&walked_m[..n]);
@@ -171,7 +191,6 @@ impl Overlay {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
             return field.add_each(&path, roughness, weights, &mut heights_m, &mut cells[0]);
         }
-        let mut places = [[Place::default(); 2]; MAX_BLOCK];
         let places = &mut places[..n];
         let mut meets = [false; 2];
         let mut turns = [0.0; 2];
@@ -184,8 +203,8 @@ impl Overlay {
             let path = NoisePath { position_m: &position_m[..n], ..*path };
             return field.add_each(&path, roughness, weights, &mut heights_m, &mut cells[0]);
         }
-        let mut gains = [[[1.0; 2]; 2]; MAX_BLOCK];
-        gains_along(places, &mut gains);
+        let gains = &mut gains[..n];
+        gains_along(places, gains);
         for (copy, cells) in COPIES.into_iter().zip(cells) {
             if (0..2).any(|axis| copy[axis] == 1 && !meets[axis]) {
                 continue;
@@ -194,14 +213,14 @@ impl Overlay {
             for (at_m, place) in position_m.iter_mut().zip(&*places) {
                 *at_m = [place[0].at_m - back_m[0], place[1].at_m - back_m[1]];
             }
-            let mut parts_m = [[0.0; MAX_BLOCK]; W];
             let path = NoisePath { position_m: &position_m[..n], ..*path };
-            let mut into_m = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
+            let mut parts_m = parts_m.iter_mut().map(|part_m| &mut part_m[..n]);
+            let mut into_m: [&mut [f64]; W] = std::array::from_fn(|_| parts_m.next().unwrap_or_default());
+            into_m.iter_mut().for_each(|part_m| part_m.fill(0.0));
             field.add_each(&path, roughness, weights, &mut into_m, cells);
-            for (i, gains) in gains.iter().enumerate().take(n) {
-                let gain = gains[0][copy[0]] * gains[1][copy[1]];
-                for (height_m, part_m) in heights_m.iter_mut().zip(&parts_m) {
-                    height_m[i] += gain * part_m[i];
+            for (height_m, part_m) in heights_m.iter_mut().zip(&into_m) {
+                for ((height_m, part_m), gains) in height_m.iter_mut().zip(&**part_m).zip(&*gains) {
+                    *height_m += gains[0][copy[0]] * gains[1][copy[1]] * part_m;
                 }
             }
         }
@@ -215,7 +234,7 @@ fn room(power_m2: f64, rms_m: f64) -> f64 {
 }
 
 /// Gains along u and v, each of the tile and of the one before: worked out once for all copies, and anew only where the place differs.
-fn gains_along(places: &[[Place; 2]], gains: &mut [[[f64; 2]; 2]; MAX_BLOCK]) {
+fn gains_along(places: &[[Place; 2]], gains: &mut [[[f64; 2]; 2]]) {
     let mut last = [(0.0, [1.0, 0.0]); 2];
     for (gains, places) in gains.iter_mut().zip(places) {
         for ((gain, (known, last)), place) in gains.iter_mut().zip(&mut last).zip(places) {

@@ -18,6 +18,10 @@ impl Wrap {
     #[must_use]
     pub fn index(self, index: i64, len: usize) -> usize {
         let n = len as i64;
+        // Most are within the map, and a division takes longer than all the rest.
+        if (0..n).contains(&index) {
+            return index as usize;
+        }
         let inside = match self {
             Self::Repeat => index.rem_euclid(n),
             Self::Clamp => index.clamp(0, n - 1),

@@ -67,8 +67,8 @@ impl Way {
     fn turn(self, bench: &mut Bench) -> f64 {
         let (mut haptic, mut audio) = ([0.0f32; BLOCK_FRAMES], [0.0f32; BLOCK_FRAMES]);
         let (haptic, audio) = (&mut haptic[..self.frames], &mut audio[..self.frames]);
-        let times_s = (0..TURN_FRAMES / self.frames).map(|_| bench.block(haptic, audio));
-        times_s.sum::<f64>() * 1e9 / (TURN_FRAMES * self.shares) as f64
+        let time_s = bench.blocks(TURN_FRAMES / self.frames, haptic, audio);
+        time_s * 1e9 / (TURN_FRAMES * self.shares) as f64
     }
 }
 

@@ -74,19 +74,11 @@ impl Offset {
     }
 }
 
-/// The cell of an octave that the contact was last in: a slow octave stays in it for many samples.
-#[derive(Clone, Copy)]
-pub(super) struct LastCell<W> {
-    /// Positions within these are in it, however they were rounded.
-    bounds: Bounds,
-    pub(super) corners: Corners<W>,
-    /// It is another than at the beginning.
-    moved: bool,
-}
-
-/// A [`LastCell`] between two calls, whatever their vectors.
+/// The cell of an octave that the contact was last in: a slow octave stays in it for many samples, and for many blocks. One number each, which
+/// every vector repeats as it loads it: a short block neither lays them out nor gathers them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct KnownCell {
+    /// Positions within these are in it, however they were rounded.
     bounds: Bounds,
     corners: [[u32; 2]; 4],
 }
@@ -94,35 +86,27 @@ pub(super) struct KnownCell {
 impl KnownCell {
     /// No cell: nothing is inside.
     pub(super) const NONE: Self = Self { bounds: [f64::INFINITY; 4], corners: [[0; 2]; 4] };
-}
-
-impl<W: Copy> LastCell<W> {
-    #[inline(always)]
-    pub(super) fn of<const N: usize, V: Vector<N, Word = W>>(v: V, known: &KnownCell) -> Self {
-        Self { bounds: known.bounds, corners: Corners::splat(v, &known.corners), moved: false }
-    }
 
     #[inline(always)]
-    pub(super) fn tell<const N: usize, V: Vector<N, Word = W>>(&self, v: V, known: &mut KnownCell) {
-        if self.moved {
-            *known = KnownCell { bounds: self.bounds, corners: self.corners.last(v) };
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn contains<const N: usize, V: Vector<N, Word = W>>(&self, v: V, bounds: &Bounds) -> bool {
+    pub(super) fn contains<const N: usize, V: Vector<N>>(&self, v: V, bounds: &Bounds) -> bool {
         v.all_reach(bounds, &self.bounds)
+    }
+
+    /// The gradients about it.
+    #[inline(always)]
+    pub(super) fn corners<const N: usize, V: Vector<N>>(&self, v: V) -> Corners<V::Word> {
+        Corners::splat(v, &self.corners)
     }
 
     /// Becomes the cell of octave `i` that the last of some samples is in.
     #[inline(always)]
-    pub(super) fn follow<const N: usize, V: Vector<N, Word = W>>(
+    pub(super) fn follow<const N: usize, V: Vector<N>>(
         &mut self,
         v: V,
         i: u32,
-        position: &[Cells<W>; 2],
-        from_centre: [W; 2],
-        corners: &Corners<W>,
+        position: &[Cells<V::Word>; 2],
+        from_centre: [V::Word; 2],
+        corners: &Corners<V::Word>,
     ) {
         for axis in 0..2 {
             let place = v.last(from_centre[axis]) ^ (1 << 31);
@@ -130,8 +114,7 @@ impl<W: Copy> LastCell<W> {
             self.bounds[axis] = inner(last - i64::from(place >> i));
             self.bounds[axis + 2] = inner(-(last + i64::from(!place >> i)));
         }
-        self.corners = corners.splat_last(v);
-        self.moved = true;
+        self.corners = corners.last(v);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The noise of N samples side by side.
 
-use super::cells::{Bounds, Cells, KnownCell, LastCell, cells};
+use super::cells::{Bounds, Cells, KnownCell, cells};
 use super::gains::{Gains, footprint_weight, gains, polynomial, within_0_1};
 use super::{
     FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, Octave, OctaveWeights, ROTATION_RAD, ROTATIONS,
@@ -109,7 +109,7 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
         noise: &FractalNoise,
         weights: &[[V::Single; OCTAVES]; W],
         coarsest: &[usize; W],
-        last: &mut [LastCell<V::Word>; OCTAVES],
+        last: &mut [KnownCell; OCTAVES],
     ) -> [V::Single; W] {
         let v = self.v;
         let one = v.splat(1.0);
@@ -181,12 +181,12 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
     /// The same bits for an octave whose cells are long: while all samples are in the cell that was last
     /// found, nothing is hashed.
     #[inline(always)]
-    fn slow_octave(&self, noise: &FractalNoise, i: usize, last: &mut LastCell<V::Word>) -> V::Single {
+    fn slow_octave(&self, noise: &FractalNoise, i: usize, last: &mut KnownCell) -> V::Single {
         let v = self.v;
         let lattice = &self.lattices[noise.octaves[i].rotation as usize];
         let from_centre = self.places(noise, i);
         if last.contains(v, &lattice.bounds) {
-            return gradient_noise(v, &last.corners, from_centre);
+            return gradient_noise(v, &last.corners(v), from_centre);
         }
         let corners = self.corners(noise, i, from_centre);
         last.follow(v, i as u32, &lattice.cells, from_centre, &corners);
@@ -247,63 +247,54 @@ pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
     heights_m: &mut [&mut [f64]; W],
     known: &mut [KnownCell; OCTAVES],
 ) {
-    let (positions, positions_left) = path.position_m.as_chunks::<N>();
-    let (footprints, footprints_left) = path.footprint_m.as_chunks::<N>();
-    let (roughness, roughness_left) = roughness.as_chunks::<N>();
+    let n = heights_m.iter().map(|heights_m| heights_m.len()).fold(path.position_m.len(), usize::min);
+    if n == 0 {
+        return;
+    }
+    let (mut positions_left, mut footprints_left, mut roughness_left) = ([[0.0; 2]; N], [0.0; N], [0.0; N]);
     let mut coarsest = [OCTAVES; W];
-    let mut whole = usize::MAX;
-    for ((coarsest, weights), heights_m) in coarsest.iter_mut().zip(sets).zip(heights_m.iter()) {
+    for (coarsest, weights) in coarsest.iter_mut().zip(sets) {
         *coarsest = weights.coarsest;
-        whole = whole.min(heights_m.len() / N);
     }
-    let mut last = [LastCell::of(v, &KnownCell::NONE); OCTAVES];
-    for (last, known) in last.iter_mut().zip(known.iter()) {
-        *last = LastCell::of(v, known);
-    }
-    let first = first_of(roughness, roughness_left);
-    let mut rough = Rough::new(v, sets, v.load(&first));
-    let inputs = positions.iter().zip(footprints).zip(roughness).take(whole);
-    for (n, ((position, footprint), roughness)) in inputs.enumerate() {
-        let lanes = Lanes::new(v, noise, position, footprint, roughness, sets, &mut rough);
-        let sums = lanes.sums(noise, &rough.weights, &coarsest, &mut last);
+    let mut rough = Rough::new(v, sets, v.load(from(roughness, 0, &mut roughness_left)));
+    let mut start = 0;
+    while start < n {
+        let position_m = from(path.position_m, start, &mut positions_left);
+        let footprint_m = from(path.footprint_m, start, &mut footprints_left);
+        let roughness = from(roughness, start, &mut roughness_left);
+        let lanes = Lanes::new(v, noise, position_m, footprint_m, roughness, sets, &mut rough);
+        let sums = lanes.sums(noise, &rough.weights, &coarsest, known);
         for (sum, heights_m) in sums.into_iter().zip(heights_m.iter_mut()) {
-            if let Some(heights_m) = heights_m.as_chunks_mut::<N>().0.get_mut(n) {
+            let heights_m = heights_m.get_mut(start..).unwrap_or_default();
+            if let Some(heights_m) = heights_m.first_chunk_mut() {
                 v.add_to(sum, heights_m);
+                continue;
             }
-        }
-    }
-    if !positions_left.is_empty() {
-        let lanes = Lanes::new(
-            v,
-            noise,
-            &padded(positions_left, [0.0; 2]),
-            &padded(footprints_left, 0.0),
-            &padded(roughness_left, 0.0),
-            sets,
-            &mut rough,
-        );
-        let sums = lanes.sums(noise, &rough.weights, &coarsest, &mut last);
-        for (sum, heights_m) in sums.into_iter().zip(heights_m.iter_mut()) {
-            let heights_left = heights_m.as_chunks_mut::<N>().1;
-            let mut out = padded(heights_left, 0.0);
+            let mut out = padded(heights_m, 0.0);
             v.add_to(sum, &mut out);
-            for (height, out) in heights_left.iter_mut().zip(out) {
+            for (height, out) in heights_m.iter_mut().zip(out) {
                 *height = out;
             }
         }
-    }
-    for (last, known) in last.iter().zip(known) {
-        last.tell(v, known);
+        start += N;
     }
 }
 
-/// The first N values of some in chunks of N and what is left of them.
+/// N values from `start` on; where fewer are left, in `left`, [`padded`].
 #[inline(always)]
-fn first_of<const N: usize>(chunks: &[[f64; N]], left: &[f64]) -> [f64; N] {
-    chunks.first().copied().unwrap_or_else(|| padded(left, 0.0))
+fn from<'a, T: Copy, const N: usize>(values: &'a [T], start: usize, left: &'a mut [T; N]) -> &'a [T; N] {
+    let values = values.get(start..).unwrap_or_default();
+    match values.first_chunk() {
+        Some(chunk) => chunk,
+        None => {
+            *left = padded(values, left[0]);
+            left
+        }
+    }
 }
 
 /// Fewer than N values, and the last of them again and again: spare lanes make no work of their own.
+#[inline(always)]
 fn padded<T: Copy, const N: usize>(values: &[T], none: T) -> [T; N] {
     let mut out = [values.last().copied().unwrap_or(none); N];
     for (out, value) in out.iter_mut().zip(values) {

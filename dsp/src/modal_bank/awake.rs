@@ -19,6 +19,8 @@ pub(super) struct Awake {
     /// Whether a section is rendered together with the one behind it. It changes on the grid only, because groups that are rendered together
     /// share what a turn that is cut keeps.
     joined: [bool; MODE_LEVELS],
+    /// Whether every group rings, as in a body that is being stroked: nothing is to be looked for then.
+    all_ring: bool,
 }
 
 impl Awake {
@@ -29,7 +31,8 @@ impl Awake {
             bounds[section] = levels[level].clamp(bounds[section - 1], states.len());
         }
         bounds[MODE_LEVELS] = states.len();
-        let mut awake = Self { bounds, groups: [0; MODE_LEVELS], joined: [true; MODE_LEVELS] };
+        let (groups, joined) = ([0; MODE_LEVELS], [true; MODE_LEVELS]);
+        let mut awake = Self { bounds, groups, joined, all_ring: false };
         for (groups, ends) in awake.groups.iter_mut().zip(bounds.windows(2)) {
             let states = &states[ends[0]..ends[1]];
             *groups = states.iter().rposition(|state| !state.is_at_rest()).map_or(0, |last| last + 1);
@@ -40,11 +43,14 @@ impl Awake {
 
     /// Nothing rings any more.
     pub(super) fn sleep(&mut self) {
-        (self.groups, self.joined) = ([0; MODE_LEVELS], [true; MODE_LEVELS]);
+        (self.groups, self.joined, self.all_ring) = ([0; MODE_LEVELS], [true; MODE_LEVELS], false);
     }
 
     /// How many leading groups it takes to have all that are rendered at the moment.
     pub(super) fn groups(&self) -> usize {
+        if self.all_ring {
+            return self.bounds[MODE_LEVELS];
+        }
         let last = self.groups.iter().rposition(|groups| *groups > 0);
         last.map_or(0, |section| self.bounds[section] + self.groups[section])
     }
@@ -55,6 +61,13 @@ impl Awake {
             let (awake, next) = (self.groups[section], self.groups.get(section + 1).copied().unwrap_or(0));
             *joined = awake == self.bounds[section + 1] - self.bounds[section] || (awake == 0 && next == 0);
         }
+        self.note_whether_all_ring();
+    }
+
+    fn note_whether_all_ring(&mut self) {
+        let all_awake =
+            self.groups.iter().zip(self.bounds.windows(2)).all(|(awake, ends)| ends[0] + awake == ends[1]);
+        self.all_ring = all_awake && self.joined == [true; MODE_LEVELS] && self.bounds[MODE_LEVELS] > 0;
     }
 
     /// Renders what rings, skipping what sleeps: groups wake with the first impulse that is not zero and are settled on the absolute
@@ -136,6 +149,9 @@ impl Awake {
 
     /// Whether any of the first `driven` groups sleeps.
     fn sleeps(&self, driven: usize) -> bool {
+        if self.all_ring {
+            return false;
+        }
         let mut sections = self.groups.iter().zip(self.bounds.windows(2));
         sections.any(|(awake, ends)| ends[0] + awake < ends[1].min(driven))
     }
@@ -145,10 +161,14 @@ impl Awake {
         for (awake, ends) in self.groups.iter_mut().zip(self.bounds.windows(2)) {
             *awake = (*awake).max(driven.clamp(ends[0], ends[1]) - ends[0]);
         }
+        self.note_whether_all_ring();
     }
 
     /// Whether more than one run is rendered, or one that hears in part.
     fn takes_several_calls(&self, driven: usize) -> bool {
+        if self.all_ring {
+            return driven > 0 && driven < self.bounds[MODE_LEVELS];
+        }
         let mut calls = 0;
         self.each_run(|run| calls += usize::from(run.start < driven) + usize::from(run.end > driven));
         calls > 1
@@ -156,6 +176,9 @@ impl Awake {
 
     /// Groups that are rendered together, run after run.
     fn each_run(&self, mut render: impl FnMut(Range<usize>)) {
+        if self.all_ring {
+            return render(0..self.bounds[MODE_LEVELS]);
+        }
         let mut section = 0;
         while section < MODE_LEVELS {
             let (start, mut end) = (self.bounds[section], self.bounds[section]);

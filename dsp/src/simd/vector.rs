@@ -45,8 +45,6 @@ pub(crate) trait Vector<const N: usize>: Copy {
     fn add_if_less(self, a: Self::Word, b: Self::Word, c: Self::Word) -> Self::Word;
     /// The nearest `f32` of signed numbers.
     fn signed_to_single(self, x: Self::Word) -> Self::Single;
-    /// The last lane in all lanes.
-    fn splat_last(self, x: Self::Word) -> Self::Word;
     /// The last lane.
     fn last(self, x: Self::Word) -> u32;
 
@@ -196,10 +194,6 @@ macro_rules! vector {
             #[inline(always)]
             fn signed_to_single(self, x: $word<S>) -> $single<S> {
                 x.bitcast::<$signed<S>>().to_float()
-            }
-            #[inline(always)]
-            fn splat_last(self, x: $word<S>) -> $word<S> {
-                $word::splat(self.0, x[$n - 1])
             }
             #[inline(always)]
             fn last(self, x: $word<S>) -> u32 {

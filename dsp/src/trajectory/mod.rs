@@ -69,6 +69,8 @@ const REST_SPEED_M_S: f64 = 1e-7;
 const STILL_DISTANCE_M: f64 = 1e-10;
 const STILL_SPEED_M_S: f64 = 1e-8;
 const STILL_FORCE_N: f64 = 1e-7;
+/// Samples whose inputs are worked out at a time.
+const FEW: usize = 16;
 /// Stillness is looked for on this absolute sample grid.
 const STILL_GRID: u64 = 64;
 
@@ -218,29 +220,34 @@ impl Trajectory {
 
     /// Up to [`STILL_GRID`] samples, none of them beyond the grid.
     fn follow(&mut self, design: &TrajectoryDesign, out: &mut [PathPoint]) {
-        let mut inputs = [[0.0; 3]; STILL_GRID as usize];
-        let inputs = &mut inputs[..out.len()];
-        self.inputs(design, inputs);
         let filter = &design.filter;
         let (mut axes, mut pressing) = (Two::new([filter; 2], self.axes), self.force);
         let (origin_m, to_speed) = (Pair::from(self.origin_m), Pair::from([design.band_to_speed; 2]));
-        let mut low = [0.0; 3];
-        for ([u, v, force_n], point) in inputs.iter().zip(&mut *out) {
-            let smooth = axes.tick([*u, *v].into());
-            let force = pressing.tick(filter, *force_n);
-            let at: [f64; 2] = smooth.low.into();
-            low = [at[0], at[1], force.low];
-            *point = PathPoint {
-                position_m: (origin_m + smooth.low).into(),
-                velocity_m_s: (smooth.band * to_speed).into(),
-                normal_force_n: force.low.max(0.0),
-            };
+        // A few at a time: memory that is not used would have to be cleared as well.
+        let mut inputs = [[0.0; 3]; FEW];
+        let (mut input, mut low) = ([0.0; 3], [0.0; 3]);
+        let begin = self.sample;
+        for points in out.chunks_mut(FEW) {
+            let inputs = &mut inputs[..points.len()];
+            self.inputs(design, inputs);
+            self.sample += points.len() as u64;
+            for (now, point) in inputs.iter().zip(points) {
+                let [u, v, force_n] = *now;
+                let smooth = axes.tick([u, v].into());
+                let force = pressing.tick(filter, force_n);
+                let at: [f64; 2] = smooth.low.into();
+                (input, low) = (*now, [at[0], at[1], force.low]);
+                *point = PathPoint {
+                    position_m: (origin_m + smooth.low).into(),
+                    velocity_m_s: (smooth.band * to_speed).into(),
+                    normal_force_n: force.low.max(0.0),
+                };
+            }
         }
         (self.axes, self.force) = (axes.states(), pressing);
+        self.sample = begin;
         let end = if design.mode == PathMode::BandLimited { self.estimated(design, out) } else { None };
-        if let Some(input) = inputs.last() {
-            self.come_to(design, (input, low), out, end);
-        }
+        self.come_to(design, (&input, low), out, end);
     }
 
     /// Has made these points, of which the filters were given `input` for the last, and falls still if nothing moves any more; `end`: where an estimate ends.

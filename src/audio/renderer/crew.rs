@@ -5,6 +5,14 @@
 //! hands, nothing is copied), the dearest go out first, and every sum is made on the audio thread in the order of voices and bodies: the
 //! bits are those of one thread, whoever ran what.
 //!
+//! *No waiting between the two.* The audio thread takes contacts as they come home, in their order, and sends a body out as soon as the last
+//! contact that touches it has been added up: others ring while it adds up the rest and drives the actuators.
+//!
+//! ```text
+//! audio thread   surfaces → …a surface… │ contacts 1, 2, 3 … in order → bodies │ actuators │ …a body… │ bodies in order → buses
+//! helpers                 …surfaces…                       …surfaces, bodies…
+//! ```
+//!
 //! *When.* Only where there are at least two jobs, and work enough that handing it over (about 1 µs) pays.
 #![allow(clippy::vec_box, reason = "boxes change hands, what is in them does not move")]
 
@@ -32,7 +40,7 @@ pub(super) struct VoiceShare {
     voice: Box<Voice>,
     output: ContactOutput,
     pub(super) pressing: Option<Probe>,
-    pub(super) out: VoiceBlock,
+    pub(super) out: Box<VoiceBlock>,
 }
 
 /// A surface with its contacts.
@@ -78,7 +86,7 @@ impl SurfaceShare {
         let mut company = Company::new();
         let mut render = |company: &mut Company<'_, _>| {
             company.render(shared, self.at, &mut self.seat, scratch, |done| {
-                let (pressing, out): (&mut Option<Probe>, &mut VoiceBlock) = done.who;
+                let (pressing, out): (&mut Option<Probe>, &mut Box<VoiceBlock>) = done.who;
                 *pressing = done.pressing;
                 std::mem::swap(out, done.out);
             });
@@ -111,9 +119,14 @@ pub(super) struct Crew {
     surfaces: Vec<Box<SurfaceShare>>,
     voices: Vec<Box<VoiceShare>>,
     bodies: Vec<Box<BodyShare>>,
-    /// Contacts that were rendered in this stretch, by voice.
+    /// Contacts that are away, or have been and are not asked for yet, by voice; and those of them that are back.
+    away: Box<[bool]>,
     rendered: Box<[Option<Box<VoiceShare>>]>,
-    /// Bodies that were, in their order.
+    /// One more than the last voice that touches a body in this stretch, by body; 0 for none.
+    last_to_touch: Box<[usize]>,
+    /// Whether bodies go out in this stretch as soon as nobody touches them any more.
+    sends_bodies: bool,
+    /// Bodies that were rung, in their order.
     rung: Vec<Box<BodyShare>>,
     next_rung: usize,
     /// The job of each surface that goes out, one more than its place among the jobs; 0 for none.
@@ -143,7 +156,7 @@ impl Crew {
                 voice: Box::new(Voice::stand_in(shared)),
                 output: shared.idle_output,
                 pressing: None,
-                out: VoiceBlock::new(),
+                out: Box::new(VoiceBlock::new()),
             })
         };
         let body_share = |_| {
@@ -157,33 +170,37 @@ impl Crew {
                 left_out: 0,
             })
         };
-        let most = at_once.max(bodies);
+        let most = at_once + bodies;
         Ok(Self {
             pool: Pool::new(rooms, most)?,
             jobs: Vec::with_capacity(most),
             surfaces: (0..at_once).map(surface_share).collect(),
             voices: (0..voices).map(voice_share).collect(),
             bodies: (0..bodies).map(body_share).collect(),
+            away: vec![false; voices].into(),
             rendered: (0..voices).map(|_| None).collect(),
+            last_to_touch: vec![0; bodies].into(),
+            sends_bodies: false,
             rung: Vec::with_capacity(bodies),
             next_rung: 0,
             job_of: vec![0; surfaces].into(),
         })
     }
 
-    /// Renders the contacts of a stretch, if sharing them pays, and whether it did; what they do waits for [`take_voice`](Self::take_voice).
-    pub(super) fn render_contacts(
+    /// Sends the contacts of a stretch out, if sharing them pays, and whether it did; what they do waits for [`take_voice`](Self::take_voice).
+    pub(super) fn send_contacts(
         &mut self,
         at: At,
         shared: &Arc<Shared>,
         (voices, used): (&mut [Box<Voice>], &Occupied),
         seats: &mut [Seat],
         channels: &[HapticChannel],
-        scratch: &mut Box<Scratch>,
     ) -> bool {
+        self.sends_bodies = false;
         if !pays(at, voices, used) {
             return false;
         }
+        self.last_to_touch.fill(0);
         for index in used.iter() {
             if voices[index].phase == Phase::Free {
                 continue;
@@ -194,6 +211,7 @@ impl Crew {
             share.index = index;
             share.output = channel.map_or(shared.idle_output, |channel| channel.output);
             std::mem::swap(&mut share.voice, &mut voices[index]);
+            self.away[index] = true;
             if self.job_of[place] == 0 {
                 self.jobs.extend(self.surfaces.pop().map(|mut surface| {
                     (surface.index, surface.at, surface.shared) = (place, at, Some(shared.clone()));
@@ -203,6 +221,7 @@ impl Crew {
                 self.job_of[place] = self.jobs.len();
             }
             if let Some(Share::Surface(surface)) = self.jobs.get_mut(self.job_of[place] - 1) {
+                touched(&share.voice, &surface.seat).for_each(|body| self.last_to_touch[body] = index + 1);
                 surface.voices.push(share);
             }
         }
@@ -211,29 +230,84 @@ impl Crew {
             Share::Surface(surface) => (surface.voices.len(), usize::MAX - surface.index),
             Share::Body(_) => (0, 0),
         });
-        self.pool.run(&mut self.jobs, scratch);
-        while let Some(job) = self.jobs.pop() {
-            let Share::Surface(mut surface) = job else { continue };
-            std::mem::swap(&mut surface.seat, &mut seats[surface.index]);
-            self.job_of[surface.index] = 0;
-            while let Some(mut share) = surface.voices.pop() {
-                std::mem::swap(&mut share.voice, &mut voices[share.index]);
-                let index = share.index;
-                self.rendered[index] = Some(share);
-            }
-            self.surfaces.push(surface);
-        }
+        self.send_all();
+        self.pool.wake();
         true
     }
 
-    /// What a contact did in this stretch, if it was shared.
-    pub(super) fn take_voice(&mut self, index: usize) -> Option<Box<VoiceShare>> {
+    /// What a contact did in this stretch, if it was shared, as soon as it is back.
+    pub(super) fn take_voice(
+        &mut self,
+        index: usize,
+        voices: &mut [Box<Voice>],
+        seats: &mut [Seat],
+        scratch: &mut Box<Scratch>,
+    ) -> Option<Box<VoiceShare>> {
+        if !std::mem::take(&mut self.away[index]) {
+            return None;
+        }
+        while self.rendered[index].is_none() {
+            match self.pool.next(scratch)? {
+                Share::Surface(mut surface) => {
+                    std::mem::swap(&mut surface.seat, &mut seats[surface.index]);
+                    self.job_of[surface.index] = 0;
+                    while let Some(mut share) = surface.voices.pop() {
+                        std::mem::swap(&mut share.voice, &mut voices[share.index]);
+                        let index = share.index;
+                        self.rendered[index] = Some(share);
+                    }
+                    self.surfaces.push(surface);
+                }
+                Share::Body(body) => self.rung.push(body),
+            }
+        }
         self.rendered[index].take()
     }
 
     /// Keeps the memory for the next contact.
     pub(super) fn put_back(&mut self, share: Box<VoiceShare>) {
         self.voices.push(share);
+    }
+
+    /// While contacts are away: sends out the bodies that nobody touches, if sharing bodies pays; the others go as they
+    /// [are left](Self::leave_bodies).
+    pub(super) fn send_bodies(&mut self, terms: Terms, n: usize, bodies: &mut [BodySeat], used: &Occupied) {
+        self.sends_bodies = bodies_pay(terms, n, bodies, used);
+        for index in used.iter() {
+            if self.sends_bodies && self.last_to_touch[index] == 0 {
+                self.send_body(index, terms, n, &mut bodies[index]);
+            }
+        }
+    }
+
+    /// What a contact did has been added up: bodies that it touched last go out.
+    pub(super) fn leave_bodies(
+        &mut self,
+        voice: usize,
+        (touching, seat): (&Voice, &Seat),
+        (terms, n): (Terms, usize),
+        bodies: &mut [BodySeat],
+    ) {
+        for body in touched(touching, seat) {
+            if self.sends_bodies && self.last_to_touch[body] == voice + 1 {
+                // It may hold what it touches.
+                self.last_to_touch[body] = 0;
+                self.send_body(body, terms, n, &mut bodies[body]);
+                self.pool.wake();
+            }
+        }
+    }
+
+    fn send_body(&mut self, index: usize, terms: Terms, n: usize, body: &mut BodySeat) {
+        let cost = body.modes_that_ring(terms.position);
+        if cost == 0 {
+            return;
+        }
+        let Some(mut share) = self.bodies.pop() else { return };
+        (share.index, share.terms, share.n, share.cost) = (index, terms, n, cost);
+        share.body = body.lend();
+        self.jobs.push(Share::Body(share));
+        self.send_all();
     }
 
     /// Rings the bodies of a stretch, if sharing them pays; what they sound like waits for [`take_body`](Self::take_body).
@@ -245,34 +319,32 @@ impl Crew {
         scratch: &mut Box<Scratch>,
     ) {
         self.next_rung = 0;
-        let costs = used.iter().map(|index| bodies[index].modes_that_ring(terms.position));
-        let (ringing, modes) =
-            costs.fold((0, 0), |(ringing, all), modes| (ringing + usize::from(modes > 0), all + modes));
-        // Where modes are left out a body sounds twice, by those that hear and those that do not: its sums are made in its own order.
-        if ringing < 2 || modes * n < LEAST_MODE_SAMPLES || terms.mode_level > 0 {
-            return;
-        }
-        for index in used.iter() {
-            let cost = bodies[index].modes_that_ring(terms.position);
-            if cost == 0 {
-                continue;
+        if !std::mem::take(&mut self.sends_bodies) && bodies_pay(terms, n, bodies, used) {
+            for index in used.iter() {
+                self.send_body(index, terms, n, &mut bodies[index]);
             }
-            let Some(mut share) = self.bodies.pop() else { break };
-            (share.index, share.terms, share.n, share.cost) = (index, terms, n, cost);
-            share.body = bodies[index].lend();
-            self.jobs.push(Share::Body(share));
+            self.pool.wake();
         }
-        self.jobs.sort_unstable_by_key(|job| match job {
-            Share::Body(body) => (body.cost, usize::MAX - body.index),
-            Share::Surface(_) => (0, 0),
-        });
-        self.pool.run(&mut self.jobs, scratch);
-        while let Some(job) = self.jobs.pop() {
-            let Share::Body(mut share) = job else { continue };
+        while let Some(job) = self.pool.next(scratch) {
+            if let Share::Body(share) = job {
+                self.rung.push(share);
+            }
+        }
+        for share in &mut self.rung {
             bodies[share.index].take_back(share.body.take());
-            self.rung.push(share);
         }
         self.rung.sort_unstable_by_key(|share| share.index);
+    }
+
+    /// Sends the jobs out, the last of them first.
+    fn send_all(&mut self) {
+        while let Some(job) = self.jobs.pop() {
+            // There is room for all that there can be.
+            if let Err(job) = self.pool.send(job) {
+                self.jobs.push(job);
+                return;
+            }
+        }
     }
 
     /// What a body sounded like in this stretch but for the first samples of its strikes, and how many groups heard nothing, if it was
@@ -287,6 +359,21 @@ impl Crew {
     pub(super) fn put_bodies_back(&mut self) {
         self.bodies.append(&mut self.rung);
     }
+}
+
+/// The bodies that a contact sends anything to: the one it touches, and the one that it is part of.
+fn touched(voice: &Voice, seat: &Seat) -> impl Iterator<Item = usize> + use<> {
+    let under = seat.current().and_then(|slot| slot.surface.body);
+    under.into_iter().chain(voice.role.holder).map(|body| body.index())
+}
+
+/// Whether at least two bodies ring, and are work enough.
+fn bodies_pay(terms: Terms, n: usize, bodies: &[BodySeat], used: &Occupied) -> bool {
+    let costs = used.iter().map(|index| bodies[index].modes_that_ring(terms.position));
+    let (ringing, modes) =
+        costs.fold((0, 0), |(ringing, all), modes| (ringing + usize::from(modes > 0), all + modes));
+    // Where modes are left out a body sounds twice, by those that hear and those that do not: its sums are made in its own order.
+    ringing >= 2 && modes * n >= LEAST_MODE_SAMPLES && terms.mode_level == 0
 }
 
 /// Whether contacts lie on at least two surfaces, and are work enough.

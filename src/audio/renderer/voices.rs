@@ -11,6 +11,7 @@ use crate::link::stats::Counters;
 use crate::link::tap::Tap;
 use crate::model::strike_field::StrikePlace;
 use crate::model::surface::Surface;
+use crate::prepared::body::Terms;
 use crate::prepared::body_rub::RubAsked;
 use crate::prepared::spot::Spot;
 use asperity_dsp::actuator::ContactOutput;
@@ -28,9 +29,7 @@ impl At {
         tap: &mut T,
     ) -> Option<Probe> {
         let stretch = Stretch { shared, output, position: self.position, n: self.n };
-        // Before it is rendered: how it presses at the end of a stretch would depend on where the blocks are cut.
-        let on_grid = self.is_on_grid();
-        let pressing = seat.current().filter(|_| on_grid).and_then(|slot| voice.pressing(shared, slot));
+        let pressing = voice.pressing_at(self, shared, seat);
         voice.render(stretch, seat, scratch, tap);
         pressing
     }
@@ -118,16 +117,10 @@ impl Renderer {
         // A tap is not shared: it is shown one contact after the other.
         let crew = self.crew.as_mut().filter(|_| !watched).and_then(|crew| {
             let voices = (&mut self.voices[..], &self.voices_used);
-            let shared_out = crew.render_contacts(
-                at,
-                &self.shared,
-                voices,
-                &mut self.seats,
-                &self.channels,
-                &mut self.scratch,
-            );
+            let shared_out = crew.send_contacts(at, &self.shared, voices, &mut self.seats, &self.channels);
             shared_out.then_some(crew)
         });
+        let terms = Terms { position: at.position, mode_level: self.governor.mode_level() };
         let mut gathering = Gathering {
             at,
             channels: &mut self.channels,
@@ -140,15 +133,23 @@ impl Renderer {
             blows: 0,
             crowded: 0,
         };
-        let (shared, scratch) = (&*self.shared, &mut *self.scratch);
+        let shared = &*self.shared;
         if let Some(crew) = crew {
+            // Crowds are added up after all contacts.
+            if !gathering.stand_ins.are_on() {
+                crew.send_bodies(terms, n, gathering.bodies, &self.bodies_used);
+            }
             for index in self.voices_used.iter() {
-                let Some(share) = crew.take_voice(index) else { continue };
+                let taken = crew.take_voice(index, &mut self.voices, &mut self.seats, &mut self.scratch);
+                let Some(share) = taken else { continue };
                 let voice = &self.voices[index];
-                gathering.add(index, voice, &self.seats[voice.surface], share.pressing, &share.out);
+                let seat = &self.seats[voice.surface];
+                gathering.add(index, voice, seat, share.pressing, &share.out);
+                crew.leave_bodies(index, (voice, seat), (terms, n), gathering.bodies);
                 crew.put_back(share);
             }
-        } else if watched {
+        } else if watched || self.voices_used.iter().nth(1).is_none() {
+            // One after the other, and one alone: nobody is to go beside it.
             for index in self.voices_used.iter() {
                 let voice = &mut self.voices[index];
                 if voice.phase == Phase::Free {
@@ -156,13 +157,13 @@ impl Renderer {
                 }
                 let seat = &mut self.seats[voice.surface];
                 let output = output(voice, gathering.channels, shared);
-                let pressing = at.render(shared, &output, voice, seat, scratch, tap);
-                gathering.add(index, voice, seat, pressing, &scratch.out);
+                let pressing = at.render(shared, &output, voice, seat, &mut self.scratch, tap);
+                gathering.add(index, voice, seat, pressing, &self.scratch.out);
             }
         } else {
             let mut company = Company::new();
             let mut render = |company: &mut Company<'_, usize>, gathering: &mut Gathering<'_>| {
-                company.render(shared, at, &mut self.seats[..], scratch, |done| {
+                company.render(shared, at, &mut self.seats[..], &mut self.scratch, |done| {
                     gathering.add(done.who, done.voice, done.seat, done.pressing, done.out);
                 });
             };

@@ -17,7 +17,8 @@ pub(crate) struct Scratch {
     pub(super) profile: Profile,
     pub(super) force: ForceRun,
     pub(super) shown: Shown,
-    pub(crate) out: VoiceBlock,
+    /// Boxed: where several threads render it changes hands, and is not copied.
+    pub(crate) out: Box<VoiceBlock>,
 }
 
 /// What of one contact waits while others are at the same stage.
@@ -49,7 +50,7 @@ impl Scratch {
             profile: Profile::new(),
             force: ForceRun::new(),
             shown: Shown::new(),
-            out: VoiceBlock::new(),
+            out: Box::new(VoiceBlock::new()),
         })
     }
 }

@@ -46,7 +46,7 @@ pub(crate) struct Done<'a, W> {
     pub(crate) voice: &'a Voice,
     pub(crate) seat: &'a Seat,
     pub(crate) pressing: Option<Probe>,
-    pub(crate) out: &'a mut VoiceBlock,
+    pub(crate) out: &'a mut Box<VoiceBlock>,
     pub(crate) who: W,
 }
 
@@ -99,9 +99,7 @@ impl<'a, W> Company<'a, W> {
         for (lane, member) in self.members.iter_mut().flatten().enumerate() {
             let Member { voice, output, .. } = member;
             let seat = seats.seat(voice.surface);
-            // Before it is rendered: how it presses at the end of a stretch would depend on where the blocks are cut.
-            let slot = seat.current().filter(|_| at.is_on_grid());
-            pressing[lane] = slot.and_then(|slot| voice.pressing(shared, slot));
+            pressing[lane] = voice.pressing_at(at, shared, seat);
             let stretch = Stretch { shared, output, position, n };
             passes[lane] = voice.approach(stretch, (false, set_out[lane]), seat, scratch, lane);
         }
@@ -140,13 +138,7 @@ impl<'a, W> Company<'a, W> {
             }
         }
         let level = shared.noise.level();
-        match beside {
-            [Some(a), Some(b), Some(c), Some(d)] => advance_side_by_side(level, &mut [a, b, c, d]),
-            [Some(a), Some(b), Some(c), None] => advance_side_by_side(level, &mut [a, b, c]),
-            [Some(a), Some(b), ..] => advance_side_by_side(level, &mut [a, b]),
-            [Some(a), ..] => advance_side_by_side(level, &mut [a]),
-            [None, ..] => {}
-        }
+        in_one_row(beside, |all| advance_side_by_side(level, all));
         gone
     }
 
@@ -194,12 +186,17 @@ impl<'a, W> Company<'a, W> {
                 voice.pad.run(height_m, force_n, rows);
             }
         }
-        match beside {
-            [Some(a), Some(b), Some(c), Some(d)] => run_side_by_side(&mut [a, b, c, d]),
-            [Some(a), Some(b), Some(c), None] => run_side_by_side(&mut [a, b, c]),
-            [Some(a), Some(b), ..] => run_side_by_side(&mut [a, b]),
-            [Some(a), ..] => run_side_by_side(&mut [a]),
-            [None, ..] => {}
-        }
+        in_one_row(beside, |all| run_side_by_side(all));
+    }
+}
+
+/// Those that are there, without gaps: the first so many of them.
+fn in_one_row<T>(all: [Option<T>; LANES], run: impl FnOnce(&mut [T])) {
+    match all {
+        [Some(a), Some(b), Some(c), Some(d)] => run(&mut [a, b, c, d]),
+        [Some(a), Some(b), Some(c), None] => run(&mut [a, b, c]),
+        [Some(a), Some(b), ..] => run(&mut [a, b]),
+        [Some(a), ..] => run(&mut [a]),
+        [None, ..] => {}
     }
 }

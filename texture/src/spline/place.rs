@@ -78,12 +78,19 @@ impl Places {
 
     #[inline(always)]
     fn find_first<const N: usize>(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]]) {
-        let mut along = [[0.0; N]; 2];
-        for (n, [u, v]) in position_m.iter().take(self.len).enumerate() {
-            (along[0][n], along[1][n]) = (*u, *v);
+        let [mut along_u, mut along_v] = [[0.0; N]; 2];
+        // Whole vectors are written, because whole vectors are read at once.
+        let (full, left) = position_m.get(..self.len).unwrap_or_default().as_chunks::<MOST_LANES>();
+        let rooms = along_u.as_chunks_mut().0.iter_mut().zip(along_v.as_chunks_mut().0);
+        for (some, (along_u, along_v)) in full.iter().zip(rooms) {
+            (*along_u, *along_v) = (some.map(|[u, _]| u), some.map(|[_, v]| v));
         }
-        axes[0].places(&along[0], &mut self.columns);
-        axes[1].places(&along[1], &mut self.rows);
+        let rooms = along_u.iter_mut().zip(&mut along_v).skip(full.len() * MOST_LANES);
+        for ([u, v], (along_u, along_v)) in left.iter().zip(rooms) {
+            (*along_u, *along_v) = (*u, *v);
+        }
+        axes[0].places(&along_u, &mut self.columns);
+        axes[1].places(&along_v, &mut self.rows);
     }
 
     pub(super) fn len(&self) -> usize {

@@ -1,0 +1,70 @@
+//! Ground: what a contact asks of its surface beside the profile, and what it presses on it.
+
+use super::events::EMPTY_FORCE_N;
+use super::rolling::{RolledOver, Rolling};
+use super::shared::{At, Shared};
+use super::{Phase, Voice};
+use crate::audio::seat::Seat;
+use crate::prepared::area::{loudness, nestling};
+use crate::prepared::stiffness::stiffness_n_m;
+use crate::prepared::surface::SurfaceSlot;
+use asperity_dsp::micro_contact::Probe;
+use asperity_texture::height_field::Touch;
+
+impl Voice {
+    /// What presses on the touched body from here on; none within a cell of the absolute grid, where nobody asks. Before a stretch is rendered: how it
+    /// presses at the end of one would depend on where the blocks are cut.
+    pub(crate) fn pressing_at(&self, at: At, shared: &Shared, seat: &Seat) -> Option<Probe> {
+        seat.current().filter(|_| at.is_on_grid()).and_then(|slot| self.pressing(shared, slot))
+    }
+
+    /// What presses on the touched body: the probe, as stiff as its ground and the force make it, to a quarter of an octave. None while nothing
+    /// presses.
+    fn pressing(&self, shared: &Shared, slot: &SurfaceSlot) -> Option<Probe> {
+        let force_n = self.path.last.normal_force_n;
+        if self.phase != Phase::Sounding || force_n <= EMPTY_FORCE_N {
+            return None;
+        }
+        let probe = shared.probe(self.role.probe).micro_contact.probe();
+        let stiffness_n_m = stiffness_n_m(probe, &slot.stroking.ground, force_n);
+        let contact_stiffness_n_m = libm::exp2((4.0 * libm::log2(stiffness_n_m)).round() / 4.0);
+        Some(Probe { contact_stiffness_n_m, ..*probe })
+    }
+
+    /// How much of the contact sounds: the more, the harder it is pressed and the closer it nestles to the ground.
+    pub(super) fn loudness(&self, shared: &Shared, position: u64, seat: &mut Seat) -> f64 {
+        let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
+        let touch = self.touch_at(position);
+        let hollow_m = |reach_m| seat.hollow_m(&touch, reach_m, tip_radius_m);
+        loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
+    }
+
+    /// Over what it rolls at its last sample, to whoever minds.
+    pub(super) fn roll(
+        &mut self,
+        shared: &Shared,
+        seat: &Seat,
+        then: impl FnOnce(&mut Rolling, RolledOver<'_>),
+    ) {
+        let Some(slot) = seat.current() else { return };
+        let over = RolledOver {
+            slot,
+            source_power_m2: seat.power_m2(self.path.last.position_m),
+            probe: shared.probe(self.role.probe).micro_contact.probe(),
+            at: &self.path.last,
+            sample_rate_hz: shared.sample_rate_hz,
+        };
+        then(&mut self.rolling, over);
+    }
+
+    /// How the contact pressed at its last sample.
+    pub(super) fn touch_at(&self, position: u64) -> Touch {
+        Touch {
+            contact: self.slot,
+            sample: position,
+            position_m: self.path.last.position_m,
+            velocity_m_s: self.path.last.velocity_m_s,
+            normal_force_n: self.path.last.normal_force_n,
+        }
+    }
+}
