@@ -13,6 +13,7 @@
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
 //! power: sine and cosine, because the two are unrelated.
 
+use crate::audio::seat::MidwayNoise;
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
@@ -116,7 +117,12 @@ impl Overlay {
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
+        midway: Option<&mut MidwayNoise<'_>>,
     ) {
+        if let Some(midway) = midway {
+            // Cells are known by now from the samples, or will be; they change no bit.
+            self.look_midway(field, path, roughness, midway, (&mut *cells, &mut own.position_m));
+        }
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let Room { local_power_m2, shares, position_m, parts_m } = own;
         let cells = (cells, position_m);
@@ -143,6 +149,35 @@ impl Overlay {
         {
             *height_m += (1.0 - *share) * below_m + *share * all_m;
         }
+    }
+
+    /// The short waves alone. Of a source with relief of its own those below its band, which are there whatever room it leaves.
+    fn look_midway(
+        &self,
+        field: &FractalNoise,
+        path: &NoisePath<'_>,
+        roughness: &[f64],
+        midway: &mut MidwayNoise<'_>,
+        (cells, position_m): (&mut TileCells, &mut [[f64; 2]; MAX_BLOCK]),
+    ) {
+        let weights = self.short_waves().from_octave(midway.octave);
+        let between = NoisePath { position_m: midway.position_m, ..*path };
+        for (path, into_m) in [(path, &mut *midway.at_m), (&between, &mut *midway.midway_m)] {
+            into_m.fill(0.0);
+            self.add_tile(field, path, roughness, &[&weights], [into_m], (&mut *cells, &mut *position_m));
+        }
+        *midway.seen = true;
+    }
+
+    /// What the octaves weigh that are there in any case.
+    fn short_waves(&self) -> &OctaveWeights {
+        let Tip { below, all, .. } = &self.tips[self.now];
+        if self.minds_relief() { below } else { all }
+    }
+
+    /// [`OctaveWeights::missed_m`] of them.
+    pub(crate) fn missed_m(&self, roughness: f64, [footprint_m, faded_m]: [f64; 2]) -> f64 {
+        self.short_waves().missed_m(roughness, footprint_m, faded_m)
     }
 
     /// Whether the source's own relief matters.

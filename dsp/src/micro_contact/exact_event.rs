@@ -10,10 +10,11 @@
 //! costs at most 2·64 − 1 = 127 maps.
 //!
 //! The profile over a step is the Catmull-Rom cubic through four heights, hence one sample of
-//! latency; the force is the mean of both ends.
+//! latency, and what is known to bend beside it ([`Bend`]); the force is the mean of both ends.
 
+use super::bends::Bend;
 use super::flow::{MAX_LEVEL, Regime};
-use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
+use super::guard::{CleanBlock, MAX_PENETRATION_M, believed, rescue};
 use super::quad::{Apart, Quad};
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 use crate::simd::{Level, at_level};
@@ -85,14 +86,14 @@ impl ExactEvent {
             softer.stiffness_per_mass + share * (harder.stiffness_per_mass - softer.stiffness_per_mass);
     }
 
-    /// Runs one clean block; row n describes input n − 1.
+    /// Runs one clean block; row n describes input n − 1, and so does bend n, where there is one: it ends at that input.
     #[inline(always)]
     pub fn run<Q: Quad>(
         &self,
         quad: Q,
         design: &MicroContact,
         state: &mut ContactState,
-        block: &CleanBlock,
+        (block, bends): (&CleanBlock, &[Bend]),
         out: &mut [ContactSample],
     ) {
         let [mut h0, mut h1, mut h2] = state.heights_m;
@@ -100,10 +101,18 @@ impl ExactEvent {
         let mut y = quad.load(&state.y);
         // Changes with events only, so that no map waits for a comparison.
         let mut pressed = state.y[0] < 0.0;
-        for ((out, &h3), &f3) in out.iter_mut().zip(&block.height_m).zip(&block.force_n) {
-            let c = catmull_rom(h1 - h0, h2 - h1, h3 - h2);
+        for (n, ((out, &h3), &f3)) in out.iter_mut().zip(&block.height_m).zip(&block.force_n).enumerate() {
+            let [c1, c2, c3] = catmull_rom(h1 - h0, h2 - h1, h3 - h2);
+            let mut c = [c1, c2, c3, 0.0];
             let force = 0.5 * (f1 + f2);
-            let next = self.regimes[usize::from(pressed)].maps[0].apply(y, c, force);
+            let map = &self.regimes[usize::from(pressed)].maps[0];
+            let next = if let Some(bend) = bends.get(n) {
+                let [b1, b2, b3, b4] = believed(bend);
+                c = [c1 + b1, c2 + b2, c3 + b3, b4];
+                map.apply(y, c, force)
+            } else {
+                map.apply_cubic(y, [c1, c2, c3], force)
+            };
             let before = y.array();
             let (mut touched, mut onset) = (pressed, None);
             if (next.first() < 0.0) == pressed && self.coarsest[usize::from(pressed)] == 0 {
@@ -149,7 +158,7 @@ impl ExactEvent {
     /// One sample with events, piece by piece. Products and sums round apart on every level.
     #[cold]
     #[inline(never)]
-    pub(super) fn walk(&self, level: Level, y: [f64; 4], c: [f64; 3], force_n: f64) -> Step {
+    pub(super) fn walk(&self, level: Level, y: [f64; 4], c: [f64; 4], force_n: f64) -> Step {
         at_level!(level.at_most_256_bits(), s => {
             let zero: f64x4<_> = SimdBase::splat(s, 0.0);
             self.walk_in(Apart(zero), y, c, force_n)
@@ -157,7 +166,7 @@ impl ExactEvent {
     }
 
     #[inline(always)]
-    fn walk_in<Q: Quad>(&self, quad: Q, mut y: [f64; 4], mut c: [f64; 3], force_n: f64) -> Step {
+    fn walk_in<Q: Quad>(&self, quad: Q, mut y: [f64; 4], mut c: [f64; 4], force_n: f64) -> Step {
         let ticks = 1_usize << self.finest;
         let (mut now, mut level) = (0, 0);
         let (mut touched, mut onset, mut maps) = (false, None, 0);
@@ -172,7 +181,7 @@ impl ExactEvent {
                 continue;
             }
             let size = 1.0 / (1_usize << level) as f64;
-            let end = [c[0] + size * (2.0 * c[1] + 3.0 * size * c[2]), c[1] + 3.0 * size * c[2], c[2]];
+            let end = at_end(c, size);
             if event {
                 let event = self.split(quad, y[0], &mut next, end[0] / self.step_s, size * self.step_s);
                 if pressed == 0 {
@@ -228,6 +237,14 @@ fn catmull_rom(before: f64, inside: f64, after: f64) -> [f64; 3] {
     [0.5 * (before + inside), (1.5 * inside - before) - 0.5 * after, 0.5 * (before + after) - inside]
 }
 
+/// The coefficients of a profile seen from `size` of a sample later.
+#[inline(always)]
+pub(super) fn at_end(c: [f64; 4], size: f64) -> [f64; 4] {
+    let [c1, c2, c3, c4] = c;
+    let (cubic, fourth) = (3.0 * size * c3, size * size * c4);
+    [c1 + size * (2.0 * c2 + (cubic + 4.0 * fourth)), c2 + (cubic + 6.0 * fourth), c3 + 4.0 * size * c4, c4]
+}
+
 fn at_least_zero(x: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
@@ -252,8 +269,10 @@ mod tests {
         let rise_m = 1e-5;
         for share in 1..1000 {
             let gap_m = rise_m * f64::from(share) / 1000.0;
-            let met =
-                exact.walk(Level::detect(), [gap_m, 0.0, 0.0, 0.0], [0.0, rise_m, 0.0], 0.0).onset.unwrap();
+            let met = exact
+                .walk(Level::detect(), [gap_m, 0.0, 0.0, 0.0], [0.0, rise_m, 0.0, 0.0], 0.0)
+                .onset
+                .unwrap();
             let (at, closing_m_s) = (libm::sqrt(gap_m / rise_m), 2.0 * libm::sqrt(rise_m * gap_m) / step_s);
             assert!((met.offset - at).abs() < 1e-6, "{gap_m}: at {} and not {at}", met.offset);
             let off = met.closing_m_s / closing_m_s - 1.0;
@@ -272,7 +291,7 @@ mod tests {
                 let exact = ExactEvent::new(&probe, 1.0 / rate_hz);
                 for _ in 0..4000 {
                     let size = 1e-6 * libm::exp2(20.0 * rng.uniform() - 10.0);
-                    let c = [rng.normal() * size, rng.normal() * size, rng.normal() * size];
+                    let c = [(); 4].map(|()| rng.normal() * size);
                     let speed = size * rate_hz * rng.normal();
                     let y = [rng.normal() * size * 0.3, 0.0, speed, 0.0];
                     let step = exact.walk(Level::detect(), y, c, 0.5);

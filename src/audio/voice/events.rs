@@ -1,5 +1,6 @@
 //! Contact events at a voice: it lands, appears, goes on, leaves.
 
+use super::between::Between;
 use super::blows::Blows;
 use super::profile::Along;
 use super::scratch::Scratch;
@@ -85,6 +86,7 @@ impl Voice {
         self.reaction = Reaction::default();
         self.blows = Blows::default();
         self.skin = ContactSkin::default();
+        self.between = Between::default();
         let probe = shared.probe(self.role.probe);
         self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
         let loudness = self.loudness(shared, position, seat);
@@ -149,7 +151,8 @@ impl Voice {
     /// Whose profile is asked for.
     pub(super) fn along<'a>(&self, shared: &'a Shared, position: u64, slopes: bool) -> Along<'a> {
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
-        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body: self.path.is_in_body() }
+        let in_body = self.path.is_in_body();
+        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, midway: None }
     }
 
     /// Goes on somewhere else; wakes a resting contact. A jump that no stroke makes changes nothing here: it
