@@ -119,57 +119,54 @@ impl Overlay {
         (cells, own): (&mut TileCells, &mut Room),
         midway: Option<&mut MidwayNoise<'_>>,
     ) {
-        if let Some(midway) = midway {
-            // Cells are known by now from the samples, or will be; they change no bit.
-            self.look_midway(field, path, roughness, midway, (&mut *cells, &mut own.position_m));
-        }
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let Room { local_power_m2, shares, position_m, parts_m } = own;
+        let short = midway.map(|midway| (self.short_waves().from_octave(midway.octave), midway));
+        let short = short.map(|(weights, midway)| {
+            let between = NoisePath { position_m: midway.position_m, ..*path };
+            midway.midway_m.fill(0.0);
+            let into_m = [&mut *midway.midway_m];
+            self.add_tile(field, &between, roughness, &[&weights], into_m, (&mut *cells, &mut *position_m));
+            midway.at_m.fill(0.0);
+            *midway.seen = true;
+            (weights, &mut *midway.at_m)
+        });
         let cells = (cells, position_m);
-        if !self.longest_m.is_finite() {
-            return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
+        let n = height_m.len().min(MAX_BLOCK);
+        let shares = &mut shares[..n];
+        if self.minds_relief() {
+            for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
+                *share = room(*power_m2, self.ordinary_m);
+            }
+        } else {
+            shares.fill(1.0);
         }
-        let shares = &mut shares[..height_m.len().min(MAX_BLOCK)];
-        for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
-            *share = room(*power_m2, self.ordinary_m);
+        let same = |share: f64| shares.iter().all(|own| *own == share);
+        if same(1.0) || same(0.0) {
+            let weights = if same(1.0) { whole } else { below };
+            return match short {
+                Some((short, at_m)) => {
+                    self.add_tile(field, path, roughness, &[weights, &short], [height_m, at_m], cells);
+                }
+                None => self.add_tile(field, path, roughness, &[weights], [height_m], cells),
+            };
         }
-        if shares.iter().all(|share| *share == 1.0) {
-            return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
-        }
-        if shares.iter().all(|share| *share == 0.0) {
-            return self.add_tile(field, path, roughness, &[below], [height_m], cells);
-        }
-        let n = shares.len();
         let [below_m, all_m] = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
         below_m.fill(0.0);
         all_m.fill(0.0);
-        self.add_tile(field, path, roughness, &[below, whole], [&mut *below_m, &mut *all_m], cells);
+        let into_m = [&mut *below_m, &mut *all_m];
+        self.add_tile(field, path, roughness, &[below, whole], into_m, (&mut *cells.0, &mut *cells.1));
         for ((height_m, share), (below_m, all_m)) in
             height_m.iter_mut().zip(shares).zip(below_m.iter().zip(&*all_m))
         {
             *height_m += (1.0 - *share) * below_m + *share * all_m;
         }
-    }
-
-    /// The short waves alone. Of a source with relief of its own those below its band, which are there whatever room it leaves.
-    fn look_midway(
-        &self,
-        field: &FractalNoise,
-        path: &NoisePath<'_>,
-        roughness: &[f64],
-        midway: &mut MidwayNoise<'_>,
-        (cells, position_m): (&mut TileCells, &mut [[f64; 2]; MAX_BLOCK]),
-    ) {
-        let weights = self.short_waves().from_octave(midway.octave);
-        let between = NoisePath { position_m: midway.position_m, ..*path };
-        for (path, into_m) in [(path, &mut *midway.at_m), (&between, &mut *midway.midway_m)] {
-            into_m.fill(0.0);
-            self.add_tile(field, path, roughness, &[&weights], [into_m], (&mut *cells, &mut *position_m));
+        if let Some((short, at_m)) = short {
+            self.add_tile(field, path, roughness, &[&short], [at_m], cells);
         }
-        *midway.seen = true;
     }
 
-    /// What the octaves weigh that are there in any case.
+    /// What the octaves weigh that are there whatever room a source's own relief leaves: those below its band.
     fn short_waves(&self) -> &OctaveWeights {
         let Tip { below, all, .. } = &self.tips[self.now];
         if self.minds_relief() { below } else { all }

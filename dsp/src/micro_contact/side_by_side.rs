@@ -281,7 +281,8 @@ impl<'a> Together<'a> {
             let level = contact.design.level;
             // None of them bends: what does goes alone.
             let [c1, c2, c3] = c.map(|c| c[lane]);
-            let step = self.schemes[lane].walk(level, y.map(|y| y[lane]), [c1, c2, c3, 0.0], force[lane]);
+            let step =
+                self.schemes[lane].walk(level, y.map(|y| y[lane]), ([c1, c2, c3, 0.0], 0), force[lane]);
             scatter(next, lane, &step.y);
             onsets[lane] = step.onset;
             touching = touching & !bit | if step.touched { bit } else { 0 };
