@@ -133,17 +133,14 @@ impl Overlay {
         });
         let cells = (cells, position_m);
         let n = height_m.len().min(MAX_BLOCK);
-        let shares = &mut shares[..n];
-        if self.minds_relief() {
-            for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
-                *share = room(*power_m2, self.ordinary_m);
-            }
-        } else {
-            shares.fill(1.0);
+        let shares = &mut shares[..if self.minds_relief() { n } else { 0 }];
+        for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
+            *share = room(*power_m2, self.ordinary_m);
         }
-        let same = |share: f64| shares.iter().all(|own| *own == share);
-        if same(1.0) || same(0.0) {
-            let weights = if same(1.0) { whole } else { below };
+        let everywhere = |share: f64| shares.iter().all(|own| *own == share);
+        if let Some(weights) = [(1.0, whole), (0.0, below)].into_iter().find(|(share, _)| everywhere(*share))
+        {
+            let weights = weights.1;
             return match short {
                 Some((short, at_m)) => {
                     self.add_tile(field, path, roughness, &[weights, &short], [height_m, at_m], cells);

@@ -21,7 +21,7 @@ use super::{FractalNoise, OCTAVES, band_weight};
 use crate::gradient_noise_2d::{PEAK_WAVELENGTH_CELLS, VARIANCE};
 
 /// Cells so many samples long are known between those.
-const SEEN_CELLS: f64 = 12.0;
+const SEEN_CELLS: f64 = 24.0;
 
 /// Coefficients of a polynomial in R.
 const TERMS: usize = 5;
@@ -104,7 +104,7 @@ impl OctaveWeights {
     /// e² = Σ (gᵢ κ(aᵢ/s))² · 0.093        κ(c) = 1.5/c³
     /// ```
     /// s: `footprint_m`, the way between two samples; gᵢ: gain of the octave, faded as if that were `faded_m`. κ was measured on the noise
-    /// (within 40 % from 2 to 12 samples a cell); longer cells count for nothing.
+    /// (within 50 % from 2 to 24 samples a cell); longer cells count for nothing.
     #[must_use]
     pub fn missed_m(&self, roughness: f64, footprint_m: f64, faded_m: f64) -> f64 {
         let r = roughness.clamp(0.0, 1.0);
