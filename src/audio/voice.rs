@@ -49,7 +49,7 @@ use asperity_dsp::actuator::{ContactOutputState, Quantity};
 use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction, Touch};
-use between::{Between, Pressed};
+use between::Between;
 use blows::Blows;
 use drag::Drag;
 use exciters::{Excited, Exciters};
@@ -270,9 +270,7 @@ impl Voice {
             } else {
                 self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
             }
-            let plain = !self.path.is_in_body() && !self.rolling.rolls();
-            let (at, contact) = (&self.path.last, self.pad.probe());
-            self.between.decide(&Pressed { shared, at, probe, contact, plain }, seat);
+            self.look_between(shared, seat);
         }
         let Some(slot) = seat.current() else { return false };
         if !set_out {

@@ -4,8 +4,8 @@
 //! e > 0.02 F/k        e: rms of the relief beside the cubics through its samples;  F/k: how deep the pad is pressed in
 //! ```
 //! A pad pressed in deeper than that follows the cubic as well as it would follow the ground: 0.1 of F/k on a stroke that leaves the ground
-//! at every crest is heard at −33 dB, 0.01 at −50 dB. A fingertip, which rides over what is that short, never pays. Decided at the
-//! steps of the absolute sample grid, so that it depends on no split into blocks; only for the scheme that knows events.
+//! at every crest is heard at −33 dB, 0.01 at −50 dB. A fingertip, which rides over what is that short, never pays. Decided where a contact
+//! begins and at the steps of the absolute sample grid, so that it depends on no split into blocks; only for the scheme that knows events.
 
 use super::profile::{FromThere, Midway};
 use super::shared::Shared;
@@ -66,9 +66,14 @@ impl Between {
         }
     }
 
+    /// Whether any are.
+    pub(super) fn looks(&self) -> bool {
+        self.octave < OCTAVES
+    }
+
     /// What has to be looked at midway on the way from a place; none where nothing has.
     pub(super) fn from_there(&self, from_m: [f64; 2]) -> Option<FromThere> {
-        (self.octave < OCTAVES).then_some(FromThere { octave: self.octave, from_m })
+        self.looks().then_some(FromThere { octave: self.octave, from_m })
     }
 
     /// Takes what was seen midway; what the profile does beside the cubics through its samples.

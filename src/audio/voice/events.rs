@@ -1,13 +1,13 @@
 //! Contact events at a voice: it lands, appears, goes on, leaves.
 
-use super::between::Between;
+use super::between::{Between, Pressed};
 use super::blows::Blows;
 use super::profile::Along;
-use super::scratch::Scratch;
+use super::scratch::{Lane, Scratch};
 use super::shared::{Shared, Stretch};
 use super::skin::ContactSkin;
 use super::tip::Tip;
-use super::{PadSample, Phase, Voice};
+use super::{PadSample, PathPoint, Phase, Voice};
 use crate::audio::seat::Seat;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::stamp::Stamp;
@@ -60,6 +60,7 @@ impl Voice {
         self.empty_reports = 0;
         self.unshown_n_s = 0.0;
         self.fades.begin(self.role.gain, lands, shared);
+        self.between = Between::default();
         let force_n = self.path.begin(sample, slot, stamp);
         self.tip = Tip::begin(sample);
         self.rolling.tell(sample);
@@ -74,6 +75,8 @@ impl Voice {
             let along = self.along(shared, position, false);
             scratch.profile.run(seat, along, points, &mut self.cells);
             let height_m = scratch.profile.surface.height_m[0];
+            self.between.remember(scratch.profile.surface.roughness[0]);
+            self.look_between(shared, seat);
             self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
             // It touches at the stamp; without delay it would one sample before the voice's first.
             self.pad.land(height_m, force_n, sample.closing_m_s, 1.0 + stamp.fraction());
@@ -86,7 +89,6 @@ impl Voice {
         self.reaction = Reaction::default();
         self.blows = Blows::default();
         self.skin = ContactSkin::default();
-        self.between = Between::default();
         let probe = shared.probe(self.role.probe);
         self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
         let loudness = self.loudness(shared, position, seat);
@@ -98,6 +100,8 @@ impl Voice {
     fn lead_in(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, .. } = at;
         let [slope_m_s, bend_m_s2] = self.trend(at, seat, scratch);
+        self.between.remember(scratch.profile.surface.roughness[MAX_BLOCK - 1]);
+        self.look_between(shared, seat);
         let step_s = 1.0 / shared.sample_rate_hz;
         let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
         self.lay_behind(steps + 1, step_s, 1, at, seat, scratch);
@@ -110,7 +114,10 @@ impl Voice {
             let Scratch { lanes, profile, .. } = &mut *scratch;
             self.rolling.lead_in(&mut profile.surface, count);
             let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
-            row = self.pad.lead_in(heights_m, forces_n, &mut lanes[0].rows[..count]);
+            let Lane { rows, bends, .. } = &mut lanes[0];
+            let bends = &mut bends[..if self.between.looks() { count } else { 0 }];
+            self.between.bend(&profile.midway, bends);
+            row = self.pad.lead_in(heights_m, forces_n, bends, &mut rows[..count]);
             left -= count;
             if left == 0 {
                 self.pad.appear(&row, heights_m[count - 1], forces_n[count - 1], slope_m_s);
@@ -134,8 +141,19 @@ impl Voice {
         let Scratch { lanes, profile, .. } = scratch;
         let points = &mut lanes[0].points[..count];
         self.path.lay_behind(steps, step_s, points);
-        let along = self.along(at.shared, at.position, false);
+        let PathPoint { position_m, velocity_m_s, .. } = points[0];
+        let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);
+        let midway = self.between.from_there(from_m);
+        let along = Along { midway, ..self.along(at.shared, at.position, false) };
         profile.run(seat, along, points, &mut self.cells);
+    }
+
+    /// Decides what of the ground is looked at between samples: when it begins, and at the steps of the absolute sample grid.
+    pub(super) fn look_between(&mut self, shared: &Shared, seat: &mut Seat) {
+        let probe = shared.probe(self.role.probe);
+        let plain = !self.path.is_in_body() && !self.rolling.rolls();
+        let (at, contact) = (&self.path.last, self.pad.probe());
+        self.between.decide(&Pressed { shared, at, probe, contact, plain }, seat);
     }
 
     /// How the profile has risen, m/s, and bent, m/s², during the last [`TREND_S`]: the parabola nearest to it.

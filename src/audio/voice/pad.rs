@@ -78,9 +78,10 @@ impl Pad {
         &mut self,
         heights_m: &[f64],
         forces_n: &[f64],
+        bends: &[Bend],
         rows: &mut [PadSample],
     ) -> PadSample {
-        self.model.run(&mut self.state, heights_m, forces_n, rows);
+        self.model.run_bent(&mut self.state, heights_m, forces_n, bends, rows);
         rows.last().copied().unwrap_or_default()
     }
 

@@ -30,7 +30,7 @@ pub(super) struct Lane {
     pub(super) force_n: [f64; MAX_BLOCK],
     pub(super) rows: [PadSample; MAX_BLOCK],
     /// What the profile does between samples, where that is known.
-    bends: [Bend; MAX_BLOCK],
+    pub(super) bends: [Bend; MAX_BLOCK],
     bent: usize,
     /// How often its pad was begun anew, and blows among the rows.
     pub(super) resets: u64,
