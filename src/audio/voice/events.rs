@@ -23,8 +23,9 @@ pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
 /// How far back a contact that appears is taken to have slid, s: what a 10 Hz high-pass remembers.
 const TREND_S: f64 = 0.025;
 
-/// How long the pad is led before it appears, s. The same at every rate, because a finger remembers for tenths of a second how it began.
-const LEAD_IN_S: f64 = 64.0 / 44_100.0;
+/// How long before it appears the pad leaves its straight line for the ground, s. The same at every rate, because a finger remembers for
+/// tenths of a second how it began.
+const LEAD_IN_S: f64 = 65.0 / 44_100.0;
 
 impl Voice {
     /// How hard it presses at its last sample, N, and where it goes, m/s.
@@ -103,7 +104,8 @@ impl Voice {
         self.between.remember(scratch.profile.surface.roughness[MAX_BLOCK - 1]);
         self.look_between(shared, seat);
         let step_s = 1.0 / shared.sample_rate_hz;
-        let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
+        // The line ends a step before the first height of the ground.
+        let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize - 1;
         self.lay_behind(steps + 1, step_s, 1, at, seat, scratch);
         self.pad.ride(scratch.profile.surface.height_m[0], scratch.profile.force_n[0], slope_m_s);
         self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
