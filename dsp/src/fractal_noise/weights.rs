@@ -110,7 +110,10 @@ impl OctaveWeights {
         let r = roughness.clamp(0.0, 1.0);
         let sum = |c: &[f32]| c.iter().rev().fold(0.0, |sum, c| f64::from(*c) + r * sum);
         let coarser = sum(&INVERSE_OCTAVE_RATIO);
-        let mut gain = sum(&LEVEL) * libm::pow(sum(&OCTAVE_RATIO), 7.0);
+        let ratio = sum(&OCTAVE_RATIO);
+        let cube = ratio * ratio * ratio;
+        // The finest octave is seven below that of 1.024 mm cells.
+        let mut gain = sum(&LEVEL) * cube * cube * ratio;
         let mut missed = 0.0;
         for (octave, cell_m) in cells_m().into_iter().enumerate().skip(self.coarsest).rev() {
             if cell_m > SEEN_CELLS * footprint_m {
