@@ -80,6 +80,7 @@ impl Between {
     pub(super) fn bend(&mut self, seen: &Midway, bends: &mut [Bend]) {
         if !seen.seen {
             self.bends.forget();
+            return bends.fill([0.0; 4]);
         }
         for ((bend, at_m), midway_m) in bends.iter_mut().zip(&seen.at_m).zip(&seen.midway_m) {
             *bend = self.bends.next(*at_m, *midway_m);
