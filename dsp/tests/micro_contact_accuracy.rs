@@ -3,7 +3,7 @@
 
 mod profiles;
 
-use asperity_dsp::micro_contact::{ContactSample, Integrator, MicroContact, Probe};
+use asperity_dsp::micro_contact::{Bends, ContactSample, Integrator, MicroContact, Probe};
 use profiles::{HELD_OUT, Profile, SUITE};
 use std::sync::OnceLock;
 
@@ -162,5 +162,66 @@ fn collisions_on_a_sine_at_1_m_s_are_all_found_and_timed_to_a_microsecond() {
         let rms_s = (square / found.len() as f64).sqrt();
         println!("{}: {} touches, {:.3} us rms", integrator.name(), found.len(), rms_s * 1e6);
         assert!(rms_s <= bar_s, "{}: {rms_s:e} s", integrator.name());
+    }
+}
+
+/// Three waves of 6–9 samples, 2 µm high, under 0.1 N on 200 kN/m: the pad hops from crest to crest.
+fn quick_waves(at: f64) -> f64 {
+    [(6.1, 0.0), (7.3, 1.0), (8.9, 2.0)]
+        .iter()
+        .map(|(samples, phase)| 1e-6 * (std::f64::consts::TAU * at / samples + phase).sin())
+        .sum()
+}
+
+/// Rows over them, `times` a sample, of which `bent` knows the ground midway.
+fn over_quick_waves(times: usize, bent: bool, cuts: usize) -> Vec<ContactSample> {
+    let probe = Probe { contact_stiffness_n_m: 2e5, force_exponent: 0.0, ..Probe::default() };
+    let design = MicroContact::new(&probe, Integrator::ExactEvent, RATE_HZ * times as f64).unwrap();
+    let count = 8000 * times;
+    let heights: Vec<f64> = (0..count).map(|n| quick_waves(n as f64 / times as f64)).collect();
+    let mut known = Bends::default();
+    let bends: Vec<_> =
+        (0..count).map(|n| known.next(heights[n], quick_waves((n as f64 - 0.5) / times as f64))).collect();
+    let (forces, mut state) = (vec![0.1; count], design.at_rest(heights[0], 0.1));
+    let mut out = vec![ContactSample::default(); count];
+    for (n, rows) in out.chunks_mut(cuts).enumerate() {
+        let at = n * cuts..n * cuts + rows.len();
+        let bends = if bent { &bends[at.clone()] } else { &[] };
+        design.run_bent(&mut state, &heights[at.clone()], &forces[at], bends, rows);
+    }
+    out.drain(..design.latency_samples());
+    out
+}
+
+#[test]
+fn ground_known_midway_is_followed_a_hundred_times_as_well_where_waves_pass_in_a_few_samples() {
+    let fine = over_quick_waves(OVERSAMPLING, false, 1000);
+    let reference: Vec<_> = fine.iter().copied().step_by(OVERSAMPLING).collect();
+    let [plain, bent] = [false, true].map(|bent| {
+        let rows = over_quick_waves(1, bent, 64);
+        assert!(rows.iter().filter(|row| row.onset.is_some()).count() > 300, "the pad does not hop");
+        error(|row| row.pad_m, &rows[1000..], &reference[1000..])
+    });
+    println!("cubic {plain:.2e}, known midway {bent:.2e}");
+    assert!(bent < 1e-3 && bent < 0.05 * plain, "{plain:e}, {bent:e}");
+}
+
+#[test]
+fn bends_give_the_same_rows_however_blocks_are_cut_and_none_are_the_cubic() {
+    let whole = over_quick_waves(1, true, 8000);
+    for cuts in [1, 7, 63, 200] {
+        assert!(whole == over_quick_waves(1, true, cuts), "{cuts}");
+    }
+    assert!(whole != over_quick_waves(1, false, 8000));
+    // What is no number bends nothing.
+    let design = MicroContact::new(&linear(), Integrator::ExactEvent, RATE_HZ).unwrap();
+    let rows = |bend: f64| {
+        let (mut state, mut out) = (design.at_rest(0.0, 0.5), [ContactSample::default(); 100]);
+        let heights: Vec<f64> = (0..100).map(|n| 1e-6 * (0.3 * f64::from(n)).sin()).collect();
+        design.run_bent(&mut state, &heights, &[0.5; 100], &[[bend, 0.0, 0.0, 0.0]; 100], &mut out);
+        out
+    };
+    for bend in [f64::NAN, f64::INFINITY, 1e9] {
+        assert!(rows(bend) == rows(0.0), "{bend}");
     }
 }

@@ -43,6 +43,22 @@ pub(crate) struct Noise<'a> {
     /// Where the contact was last.
     pub(crate) cells: &'a mut TileCells,
     pub(crate) room: &'a mut Room,
+    /// Its short waves by themselves, where they are wanted.
+    pub(crate) midway: Option<MidwayNoise<'a>>,
+}
+
+/// The short waves of the micro-noise, at samples and midway from the sample before each.
+pub(crate) struct MidwayNoise<'a> {
+    /// The coarsest octave that counts among them.
+    pub(crate) octave: usize,
+    /// Midway from the sample before.
+    pub(crate) position_m: &'a [[f64; 2]],
+    /// At the samples, m.
+    pub(crate) at_m: &'a mut [f64],
+    /// Midway, m.
+    pub(crate) midway_m: &'a mut [f64],
+    /// Whether the surface told.
+    pub(crate) seen: &'a mut bool,
 }
 
 /// What setting a surface means for the contacts on it.
@@ -146,6 +162,10 @@ impl Seat {
         out: &mut SurfaceBlock,
         rough: &mut SurfaceBlock,
     ) {
+        if self.previous.is_some() {
+            // Two surfaces at once are known at samples only.
+            noise.midway = None;
+        }
         let Some(current) = &mut self.current else { return };
         current.sample(path, noise, out, rough);
         let Some(previous) = &mut self.previous else { return };
@@ -214,6 +234,18 @@ impl Seat {
             source.ride(tip_radius_m);
             source.hollow_m(touch, reach_m)
         })
+    }
+
+    /// Rms of the micro-relief beside the cubics through samples a footprint apart, m; the other footprint is that by which octaves fade.
+    /// While the surface becomes another it tells of none.
+    pub(crate) fn missed_m(&mut self, roughness: f64, footprints_m: [f64; 2], tip_radius_m: f64) -> f64 {
+        match (&mut self.current, &self.previous) {
+            (Some(slot), None) if slot.surface.micro_relief_m > 0.0 => {
+                slot.overlay.tune(tip_radius_m);
+                slot.overlay.missed_m(roughness, footprints_m)
+            }
+            _ => 0.0,
+        }
     }
 
     /// Mean square of the relief that the source really has about a place, m²; of one that does not tell, a ninth of the square of its reach.
@@ -297,6 +329,7 @@ impl SurfaceSlot {
                 &out.roughness[..n],
                 &mut out.height_m[..n],
                 (&mut *noise.cells, &mut *noise.room),
+                noise.midway.as_mut(),
             );
         }
     }

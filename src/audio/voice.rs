@@ -7,6 +7,7 @@
 //! Each stage is a file: its own state, what it is told, inputs in, outputs out.
 
 mod ac_coupling;
+mod between;
 mod block;
 mod blows;
 mod body_path;
@@ -46,12 +47,14 @@ use asperity_dsp::actuator::{ContactOutputState, Quantity};
 use asperity_dsp::micro_contact::ContactSample as PadSample;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction};
+use between::Between;
 use blows::Blows;
 use drag::Drag;
 use exciters::{Excited, Exciters};
 use fades::Fades;
 use pad::Pad;
 use path::Path;
+use profile::Along;
 use rolling::Rolling;
 use scratch::Lane;
 use shared::Pass;
@@ -94,6 +97,7 @@ pub(crate) struct Voice {
     path: Path,
     /// Where in the micro-relief it is.
     cells: TileCells,
+    between: Between,
     rolling: Rolling,
     tip: Tip,
     pad: Pad,
@@ -134,6 +138,7 @@ impl Voice {
             unshown_n_s: 0.0,
             path: Path::idle(&shared.idle_path),
             cells: TileCells::default(),
+            between: Between::default(),
             rolling: Rolling::default(),
             tip: Tip::default(),
             pad: Pad::idle(&shared.own_probe),
@@ -182,8 +187,7 @@ impl Voice {
     ) {
         let pass = self.approach(stretch, (tap.is_watching(), false), seat, scratch, 0);
         if pass.slides {
-            let Lane { height_m, force_n, rows, .. } = &mut scratch.lanes[0];
-            self.pad.run(&height_m[..pass.n], &force_n[..pass.n], &mut rows[..pass.n]);
+            scratch.lanes[0].press(&mut self.pad, pass.n);
             self.settle(stretch.shared, pass, &mut scratch.lanes[0]);
         }
         self.finish(stretch, pass, seat, scratch, 0, tap);
@@ -240,8 +244,8 @@ impl Voice {
         }
         let Some(slot) = seat.current() else { return false };
         let Scratch { lanes, profile, .. } = scratch;
-        let Lane { points, height_m, force_n, .. } = &mut lanes[lane];
-        let points = &mut points[..n];
+        let own = &mut lanes[lane];
+        let points = &mut own.points[..n];
         let probe = shared.probe(self.role.probe);
         let dragged = output.quantity() == Quantity::Tangential;
         if at_slow_step {
@@ -251,15 +255,23 @@ impl Voice {
             } else {
                 self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
             }
+            self.look_between(shared, seat);
         }
+        let Some(slot) = seat.current() else { return false };
         if !set_out {
             self.path.run(slot, points, &mut profile.at_m);
         }
-        let along = self.along(shared, position, slopes || dragged);
+        let midway = self.between.from_there(self.path.last.position_m);
+        let along = Along { midway, ..self.along(shared, position, slopes || dragged) };
         profile.run(seat, along, points, &mut self.cells);
         self.rolling.run(position, shared.slow_step, &mut profile.surface, n);
-        height_m[..n].copy_from_slice(&profile.surface.height_m[..n]);
-        force_n[..n].copy_from_slice(&profile.force_n[..n]);
+        own.height_m[..n].copy_from_slice(&profile.surface.height_m[..n]);
+        own.force_n[..n].copy_from_slice(&profile.force_n[..n]);
+        let bends = own.bend(if midway.is_some() { n } else { 0 });
+        self.between.bend(&profile.midway, bends);
+        if let Some(roughness) = profile.surface.roughness[..n].last() {
+            self.between.remember(*roughness);
+        }
         true
     }
 

@@ -13,6 +13,7 @@
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
 //! power: sine and cosine, because the two are unrelated.
 
+use crate::audio::seat::MidwayNoise;
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
@@ -134,33 +135,61 @@ impl Overlay {
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
+        midway: Option<&mut MidwayNoise<'_>>,
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let Room { local_power_m2, shares, parts_m, lap } = own;
+        let short = midway.map(|midway| (self.short_waves().from_octave(midway.octave), midway));
+        let short = short.map(|(weights, midway)| {
+            let between = NoisePath { position_m: midway.position_m, ..*path };
+            midway.midway_m.fill(0.0);
+            let into_m = [&mut *midway.midway_m];
+            self.add_tile(field, &between, roughness, &[&weights], into_m, (&mut *cells, &mut *lap));
+            midway.at_m.fill(0.0);
+            *midway.seen = true;
+            (weights, &mut *midway.at_m)
+        });
         let cells = (cells, lap);
-        if !self.longest_m.is_finite() {
-            return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
-        }
-        let shares = &mut shares[..height_m.len().min(MAX_BLOCK)];
+        let n = height_m.len().min(MAX_BLOCK);
+        let shares = &mut shares[..if self.minds_relief() { n } else { 0 }];
         for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
             *share = room(*power_m2, self.ordinary_m);
         }
-        if shares.iter().all(|share| *share == 1.0) {
-            return self.add_tile(field, path, roughness, &[whole], [height_m], cells);
+        let everywhere = |share: f64| shares.iter().all(|own| *own == share);
+        if let Some(weights) = [(1.0, whole), (0.0, below)].into_iter().find(|(share, _)| everywhere(*share))
+        {
+            let weights = weights.1;
+            return match short {
+                Some((short, at_m)) => {
+                    self.add_tile(field, path, roughness, &[weights, &short], [height_m, at_m], cells);
+                }
+                None => self.add_tile(field, path, roughness, &[weights], [height_m], cells),
+            };
         }
-        if shares.iter().all(|share| *share == 0.0) {
-            return self.add_tile(field, path, roughness, &[below], [height_m], cells);
-        }
-        let n = shares.len();
         let [below_m, all_m] = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
         below_m.fill(0.0);
         all_m.fill(0.0);
-        self.add_tile(field, path, roughness, &[below, whole], [&mut *below_m, &mut *all_m], cells);
+        let into_m = [&mut *below_m, &mut *all_m];
+        self.add_tile(field, path, roughness, &[below, whole], into_m, (&mut *cells.0, &mut *cells.1));
         for ((height_m, share), (below_m, all_m)) in
             height_m.iter_mut().zip(shares).zip(below_m.iter().zip(&*all_m))
         {
             *height_m += (1.0 - *share) * below_m + *share * all_m;
         }
+        if let Some((short, at_m)) = short {
+            self.add_tile(field, path, roughness, &[&short], [at_m], cells);
+        }
+    }
+
+    /// What the octaves weigh that are there whatever room a source's own relief leaves: those below its band.
+    fn short_waves(&self) -> &OctaveWeights {
+        let Tip { below, all, .. } = &self.tips[self.now];
+        if self.minds_relief() { below } else { all }
+    }
+
+    /// [`OctaveWeights::missed_m`] of them.
+    pub(crate) fn missed_m(&self, roughness: f64, [footprint_m, faded_m]: [f64; 2]) -> f64 {
+        self.short_waves().missed_m(roughness, footprint_m, faded_m)
     }
 
     /// Whether the source's own relief matters.

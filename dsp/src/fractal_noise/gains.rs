@@ -3,14 +3,15 @@
 use crate::simd::Vector;
 
 /// r = 2^(−0.75 (1 − R)): the ratio of the gains of an octave and the next coarser one, within 1e-6.
-const OCTAVE_RATIO: [f32; 5] = [0.594_603_8, 0.309_091_63, 0.080_510_76, 0.013_454_678, 0.002_338_592];
+pub(super) const OCTAVE_RATIO: [f32; 5] =
+    [0.594_603_8, 0.309_091_63, 0.080_510_76, 0.013_454_678, 0.002_338_592];
 
 /// 1/r, within 1e-6.
-const INVERSE_OCTAVE_RATIO: [f32; 5] =
+pub(super) const INVERSE_OCTAVE_RATIO: [f32; 5] =
     [1.681_791_9, -0.874_249, 0.226_884_53, -0.038_360_09, 0.003_933_027_4];
 
 /// L(R): gain of the octave of 1.024 mm cells that makes the octave about 1 mm have an rms of 1.
-const LEVEL: [f32; 5] = [6.141_755, -2.561_869_4, -0.443_945_3, 0.239_734_56, -0.097_434_45];
+pub(super) const LEVEL: [f32; 5] = [6.141_755, -2.561_869_4, -0.443_945_3, 0.239_734_56, -0.097_434_45];
 
 /// What the finest living octave gains beyond 1 to stand in for the tails of all finer ones.
 const TAIL_BOOST: [f32; 4] = [0.092_212_5, 0.124_280_17, -0.010_080_097, 0.167_875_62];

@@ -1,6 +1,7 @@
 use super::*;
 use crate::simd::Isa;
 use std::vec;
+use std::vec::Vec;
 
 #[test]
 fn roughness_maps_to_the_exponents_of_the_paper() {
@@ -71,4 +72,45 @@ fn remembered_cells_and_sets_that_share_a_walk_change_no_bit_on_any_level_wherev
             at = end;
         }
     }
+}
+
+#[test]
+fn what_cubics_through_the_samples_miss_is_told_within_a_factor_of_one_and_a_half() {
+    for (footprint_m, roughness, tip_radius_m) in
+        [(2.3e-6, 0.5, 0.0), (1.8e-5, 0.5, 0.0), (7e-6, 0.2, 0.0), (3.4e-5, 0.9, 0.0), (1.8e-5, 0.5, 5e-4)]
+    {
+        let relief = Relief {
+            rms_at_1mm_m: 2e-5,
+            outer_scale_m: 4e-3,
+            tip_radius_m,
+            longest_wavelength_m: f64::INFINITY,
+        };
+        let weights = OctaveWeights::new(&relief);
+        // Two places a sample.
+        let count = 20_000;
+        let position_m: Vec<_> =
+            (0..count).map(|n| [0.5 * footprint_m * n as f64, 0.2 * footprint_m * n as f64]).collect();
+        let (along, mut height_m) = (libm::hypot(1.0, 0.4), vec![0.0; count]);
+        let path = NoisePath { position_m: &position_m, footprint_m: &vec![along * footprint_m; count] };
+        FractalNoise::new(5).add(&path, &vec![roughness; count], &weights, &mut height_m);
+        let beside: Vec<f64> = (3..count - 3)
+            .step_by(2)
+            .map(|n| {
+                let [a, b, c, d] = [n - 3, n - 1, n + 1, n + 3].map(|k| height_m[k]);
+                height_m[n] - (9.0 * (b + c) - a - d) / 16.0
+            })
+            .collect();
+        // Midway a cubic misses most: 1.27 times its rms over the sample.
+        let rms_m = libm::sqrt(beside.iter().map(|m| m * m).sum::<f64>() / beside.len() as f64) / 1.27;
+        let told_m = weights.missed_m(roughness, along * footprint_m, along * footprint_m);
+        assert!(
+            (0.66..1.5).contains(&(told_m / rms_m)),
+            "{footprint_m} m, R {roughness}: {told_m} for {rms_m}"
+        );
+        // Octaves that it says are seen miss next to nothing.
+        let fine = weights.from_octave(unseen_between(along * footprint_m));
+        assert_eq!(fine.missed_m(roughness, along * footprint_m, along * footprint_m), told_m);
+    }
+    assert_eq!(unseen_between(0.0), OCTAVES);
+    assert_eq!(unseen_between(1.0), 0);
 }

@@ -1,9 +1,9 @@
 //! Exact maps of the two linear regimes, free and pressed, over a sample and its binary fractions.
 //!
 //! The state is y = (d, p, v_s, v_f): gap d = x_s − x_m (negative when pressed), pad stretch
-//! p = x_s − x_f, velocities of skin and finger. Over one sample the profile is a cubic
-//! x_m(τ) = x₀ + c₁τ + c₂τ² + c₃τ³, τ from 0 to 1, and the normal force F and an optional push f on
-//! the skin are constant. In the augmented vector (y, c₁, c₂, c₃, F, f) both regimes are
+//! p = x_s − x_f, velocities of skin and finger. Over one sample the profile is a polynomial
+//! x_m(τ) = x₀ + c₁τ + c₂τ² + c₃τ³ + c₄τ⁴, τ from 0 to 1, and the normal force F and an optional push
+//! f on the skin are constant. In the augmented vector (y, c₁, c₂, c₃, F, f, c₄) both regimes are
 //! dz/dτ = G z, so that z(τ) = e^{Gτ} z. Heights enter only as differences: a contact 4 mm up (or a
 //! metre) is as exact as one at zero.
 //!
@@ -14,29 +14,41 @@ use super::Probe;
 use super::quad::Quad;
 
 /// Rows and columns of the augmented vector.
-const N: usize = 9;
+const N: usize = 10;
 /// Deepest level: a sample is cut into at most 2⁶ = 64 ticks.
 pub(super) const MAX_LEVEL: usize = 6;
 
 type Matrix = [[f64; N]; N];
 
-/// y⁺ = Σ columns · (d, p, v_s, v_f, c₁, c₂, c₃, F).
+/// y⁺ = Σ columns · (d, p, v_s, v_f, c₁, c₂, c₃, F, c₄).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(32))]
 pub(super) struct Map {
-    pub columns: [[f64; 4]; 8],
+    pub columns: [[f64; 4]; 9],
 }
 
 impl Map {
     /// Applies the map. The profile and force terms are summed first: they are known early.
     #[inline(always)]
-    pub fn apply<Q: Quad>(&self, y: Q, c: [f64; 3], force_n: f64) -> Q {
-        let [_, _, _, _, slope, bend, twist, force] = &self.columns;
+    pub fn apply<Q: Quad>(&self, y: Q, c: [f64; 4], force_n: f64) -> Q {
+        let [_, _, _, _, _, _, _, force, fourth] = &self.columns;
+        let inputs = y.load(fourth).times_plus(y.splat(c[3]), self.cubic(y, [c[0], c[1], c[2]]));
+        self.apply_with(y, y.load(force).times_plus(y.splat(force_n), inputs))
+    }
+
+    /// The same for a profile whose c₄ is zero.
+    #[inline(always)]
+    pub fn apply_cubic<Q: Quad>(&self, y: Q, c: [f64; 3], force_n: f64) -> Q {
+        let inputs = self.cubic(y, c);
+        self.apply_with(y, y.load(&self.columns[7]).times_plus(y.splat(force_n), inputs))
+    }
+
+    #[inline(always)]
+    fn cubic<Q: Quad>(&self, y: Q, c: [f64; 3]) -> Q {
+        let [_, _, _, _, slope, bend, twist, ..] = &self.columns;
         let inputs = y.load(slope).mul(y.splat(c[0]));
         let inputs = y.load(bend).times_plus(y.splat(c[1]), inputs);
-        let inputs = y.load(twist).times_plus(y.splat(c[2]), inputs);
-        let inputs = y.load(force).times_plus(y.splat(force_n), inputs);
-        self.apply_with(y, inputs)
+        y.load(twist).times_plus(y.splat(c[2]), inputs)
     }
 
     /// The same for a straight profile: it rises by `rise_m` within the sample.
@@ -75,7 +87,7 @@ impl Regime {
             doublings += 1;
         }
         let mut excess = taylor(&generator, libm::exp2(-(doublings as f64)));
-        let mut maps = [Map { columns: [[0.0; 4]; 8] }; MAX_LEVEL + 1];
+        let mut maps = [Map { columns: [[0.0; 4]; 9] }; MAX_LEVEL + 1];
         for level in (0..=doublings).rev() {
             if level <= MAX_LEVEL {
                 maps[level] = units.map(&excess);
@@ -100,7 +112,7 @@ impl Regime {
                     *own = a + share * (b - a);
                 }
             }
-            let [gap, stretch, .., force] = &mut own.columns;
+            let [gap, stretch, .., force, _] = &mut own.columns;
             for (row, force) in force.iter_mut().enumerate() {
                 let rest = if row < 2 { rest_m_n[row] } else { 0.0 };
                 *force = rest - gap[row] * rest_m_n[0] - stretch[row] * rest_m_n[1];
@@ -130,9 +142,10 @@ fn generator(probe: &Probe, contact_stiffness_n_m: f64, step_s: f64) -> Matrix {
     g[3][2] = bs / finger_mass_kg;
     g[3][3] = -bs / finger_mass_kg;
     g[3][7] = -1.0;
-    // The cubic re-expanded at the running point: c₁' = 2c₂, c₂' = 3c₃.
+    // The polynomial re-expanded at the running point: c₁' = 2c₂, c₂' = 3c₃, c₃' = 4c₄.
     g[4][5] = 2.0;
     g[5][6] = 3.0;
+    g[6][9] = 4.0;
     g
 }
 
@@ -192,7 +205,7 @@ impl Units {
         let (v, square) = (1.0 / step_s, step_s * step_s);
         let force = probe.finger_mass_kg / square;
         let push = probe.pad_mass_kg / square;
-        Self { si: [1.0, 1.0, v, v, 1.0, 1.0, 1.0, force, push] }
+        Self { si: [1.0, 1.0, v, v, 1.0, 1.0, 1.0, force, push, 1.0] }
     }
 
     /// One column of 1 + E, SI.
@@ -206,9 +219,10 @@ impl Units {
     }
 
     fn map(&self, excess: &Matrix) -> Map {
-        let mut columns = [[0.0; 4]; 8];
+        let mut columns = [[0.0; 4]; 9];
         for (j, column) in columns.iter_mut().enumerate() {
-            *column = self.column(excess, j);
+            // The push has no column in a map.
+            *column = self.column(excess, if j == 8 { 9 } else { j });
         }
         Map { columns }
     }
@@ -216,6 +230,7 @@ impl Units {
 
 #[cfg(test)]
 mod tests {
+    use super::super::exact_event::at_end;
     use super::super::quad::{Apart, Quad};
     use super::*;
     use crate::simd::BASE;
@@ -223,7 +238,7 @@ mod tests {
 
     const STEP_S: f64 = 1.0 / 44_100.0;
 
-    fn apply(map: &Map, y: [f64; 4], c: [f64; 3], force_n: f64) -> [f64; 4] {
+    fn apply(map: &Map, y: [f64; 4], c: [f64; 4], force_n: f64) -> [f64; 4] {
         let zero: f64x4<_> = SimdBase::splat(BASE, 0.0);
         map.apply(Apart(zero).load(&y), c, force_n).array()
     }
@@ -231,7 +246,7 @@ mod tests {
     #[test]
     fn a_free_unloaded_pad_flies_straight() {
         let free = Regime::new(&Probe::default(), 0.0, STEP_S);
-        let next = apply(&free.maps[0], [1e-3, 0.0, 0.2, 0.2], [0.0; 3], 0.0);
+        let next = apply(&free.maps[0], [1e-3, 0.0, 0.2, 0.2], [0.0; 4], 0.0);
         assert_eq!((next[1], next[2], next[3]), (0.0, 0.2, 0.2));
         assert!((next[0] - 1e-3 - 0.2 * STEP_S).abs() < 1e-18);
     }
@@ -241,7 +256,7 @@ mod tests {
         let probe = Probe { pad_stiffness_n_m: 1e-3, pad_damping_n_s_m: 0.0, ..Probe::default() };
         let pressed = Regime::new(&probe, 5e4, STEP_S);
         let omega = libm::sqrt(5e4 / probe.pad_mass_kg);
-        let next = apply(&pressed.maps[0], [-1e-5, 0.0, 0.1, 0.0], [0.0; 3], 0.0);
+        let next = apply(&pressed.maps[0], [-1e-5, 0.0, 0.1, 0.0], [0.0; 4], 0.0);
         let (sin, cos) = (libm::sin(omega * STEP_S), libm::cos(omega * STEP_S));
         assert!((next[0] - (-1e-5 * cos + 0.1 / omega * sin)).abs() < 5e-14, "{next:?}");
         assert!((next[2] - (1e-5 * omega * sin + 0.1 * cos)).abs() < 1e-9, "{next:?}");
@@ -252,11 +267,11 @@ mod tests {
         for stiffness in [0.0, 5e4, 1e8] {
             let regime = Regime::new(&Probe::default(), stiffness, STEP_S);
             for level in 1..=MAX_LEVEL {
-                let (y, c) = ([1e-5, -2e-5, 0.03, -0.04], [3e-6, -2e-6, 1e-6]);
-                // A level-k map takes its cubic over a whole sample and covers the first 2⁻ᵏ of it.
+                let (y, c) = ([1e-5, -2e-5, 0.03, -0.04], [3e-6, -2e-6, 1e-6, -4e-6]);
+                // A level-k map takes its polynomial over a whole sample and covers the first 2⁻ᵏ of it.
                 let t = libm::exp2(-(level as f64));
                 let half = apply(&regime.maps[level], y, c, 0.5);
-                let later = [c[0] + t * (2.0 * c[1] + 3.0 * t * c[2]), c[1] + 3.0 * t * c[2], c[2]];
+                let later = at_end(c, t);
                 let twice = apply(&regime.maps[level], half, later, 0.5);
                 let once = apply(&regime.maps[level - 1], y, c, 0.5);
                 for (a, b) in twice.iter().zip(&once) {

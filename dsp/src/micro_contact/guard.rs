@@ -3,12 +3,13 @@
 //! | seen | done | counted |
 //! |---|---|---|
 //! | height or force not finite or beyond the [`limits`](crate::limits) | the last good one is held | yes |
+//! | a bend not finite or beyond the limits of a height | no bend | no |
 //! | force below zero | zero: a surface does not pull | no |
 //! | gap above the leash | upward velocities become zero | no |
 //! | gap beyond 0.1 m, penetration beyond 20 mm and twice what the force presses in | the contact rests on the surface again | yes |
 //! | magnitudes below 1e-100 | zero, so that no denormal ever slows a kernel | no |
 
-use super::{ContactState, MicroContact};
+use super::{Bend, ContactState, MicroContact};
 pub(super) use crate::limits::{MAX_HEIGHT_M, MAX_NORMAL_FORCE_N as MAX_FORCE_N};
 
 /// Rows between two looks at vanishing magnitudes, on the contact's own clock.
@@ -105,6 +106,12 @@ pub(super) fn is_height(height_m: f64) -> bool {
 #[inline(always)]
 pub(super) fn is_force(force_n: f64) -> bool {
     force_n.abs() <= MAX_FORCE_N
+}
+
+/// A bend that can be one, otherwise none.
+#[inline(always)]
+pub(super) fn believed(bend: &Bend) -> Bend {
+    if bend.iter().map(|c| c.abs()).sum::<f64>() <= MAX_HEIGHT_M { *bend } else { [0.0; 4] }
 }
 
 /// A height or force that a contact can start from.

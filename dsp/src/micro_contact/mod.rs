@@ -36,6 +36,7 @@
 //!
 //! A row of Euler holds the force at the row's time (the mean over the step centred on it); the other
 //! two give the mean over the step that ends at the row.
+mod bends;
 mod choice;
 mod energy_conserving;
 mod exact_event;
@@ -48,6 +49,7 @@ mod side_by_side;
 mod state;
 mod stiffening;
 
+pub use bends::{Bend, Bends};
 pub use choice::{
     Choice, EULER_MAX_PHASE, EXACT_MAX_PHASE, EXACT_MAX_STIFFNESS_N_M, Integrator, SUBSTEP_MAX_PHASE,
 };
@@ -236,10 +238,23 @@ impl MicroContact {
         normal_force_n: &[f64],
         out: &mut [ContactSample],
     ) {
+        self.run_bent(state, height_m, normal_force_n, &[], out);
+    }
+
+    /// [`Self::run`] over ground that is known between its samples as well ([`Bends`]): bend n, where there is one, belongs to the sample
+    /// that ends at height n − 1. Only the exact scheme looks at it.
+    pub fn run_bent(
+        &self,
+        state: &mut ContactState,
+        height_m: &[f64],
+        normal_force_n: &[f64],
+        bends: &[Bend],
+        out: &mut [ContactSample],
+    ) {
         // Four numbers fill no wider vector.
         at_level!(self.level.at_most_256_bits(), s => {
             let (quad, halves): (f64x4<_>, _) = (SimdBase::splat(s, 0.0), Halves::zero(s));
-            self.run_blocks(quad, halves, state, height_m, normal_force_n, out);
+            self.run_blocks(quad, halves, state, (height_m, normal_force_n, bends), out);
         });
     }
 
@@ -283,8 +298,7 @@ impl MicroContact {
         quad: Q,
         halves: E,
         state: &mut ContactState,
-        mut height_m: &[f64],
-        mut force_n: &[f64],
+        (mut height_m, mut force_n, mut bends): (&[f64], &[f64], &[Bend]),
         mut out: &mut [ContactSample],
     ) {
         let mut block = CleanBlock::EMPTY;
@@ -296,18 +310,19 @@ impl MicroContact {
             }
             let (heights, later_heights) = height_m.split_at(count);
             let (forces, later_forces) = force_n.split_at(count);
+            let (bent, later_bends) = bends.split_at(count.min(bends.len()));
             let (rows, later_rows) = out.split_at_mut(count);
             block.fill(state, heights, forces);
             match &self.scheme {
                 Scheme::SemiImplicit(scheme) => scheme.run(halves, self, state, &block, rows),
-                Scheme::ExactEvent(scheme) => scheme.run(quad, self, state, &block, rows),
+                Scheme::ExactEvent(scheme) => scheme.run(quad, self, state, (&block, bent), rows),
                 Scheme::EnergyConserving(scheme) => scheme.run(quad, self, state, &block, rows),
             }
             state.clock = state.clock.wrapping_add(count as u32);
             if count == left {
                 guard::flush(state);
             }
-            (height_m, force_n, out) = (later_heights, later_forces, later_rows);
+            (height_m, force_n, bends, out) = (later_heights, later_forces, later_bends, later_rows);
         }
     }
 }

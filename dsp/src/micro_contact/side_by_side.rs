@@ -279,7 +279,10 @@ impl<'a> Together<'a> {
                 continue;
             }
             let level = contact.design.level;
-            let step = self.schemes[lane].walk(level, y.map(|y| y[lane]), c.map(|c| c[lane]), force[lane]);
+            // None of them bends: what does goes alone.
+            let [c1, c2, c3] = c.map(|c| c[lane]);
+            let step =
+                self.schemes[lane].walk(level, y.map(|y| y[lane]), ([c1, c2, c3, 0.0], 0), force[lane]);
             scatter(next, lane, &step.y);
             onsets[lane] = step.onset;
             touching = touching & !bit | if step.touched { bit } else { 0 };

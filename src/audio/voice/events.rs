@@ -1,12 +1,13 @@
 //! Contact events at a voice: it lands, appears, goes on, leaves.
 
+use super::between::{Between, Pressed};
 use super::blows::Blows;
 use super::profile::Along;
-use super::scratch::Scratch;
+use super::scratch::{Lane, Scratch};
 use super::shared::{Shared, Stretch};
 use super::skin::ContactSkin;
 use super::tip::Tip;
-use super::{PadSample, Phase, Voice};
+use super::{PadSample, PathPoint, Phase, Voice};
 use crate::audio::seat::Seat;
 use crate::model::event::{ContactId, ContactSample};
 use crate::model::stamp::Stamp;
@@ -22,8 +23,9 @@ pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
 /// How far back a contact that appears is taken to have slid, s: what a 10 Hz high-pass remembers.
 const TREND_S: f64 = 0.025;
 
-/// How long the pad is led before it appears, s. The same at every rate, because a finger remembers for tenths of a second how it began.
-const LEAD_IN_S: f64 = 64.0 / 44_100.0;
+/// How long before it appears the pad leaves its straight line for the ground, s. The same at every rate, because a finger remembers for
+/// tenths of a second how it began.
+const LEAD_IN_S: f64 = 65.0 / 44_100.0;
 
 impl Voice {
     /// How hard it presses at its last sample, N, and where it goes, m/s.
@@ -59,6 +61,7 @@ impl Voice {
         self.empty_reports = 0;
         self.unshown_n_s = 0.0;
         self.fades.begin(self.role.gain, lands, shared);
+        self.between = Between::default();
         let force_n = self.path.begin(sample, slot, stamp);
         self.tip = Tip::begin(sample);
         self.rolling.tell(sample);
@@ -73,6 +76,8 @@ impl Voice {
             let along = self.along(shared, position, false);
             scratch.profile.run(seat, along, points, &mut self.cells);
             let height_m = scratch.profile.surface.height_m[0];
+            self.between.remember(scratch.profile.surface.roughness[0]);
+            self.look_between(shared, seat);
             self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
             // It touches at the stamp; without delay it would one sample before the voice's first.
             self.pad.land(height_m, force_n, sample.closing_m_s, 1.0 + stamp.fraction());
@@ -96,8 +101,11 @@ impl Voice {
     fn lead_in(&mut self, at: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, .. } = at;
         let [slope_m_s, bend_m_s2] = self.trend(at, seat, scratch);
+        self.between.remember(scratch.profile.surface.roughness[MAX_BLOCK - 1]);
+        self.look_between(shared, seat);
         let step_s = 1.0 / shared.sample_rate_hz;
-        let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
+        // The line ends a step before the first height of the ground.
+        let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize - 1;
         self.lay_behind(steps + 1, step_s, 1, at, seat, scratch);
         self.pad.ride(scratch.profile.surface.height_m[0], scratch.profile.force_n[0], slope_m_s);
         self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
@@ -108,7 +116,10 @@ impl Voice {
             let Scratch { lanes, profile, .. } = &mut *scratch;
             self.rolling.lead_in(&mut profile.surface, count);
             let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
-            row = self.pad.lead_in(heights_m, forces_n, &mut lanes[0].rows[..count]);
+            let Lane { rows, bends, .. } = &mut lanes[0];
+            let bends = &mut bends[..if self.between.looks() { count } else { 0 }];
+            self.between.bend(&profile.midway, bends);
+            row = self.pad.lead_in(heights_m, forces_n, bends, &mut rows[..count]);
             left -= count;
             if left == 0 {
                 self.pad.appear(&row, heights_m[count - 1], forces_n[count - 1], slope_m_s);
@@ -132,8 +143,19 @@ impl Voice {
         let Scratch { lanes, profile, .. } = scratch;
         let points = &mut lanes[0].points[..count];
         self.path.lay_behind(steps, step_s, points);
-        let along = self.along(at.shared, at.position, false);
+        let PathPoint { position_m, velocity_m_s, .. } = points[0];
+        let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);
+        let midway = self.between.from_there(from_m);
+        let along = Along { midway, ..self.along(at.shared, at.position, false) };
         profile.run(seat, along, points, &mut self.cells);
+    }
+
+    /// Decides what of the ground is looked at between samples: when it begins, and at the steps of the absolute sample grid.
+    pub(super) fn look_between(&mut self, shared: &Shared, seat: &mut Seat) {
+        let probe = shared.probe(self.role.probe);
+        let plain = !self.path.is_in_body() && !self.rolling.rolls();
+        let (at, contact) = (&self.path.last, self.pad.probe());
+        self.between.decide(&Pressed { shared, at, probe, contact, plain }, seat);
     }
 
     /// How the profile has risen, m/s, and bent, m/s², during the last [`TREND_S`]: the parabola nearest to it.
@@ -149,7 +171,8 @@ impl Voice {
     /// Whose profile is asked for.
     pub(super) fn along<'a>(&self, shared: &'a Shared, position: u64, slopes: bool) -> Along<'a> {
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
-        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body: self.path.is_in_body() }
+        let in_body = self.path.is_in_body();
+        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, midway: None }
     }
 
     /// Goes on somewhere else; wakes a resting contact. A jump that no stroke makes changes nothing here: it

@@ -6,7 +6,7 @@
 use super::PadSample;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stiffness::{Ground, stiffness_n_m};
-use asperity_dsp::micro_contact::{Beside, ContactState, MicroContact};
+use asperity_dsp::micro_contact::{Bend, Beside, ContactState, MicroContact, Probe};
 
 /// A contact force so many times what presses is a blow: no contact begins in the middle of one.
 const LEAD_IN_BLOW: f64 = 10.0;
@@ -78,9 +78,10 @@ impl Pad {
         &mut self,
         heights_m: &[f64],
         forces_n: &[f64],
+        bends: &[Bend],
         rows: &mut [PadSample],
     ) -> PadSample {
-        self.model.run(&mut self.state, heights_m, forces_n, rows);
+        self.model.run_bent(&mut self.state, heights_m, forces_n, bends, rows);
         rows.last().copied().unwrap_or_default()
     }
 
@@ -94,12 +95,23 @@ impl Pad {
         self.resets_told = self.state.resets();
     }
 
-    /// A row for each height, as the model gives it.
-    pub(super) fn run(&mut self, heights_m: &[f64], forces_n: &[f64], rows: &mut [PadSample]) {
-        self.model.run(&mut self.state, heights_m, forces_n, rows);
+    /// A row for each height, as the model gives it; bends where the ground is known between heights.
+    pub(super) fn run(
+        &mut self,
+        heights_m: &[f64],
+        forces_n: &[f64],
+        bends: &[Bend],
+        rows: &mut [PadSample],
+    ) {
+        self.model.run_bent(&mut self.state, heights_m, forces_n, bends, rows);
     }
 
-    /// The same for [`run_side_by_side`](asperity_dsp::micro_contact::run_side_by_side).
+    /// The contact as stiff as it is.
+    pub(super) fn probe(&self) -> &Probe {
+        self.model.probe()
+    }
+
+    /// [`Self::run`] without bends, for [`run_side_by_side`](asperity_dsp::micro_contact::run_side_by_side).
     pub(super) fn beside<'a>(
         &'a mut self,
         height_m: &'a [f64],

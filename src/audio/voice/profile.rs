@@ -1,14 +1,10 @@
 //! Profile: heights along the path, with the micro-relief below the source's own band, as the probe's tip rides them.
 
 use super::shared::Shared;
-use crate::audio::seat::{Noise, Seat};
+use crate::audio::seat::{MidwayNoise, Noise, Seat};
 use crate::prepared::overlay::{Room, TileCells};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
-
-/// The overlay fades as if it were sampled at this rate, Hz, so that it is the same relief at every rate: its finest octave is
-/// whole where its cells pass at 11 kHz and gone where they pass at 22 kHz. Above 18 kHz next to nothing is left.
-const OVERLAY_RATE_HZ: f64 = 44_100.0;
 
 /// Whose profile it is, and what of it is wanted.
 #[derive(Clone, Copy)]
@@ -24,6 +20,25 @@ pub(super) struct Along<'a> {
     pub(super) slopes: bool,
     /// The path lies at places of the body, [`Profile::at_m`].
     pub(super) in_body: bool,
+    /// What is looked at midway between samples too.
+    pub(super) midway: Option<FromThere>,
+}
+
+/// Short waves of the micro-relief are looked at midway between samples, from the place of the sample before the first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FromThere {
+    /// The coarsest octave that is.
+    pub(super) octave: usize,
+    pub(super) from_m: [f64; 2],
+}
+
+/// Short waves of the micro-relief, m: at samples and midway from the sample before each.
+pub(super) struct Midway {
+    position_m: [[f64; 2]; MAX_BLOCK],
+    pub(super) at_m: [f64; MAX_BLOCK],
+    pub(super) midway_m: [f64; MAX_BLOCK],
+    /// False where the surface could not tell, as while it becomes another.
+    pub(super) seen: bool,
 }
 
 /// The surface under one stretch of a path.
@@ -38,6 +53,8 @@ pub(super) struct Profile {
     pub(super) force_n: [f64; MAX_BLOCK],
     /// What lies there.
     pub(super) surface: SurfaceBlock,
+    /// What was seen between samples.
+    pub(super) midway: Midway,
     rough: SurfaceBlock,
     room: Room,
 }
@@ -52,6 +69,12 @@ impl Profile {
             noise_footprint_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             surface: SurfaceBlock::default(),
+            midway: Midway {
+                position_m: [[0.0; 2]; MAX_BLOCK],
+                at_m: [0.0; MAX_BLOCK],
+                midway_m: [0.0; MAX_BLOCK],
+                seen: false,
+            },
             rough: SurfaceBlock::default(),
             room: Room::new(),
         }
@@ -76,12 +99,28 @@ impl Profile {
             contact: along.contact,
             slopes: along.slopes,
         };
+        let midway = along.midway.map(|FromThere { octave, from_m }| {
+            let mut before_m = from_m;
+            for (midway_m, at_m) in self.midway.position_m.iter_mut().zip(&self.position_m[..n]) {
+                *midway_m = [0, 1].map(|axis| 0.5 * (before_m[axis] + at_m[axis]));
+                before_m = *at_m;
+            }
+            self.midway.seen = false;
+            MidwayNoise {
+                octave,
+                position_m: &self.midway.position_m[..n],
+                at_m: &mut self.midway.at_m[..n],
+                midway_m: &mut self.midway.midway_m[..n],
+                seen: &mut self.midway.seen,
+            }
+        });
         let mut noise = Noise {
             field: &along.shared.noise,
             footprint_m: &self.noise_footprint_m[..n],
             tip_radius_m: along.tip_radius_m,
             cells,
             room: &mut self.room,
+            midway,
         };
         if along.in_body {
             seat.lie_at(&self.at_m[..n]);
@@ -98,8 +137,7 @@ impl Profile {
     /// The points, quantity by quantity, and how wide a sample of each is.
     fn lay_out(&mut self, shared: &Shared, points: &[PathPoint]) {
         let step_s = 1.0 / shared.sample_rate_hz;
-        let samples_of_overlay = (shared.sample_rate_hz / OVERLAY_RATE_HZ).max(1.0);
-        let widened = samples_of_overlay * f64::from(1u32 << shared.noise_octaves_gone);
+        let widened = shared.noise_footprints();
         for (i, point) in points.iter().enumerate() {
             let [u, v] = point.velocity_m_s;
             self.position_m[i] = point.position_m;
@@ -111,7 +149,6 @@ impl Profile {
         let footprints = self.footprint_m[..points.len()].iter_mut();
         for (footprint_m, noise_m) in footprints.zip(&mut self.noise_footprint_m) {
             *footprint_m = footprint_m.sqrt() * step_s;
-            // A footprint twice as wide hides the finest octave that is left.
             *noise_m = *footprint_m * widened;
         }
     }

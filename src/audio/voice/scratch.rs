@@ -3,10 +3,11 @@
 use super::ac_coupling::Coupled;
 use super::block::VoiceBlock;
 use super::exciters::ForceRun;
+use super::pad::Pad;
 use super::profile::Profile;
 use super::watching::Shown;
 use super::{PadSample, PathPoint};
-use asperity_dsp::micro_contact::LANES;
+use asperity_dsp::micro_contact::{Bend, LANES};
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// Outputs of the stages, in their order.
@@ -29,9 +30,31 @@ pub(super) struct Lane {
     pub(super) height_m: [f64; MAX_BLOCK],
     pub(super) force_n: [f64; MAX_BLOCK],
     pub(super) rows: [PadSample; MAX_BLOCK],
+    /// What the profile does between samples, where that is known.
+    pub(super) bends: [Bend; MAX_BLOCK],
+    bent: usize,
     /// How often its pad was begun anew, and blows among the rows.
     pub(super) resets: u64,
     pub(super) blows: u64,
+}
+
+impl Lane {
+    /// Room for so many bends, of a profile that is known between samples or of none.
+    pub(super) fn bend(&mut self, count: usize) -> &mut [Bend] {
+        self.bent = count;
+        &mut self.bends[..count]
+    }
+
+    /// Whether the profile is known between samples.
+    pub(super) fn is_bent(&self) -> bool {
+        self.bent > 0
+    }
+
+    /// A row of this lane's contact for each of its heights.
+    pub(super) fn press(&mut self, pad: &mut Pad, n: usize) {
+        let (heights_m, forces_n) = (&self.height_m[..n], &self.force_n[..n]);
+        pad.run(heights_m, forces_n, &self.bends[..self.bent], &mut self.rows[..n]);
+    }
 }
 
 impl Scratch {
@@ -41,6 +64,8 @@ impl Scratch {
             height_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             rows: [PadSample::default(); MAX_BLOCK],
+            bends: [[0.0; 4]; MAX_BLOCK],
+            bent: 0,
             resets: 0,
             blows: 0,
         };

@@ -7,6 +7,10 @@ use asperity_dsp::fractal_noise::FractalNoise;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
 
+/// The overlay fades as if it were sampled at this rate, Hz, so that it is the same relief at every rate: its finest octave is
+/// whole where its cells pass at 11 kHz and gone where they pass at 22 kHz. Above 18 kHz next to nothing is left.
+const OVERLAY_RATE_HZ: f64 = 44_100.0;
+
 /// What every voice needs and none owns.
 pub(crate) struct Shared {
     pub(crate) idle_path: TrajectoryDesign,
@@ -33,6 +37,12 @@ impl Shared {
     pub(crate) fn probe(&self, place: Option<usize>) -> &PreparedProbe {
         let added = place.and_then(|place| self.probes.get(place)?.as_deref());
         added.unwrap_or(&self.own_probe)
+    }
+
+    /// How many times as wide as a sample's way the micro-relief takes it to be, so that it is the same relief at every rate; a footprint
+    /// twice as wide hides the finest octave that is left.
+    pub(super) fn noise_footprints(&self) -> f64 {
+        (self.sample_rate_hz / OVERLAY_RATE_HZ).max(1.0) * f64::from(1u32 << self.noise_octaves_gone)
     }
 
     /// How long a contact takes to fade.

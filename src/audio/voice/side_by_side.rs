@@ -176,14 +176,13 @@ impl<'a, W> Company<'a, W> {
         let mut count = 0;
         for ((member, pass), lane) in self.members.iter_mut().zip(passes).zip(lanes) {
             let Some(Member { voice, .. }) = member.as_mut().filter(|_| pass.slides) else { continue };
-            let (height_m, force_n) = (&lane.height_m[..pass.n], &lane.force_n[..pass.n]);
-            let rows = &mut lane.rows[..pass.n];
-            if pass.n == n {
-                beside[count] = Some(voice.pad.beside(height_m, force_n, rows));
+            if pass.n == n && !lane.is_bent() {
+                let (height_m, force_n) = (&lane.height_m[..n], &lane.force_n[..n]);
+                beside[count] = Some(voice.pad.beside(height_m, force_n, &mut lane.rows[..n]));
                 count += 1;
             } else {
-                // It fades away in the middle of the stretch.
-                voice.pad.run(height_m, force_n, rows);
+                // It fades away in the middle of the stretch, or its ground is known between samples.
+                lane.press(&mut voice.pad, pass.n);
             }
         }
         in_one_row(beside, |all| run_side_by_side(all));
