@@ -44,6 +44,7 @@ mod arrangement;
 mod bands;
 mod feel;
 mod level;
+mod search;
 mod spectrum;
 mod terraces;
 
