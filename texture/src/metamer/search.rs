@@ -15,7 +15,7 @@ const MARGIN: f64 = 0.9;
 /// Times the distance asked for up to which passes over terraces have a prospect.
 const HOPEFUL: f64 = 2.0;
 /// The same of their first round, where there are more.
-const PROMISING: f64 = 3.5;
+const PROMISING: f64 = 5.0;
 /// Texels that rounds over terraces may pass over, all together, and most rounds in a row. Source: ours; at 1024² these are two, three seconds each.
 const TEXELS: usize = 2 << 20;
 const MOST_ROUNDS: usize = 6;
@@ -96,9 +96,16 @@ impl Feel {
             let coarsely = |ground: &mut Self, start: Raster, with| ground.try_coarsely(&start, seam, with);
             let tries = ground.tries(task);
             let (made, with) = ground.nearest(sought, tries, MARGIN, coarsely);
-            self.is_hopeful(&made.image, sought).then(|| {
-                let start = ground.start(original, seam, with.share);
-                ground.try_out(start, seam, with)
+            self.is_hopeful(&made.image, sought).then(|| match rounds {
+                // The ground is smooth: the finest grids have hardly more of it, and their time is better spent on a round.
+                0..=2 => {
+                    let image = on_grid(&made.image, Borders::Periodic, self.level.size);
+                    Made { image, ..made }
+                }
+                _ => {
+                    let start = ground.start(original, seam, with.share);
+                    ground.try_out(start, seam, with)
+                }
             })
         };
         self.ground = Some(ground);
