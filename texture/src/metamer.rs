@@ -160,7 +160,7 @@ pub struct Metamer {
 /// Makes `original` feel like `reference`. `progress` is told the fraction done.
 ///
 /// # Errors
-/// When an image holds numbers that are not finite, when the reference is flat, when one is too small for the bands (each side at
+/// When an image holds numbers that are not finite, when one is too small for the bands (each side at
 /// least 2^(bands + 1) texels, the reference after scaling), or when `scale` is not within 1/64–64.
 pub fn metamer(
     original: &Raster,

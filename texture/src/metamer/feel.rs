@@ -44,12 +44,6 @@ impl Feel {
         DesignError::check("scale", scale, "within 1/64 to 64", |s| (1.0 / 64.0..=64.0).contains(&s))?;
         let borders = options.borders.decide(reference);
         let range = reference.range();
-        DesignError::check(
-            "reference",
-            range.1 - range.0,
-            "heights that differ: a flat one feels like nothing",
-            |r| r > 0.0,
-        )?;
         // Borders are split on the original's texels: a step that is resampled rings.
         let whole = scaled(reference, scale, borders).map(|v| v.clamp(range.0, range.1));
         let reference = SplitBorders::of(&whole, borders);

@@ -55,7 +55,7 @@ struct Try {
 }
 
 impl Feel {
-    /// Of terraces with a memory, then from the ground under them; of other surfaces, and where both have no prospect, by a search.
+    /// Of a flat reference nothing but a flat surface; of terraces with a memory, then from the ground under them; of other surfaces, and where both have no prospect, by a search.
     pub(super) fn iterate(
         &mut self,
         sought: Sought,
@@ -63,6 +63,10 @@ impl Feel {
     ) -> Result<Made, DesignError> {
         let goal = self.goal();
         let [w, h] = self.level.size;
+        let (low, high) = self.range();
+        if low == high {
+            return Ok(Made { image: Raster::constant(w, h, low), mean: 0.0, passes: 0, borrowed: 0.0 });
+        }
         let rounds = TEXELS / (w * h);
         let by_memory = self.by_memory(sought, rounds / 2);
         if let Some(made) = by_memory.as_ref().filter(|made| made.mean <= goal) {
