@@ -64,6 +64,23 @@ fn pictures_that_are_none_are_refused_by_name_and_leave_nothing() {
     );
 }
 
+/// A blank reference took a minute, and blank pictures gave flat surfaces without a word.
+#[test]
+fn a_blank_reference_and_a_blank_normal_map_are_told_to_be_flat() {
+    let scene = with_maps(&[("good.png", ground(64))]);
+    for (name, grey) in [("white.png", 1.0), ("grey.png", 0.5), ("black.png", 0.0)] {
+        save_gray16(scene.path(name), &Raster::constant(64, 64, grey)).unwrap();
+        for (arguments, word) in [
+            (&["metamer", "good.png", name, "-o", "out.png"][..], "warning: the reference is flat"),
+            (&["from-normals", name, "-o", "out.png"], "warning: all normals of the map are alike"),
+        ] {
+            let all: Vec<&str> = std::iter::once("texture").chain(arguments.iter().copied()).collect();
+            let (status, said, err) = told(&asperity(scene.folder.path(), &all));
+            assert!(status == 0 && said.contains(word), "{arguments:?}: {said}{err}");
+        }
+    }
+}
+
 #[test]
 fn options_that_make_no_sense_are_refused() {
     let scene = with_maps(&[("a.png", ground(64))]);

@@ -23,7 +23,7 @@
 //! range. Coarse grids settle before fine ones (`metamer/level.rs`).
 //!
 //! A surface that does not come within [`REACH`] so is tried again with a memory of what the heights took back (terraces, surfaces of at most 64 heights, begin
-//! so, with more passes on fine grids), then
+//! so, with more passes on fine grids, again and again over all grids, and from the smooth ground under them: `metamer/terraces.rs`), then
 //! with momentum, which gives up more of the original's arrangement, and then from mixtures of the original and the reference: of bars or holes of two heights that repeat
 //! exactly hardly any other arrangement has the same sub-bands. [`Metamer::borrowed`] tells how much was taken, and
 //! [`MetamerOptions::borrow`] limits it. [`Method::Spectrum`] takes
@@ -44,6 +44,7 @@ mod arrangement;
 mod bands;
 mod feel;
 mod level;
+mod search;
 mod spectrum;
 mod terraces;
 

@@ -125,6 +125,7 @@ struct Report {
     walls: f64,
     /// What no surface has of the map's slopes, 0–1.
     curl: f64,
+    warnings: Vec<String>,
     files: Vec<PathBuf>,
 }
 
@@ -177,6 +178,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         tileable: found.tileable,
         walls: found.walls,
         curl: found.curl,
+        warnings: warnings(options, relief_per_px, size),
         files: outputs.commit()?,
     };
     if options.json {
@@ -185,7 +187,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     if let Some(SizeMm { width_mm, height_mm, relief_mm, .. }) = report.size {
         output::say(&format!("{width_mm:.2} × {height_mm:.2} mm, relief {relief_mm:.3} mm"));
     }
-    if let Some(warning) = options.object.stl.as_ref().and(report.size.and_then(|size| size.warning())) {
+    for warning in &report.warnings {
         output::say(&format!("warning: {warning}"));
     }
     let sure = |certain: bool| if certain { "" } else { " (the map does not tell)" };
@@ -202,4 +204,11 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         options.output.display()
     ));
     Ok(())
+}
+
+fn warnings(options: &Options, relief_per_px: f64, size: Option<SizeMm>) -> Vec<String> {
+    let flat =
+        (relief_per_px == 0.0).then(|| "all normals of the map are alike: the surface is flat".to_string());
+    let coarse = options.object.stl.as_ref().and(size.and_then(|size| size.warning()));
+    flat.into_iter().chain(coarse).collect()
 }

@@ -276,6 +276,9 @@ fn report(options: &Options, made: &Metamer, file: Levels, size: SizeMm) -> Repo
 fn warnings(options: &Options, report: &Report) -> Vec<String> {
     let mut warnings = Vec::new();
     let is_iterated = options.method == MethodName::Iterated;
+    if is_iterated && report.size.relief_mm == 0.0 {
+        return vec!["the reference is flat, and so is what feels like it".to_string()];
+    }
     let goal = options.until.unwrap_or(core::REACH);
     let farthest = report.mean_after.max(if options.until.is_some() { 0.0 } else { report.heights_after });
     if is_iterated && farthest > goal {

@@ -3,29 +3,29 @@
 use super::arrangement::{Correlation, correlation};
 use super::bands::{Parts, Scratch};
 use super::level::{Gait, Level, Task, add, on_grid};
+use super::search::Sought;
 use super::spectrum::with_amplitudes;
-use super::terraces::are_terraces;
-use super::{BORROWED, Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, REACH, check_finite};
+use super::terraces::{ground_under, heights_of_terraces};
+use super::{Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, check_finite};
 use crate::borders::{Borders, SplitBorders};
 use crate::pyramid::{Kind, Pyramid, Sampling, Subband};
 use crate::raster::Raster;
+use crate::wrap::Wrap;
 use asperity_dsp::DesignError;
-
-/// Most that an original without relief is raised before it is mixed with the reference.
-const MOST_GAIN: f64 = 1e6;
-/// Part of the distance asked for at which starts on a coarser grid count as near enough.
-const MARGIN: f64 = 0.9;
 
 /// A reference on the texels of originals of one size: its sub-bands, heights and envelope.
 #[derive(Debug, Clone)]
 pub struct Feel {
-    options: MetamerOptions,
+    pub(super) options: MetamerOptions,
     /// The part that tiles, and the steps at the borders.
-    reference: SplitBorders,
+    pub(super) reference: SplitBorders,
     range: (f64, f64),
-    level: Level,
-    has_terraces: bool,
-    scratch: Scratch,
+    pub(super) level: Level,
+    /// The reference, if it is terraces.
+    pub(super) terraces: Option<Raster>,
+    /// The ground under them, once it is asked for.
+    pub(super) ground: Option<Box<Feel>>,
+    pub(super) scratch: Scratch,
 }
 
 impl Feel {
@@ -49,7 +49,8 @@ impl Feel {
         let reference = SplitBorders::of(&whole, borders);
         let mut scratch = Scratch::default();
         let level = Level::new(&reference, [width, height], [bands, orientations], &mut scratch)?;
-        Ok(Self { options: *options, reference, range, level, has_terraces: are_terraces(&whole), scratch })
+        let terraces = heights_of_terraces(&whole).map(|_| whole);
+        Ok(Self { options: *options, reference, range, level, terraces, ground: None, scratch })
     }
 
     /// Lowest and highest height of the reference.
@@ -100,7 +101,8 @@ impl Feel {
             Method::Spectrum => with_amplitudes(&ours.periodic, &self.reference.periodic),
             Method::Iterated(asked) => {
                 let task = Task { passes: asked, parts: self.parts(seam.as_ref()), gait: Gait::Plain };
-                let made = self.iterate(&ours.periodic, seam.as_ref(), task, &mut progress);
+                let sought = Sought { original: &ours.periodic, seam: seam.as_ref(), task };
+                let made = self.iterate(sought, &mut progress)?;
                 (passes, borrowed) = (made.passes, made.borrowed);
                 made.image
             }
@@ -125,6 +127,27 @@ impl Feel {
         })
     }
 
+    /// What the ground under the reference feels like, if that is terraces; it is to be put back.
+    pub(super) fn take_ground(&mut self) -> Result<Option<Box<Self>>, DesignError> {
+        if self.ground.is_some() {
+            return Ok(self.ground.take());
+        }
+        let Some(terraces) = &self.terraces else { return Ok(None) };
+        let tiles = self.reference.smooth.is_none();
+        let (wrap, borders) =
+            if tiles { (Wrap::Repeat, Borders::Periodic) } else { (Wrap::Clamp, Borders::Smooth) };
+        let Some(ground) = ground_under(terraces, wrap) else { return Ok(None) };
+        let options = MetamerOptions { borders, scale: 1.0, ..self.options };
+        let [width, height] = self.level.size;
+        Ok(Some(Box::new(Self::new(&ground, width, height, &options)?)))
+    }
+
+    /// Of every sample of every band, as the result is judged: as many samples as the waves need may show a fifth less.
+    pub(super) fn mean_of(&mut self, image: &Raster) -> f64 {
+        let distances = distances(&mut self.level, image, &mut self.scratch);
+        mean(&self.level, &distances)
+    }
+
     /// Correlations of the sub-bands of an image with those of an original, and of the reference laid out over its size.
     fn arrangement(&mut self, original: &Raster, image: &Raster, tiles: bool) -> [Correlation; 2] {
         let borders = if tiles { Borders::Periodic } else { Borders::Smooth };
@@ -135,7 +158,7 @@ impl Feel {
     }
 
     /// The reference's height at a texel of the original's grid, which it covers again and again.
-    fn laid_out(&self, x: usize, y: usize) -> f64 {
+    pub(super) fn laid_out(&self, x: usize, y: usize) -> f64 {
         let reference = &self.reference.periodic;
         reference.at(x % reference.width, y % reference.height)
     }
@@ -162,200 +185,6 @@ impl Feel {
         }
         Ok(pyramid.join(&split))
     }
-
-    /// Of terraces with a memory; of other surfaces, and where that does not come near enough, by a search.
-    fn iterate(
-        &mut self,
-        original: &Raster,
-        seam: Option<&Raster>,
-        task: Task,
-        progress: &mut impl FnMut(f64),
-    ) -> Made {
-        let Some(by_memory) = self.by_memory(original, seam, task) else {
-            return self.search(original, seam, task, progress);
-        };
-        if by_memory.mean <= self.goal() {
-            return by_memory;
-        }
-        let searched = self.search(original, seam, task, progress);
-        if by_memory.mean < searched.mean { by_memory } else { searched }
-    }
-
-    /// Passes with a memory from the original itself, if the reference is terraces: others come to nothing there. Twice as many, where that is what
-    /// lacks; of a large surface only where its coarser copy comes near.
-    fn by_memory(&mut self, original: &Raster, seam: Option<&Raster>, task: Task) -> Option<Made> {
-        let remembering = Task { gait: Gait::Remembering, ..task };
-        let is_large = self.level.of_moderate_size().1 > 0;
-        let is_hopeless = !self.has_terraces
-            || is_large && self.try_coarsely(original, seam, remembering, 0.0).mean > 2.0 * self.goal();
-        if is_hopeless {
-            return None;
-        }
-        let made = self.try_out(original.clone(), seam, remembering, 0.0);
-        let comes_nearer = made.mean > self.goal() && made.mean <= 2.0 * self.goal();
-        if !comes_nearer {
-            return Some(made);
-        }
-        let patiently = Task { passes: 2 * task.passes, ..remembering };
-        let again = self.try_out(original.clone(), seam, patiently, 0.0);
-        Some(if again.mean < made.mean { again } else { made })
-    }
-
-    /// Passes from the original, then with a memory, then with momentum, then from surfaces that have more and more of the reference's own
-    /// arrangement, until the result is near enough. Of large maps this is tried on a coarser grid.
-    fn search(
-        &mut self,
-        original: &Raster,
-        seam: Option<&Raster>,
-        task: Task,
-        progress: &mut impl FnMut(f64),
-    ) -> Made {
-        let is_moderate = self.level.of_moderate_size().1 == 0;
-        let mut best: Option<(Made, Task)> = None;
-        let tries = self.tries(task);
-        for (tried, &(share, task)) in tries.iter().enumerate() {
-            let start = self.start(original, seam, share);
-            let made = if is_moderate {
-                self.try_out(start, seam, task, share)
-            } else {
-                self.try_coarsely(&start, seam, task, share)
-            };
-            let margin = if is_moderate { 1.0 } else { MARGIN };
-            let is_near = made.mean <= margin * self.goal();
-            if best.as_ref().is_none_or(|(best, _)| made.mean < best.mean) {
-                best = Some((made, task));
-            }
-            progress((tried + 1) as f64 / (tries.len() + 1) as f64);
-            if is_near {
-                break;
-            }
-        }
-        let (made, task) = best.expect("the original alone is always tried");
-        if is_moderate {
-            return made;
-        }
-        let begun = (made.borrowed, task);
-        let [remembering, briskly] = [Gait::Remembering, Gait::Momentum].map(|gait| Task { gait, ..task });
-        // Terraces are slopes on the coarser grid: only the fine one asks for a memory.
-        let alone = (made.borrowed == 0.0 && task.gait == Gait::Plain).then_some((0.0, remembering));
-        // What serves the coarser copy may not serve the surface itself, whose finest waves only it has.
-        let most = self.options.borrow;
-        let more = BORROWED.into_iter().filter(|&share| share > made.borrowed && share <= most);
-        let more = more.step_by(2).map(|share| (share, briskly));
-        self.nearest(original, seam, std::iter::once(begun).chain(alone).chain(more))
-    }
-
-    /// The nearest of what passes make of some starts, none of them tried after one that is near enough.
-    fn nearest(
-        &mut self,
-        original: &Raster,
-        seam: Option<&Raster>,
-        tries: impl Iterator<Item = (f64, Task)>,
-    ) -> Made {
-        let mut best: Option<Made> = None;
-        for (share, task) in tries {
-            let start = self.start(original, seam, share);
-            let made = self.try_out(start, seam, task, share);
-            if best.as_ref().is_none_or(|best| made.mean < best.mean) {
-                best = Some(made);
-            }
-            if best.as_ref().is_some_and(|best| best.mean <= self.goal()) {
-                break;
-            }
-        }
-        best.expect("at least one start")
-    }
-
-    /// Shares to borrow and how to go on from there.
-    fn tries(&self, gently: Task) -> Vec<(f64, Task)> {
-        let [remembering, briskly] = [Gait::Remembering, Gait::Momentum].map(|gait| Task { gait, ..gently });
-        let shares = BORROWED.into_iter().filter(|share| *share <= self.options.borrow);
-        let alone = [(0.0, gently), (0.0, remembering)];
-        alone.into_iter().chain(shares.map(|share| (share, briskly))).collect()
-    }
-
-    fn settle(&mut self, start: Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
-        let mut image = start;
-        let until = self.options.until;
-        let mut enough = |level: &mut Level, image: &Raster, scratch: &mut Scratch| {
-            until.is_some_and(|until| {
-                let distances = distances(level, image, scratch);
-                mean(level, &distances) <= until
-            })
-        };
-        let passes = self.level.settle(&mut image, seam, task, &mut self.scratch, &mut enough);
-        Made { image, mean: f64::NAN, passes, borrowed }
-    }
-
-    /// As [`Self::settle`], unless a start that has borrowed is near enough as it is: of a pattern of few heights passes would
-    /// only take it away.
-    fn settle_unless_near(
-        &mut self,
-        start: Raster,
-        seam: Option<&Raster>,
-        task: Task,
-        borrowed: f64,
-    ) -> Made {
-        if borrowed > 0.0 {
-            let mean = self.mean_of(&start);
-            if mean <= self.goal() {
-                return Made { image: start, mean, passes: 0, borrowed };
-            }
-        }
-        self.settle(start, seam, task, borrowed)
-    }
-
-    /// The same, and how near it came.
-    fn try_out(&mut self, start: Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
-        let made = self.settle_unless_near(start, seam, task, borrowed);
-        Made { mean: self.mean_of(&made.image), ..made }
-    }
-
-    /// The passes on a coarser grid, and how near they came.
-    fn try_coarsely(&mut self, start: &Raster, seam: Option<&Raster>, task: Task, borrowed: f64) -> Made {
-        let (level, _) = self.level.of_moderate_size();
-        let mut image = on_grid(start, Borders::Periodic, level.size);
-        let seam = seam.map(|seam| on_grid(seam, Borders::Smooth, level.size));
-        let passes = level.settle(&mut image, seam.as_ref(), task, &mut self.scratch, &mut |_, _, _| false);
-        let distances = distances(level, &image, &mut self.scratch);
-        Made { mean: mean(level, &distances), image, passes, borrowed }
-    }
-
-    /// What counts as near enough.
-    fn goal(&self) -> f64 {
-        self.options.until.unwrap_or(REACH)
-    }
-
-    /// Of every sample of every band, as the result is judged: as many samples as the waves need may show a fifth less.
-    fn mean_of(&mut self, image: &Raster) -> f64 {
-        let distances = distances(&mut self.level, image, &mut self.scratch);
-        mean(&self.level, &distances)
-    }
-
-    /// The original, or a mixture of it (brought to the reference's mean and deviation) and the reference itself, which has
-    /// the reference's heights.
-    fn start(&mut self, original: &Raster, seam: Option<&Raster>, share: f64) -> Raster {
-        if share == 0.0 {
-            return original.clone();
-        }
-        let reference = &self.reference.periodic;
-        let (ours, theirs) = (original.mean(), reference.mean());
-        let gain = deviation(reference) / deviation(original).max(f64::MIN_POSITIVE);
-        let mut start = Raster::from_fn(original.width, original.height, |x, y| {
-            let matched = theirs + gain.min(MOST_GAIN) * (original.at(x, y) - ours);
-            matched + share * (self.laid_out(x, y) - matched)
-        });
-        self.level.match_heights(&mut start, seam, &mut self.scratch);
-        start
-    }
-}
-
-/// What passes have made of a start.
-struct Made {
-    image: Raster,
-    mean: f64,
-    passes: usize,
-    borrowed: f64,
 }
 
 /// A sub-band that the reference does not have cannot be measured in its own deviations.
@@ -363,12 +192,12 @@ fn floor(level: &Level) -> f64 {
     EMPTY_BAND * level.heights.deviation().max(f64::MIN_POSITIVE)
 }
 
-fn distances(level: &mut Level, image: &Raster, scratch: &mut Scratch) -> Vec<f64> {
+pub(super) fn distances(level: &mut Level, image: &Raster, scratch: &mut Scratch) -> Vec<f64> {
     let floor = floor(level);
     level.full.distances(image, floor, scratch)
 }
 
-fn deviation(image: &Raster) -> f64 {
+pub(super) fn deviation(image: &Raster) -> f64 {
     let mean = image.mean();
     (image.values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / image.values.len() as f64).sqrt()
 }
@@ -378,7 +207,7 @@ fn is_oriented(band: &Subband) -> bool {
 }
 
 /// Mean over the oriented bands.
-fn mean(level: &Level, distances: &[f64]) -> f64 {
+pub(super) fn mean(level: &Level, distances: &[f64]) -> f64 {
     let subbands = level.full.pyramid.subbands().iter().zip(distances);
     let oriented = subbands.filter(|(band, _)| is_oriented(band));
     let (sum, count) = oriented.fold((0.0, 0.0), |(sum, count), (_, distance)| (sum + distance, count + 1.0));
