@@ -261,7 +261,7 @@ impl Voice {
         if !set_out {
             self.path.run(slot, points, &mut profile.at_m);
         }
-        let midway = self.between.from_there(self.path.last.position_m);
+        let midway = self.between.on_the_way(self.path.last.position_m);
         let along = Along { midway, ..self.along(shared, position, slopes || dragged) };
         profile.run(seat, along, points, &mut self.cells);
         self.rolling.run(position, shared.slow_step, &mut profile.surface, n);

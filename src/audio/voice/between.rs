@@ -72,7 +72,7 @@ impl Between {
     }
 
     /// What has to be looked at midway on the way from a place; none where nothing has.
-    pub(super) fn from_there(&self, from_m: [f64; 2]) -> Option<FromThere> {
+    pub(super) fn on_the_way(&self, from_m: [f64; 2]) -> Option<FromThere> {
         self.looks().then_some(FromThere { octave: self.octave, from_m })
     }
 

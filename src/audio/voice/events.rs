@@ -145,7 +145,7 @@ impl Voice {
         self.path.lay_behind(steps, step_s, points);
         let PathPoint { position_m, velocity_m_s, .. } = points[0];
         let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);
-        let midway = self.between.from_there(from_m);
+        let midway = self.between.on_the_way(from_m);
         let along = Along { midway, ..self.along(at.shared, at.position, false) };
         profile.run(seat, along, points, &mut self.cells);
     }
