@@ -105,7 +105,12 @@ fn headroom_reports_every_promised_row() {
     let integrators: Vec<&str> = contact.iter().map(|row| row["integrator"].as_str().unwrap()).collect();
     assert_eq!(integrators, ["semi-implicit-euler", "exact-event", "energy-conserving"]);
     let pairs = report["paired"]["rows"].as_array().unwrap();
-    for what in ["64 contacts beside 1, each", "blocks of 16 frames beside 64", "2 threads beside 1"] {
+    for what in [
+        "64 contacts beside 1, each",
+        "blocks of 16 frames beside 64",
+        "2 threads beside 1",
+        "2 threads, helper asleep",
+    ] {
         assert!(pairs.iter().any(|pair| pair["what"] == what), "{what}");
     }
     assert!(pairs.iter().all(|pair| pair["times_the_first"].as_f64().unwrap() > 0.0), "{pairs:?}");
