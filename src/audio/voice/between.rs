@@ -4,7 +4,7 @@
 //! e > 0.03 F/k        e: rms of the relief beside the cubics through its samples;  F/k: how deep the pad is pressed in
 //! ```
 //! A pad pressed in deeper than that follows the cubic as well as it would follow the ground: 0.1 of F/k on a stroke that leaves the ground
-//! at every crest is heard at −33 dB, 0.03 at −40, 0.01 at −50 dB. An ordinary stroke (0.8 N, a roughness of 0.5) never pays. Decided where a contact
+//! at every crest is heard at −33 dB, 0.03 at −40, 0.01 at −50 dB. A stroke of 0.1 m/s under 0.8 N on a roughness of 0.5 does not pay. Decided where a contact
 //! begins and at the steps of the absolute sample grid, so that it depends on no split into blocks; only for the scheme that knows events.
 
 use super::profile::{FromThere, Midway};
