@@ -363,6 +363,8 @@ def test_two_dask_workers_make_strokes_in_much_less_time_than_one(tmp_path):
             made.close()
     ratio = max(one / two for one, two in zip(seconds[1], seconds[2], strict=True))
     print(f"two workers get {ratio:.2f} times as much done as one; two processes {scaling:.2f} times")
+    if ratio < 1.7 and (scaling := busy(6_000_000)) < 1.8:
+        pytest.skip(f"somebody has come: two busy processes get {scaling:.2f} times as much done by now; 1.8 are needed to tell")
     assert ratio >= 1.7
 
 
