@@ -42,48 +42,90 @@ const SIGN: u32 = 0x8000_0000;
 type Gradient<W> = [W; 2];
 
 /// The gradients at the four corners of a cell: upper left, upper right, lower left, lower right.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Corners<W>([Gradient<W>; 4]);
+pub(crate) type Cell = [[u32; 2]; 4];
 
-/// Those of the cells in N columns and rows; `key` tells lattices apart.
+/// The noise at N places in cells of N columns and rows; `key` tells lattices apart. Places are measured from the centre of the cell, in
+/// 2⁻³² cells, signed.
 #[inline(always)]
-pub(crate) fn corners<const N: usize, V: Vector<N>>(
+pub(crate) fn gradient_noise<const N: usize, V: Vector<N>>(
     v: V,
-    column: V::Word,
-    row: V::Word,
+    [column, row]: [V::Word; 2],
     key: u32,
-) -> Corners<V::Word> {
+    from_centre: [V::Word; 2],
+) -> V::Single {
+    let place = Place::new(v, from_centre);
     let (spread_x, spread_y) = (v.splat_word(SPREAD_X), v.splat_word(SPREAD_Y));
     let column = v.add_word(v.mul_word(column, spread_x), v.splat_word(key));
     let row = v.mul_word(row, spread_y);
-    let (next_column, next_row) = (v.add_word(column, spread_x), v.add_word(row, spread_y));
-    Corners([
-        gradient(v, column, row),
-        gradient(v, next_column, row),
-        gradient(v, column, next_row),
-        gradient(v, next_column, next_row),
-    ])
+    let next_column = v.add_word(column, spread_x);
+    let a = along(v, gradient(v, column, row), place.left, place.top);
+    let b = along(v, gradient(v, next_column, row), place.right, place.top);
+    let row = v.add_word(row, spread_y);
+    let c = along(v, gradient(v, column, row), place.left, place.bottom);
+    let d = along(v, gradient(v, next_column, row), place.right, place.bottom);
+    place.between(v, [a, b, c, d])
 }
 
-impl<W: Copy> Corners<W> {
-    /// The same cell in all lanes.
+/// The same where all places are in one cell.
+#[inline(always)]
+pub(crate) fn gradient_noise_in<const N: usize, V: Vector<N>>(
+    v: V,
+    cell: &Cell,
+    from_centre: [V::Word; 2],
+) -> V::Single {
+    let place = Place::new(v, from_centre);
+    let [a, b, c, d] = cell;
+    let a = along(v, [v.splat_word(a[0]), v.splat_word(a[1])], place.left, place.top);
+    let b = along(v, [v.splat_word(b[0]), v.splat_word(b[1])], place.right, place.top);
+    let c = along(v, [v.splat_word(c[0]), v.splat_word(c[1])], place.left, place.bottom);
+    let d = along(v, [v.splat_word(d[0]), v.splat_word(d[1])], place.right, place.bottom);
+    place.between(v, [a, b, c, d])
+}
+
+/// The gradients of one cell: those that [`gradient_noise`] finds in each lane.
+pub(crate) fn cell_corners(column: u32, row: u32, key: u32) -> Cell {
+    let column = column.wrapping_mul(SPREAD_X).wrapping_add(key);
+    let row = row.wrapping_mul(SPREAD_Y);
+    let (next_column, next_row) = (column.wrapping_add(SPREAD_X), row.wrapping_add(SPREAD_Y));
+    [(column, row), (next_column, row), (column, next_row), (next_column, next_row)].map(|(column, row)| {
+        let h = column ^ row;
+        let h = h ^ (h >> 15);
+        [h.wrapping_mul(FINISH_X) & SIGN, h.wrapping_mul(FINISH_Y) & SIGN]
+    })
+}
+
+/// Places in their cells.
+struct Place<F> {
+    x: F,
+    y: F,
+    /// From the corners.
+    left: F,
+    right: F,
+    top: F,
+    bottom: F,
+}
+
+impl<F: Copy> Place<F> {
     #[inline(always)]
-    pub(crate) fn splat<const N: usize, V: Vector<N, Word = W>>(v: V, cell: &[[u32; 2]; 4]) -> Self {
-        let mut corners = Self([[v.splat_word(0); 2]; 4]);
-        for (corner, [x, y]) in corners.0.iter_mut().zip(cell) {
-            *corner = [v.splat_word(*x), v.splat_word(*y)];
+    fn new<const N: usize, V: Vector<N, Single = F>>(v: V, from_centre: [V::Word; 2]) -> Self {
+        let (half, cell) = (v.splat(0.5), v.splat(1.0 / 4_294_967_296.0));
+        let x = v.mul(v.signed_to_single(from_centre[0]), cell);
+        let y = v.mul(v.signed_to_single(from_centre[1]), cell);
+        Self {
+            x,
+            y,
+            left: v.add(x, half),
+            right: v.sub(x, half),
+            top: v.add(y, half),
+            bottom: v.sub(y, half),
         }
-        corners
     }
 
-    /// The cell of the last lane.
+    /// What the corners say, faded into each other.
     #[inline(always)]
-    pub(crate) fn last<const N: usize, V: Vector<N, Word = W>>(&self, v: V) -> [[u32; 2]; 4] {
-        let mut cell = [[0; 2]; 4];
-        for (cell, [x, y]) in cell.iter_mut().zip(self.0) {
-            *cell = [v.last(x), v.last(y)];
-        }
-        cell
+    fn between<const N: usize, V: Vector<N, Single = F>>(&self, v: V, [a, b, c, d]: [F; 4]) -> F {
+        let (fx, fy) = (centred_fade(v, self.x), centred_fade(v, self.y));
+        between(v, [between(v, [a, b], fx), between(v, [c, d], fx)], fy)
     }
 }
 
@@ -116,26 +158,6 @@ fn centred_fade<const N: usize, V: Vector<N>>(v: V, t: V::Single) -> V::Single {
     v.add(v.splat(0.5), v.mul(t, v.add(v.splat(1.875), v.mul(q, slope))))
 }
 
-/// The noise at N places in cells with these corners. Places are measured from the centre of the cell,
-/// in 2⁻³² cells, signed.
-#[inline(always)]
-pub(crate) fn gradient_noise<const N: usize, V: Vector<N>>(
-    v: V,
-    corners: &Corners<V::Word>,
-    from_centre: [V::Word; 2],
-) -> V::Single {
-    let (half, cell) = (v.splat(0.5), v.splat(1.0 / 4_294_967_296.0));
-    let (x, y) =
-        (v.mul(v.signed_to_single(from_centre[0]), cell), v.mul(v.signed_to_single(from_centre[1]), cell));
-    let (left, right, top, bottom) = (v.add(x, half), v.sub(x, half), v.add(y, half), v.sub(y, half));
-    let a = along(v, corners.0[0], left, top);
-    let b = along(v, corners.0[1], right, top);
-    let c = along(v, corners.0[2], left, bottom);
-    let d = along(v, corners.0[3], right, bottom);
-    let (fx, fy) = (centred_fade(v, x), centred_fade(v, y));
-    between(v, [between(v, [a, b], fx), between(v, [c, d], fx)], fy)
-}
-
 /// a + f (b − a)
 #[inline(always)]
 fn between<const N: usize, V: Vector<N>>(v: V, [a, b]: [V::Single; 2], f: V::Single) -> V::Single {
@@ -152,9 +174,8 @@ mod tests {
 
     fn at(x: f64, y: f64, key: u32) -> f64 {
         let [x, y] = [x, y].map(|t| (t * 4_294_967_296.0) as i64 as u64);
-        let corners =
-            corners(LANES, LANES.splat_word((x >> 32) as u32), LANES.splat_word((y >> 32) as u32), key);
-        f64::from(gradient_noise(LANES, &corners, [x, y].map(|t| LANES.splat_word(t as u32 ^ SIGN)))[0])
+        let cell = [x, y].map(|t| LANES.splat_word((t >> 32) as u32));
+        f64::from(gradient_noise(LANES, cell, key, [x, y].map(|t| LANES.splat_word(t as u32 ^ SIGN)))[0])
     }
 
     #[test]
@@ -189,14 +210,25 @@ mod tests {
         assert!((square / count / VARIANCE - 1.0).abs() < 0.02, "{}", square / count);
     }
 
+    #[test]
+    fn a_known_cell_says_at_every_place_what_a_hashed_one_says() {
+        let mut rng = crate::rng::Rng::new(3);
+        for _ in 0..1000 {
+            let [column, row, key] = [0; 3].map(|_| rng.next_u32());
+            let from_centre = [0; 2].map(|_| LANES.splat_word(rng.next_u32()));
+            let known = gradient_noise_in(LANES, &cell_corners(column, row, key), from_centre)[0];
+            let cell = [column, row].map(|cell| LANES.splat_word(cell));
+            assert_eq!(known, gradient_noise(LANES, cell, key, from_centre)[0], "{column}, {row}, {key}");
+        }
+    }
+
     /// Signs of 128 × 128 corners against each other at every small distance: 5 sigma of chance.
     #[test]
     fn neighbouring_gradients_are_unrelated() {
         const N: usize = 128;
         for key in [1, 0x1234_5678, 0x8000_0000] {
             let sign = |x: usize, y: usize, axis: usize| {
-                let [x, y] = [x, y].map(|cell| LANES.splat_word(cell as u32));
-                1 - 2 * (corners(LANES, x, y, key).0[0][axis][0] >> 31) as i32
+                1 - 2 * (cell_corners(x as u32, y as u32, key)[0][axis] >> 31) as i32
             };
             let field = |axis| -> Vec<i32> { (0..N * N).map(|i| sign(i % N, i / N, axis)).collect() };
             let (a, b) = (field(0), field(1));

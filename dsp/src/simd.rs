@@ -19,9 +19,7 @@ mod vector;
 
 pub use fearless_simd;
 pub use set::Set;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use vector::Sixteen;
-pub(crate) use vector::{Eight, Vector};
+pub(crate) use vector::{Eight, Sixteen, Vector};
 
 /// An instruction set the kernels are compiled for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,12 +1,18 @@
 //! Lattice coordinates of samples in fixed point: 32 bits of index and 32 of fraction.
 
-use crate::gradient_noise_2d::Corners;
+use super::Octave;
+use crate::gradient_noise_2d::{Cell, cell_corners};
 use crate::simd::Vector;
 
 /// Adding and subtracting it rounds to a whole number, the same everywhere.
 const TO_WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
 /// Adding it rounds to 2⁻³². The lower half of its own bits is zero.
 const TO_FRACTION: f64 = 1_572_864.0; // 1.5 · 2²⁰
+/// What is added to the upper half of such a sum to leave the whole number that was rounded down.
+const FROM_HIGH: u32 = ((TO_FRACTION.to_bits() >> 32) as u32).wrapping_neg();
+
+/// Positions up to here, cells of the coarsest octave, become fixed point by one addition, whichever way their lattice is turned.
+pub(super) const NEAR: f64 = 360_000.0; // less than 2¹⁹ / √2
 
 /// N positions along one axis in fixed point, cells of the coarsest octave.
 #[derive(Clone, Copy)]
@@ -15,18 +21,30 @@ pub(super) struct Cells<W> {
     fraction: W,
 }
 
+/// Anywhere.
 #[inline(always)]
 pub(super) fn cells<const N: usize, V: Vector<N>>(v: V, u: V::Double) -> Cells<V::Word> {
     let (to_whole, to_fraction) = (v.splat_double(TO_WHOLE), v.splat_double(TO_FRACTION));
     let whole = v.add_double(u, to_whole);
     let fraction = v.add_double(v.sub_double(u, v.sub_double(whole, to_whole)), to_fraction);
     // A negative fraction borrows from the index.
-    let borrow = v
-        .add_word(v.high_half(fraction), v.splat_word(((TO_FRACTION.to_bits() >> 32) as u32).wrapping_neg()));
+    let borrow = v.add_word(v.high_half(fraction), v.splat_word(FROM_HIGH));
     Cells { index: v.add_word(v.low_half(whole), borrow), fraction: v.low_half(fraction) }
 }
 
+/// The same within ± 2¹⁹: both halves of one sum.
+#[inline(always)]
+pub(super) fn near_cells<const N: usize, V: Vector<N>>(v: V, u: V::Double) -> Cells<V::Word> {
+    let sum = v.add_double(u, v.splat_double(TO_FRACTION));
+    Cells { index: v.add_word(v.high_half(sum), v.splat_word(FROM_HIGH)), fraction: v.low_half(sum) }
+}
+
 impl<W: Copy> Cells<W> {
+    /// The same on both counts.
+    pub(super) fn at(place: W) -> Self {
+        Self { index: place, fraction: place }
+    }
+
     /// Places in the cells of octave `i`, from their centres in 2⁻³² cells.
     #[inline(always)]
     pub(super) fn place<const N: usize, V: Vector<N, Word = W>>(&self, v: V, i: u32, offset: Offset) -> W {
@@ -51,7 +69,7 @@ impl<W: Copy> Cells<W> {
 
     /// The last position in 2⁻³² cells.
     #[inline(always)]
-    fn last<const N: usize, V: Vector<N, Word = W>>(&self, v: V) -> i64 {
+    pub(super) fn last<const N: usize, V: Vector<N, Word = W>>(&self, v: V) -> i64 {
         (u64::from(v.last(self.index)) << 32 | u64::from(v.last(self.fraction))) as i64
     }
 }
@@ -72,6 +90,10 @@ impl Offset {
     pub(super) fn new(fixed_point: u64) -> Self {
         Self { index: (fixed_point >> 32) as u32, from_centre: fixed_point as u32 ^ (1 << 31) }
     }
+
+    fn fixed_point(self) -> u64 {
+        u64::from(self.index) << 32 | u64::from(self.from_centre ^ (1 << 31))
+    }
 }
 
 /// The cell of an octave that the contact was last in: a slow octave stays in it for many samples, and for many blocks. One number each, which
@@ -80,7 +102,7 @@ impl Offset {
 pub(super) struct KnownCell {
     /// Positions within these are in it, however they were rounded.
     bounds: Bounds,
-    corners: [[u32; 2]; 4],
+    pub(super) corners: Cell,
 }
 
 impl KnownCell {
@@ -92,29 +114,22 @@ impl KnownCell {
         v.all_reach(bounds, &self.bounds)
     }
 
-    /// The gradients about it.
-    #[inline(always)]
-    pub(super) fn corners<const N: usize, V: Vector<N>>(&self, v: V) -> Corners<V::Word> {
-        Corners::splat(v, &self.corners)
-    }
-
-    /// Becomes the cell of octave `i` that the last of some samples is in.
-    #[inline(always)]
-    pub(super) fn follow<const N: usize, V: Vector<N>>(
-        &mut self,
-        v: V,
-        i: u32,
-        position: &[Cells<V::Word>; 2],
-        from_centre: [V::Word; 2],
-        corners: &Corners<V::Word>,
-    ) {
+    /// Becomes the cell of an octave that a position in 2⁻³² cells of the coarsest one is in. Whether positions within these bounds are in
+    /// it: told by plain numbers, for which no vector has to wait until they are stored.
+    #[cold]
+    pub(super) fn follow(&mut self, octave: &Octave, position: [i64; 2], within: &Bounds) -> bool {
+        let Octave { offset, key, index: i, .. } = *octave;
+        let mut cell = [0; 2];
         for axis in 0..2 {
-            let place = v.last(from_centre[axis]) ^ (1 << 31);
-            let last = position[axis].last(v);
+            let last = position[axis];
+            let there = ((last as u64) << i).wrapping_add(offset[axis].fixed_point());
+            let place = there as u32;
+            cell[axis] = (there >> 32) as u32;
             self.bounds[axis] = inner(last - i64::from(place >> i));
             self.bounds[axis + 2] = inner(-(last + i64::from(!place >> i)));
         }
-        self.corners = corners.last(v);
+        self.corners = cell_corners(cell[0], cell[1], key);
+        within.iter().zip(&self.bounds).all(|(within, bound)| within >= bound)
     }
 }
 
@@ -137,6 +152,40 @@ mod tests {
             let lanes = Eight(BASE);
             let fixed = cells(lanes, lanes.splat_double(u)).last(lanes);
             assert!((fixed as f64 / 4_294_967_296.0 - u).abs() * LONGEST_CELL_M < 4e-12, "{u}: {fixed}");
+        }
+    }
+
+    #[test]
+    fn near_positions_become_the_fixed_point_that_any_position_does() {
+        let lanes = Eight(BASE);
+        let same = |u: f64| {
+            let u = lanes.splat_double(u);
+            assert_eq!(near_cells(lanes, u).last(lanes), cells(lanes, u).last(lanes), "{u:?}");
+        };
+        let mut rng = crate::rng::Rng::new(5);
+        let edge = 524_288.0 - 1.0;
+        for u in [
+            0.0,
+            -0.0,
+            0.5,
+            -0.5,
+            1.5,
+            1.0 - 1e-11,
+            -1e-11,
+            1e-300,
+            -1e-300,
+            edge,
+            -edge,
+            1.0 + 0.5f64.powi(33),
+        ] {
+            same(u);
+        }
+        for _ in 0..20_000 {
+            let scale = libm::exp2(-30.0 + 49.0 * rng.uniform());
+            // Halves of the last place too, where rounding has to choose.
+            let u = scale * (2.0 * rng.uniform() - 1.0);
+            same(u);
+            same(libm::rint(u * 4_294_967_296.0 * 2.0) / (4_294_967_296.0 * 2.0));
         }
     }
 }

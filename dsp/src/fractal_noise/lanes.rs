@@ -1,12 +1,14 @@
 //! The noise of N samples side by side.
 
-use super::cells::{Bounds, Cells, KnownCell, cells};
-use super::gains::{Gains, footprint_weight, gains, polynomial, within_0_1};
+use super::cells::{Bounds, Cells, KnownCell, NEAR, cells, near_cells};
+use super::gains::{footprint_weight, polynomial};
+use super::rough::{Even, Rough};
 use super::{
     FractalNoise, LONGEST_CELL_M, NoisePath, OCTAVES, Octave, OctaveWeights, ROTATION_RAD, ROTATIONS,
 };
-use crate::gradient_noise_2d::{Corners, corners, gradient_noise};
-use crate::simd::Vector;
+use crate::gradient_noise_2d::{gradient_noise, gradient_noise_in};
+use crate::simd::fearless_simd::prelude::*;
+use crate::simd::{Eight, Set, Sixteen, Vector};
 
 /// Positions are kept within ± this many metres, where fixed point keeps their order.
 const FARTHEST_M: f64 = 1e7;
@@ -26,37 +28,29 @@ struct Lattice<W> {
     bounds: Bounds,
 }
 
-/// What the roughness of N samples says, kept until it is another.
-#[derive(Clone, Copy)]
-struct Rough<F, const W: usize> {
-    roughness: F,
-    gains: Gains<F>,
-    /// Weights of the octaves, by set.
-    weights: [[F; OCTAVES]; W],
+/// Memory that is filled anew for every N samples.
+struct Room<const N: usize, V: Vector<N>> {
+    lattices: [Lattice<V::Word>; ROTATIONS],
+    /// What is left of the finest octaves.
+    fades: [V::Single; OCTAVES],
+    /// Gains of the octaves where the roughness is not one for all.
+    gains: [V::Single; OCTAVES],
 }
 
-impl<F: Copy, const W: usize> Rough<F, W> {
-    /// Plain loops: what goes through `map` is compiled without the instruction set, a call for each operation.
+impl<const N: usize, V: Vector<N>> Room<N, V> {
     #[inline(always)]
-    fn new<const N: usize, V: Vector<N, Single = F>>(v: V, sets: &[&OctaveWeights; W], roughness: F) -> Self {
-        let within = within_0_1(v, roughness);
-        let mut weights = [[v.splat(0.0); OCTAVES]; W];
-        for (weights, set) in weights.iter_mut().zip(sets) {
-            for (weight, c) in weights.iter_mut().zip(&set.of) {
-                *weight = polynomial(v, within, c);
-            }
-        }
-        Self { roughness, gains: gains(v, roughness), weights }
+    fn new(v: V) -> Self {
+        let nowhere = Lattice { cells: [Cells::at(v.splat_word(0)); 2], bounds: [0.0; 4] };
+        let none = [v.splat(0.0); OCTAVES];
+        Self { lattices: [nowhere; ROTATIONS], fades: none, gains: none }
     }
 }
 
-/// N samples of a path in the form the octaves need.
+/// N samples of a path in the form the octaves need, beside what is in their [`Room`].
 struct Lanes<const N: usize, V: Vector<N>> {
     v: V,
-    lattices: [Lattice<V::Word>; ROTATIONS],
     /// So many octaves, from the coarsest, have cells much longer than all samples together.
     slow: usize,
-    gains: Gains<V::Single>,
     samples_per_metre: V::Single,
     shortest_footprint_m: f32,
     longest_footprint_m: f32,
@@ -64,42 +58,72 @@ struct Lanes<const N: usize, V: Vector<N>> {
 
 impl<const N: usize, V: Vector<N>> Lanes<N, V> {
     #[inline(always)]
-    fn new<const W: usize>(
+    fn new(
         v: V,
         noise: &FractalNoise,
         position_m: &[[f64; 2]; N],
         footprint_m: &[f64; N],
-        roughness: &[f64; N],
-        sets: &[&OctaveWeights; W],
-        rough: &mut Rough<V::Single, W>,
+        lattices: &mut [Lattice<V::Word>; ROTATIONS],
     ) -> Self {
         let [x, y] = v.load_points(position_m);
         let (x, y) = (within_reach(v, x), within_reach(v, y));
-        let mut lattices = [Lattice { cells: [cells(v, x); 2], bounds: [0.0; 4] }; ROTATIONS];
-        for (lattice, [cosine, sine]) in lattices.iter_mut().zip(noise.rotations) {
-            let (cosine, sine) = (v.splat_double(cosine), v.splat_double(sine));
-            let first = v.sub_double(v.mul_double(cosine, x), v.mul_double(sine, y));
-            let second = v.add_double(v.mul_double(sine, x), v.mul_double(cosine, y));
-            lattice.cells = [cells(v, first), cells(v, second)];
+        for (lattice, rotation) in lattices.iter_mut().zip(&noise.rotations) {
+            let [first, second] = turned(v, [x, y], rotation);
             lattice.bounds = v.bounds(first, second);
+            lattice.cells = [near_cells(v, first), near_cells(v, second)];
+        }
+        if !v.all_reach(&lattices[0].bounds, &[-NEAR; 4]) {
+            // Nobody goes there: the fewer instructions the better.
+            let rotations = lattices.iter_mut().zip(&noise.rotations).take(core::hint::black_box(ROTATIONS));
+            for (lattice, rotation) in rotations {
+                let [first, second] = turned(v, [x, y], rotation);
+                lattice.cells = [cells(v, first), cells(v, second)];
+            }
         }
         // Backwards or not a number is standing still.
         let footprint = v.max(v.load(footprint_m), v.splat(0.0));
         let (shortest_footprint_m, longest_footprint_m) = v.extremes(footprint);
-        let roughness = v.load(roughness);
-        if !v.equal(roughness, rough.roughness) {
-            *rough = Rough::new(v, sets, roughness);
-        }
-        let slow = slow_octaves(noise, way_m(position_m));
         Self {
             v,
-            lattices,
-            slow,
-            gains: rough.gains,
+            slow: slow_octaves(noise, way_m(position_m)),
             samples_per_metre: v.div(v.splat(1.0), v.add(footprint, v.splat(f32::MIN_POSITIVE))),
             shortest_footprint_m,
             longest_footprint_m,
         }
+    }
+
+    /// What becomes of the finest octaves: those from `alive` on are gone, those from `steady` on fade, or the finest stands in for finer
+    /// ones; coarser ones are whole.
+    #[inline(always)]
+    fn fades(
+        &self,
+        noise: &FractalNoise,
+        tail_boost: V::Single,
+        fades: &mut [V::Single; OCTAVES],
+    ) -> (usize, usize) {
+        let v = self.v;
+        let one = v.splat(1.0);
+        let mut finer = v.splat(0.0); // footprint weight of the next finer octave
+        let (mut alive, mut steady) = (OCTAVES, OCTAVES);
+        let mut all_finer = false; // … is exactly 1 everywhere
+        for (octave, fade) in noise.octaves.iter().zip(fades).rev() {
+            let whole = octave.cell_m >= WHOLE * self.longest_footprint_m;
+            if whole && all_finer {
+                break;
+            }
+            steady -= 1;
+            if octave.cell_m <= GONE * self.shortest_footprint_m {
+                alive = steady;
+            }
+            let mut weight = one;
+            if !whole {
+                weight = footprint_weight(v, v.mul(v.splat(octave.cell_m), self.samples_per_metre));
+            }
+            *fade = v.mul(weight, v.add(one, v.mul(tail_boost, v.sub(one, finer))));
+            finer = weight;
+            all_finer = whole;
+        }
+        (alive, steady)
     }
 
     /// Sums of all octaves, from the finest to the coarsest of each set of weights; every octave is worked out once for all sets.
@@ -107,109 +131,73 @@ impl<const N: usize, V: Vector<N>> Lanes<N, V> {
     fn sums<const W: usize>(
         &self,
         noise: &FractalNoise,
-        weights: &[[V::Single; OCTAVES]; W],
-        coarsest: &[usize; W],
-        last: &mut [KnownCell; OCTAVES],
+        (rough, even): (&Rough<V::Single>, &Even<W>),
+        sets: &[&OctaveWeights; W],
+        (last, room): (&mut [KnownCell; OCTAVES], &mut Room<N, V>),
     ) -> [V::Single; W] {
         let v = self.v;
-        let one = v.splat(1.0);
+        let Room { lattices, fades, gains } = room;
+        let (alive, steady) = self.fades(noise, rough.gains.tail_boost, fades);
+        // Octaves below this one have a plain number for each set.
+        let plain = if rough.even { steady } else { 0 };
+        if !rough.even {
+            let mut gain = rough.gains.finest;
+            for gains in gains.iter_mut().rev() {
+                *gains = gain;
+                gain = v.mul(gain, rough.gains.coarser);
+            }
+        }
         let mut sums = [v.splat(0.0); W];
-        let mut end = OCTAVES;
-        for coarsest in coarsest {
-            end = end.min(*coarsest);
+        let (mut coarsest, mut end) = ([OCTAVES; W], OCTAVES);
+        for (coarsest, set) in coarsest.iter_mut().zip(sets) {
+            *coarsest = set.coarsest;
+            end = end.min(set.coarsest);
         }
-        let mut gain = self.gains.finest;
-        let mut finer = v.splat(0.0); // footprint weight of the next finer octave
-        let mut all_finer = false; // … is exactly 1 everywhere
-        let mut i = OCTAVES;
-        // The finest octaves: some fade, one stands in for finer ones, cells change every few samples.
-        while i > end {
-            let cell_m = noise.octaves[i - 1].cell_m;
-            let whole = cell_m >= WHOLE * self.longest_footprint_m;
-            if whole && all_finer && i <= self.slow {
-                break;
-            }
-            i -= 1;
-            let gone = cell_m <= GONE * self.shortest_footprint_m;
-            let mut weight = one;
-            if !whole {
-                weight = footprint_weight(v, v.mul(v.splat(cell_m), self.samples_per_metre));
-            }
-            if !gone {
-                let fades = !(whole && all_finer);
-                let mut fade = one;
-                if fades {
-                    let boost = v.add(one, v.mul(self.gains.tail_boost, v.sub(one, finer)));
-                    fade = v.mul(weight, boost);
+        for i in (end..alive).rev() {
+            let octave = &noise.octaves[i];
+            let lattice = &lattices[octave.rotation as usize];
+            let value = self.octave(octave, lattice, i < self.slow, &mut last[i]);
+            for (w, sum) in sums.iter_mut().enumerate() {
+                if W > 1 && i < coarsest[w] {
+                    continue;
                 }
-                let value = if i < self.slow {
-                    self.slow_octave(noise, i, &mut last[i])
-                } else {
-                    self.octave(noise, i)
-                };
-                for ((sum, weights), coarsest) in sums.iter_mut().zip(weights).zip(coarsest) {
-                    if i >= *coarsest {
-                        let scale = if fades { v.mul(weights[i], fade) } else { weights[i] };
-                        *sum = v.add(*sum, v.mul(v.mul(gain, scale), value));
+                let mut scale = v.splat(even.scales[w][i]);
+                if i >= plain {
+                    let (mut gain, mut weight) = (v.splat(even.gains[i]), v.splat(even.weights[w][i]));
+                    if !rough.even {
+                        (gain, weight) = (gains[i], polynomial(v, rough.lanes, &sets[w].of[i]));
                     }
+                    if i >= steady {
+                        weight = v.mul(weight, fades[i]);
+                    }
+                    scale = v.mul(gain, weight);
                 }
+                *sum = v.add(*sum, v.mul(scale, value));
             }
-            gain = v.mul(gain, self.gains.coarser);
-            finer = weight;
-            all_finer = whole;
-        }
-        while i > end {
-            i -= 1;
-            let value = self.slow_octave(noise, i, &mut last[i]);
-            for ((sum, weights), coarsest) in sums.iter_mut().zip(weights).zip(coarsest) {
-                if i >= *coarsest {
-                    *sum = v.add(*sum, v.mul(v.mul(gain, weights[i]), value));
-                }
-            }
-            gain = v.mul(gain, self.gains.coarser);
         }
         sums
     }
 
-    /// One octave at every sample.
+    /// One octave at every sample. Where its cells are long, nothing is hashed while all samples are in the cell that was last found; the
+    /// bits are the same.
     #[inline(always)]
-    fn octave(&self, noise: &FractalNoise, i: usize) -> V::Single {
-        let from_centre = self.places(noise, i);
-        gradient_noise(self.v, &self.corners(noise, i, from_centre), from_centre)
-    }
-
-    /// The same bits for an octave whose cells are long: while all samples are in the cell that was last
-    /// found, nothing is hashed.
-    #[inline(always)]
-    fn slow_octave(&self, noise: &FractalNoise, i: usize, last: &mut KnownCell) -> V::Single {
+    fn octave(
+        &self,
+        octave: &Octave,
+        lattice: &Lattice<V::Word>,
+        slow: bool,
+        last: &mut KnownCell,
+    ) -> V::Single {
         let v = self.v;
-        let lattice = &self.lattices[noise.octaves[i].rotation as usize];
-        let from_centre = self.places(noise, i);
-        if last.contains(v, &lattice.bounds) {
-            return gradient_noise(v, &last.corners(v), from_centre);
+        let (i, offset) = (octave.index, &octave.offset);
+        let Lattice { cells: [x, y], bounds } = lattice;
+        let from_centre = [x.place(v, i, offset[0]), y.place(v, i, offset[1])];
+        if slow && (last.contains(v, bounds) || last.follow(octave, [x.last(v), y.last(v)], bounds)) {
+            return gradient_noise_in(v, &last.corners, from_centre);
         }
-        let corners = self.corners(noise, i, from_centre);
-        last.follow(v, i as u32, &lattice.cells, from_centre, &corners);
-        gradient_noise(v, &corners, from_centre)
-    }
-
-    /// Places in the cells of an octave, by axis.
-    #[inline(always)]
-    fn places(&self, noise: &FractalNoise, i: usize) -> [V::Word; 2] {
-        let [x, y] = &self.lattices[noise.octaves[i].rotation as usize].cells;
-        let Octave { offset, index, .. } = noise.octaves[i];
-        [x.place(self.v, index, offset[0]), y.place(self.v, index, offset[1])]
-    }
-
-    /// The gradients about those places.
-    #[inline(always)]
-    fn corners(&self, noise: &FractalNoise, i: usize, from_centre: [V::Word; 2]) -> Corners<V::Word> {
-        let v = self.v;
-        let [x, y] = &self.lattices[noise.octaves[i].rotation as usize].cells;
-        let Octave { offset, key, .. } = noise.octaves[i];
-        let column = x.index(v, i as u32, offset[0], from_centre[0]);
-        let row = y.index(v, i as u32, offset[1], from_centre[1]);
-        corners(v, column, row, key)
+        let column = x.index(v, i, offset[0], from_centre[0]);
+        let row = y.index(v, i, offset[1], from_centre[1]);
+        gradient_noise(v, [column, row], octave.key, from_centre)
     }
 }
 
@@ -230,15 +218,44 @@ fn slow_octaves(noise: &FractalNoise, way_m: f32) -> usize {
     slow
 }
 
+/// Places along the axes of a lattice, cells of the coarsest octave.
+#[inline(always)]
+fn turned<const N: usize, V: Vector<N>>(v: V, [x, y]: [V::Double; 2], rotation: &[f64; 2]) -> [V::Double; 2] {
+    let (cosine, sine) = (v.splat_double(rotation[0]), v.splat_double(rotation[1]));
+    [
+        v.sub_double(v.mul_double(cosine, x), v.mul_double(sine, y)),
+        v.add_double(v.mul_double(sine, x), v.mul_double(cosine, y)),
+    ]
+}
+
 /// The nearest number within [`FARTHEST_M`], for a NaN its lower end.
 #[inline(always)]
 fn within_reach<const N: usize, V: Vector<N>>(v: V, x: V::Double) -> V::Double {
     v.min_double(v.max_double(x, v.splat_double(-FARTHEST_M)), v.splat_double(FARTHEST_M))
 }
 
+/// [`add`] on a set of instructions: sixteen samples at a time where its vectors hold eight or more, so that what a known cell and an octave
+/// say is spread over the lanes once for two of them.
+#[inline(always)]
+pub(super) fn add_on<const W: usize, S: Set>(
+    s: S,
+    noise: &FractalNoise,
+    path: &NoisePath<'_>,
+    roughness: &[f64],
+    sets: &[&OctaveWeights; W],
+    heights_m: &mut [&mut [f64]; W],
+    known: &mut [KnownCell; OCTAVES],
+) {
+    if S::f32s::LEN >= 8 {
+        add::<16, W, _>(Sixteen(s), noise, path, roughness, sets, heights_m, known);
+    } else {
+        add::<8, W, _>(Eight(s), noise, path, roughness, sets, heights_m, known);
+    }
+}
+
 /// Adds the noise along a path to the heights of each set of weights, N samples at a time.
 #[inline(always)]
-pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
+fn add<const N: usize, const W: usize, V: Vector<N>>(
     v: V,
     noise: &FractalNoise,
     path: &NoisePath<'_>,
@@ -248,54 +265,59 @@ pub(super) fn add<const N: usize, const W: usize, V: Vector<N>>(
     known: &mut [KnownCell; OCTAVES],
 ) {
     let n = heights_m.iter().map(|heights_m| heights_m.len()).fold(path.position_m.len(), usize::min);
-    if n == 0 {
-        return;
-    }
-    let (mut positions_left, mut footprints_left, mut roughness_left) = ([[0.0; 2]; N], [0.0; N], [0.0; N]);
-    let mut coarsest = [OCTAVES; W];
-    for (coarsest, weights) in coarsest.iter_mut().zip(sets) {
-        *coarsest = weights.coarsest;
-    }
-    let mut rough = Rough::new(v, sets, v.load(from(roughness, 0, &mut roughness_left)));
-    let mut start = 0;
-    while start < n {
-        let position_m = from(path.position_m, start, &mut positions_left);
-        let footprint_m = from(path.footprint_m, start, &mut footprints_left);
-        let roughness = from(roughness, start, &mut roughness_left);
-        let lanes = Lanes::new(v, noise, position_m, footprint_m, roughness, sets, &mut rough);
-        let sums = lanes.sums(noise, &rough.weights, &coarsest, known);
+    let (positions, footprints) = (path.position_m.as_chunks().0, path.footprint_m.as_chunks().0);
+    let roughnesses = roughness.as_chunks().0;
+    let whole = positions.len().min(footprints.len()).min(roughnesses.len());
+    let (positions, footprints, roughnesses) =
+        (&positions[..whole], &footprints[..whole], &roughnesses[..whole]);
+    let mut left = Left { position_m: [[0.0; 2]; N], footprint_m: [0.0; N], roughness: [0.0; N] };
+    let mut even = Even::UNKNOWN;
+    let mut room = Room::new(v);
+    for chunk in 0..n.div_ceil(N) {
+        let (position_m, footprint_m, roughness) = if chunk < whole {
+            (&positions[chunk], &footprints[chunk], &roughnesses[chunk])
+        } else {
+            left.fill(path, roughness, chunk * N);
+            (&left.position_m, &left.footprint_m, &left.roughness)
+        };
+        let rough = Rough::new(v, sets, roughness, &mut even);
+        let lanes = Lanes::new(v, noise, position_m, footprint_m, &mut room.lattices);
+        let sums = lanes.sums(noise, (&rough, &even), sets, (known, &mut room));
         for (sum, heights_m) in sums.into_iter().zip(heights_m.iter_mut()) {
-            let heights_m = heights_m.get_mut(start..).unwrap_or_default();
+            let heights_m = heights_m.get_mut(chunk * N..).unwrap_or_default();
             if let Some(heights_m) = heights_m.first_chunk_mut() {
                 v.add_to(sum, heights_m);
                 continue;
             }
-            let mut out = padded(heights_m, 0.0);
+            let mut out = padded(heights_m, 0, 0.0);
             v.add_to(sum, &mut out);
             for (height, out) in heights_m.iter_mut().zip(out) {
                 *height = out;
             }
         }
-        start += N;
     }
 }
 
-/// N values from `start` on; where fewer are left, in `left`, [`padded`].
+/// The last samples of a path, fewer than a vector holds.
+struct Left<const N: usize> {
+    position_m: [[f64; 2]; N],
+    footprint_m: [f64; N],
+    roughness: [f64; N],
+}
+
+impl<const N: usize> Left<N> {
+    #[cold]
+    fn fill(&mut self, path: &NoisePath<'_>, roughness: &[f64], start: usize) {
+        self.position_m = padded(path.position_m, start, self.position_m[0]);
+        self.footprint_m = padded(path.footprint_m, start, self.footprint_m[0]);
+        self.roughness = padded(roughness, start, self.roughness[0]);
+    }
+}
+
+/// The values from `start` on, and after fewer than N the last of them again and again: spare lanes make no work of their own.
 #[inline(always)]
-fn from<'a, T: Copy, const N: usize>(values: &'a [T], start: usize, left: &'a mut [T; N]) -> &'a [T; N] {
+fn padded<T: Copy, const N: usize>(values: &[T], start: usize, none: T) -> [T; N] {
     let values = values.get(start..).unwrap_or_default();
-    match values.first_chunk() {
-        Some(chunk) => chunk,
-        None => {
-            *left = padded(values, left[0]);
-            left
-        }
-    }
-}
-
-/// Fewer than N values, and the last of them again and again: spare lanes make no work of their own.
-#[inline(always)]
-fn padded<T: Copy, const N: usize>(values: &[T], none: T) -> [T; N] {
     let mut out = [values.last().copied().unwrap_or(none); N];
     for (out, value) in out.iter_mut().zip(values) {
         *out = *value;

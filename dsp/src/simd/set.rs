@@ -1,7 +1,7 @@
 //! What a set of instructions is beyond the vectors of `fearless_simd`: how it rounds, and the few operations that crate has no name for.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x8, f64x4};
+use fearless_simd::{f32x8, f64x4, u32x8};
 
 /// A set the kernels are compiled for.
 pub trait Set: Simd {
@@ -36,6 +36,26 @@ pub trait Set: Simd {
         ]
     }
 
+    /// Both coordinates of eight points, four a vector, in the order that [`Self::low_words`] and [`Self::high_words`] expect.
+    #[inline(always)]
+    fn points(self, from: &[[f64; 2]; 8]) -> [[f64x4<Self>; 2]; 2] {
+        let part = |i: usize| f64x4::from_slice(self, &from.as_flattened()[4 * i..4 * i + 4]);
+        let ((x0, y0), (x1, y1)) = (part(0).deinterleave(part(1)), part(2).deinterleave(part(3)));
+        [[x0, x1], [y0, y1]]
+    }
+
+    /// The lower 32 bits of each number that [`Self::points`] has loaded, in the order of the points.
+    #[inline(always)]
+    fn low_words(self, [a, b]: [f64x4<Self>; 2]) -> u32x8<Self> {
+        a.bitcast::<u32x8<Self>>().unzip_low(b.bitcast::<u32x8<Self>>())
+    }
+
+    /// The upper ones.
+    #[inline(always)]
+    fn high_words(self, [a, b]: [f64x4<Self>; 2]) -> u32x8<Self> {
+        a.bitcast::<u32x8<Self>>().unzip_high(b.bitcast::<u32x8<Self>>())
+    }
+
     /// Says that the number at `at` will soon be read; nothing else happens.
     #[inline(always)]
     fn prefetch(self, _at: &f32) {}
@@ -46,7 +66,7 @@ mod x86 {
     use super::Set;
     use core::arch::x86_64::*;
     use fearless_simd::prelude::*;
-    use fearless_simd::{Avx2, Avx512, Sse2, f32x8, f32x16, f64x4};
+    use fearless_simd::{Avx2, Avx512, Sse2, f32x8, f32x16, f64x2, f64x4, u32x8};
 
     #[inline(always)]
     #[allow(unsafe_code)]
@@ -97,6 +117,46 @@ mod x86 {
                         }
                     );
                     turn(self, rows)
+                }
+                /// The lower half of each register holds points of the first four, the upper half of the others: nothing crosses over.
+                #[inline(always)]
+                fn points(self, from: &[[f64; 2]; 8]) -> [[f64x4<Self>; 2]; 2] {
+                    fearless_simd::kernel!(
+                        #[inline(always)]
+                        fn part(token: $set, a: f64x4<$set>, b: f64x4<$set>) -> [f64x4<$set>; 2] {
+                            let (a, b): (__m256d, __m256d) = (a.into(), b.into());
+                            [_mm256_unpacklo_pd(a, b).simd_into(token), _mm256_unpackhi_pd(a, b).simd_into(token)]
+                        }
+                    );
+                    let [p, q, r, s, t, u, v, w] = from;
+                    let two = |low: &[f64; 2], high: &[f64; 2]| {
+                        f64x2::load_array_ref(self, low).combine(f64x2::load_array_ref(self, high))
+                    };
+                    let [x0, y0] = part(self, two(p, t), two(q, u));
+                    let [x1, y1] = part(self, two(r, v), two(s, w));
+                    [[x0, x1], [y0, y1]]
+                }
+                #[inline(always)]
+                fn low_words(self, [a, b]: [f64x4<Self>; 2]) -> u32x8<Self> {
+                    fearless_simd::kernel!(
+                        #[inline(always)]
+                        fn low(token: $set, a: f64x4<$set>, b: f64x4<$set>) -> u32x8<$set> {
+                            let (a, b) = (_mm256_castpd_ps(a.into()), _mm256_castpd_ps(b.into()));
+                            _mm256_castps_si256(_mm256_shuffle_ps::<0b10_00_10_00>(a, b)).simd_into(token)
+                        }
+                    );
+                    low(self, a, b)
+                }
+                #[inline(always)]
+                fn high_words(self, [a, b]: [f64x4<Self>; 2]) -> u32x8<Self> {
+                    fearless_simd::kernel!(
+                        #[inline(always)]
+                        fn high(token: $set, a: f64x4<$set>, b: f64x4<$set>) -> u32x8<$set> {
+                            let (a, b) = (_mm256_castpd_ps(a.into()), _mm256_castpd_ps(b.into()));
+                            _mm256_castps_si256(_mm256_shuffle_ps::<0b11_01_11_01>(a, b)).simd_into(token)
+                        }
+                    );
+                    high(self, a, b)
                 }
                 #[inline(always)]
                 fn prefetch(self, at: &f32) {

@@ -4,6 +4,7 @@
 //! a lane (never fused), or one on integers, so that every instruction set gives the same bits. All inline into a function that enables the
 //! set.
 
+use super::Set;
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x8, f32x16, f64x4, f64x8, i32x8, i32x16, u32x8, u32x16};
 
@@ -29,6 +30,8 @@ pub(crate) trait Vector<const N: usize>: Copy {
     fn equal(self, a: Self::Single, b: Self::Single) -> bool;
     /// Smallest and largest lane of numbers.
     fn extremes(self, x: Self::Single) -> (f32, f32);
+    /// The first lane.
+    fn first(self, x: Self::Single) -> f32;
     /// Each lane with its bits changed where those of `bits` are set.
     fn flip(self, x: Self::Single, bits: Self::Word) -> Self::Single;
 
@@ -77,7 +80,6 @@ pub(crate) trait Vector<const N: usize>: Copy {
 pub(crate) struct Eight<S>(pub S);
 
 /// Sixteen numbers at once.
-#[cfg_attr(not(target_arch = "x86_64"), allow(dead_code))] // Nobody else has vectors of 512 bits.
 #[derive(Clone, Copy)]
 pub(crate) struct Sixteen<S>(pub S);
 
@@ -88,7 +90,6 @@ fn four_least<S: Simd>(x: f64x4<S>) -> f64x4<S> {
 }
 
 /// Of eight numbers the lesser of each and the one four places further.
-#[cfg_attr(not(target_arch = "x86_64"), allow(dead_code))]
 #[inline(always)]
 fn eight_least<S: Simd>(x: f64x8<S>) -> f64x4<S> {
     let (low, high) = x.split();
@@ -97,19 +98,70 @@ fn eight_least<S: Simd>(x: f64x8<S>) -> f64x4<S> {
 
 /// The least of each of four vectors of numbers.
 #[inline(always)]
-fn least_of_each<S: Simd>(u: f64x4<S>, v: f64x4<S>, a: f64x4<S>, b: f64x4<S>) -> [f64; 4] {
-    let uv = u.zip_low(v).min(u.zip_high(v));
-    let ab = a.zip_low(b).min(a.zip_high(b));
-    let ((uv0, uv1), (ab0, ab1)) = (uv.split(), ab.split());
-    uv0.min(uv1).combine(ab0.min(ab1)).to_array()
+fn least_of_each<S: Set>(s: S, rows: [f64x4<S>; 4]) -> [f64; 4] {
+    let [a, b, c, d] = s.transpose(rows);
+    a.min(b).min(c.min(d)).to_array()
+}
+
+#[inline(always)]
+fn eight_points<S: Set>(s: S, from: &[[f64; 2]; 8]) -> [[f64x4<S>; 2]; 2] {
+    s.points(from)
+}
+
+#[inline(always)]
+fn eight_low<S: Set>(s: S, x: [f64x4<S>; 2]) -> u32x8<S> {
+    s.low_words(x)
+}
+
+#[inline(always)]
+fn eight_high<S: Set>(s: S, x: [f64x4<S>; 2]) -> u32x8<S> {
+    s.high_words(x)
+}
+
+/// Whether sixteen numbers go through one register.
+const fn one_register<S: Set>() -> bool {
+    S::f32s::LEN == 16
+}
+
+#[inline(always)]
+fn sixteen_points<S: Set>(s: S, from: &[[f64; 2]; 16]) -> [[f64x8<S>; 2]; 2] {
+    if one_register::<S>() {
+        let part = |i: usize| f64x8::from_slice(s, &from.as_flattened()[8 * i..8 * i + 8]);
+        let ((x0, y0), (x1, y1)) = (part(0).deinterleave(part(1)), part(2).deinterleave(part(3)));
+        return [[x0, x1], [y0, y1]];
+    }
+    let [low, high] = [0, 8].map(|i| from[i..].first_chunk().unwrap_or(&[[0.0; 2]; 8]));
+    let ([[x0, x1], [y0, y1]], [[x2, x3], [y2, y3]]) = (s.points(low), s.points(high));
+    [[x0.combine(x1), x2.combine(x3)], [y0.combine(y1), y2.combine(y3)]]
+}
+
+#[inline(always)]
+fn sixteen_low<S: Set>(s: S, [a, b]: [f64x8<S>; 2]) -> u32x16<S> {
+    if one_register::<S>() {
+        return a.bitcast::<u32x16<S>>().unzip_low(b.bitcast::<u32x16<S>>());
+    }
+    let ((a0, a1), (b0, b1)) = (a.split(), b.split());
+    s.low_words([a0, a1]).combine(s.low_words([b0, b1]))
+}
+
+#[inline(always)]
+fn sixteen_high<S: Set>(s: S, [a, b]: [f64x8<S>; 2]) -> u32x16<S> {
+    if one_register::<S>() {
+        return a.bitcast::<u32x16<S>>().unzip_high(b.bitcast::<u32x16<S>>());
+    }
+    let ((a0, a1), (b0, b1)) = (a.split(), b.split());
+    s.high_words([a0, a1]).combine(s.high_words([b0, b1]))
 }
 
 macro_rules! vector {
-    ($name:ident, $n:literal, $single:ident, $word:ident, $signed:ident, $double:ident, $four:ident) => {
-        impl<S: Simd> Vector<$n> for $name<S> {
+    (
+        $name:ident, $n:literal, $single:ident, $word:ident, $signed:ident, $double:ident,
+        $four:ident, $points:ident, $low:ident, $high:ident
+    ) => {
+        impl<S: Set> Vector<$n> for $name<S> {
             type Single = $single<S>;
             type Word = $word<S>;
-            /// The lower and the upper half of the lanes.
+            /// Half of the lanes each, in an order that the loading of points makes and the halves of words undo.
             type Double = [$double<S>; 2];
 
             #[inline(always)]
@@ -147,6 +199,10 @@ macro_rules! vector {
             #[inline(always)]
             fn extremes(self, x: $single<S>) -> (f32, f32) {
                 (x.reduce_min(), x.reduce_max())
+            }
+            #[inline(always)]
+            fn first(self, x: $single<S>) -> f32 {
+                x[0]
             }
             #[inline(always)]
             fn flip(self, x: $single<S>, bits: $word<S>) -> $single<S> {
@@ -232,19 +288,22 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn low_half(self, x: [$double<S>; 2]) -> $word<S> {
-                x[0].bitcast::<$word<S>>().unzip_low(x[1].bitcast::<$word<S>>())
+                $low(self.0, x)
             }
             #[inline(always)]
             fn high_half(self, x: [$double<S>; 2]) -> $word<S> {
-                x[0].bitcast::<$word<S>>().unzip_high(x[1].bitcast::<$word<S>>())
+                $high(self.0, x)
             }
             #[inline(always)]
             fn bounds(self, u: [$double<S>; 2], v: [$double<S>; 2]) -> [f64; 4] {
                 least_of_each(
-                    $four(u[0].min(u[1])),
-                    $four(v[0].min(v[1])),
-                    $four(-u[0].max(u[1])),
-                    $four(-v[0].max(v[1])),
+                    self.0,
+                    [
+                        $four(u[0].min(u[1])),
+                        $four(v[0].min(v[1])),
+                        $four(-u[0].max(u[1])),
+                        $four(-v[0].max(v[1])),
+                    ],
                 )
             }
 
@@ -255,11 +314,7 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn load_points(self, from: &[[f64; 2]; $n]) -> [[$double<S>; 2]; 2] {
-                let part = |i: usize| {
-                    $double::from_slice(self.0, &from.as_flattened()[i * $n / 2..(i + 1) * $n / 2])
-                };
-                let ((x0, y0), (x1, y1)) = (part(0).deinterleave(part(1)), part(2).deinterleave(part(3)));
-                [[x0, x1], [y0, y1]]
+                $points(self.0, from)
             }
             #[inline(always)]
             fn add_to(self, x: $single<S>, to: &mut [f64; $n]) {
@@ -279,5 +334,5 @@ macro_rules! vector {
 /// Whether the smaller of two numbers is the second one if either is none, as on x86; elsewhere it is asked for.
 const SECOND_WINS: bool = cfg!(target_arch = "x86_64");
 
-vector!(Eight, 8, f32x8, u32x8, i32x8, f64x4, four_least);
-vector!(Sixteen, 16, f32x16, u32x16, i32x16, f64x8, eight_least);
+vector!(Eight, 8, f32x8, u32x8, i32x8, f64x4, four_least, eight_points, eight_low, eight_high);
+vector!(Sixteen, 16, f32x16, u32x16, i32x16, f64x8, eight_least, sixteen_points, sixteen_low, sixteen_high);
