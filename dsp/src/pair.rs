@@ -26,6 +26,22 @@ impl From<Pair> for [f64; 2] {
     }
 }
 
+impl Pair {
+    /// The smaller of either lane; where one is no number, the other.
+    #[inline(always)]
+    #[must_use]
+    pub fn least(self, other: Self) -> Self {
+        Self(self.0.min(other.0))
+    }
+
+    /// The larger of either lane; where one is no number, the other.
+    #[inline(always)]
+    #[must_use]
+    pub fn greatest(self, other: Self) -> Self {
+        Self(self.0.max(other.0))
+    }
+}
+
 macro_rules! operator {
     ($operator:ident, $method:ident) => {
         impl $operator for Pair {

@@ -256,12 +256,7 @@ impl Renderer {
     ) {
         let frames = shortest(haptic).min(shortest(audio));
         let frames = if frames == usize::MAX { 0 } else { frames };
-        for channel in haptic.iter_mut() {
-            channel.fill(0.0);
-        }
-        for channel in audio.iter_mut() {
-            channel.fill(0.0);
-        }
+        self.clear_what_nobody_writes(frames, haptic, audio);
         let frames = frames * self.shared.inner.every;
         let mut done = 0;
         while done < frames {

@@ -7,12 +7,12 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
-use crate::prepared::overlay::{Room, TileCells};
+use crate::prepared::overlay::{NoiseWay, Room, TileCells};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
-use asperity_texture::height_field::{HeightField, PathBlock, Reaction, SurfaceBlock, Touch};
+use asperity_texture::height_field::{HeightField, LocalPower, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
 use std::any::Any;
 
@@ -38,6 +38,8 @@ pub(crate) struct Noise<'a> {
     pub(crate) field: &'a FractalNoise,
     /// As the path's, or wider where octaves are left out.
     pub(crate) footprint_m: &'a [f64],
+    /// The least and the greatest coordinates of the path, those midway included.
+    pub(crate) bounds_m: [[f64; 2]; 2],
     /// Radius of the sphere that rides there, m; 0 is a point.
     pub(crate) tip_radius_m: f64,
     /// Where the contact was last.
@@ -194,6 +196,13 @@ impl Seat {
         }
     }
 
+    /// Whether what is here gives way nowhere, or is known to.
+    pub(crate) fn is_hard(&self) -> bool {
+        let hard =
+            |slot: &SurfaceSlot| slot.surface.compliance_m_n == 0.0 && slot.surface.source.is_hard_and_told();
+        self.current.as_deref().is_none_or(hard) && self.previous.as_deref().is_none_or(hard)
+    }
+
     /// Changes parameters of the source; tells whether it took the change.
     pub(crate) fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
         self.source().is_some_and(|source| source.change(change, sample))
@@ -290,10 +299,12 @@ impl SurfaceSlot {
         let n = path.len();
         let surface = &mut self.surface;
         // What a source does not know stays as the surface says.
-        out.friction[..n].fill(FRICTION);
-        out.roughness[..n].fill(DEFAULT_ROUGHNESS);
-        out.compliance_m_n[..n].fill(0.0);
-        out.answer.clear();
+        if !surface.source.is_hard_and_told() {
+            out.friction[..n].fill(FRICTION);
+            out.roughness[..n].fill(DEFAULT_ROUGHNESS);
+            out.compliance_m_n[..n].fill(0.0);
+            out.answer.clear();
+        }
         surface.source.ride(noise.tip_radius_m);
         if surface.compliance_m_n > 0.0 && noise.tip_radius_m > 0.0 {
             surface.sample_under(path, noise.tip_radius_m, out);
@@ -317,15 +328,24 @@ impl SurfaceSlot {
             out.compliance_m_n[..n].fill(surface.compliance_m_n);
         }
         if surface.micro_relief_m > 0.0 {
-            if self.overlay.minds_relief() {
+            let bounds_m = noise.bounds_m;
+            // Mostly it is the same all along the path, and known without a look at each place.
+            let share = if self.overlay.minds_relief() {
                 let local_power_m2 = &mut noise.room.local_power_m2[..n];
-                local_power_m2.fill(0.0);
-                surface.source.add_local_power(path.position_m, local_power_m2);
-            }
+                let fills_m2 = self.overlay.fills_m2();
+                match surface.source.local_power(path.position_m, bounds_m, fills_m2, local_power_m2) {
+                    LocalPower::Nothing => Some(1.0),
+                    LocalPower::Full => Some(0.0),
+                    LocalPower::Told => None,
+                }
+            } else {
+                Some(1.0)
+            };
             self.overlay.tune(noise.tip_radius_m);
+            let along = NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m };
             self.overlay.add(
                 noise.field,
-                &NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m },
+                &NoiseWay { path: along, bounds_m, share },
                 &out.roughness[..n],
                 &mut out.height_m[..n],
                 (&mut *noise.cells, &mut *noise.room),

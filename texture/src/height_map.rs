@@ -23,7 +23,8 @@ mod working;
 pub use extent::{Extent, MapError};
 
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_between_m,
+    Beyond, HeightField, LocalPower, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand,
+    hollow_between_m,
 };
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
@@ -343,6 +344,21 @@ impl HeightField for HeightMap {
         if let Some(local) = &self.local {
             local.add_along(position_m, power_m2);
         }
+    }
+
+    fn local_power(
+        &self,
+        position_m: &[[f64; 2]],
+        bounds_m: [[f64; 2]; 2],
+        fills_m2: f64,
+        power_m2: &mut [f64],
+    ) -> LocalPower {
+        let Some(local) = &self.local else { return LocalPower::Nothing };
+        local.along(position_m, bounds_m, fills_m2, power_m2)
+    }
+
+    fn is_hard_and_told(&self) -> bool {
+        true
     }
 
     fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {

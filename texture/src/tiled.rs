@@ -101,7 +101,7 @@ impl TileAxis {
 
 /// Largest whole number not above x. `f64::floor` is a library call on plain x86-64.
 #[inline]
-fn floor(x: f64) -> f64 {
+pub(crate) fn floor(x: f64) -> f64 {
     // Beyond 2⁵¹ a number has no fraction worth a tile, and a cast may not hold it.
     let has_fraction = x.abs() < 2_251_799_813_685_248.0;
     if !has_fraction {

@@ -16,12 +16,14 @@ pub enum Wrap {
 impl Wrap {
     /// The texel of a row of `len` texels (at least 1) that stands at any index.
     #[must_use]
+    #[inline(always)]
     pub fn index(self, index: i64, len: usize) -> usize {
-        let n = len as i64;
         // Most are within the map, and a division takes longer than all the rest.
-        if (0..n).contains(&index) {
-            return index as usize;
-        }
+        if (index as u64) < len as u64 { index as usize } else { self.index_beyond(index, len) }
+    }
+
+    fn index_beyond(self, index: i64, len: usize) -> usize {
+        let n = len as i64;
         let inside = match self {
             Self::Repeat => index.rem_euclid(n),
             Self::Clamp => index.clamp(0, n - 1),

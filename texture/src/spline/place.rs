@@ -68,29 +68,38 @@ impl Places {
         }
         self.axes = Some(*axes);
         self.len = position_m.len().min(MAX_BLOCK);
-        // So many as fill vectors; two sizes, because loops of known length do without a remainder.
-        if self.len <= FEW {
-            self.find_first::<FEW>(axes, position_m);
+        // Two sizes, because loops of known length do without a remainder; so long most blocks are.
+        if let Ok(few) = <&[_; FEW]>::try_from(position_m) {
+            self.find_all(axes, few);
+        } else if let Some(most) = position_m.first_chunk::<MAX_BLOCK>() {
+            self.find_all(axes, most);
         } else {
-            self.find_first::<ROOM>(axes, position_m);
+            // What lies beyond the last is found as well and means nothing.
+            let mut some = [[0.0; 2]; MAX_BLOCK];
+            some.iter_mut().zip(position_m).for_each(|(to, at_m)| *to = *at_m);
+            self.find_all(axes, &some);
         }
     }
 
     #[inline(always)]
-    fn find_first<const N: usize>(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]]) {
-        let [mut along_u, mut along_v] = [[0.0; N]; 2];
-        // Whole vectors are written, because whole vectors are read at once.
-        let (full, left) = position_m.get(..self.len).unwrap_or_default().as_chunks::<MOST_LANES>();
-        let rooms = along_u.as_chunks_mut().0.iter_mut().zip(along_v.as_chunks_mut().0);
-        for (some, (along_u, along_v)) in full.iter().zip(rooms) {
-            (*along_u, *along_v) = (some.map(|[u, _]| u), some.map(|[_, v]| v));
+    fn find_all<const N: usize>(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]; N]) {
+        // For the usual maps, which repeat, in a loop without branches.
+        if axes.iter().all(|axis| axis.wrap == Wrap::Repeat) {
+            self.find_each(axes.map(|axis| Axis { wrap: Wrap::Repeat, ..axis }), position_m);
+        } else {
+            self.find_each(*axes, position_m);
         }
-        let rooms = along_u.iter_mut().zip(&mut along_v).skip(full.len() * MOST_LANES);
-        for ([u, v], (along_u, along_v)) in left.iter().zip(rooms) {
-            (*along_u, *along_v) = (*u, *v);
+    }
+
+    #[inline(always)]
+    fn find_each<const N: usize>(&mut self, [along_u, along_v]: [Axis; 2], position_m: &[[f64; 2]; N]) {
+        let Self { columns, rows, .. } = self;
+        for (n, [u_m, v_m]) in position_m.iter().enumerate() {
+            let (column, row) = (along_u.place(*u_m), along_v.place(*v_m));
+            (columns.texel[n], columns.fraction[n], columns.slope[n]) =
+                (column.texel, column.fraction, column.slope);
+            (rows.texel[n], rows.fraction[n], rows.slope[n]) = (row.texel, row.fraction, row.slope);
         }
-        axes[0].places(&along_u, &mut self.columns);
-        axes[1].places(&along_v, &mut self.rows);
     }
 
     pub(super) fn len(&self) -> usize {
@@ -178,24 +187,6 @@ impl Axis {
             per_period: 1.0 / period as f64,
             texels_per_metre: len as f64 / extent_m,
             last_first: (len + 2 * PAD - 4) as i64,
-        }
-    }
-
-    /// Where the positions of a block are; for the usual maps, which repeat, in a loop without branches.
-    #[inline(always)]
-    fn places<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
-        if self.wrap == Wrap::Repeat {
-            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out);
-        } else {
-            self.places_one_by_one(position_m, out);
-        }
-    }
-
-    #[inline(always)]
-    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
-        for (n, position_m) in position_m.iter().enumerate() {
-            let place = self.place(*position_m);
-            (out.texel[n], out.fraction[n], out.slope[n]) = (place.texel, place.fraction, place.slope);
         }
     }
 
