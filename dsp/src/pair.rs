@@ -42,6 +42,22 @@ impl Pair {
     }
 }
 
+impl Pair {
+    /// Either lane, or 0 where it is nearer to 0 than the same lane of `least`.
+    #[inline(always)]
+    #[must_use]
+    pub fn or_zero_below(self, least: Self) -> Self {
+        Self(self.0.abs().simd_lt(least.0).select(f64x2::splat(BASE, 0.0), self.0))
+    }
+
+    /// The first lanes of two, and the second lanes.
+    #[inline(always)]
+    #[must_use]
+    pub fn transposed([a, b]: [Self; 2]) -> [Self; 2] {
+        [Self(a.0.zip_low(b.0)), Self(a.0.zip_high(b.0))]
+    }
+}
+
 macro_rules! operator {
     ($operator:ident, $method:ident) => {
         impl $operator for Pair {

@@ -264,8 +264,10 @@ impl Renderer {
             self.look_at_crowds();
             let n = self.stretch(frames - done);
             self.render_contacts(n, tap);
-            let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
-            self.outlets.shown(shown / self.shared.inner.every as u64);
+            if self.outlets.are_open() {
+                let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
+                self.outlets.shown(shown / self.shared.inner.every as u64);
+            }
             self.render_master(n);
             self.render_haptics(done, n, haptic);
             self.render_bodies(done, n, audio);

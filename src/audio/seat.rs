@@ -168,11 +168,12 @@ impl Seat {
             // Two surfaces at once are known at samples only.
             noise.midway = None;
         }
+        let all = path.slopes || self.previous.is_some();
         let Some(current) = &mut self.current else { return };
-        current.sample(path, noise, out, rough);
+        current.sample(path, all, noise, out, rough);
         let Some(previous) = &mut self.previous else { return };
         let mut old = SurfaceBlock::default();
-        previous.sample(path, noise, &mut old, rough);
+        previous.sample(path, all, noise, &mut old, rough);
         for i in 0..path.len() {
             let age = (path.first_sample + i as u64).saturating_sub(self.change_began) as f64;
             let weight = smoothstep((age / self.change_samples).min(1.0));
@@ -289,9 +290,11 @@ fn smoothstep(x: f64) -> f64 {
 }
 
 impl SurfaceSlot {
+    /// Without `all` nobody looks at slopes, friction and answer.
     fn sample(
         &mut self,
         path: &PathBlock<'_>,
+        all: bool,
         noise: &mut Noise<'_>,
         out: &mut SurfaceBlock,
         rough: &mut SurfaceBlock,
@@ -299,7 +302,8 @@ impl SurfaceSlot {
         let n = path.len();
         let surface = &mut self.surface;
         // What a source does not know stays as the surface says.
-        if !surface.source.is_hard_and_told() {
+        let hard = surface.source.is_hard_and_told();
+        if !hard {
             out.friction[..n].fill(FRICTION);
             out.roughness[..n].fill(DEFAULT_ROUGHNESS);
             out.compliance_m_n[..n].fill(0.0);
@@ -308,6 +312,8 @@ impl SurfaceSlot {
         surface.source.ride(noise.tip_radius_m);
         if surface.compliance_m_n > 0.0 && noise.tip_radius_m > 0.0 {
             surface.sample_under(path, noise.tip_radius_m, out);
+        } else if hard && !all && surface.compliance_m_n == 0.0 {
+            surface.source.sample_heights(path, out);
         } else {
             surface.source.sample(path, out);
         }

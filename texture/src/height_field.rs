@@ -337,6 +337,12 @@ pub trait HeightField: Send + Sync {
     /// Fills the first `path.len()` entries of `out`.
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);
 
+    /// [`sample`](Self::sample) where nobody looks at more than heights and roughness: a source that [is hard and told](Self::is_hard_and_told) may leave the
+    /// rest as it is.
+    fn sample_heights(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        self.sample(path, out);
+    }
+
     /// Tells the source that a contact begins where it is touched, before anything is read for it: what
     /// was kept of an earlier contact of this number is forgotten.
     fn land(&mut self, _touch: &Touch) {}

@@ -384,5 +384,10 @@ impl HeightField for HeightMap {
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         self.sample_in(path, out);
+        self.tell_the_rest(path.len(), out);
+    }
+
+    fn sample_heights(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        self.sample_in(path, out);
     }
 }

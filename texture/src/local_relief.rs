@@ -65,7 +65,8 @@ impl LocalRelief {
         fills_m2: f64,
         power_m2: &mut [f64],
     ) -> LocalPower {
-        let [[x, y], [far_x, far_y]] = bounds_m.map(|at_m| self.place(at_m));
+        let [low_m, high_m] = bounds_m;
+        let ([x, y], [far_x, far_y]) = (self.place(low_m), self.place(high_m));
         if x.abs() < MOST_CELLS && y.abs() < MOST_CELLS {
             let corners = self.corners(x, y);
             if corners.hold(x, y) && corners.hold(far_x, far_y) {
@@ -99,10 +100,10 @@ impl LocalRelief {
     fn corners(&self, x: f64, y: f64) -> Corners {
         let Raster { width, height, ref values } = self.power_m2;
         let (left, top) = (floor(x), floor(y));
-        let columns = [0, 1].map(|step| self.wrap.index(left as i64 + step, width));
-        let rows = [0, 1].map(|step| self.wrap.index(top as i64 + step, height) * width);
-        let rows_m2 = rows.map(|row| columns.map(|column| values[row + column]));
-        Corners { left, top, rows_m2 }
+        let (column, row) = (left as i64, top as i64);
+        let (a, b) = (self.wrap.index(column, width), self.wrap.index(column + 1, width));
+        let (c, d) = (self.wrap.index(row, height) * width, self.wrap.index(row + 1, height) * width);
+        Corners { left, top, rows_m2: [[values[c + a], values[c + b]], [values[d + a], values[d + b]]] }
     }
 }
 

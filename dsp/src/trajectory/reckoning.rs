@@ -2,6 +2,7 @@
 
 use super::bend::Turn;
 use super::{PathPoint, REST_SPEED_M_S, TrajectoryDesign};
+use crate::pair::Pair;
 
 /// Event period assumed until two events are known, s.
 const FIRST_PERIOD_S: f64 = 1.0 / 60.0;
@@ -195,12 +196,13 @@ impl Reckoning {
         let mut samples = age as f64;
         for out in believed {
             let since_s = if samples > earliest { samples } else { earliest } * design.sample_period_s;
-            let mut at_m = self.velocity_m_s.map(|velocity_m_s| velocity_m_s * since_s);
+            // As one vector, because the path's filters read it as one.
+            let mut at_m = Pair::from(self.velocity_m_s) * Pair::from([since_s; 2]);
             if !self.turn.is_none() {
                 let [further_m, _] = self.turn.after(since_s);
-                at_m = [at_m[0] + further_m[0], at_m[1] + further_m[1]];
+                at_m = at_m + Pair::from(further_m);
             }
-            (out.position_m, out.normal_force_n) = (at_m, self.force_n);
+            (out.position_m, out.normal_force_n) = (at_m.into(), self.force_n);
             samples += 1.0;
         }
         for out in late {

@@ -1,6 +1,7 @@
 //! Output stage: the haptic channels with their actuators, and the audio buses.
 
 use super::Renderer;
+use crate::audio::body_seat::BodySeat;
 use crate::audio::smoothed::Smoothed;
 use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
 use crate::model::bus::AudioBus;
@@ -239,25 +240,18 @@ impl Renderer {
         for index in self.bodies_used.iter() {
             let rung = self.crew.as_mut().and_then(|crew| crew.take_body(index));
             let body = &mut self.bodies[index];
-            if !body.is_plain() {
-                let sound = &mut self.mix.body[..n];
-                sound.fill(0.0);
-                shed += body.render(terms, rung, sound);
-                body.scale(sound);
-                let (from, to) = body.between();
-                for (i, x) in sound.iter().enumerate() {
-                    let weight = body.arrive();
-                    self.buses[from].hear(n)[i] += (1.0 - weight) * x;
-                    self.buses[to].hear(n)[i] += weight * x;
-                }
-            } else {
+            if body.is_plain() {
                 shed += body.render(terms, rung, self.buses[body.bus()].hear(n));
+            } else {
+                shed += render_moving(terms, rung, body, &mut self.buses, &mut self.mix.body[..n]);
             }
-            body.render_leaving(terms, &mut self.mix.body[..n], |bus, sound| {
-                for (sum, x) in self.buses[bus].hear(n).iter_mut().zip(sound) {
-                    *sum += x;
-                }
-            });
+            if body.anything_leaves() {
+                body.render_leaving(terms, &mut self.mix.body[..n], |bus, sound| {
+                    for (sum, x) in self.buses[bus].hear(n).iter_mut().zip(sound) {
+                        *sum += x;
+                    }
+                });
+            }
         }
         if let Some(crew) = &mut self.crew {
             crew.put_bodies_back();
@@ -284,6 +278,28 @@ impl Renderer {
             cell.store(bus.meter.peak.to_bits(), Relaxed);
         }
     }
+}
+
+/// Renders a body that goes from bus to bus, or to another gain, or to rest.
+#[cold]
+#[inline(never)]
+fn render_moving(
+    terms: Terms,
+    rung: Option<(&[f32], usize)>,
+    body: &mut BodySeat,
+    buses: &mut [Bus],
+    sound: &mut [f32],
+) -> usize {
+    sound.fill(0.0);
+    let shed = body.render(terms, rung, sound);
+    body.scale(sound);
+    let (from, to) = body.between();
+    for (i, x) in sound.iter().enumerate() {
+        let weight = body.arrive();
+        buses[from].hear(sound.len())[i] += (1.0 - weight) * x;
+        buses[to].hear(sound.len())[i] += weight * x;
+    }
+    shed
 }
 
 /// Silence in each output from a sample of its own on.

@@ -5,7 +5,7 @@ use super::{HeightMap, Roughness};
 use crate::height_field::{PathBlock, SurfaceBlock};
 
 impl HeightMap {
-    /// What a path meets, worked out in the memory that the block has for it.
+    /// Heights, slopes and roughness that a path meets, worked out in the memory that the block has for it.
     pub(super) fn sample_in(&self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let Working { places, samples } = &mut out.working;
         let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
@@ -30,6 +30,10 @@ impl HeightMap {
                 }
             }
         }
+    }
+
+    /// What is the same everywhere.
+    pub(super) fn tell_the_rest(&self, n: usize, out: &mut SurfaceBlock) {
         out.friction[..n].fill(self.friction);
         out.compliance_m_n[..n].fill(0.0);
         out.answer.clear();
