@@ -313,7 +313,7 @@ impl SurfaceSlot {
         if surface.compliance_m_n > 0.0 && noise.tip_radius_m > 0.0 {
             surface.sample_under(path, noise.tip_radius_m, out);
         } else if hard && !all && surface.compliance_m_n == 0.0 {
-            surface.source.sample_heights(path, out);
+            surface.source.sample_heights(path, noise.bounds_m, out);
         } else {
             surface.source.sample(path, out);
         }

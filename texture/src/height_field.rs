@@ -337,9 +337,9 @@ pub trait HeightField: Send + Sync {
     /// Fills the first `path.len()` entries of `out`.
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);
 
-    /// [`sample`](Self::sample) where nobody looks at more than heights and roughness: a source that [is hard and told](Self::is_hard_and_told) may leave the
-    /// rest as it is.
-    fn sample_heights(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+    /// [`sample`](Self::sample) of a path that lies between the corners of `bounds_m`, least and greatest [u, v] ([`bounds`]), where nobody looks at more
+    /// than heights and roughness: a source that [is hard and told](Self::is_hard_and_told) may leave the rest as it is.
+    fn sample_heights(&mut self, path: &PathBlock<'_>, _bounds_m: [[f64; 2]; 2], out: &mut SurfaceBlock) {
         self.sample(path, out);
     }
 

@@ -73,10 +73,10 @@ impl LocalRelief {
                 // All of them lie between the same four.
                 let [[a, b], [c, d]] = corners.rows_m2;
                 // What lies between four numbers misses their range by the rounding of its sum at most.
-                if a.min(b).min(c.min(d)) >= (1.0 + 1e-12) * fills_m2 {
+                if [a, b, c, d].iter().all(|power_m2| *power_m2 >= (1.0 + 1e-12) * fills_m2) {
                     return LocalPower::Full;
                 }
-                if a.max(b).max(c.max(d)) == 0.0 {
+                if [a, b, c, d] == [0.0; 4] {
                     return LocalPower::Nothing;
                 }
                 for (position_m, power_m2) in position_m.iter().zip(power_m2) {

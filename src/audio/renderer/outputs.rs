@@ -157,14 +157,14 @@ impl Bus {
             let gain = self.gain as f32;
             out.iter_mut().zip(sum).for_each(|(out, x)| *out = *x * gain);
         } else {
-            let Self { smoothed, gain, .. } = self;
-            out.iter_mut().zip(sum).for_each(|(out, x)| *out = *x * smoothed.tick(*gain) as f32);
+            out.copy_from_slice(sum);
+            fade(&mut self.smoothed, self.gain, out);
         }
         if let Some((design, state)) = &mut self.limiter {
             state.run(design, out);
         }
         if let Some(master) = master {
-            out.iter_mut().zip(master).for_each(|(x, gain)| *x *= gain);
+            weigh(out, master);
         }
         self.meter.watch(out);
     }
@@ -212,7 +212,7 @@ impl Renderer {
             let block = place(inner, (at, n), &mut out, own);
             channel.run(block);
             if *mastered {
-                block.iter_mut().zip(master).for_each(|(x, gain)| *x *= *gain);
+                weigh(block, master);
             }
             if averages {
                 self.outlets.haptic_means(index, inner, self.position, block);
@@ -300,6 +300,20 @@ fn render_moving(
         buses[to].hear(sound.len())[i] += weight * x;
     }
     shed
+}
+
+/// Applies a gain that goes elsewhere.
+#[cold]
+#[inline(never)]
+fn fade(smoothed: &mut Smoothed, to: f64, block: &mut [f32]) {
+    block.iter_mut().for_each(|x| *x *= smoothed.tick(to) as f32);
+}
+
+/// Applies the gain of all that leaves, while there is one.
+#[cold]
+#[inline(never)]
+fn weigh(block: &mut [f32], master: &[f32]) {
+    block.iter_mut().zip(master).for_each(|(x, gain)| *x *= gain);
 }
 
 /// Silence in each output from a sample of its own on.
