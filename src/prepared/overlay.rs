@@ -183,15 +183,20 @@ impl Overlay {
         let [below_m, all_m] = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
         below_m.fill(0.0);
         all_m.fill(0.0);
-        let into_m = [&mut *below_m, &mut *all_m];
-        self.add_tile(field, path, roughness, &[below, whole], into_m, (&mut *cells.0, &mut *cells.1));
+        match short {
+            Some((short, at_m)) => {
+                let into_m = [&mut *below_m, &mut *all_m, at_m];
+                self.add_tile(field, path, roughness, &[below, whole, &short], into_m, cells);
+            }
+            None => {
+                let into_m = [&mut *below_m, &mut *all_m];
+                self.add_tile(field, path, roughness, &[below, whole], into_m, cells);
+            }
+        }
         for ((height_m, share), (below_m, all_m)) in
             height_m.iter_mut().zip(shares).zip(below_m.iter().zip(&*all_m))
         {
             *height_m += (1.0 - *share) * below_m + *share * all_m;
-        }
-        if let Some((short, at_m)) = short {
-            self.add_tile(field, path, roughness, &[&short], [at_m], cells);
         }
     }
 

@@ -29,8 +29,9 @@ pub(super) struct HapticChannel {
     /// The same filter twice: fourth order, −6 dB at its cutoff (Linkwitz and Riley).
     low_pass: Option<(Butterworth, [butterworth::State; 2])>,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
-    /// Sum of the contacts, m or m/s².
-    pub(super) sum: [f64; MAX_BLOCK],
+    /// Sum of the contacts, m or m/s²; what is there of the stretch before where nobody has added to it yet.
+    sum: [f64; MAX_BLOCK],
+    added: bool,
 }
 
 /// An audio bus: the sound of the bodies that play on it.
@@ -94,7 +95,27 @@ impl HapticChannel {
             low_pass: low_pass(settings, sample_rate_hz)?,
             limiter: limiter(settings.limit_peaks, sample_rate_hz)?,
             sum: [0.0; MAX_BLOCK],
+            added: false,
         })
+    }
+
+    /// Adds a contact's samples to those of the stretch.
+    pub(super) fn add(&mut self, samples: &[f64]) {
+        let sum = self.sum.iter_mut().zip(samples);
+        if std::mem::replace(&mut self.added, true) {
+            sum.for_each(|(sum, x)| *sum += x);
+        } else {
+            // As if it were added to 0.
+            sum.for_each(|(sum, x)| *sum = 0.0 + x);
+        }
+    }
+
+    /// The sum of `n` samples and the design of what is added.
+    pub(super) fn begun(&mut self, n: usize) -> (&mut [f64], &ContactOutput) {
+        if !std::mem::replace(&mut self.added, true) {
+            self.sum[..n].fill(0.0);
+        }
+        (&mut self.sum[..n], &self.output)
     }
 
     /// Whether means of inner samples leave, and not some of them.
@@ -104,6 +125,9 @@ impl HapticChannel {
 
     /// The samples of a stretch as long as `out`.
     pub(super) fn run(&mut self, out: &mut [f32]) {
+        if !std::mem::take(&mut self.added) {
+            self.sum[..out.len()].fill(0.0);
+        }
         if let Some((filter, [first, second])) = &mut self.low_pass {
             for x in &mut self.sum[..out.len()] {
                 *x = second.tick(filter, first.tick(filter, *x).low).low;

@@ -59,9 +59,7 @@ impl Gathering<'_> {
         self.resets += out.resets;
         self.blows += out.blows;
         if let Some(channel) = voice.role.actuator {
-            for (sum, x) in self.channels[channel].sum[..n].iter_mut().zip(&out.haptic) {
-                *sum += x;
-            }
+            self.channels[channel].add(&out.haptic[..n]);
         }
         let owner = (index, voice.begun);
         let touched = seat.current().and_then(|slot| Some((slot.surface.body?, slot)));
@@ -159,9 +157,6 @@ impl Gathering<'_> {
 
 impl Renderer {
     pub(super) fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
-        for channel in &mut self.channels {
-            channel.sum[..n].fill(0.0);
-        }
         let tap = &mut self.outlets.beside(tap);
         let at = At { position: self.position, n };
         let watched = tap.is_watching();
@@ -214,7 +209,7 @@ impl Renderer {
         }
         let channels = &mut self.channels;
         self.blows.render(&self.shared, self.position, n, |channel, output, moves| {
-            let HapticChannel { output: design, sum, .. } = &mut channels[channel];
+            let (sum, design) = channels[channel].begun(n);
             for (sum, [pad_m, pad_m_s]) in sum.iter_mut().zip(moves) {
                 *sum += output.tick(design, *pad_m, *pad_m_s);
             }
