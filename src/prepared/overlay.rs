@@ -150,13 +150,15 @@ impl Overlay {
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let Room { local_power_m2, shares, parts_m, lap } = own;
-        lap.begin_m = [0, 1].map(|axis: usize| self.axes[axis].begin_of_all_m(low_m[axis], high_m[axis]));
-        let short = midway.map(|midway| (self.short_waves().from_octave(midway.octave), midway));
-        let short = short.map(|(weights, midway)| {
+        let [along_u, along_v] = &self.axes;
+        lap.begin_m =
+            [along_u.begin_of_all_m(low_m[0], high_m[0]), along_v.begin_of_all_m(low_m[1], high_m[1])];
+        let short = midway.as_ref().map(|midway| self.short_waves().from_octave(midway.octave));
+        let short = short.as_ref().zip(midway).map(|(weights, midway)| {
             let between = NoisePath { position_m: midway.position_m, ..*path };
             midway.midway_m.fill(0.0);
             let into_m = [&mut *midway.midway_m];
-            self.add_tile(field, &between, roughness, &[&weights], into_m, (&mut *cells, &mut *lap));
+            self.add_tile(field, &between, roughness, &[weights], into_m, (&mut *cells, &mut *lap));
             midway.at_m.fill(0.0);
             *midway.seen = true;
             (weights, &mut *midway.at_m)
@@ -175,7 +177,7 @@ impl Overlay {
             let weights = weights.1;
             return match short {
                 Some((short, at_m)) => {
-                    self.add_tile(field, path, roughness, &[weights, &short], [height_m, at_m], cells);
+                    self.add_tile(field, path, roughness, &[weights, short], [height_m, at_m], cells);
                 }
                 None => self.add_tile(field, path, roughness, &[weights], [height_m], cells),
             };
@@ -186,7 +188,7 @@ impl Overlay {
         match short {
             Some((short, at_m)) => {
                 let into_m = [&mut *below_m, &mut *all_m, at_m];
-                self.add_tile(field, path, roughness, &[below, whole, &short], into_m, cells);
+                self.add_tile(field, path, roughness, &[below, whole, short], into_m, cells);
             }
             None => {
                 let into_m = [&mut *below_m, &mut *all_m];

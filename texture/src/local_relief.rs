@@ -101,8 +101,9 @@ impl LocalRelief {
         let Raster { width, height, ref values } = self.power_m2;
         let (left, top) = (floor(x), floor(y));
         let (column, row) = (left as i64, top as i64);
-        let (a, b) = (self.wrap.index(column, width), self.wrap.index(column + 1, width));
-        let (c, d) = (self.wrap.index(row, height) * width, self.wrap.index(row + 1, height) * width);
+        let [a, b] = self.wrap.index_and_next(column, width);
+        let [c, d] = self.wrap.index_and_next(row, height);
+        let (c, d) = (c * width, d * width);
         Corners { left, top, rows_m2: [[values[c + a], values[c + b]], [values[d + a], values[d + b]]] }
     }
 }
