@@ -9,6 +9,7 @@ mod crew;
 mod crowd;
 mod hand_over;
 mod messages;
+mod meter;
 mod outputs;
 mod voices;
 

@@ -1,6 +1,7 @@
 //! Output stage: the haptic channels with their actuators, and the audio buses.
 
 use super::Renderer;
+use super::meter::Meter;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::smoothed::Smoothed;
 use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
@@ -45,35 +46,6 @@ pub(super) struct Bus {
     sum: [f32; MAX_BLOCK],
     /// How many of its first samples may not be zero.
     added: usize,
-}
-
-/// A peak meter: up at once, down slowly.
-struct Meter {
-    peak: f32,
-    /// Of the present [`MAX_BLOCK`] samples.
-    now: f32,
-    /// What is left of the peak after [`MAX_BLOCK`] samples.
-    fall: f32,
-}
-
-/// How long a meter takes to fall by 20 dB, s.
-const METER_FALL_S: f64 = 0.5;
-
-impl Meter {
-    fn new(sample_rate_hz: f64) -> Self {
-        let fall = 0.1f64.powf(MAX_BLOCK as f64 / (METER_FALL_S * sample_rate_hz)) as f32;
-        Self { peak: 0.0, now: 0.0, fall }
-    }
-
-    fn watch(&mut self, samples: &[f32]) {
-        self.now = samples.iter().fold(self.now, |peak, x| peak.max(x.abs()));
-    }
-
-    /// Once every [`MAX_BLOCK`] samples.
-    fn settle(&mut self) {
-        let fallen = self.peak * self.fall;
-        self.peak = std::mem::take(&mut self.now).max(if fallen < 1e-9 { 0.0 } else { fallen });
-    }
 }
 
 impl HapticChannel {
@@ -299,7 +271,7 @@ impl Renderer {
         self.counters.limiter_db.store(self.limiter_db() as u64, Relaxed);
         for (cell, bus) in self.counters.bus_peak_bits.iter().zip(&mut self.buses) {
             bus.meter.settle();
-            cell.store(bus.meter.peak.to_bits(), Relaxed);
+            cell.store(bus.meter.peak().to_bits(), Relaxed);
         }
     }
 }
