@@ -224,7 +224,14 @@ impl BodySeat {
         self.current = body;
     }
 
+    /// Whether any body rings out.
+    pub(crate) fn anything_leaves(&self) -> bool {
+        self.leaving.iter().any(Option::is_some)
+    }
+
     /// Renders each body that rings out to `tail` and hands it to its bus.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn render_leaving(
         &mut self,
         terms: Terms,

@@ -51,17 +51,31 @@ impl Outlets {
 
     /// Shows what leaves on a haptic channel of a stretch of inner samples from `position` on.
     pub(crate) fn haptic(&mut self, channel: usize, inner: InnerRate, position: u64, block: &[f32]) {
-        if self.open.is_empty() {
-            return;
+        if self.are_open() {
+            self.show(inner, position, block, |outlet, first, leaving| {
+                outlet.haptic(channel, first, leaving)
+            });
         }
+    }
+
+    /// Shows what leaves of a block to every outlet.
+    #[cold]
+    #[inline(never)]
+    fn show(
+        &mut self,
+        inner: InnerRate,
+        position: u64,
+        block: &[f32],
+        to: impl Fn(&mut dyn Outlet, u64, &[f32]),
+    ) {
         let (first, count) = inner.leaving(position, block, &mut self.leaving);
-        for outlet in &mut self.open {
-            outlet.haptic(channel, first, &self.leaving[..count]);
-        }
+        self.open.iter_mut().for_each(|outlet| to(&mut **outlet, first, &self.leaving[..count]));
     }
 
     /// The same of a channel of which means leave. They are kept up while no port is open, so that one that opens between two samples
     /// is shown whole ones.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn haptic_means(&mut self, channel: usize, inner: InnerRate, position: u64, block: &[f32]) {
         let mean = &mut self.means[channel];
         let (first, count) = inner.leaving_means(position, block, mean, &mut self.leaving);
@@ -72,13 +86,14 @@ impl Outlets {
 
     /// The same of an audio bus.
     pub(crate) fn bus(&mut self, bus: usize, inner: InnerRate, position: u64, block: &[f32]) {
-        if self.open.is_empty() {
-            return;
+        if self.are_open() {
+            self.show(inner, position, block, |outlet, first, leaving| outlet.bus(bus, first, leaving));
         }
-        let (first, count) = inner.leaving(position, block, &mut self.leaving);
-        for outlet in &mut self.open {
-            outlet.bus(bus, first, &self.leaving[..count]);
-        }
+    }
+
+    /// Whether any port is open.
+    pub(crate) fn are_open(&self) -> bool {
+        !self.open.is_empty()
     }
 
     /// Every contact has been shown up to this sample.

@@ -9,6 +9,7 @@ mod crew;
 mod crowd;
 mod hand_over;
 mod messages;
+mod meter;
 mod outputs;
 mod voices;
 
@@ -256,12 +257,7 @@ impl Renderer {
     ) {
         let frames = shortest(haptic).min(shortest(audio));
         let frames = if frames == usize::MAX { 0 } else { frames };
-        for channel in haptic.iter_mut() {
-            channel.fill(0.0);
-        }
-        for channel in audio.iter_mut() {
-            channel.fill(0.0);
-        }
+        self.clear_what_nobody_writes(frames, haptic, audio);
         let frames = frames * self.shared.inner.every;
         let mut done = 0;
         while done < frames {
@@ -269,8 +265,10 @@ impl Renderer {
             self.look_at_crowds();
             let n = self.stretch(frames - done);
             self.render_contacts(n, tap);
-            let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
-            self.outlets.shown(shown / self.shared.inner.every as u64);
+            if self.outlets.are_open() {
+                let shown = (self.position + n as u64).saturating_sub(self.shared.row_latency as u64);
+                self.outlets.shown(shown / self.shared.inner.every as u64);
+            }
             self.render_master(n);
             self.render_haptics(done, n, haptic);
             self.render_bodies(done, n, audio);

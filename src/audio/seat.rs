@@ -7,12 +7,12 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
-use crate::prepared::overlay::{Room, TileCells};
+use crate::prepared::overlay::{NoiseWay, Room, TileCells};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
-use asperity_texture::height_field::{HeightField, PathBlock, Reaction, SurfaceBlock, Touch};
+use asperity_texture::height_field::{HeightField, LocalPower, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
 use std::any::Any;
 
@@ -38,6 +38,8 @@ pub(crate) struct Noise<'a> {
     pub(crate) field: &'a FractalNoise,
     /// As the path's, or wider where octaves are left out.
     pub(crate) footprint_m: &'a [f64],
+    /// The least and the greatest coordinates of the path, those midway included.
+    pub(crate) bounds_m: [[f64; 2]; 2],
     /// Radius of the sphere that rides there, m; 0 is a point.
     pub(crate) tip_radius_m: f64,
     /// Where the contact was last.
@@ -166,11 +168,12 @@ impl Seat {
             // Two surfaces at once are known at samples only.
             noise.midway = None;
         }
+        let all = path.slopes || self.previous.is_some();
         let Some(current) = &mut self.current else { return };
-        current.sample(path, noise, out, rough);
+        current.sample(path, all, noise, out, rough);
         let Some(previous) = &mut self.previous else { return };
         let mut old = SurfaceBlock::default();
-        previous.sample(path, noise, &mut old, rough);
+        previous.sample(path, all, noise, &mut old, rough);
         for i in 0..path.len() {
             let age = (path.first_sample + i as u64).saturating_sub(self.change_began) as f64;
             let weight = smoothstep((age / self.change_samples).min(1.0));
@@ -192,6 +195,13 @@ impl Seat {
                 slot.stroking = *stroking;
             }
         }
+    }
+
+    /// Whether what is here gives way nowhere, or is known to.
+    pub(crate) fn is_hard(&self) -> bool {
+        let hard =
+            |slot: &SurfaceSlot| slot.surface.compliance_m_n == 0.0 && slot.surface.source.is_hard_and_told();
+        self.current.as_deref().is_none_or(hard) && self.previous.as_deref().is_none_or(hard)
     }
 
     /// Changes parameters of the source; tells whether it took the change.
@@ -280,9 +290,11 @@ fn smoothstep(x: f64) -> f64 {
 }
 
 impl SurfaceSlot {
+    /// Without `all` nobody looks at slopes, friction and answer.
     fn sample(
         &mut self,
         path: &PathBlock<'_>,
+        all: bool,
         noise: &mut Noise<'_>,
         out: &mut SurfaceBlock,
         rough: &mut SurfaceBlock,
@@ -290,13 +302,18 @@ impl SurfaceSlot {
         let n = path.len();
         let surface = &mut self.surface;
         // What a source does not know stays as the surface says.
-        out.friction[..n].fill(FRICTION);
-        out.roughness[..n].fill(DEFAULT_ROUGHNESS);
-        out.compliance_m_n[..n].fill(0.0);
-        out.answer.clear();
+        let hard = surface.source.is_hard_and_told();
+        if !hard {
+            out.friction[..n].fill(FRICTION);
+            out.roughness[..n].fill(DEFAULT_ROUGHNESS);
+            out.compliance_m_n[..n].fill(0.0);
+            out.answer.clear();
+        }
         surface.source.ride(noise.tip_radius_m);
         if surface.compliance_m_n > 0.0 && noise.tip_radius_m > 0.0 {
             surface.sample_under(path, noise.tip_radius_m, out);
+        } else if hard && !all && surface.compliance_m_n == 0.0 {
+            surface.source.sample_heights(path, noise.bounds_m, out);
         } else {
             surface.source.sample(path, out);
         }
@@ -317,15 +334,24 @@ impl SurfaceSlot {
             out.compliance_m_n[..n].fill(surface.compliance_m_n);
         }
         if surface.micro_relief_m > 0.0 {
-            if self.overlay.minds_relief() {
+            let bounds_m = noise.bounds_m;
+            // Mostly it is the same all along the path, and known without a look at each place.
+            let share = if self.overlay.minds_relief() {
                 let local_power_m2 = &mut noise.room.local_power_m2[..n];
-                local_power_m2.fill(0.0);
-                surface.source.add_local_power(path.position_m, local_power_m2);
-            }
+                let fills_m2 = self.overlay.fills_m2();
+                match surface.source.local_power(path.position_m, bounds_m, fills_m2, local_power_m2) {
+                    LocalPower::Nothing => Some(1.0),
+                    LocalPower::Full => Some(0.0),
+                    LocalPower::Told => None,
+                }
+            } else {
+                Some(1.0)
+            };
             self.overlay.tune(noise.tip_radius_m);
+            let along = NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m };
             self.overlay.add(
                 noise.field,
-                &NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m },
+                &NoiseWay { path: along, bounds_m, share },
                 &out.roughness[..n],
                 &mut out.height_m[..n],
                 (&mut *noise.cells, &mut *noise.room),

@@ -234,37 +234,21 @@ impl Voice {
         lane: usize,
     ) -> bool {
         let Stretch { shared, output, position, n } = stretch;
-        let at_slow_step = position.is_multiple_of(shared.slow_step);
-        if at_slow_step {
-            let velocity_m_s = self.path.last.velocity_m_s;
-            self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
-        }
-        if at_slow_step && self.rolling.rolls() {
-            self.roll(shared, seat, Rolling::turn);
+        if position.is_multiple_of(shared.slow_step) {
+            self.take_step(stretch, seat);
         }
         let Some(slot) = seat.current() else { return false };
         let Scratch { lanes, profile, .. } = scratch;
         let own = &mut lanes[lane];
         let points = &mut own.points[..n];
-        let probe = shared.probe(self.role.probe);
         let dragged = output.quantity() == Quantity::Tangential;
-        if at_slow_step {
-            self.pad.stiffen(probe, slot.stroking.ground, self.path.last.normal_force_n);
-            if dragged {
-                self.drag.press(self.path.last.normal_force_n);
-            } else {
-                self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
-            }
-            self.look_between(shared, seat);
-        }
-        let Some(slot) = seat.current() else { return false };
         if !set_out {
             self.path.run(slot, points, &mut profile.at_m);
         }
         let midway = self.between.on_the_way(self.path.last.position_m);
         let along = Along { midway, ..self.along(shared, position, slopes || dragged) };
         profile.run(seat, along, points, &mut self.cells);
-        self.rolling.run(position, shared.slow_step, &mut profile.surface, n);
+        self.rolling.run(position, shared.slow_step, &mut profile.surface, n, slopes || dragged);
         own.height_m[..n].copy_from_slice(&profile.surface.height_m[..n]);
         own.force_n[..n].copy_from_slice(&profile.force_n[..n]);
         let bends = own.bend(if midway.is_some() { n } else { 0 });
@@ -273,6 +257,26 @@ impl Voice {
             self.between.remember(*roughness);
         }
         true
+    }
+
+    /// What is slow, at the steps of the absolute grid. By itself, because most short stretches have none.
+    #[inline(never)]
+    fn take_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat) {
+        let Stretch { shared, output, position, .. } = stretch;
+        let PathPoint { velocity_m_s, normal_force_n, .. } = self.path.last;
+        self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
+        if self.rolling.rolls() {
+            self.roll(shared, seat, Rolling::turn);
+        }
+        let Some(slot) = seat.current() else { return };
+        let probe = shared.probe(self.role.probe);
+        self.pad.stiffen(probe, slot.stroking.ground, normal_force_n);
+        if output.quantity() == Quantity::Tangential {
+            self.drag.press(normal_force_n);
+        } else {
+            self.skin.soften(probe, output, &self.path.last, shared.sample_rate_hz);
+        }
+        self.look_between(shared, seat);
     }
 
     /// The rows of the pad's model as they are felt.

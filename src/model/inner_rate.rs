@@ -20,6 +20,7 @@ pub(crate) struct InnerRate {
     at: usize,
 }
 
+/// What is not done where every sample leaves stays out of the way of what is.
 impl InnerRate {
     /// How many inner samples there are for each at `sample_rate_hz`.
     pub(crate) fn samples(sample_rate_hz: f64) -> usize {
@@ -43,6 +44,8 @@ impl InnerRate {
 
     /// Copies what leaves of the inner samples from `position` on to the beginning of `out`; tells the index of the first among all
     /// that leave, and how many there are.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn leaving(&self, position: u64, inner: &[f32], out: &mut [f32]) -> (u64, usize) {
         let every = self.every as u64;
         let first = (position + every - 1 - self.at as u64) / every;
@@ -52,6 +55,8 @@ impl InnerRate {
     }
 
     /// The same of the means; `mean` is what the first of them has come to already, and then the last.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn leaving_means(
         &self,
         position: u64,
@@ -72,6 +77,8 @@ impl InnerRate {
     }
 
     /// Writes to `out` what leaves of the inner samples from `at` on.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn pick(&self, at: usize, inner: &[f32], out: &mut [f32]) {
         if self.every == 1 {
             return out[at..at + inner.len()].copy_from_slice(inner);
@@ -83,6 +90,8 @@ impl InnerRate {
     }
 
     /// Adds to `out` the means of the inner samples from `at` on.
+    #[cold]
+    #[inline(never)]
     pub(crate) fn average(&self, at: usize, inner: &[f32], out: &mut [f32]) {
         let share = 1.0 / self.every as f32;
         for (k, x) in inner.iter().enumerate() {

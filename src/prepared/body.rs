@@ -97,16 +97,18 @@ impl Place {
     /// Gathers the impulses of the next `n` samples, and tells whether there may be any.
     fn gather(&mut self, position: u64, n: usize) -> bool {
         let input = &mut self.input[..n];
-        input.fill(0.0);
         let busy = !self.bus.is_empty(position);
         // The bus is empty beyond the last impact.
         if busy {
             self.bus.take(position, input);
         }
-        if self.touched {
-            for (x, contact) in input.iter_mut().zip(&mut self.contacts_n_s) {
-                *x += std::mem::take(contact) as f32;
-            }
+        let contacts = input.iter_mut().zip(&mut self.contacts_n_s);
+        match (busy, self.touched) {
+            (true, true) => contacts.for_each(|(x, contact)| *x += std::mem::take(contact) as f32),
+            // As if it were added to 0.
+            (false, true) => contacts.for_each(|(x, contact)| *x = 0.0 + std::mem::take(contact) as f32),
+            (true, false) => {}
+            (false, false) => input.fill(0.0),
         }
         busy | std::mem::take(&mut self.touched)
     }

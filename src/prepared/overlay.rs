@@ -17,7 +17,7 @@ use crate::audio::seat::MidwayNoise;
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
-use asperity_texture::height_field::{MAX_BLOCK, bounds};
+use asperity_texture::height_field::MAX_BLOCK;
 use asperity_texture::tiled::{Place, TileAxis};
 use std::f64::consts::FRAC_PI_2;
 
@@ -64,8 +64,19 @@ pub(crate) struct Room {
     lap: Lap,
 }
 
+/// A path over the surface, and what is known of all of it.
+pub(crate) struct NoiseWay<'a> {
+    pub(crate) path: NoisePath<'a>,
+    /// Its least and greatest coordinates, those midway between samples included.
+    pub(crate) bounds_m: [[f64; 2]; 2],
+    /// The share of the noise's long waves, where it is the same everywhere (1 where the source has no relief, 0 where that [fills](Overlay::fills_m2) it); otherwise [`Room::local_power_m2`] is told.
+    pub(crate) share: Option<f64>,
+}
+
 /// Where a path lies in its lap of the tile, and what meets there.
 struct Lap {
+    /// Where the lap begins that all of it lies in, if it is one.
+    begin_m: [Option<f64>; 2],
     position_m: [[f64; 2]; MAX_BLOCK],
     places: [[Place; 2]; MAX_BLOCK],
     gains: [[[f64; 2]; 2]; MAX_BLOCK],
@@ -80,6 +91,7 @@ impl Room {
         let none = [0.0; MAX_BLOCK];
         let nowhere = Place { at_m: 0.0, weight: 0.0, slope_per_m: 0.0 };
         let lap = Lap {
+            begin_m: [None; 2],
             position_m: [[0.0; 2]; MAX_BLOCK],
             places: [[nowhere; 2]; MAX_BLOCK],
             gains: [[[1.0; 2]; 2]; MAX_BLOCK],
@@ -127,11 +139,10 @@ impl Overlay {
     }
 
     /// Adds the relief along a path to `height_m`; all slices are equally long, at most [`MAX_BLOCK`].
-    /// [`Room::local_power_m2`] is told before.
     pub(crate) fn add(
         &self,
         field: &FractalNoise,
-        path: &NoisePath<'_>,
+        NoiseWay { path, bounds_m: [low_m, high_m], share }: &NoiseWay<'_>,
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
@@ -139,29 +150,34 @@ impl Overlay {
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let Room { local_power_m2, shares, parts_m, lap } = own;
-        let short = midway.map(|midway| (self.short_waves().from_octave(midway.octave), midway));
-        let short = short.map(|(weights, midway)| {
+        let [along_u, along_v] = &self.axes;
+        lap.begin_m =
+            [along_u.begin_of_all_m(low_m[0], high_m[0]), along_v.begin_of_all_m(low_m[1], high_m[1])];
+        let short = midway.as_ref().map(|midway| self.short_waves().from_octave(midway.octave));
+        let short = short.as_ref().zip(midway).map(|(weights, midway)| {
             let between = NoisePath { position_m: midway.position_m, ..*path };
             midway.midway_m.fill(0.0);
             let into_m = [&mut *midway.midway_m];
-            self.add_tile(field, &between, roughness, &[&weights], into_m, (&mut *cells, &mut *lap));
+            self.add_tile(field, &between, roughness, &[weights], into_m, (&mut *cells, &mut *lap));
             midway.at_m.fill(0.0);
             *midway.seen = true;
             (weights, &mut *midway.at_m)
         });
         let cells = (cells, lap);
         let n = height_m.len().min(MAX_BLOCK);
-        let shares = &mut shares[..if self.minds_relief() { n } else { 0 }];
+        let shares = &mut shares[..if share.is_none() { n } else { 0 }];
         for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
             *share = room(*power_m2, self.ordinary_m);
         }
-        let everywhere = |share: f64| shares.iter().all(|own| *own == share);
+        let everywhere = |wanted: f64| {
+            share.map_or_else(|| shares.iter().all(|own| *own == wanted), |share| share == wanted)
+        };
         if let Some(weights) = [(1.0, whole), (0.0, below)].into_iter().find(|(share, _)| everywhere(*share))
         {
             let weights = weights.1;
             return match short {
                 Some((short, at_m)) => {
-                    self.add_tile(field, path, roughness, &[weights, &short], [height_m, at_m], cells);
+                    self.add_tile(field, path, roughness, &[weights, short], [height_m, at_m], cells);
                 }
                 None => self.add_tile(field, path, roughness, &[weights], [height_m], cells),
             };
@@ -169,15 +185,20 @@ impl Overlay {
         let [below_m, all_m] = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
         below_m.fill(0.0);
         all_m.fill(0.0);
-        let into_m = [&mut *below_m, &mut *all_m];
-        self.add_tile(field, path, roughness, &[below, whole], into_m, (&mut *cells.0, &mut *cells.1));
+        match short {
+            Some((short, at_m)) => {
+                let into_m = [&mut *below_m, &mut *all_m, at_m];
+                self.add_tile(field, path, roughness, &[below, whole, short], into_m, cells);
+            }
+            None => {
+                let into_m = [&mut *below_m, &mut *all_m];
+                self.add_tile(field, path, roughness, &[below, whole], into_m, cells);
+            }
+        }
         for ((height_m, share), (below_m, all_m)) in
             height_m.iter_mut().zip(shares).zip(below_m.iter().zip(&*all_m))
         {
             *height_m += (1.0 - *share) * below_m + *share * all_m;
-        }
-        if let Some((short, at_m)) = short {
-            self.add_tile(field, path, roughness, &[&short], [at_m], cells);
         }
     }
 
@@ -190,6 +211,11 @@ impl Overlay {
     /// [`OctaveWeights::missed_m`] of them.
     pub(crate) fn missed_m(&self, roughness: f64, [footprint_m, faded_m]: [f64; 2]) -> f64 {
         self.short_waves().missed_m(roughness, footprint_m, faded_m)
+    }
+
+    /// Power of a source's relief that leaves no room for the noise's long waves, m².
+    pub(crate) fn fills_m2(&self) -> f64 {
+        fills_m2(self.ordinary_m)
     }
 
     /// Whether the source's own relief matters.
@@ -208,12 +234,10 @@ impl Overlay {
         (cells, lap): (&mut TileCells, &mut Lap),
     ) {
         const { assert!(W <= MOST_SETS, "each set has memory of its own") };
-        let Lap { position_m, places, gains, parts_m } = lap;
+        let Lap { begin_m, position_m, places, gains, parts_m } = lap;
         let walked_m = path.position_m;
         let n = walked_m.len().min(MAX_BLOCK);
-        let [low_m, high_m] = bounds(&walked_m[..n]);
-        let begin_m = [0, 1].map(|axis: usize| self.axes[axis].begin_of_all_m(low_m[axis], high_m[axis]));
-        if let [Some(begin_u_m), Some(begin_v_m)] = begin_m {
+        if let [Some(begin_u_m), Some(begin_v_m)] = *begin_m {
             for (at_m, [u_m, v_m]) in position_m.iter_mut().zip(walked_m) {
                 *at_m = [u_m - begin_u_m, v_m - begin_v_m];
             }
@@ -256,9 +280,14 @@ impl Overlay {
     }
 }
 
+/// Power of a source's relief that leaves no room, m².
+fn fills_m2(rms_m: f64) -> f64 {
+    4.0 * rms_m * rms_m
+}
+
 /// Share of the noise's long waves that there is room for beside a source's own relief.
 fn room(power_m2: f64, rms_m: f64) -> f64 {
-    let room = (1.0 - power_m2 / (4.0 * rms_m * rms_m)).clamp(0.0, 1.0);
+    let room = (1.0 - power_m2 / fills_m2(rms_m)).clamp(0.0, 1.0);
     room * room * (3.0 - 2.0 * room)
 }
 

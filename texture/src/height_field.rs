@@ -176,6 +176,17 @@ pub enum Beyond {
     Edge,
 }
 
+/// What a source says of its relief along a path ([`HeightField::local_power`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LocalPower {
+    /// It has none.
+    Nothing,
+    /// It has as much everywhere as leaves no room for the micro-noise.
+    Full,
+    /// So much as was written for each place.
+    Told,
+}
+
 /// What an engine tells a source when it takes it, on the game thread: nothing of it is the user's to know.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
@@ -281,6 +292,26 @@ pub trait HeightField: Send + Sync {
         power_m2.fill(f64::INFINITY);
     }
 
+    /// What [`add_local_power`](Self::add_local_power) adds to nothing, of a path that lies between the corners of `bounds_m`, least and greatest [u, v]
+    /// ([`bounds`]). A source that sees at once that it is 0 at every place, or `fills_m2` and more, may say so and leave `power_m2` as it is.
+    fn local_power(
+        &self,
+        position_m: &[[f64; 2]],
+        _bounds_m: [[f64; 2]; 2],
+        _fills_m2: f64,
+        power_m2: &mut [f64],
+    ) -> LocalPower {
+        power_m2.fill(0.0);
+        self.add_local_power(position_m, power_m2);
+        LocalPower::Told
+    }
+
+    /// Whether it is hard everywhere, and [`sample`](Self::sample) fills every entry of a block besides slopes that nobody looks at: friction, roughness,
+    /// compliance and answer too. Nobody then fills them before it or lets it give way.
+    fn is_hard_and_told(&self) -> bool {
+        false
+    }
+
     /// How much higher the ground lies on the mean of four points `reach_m` away, along u and v, than where it is touched, m: above 0
     /// in a hollow, below 0 on a crest. A source that does not know is flat; one whose samples depend on nothing but their places has
     /// [`hollow_by_samples_m`].
@@ -305,6 +336,12 @@ pub trait HeightField: Send + Sync {
 
     /// Fills the first `path.len()` entries of `out`.
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);
+
+    /// [`sample`](Self::sample) of a path that lies between the corners of `bounds_m`, least and greatest [u, v] ([`bounds`]), where nobody looks at more
+    /// than heights and roughness: a source that [is hard and told](Self::is_hard_and_told) may leave the rest as it is.
+    fn sample_heights(&mut self, path: &PathBlock<'_>, _bounds_m: [[f64; 2]; 2], out: &mut SurfaceBlock) {
+        self.sample(path, out);
+    }
 
     /// Tells the source that a contact begins where it is touched, before anything is read for it: what
     /// was kept of an earlier contact of this number is forgotten.

@@ -23,7 +23,8 @@ mod working;
 pub use extent::{Extent, MapError};
 
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_between_m,
+    Beyond, HeightField, LocalPower, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand,
+    hollow_between_m,
 };
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
@@ -204,13 +205,13 @@ impl Pyramid {
     fn sample_block<const SLOPES: bool>(
         &self,
         path: &PathBlock<'_>,
-        widest_m: f64,
+        (widest_m, bounds_m): (f64, Option<&[[f64; 2]; 2]>),
         places: &mut Places,
         out: &mut Samples,
     ) {
         let Some(finest) = self.levels.first() else { return out.fill::<SLOPES>(self.constant) };
         if is_sharp(widest_m, finest.texels_per_metre()) {
-            return finest.sample_block::<SLOPES>(path.position_m, places, out);
+            return finest.sample_block::<SLOPES>(path.position_m, bounds_m, places, out);
         }
         self.sample_blurred::<SLOPES>(finest, path, out);
     }
@@ -279,10 +280,10 @@ impl Pyramid {
         Blend { places, finer, coarser }: &mut Blend,
     ) {
         places.forget();
-        self.levels[level].sample_block::<SLOPES>(position_m, places, finer);
+        self.levels[level].sample_block::<SLOPES>(position_m, None, places, finer);
         if let Some(next) = self.levels.get(level + 1) {
             places.forget();
-            next.sample_block::<SLOPES>(position_m, places, coarser);
+            next.sample_block::<SLOPES>(position_m, None, places, coarser);
         } else {
             coarser.fill::<SLOPES>(0.0);
         }
@@ -345,6 +346,21 @@ impl HeightField for HeightMap {
         }
     }
 
+    fn local_power(
+        &self,
+        position_m: &[[f64; 2]],
+        bounds_m: [[f64; 2]; 2],
+        fills_m2: f64,
+        power_m2: &mut [f64],
+    ) -> LocalPower {
+        let Some(local) = &self.local else { return LocalPower::Nothing };
+        local.along(position_m, bounds_m, fills_m2, power_m2)
+    }
+
+    fn is_hard_and_told(&self) -> bool {
+        true
+    }
+
     fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
         if self.heights.levels.is_empty() {
             return 0.0;
@@ -367,6 +383,11 @@ impl HeightField for HeightMap {
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        self.sample_in(path, out);
+        self.sample_in(path, None, out);
+        self.tell_the_rest(path.len(), out);
+    }
+
+    fn sample_heights(&mut self, path: &PathBlock<'_>, bounds_m: [[f64; 2]; 2], out: &mut SurfaceBlock) {
+        self.sample_in(path, Some(&bounds_m), out);
     }
 }

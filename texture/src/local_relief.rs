@@ -8,14 +8,18 @@
 //! it keeps 3·10⁻⁴ at 2 mm. So P is the mean square of what the map has between two texels and about 4 mm, and 0
 //! where it is flat, whatever its resolution.
 
-use crate::block::bounds;
+use crate::height_field::LocalPower;
 use crate::raster::Raster;
+use crate::tiled::floor;
 use crate::wrap::Wrap;
 
 /// Longest lag, m.
 const LONGEST_LAG_M: f64 = 2e-3;
 /// Cells of the picture of P along the longer side of a map.
 const CELLS: usize = 128;
+
+/// So many cells from the origin no fraction of one is left in a number.
+const MOST_CELLS: f64 = 1e15;
 
 /// P over a tile.
 #[derive(Debug, Clone)]
@@ -43,23 +47,9 @@ impl LocalRelief {
 
     /// Adds P at each place, m²: between the four nearest cells, which a finger shares for many samples.
     pub fn add_along(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        let place = |[u_m, v_m]: [f64; 2]| [u_m * self.cells_per_m[0] - 0.5, v_m * self.cells_per_m[1] - 0.5];
-        let [low_m, high_m] = bounds(position_m);
-        let ([x, y], [far_x, far_y]) = (place(low_m), place(high_m));
-        if x.is_finite() && y.is_finite() {
-            let corners = self.corners(x, y);
-            if corners.hold(x, y) && corners.hold(far_x, far_y) {
-                // All of them lie between the same four.
-                for (position_m, power_m2) in position_m.iter().zip(power_m2) {
-                    let [x, y] = place(*position_m);
-                    *power_m2 += corners.between(x, y);
-                }
-                return;
-            }
-        }
         let mut corners = Corners { left: f64::NAN, top: f64::NAN, rows_m2: [[0.0; 2]; 2] };
-        for ([u_m, v_m], power_m2) in position_m.iter().zip(power_m2) {
-            let [x, y] = place([*u_m, *v_m]);
+        for (position_m, power_m2) in position_m.iter().zip(power_m2) {
+            let [x, y] = self.place(*position_m);
             if !corners.hold(x, y) {
                 corners = self.corners(x, y);
             }
@@ -67,13 +57,54 @@ impl LocalRelief {
         }
     }
 
+    /// The same, added to nothing, of places between two corners; not one by one where all of it is 0, or `fills_m2` and more.
+    pub fn along(
+        &self,
+        position_m: &[[f64; 2]],
+        bounds_m: [[f64; 2]; 2],
+        fills_m2: f64,
+        power_m2: &mut [f64],
+    ) -> LocalPower {
+        let [low_m, high_m] = bounds_m;
+        let ([x, y], [far_x, far_y]) = (self.place(low_m), self.place(high_m));
+        if x.abs() < MOST_CELLS && y.abs() < MOST_CELLS {
+            let corners = self.corners(x, y);
+            if corners.hold(x, y) && corners.hold(far_x, far_y) {
+                // All of them lie between the same four.
+                let [[a, b], [c, d]] = corners.rows_m2;
+                // What lies between four numbers misses their range by the rounding of its sum at most.
+                if [a, b, c, d].iter().all(|power_m2| *power_m2 >= (1.0 + 1e-12) * fills_m2) {
+                    return LocalPower::Full;
+                }
+                if [a, b, c, d] == [0.0; 4] {
+                    return LocalPower::Nothing;
+                }
+                for (position_m, power_m2) in position_m.iter().zip(power_m2) {
+                    let [x, y] = self.place(*position_m);
+                    *power_m2 = corners.between(x, y);
+                }
+                return LocalPower::Told;
+            }
+        }
+        power_m2.fill(0.0);
+        self.add_along(position_m, power_m2);
+        LocalPower::Told
+    }
+
+    #[inline(always)]
+    fn place(&self, [u_m, v_m]: [f64; 2]) -> [f64; 2] {
+        [u_m * self.cells_per_m[0] - 0.5, v_m * self.cells_per_m[1] - 0.5]
+    }
+
+    #[inline(always)]
     fn corners(&self, x: f64, y: f64) -> Corners {
         let Raster { width, height, ref values } = self.power_m2;
-        let (left, top) = (x.floor(), y.floor());
-        let column = |step: i64| self.wrap.index(left as i64 + step, width);
-        let row = |step: i64| self.wrap.index(top as i64 + step, height) * width;
-        let pair = |row: usize| [values[row + column(0)], values[row + column(1)]];
-        Corners { left, top, rows_m2: [pair(row(0)), pair(row(1))] }
+        let (left, top) = (floor(x), floor(y));
+        let (column, row) = (left as i64, top as i64);
+        let [a, b] = self.wrap.index_and_next(column, width);
+        let [c, d] = self.wrap.index_and_next(row, height);
+        let (c, d) = (c * width, d * width);
+        Corners { left, top, rows_m2: [[values[c + a], values[c + b]], [values[d + a], values[d + b]]] }
     }
 }
 
@@ -133,6 +164,7 @@ fn add_lag(heights: &Raster, lag: usize, wrap: Wrap, power: &mut [f64], cells: [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::block::bounds;
 
     impl LocalRelief {
         fn at(&self, position_m: [f64; 2]) -> f64 {
@@ -157,6 +189,25 @@ mod tests {
         for (at, power_m2) in way.iter().zip(along) {
             assert_eq!(power_m2.to_bits(), ridge.at(*at).to_bits(), "{at:?}");
         }
+        // The same by blocks whose bounds are known.
+        let across: Vec<[f64; 2]> = (0..8000).map(|n| [1e-5 * f64::from(n), 0.05]).collect();
+        let mut said = [0; 3];
+        for fills_m2 in [1e-7, 1e-12] {
+            for way in way[..4000].chunks(16).chain(across.chunks(16)) {
+                let mut block = [f64::NAN; 16];
+                let how = ridge.along(way, bounds(way), fills_m2, &mut block[..way.len()]);
+                said[how as usize] += 1;
+                for (at, power_m2) in way.iter().zip(block) {
+                    let alone_m2 = ridge.at(*at);
+                    match how {
+                        LocalPower::Nothing => assert_eq!(alone_m2, 0.0, "{at:?}"),
+                        LocalPower::Full => assert!(alone_m2 >= fills_m2, "{at:?}"),
+                        LocalPower::Told => assert_eq!(power_m2.to_bits(), alone_m2.to_bits(), "{at:?}"),
+                    }
+                }
+            }
+        }
+        assert!(said.iter().all(|times| *times > 0), "{said:?}");
     }
 
     fn picture(n: usize, height_m: impl Fn(f64, f64) -> f64) -> LocalRelief {

@@ -82,17 +82,19 @@ impl Spline {
 
     /// The value, and the slope if `SLOPES`, at each of up to [`MAX_BLOCK`](crate::height_field::MAX_BLOCK) positions; (0, 0)
     /// is the top left corner of the map. The bits are those of each position alone. `places` are found on the way,
-    /// unless a map of the same grid has done so for the same positions.
+    /// unless a map of the same grid has done so for the same positions. Where the corners are known that all positions lie between, one cell
+    /// that holds both is found from them.
     pub fn sample_block<const SLOPES: bool>(
         &self,
         position_m: &[[f64; 2]],
+        bounds_m: Option<&[[f64; 2]; 2]>,
         places: &mut Places,
         out: &mut Samples,
     ) {
         at_level!(
             self.level,
-            s => self.sample_block_in_lanes::<4, _, _, SLOPES>(Four(s), Four(s), position_m, places, out),
-            wide s => self.sample_block_in_lanes::<8, _, _, SLOPES>(vector::Eight(s), Four(s), position_m, places, out)
+            s => self.sample_block_in_lanes::<4, _, _, SLOPES>(Four(s), Four(s), (position_m, bounds_m), places, out),
+            wide s => self.sample_block_in_lanes::<8, _, _, SLOPES>(vector::Eight(s), Four(s), (position_m, bounds_m), places, out)
         );
     }
 
@@ -115,10 +117,17 @@ impl Spline {
         &self,
         v: V,
         rows: R,
-        position_m: &[[f64; 2]],
+        (position_m, bounds_m): (&[[f64; 2]], Option<&[[f64; 2]; 2]>),
         places: &mut Places,
         out: &mut Samples,
     ) {
+        if !SLOPES
+            && let Some(bounds_m) = bounds_m
+            && let Some([column, row]) = places.find_in_one_cell(v, &self.axes, bounds_m, position_m)
+        {
+            let cell = self.cell(rows, column, row);
+            return cell.block::<N, V, SLOPES>(v, places.by_axis(), (0, places.len()), out);
+        }
         places.find(&self.axes, position_m);
         let mut start = 0;
         while start < places.len() {

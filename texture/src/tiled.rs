@@ -81,10 +81,11 @@ impl TileAxis {
             return Some(0.0);
         }
         let begin_m = self.length_m * floor(low_m / self.length_m);
-        let edge_m = EDGE * (self.length_m + low_m.abs().max(high_m.abs()));
+        let far_m = if low_m.abs() < high_m.abs() { high_m.abs() } else { low_m.abs() };
+        let edge_m = EDGE * (self.length_m + far_m);
         let (low_m, high_m) = (low_m - begin_m, high_m - begin_m);
-        let ends_m = (self.length_m - edge_m).min(self.length_m - self.blend_m);
-        (low_m > edge_m && high_m < ends_m).then_some(begin_m)
+        let before_blend = high_m < self.length_m - self.blend_m;
+        (low_m > edge_m && high_m < self.length_m - edge_m && before_blend).then_some(begin_m)
     }
 
     #[inline]
@@ -101,18 +102,22 @@ impl TileAxis {
 
 /// Largest whole number not above x. `f64::floor` is a library call on plain x86-64.
 #[inline]
-fn floor(x: f64) -> f64 {
+pub(crate) fn floor(x: f64) -> f64 {
     // Beyond 2⁵¹ a number has no fraction worth a tile, and a cast may not hold it.
     let has_fraction = x.abs() < 2_251_799_813_685_248.0;
     if !has_fraction {
         return x.floor();
     }
-    let whole = x as i64 as f64;
-    match whole.partial_cmp(&x) {
-        Some(std::cmp::Ordering::Greater) => whole - 1.0,
+    // To the nearest whole number; 1.5 · 2⁵².
+    const ROUND: f64 = 6_755_399_441_055_744.0;
+    let whole = (x + ROUND) - ROUND;
+    if whole > x {
+        whole - 1.0
+    } else if whole == x {
         // A zero keeps its sign.
-        Some(std::cmp::Ordering::Equal) => x,
-        _ => whole,
+        x
+    } else {
+        whole
     }
 }
 

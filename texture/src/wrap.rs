@@ -16,12 +16,27 @@ pub enum Wrap {
 impl Wrap {
     /// The texel of a row of `len` texels (at least 1) that stands at any index.
     #[must_use]
+    #[inline(always)]
     pub fn index(self, index: i64, len: usize) -> usize {
-        let n = len as i64;
         // Most are within the map, and a division takes longer than all the rest.
-        if (0..n).contains(&index) {
-            return index as usize;
-        }
+        if (index as u64) < len as u64 { index as usize } else { self.index_beyond(index, len) }
+    }
+
+    /// The texels at an index and at the next.
+    #[must_use]
+    #[inline(always)]
+    pub fn index_and_next(self, index: i64, len: usize) -> [usize; 2] {
+        let first = self.index(index, len);
+        let next = match self {
+            Self::Repeat if first + 1 < len => first + 1,
+            Self::Repeat => 0,
+            Self::Clamp | Self::Mirror => self.index(index + 1, len),
+        };
+        [first, next]
+    }
+
+    fn index_beyond(self, index: i64, len: usize) -> usize {
+        let n = len as i64;
         let inside = match self {
             Self::Repeat => index.rem_euclid(n),
             Self::Clamp => index.clamp(0, n - 1),
@@ -54,5 +69,11 @@ mod tests {
         assert_eq!(row(Wrap::Repeat), [2, 0, 1, 2, 0, 1, 2, 0, 1, 2, 0]);
         assert_eq!(row(Wrap::Clamp), [0, 0, 0, 0, 0, 1, 2, 2, 2, 2, 2]);
         assert_eq!(row(Wrap::Mirror), [2, 2, 1, 0, 0, 1, 2, 2, 1, 0, 0]);
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            for (index, len) in (-7..9).flat_map(|index| [(index, 3), (index, 1)]) {
+                let expected = [index, index + 1].map(|index| wrap.index(index, len));
+                assert_eq!(wrap.index_and_next(index, len), expected, "{wrap:?} {index} of {len}");
+            }
+        }
     }
 }

@@ -31,7 +31,7 @@ mod shape;
 pub use merge::OnsetMerge;
 pub use ring::{
     FORCE_HISTORY, FORCE_TAPS, KERNEL_SAMPLES, SHORTEST_SAMPLES, SMALLEST_IMPULSE_N_S, deposit_force,
-    spread_force, take,
+    spread_force, spread_force_alone, take,
 };
 pub(crate) use shape::CENTRED as CENTRED_SHAPE;
 pub use shape::pulse_shape;

@@ -182,6 +182,16 @@ pub fn spread_force(impulses_n_s: &[f64], out: &mut [f64]) {
     }
 }
 
+/// What [`spread_force`] adds to nothing.
+pub fn spread_force_alone(impulses_n_s: &[f64], out: &mut [f64]) {
+    let [outer, inner, middle, ..] = FORCE_TAPS;
+    for (y, window) in out.iter_mut().zip(impulses_n_s.windows(FORCE_HISTORY + 1)) {
+        if let [a, b, c, d, e] = window {
+            *y = 0.0 + ((a + e) * outer + (b + d) * inner + c * middle);
+        }
+    }
+}
+
 /// Reads the impulses of `out.len()` samples from `first_sample` on and clears them for the ring's next
 /// turn. What is below [`SMALLEST_IMPULSE_N_S`] or not finite is read as zero.
 pub fn take(ring: &mut [f64], first_sample: u64, out: &mut [f32]) {

@@ -16,7 +16,7 @@
 //! after 100 ms without reports six times the finger's own speed. Over hills a sudden change of speed is felt as much as
 //! too much of it: hence the slow turn.
 
-use super::TrajectoryDesign;
+use super::{PathPoint, TrajectoryDesign};
 
 /// Share of a contact's own speed by which the path may outrun it.
 pub(super) const HURRY: f64 = 0.35;
@@ -101,10 +101,10 @@ impl CatchUp {
     }
 
     /// Adds what is left to the coming inputs.
-    pub fn add_to(&mut self, design: &TrajectoryDesign, inputs: &mut [[f64; 3]]) {
+    pub fn add_to(&mut self, design: &TrajectoryDesign, inputs: &mut [PathPoint]) {
         let step_s = design.sample_period_s;
         let turn_m_s2 = self.own_speed_m_s.max(self.limit_m_s) / TURN_S;
-        for [u, v, _] in inputs {
+        for PathPoint { position_m: [u, v], .. } in inputs {
             *u += self.left_m * self.away[0];
             *v += self.left_m * self.away[1];
             let wanted_m_s = libm::sqrt(2.0 * turn_m_s2 * self.left_m).min(self.limit_m_s);

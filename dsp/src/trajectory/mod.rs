@@ -69,8 +69,6 @@ const REST_SPEED_M_S: f64 = 1e-7;
 const STILL_DISTANCE_M: f64 = 1e-10;
 const STILL_SPEED_M_S: f64 = 1e-8;
 const STILL_FORCE_N: f64 = 1e-7;
-/// Samples whose inputs are worked out at a time.
-const FEW: usize = 16;
 /// Stillness is looked for on this absolute sample grid.
 const STILL_GRID: u64 = 64;
 
@@ -223,29 +221,21 @@ impl Trajectory {
         let filter = &design.filter;
         let (mut axes, mut pressing) = (Two::new([filter; 2], self.axes), self.force);
         let (origin_m, to_speed) = (Pair::from(self.origin_m), Pair::from([design.band_to_speed; 2]));
-        // A few at a time: memory that is not used would have to be cleared as well.
-        let mut inputs = [[0.0; 3]; FEW];
         let (mut input, mut low) = ([0.0; 3], [0.0; 3]);
-        let begin = self.sample;
-        for points in out.chunks_mut(FEW) {
-            let inputs = &mut inputs[..points.len()];
-            self.inputs(design, inputs);
-            self.sample += points.len() as u64;
-            for (now, point) in inputs.iter().zip(points) {
-                let [u, v, force_n] = *now;
-                let smooth = axes.tick([u, v].into());
-                let force = pressing.tick(filter, force_n);
-                let at: [f64; 2] = smooth.low.into();
-                (input, low) = (*now, [at[0], at[1], force.low]);
-                *point = PathPoint {
-                    position_m: (origin_m + smooth.low).into(),
-                    velocity_m_s: (smooth.band * to_speed).into(),
-                    normal_force_n: force.low.max(0.0),
-                };
-            }
+        self.inputs(design, out);
+        for point in &mut *out {
+            let ([u, v], force_n) = (point.position_m, point.normal_force_n);
+            let smooth = axes.tick([u, v].into());
+            let force = pressing.tick(filter, force_n);
+            let at: [f64; 2] = smooth.low.into();
+            (input, low) = ([u, v, force_n], [at[0], at[1], force.low]);
+            *point = PathPoint {
+                position_m: (origin_m + smooth.low).into(),
+                velocity_m_s: (smooth.band * to_speed).into(),
+                normal_force_n: force.low.max(0.0),
+            };
         }
         (self.axes, self.force) = (axes.states(), pressing);
-        self.sample = begin;
         let end = if design.mode == PathMode::BandLimited { self.estimated(design, out) } else { None };
         self.come_to(design, (&input, low), out, end);
     }
@@ -283,17 +273,20 @@ impl Trajectory {
         end
     }
 
-    /// What the filters are given for the next samples: position along u and v from the origin, and force.
-    fn inputs(&mut self, design: &TrajectoryDesign, out: &mut [[f64; 3]]) {
+    /// What the filters are given for the next samples, as points: places from the origin, and force. Velocities are left as they are. The points'
+    /// own memory holds them, because any other would have to be cleared for each stretch.
+    fn inputs(&mut self, design: &TrajectoryDesign, out: &mut [PathPoint]) {
         let force_n = self.reckoning.force_n();
         match design.mode {
             PathMode::Extrapolate | PathMode::BandLimited => self.reckoning.run(design, self.sample, out),
-            PathMode::Hold => out.fill([0.0, 0.0, force_n]),
+            PathMode::Hold => {
+                let rests = PathPoint { normal_force_n: force_n, ..PathPoint::default() };
+                out.fill(rests);
+            }
             PathMode::Hermite => {
                 let belief = self.reckoning.belief(design);
                 for (sample, out) in (self.sample..).zip(&mut *out) {
-                    let ([u, v], force_n) = self.history.at(design, sample, belief);
-                    *out = [u, v, force_n];
+                    (out.position_m, out.normal_force_n) = self.history.at(design, sample, belief);
                 }
             }
         }

@@ -1,7 +1,8 @@
 //! Dead reckoning from the latest event, and how long to believe it.
 
 use super::bend::Turn;
-use super::{REST_SPEED_M_S, TrajectoryDesign};
+use super::{PathPoint, REST_SPEED_M_S, TrajectoryDesign};
+use crate::pair::Pair;
 
 /// Event period assumed until two events are known, s.
 const FIRST_PERIOD_S: f64 = 1.0 / 60.0;
@@ -182,7 +183,7 @@ impl Reckoning {
     /// The input from `sample` on, relative to the latest event, and the force. Once the velocity is no longer believed
     /// every sample must be asked for in turn.
     #[inline]
-    pub fn run(&mut self, design: &TrajectoryDesign, sample: u64, out: &mut [[f64; 3]]) {
+    pub fn run(&mut self, design: &TrajectoryDesign, sample: u64, out: &mut [PathPoint]) {
         let age = sample.wrapping_sub(self.sample) as i64;
         if self.glide.after_samples < 0 {
             self.plan_glide(design);
@@ -195,16 +196,17 @@ impl Reckoning {
         let mut samples = age as f64;
         for out in believed {
             let since_s = if samples > earliest { samples } else { earliest } * design.sample_period_s;
-            *out = [self.velocity_m_s[0] * since_s, self.velocity_m_s[1] * since_s, self.force_n];
+            // As one vector, because the path's filters read it as one.
+            let mut at_m = Pair::from(self.velocity_m_s) * Pair::from([since_s; 2]);
             if !self.turn.is_none() {
-                let [[u, v], _] = self.turn.after(since_s);
-                (out[0], out[1]) = (out[0] + u, out[1] + v);
+                let [further_m, _] = self.turn.after(since_s);
+                at_m = at_m + Pair::from(further_m);
             }
+            (out.position_m, out.normal_force_n) = (at_m.into(), self.force_n);
             samples += 1.0;
         }
         for out in late {
-            let [u, v] = self.glide(design);
-            *out = [u, v, self.force_n];
+            (out.position_m, out.normal_force_n) = (self.glide(design), self.force_n);
         }
     }
 

@@ -12,8 +12,6 @@ use fearless_simd::{Simd, f64x4};
 
 /// How many go side by side.
 const LANES: usize = 4;
-/// Samples of a short stretch.
-const FEW: usize = 16;
 /// Samples of a stretch at most.
 const LONGEST: usize = STILL_GRID as usize;
 
@@ -35,25 +33,13 @@ pub fn advance_side_by_side(level: Level, paths: &mut [Beside<'_>]) {
         }
         return;
     }
-    // What is not used would have to be cleared as well.
-    if paths[0].out.len() <= FEW {
-        go_on::<FEW>(level, paths);
-    } else {
-        go_on::<LONGEST>(level, paths);
+    let mut last = [[[0.0; 3]; 2]; LANES];
+    for Beside { design, path, out } in &mut *paths {
+        path.inputs(design, out);
     }
-}
-
-/// Goes on over at most N samples.
-fn go_on<const N: usize>(level: Level, paths: &mut [Beside<'_>]) {
-    let n = paths[0].out.len().min(N);
-    let mut inputs = [[[0.0; 3]; N]; LANES];
-    for (Beside { design, path, .. }, inputs) in paths.iter_mut().zip(&mut inputs) {
-        path.inputs(design, &mut inputs[..n]);
-    }
-    let mut lows = [[0.0; 3]; LANES];
-    at_level!(level.at_most_256_bits(), s => filter(s, paths, &inputs, &mut lows));
-    for ((Beside { design, path, out }, inputs), low) in paths.iter_mut().zip(&inputs).zip(lows) {
-        path.come_to(design, (&inputs[n - 1], low), out, None);
+    at_level!(level.at_most_256_bits(), s => filter(s, paths, &mut last));
+    for (Beside { design, path, out }, [input, low]) in paths.iter_mut().zip(last) {
+        path.come_to(design, (&input, low), out, None);
     }
 }
 
@@ -124,14 +110,9 @@ impl<S: Simd> States<S> {
     }
 }
 
-/// Runs the filters; the last low responses go to `lows`.
+/// Runs the filters over the inputs in the points' places; the last input and low response of each go to `ends`.
 #[inline(always)]
-fn filter<S: Set, const N: usize>(
-    s: S,
-    paths: &mut [Beside<'_>],
-    inputs: &[[[f64; 3]; N]; LANES],
-    lows: &mut [[f64; 3]; LANES],
-) {
+fn filter<S: Set>(s: S, paths: &mut [Beside<'_>], ends: &mut [[[f64; 3]; 2]; LANES]) {
     let number = |of: fn(&Butterworth) -> f64| each(s, paths, |beside| of(&beside.design.filter));
     let filters = Filters {
         a: [number(|f| f.a1), number(|f| f.a2), number(|f| f.a3)],
@@ -144,14 +125,15 @@ fn filter<S: Set, const N: usize>(
     let mut axes = [0, 1].map(|axis| States::of(s, paths, |path| path.axes[axis]));
     let mut pressing = States::of(s, paths, |path| path.force);
     let n = paths[0].out.len();
-    let [a, b, c, d] = inputs;
-    let mut last = [f64x4::splat(s, 0.0); 3];
-    for (i, (((a, b), c), d)) in a.iter().zip(b).zip(c).zip(d).enumerate().take(n) {
-        let input = |of: usize| f64x4::load_array(s, [a[of], b[of], c[of], d[of]]);
+    let mut last = [[f64x4::splat(s, 0.0); 3]; 2];
+    for i in 0..n {
+        let input = |of: fn(&PathPoint) -> f64| each(s, paths, |beside| beside.out.get(i).map_or(0.0, of));
+        let input =
+            [input(|at| at.position_m[0]), input(|at| at.position_m[1]), input(|at| at.normal_force_n)];
         let [[u_band, u_low], [v_band, v_low]] =
-            [axes[0].tick(&filters, input(0)), axes[1].tick(&filters, input(1))];
-        let [_, force_low] = pressing.tick(&filters, input(2));
-        last = [u_low, v_low, force_low];
+            [axes[0].tick(&filters, input[0]), axes[1].tick(&filters, input[1])];
+        let [_, force_low] = pressing.tick(&filters, input[2]);
+        last = [input, [u_low, v_low, force_low]];
         let points =
             s.transpose([origin[0] + u_low, origin[1] + v_low, u_band * to_speed, v_band * to_speed]);
         let force_n = force_low.to_array();
@@ -167,11 +149,11 @@ fn filter<S: Set, const N: usize>(
         }
     }
     let (axes, pressing) = (axes.map(States::states), pressing.states());
-    let last = last.map(f64x4::to_array);
+    let last = last.map(|numbers| numbers.map(f64x4::to_array));
     for (lane, beside) in paths.iter_mut().enumerate() {
         beside.path.axes = [axes[0][lane], axes[1][lane]];
         beside.path.force = pressing[lane];
-        lows[lane] = last.map(|low| low[lane]);
+        ends[lane] = last.map(|numbers| numbers.map(|number| number[lane]));
     }
 }
 

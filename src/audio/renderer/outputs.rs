@@ -1,9 +1,12 @@
 //! Output stage: the haptic channels with their actuators, and the audio buses.
 
 use super::Renderer;
+use super::meter::Meter;
+use crate::audio::body_seat::BodySeat;
 use crate::audio::smoothed::Smoothed;
 use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
 use crate::model::bus::AudioBus;
+use crate::model::inner_rate::InnerRate;
 use crate::prepared::body::Terms;
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{
@@ -27,8 +30,9 @@ pub(super) struct HapticChannel {
     /// The same filter twice: fourth order, −6 dB at its cutoff (Linkwitz and Riley).
     low_pass: Option<(Butterworth, [butterworth::State; 2])>,
     limiter: Option<(PeakLimiter, PeakLimiterState)>,
-    /// Sum of the contacts, m or m/s².
-    pub(super) sum: [f64; MAX_BLOCK],
+    /// Sum of the contacts, m or m/s²; what is there of the stretch before where nobody has added to it yet.
+    sum: [f64; MAX_BLOCK],
+    added: bool,
 }
 
 /// An audio bus: the sound of the bodies that play on it.
@@ -40,35 +44,8 @@ pub(super) struct Bus {
     meter: Meter,
     /// Sum of the bodies.
     sum: [f32; MAX_BLOCK],
-}
-
-/// A peak meter: up at once, down slowly.
-struct Meter {
-    peak: f32,
-    /// Of the present [`MAX_BLOCK`] samples.
-    now: f32,
-    /// What is left of the peak after [`MAX_BLOCK`] samples.
-    fall: f32,
-}
-
-/// How long a meter takes to fall by 20 dB, s.
-const METER_FALL_S: f64 = 0.5;
-
-impl Meter {
-    fn new(sample_rate_hz: f64) -> Self {
-        let fall = 0.1f64.powf(MAX_BLOCK as f64 / (METER_FALL_S * sample_rate_hz)) as f32;
-        Self { peak: 0.0, now: 0.0, fall }
-    }
-
-    fn watch(&mut self, samples: &[f32]) {
-        self.now = samples.iter().fold(self.now, |peak, x| peak.max(x.abs()));
-    }
-
-    /// Once every [`MAX_BLOCK`] samples.
-    fn settle(&mut self) {
-        let fallen = self.peak * self.fall;
-        self.peak = std::mem::take(&mut self.now).max(if fallen < 1e-9 { 0.0 } else { fallen });
-    }
+    /// How many of its first samples may not be zero.
+    added: usize,
 }
 
 impl HapticChannel {
@@ -90,11 +67,39 @@ impl HapticChannel {
             low_pass: low_pass(settings, sample_rate_hz)?,
             limiter: limiter(settings.limit_peaks, sample_rate_hz)?,
             sum: [0.0; MAX_BLOCK],
+            added: false,
         })
+    }
+
+    /// Adds a contact's samples to those of the stretch.
+    pub(super) fn add(&mut self, samples: &[f64]) {
+        let sum = self.sum.iter_mut().zip(samples);
+        if std::mem::replace(&mut self.added, true) {
+            sum.for_each(|(sum, x)| *sum += x);
+        } else {
+            // As if it were added to 0.
+            sum.for_each(|(sum, x)| *sum = 0.0 + x);
+        }
+    }
+
+    /// The sum of `n` samples and the design of what is added.
+    pub(super) fn begun(&mut self, n: usize) -> (&mut [f64], &ContactOutput) {
+        if !std::mem::replace(&mut self.added, true) {
+            self.sum[..n].fill(0.0);
+        }
+        (&mut self.sum[..n], &self.output)
+    }
+
+    /// Whether means of inner samples leave, and not some of them.
+    fn averages(&self, inner: InnerRate) -> bool {
+        inner.every > 1 && self.output.quantity() == Quantity::Acceleration
     }
 
     /// The samples of a stretch as long as `out`.
     pub(super) fn run(&mut self, out: &mut [f32]) {
+        if !std::mem::take(&mut self.added) {
+            self.sum[..out.len()].fill(0.0);
+        }
         if let Some((filter, [first, second])) = &mut self.low_pass {
             for x in &mut self.sum[..out.len()] {
                 *x = second.tick(filter, first.tick(filter, *x).low).low;
@@ -115,6 +120,7 @@ impl Bus {
             limiter: limiter(settings.limit, sample_rate_hz)?,
             meter: Meter::new(sample_rate_hz),
             sum: [0.0; MAX_BLOCK],
+            added: 0,
         })
     }
 
@@ -123,27 +129,57 @@ impl Bus {
         self.gain = gain;
     }
 
-    /// What leaves of the present stretch of `n` samples.
-    fn finish(&mut self, n: usize, master: Option<&[f32]>) -> &[f32] {
-        let sum = &mut self.sum[..n];
+    /// Nobody has played on it in the stretch that begins.
+    fn begin(&mut self) {
+        let added = std::mem::take(&mut self.added);
+        if added > 0 {
+            self.sum[..added].fill(0.0);
+        }
+    }
+
+    /// The `n` samples of the present stretch, for a body to add to.
+    fn hear(&mut self, n: usize) -> &mut [f32] {
+        self.added = self.added.max(n);
+        &mut self.sum[..n]
+    }
+
+    /// What leaves of the present stretch, as long as `out`.
+    fn finish(&mut self, master: Option<&[f32]>, out: &mut [f32]) {
+        if self.added == 0 && self.limiter.is_none() && self.smoothed.settled_at(self.gain) {
+            return out.fill(0.0);
+        }
+        let sum = &self.sum[..out.len()];
         if self.smoothed.settled_at(self.gain) {
             let gain = self.gain as f32;
-            sum.iter_mut().for_each(|x| *x *= gain);
+            out.iter_mut().zip(sum).for_each(|(out, x)| *out = *x * gain);
         } else {
-            sum.iter_mut().for_each(|x| *x *= self.smoothed.tick(self.gain) as f32);
+            out.copy_from_slice(sum);
+            fade(&mut self.smoothed, self.gain, out);
         }
         if let Some((design, state)) = &mut self.limiter {
-            state.run(design, sum);
+            state.run(design, out);
         }
         if let Some(master) = master {
-            sum.iter_mut().zip(master).for_each(|(x, gain)| *x *= gain);
+            weigh(out, master);
         }
-        self.meter.watch(sum);
-        sum
+        self.meter.watch(out);
     }
 }
 
 impl Renderer {
+    /// Silence where nothing is written later: beyond the block's end, in outputs that nobody plays on, and where means are added up.
+    pub(super) fn clear_what_nobody_writes(
+        &self,
+        frames: usize,
+        haptic: &mut [&mut [f32]],
+        audio: &mut [&mut [f32]],
+    ) {
+        let inner = self.shared.inner;
+        let plays = |index: usize| self.channels.get(index).is_some_and(|channel| !channel.averages(inner));
+        clear_beyond(haptic, |index| if plays(index) { frames } else { 0 });
+        clear_beyond(audio, |index| if index < self.buses.len() { frames } else { 0 });
+    }
+
     /// The gain of all that leaves, where it is not 1.
     pub(super) fn render_master(&mut self, n: usize) {
         let target = if self.muted || self.paused { 0.0 } else { 1.0 };
@@ -166,22 +202,24 @@ impl Renderer {
     pub(super) fn render_haptics(&mut self, at: usize, n: usize, haptic: &mut [&mut [f32]]) {
         let inner = self.shared.inner;
         for (index, channel) in self.channels.iter_mut().enumerate() {
-            let block = &mut self.mix.haptic[..n];
+            let averages = channel.averages(inner);
+            let Mix { haptic: own, master, mastered, .. } = &mut *self.mix;
+            let mut out = haptic.get_mut(index);
+            let block = place(inner, (at, n), &mut out, own);
             channel.run(block);
-            if self.mix.mastered {
-                block.iter_mut().zip(&self.mix.master).for_each(|(x, gain)| *x *= gain);
+            if *mastered {
+                weigh(block, master);
             }
-            let averages = channel.output.quantity() == Quantity::Acceleration && inner.every > 1;
             if averages {
                 self.outlets.haptic_means(index, inner, self.position, block);
             } else {
                 self.outlets.haptic(index, inner, self.position, block);
             }
-            if let Some(out) = haptic.get_mut(index) {
+            if let Some(out) = out.filter(|_| inner.every > 1) {
                 if averages {
-                    inner.average(at, block, out);
+                    inner.average(at, &own[..n], out);
                 } else {
-                    inner.pick(at, block, out);
+                    inner.pick(at, &own[..n], out);
                 }
             }
         }
@@ -189,9 +227,7 @@ impl Renderer {
 
     /// The same of what the bodies sound like, bus by bus.
     pub(super) fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
-        for bus in &mut self.buses {
-            bus.sum[..n].fill(0.0);
-        }
+        self.buses.iter_mut().for_each(Bus::begin);
         let terms = Terms { position: self.position, mode_level: self.governor.mode_level() };
         if let Some(crew) = &mut self.crew {
             crew.ring_bodies(terms, n, (&mut self.bodies, &self.bodies_used), &mut self.scratch);
@@ -200,36 +236,32 @@ impl Renderer {
         for index in self.bodies_used.iter() {
             let rung = self.crew.as_mut().and_then(|crew| crew.take_body(index));
             let body = &mut self.bodies[index];
-            if !body.is_plain() {
-                let sound = &mut self.mix.body[..n];
-                sound.fill(0.0);
-                shed += body.render(terms, rung, sound);
-                body.scale(sound);
-                let (from, to) = body.between();
-                for (i, x) in sound.iter().enumerate() {
-                    let weight = body.arrive();
-                    self.buses[from].sum[i] += (1.0 - weight) * x;
-                    self.buses[to].sum[i] += weight * x;
-                }
+            if body.is_plain() {
+                shed += body.render(terms, rung, self.buses[body.bus()].hear(n));
             } else {
-                shed += body.render(terms, rung, &mut self.buses[body.bus()].sum[..n]);
+                shed += render_moving(terms, rung, body, &mut self.buses, &mut self.mix.body[..n]);
             }
-            body.render_leaving(terms, &mut self.mix.body[..n], |bus, sound| {
-                for (sum, x) in self.buses[bus].sum.iter_mut().zip(sound) {
-                    *sum += x;
-                }
-            });
+            if body.anything_leaves() {
+                body.render_leaving(terms, &mut self.mix.body[..n], |bus, sound| {
+                    for (sum, x) in self.buses[bus].hear(n).iter_mut().zip(sound) {
+                        *sum += x;
+                    }
+                });
+            }
         }
         if let Some(crew) = &mut self.crew {
             crew.put_bodies_back();
         }
         self.groups_shed = shed;
+        let inner = self.shared.inner;
         for (index, bus) in self.buses.iter_mut().enumerate() {
-            let master = self.mix.mastered.then_some(&self.mix.master[..n]);
-            let sound = bus.finish(n, master);
-            self.outlets.bus(index, self.shared.inner, self.position, sound);
-            if let Some(out) = audio.get_mut(index) {
-                self.shared.inner.pick(at, sound, out);
+            let Mix { body: own, master, mastered, .. } = &mut *self.mix;
+            let mut out = audio.get_mut(index);
+            let sound = place(inner, (at, n), &mut out, own);
+            bus.finish(mastered.then_some(&master[..n]), sound);
+            self.outlets.bus(index, inner, self.position, sound);
+            if let Some(out) = out.filter(|_| inner.every > 1) {
+                inner.pick(at, &own[..n], out);
             }
         }
     }
@@ -239,8 +271,67 @@ impl Renderer {
         self.counters.limiter_db.store(self.limiter_db() as u64, Relaxed);
         for (cell, bus) in self.counters.bus_peak_bits.iter().zip(&mut self.buses) {
             bus.meter.settle();
-            cell.store(bus.meter.peak.to_bits(), Relaxed);
+            cell.store(bus.meter.peak().to_bits(), Relaxed);
         }
+    }
+}
+
+/// Renders a body that goes from bus to bus, or to another gain, or to rest.
+#[cold]
+#[inline(never)]
+fn render_moving(
+    terms: Terms,
+    rung: Option<(&[f32], usize)>,
+    body: &mut BodySeat,
+    buses: &mut [Bus],
+    sound: &mut [f32],
+) -> usize {
+    sound.fill(0.0);
+    let shed = body.render(terms, rung, sound);
+    body.scale(sound);
+    let (from, to) = body.between();
+    for (i, x) in sound.iter().enumerate() {
+        let weight = body.arrive();
+        buses[from].hear(sound.len())[i] += (1.0 - weight) * x;
+        buses[to].hear(sound.len())[i] += weight * x;
+    }
+    shed
+}
+
+/// Applies a gain that goes elsewhere.
+#[cold]
+#[inline(never)]
+fn fade(smoothed: &mut Smoothed, to: f64, block: &mut [f32]) {
+    block.iter_mut().for_each(|x| *x *= smoothed.tick(to) as f32);
+}
+
+/// Applies the gain of all that leaves, while there is one.
+#[cold]
+#[inline(never)]
+fn weigh(block: &mut [f32], master: &[f32]) {
+    block.iter_mut().zip(master).for_each(|(x, gain)| *x *= gain);
+}
+
+/// Silence in each output from a sample of its own on.
+fn clear_beyond(outputs: &mut [&mut [f32]], written: impl Fn(usize) -> usize) {
+    for (index, out) in outputs.iter_mut().enumerate() {
+        // Mostly nothing is left, which would still cost a call.
+        if let Some(rest) = out.get_mut(written(index)..).filter(|rest| !rest.is_empty()) {
+            rest.fill(0.0);
+        }
+    }
+}
+
+/// Where `n` inner samples go of which the first has place `at` in the output: into it, where all of them leave.
+fn place<'a>(
+    inner: InnerRate,
+    (at, n): (usize, usize),
+    out: &'a mut Option<&mut &mut [f32]>,
+    own: &'a mut [f32; MAX_BLOCK],
+) -> &'a mut [f32] {
+    match out {
+        Some(out) if inner.every == 1 => &mut out[at..at + n],
+        _ => &mut own[..n],
     }
 }
 

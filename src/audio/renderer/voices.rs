@@ -1,6 +1,7 @@
 //! The contacts of a stretch: each voice is rendered, then what it does is added up in the order of the voices.
 
 use super::Renderer;
+use super::crew::Crew;
 use super::outputs::HapticChannel;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::occupied::Occupied;
@@ -58,9 +59,7 @@ impl Gathering<'_> {
         self.resets += out.resets;
         self.blows += out.blows;
         if let Some(channel) = voice.role.actuator {
-            for (sum, x) in self.channels[channel].sum[..n].iter_mut().zip(&out.haptic) {
-                *sum += x;
-            }
+            self.channels[channel].add(&out.haptic[..n]);
         }
         let owner = (index, voice.begun);
         let touched = seat.current().and_then(|slot| Some((slot.surface.body?, slot)));
@@ -97,6 +96,56 @@ impl Gathering<'_> {
         }
     }
 
+    /// Adds what a crew has rendered. By itself, as what follows: what one contact alone does not need costs it nothing.
+    #[inline(never)]
+    fn gather(
+        &mut self,
+        crew: &mut Crew,
+        terms: Terms,
+        (voices, used): (&mut [Box<Voice>], &Occupied),
+        seats: &mut [Seat],
+        scratch: &mut Box<Scratch>,
+    ) {
+        let n = self.at.n;
+        for index in used.iter() {
+            let Some(share) = crew.take_voice(index, voices, seats, scratch) else { continue };
+            let voice = &voices[index];
+            let seat = &seats[voice.surface];
+            self.add(index, voice, seat, share.pressing, &share.out);
+            crew.leave_bodies(index, (voice, seat), (terms, n), self.bodies);
+            crew.put_back(share);
+        }
+    }
+
+    /// Renders and adds a few at a time.
+    #[inline(never)]
+    fn side_by_side<'a>(
+        &mut self,
+        shared: &Shared,
+        voices: impl Iterator<Item = (usize, &'a mut Voice)>,
+        seats: &mut [Seat],
+        scratch: &mut Scratch,
+    ) {
+        let at = self.at;
+        let mut company = Company::new();
+        let mut render = |company: &mut Company<'_, usize>, gathering: &mut Self| {
+            company.render(shared, at, seats, scratch, |done| {
+                gathering.add(done.who, done.voice, done.seat, done.pressing, done.out);
+            });
+        };
+        for (index, voice) in voices {
+            if voice.phase == Phase::Free {
+                continue;
+            }
+            let output = *output(voice, self.channels, shared);
+            if !company.has_room(&output) {
+                render(&mut company, self);
+            }
+            company.join(Member { voice, output, who: index });
+        }
+        render(&mut company, self);
+    }
+
     fn count(&self, counters: &Counters) {
         Counters::add(&counters.micro_collisions, self.collisions);
         Counters::add(&counters.shortened_collisions, self.shortened);
@@ -108,9 +157,6 @@ impl Gathering<'_> {
 
 impl Renderer {
     pub(super) fn render_contacts<T: Tap>(&mut self, n: usize, tap: &mut T) {
-        for channel in &mut self.channels {
-            channel.sum[..n].fill(0.0);
-        }
         let tap = &mut self.outlets.beside(tap);
         let at = At { position: self.position, n };
         let watched = tap.is_watching();
@@ -139,15 +185,8 @@ impl Renderer {
             if !gathering.stand_ins.are_on() {
                 crew.send_bodies(terms, n, gathering.bodies, &self.bodies_used);
             }
-            for index in self.voices_used.iter() {
-                let taken = crew.take_voice(index, &mut self.voices, &mut self.seats, &mut self.scratch);
-                let Some(share) = taken else { continue };
-                let voice = &self.voices[index];
-                let seat = &self.seats[voice.surface];
-                gathering.add(index, voice, seat, share.pressing, &share.out);
-                crew.leave_bodies(index, (voice, seat), (terms, n), gathering.bodies);
-                crew.put_back(share);
-            }
+            let voices = (&mut self.voices[..], &self.voices_used);
+            gathering.gather(crew, terms, voices, &mut self.seats, &mut self.scratch);
         } else if watched || self.voices_used.iter().nth(1).is_none() {
             // One after the other, and one alone: nobody is to go beside it.
             for index in self.voices_used.iter() {
@@ -157,27 +196,12 @@ impl Renderer {
                 }
                 let seat = &mut self.seats[voice.surface];
                 let output = output(voice, gathering.channels, shared);
-                let pressing = at.render(shared, &output, voice, seat, &mut self.scratch, tap);
+                let pressing = at.render(shared, output, voice, seat, &mut self.scratch, tap);
                 gathering.add(index, voice, seat, pressing, &self.scratch.out);
             }
         } else {
-            let mut company = Company::new();
-            let mut render = |company: &mut Company<'_, usize>, gathering: &mut Gathering<'_>| {
-                company.render(shared, at, &mut self.seats[..], &mut self.scratch, |done| {
-                    gathering.add(done.who, done.voice, done.seat, done.pressing, done.out);
-                });
-            };
-            for (index, voice) in in_use(&mut self.voices, &self.voices_used) {
-                if voice.phase == Phase::Free {
-                    continue;
-                }
-                let output = output(voice, gathering.channels, shared);
-                if !company.has_room(&output) {
-                    render(&mut company, &mut gathering);
-                }
-                company.join(Member { voice, output, who: index });
-            }
-            render(&mut company, &mut gathering);
+            let voices = in_use(&mut self.voices, &self.voices_used);
+            gathering.side_by_side(shared, voices, &mut self.seats, &mut self.scratch);
         }
         gathering.count(&self.counters);
         if self.stand_ins.are_on() {
@@ -185,7 +209,7 @@ impl Renderer {
         }
         let channels = &mut self.channels;
         self.blows.render(&self.shared, self.position, n, |channel, output, moves| {
-            let HapticChannel { output: design, sum, .. } = &mut channels[channel];
+            let (sum, design) = channels[channel].begun(n);
             for (sum, [pad_m, pad_m_s]) in sum.iter_mut().zip(moves) {
                 *sum += output.tick(design, *pad_m, *pad_m_s);
             }
@@ -194,8 +218,8 @@ impl Renderer {
 }
 
 /// What the contact's actuator plays.
-fn output(voice: &Voice, channels: &[HapticChannel], shared: &Shared) -> ContactOutput {
-    voice.role.actuator.map_or(shared.idle_output, |channel| channels[channel].output)
+fn output<'a>(voice: &Voice, channels: &'a [HapticChannel], shared: &'a Shared) -> &'a ContactOutput {
+    voice.role.actuator.map_or(&shared.idle_output, |channel| &channels[channel].output)
 }
 
 /// The voices in use, in ascending order.

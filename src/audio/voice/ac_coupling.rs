@@ -3,6 +3,7 @@
 use super::PadSample;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
 use asperity_dsp::butterworth::{self, Butterworth, SideBySide, Signals, Two};
+use asperity_dsp::pair::Pair;
 use asperity_dsp::simd::Level;
 use asperity_texture::height_field::MAX_BLOCK;
 
@@ -72,15 +73,15 @@ impl AcCoupling {
         impulse_n_s: &mut [f64],
     ) {
         match output.high_pass() {
-            Some(filter) => self.run_both(output, [filter, by.high_pass], rows, felt, impulse_n_s),
+            Some(filter) => self.run_both(output, filter, by, rows, felt, impulse_n_s),
             None => {
                 for (i, row) in rows.iter().enumerate() {
                     felt[i] = self.feel.tick(output, row.pad_m, row.pad_velocity_m_s);
                     impulse_n_s[i] = self.force.tick(by.high_pass, row.contact_force_n).high;
                 }
+                self.round(by.step_s, felt, impulse_n_s);
             }
         }
-        self.round(by.step_s, felt, impulse_n_s);
     }
 
     /// The contact takes a lane among others with what its high-passes are to be given; false where it has none for its motion.
@@ -129,22 +130,38 @@ impl AcCoupling {
         self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
     }
 
+    /// Two samples at a time, so that the next stage finds whole vectors in memory and waits for none.
     fn run_both(
         &mut self,
         output: &ContactOutput,
-        high_passes: [&Butterworth; 2],
+        filter: &Butterworth,
+        by: ForceCoupling<'_>,
         rows: &[PadSample],
         felt: &mut [f64],
-        alternating_n: &mut [f64],
+        impulse_n_s: &mut [f64],
     ) {
         let mut feel = self.feel;
-        let mut two = Two::new(high_passes, [feel.highpass, self.force]);
-        for (i, row) in rows.iter().enumerate() {
+        let mut two = Two::new([filter, by.high_pass], [feel.highpass, self.force]);
+        let (rounding, factors) = (Pair::from([ROUNDING, ROUNDING_N]), Pair::from([1.0, by.step_s]));
+        let mut pass = |row: &PadSample| {
             let moved = feel.quantity(output, row.pad_m, row.pad_velocity_m_s);
-            [felt[i], alternating_n[i]] = two.tick([moved, row.contact_force_n].into()).high.into();
+            let passed = two.tick([moved, row.contact_force_n].into()).high;
+            passed.or_zero_below(rounding) * factors
+        };
+        let (twos, last) = rows.as_chunks::<2>();
+        let (felt_twos, last_felt) = felt.as_chunks_mut::<2>();
+        let (impulse_twos, last_impulse) = impulse_n_s.as_chunks_mut::<2>();
+        for ([first, second], (felt, impulse_n_s)) in twos.iter().zip(felt_twos.iter_mut().zip(impulse_twos))
+        {
+            let both = Pair::transposed([pass(first), pass(second)]);
+            [*felt, *impulse_n_s] = both.map(Into::into);
+        }
+        for (row, (felt, impulse_n_s)) in last.iter().zip(last_felt.iter_mut().zip(last_impulse)) {
+            [*felt, *impulse_n_s] = pass(row).into();
         }
         [feel.highpass, self.force] = two.states();
         self.feel = feel;
+        self.last_felt = felt.last().copied().unwrap_or(self.last_felt);
     }
 
     /// What a resting contact is felt as.

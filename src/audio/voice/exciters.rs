@@ -120,11 +120,9 @@ impl Exciters {
             }
         }
         let (impulse_n_s, force_n_s) = (&mut out.impulse_n_s[..rows.len()], &mut out.force_n_s[..rows.len()]);
-        self.pulses.take(by.position, impulse_n_s, force_n_s);
-        self.force.add(force, impulse_n_s, force_n_s);
-        for sent in [impulse_n_s, force_n_s] {
-            self.loudness.weigh(by.position, by.slow_step, sent);
-        }
+        let beats = self.pulses.take(by.position, impulse_n_s, force_n_s);
+        self.force.add(force, impulse_n_s, force_n_s, beats);
+        self.loudness.weigh_both(by.position, by.slow_step, impulse_n_s, force_n_s);
         (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
     }
 

@@ -3,6 +3,7 @@
 use super::shared::Shared;
 use crate::audio::seat::{MidwayNoise, Noise, Seat};
 use crate::prepared::overlay::{Room, TileCells};
+use asperity_dsp::pair::Pair;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
 
@@ -89,7 +90,7 @@ impl Profile {
         cells: &mut TileCells,
     ) {
         let n = points.len();
-        self.lay_out(along.shared, points);
+        let mut bounds_m = self.lay_out(along.shared, points);
         let path = PathBlock {
             position_m: &self.position_m[..n],
             velocity_m_s: &self.velocity_m_s[..n],
@@ -106,6 +107,14 @@ impl Profile {
                 before_m = *at_m;
             }
             self.midway.seen = false;
+            // All others midway lie between two places of the path.
+            if let Some(first_m) = self.midway.position_m.first() {
+                let [low_m, high_m] = bounds_m;
+                bounds_m = [
+                    [0, 1].map(|axis| low_m[axis].min(first_m[axis])),
+                    [0, 1].map(|axis| high_m[axis].max(first_m[axis])),
+                ];
+            }
             MidwayNoise {
                 octave,
                 position_m: &self.midway.position_m[..n],
@@ -117,6 +126,7 @@ impl Profile {
         let mut noise = Noise {
             field: &along.shared.noise,
             footprint_m: &self.noise_footprint_m[..n],
+            bounds_m,
             tip_radius_m: along.tip_radius_m,
             cells,
             room: &mut self.room,
@@ -126,6 +136,9 @@ impl Profile {
             seat.lie_at(&self.at_m[..n]);
         }
         seat.sample(&path, &mut noise, &mut self.surface, &mut self.rough);
+        if seat.is_hard() {
+            return;
+        }
         // A surface that gives way lies lower by as much as the force presses it in.
         let surface = &mut self.surface;
         let give = surface.compliance_m_n[..n].iter().zip(&self.force_n);
@@ -134,8 +147,9 @@ impl Profile {
         }
     }
 
-    /// The points, quantity by quantity, and how wide a sample of each is.
-    fn lay_out(&mut self, shared: &Shared, points: &[PathPoint]) {
+    /// The points, quantity by quantity, and how wide a sample of each is; their least and greatest coordinates.
+    fn lay_out(&mut self, shared: &Shared, points: &[PathPoint]) -> [[f64; 2]; 2] {
+        let mut bounds_m = [f64::INFINITY, f64::NEG_INFINITY].map(|nothing| Pair::from([nothing; 2]));
         let step_s = 1.0 / shared.sample_rate_hz;
         let widened = shared.noise_footprints();
         for (i, point) in points.iter().enumerate() {
@@ -144,6 +158,8 @@ impl Profile {
             self.velocity_m_s[i] = point.velocity_m_s;
             self.footprint_m[i] = u * u + v * v;
             self.force_n[i] = point.normal_force_n;
+            let at_m = Pair::from(point.position_m);
+            bounds_m = [bounds_m[0].least(at_m), bounds_m[1].greatest(at_m)];
         }
         // On their own, because roots go side by side.
         let footprints = self.footprint_m[..points.len()].iter_mut();
@@ -151,5 +167,6 @@ impl Profile {
             *footprint_m = footprint_m.sqrt() * step_s;
             *noise_m = *footprint_m * widened;
         }
+        bounds_m.map(Into::into)
     }
 }

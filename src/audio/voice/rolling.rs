@@ -102,8 +102,16 @@ impl Rolling {
         (speed_m_s > RESTING_M_S).then(|| (1.0 - slip_m_s / speed_m_s).max(0.0))
     }
 
-    /// Heights of the ground become those of the ride, and friction acts on what slips; `slow_step` samples lie between two steps of the grid.
-    pub(super) fn run(&mut self, position: u64, slow_step: u64, surface: &mut SurfaceBlock, n: usize) {
+    /// Heights of the ground become those of the ride, and friction, where it is `rubbed` and known, acts on what slips; `slow_step` samples lie between two
+    /// steps of the grid.
+    pub(super) fn run(
+        &mut self,
+        position: u64,
+        slow_step: u64,
+        surface: &mut SurfaceBlock,
+        n: usize,
+        rubbed: bool,
+    ) {
         let height_m = &mut surface.height_m[..n];
         self.roughness = surface.roughness[n.saturating_sub(1)];
         if !self.rolls() {
@@ -114,7 +122,9 @@ impl Rolling {
             let share = share_at(self.share, position + i as u64, slow_step);
             let ride_m = self.ride.tick(&self.filter, *height_m);
             *height_m += share * (ride_m - *height_m);
-            *friction *= 1.0 - share;
+            if rubbed {
+                *friction *= 1.0 - share;
+            }
         }
     }
 
@@ -145,7 +155,7 @@ impl Rolling {
     /// The same of `n` heights that lie behind a contact that appears; its share stands still meanwhile.
     pub(super) fn lead_in(&mut self, surface: &mut SurfaceBlock, n: usize) {
         if self.rolls() {
-            self.run(0, MAX_BLOCK as u64, surface, n);
+            self.run(0, MAX_BLOCK as u64, surface, n, true);
         }
     }
 }

@@ -5,31 +5,40 @@ use super::{HeightMap, Roughness};
 use crate::height_field::{PathBlock, SurfaceBlock};
 
 impl HeightMap {
-    /// What a path meets, worked out in the memory that the block has for it.
-    pub(super) fn sample_in(&self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+    /// Heights, slopes and roughness that a path meets, worked out in the memory that the block has for it.
+    pub(super) fn sample_in(
+        &self,
+        path: &PathBlock<'_>,
+        bounds_m: Option<&[[f64; 2]; 2]>,
+        out: &mut SurfaceBlock,
+    ) {
         let Working { places, samples } = &mut out.working;
-        let (n, widest_m) = (path.len(), widest_m(path.footprint_m));
+        let (n, of_all) = (path.len(), (widest_m(path.footprint_m), bounds_m));
         places.forget();
         let heights = self.ridden();
         if path.slopes {
-            heights.sample_block::<true>(path, widest_m, places, samples);
+            heights.sample_block::<true>(path, of_all, places, samples);
             let slopes = samples.slope_u.iter().zip(&samples.slope_v).take(n);
             for (gradient, (u, v)) in out.gradient.iter_mut().zip(slopes) {
                 *gradient = [*u, *v];
             }
         } else {
-            heights.sample_block::<false>(path, widest_m, places, samples);
+            heights.sample_block::<false>(path, of_all, places, samples);
         }
         out.height_m[..n].copy_from_slice(&samples.value[..n]);
         match &self.roughness {
             Roughness::Constant(roughness) => out.roughness[..n].fill(*roughness),
             Roughness::Map(map) => {
-                map.sample_block::<false>(path, widest_m, places, samples);
+                map.sample_block::<false>(path, of_all, places, samples);
                 for (roughness, value) in out.roughness[..n].iter_mut().zip(&samples.value) {
                     *roughness = value.clamp(0.0, 1.0);
                 }
             }
         }
+    }
+
+    /// What is the same everywhere.
+    pub(super) fn tell_the_rest(&self, n: usize, out: &mut SurfaceBlock) {
         out.friction[..n].fill(self.friction);
         out.compliance_m_n[..n].fill(0.0);
         out.answer.clear();

@@ -22,6 +22,13 @@ pub(super) struct Axis {
     last_first: i64,
 }
 
+/// A texel, and the first of the copy of the map that it belongs to.
+#[derive(Clone, Copy)]
+struct OnlyTexel {
+    copy: f64,
+    texel: f64,
+}
+
 /// Where along one axis: the texel before, how far beyond it (0–1), and slope per metre for a slope of
 /// 1 per texel (negative in a mirrored copy, 0 beyond a clamped edge).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -44,6 +51,8 @@ pub(super) struct AxisPlaces {
 pub struct Places {
     /// The grid that they were found for.
     axes: Option<[Axis; 2]>,
+    /// The grid of which all lie in one cell, if only that and their fractions are known.
+    one_cell: Option<[Axis; 2]>,
     len: usize,
     columns: AxisPlaces,
     rows: AxisPlaces,
@@ -52,12 +61,61 @@ pub struct Places {
 impl Places {
     /// None yet.
     pub const fn new() -> Self {
-        Self { axes: None, len: 0, columns: AxisPlaces::EMPTY, rows: AxisPlaces::EMPTY }
+        Self { axes: None, one_cell: None, len: 0, columns: AxisPlaces::EMPTY, rows: AxisPlaces::EMPTY }
     }
 
     /// The next positions are others.
     pub fn forget(&mut self) {
-        self.axes = None;
+        (self.axes, self.one_cell) = (None, None);
+    }
+
+    /// The cell, column and row, in which all positions lie that are between two corners, if that can be told from the corners; how far beyond it each is,
+    /// is then found and nothing else.
+    #[inline(always)]
+    pub(super) fn find_in_one_cell<const N: usize, V: Vector<N>>(
+        &mut self,
+        v: V,
+        axes: &[Axis; 2],
+        [low_m, high_m]: &[[f64; 2]; 2],
+        position_m: &[[f64; 2]],
+    ) -> Option<[f64; 2]> {
+        let column = axes[0].only_texel(low_m[0], high_m[0])?;
+        let row = axes[1].only_texel(low_m[1], high_m[1])?;
+        if self.one_cell != Some(*axes) {
+            (self.axes, self.one_cell) = (None, Some(*axes));
+            self.len = position_m.len().min(MAX_BLOCK);
+            self.find_beyond(v, axes, [column, row], position_m);
+        }
+        Some([column.texel, row.texel])
+    }
+
+    #[inline(always)]
+    fn find_beyond<const N: usize, V: Vector<N>>(
+        &mut self,
+        v: V,
+        axes: &[Axis; 2],
+        only: [OnlyTexel; 2],
+        position_m: &[[f64; 2]],
+    ) {
+        let fractions = [&mut self.columns.fraction, &mut self.rows.fraction];
+        let (some, last) = position_m.as_chunks::<N>();
+        for ((fractions, axis), (along, only)) in
+            fractions.into_iter().zip(axes).zip([0, 1].into_iter().zip(only))
+        {
+            let (texels_per_metre, half) = (v.splat(axis.texels_per_metre), v.splat(0.5));
+            let (copy, texel) = (v.splat(only.copy), v.splat(only.texel));
+            let (whole, rest) = fractions.as_chunks_mut::<N>();
+            for (fraction, position_m) in whole.iter_mut().zip(some) {
+                let t = v.mul(v.load(&position_m.map(|at_m| at_m[along])), texels_per_metre);
+                v.store(v.sub(v.sub(v.sub(t, half), copy), texel), fraction);
+            }
+            let first = some.len() * N;
+            for (fraction, position_m) in
+                whole.as_flattened_mut().iter_mut().chain(rest).skip(first).zip(last)
+            {
+                *fraction = axis.beyond(only, position_m[along]);
+            }
+        }
     }
 
     /// Finds the places of positions, up to [`MAX_BLOCK`] of them, unless they are those of this grid already.
@@ -66,31 +124,40 @@ impl Places {
         if self.axes == Some(*axes) {
             return;
         }
-        self.axes = Some(*axes);
+        (self.axes, self.one_cell) = (Some(*axes), None);
         self.len = position_m.len().min(MAX_BLOCK);
-        // So many as fill vectors; two sizes, because loops of known length do without a remainder.
-        if self.len <= FEW {
-            self.find_first::<FEW>(axes, position_m);
+        // Two sizes, because loops of known length do without a remainder; so long most blocks are.
+        if let Ok(few) = <&[_; FEW]>::try_from(position_m) {
+            self.find_all(axes, few);
+        } else if let Some(most) = position_m.first_chunk::<MAX_BLOCK>() {
+            self.find_all(axes, most);
         } else {
-            self.find_first::<ROOM>(axes, position_m);
+            // What lies beyond the last is found as well and means nothing.
+            let mut some = [[0.0; 2]; MAX_BLOCK];
+            some.iter_mut().zip(position_m).for_each(|(to, at_m)| *to = *at_m);
+            self.find_all(axes, &some);
         }
     }
 
     #[inline(always)]
-    fn find_first<const N: usize>(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]]) {
-        let [mut along_u, mut along_v] = [[0.0; N]; 2];
-        // Whole vectors are written, because whole vectors are read at once.
-        let (full, left) = position_m.get(..self.len).unwrap_or_default().as_chunks::<MOST_LANES>();
-        let rooms = along_u.as_chunks_mut().0.iter_mut().zip(along_v.as_chunks_mut().0);
-        for (some, (along_u, along_v)) in full.iter().zip(rooms) {
-            (*along_u, *along_v) = (some.map(|[u, _]| u), some.map(|[_, v]| v));
+    fn find_all<const N: usize>(&mut self, axes: &[Axis; 2], position_m: &[[f64; 2]; N]) {
+        // For the usual maps, which repeat, in a loop without branches.
+        if axes.iter().all(|axis| axis.wrap == Wrap::Repeat) {
+            self.find_each(axes.map(|axis| Axis { wrap: Wrap::Repeat, ..axis }), position_m);
+        } else {
+            self.find_each(*axes, position_m);
         }
-        let rooms = along_u.iter_mut().zip(&mut along_v).skip(full.len() * MOST_LANES);
-        for ([u, v], (along_u, along_v)) in left.iter().zip(rooms) {
-            (*along_u, *along_v) = (*u, *v);
+    }
+
+    #[inline(always)]
+    fn find_each<const N: usize>(&mut self, [along_u, along_v]: [Axis; 2], position_m: &[[f64; 2]; N]) {
+        let Self { columns, rows, .. } = self;
+        for (n, [u_m, v_m]) in position_m.iter().enumerate() {
+            let (column, row) = (along_u.place(*u_m), along_v.place(*v_m));
+            (columns.texel[n], columns.fraction[n], columns.slope[n]) =
+                (column.texel, column.fraction, column.slope);
+            (rows.texel[n], rows.fraction[n], rows.slope[n]) = (row.texel, row.fraction, row.slope);
         }
-        axes[0].places(&along_u, &mut self.columns);
-        axes[1].places(&along_v, &mut self.rows);
     }
 
     pub(super) fn len(&self) -> usize {
@@ -181,24 +248,6 @@ impl Axis {
         }
     }
 
-    /// Where the positions of a block are; for the usual maps, which repeat, in a loop without branches.
-    #[inline(always)]
-    fn places<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
-        if self.wrap == Wrap::Repeat {
-            Self { wrap: Wrap::Repeat, ..*self }.places_one_by_one(position_m, out);
-        } else {
-            self.places_one_by_one(position_m, out);
-        }
-    }
-
-    #[inline(always)]
-    fn places_one_by_one<const N: usize>(&self, position_m: &[f64; N], out: &mut AxisPlaces) {
-        for (n, position_m) in position_m.iter().enumerate() {
-            let place = self.place(*position_m);
-            (out.texel[n], out.fraction[n], out.slope[n]) = (place.texel, place.fraction, place.slope);
-        }
-    }
-
     /// Texels per metre.
     #[inline(always)]
     pub(super) fn len(&self) -> usize {
@@ -207,6 +256,23 @@ impl Axis {
 
     pub(super) fn texels_per_metre(&self) -> f64 {
         self.texels_per_metre
+    }
+
+    /// The texel before all positions between two, of a map that repeats: [`place`](Self::place) grows with the position within a copy of the map, so that
+    /// what is alike at both ends is so between them. None where it differs.
+    #[inline(always)]
+    fn only_texel(&self, low_m: f64, high_m: f64) -> Option<OnlyTexel> {
+        let [low, high] = [low_m, high_m].map(|at_m| at_m * self.texels_per_metre - 0.5);
+        let copies = [low, high].map(|t| self.len * floor((t + 0.5) * self.per_period));
+        let texels = [floor(low - copies[0]), floor(high - copies[1])];
+        let alike = copies[0] == copies[1] && texels[0] == texels[1] && low.abs() < 1e15 && high.abs() < 1e15;
+        (alike && self.wrap == Wrap::Repeat).then_some(OnlyTexel { copy: copies[0], texel: texels[0] })
+    }
+
+    /// How far beyond that texel a position is, by the steps of [`place`](Self::place).
+    #[inline(always)]
+    fn beyond(&self, only: OnlyTexel, position_m: f64) -> f64 {
+        ((position_m * self.texels_per_metre - 0.5) - only.copy) - only.texel
     }
 
     /// Where a position is.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::block::bounds;
 use crate::raster::Raster;
 use crate::wrap::Wrap;
 use asperity_dsp::rng::Rng;
@@ -27,6 +28,10 @@ fn alone(spline: &Spline, position_m: [f64; 2]) -> (f64, [f64; 2]) {
     (value, [along_u * x.slope, along_v * y.slope])
 }
 
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
 #[test]
 fn blocks_on_every_instruction_set_give_the_bits_of_single_samples() {
     let mut rng = Rng::new(5);
@@ -43,7 +48,15 @@ fn blocks_on_every_instruction_set_give_the_bits_of_single_samples() {
                     .map(|n| [start[0] + step * n as f64, start[1] - 0.7 * step * n as f64])
                     .collect();
                 let (mut places, mut out) = (Places::new(), Samples::EMPTY);
-                spline.sample_block::<true>(&position_m, &mut places, &mut out);
+                spline.sample_block::<true>(&position_m, None, &mut places, &mut out);
+                // The same where it is known between which corners they lie; the second time as another map of the grid.
+                let bounds_m = bounds(&position_m);
+                let mut known = Samples::EMPTY;
+                places.forget();
+                for _ in 0..2 {
+                    spline.sample_block::<false>(&position_m, Some(&bounds_m), &mut places, &mut known);
+                    assert_eq!(bits(&known.value[..len]), bits(&out.value[..len]), "{level:?}, {wrap:?}");
+                }
                 for (n, position_m) in position_m.iter().enumerate() {
                     let block = (out.value[n], [out.slope_u[n], out.slope_v[n]]);
                     assert_eq!(block, alone(&spline, *position_m), "{level:?}, {wrap:?}, {position_m:?}");

@@ -23,16 +23,16 @@ impl Pulses {
         self.steps.write(end, |steps| pulse.deposit_steps(steps, sample, offset, sample_rate_hz));
     }
 
-    /// Takes those of the coming samples; both rings are empty beyond the last pulse.
-    pub(super) fn take(&mut self, position: u64, spread: &mut [f64], steps: &mut [f64]) {
-        for (ring, out) in [(&mut self.spread, spread), (&mut self.steps, steps)] {
-            if ring.is_empty(position) {
-                out.fill(0.0);
-            } else {
+    /// Takes those of the coming samples, if there are any; both rings are empty beyond the last pulse, and leave what they are given as it is.
+    pub(super) fn take(&mut self, position: u64, spread: &mut [f64], steps: &mut [f64]) -> bool {
+        let any = !self.is_empty(position);
+        if any {
+            for (ring, out) in [(&mut self.spread, spread), (&mut self.steps, steps)] {
                 let mut next = ring.drain(position);
                 out.iter_mut().for_each(|y| *y = next());
             }
         }
+        any
     }
 
     /// Whether nothing comes from `position` on.
