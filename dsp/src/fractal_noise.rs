@@ -47,7 +47,7 @@ use crate::rng::Rng;
 use crate::simd::{Eight, Level, at_level};
 use cells::{KnownCell, Offset};
 
-pub use weights::{OctaveWeights, Relief, growth, unseen_between};
+pub use weights::{Missed, OctaveWeights, Relief, growth};
 
 /// Number of octaves.
 pub const OCTAVES: usize = 12;

@@ -13,7 +13,7 @@
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
 //! power: sine and cosine, because the two are unrelated.
 
-use crate::audio::seat::MidwayNoise;
+use crate::audio::seat::NoiseBetween;
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
@@ -135,19 +135,21 @@ impl Overlay {
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
-        midway: Option<&mut MidwayNoise<'_>>,
+        between: Option<&mut NoiseBetween<'_>>,
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let Room { local_power_m2, shares, parts_m, lap } = own;
-        let short = midway.map(|midway| (self.short_waves().from_octave(midway.octave), midway));
-        let short = short.map(|(weights, midway)| {
-            let between = NoisePath { position_m: midway.position_m, ..*path };
-            midway.midway_m.fill(0.0);
-            let into_m = [&mut *midway.midway_m];
-            self.add_tile(field, &between, roughness, &[&weights], into_m, (&mut *cells, &mut *lap));
-            midway.at_m.fill(0.0);
-            *midway.seen = true;
-            (weights, &mut *midway.at_m)
+        let short = between.map(|between| {
+            let weights = self.short_waves().from_octave(between.octave);
+            for look in between.looks.iter_mut().flatten() {
+                let there = NoisePath { position_m: look.position_m, ..*path };
+                look.height_m.fill(0.0);
+                let into_m = [&mut *look.height_m];
+                self.add_tile(field, &there, roughness, &[&weights], into_m, (&mut *cells, &mut *lap));
+            }
+            between.at_m.fill(0.0);
+            *between.seen = true;
+            (weights, &mut *between.at_m)
         });
         let cells = (cells, lap);
         let n = height_m.len().min(MAX_BLOCK);
@@ -169,27 +171,27 @@ impl Overlay {
         let [below_m, all_m] = parts_m.each_mut().map(|part_m| &mut part_m[..n]);
         below_m.fill(0.0);
         all_m.fill(0.0);
-        let into_m = [&mut *below_m, &mut *all_m];
-        self.add_tile(field, path, roughness, &[below, whole], into_m, (&mut *cells.0, &mut *cells.1));
+        match short {
+            Some((short, at_m)) => {
+                let into_m = [&mut *below_m, &mut *all_m, at_m];
+                self.add_tile(field, path, roughness, &[below, whole, &short], into_m, cells);
+            }
+            None => {
+                let into_m = [&mut *below_m, &mut *all_m];
+                self.add_tile(field, path, roughness, &[below, whole], into_m, cells);
+            }
+        }
         for ((height_m, share), (below_m, all_m)) in
             height_m.iter_mut().zip(shares).zip(below_m.iter().zip(&*all_m))
         {
             *height_m += (1.0 - *share) * below_m + *share * all_m;
         }
-        if let Some((short, at_m)) = short {
-            self.add_tile(field, path, roughness, &[&short], [at_m], cells);
-        }
     }
 
     /// What the octaves weigh that are there whatever room a source's own relief leaves: those below its band.
-    fn short_waves(&self) -> &OctaveWeights {
+    pub(crate) fn short_waves(&self) -> &OctaveWeights {
         let Tip { below, all, .. } = &self.tips[self.now];
         if self.minds_relief() { below } else { all }
-    }
-
-    /// [`OctaveWeights::missed_m`] of them.
-    pub(crate) fn missed_m(&self, roughness: f64, [footprint_m, faded_m]: [f64; 2]) -> f64 {
-        self.short_waves().missed_m(roughness, footprint_m, faded_m)
     }
 
     /// Whether the source's own relief matters.

@@ -117,9 +117,8 @@ impl Voice {
             self.rolling.lead_in(&mut profile.surface, count);
             let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
             let Lane { rows, bends, .. } = &mut lanes[0];
-            let bends = &mut bends[..if self.between.looks() { count } else { 0 }];
-            self.between.bend(&profile.midway, bends);
-            row = self.pad.lead_in(heights_m, forces_n, bends, &mut rows[..count]);
+            let ground = self.between.bend(shared, &profile.seen, count, bends).ground(count, bends);
+            row = self.pad.lead_in(heights_m, forces_n, ground, &mut rows[..count]);
             left -= count;
             if left == 0 {
                 self.pad.appear(&row, heights_m[count - 1], forces_n[count - 1], slope_m_s);
@@ -145,8 +144,8 @@ impl Voice {
         self.path.lay_behind(steps, step_s, points);
         let PathPoint { position_m, velocity_m_s, .. } = points[0];
         let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);
-        let midway = self.between.on_the_way(from_m);
-        let along = Along { midway, ..self.along(at.shared, at.position, false) };
+        let between = self.between.on_the_way(from_m);
+        let along = Along { between, ..self.along(at.shared, at.position, false) };
         profile.run(seat, along, points, &mut self.cells);
     }
 
@@ -172,7 +171,7 @@ impl Voice {
     pub(super) fn along<'a>(&self, shared: &'a Shared, position: u64, slopes: bool) -> Along<'a> {
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
         let in_body = self.path.is_in_body();
-        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, midway: None }
+        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, between: None }
     }
 
     /// Goes on somewhere else; wakes a resting contact. A jump that no stroke makes changes nothing here: it
