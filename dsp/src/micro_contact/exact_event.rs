@@ -162,8 +162,11 @@ impl ExactEvent {
                     let half = &maps[BENT_LEVEL];
                     let middle = half.apply(y, c, force);
                     let next = half.apply(middle, later, force);
-                    let stays = (middle.first() < 0.0) == pressed && self.coarsest[which] <= BENT_LEVEL;
-                    (Profile { c, later: Some(later), least: BENT_LEVEL }, next, stays)
+                    let early = maps[2].apply(y, c, force);
+                    let late = maps[2].apply(middle, later, force);
+                    let stays = (middle.first() < 0.0) == pressed && self.coarsest[which] <= BENT_LEVEL
+                        && (early.first() < 0.0) == pressed && (late.first() < 0.0) == pressed;
+                    (Profile { c, later: Some(later), least: 2 }, next, stays)
                 }
                 _ => {
                     let next = maps[0].apply_cubic(y, [c1, c2, c3], force);

@@ -192,6 +192,22 @@ impl MicroContact {
         state
     }
 
+    /// [`Self::riding`] up to the middle one of three heights, over the ground about it: one a sample before, there, and one a sample later.
+    /// The next input is the last of them, or with a latency the one after it.
+    #[must_use]
+    pub fn leaving_the_line(
+        &self,
+        heights_m: [f64; 3],
+        normal_force_n: f64,
+        velocity_m_s: f64,
+    ) -> ContactState {
+        let mut state = self.riding(heights_m[1], normal_force_n, velocity_m_s);
+        if self.latency_samples() == 1 && heights_m.iter().all(|height_m| guard::is_height(*height_m)) {
+            state.heights_m = heights_m;
+        }
+        state
+    }
+
     /// An unloaded pad that meets this height at the closing speed (at most 20 m/s), one sample before
     /// the first input: its onset is reported in the first rows. Without a closing speed above zero the finger is [`Self::at_rest`].
     #[must_use]

@@ -69,8 +69,12 @@ impl Pad {
     ///
     /// Finger and pad rise with it: set off from rest they would still swing when they are heard. On the whole means over the
     /// time that a finger answers in: with the slope of a millisecond's roughness a lightly pressed one would be thrown.
-    pub(super) fn ride(&mut self, height_m: f64, force_n: f64, rise_m_s: f64) {
-        self.state = self.model.riding(height_m, force_n, rise_m_s);
+    ///
+    /// The heights are those a sample before it leaves that line, there, and a sample later; how many of the heights after the middle one it
+    /// has been given.
+    pub(super) fn ride(&mut self, heights_m: [f64; 3], force_n: f64, rise_m_s: f64) -> usize {
+        self.state = self.model.leaving_the_line(heights_m, force_n, rise_m_s);
+        self.model.latency_samples()
     }
 
     /// Then over these heights; the row it ends with.
