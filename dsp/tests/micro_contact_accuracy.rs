@@ -219,7 +219,7 @@ fn ground_known_midway_is_followed_a_hundred_times_as_well_where_waves_pass_in_a
     });
     println!("cubic {plain:.2e}, known midway {bent:.2e}, at the quarters {halved:.2e}");
     assert!(bent < 1e-3 && bent < 0.05 * plain, "{plain:e}, {bent:e}");
-    assert!(halved < 0.1 * bent, "{bent:e}, {halved:e}");
+    assert!(halved < 0.2 * bent, "{bent:e}, {halved:e}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Contacts side by side have the bits of each alone.
 
 use asperity_dsp::micro_contact::{
-    Beside, Bend, ContactSample, ContactState, GroundBetween, Integrator, LANES, MicroContact, Probe, run_side_by_side,
+    Bend, Beside, ContactSample, ContactState, GroundBetween, Integrator, LANES, MicroContact, Probe,
+    run_side_by_side,
 };
 use asperity_dsp::rng::Rng;
 use asperity_dsp::simd::Level;
@@ -112,13 +113,7 @@ fn run(rng: &mut Rng, twins: &mut [Twin]) -> usize {
         run_side_by_side(&mut contacts);
         for Twin { design, beside, height_m, force_n, bends, halves, kind, rows, .. } in left {
             let ground = known(*kind, &bends[at..end], &halves[at..end]);
-            design.run_over(
-                beside,
-                &height_m[at..end],
-                &force_n[at..end],
-                ground,
-                &mut rows[1][at..end],
-            );
+            design.run_over(beside, &height_m[at..end], &force_n[at..end], ground, &mut rows[1][at..end]);
         }
         at = end;
     }

@@ -226,8 +226,10 @@ impl Overlay {
         let mut meets = [false; 2];
         let mut turns = [0.0; 2];
         for ((place, at_m), path_m) in places.iter_mut().zip(&mut *position_m).zip(walked_m) {
-            *place = [0, 1].map(|axis: usize| self.axes[axis].place_after(path_m[axis], &mut turns[axis]));
-            *at_m = place.map(|place| place.at_m);
+            // One after the other: what goes through `map` is a call for each axis.
+            let [u, v] = &self.axes;
+            *place = [u.place_after(path_m[0], &mut turns[0]), v.place_after(path_m[1], &mut turns[1])];
+            *at_m = [place[0].at_m, place[1].at_m];
             meets = [meets[0] | (place[0].weight > 0.0), meets[1] | (place[1].weight > 0.0)];
         }
         if meets == [false; 2] {

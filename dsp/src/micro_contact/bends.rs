@@ -244,16 +244,19 @@ mod tests {
         [0, 1, 2, 3].map(|k| a[k] + b[k])
     }
 
-    /// Heights at 50 samples, so much later.
-    fn heights(later: f64) -> Vec<f64> {
-        (0..50).map(|n| height(0.1 * (f64::from(n) + later))).collect()
+    /// Samples of the profile.
+    const COUNT: usize = 50;
+
+    /// Heights at them, so much later.
+    fn heights(later: f64) -> [f64; COUNT] {
+        core::array::from_fn(|n| height(0.1 * (n as f64 + later)))
     }
 
     /// Bends of them, taken in such blocks.
-    fn bends(level: Level, cuts: usize) -> (Vec<Bend>, Vec<[Bend; 2]>) {
+    fn bends(level: Level, cuts: usize) -> ([Bend; COUNT], [[Bend; 2]; COUNT]) {
         let [at, first, mid, second] = [0.0, -0.75, -0.5, -0.25].map(heights);
         let (mut by_mid, mut by_quarters) = (Bends::default(), Bends::default());
-        let (mut bends, mut halves) = (vec![[0.0; 4]; 50], vec![[[0.0; 4]; 2]; 50]);
+        let (mut bends, mut halves) = ([[0.0; 4]; COUNT], [[[0.0; 4]; 2]; COUNT]);
         for (k, (bends, halves)) in bends.chunks_mut(cuts).zip(halves.chunks_mut(cuts)).enumerate() {
             let now = k * cuts..k * cuts + bends.len();
             by_mid.midway(level, &at[now.clone()], &mid[now.clone()], bends);

@@ -1,7 +1,8 @@
 //! Exact regime maps with located events.
 //!
-//! A sample whose two ends lie in one regime costs one map, or two where its ground bends, because there a pad can land and leave, or leave
-//! and land, within it: it is asked midway too (that alone is worth 4–20 dB on a hopping pad). Otherwise the sample is walked in a
+//! A sample whose two ends lie in one regime costs one map. Where its ground bends a pad can land and leave, or leave and land, within it:
+//! it is asked midway too, and at the quarters where those are known (that alone is worth 4–20 dB on a hopping pad, each time). Otherwise
+//! the sample is walked in a
 //! binary tree: a piece that ends in the other regime is halved, down to a tick; the tick in which
 //! skin and surface meet or part is taken whole, and the force it had too much or too little, k_m·g
 //! with g a parabola over the part ρ of the tick after the event, is given back as its integrals
@@ -26,10 +27,8 @@ const TICK_PHASE: f64 = 0.07;
 /// Longest pressed map, radians: a longer one could leave and come back unseen.
 const PRESSED_PHASE: f64 = 1.0;
 
-/// Ground that bends can meet a pad and leave it within a sample: it is looked at in the middle of a sample too, 2⁻¹ of it.
-pub(super) const BENT_LEVEL: usize = 1;
-
-/// Kinds of [`GroundBetween`], for what is compiled for each.
+/// Kinds of [`GroundBetween`], for what is compiled for each. Ground that bends can meet a pad and leave it within a sample: it is looked
+/// at wherever it is known, in pieces of 2⁻¹ of a sample or of 2⁻².
 pub(super) const AT_SAMPLES: u8 = 0;
 pub(super) const MIDWAY: u8 = 1;
 pub(super) const QUARTERS: u8 = 2;
@@ -146,33 +145,28 @@ impl ExactEvent {
             let which = usize::from(pressed);
             let maps = &self.regimes[which].maps;
             let bend = |half: usize| bends.get(half).copied().unwrap_or_default();
-            let (profile, next, mut stays) = match KIND {
+            let (mut c, mut later) = ([c1, c2, c3, 0.0], None);
+            let (next, mut stays) = match KIND {
                 MIDWAY => {
                     let [b1, b2, b3, b4] = bend(n);
-                    let c = [c1 + b1, c2 + b2, c3 + b3, b4];
-                    let (middle, next) = (maps[BENT_LEVEL].apply(y, c, force), maps[0].apply(y, c, force));
-                    let stays = (middle.first() < 0.0) == pressed && self.coarsest[which] == 0;
-                    (Profile { c, later: None, least: BENT_LEVEL }, next, stays)
+                    c = [c1 + b1, c2 + b2, c3 + b3, b4];
+                    let gap_m = maps[1].apply(y, c, force).first();
+                    (maps[0].apply(y, c, force), (gap_m < 0.0) == pressed && self.coarsest[which] == 0)
                 }
                 QUARTERS => {
                     let ([a1, a2, a3, a4], [b1, b2, b3, b4]) = (bend(2 * n), bend(2 * n + 1));
-                    let c = [c1 + a1, c2 + a2, c3 + a3, a4];
+                    c = [c1 + a1, c2 + a2, c3 + a3, a4];
                     let [l1, l2, l3] = from_midway([c1, c2, c3]);
-                    let later = [l1 + b1, l2 + b2, l3 + b3, b4];
-                    let half = &maps[BENT_LEVEL];
-                    let middle = half.apply(y, c, force);
-                    let next = half.apply(middle, later, force);
-                    let early = maps[2].apply(y, c, force);
-                    let late = maps[2].apply(middle, later, force);
-                    let stays = (middle.first() < 0.0) == pressed && self.coarsest[which] <= BENT_LEVEL
-                        && (early.first() < 0.0) == pressed && (late.first() < 0.0) == pressed;
-                    (Profile { c, later: Some(later), least: 2 }, next, stays)
+                    let end = [l1 + b1, l2 + b2, l3 + b3, b4];
+                    later = Some(end);
+                    let middle = maps[1].apply(y, c, force);
+                    let (early, late) = (maps[2].apply(y, c, force), maps[2].apply(middle, end, force));
+                    let touches = |at: Q| at.first() < 0.0;
+                    let alike = (touches(middle) == pressed) & (touches(early) == pressed);
+                    let alike = alike & (touches(late) == pressed);
+                    (maps[1].apply(middle, end, force), alike && self.coarsest[which] <= 1)
                 }
-                _ => {
-                    let next = maps[0].apply_cubic(y, [c1, c2, c3], force);
-                    let c = [c1, c2, c3, 0.0];
-                    (Profile { c, later: None, least: 0 }, next, self.coarsest[which] == 0)
-                }
+                _ => (maps[0].apply_cubic(y, [c1, c2, c3], force), self.coarsest[which] == 0),
             };
             stays &= (next.first() < 0.0) == pressed;
             let before = y.array();
@@ -180,6 +174,7 @@ impl ExactEvent {
             if stays {
                 y = next;
             } else {
+                let profile = Profile { c, later, least: usize::from(KIND) };
                 let step = self.walk(design.level, before, &profile, force);
                 (touched, onset) = (step.touched, step.onset);
                 y = quad.load(&step.y);
@@ -370,7 +365,7 @@ mod tests {
                     let c = [(); 4].map(|()| rng.normal() * size);
                     let speed = size * rate_hz * rng.normal();
                     let y = [rng.normal() * size * 0.3, 0.0, speed, 0.0];
-                    let profile = Profile { c, later: Some(c.map(|c| -c)), least: BENT_LEVEL };
+                    let profile = Profile { c, later: Some(c.map(|c| -c)), least: usize::from(QUARTERS) };
                     let step = exact.walk(Level::detect(), y, &profile, 0.5);
                     assert!(step.y.iter().all(|y| y.is_finite()));
                     worst = worst.max(step.maps);

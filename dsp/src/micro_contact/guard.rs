@@ -122,7 +122,9 @@ impl CleanGround {
         let mut clean = Self { halves: [[[0.0; 4]; 2]; GRID], bends: [[0.0; 4]; GRID] };
         match ground {
             GroundBetween::AtSamples => {}
-            GroundBetween::Midway(bends) => clean.bends.iter_mut().zip(bends).for_each(|(to, from)| *to = believed(from)),
+            GroundBetween::Midway(bends) => {
+                clean.bends.iter_mut().zip(bends).for_each(|(to, from)| *to = believed(from))
+            }
             GroundBetween::Quarters(halves) => {
                 let each = clean.halves.as_flattened_mut().iter_mut().zip(halves.as_flattened());
                 each.for_each(|(to, from)| *to = believed(from));

@@ -3,7 +3,7 @@
 //! Lane k of every vector below belongs to contact k, and every lane goes through the operations of [`ExactEvent::run`] in their order. A
 //! lane that meets an event in a sample walks through that sample alone ([`ExactEvent::walk`]) and comes back.
 
-use super::exact_event::{AT_SAMPLES, BENT_LEVEL, ExactEvent, MIDWAY, Profile, QUARTERS};
+use super::exact_event::{AT_SAMPLES, ExactEvent, MIDWAY, Profile, QUARTERS};
 use super::guard::{GRID, MAX_PENETRATION_M, rescue};
 use super::side_by_side::{Beside, LANES, Lane};
 use super::{Bend, ContactSample, GroundBetween, Onset};
@@ -18,7 +18,7 @@ const NO_BEND: Bend = [-0.0, -0.0, -0.0, 0.0];
 static NO_BENDS: [Bend; 2 * GRID] = [NO_BEND; 2 * GRID];
 
 /// Of every lane: where it stands, its profile from the beginning of a sample and from its middle, and what presses.
-type Known = ([Lane; 4], ([Lane; 4], Option<[Lane; 4]>), Lane);
+type Known = ([Lane; 4], [[Lane; 4]; 2], Lane);
 
 /// Contacts on one kind of ground, quantity by quantity. A lane without a contact rests in the air.
 pub(super) struct Together<'a, const KIND: u8> {
@@ -28,7 +28,7 @@ pub(super) struct Together<'a, const KIND: u8> {
     forces_n: [Lane; 2],
     /// The map of each lane's regime, of a whole sample or of half of one: by column, then by row.
     columns: [[Lane; 4]; 9],
-    /// The gap's row of the map of half a sample, by column, where samples are whole and yet looked at midway.
+    /// The gap's row of the map of half as much, by column, where that is looked at.
     gap: [Lane; 9],
     /// Lanes whose samples are, as bits.
     bent: u64,
@@ -75,20 +75,20 @@ impl<'a, const KIND: u8> Together<'a, KIND> {
         let (scheme, bit) = (self.schemes[lane], 1 << lane);
         let regime = usize::from(pressed);
         self.pressed = self.pressed & !bit | if pressed { bit } else { 0 };
-        let level = if KIND == QUARTERS { BENT_LEVEL } else { 0 };
+        let level = if KIND == QUARTERS { 1 } else { 0 };
         self.walks = self.walks & !bit | if scheme.coarsest[regime] > level { bit } else { 0 };
         let maps = &scheme.regimes[regime].maps;
         for (to, from) in self.columns.iter_mut().zip(&maps[level].columns) {
             scatter(to, lane, from);
         }
-        if KIND == MIDWAY {
-            for (to, from) in self.gap.iter_mut().zip(&maps[BENT_LEVEL].columns) {
+        if KIND != AT_SAMPLES {
+            for (to, from) in self.gap.iter_mut().zip(&maps[level + 1].columns) {
                 to[lane] = from[0];
             }
-            if self.bent & bit == 0 {
-                // Times [`NO_BEND`]'s zero it is −0, which changes nothing it is added to.
-                scatter(&mut self.columns[8], lane, &[-0.0; 4]);
-            }
+        }
+        if KIND == MIDWAY && self.bent & bit == 0 {
+            // Times [`NO_BEND`]'s zero it is −0, which changes nothing it is added to.
+            scatter(&mut self.columns[8], lane, &[-0.0; 4]);
         }
     }
 
@@ -147,31 +147,34 @@ impl<'a, const KIND: u8> Together<'a, KIND> {
             let of = |bends: &[Bend], k: usize| f64x4::load_array_ref(s, &bends[k]);
             let bend = |k: usize| s.transpose([of(g0, k), of(g1, k), of(g2, k), of(g3, k)]);
             let (c, later) = match KIND {
-                MIDWAY => (bent_by(cubic, bend(n)), None),
+                MIDWAY => (bent_by(cubic, bend(n)), [zero; 4]),
                 QUARTERS => {
                     let later = from_midway_of(s, cubic);
-                    (bent_by(cubic, bend(2 * n)), Some(bent_by(later, bend(2 * n + 1))))
+                    (bent_by(cubic, bend(2 * n)), bent_by(later, bend(2 * n + 1)))
                 }
-                _ => ([cubic[0], cubic[1], cubic[2], zero], None),
+                _ => ([cubic[0], cubic[1], cubic[2], zero], [zero; 4]),
             };
             let force = half * (f1 + f2);
             let [_, _, pad_before, finger_before] = y;
             let mut next = self.apply(s, &y, &c, force);
+            let turned = |gap_m: f64x4<S>| gap_m.simd_lt(zero).to_bitmask() ^ self.pressed;
+            let gap_m = |y: &[f64x4<S>; 4], c: &[f64x4<S>; 4]| {
+                row_of::<S, KIND>(s, |column| &self.gap[column], y, c, force)
+            };
             let mut events = self.walks;
             if KIND == MIDWAY {
-                let gap_m = row_of::<S, KIND>(s, |column| &self.gap[column], &y, &c, force);
-                events |= (gap_m.simd_lt(zero).to_bitmask() ^ self.pressed) & self.bent;
+                events |= turned(gap_m(&y, &c)) & self.bent;
             }
-            if let Some(later) = &later {
-                events |= next[0].simd_lt(zero).to_bitmask() ^ self.pressed;
-                next = self.apply(s, &next, later, force);
+            if KIND == QUARTERS {
+                events |= turned(gap_m(&y, &c)) | turned(next[0]) | turned(gap_m(&next, &later));
+                next = self.apply(s, &next, &later, force);
             }
-            events |= next[0].simd_lt(zero).to_bitmask() ^ self.pressed;
+            events |= turned(next[0]);
             let (mut touched, mut onsets) = (pressed, None);
             if events != 0 {
                 let mut walked = next.map(f64x4::to_array);
-                let later = later.map(|later| later.map(f64x4::to_array));
-                let known = (y.map(f64x4::to_array), (c.map(f64x4::to_array), later), force.to_array());
+                let profiles = [c, later].map(|c| c.map(f64x4::to_array));
+                let known = (y.map(f64x4::to_array), profiles, force.to_array());
                 let (touching, met) = self.walk(contacts, events, &mut walked, &known);
                 (next, onsets) = (load(s, &walked), Some(met));
                 touched = mask64x4::from_bitmask(s, touching);
@@ -231,7 +234,7 @@ impl<'a, const KIND: u8> Together<'a, KIND> {
         contacts: &[Beside<'_>],
         events: u64,
         next: &mut [Lane; 4],
-        (y, (c, later), force): &Known,
+        (y, [c, later], force): &Known,
     ) -> (u64, [Option<Onset>; LANES]) {
         let (mut touching, mut onsets) = (self.pressed, [None; LANES]);
         for (lane, contact) in contacts.iter().enumerate() {
@@ -241,8 +244,9 @@ impl<'a, const KIND: u8> Together<'a, KIND> {
             }
             let level = contact.design.level;
             let own = |c: &[Lane; 4]| c.map(|c| c[lane]);
-            let least = if KIND == QUARTERS || self.bent & bit != 0 { BENT_LEVEL } else { 0 };
-            let profile = Profile { c: own(c), later: later.as_ref().map(own), least };
+            let steps = KIND == QUARTERS;
+            let least = if steps || self.bent & bit != 0 { usize::from(KIND) } else { 0 };
+            let profile = Profile { c: own(c), later: steps.then(|| own(later)), least };
             let step = self.schemes[lane].walk(level, y.map(|y| y[lane]), &profile, force[lane]);
             scatter(next, lane, &step.y);
             onsets[lane] = step.onset;
