@@ -11,7 +11,7 @@ use support::{asperity, told};
 
 const CASES: [&str; 6] = ["smooth", "rough", "bouncing", "steep", "fast", "light"];
 /// Seeds that the report does not draw its profiles from.
-const UNSEEN: [u64; 8] = [101, 102, 103, 104, 105, 106, 107, 108];
+const UNSEEN: std::ops::Range<u64> = 101..125;
 /// So many of them are enough where strokes forget how they came to where they are.
 const FORGETTING: usize = 4;
 const RATE_HZ: f64 = 44_100.0;
@@ -245,9 +245,8 @@ fn stated_errors_hold_within_a_factor_of_two_on_unseen_profiles_by_an_independen
         let scene = format!("{case}.toml");
         let integrators = rows("integrator");
         // As the report states them: of strokes that forget, if there are two, otherwise of all.
-        let forget: Vec<u64> =
-            UNSEEN[..FORGETTING].iter().copied().filter(|seed| forgets(case, *seed)).collect();
-        let seeds = if forget.len() > 1 { forget } else { UNSEEN.to_vec() };
+        let forget: Vec<u64> = UNSEEN.take(FORGETTING).filter(|seed| forgets(case, *seed)).collect();
+        let seeds = if forget.len() > 1 { forget } else { UNSEEN.collect() };
         println!("{case}: seeds {seeds:?}");
         let mut squares = vec![[0.0; 2]; integrators.len()];
         for seed in seeds.iter().copied() {
