@@ -1,7 +1,7 @@
 //! Between samples: relief that passes within a few of them is looked at there as well, where the contact would miss it.
 //!
 //! ```text
-//! e > 0.02 F/k: midway        e > 0.08 F/k: at the quarters too
+//! e > 0.02 F/k: midway        e > 0.12 F/k: at the quarters too
 //! ```
 //! e: rms of the relief beside the cubics through its samples; F/k: how deep the pad is pressed in. A pad pressed in deeper follows the
 //! cubic as well as it would follow the ground: 0.1 of F/k on a stroke that leaves the ground at every crest is heard at −33 dB, 0.03 at
@@ -21,7 +21,7 @@ use asperity_dsp::trajectory::PathPoint;
 
 /// Missed of F/k from which on it is looked midway, and at the quarters.
 const MIDWAY: f64 = 0.02;
-const QUARTERS: f64 = 0.08;
+const QUARTERS: f64 = 0.12;
 /// So far below a limit what is looked at is kept.
 const KEPT: f64 = 0.8;
 /// What may be missed for good, of F/k.
