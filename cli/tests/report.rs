@@ -11,7 +11,9 @@ use support::{asperity, told};
 
 const CASES: [&str; 6] = ["smooth", "rough", "bouncing", "steep", "fast", "light"];
 /// Seeds that the report does not draw its profiles from.
-const UNSEEN: [u64; 4] = [101, 102, 103, 104];
+const UNSEEN: std::ops::Range<u64> = 101..125;
+/// So many of them are enough where strokes forget how they came to where they are.
+const FORGETTING: usize = 4;
 const RATE_HZ: f64 = 44_100.0;
 /// Of the heights that are integrated over.
 const FINE: usize = 8;
@@ -213,14 +215,41 @@ fn unseen(case: &str, seed: u64) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
+/// Whether a stroke whose path is moved by a picometre moves the pad, and presses on it, as it did, within −80 dB.
+fn forgets(case: &str, seed: u64) -> bool {
+    let (_keep, folder) = unseen(case, seed);
+    let (scene, log, seed) = (format!("{case}.toml"), folder.join(format!("{case}.jsonl")), seed.to_string());
+    let here = trace(&folder, &scene, &["--seed", &seed], RATE_HZ);
+    let moved = fs::read_to_string(&log).unwrap();
+    let moved = moved.lines().map(|line| {
+        let mut line: Value = serde_json::from_str(line).unwrap();
+        if let Some(u) = line["uv"][0].as_f64() {
+            line["uv"][0] = (u + 1e-12 / 0.14).into();
+        }
+        format!("{line}\n")
+    });
+    fs::write(&log, moved.collect::<String>()).unwrap();
+    let there = trace(&folder, &scene, &["--seed", &seed], RATE_HZ);
+    let compared = (0.1 * RATE_HZ) as usize..(0.4 * RATE_HZ) as usize;
+    assert!(there.pad_m != here.pad_m, "{case}: it was not moved");
+    // What is heard is as far apart as the force.
+    [(&there.pad_m, &here.pad_m), (&there.force_n, &here.force_n)]
+        .into_iter()
+        .all(|(there, here)| relative_error(&there[compared.clone()], &here[compared.clone()]) < 1e-4)
+}
+
 #[test]
 fn stated_errors_hold_within_a_factor_of_two_on_unseen_profiles_by_an_independent_integration() {
     let mut wrong = Vec::new();
     for case in CASES {
         let scene = format!("{case}.toml");
         let integrators = rows("integrator");
+        // As the report states them: of strokes that forget, if there are two, otherwise of all.
+        let forget: Vec<u64> = UNSEEN.take(FORGETTING).filter(|seed| forgets(case, *seed)).collect();
+        let seeds = if forget.len() > 1 { forget } else { UNSEEN.collect() };
+        println!("{case}: seeds {seeds:?}");
         let mut squares = vec![[0.0; 2]; integrators.len()];
-        for seed in UNSEEN {
+        for seed in seeds.iter().copied() {
             let (_keep, folder) = unseen(case, seed);
             let seed = seed.to_string();
             let fine_hz = RATE_HZ * FINE as f64;
@@ -249,7 +278,7 @@ fn stated_errors_hold_within_a_factor_of_two_on_unseen_profiles_by_an_independen
             let stated =
                 row["cases"].as_array().unwrap().iter().find(|stated| stated["name"] == case).unwrap();
             for (of, square) in ["displacement", "contact_force"].into_iter().zip(squares) {
-                let (found, stated) = ((square / UNSEEN.len() as f64).sqrt(), number(&stated[of]));
+                let (found, stated) = ((square / seeds.len() as f64).sqrt(), number(&stated[of]));
                 let ratio = found / stated;
                 println!(
                     "{case}, {}, {of}: stated {stated:.2e}, found {found:.2e}, {ratio:.2}",
@@ -276,21 +305,20 @@ fn presets_err_less_the_more_they_cost_and_tell_which_stage_errs() {
         assert!(number(&preset["ns_per_sample"]) > 0.0);
     }
     let error_db = |which: usize| number(&presets[which]["error_db"]);
-    assert!(error_db(2) < error_db(1) - 15.0 && error_db(1) < error_db(0));
-    // What each is felt and heard as where the contact forgets how it came to where it is. In `fast` and `light` the ground is looked at midway between
-    // samples. `light` forgets so slowly (a path moved by 1e-12 m is heard at −107 dB) that the 3 nm which are still missed between samples are heard at −37:
-    // the bar of −40 is missed there, and by no other.
+    assert!(error_db(2) < error_db(1) && error_db(1) < error_db(0) - 15.0);
+    // What each is felt and heard as where the contact forgets how it came to where it is. In `fast` the ground is looked at midway between samples, in
+    // `light` at the quarters too. `rough` hardly forgets: of other seeds it does not.
     let most = [
-        ("default", "smooth", -80.0, -65.0),
-        ("default", "bouncing", -70.0, -55.0),
-        ("default", "steep", -70.0, -48.0),
-        ("default", "fast", -60.0, -50.0),
-        ("default", "light", -45.0, -34.0),
-        ("accurate", "smooth", -100.0, -70.0),
-        ("accurate", "bouncing", -90.0, -70.0),
-        ("accurate", "steep", -90.0, -65.0),
-        ("accurate", "fast", -90.0, -65.0),
-        ("accurate", "light", -80.0, -65.0),
+        ("default", "smooth", -85.0, -68.0),
+        ("default", "bouncing", -72.0, -60.0),
+        ("default", "steep", -80.0, -52.0),
+        ("default", "fast", -65.0, -52.0),
+        ("default", "light", -70.0, -55.0),
+        ("accurate", "smooth", -105.0, -70.0),
+        ("accurate", "bouncing", -95.0, -72.0),
+        ("accurate", "steep", -100.0, -70.0),
+        ("accurate", "fast", -95.0, -67.0),
+        ("accurate", "light", -95.0, -70.0),
     ];
     for (preset, name, felt_db, heard_db) in most {
         let preset = presets.iter().find(|found| found["preset"] == preset).unwrap();

@@ -48,7 +48,7 @@ use crate::rng::Rng;
 use crate::simd::{Level, at_level};
 use cells::{KnownCell, Offset};
 
-pub use weights::{OctaveWeights, Relief, growth, unseen_between};
+pub use weights::{Missed, OctaveWeights, Relief, growth};
 
 /// Number of octaves.
 pub const OCTAVES: usize = 12;

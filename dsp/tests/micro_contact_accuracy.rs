@@ -3,7 +3,7 @@
 
 mod profiles;
 
-use asperity_dsp::micro_contact::{Bends, ContactSample, Integrator, MicroContact, Probe};
+use asperity_dsp::micro_contact::{Bends, ContactSample, GroundBetween, Integrator, MicroContact, Probe};
 use profiles::{HELD_OUT, Profile, SUITE};
 use std::sync::OnceLock;
 
@@ -173,21 +173,36 @@ fn quick_waves(at: f64) -> f64 {
         .sum()
 }
 
-/// Rows over them, `times` a sample, of which `bent` knows the ground midway.
-fn over_quick_waves(times: usize, bent: bool, cuts: usize) -> Vec<ContactSample> {
+/// What of the ground between samples is known.
+#[derive(Clone, Copy, PartialEq)]
+enum Known {
+    Nothing,
+    Midway,
+    Quarters,
+}
+
+/// Rows over them, `times` a sample, in such blocks.
+fn over_quick_waves(times: usize, known: Known, cuts: usize) -> Vec<ContactSample> {
     let probe = Probe { contact_stiffness_n_m: 2e5, force_exponent: 0.0, ..Probe::default() };
     let design = MicroContact::new(&probe, Integrator::ExactEvent, RATE_HZ * times as f64).unwrap();
     let count = 8000 * times;
-    let heights: Vec<f64> = (0..count).map(|n| quick_waves(n as f64 / times as f64)).collect();
-    let mut known = Bends::default();
-    let bends: Vec<_> =
-        (0..count).map(|n| known.next(heights[n], quick_waves((n as f64 - 0.5) / times as f64))).collect();
-    let (forces, mut state) = (vec![0.1; count], design.at_rest(heights[0], 0.1));
+    let heights = |earlier: f64| -> Vec<f64> {
+        (0..count).map(|n| quick_waves((n as f64 - earlier) / times as f64)).collect()
+    };
+    let [at, first, midway, second] = [0.0, 0.75, 0.5, 0.25].map(heights);
+    let (mut bends, mut halves) = (vec![[0.0; 4]; count], vec![[[0.0; 4]; 2]; count]);
+    Bends::default().midway(design.level(), &at, &midway, &mut bends);
+    Bends::default().quarters(design.level(), &at, &midway, [&first, &second], &mut halves);
+    let (forces, mut state) = (vec![0.1; count], design.at_rest(at[0], 0.1));
     let mut out = vec![ContactSample::default(); count];
     for (n, rows) in out.chunks_mut(cuts).enumerate() {
-        let at = n * cuts..n * cuts + rows.len();
-        let bends = if bent { &bends[at.clone()] } else { &[] };
-        design.run_bent(&mut state, &heights[at.clone()], &forces[at], bends, rows);
+        let now = n * cuts..n * cuts + rows.len();
+        let ground = match known {
+            Known::Nothing => GroundBetween::AtSamples,
+            Known::Midway => GroundBetween::Midway(&bends[now.clone()]),
+            Known::Quarters => GroundBetween::Quarters(&halves[now.clone()]),
+        };
+        design.run_over(&mut state, &at[now.clone()], &forces[now], ground, rows);
     }
     out.drain(..design.latency_samples());
     out
@@ -195,33 +210,40 @@ fn over_quick_waves(times: usize, bent: bool, cuts: usize) -> Vec<ContactSample>
 
 #[test]
 fn ground_known_midway_is_followed_a_hundred_times_as_well_where_waves_pass_in_a_few_samples() {
-    let fine = over_quick_waves(OVERSAMPLING, false, 1000);
+    let fine = over_quick_waves(OVERSAMPLING, Known::Nothing, 1000);
     let reference: Vec<_> = fine.iter().copied().step_by(OVERSAMPLING).collect();
-    let [plain, bent] = [false, true].map(|bent| {
-        let rows = over_quick_waves(1, bent, 64);
+    let [plain, bent, halved] = [Known::Nothing, Known::Midway, Known::Quarters].map(|known| {
+        let rows = over_quick_waves(1, known, 64);
         assert!(rows.iter().filter(|row| row.onset.is_some()).count() > 300, "the pad does not hop");
         error(|row| row.pad_m, &rows[1000..], &reference[1000..])
     });
-    println!("cubic {plain:.2e}, known midway {bent:.2e}");
+    println!("cubic {plain:.2e}, known midway {bent:.2e}, at the quarters {halved:.2e}");
     assert!(bent < 1e-3 && bent < 0.05 * plain, "{plain:e}, {bent:e}");
+    assert!(halved < 0.2 * bent, "{bent:e}, {halved:e}");
 }
 
 #[test]
 fn bends_give_the_same_rows_however_blocks_are_cut_and_none_are_the_cubic() {
-    let whole = over_quick_waves(1, true, 8000);
-    for cuts in [1, 7, 63, 200] {
-        assert!(whole == over_quick_waves(1, true, cuts), "{cuts}");
+    for known in [Known::Midway, Known::Quarters] {
+        let whole = over_quick_waves(1, known, 8000);
+        for cuts in [1, 7, 63, 200] {
+            assert!(whole == over_quick_waves(1, known, cuts), "{cuts}");
+        }
+        assert!(whole != over_quick_waves(1, Known::Nothing, 8000));
     }
-    assert!(whole != over_quick_waves(1, false, 8000));
     // What is no number bends nothing.
     let design = MicroContact::new(&linear(), Integrator::ExactEvent, RATE_HZ).unwrap();
-    let rows = |bend: f64| {
+    let rows = |ground: GroundBetween<'_>| {
         let (mut state, mut out) = (design.at_rest(0.0, 0.5), [ContactSample::default(); 100]);
         let heights: Vec<f64> = (0..100).map(|n| 1e-6 * (0.3 * f64::from(n)).sin()).collect();
-        design.run_bent(&mut state, &heights, &[0.5; 100], &[[bend, 0.0, 0.0, 0.0]; 100], &mut out);
+        design.run_over(&mut state, &heights, &[0.5; 100], ground, &mut out);
         out
     };
     for bend in [f64::NAN, f64::INFINITY, 1e9] {
-        assert!(rows(bend) == rows(0.0), "{bend}");
+        let [wrong, none] = [bend, 0.0].map(|bend| [[bend, 0.0, 0.0, 0.0]; 100]);
+        assert!(rows(GroundBetween::Midway(&wrong)) == rows(GroundBetween::Midway(&none)), "{bend}");
+        assert!(rows(GroundBetween::Midway(&none[..7])) == rows(GroundBetween::Midway(&none)), "missing");
+        let [wrong, none] = [wrong, none].map(|bends| bends.map(|bend| [[0.0; 4], bend]));
+        assert!(rows(GroundBetween::Quarters(&wrong)) == rows(GroundBetween::Quarters(&none)), "{bend}");
     }
 }

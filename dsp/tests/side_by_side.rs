@@ -1,7 +1,8 @@
 //! Contacts side by side have the bits of each alone.
 
 use asperity_dsp::micro_contact::{
-    Beside, ContactSample, ContactState, Integrator, LANES, MicroContact, Probe, run_side_by_side,
+    Bend, Beside, ContactSample, ContactState, GroundBetween, Integrator, LANES, MicroContact, Probe,
+    run_side_by_side,
 };
 use asperity_dsp::rng::Rng;
 use asperity_dsp::simd::Level;
@@ -13,7 +14,19 @@ struct Twin {
     beside: ContactState,
     height_m: Vec<f64>,
     force_n: Vec<f64>,
+    bends: Vec<Bend>,
+    halves: Vec<[Bend; 2]>,
+    kind: usize,
     rows: [Vec<ContactSample>; 2],
+}
+
+/// What is known of the ground between samples: nothing, heights midway, or at the quarters.
+fn known<'a>(kind: usize, bends: &'a [Bend], halves: &'a [[Bend; 2]]) -> GroundBetween<'a> {
+    match kind {
+        0 => GroundBetween::AtSamples,
+        1 => GroundBetween::Midway(bends),
+        _ => GroundBetween::Quarters(halves),
+    }
 }
 
 /// Ground of a random kind under a random probe: smooth, bouncing, light, steep, or with numbers that are none.
@@ -46,7 +59,15 @@ fn twin(rng: &mut Rng, integrator: Integrator, level: Level, rate_hz: f64, n: us
         design.riding(height_m[0], force_n[0], 0.01 * rng.normal())
     };
     let rows = [vec![ContactSample::default(); n], vec![ContactSample::default(); n]];
-    Twin { design, alone: state, beside: state, height_m, force_n, rows }
+    let mut bend = || [(); 4].map(|()| 0.1 * size_m * rng.normal());
+    let mut bends: Vec<Bend> = (0..n).map(|_| bend()).collect();
+    let mut halves: Vec<[Bend; 2]> = (0..n).map(|_| [bend(), bend()]).collect();
+    if rng.uniform() < 0.2 {
+        let at = ((n - 1) as f64 * rng.uniform()) as usize;
+        (bends[at][1], halves[at][1][3]) = (f64::NAN, f64::INFINITY);
+    }
+    let kind = (3.0 * rng.uniform()) as usize;
+    Twin { design, alone: state, beside: state, height_m, force_n, bends, halves, kind, rows }
 }
 
 fn bits(row: &ContactSample) -> [u64; 8] {
@@ -69,7 +90,8 @@ fn bits(row: &ContactSample) -> [u64; 8] {
 fn run(rng: &mut Rng, twins: &mut [Twin]) -> usize {
     let n = twins[0].height_m.len();
     for twin in twins.iter_mut() {
-        twin.design.run(&mut twin.alone, &twin.height_m, &twin.force_n, &mut twin.rows[0]);
+        let ground = known(twin.kind, &twin.bends, &twin.halves);
+        twin.design.run_over(&mut twin.alone, &twin.height_m, &twin.force_n, ground, &mut twin.rows[0]);
     }
     let mut at = 0;
     while at < n {
@@ -84,12 +106,14 @@ fn run(rng: &mut Rng, twins: &mut [Twin]) -> usize {
                 state: &mut twin.beside,
                 height_m: &twin.height_m[at..end],
                 normal_force_n: &twin.force_n[at..end],
+                ground: known(twin.kind, &twin.bends[at..end], &twin.halves[at..end]),
                 out: &mut twin.rows[1][at..end],
             })
             .collect();
         run_side_by_side(&mut contacts);
-        for Twin { design, beside, height_m, force_n, rows, .. } in left {
-            design.run(beside, &height_m[at..end], &force_n[at..end], &mut rows[1][at..end]);
+        for Twin { design, beside, height_m, force_n, bends, halves, kind, rows, .. } in left {
+            let ground = known(*kind, &bends[at..end], &halves[at..end]);
+            design.run_over(beside, &height_m[at..end], &force_n[at..end], ground, &mut rows[1][at..end]);
         }
         at = end;
     }
@@ -113,6 +137,11 @@ fn contacts_side_by_side_have_the_bits_of_each_alone_whatever_they_touch_and_how
             let count = 1 + round % LANES;
             let mut twins: Vec<_> =
                 (0..count).map(|_| twin(&mut rng, Integrator::ExactEvent, level, rate_hz, 1500)).collect();
+            if round % 3 == 0 {
+                // Alike, so that those whose samples are two steps have company.
+                let kind = (3.0 * rng.uniform()) as usize;
+                twins.iter_mut().for_each(|twin| twin.kind = kind);
+            }
             onsets += run(&mut rng, &mut twins);
         }
         assert!(onsets > 1000, "{level:?}: too few events were met: {onsets}");

@@ -11,7 +11,7 @@ use crate::prepared::overlay::{NoiseWay, Room, TileCells};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
-use asperity_dsp::fractal_noise::{FractalNoise, NoisePath};
+use asperity_dsp::fractal_noise::{FractalNoise, Missed, NoisePath, OCTAVES};
 use asperity_texture::height_field::{HeightField, LocalPower, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::height_map::FRICTION;
 use std::any::Any;
@@ -46,21 +46,26 @@ pub(crate) struct Noise<'a> {
     pub(crate) cells: &'a mut TileCells,
     pub(crate) room: &'a mut Room,
     /// Its short waves by themselves, where they are wanted.
-    pub(crate) midway: Option<MidwayNoise<'a>>,
+    pub(crate) between: Option<NoiseBetween<'a>>,
 }
 
-/// The short waves of the micro-noise, at samples and midway from the sample before each.
-pub(crate) struct MidwayNoise<'a> {
+/// The short waves of the micro-noise, at samples and between each and the sample before.
+pub(crate) struct NoiseBetween<'a> {
     /// The coarsest octave that counts among them.
     pub(crate) octave: usize,
-    /// Midway from the sample before.
-    pub(crate) position_m: &'a [[f64; 2]],
+    /// Between samples.
+    pub(crate) looks: [Option<Look<'a>>; 3],
     /// At the samples, m.
     pub(crate) at_m: &'a mut [f64],
-    /// Midway, m.
-    pub(crate) midway_m: &'a mut [f64],
     /// Whether the surface told.
     pub(crate) seen: &'a mut bool,
+}
+
+/// Some share of the way from the sample before each.
+pub(crate) struct Look<'a> {
+    pub(crate) position_m: &'a [[f64; 2]],
+    /// What is there, m.
+    pub(crate) height_m: &'a mut [f64],
 }
 
 /// What setting a surface means for the contacts on it.
@@ -166,7 +171,7 @@ impl Seat {
     ) {
         if self.previous.is_some() {
             // Two surfaces at once are known at samples only.
-            noise.midway = None;
+            noise.between = None;
         }
         let all = path.slopes || self.previous.is_some();
         let Some(current) = &mut self.current else { return };
@@ -246,15 +251,21 @@ impl Seat {
         })
     }
 
-    /// Rms of the micro-relief beside the cubics through samples a footprint apart, m; the other footprint is that by which octaves fade.
-    /// While the surface becomes another it tells of none.
-    pub(crate) fn missed_m(&mut self, roughness: f64, footprints_m: [f64; 2], tip_radius_m: f64) -> f64 {
+    /// What cubics through samples a footprint apart miss of the micro-relief, and what has to be looked at so that no more than `left_m` is
+    /// missed; the other footprint is that by which octaves fade. While the surface becomes another it tells of nothing.
+    pub(crate) fn missed(
+        &mut self,
+        roughness: f64,
+        footprints_m: [f64; 2],
+        left_m: f64,
+        tip_radius_m: f64,
+    ) -> Missed {
         match (&mut self.current, &self.previous) {
             (Some(slot), None) if slot.surface.micro_relief_m > 0.0 => {
                 slot.overlay.tune(tip_radius_m);
-                slot.overlay.missed_m(roughness, footprints_m)
+                slot.overlay.short_waves().missed(roughness, footprints_m, left_m)
             }
-            _ => 0.0,
+            _ => Missed { all_m: 0.0, octave: OCTAVES },
         }
     }
 
@@ -355,7 +366,7 @@ impl SurfaceSlot {
                 &out.roughness[..n],
                 &mut out.height_m[..n],
                 (&mut *noise.cells, &mut *noise.room),
-                noise.midway.as_mut(),
+                noise.between.as_mut(),
             );
         }
     }

@@ -245,14 +245,13 @@ impl Voice {
         if !set_out {
             self.path.run(slot, points, &mut profile.at_m);
         }
-        let midway = self.between.on_the_way(self.path.last.position_m);
-        let along = Along { midway, ..self.along(shared, position, slopes || dragged) };
+        let between = self.between.on_the_way(self.path.last.position_m);
+        let along = Along { between, ..self.along(shared, position, slopes || dragged) };
         profile.run(seat, along, points, &mut self.cells);
         self.rolling.run(position, shared.slow_step, &mut profile.surface, n, slopes || dragged);
         own.height_m[..n].copy_from_slice(&profile.surface.height_m[..n]);
         own.force_n[..n].copy_from_slice(&profile.force_n[..n]);
-        let bends = own.bend(if midway.is_some() { n } else { 0 });
-        self.between.bend(&profile.midway, bends);
+        own.looks = self.between.bend(shared, &profile.seen, n, &mut own.bends);
         if let Some(roughness) = profile.surface.roughness[..n].last() {
             self.between.remember(*roughness);
         }

@@ -13,7 +13,7 @@
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
 //! power: sine and cosine, because the two are unrelated.
 
-use crate::audio::seat::MidwayNoise;
+use crate::audio::seat::NoiseBetween;
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
@@ -146,22 +146,24 @@ impl Overlay {
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
-        midway: Option<&mut MidwayNoise<'_>>,
+        between: Option<&mut NoiseBetween<'_>>,
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
         let Room { local_power_m2, shares, parts_m, lap } = own;
         let [along_u, along_v] = &self.axes;
         lap.begin_m =
             [along_u.begin_of_all_m(low_m[0], high_m[0]), along_v.begin_of_all_m(low_m[1], high_m[1])];
-        let short = midway.as_ref().map(|midway| self.short_waves().from_octave(midway.octave));
-        let short = short.as_ref().zip(midway).map(|(weights, midway)| {
-            let between = NoisePath { position_m: midway.position_m, ..*path };
-            midway.midway_m.fill(0.0);
-            let into_m = [&mut *midway.midway_m];
-            self.add_tile(field, &between, roughness, &[weights], into_m, (&mut *cells, &mut *lap));
-            midway.at_m.fill(0.0);
-            *midway.seen = true;
-            (weights, &mut *midway.at_m)
+        let short = between.map(|between| {
+            let weights = self.short_waves().from_octave(between.octave);
+            for look in between.looks.iter_mut().flatten() {
+                let there = NoisePath { position_m: look.position_m, ..*path };
+                look.height_m.fill(0.0);
+                let into_m = [&mut *look.height_m];
+                self.add_tile(field, &there, roughness, &[&weights], into_m, (&mut *cells, &mut *lap));
+            }
+            between.at_m.fill(0.0);
+            *between.seen = true;
+            (weights, &mut *between.at_m)
         });
         let cells = (cells, lap);
         let n = height_m.len().min(MAX_BLOCK);
@@ -177,7 +179,7 @@ impl Overlay {
             let weights = weights.1;
             return match short {
                 Some((short, at_m)) => {
-                    self.add_tile(field, path, roughness, &[weights, short], [height_m, at_m], cells);
+                    self.add_tile(field, path, roughness, &[weights, &short], [height_m, at_m], cells);
                 }
                 None => self.add_tile(field, path, roughness, &[weights], [height_m], cells),
             };
@@ -188,7 +190,7 @@ impl Overlay {
         match short {
             Some((short, at_m)) => {
                 let into_m = [&mut *below_m, &mut *all_m, at_m];
-                self.add_tile(field, path, roughness, &[below, whole, short], into_m, cells);
+                self.add_tile(field, path, roughness, &[below, whole, &short], into_m, cells);
             }
             None => {
                 let into_m = [&mut *below_m, &mut *all_m];
@@ -203,14 +205,9 @@ impl Overlay {
     }
 
     /// What the octaves weigh that are there whatever room a source's own relief leaves: those below its band.
-    fn short_waves(&self) -> &OctaveWeights {
+    pub(crate) fn short_waves(&self) -> &OctaveWeights {
         let Tip { below, all, .. } = &self.tips[self.now];
         if self.minds_relief() { below } else { all }
-    }
-
-    /// [`OctaveWeights::missed_m`] of them.
-    pub(crate) fn missed_m(&self, roughness: f64, [footprint_m, faded_m]: [f64; 2]) -> f64 {
-        self.short_waves().missed_m(roughness, footprint_m, faded_m)
     }
 
     /// Power of a source's relief that leaves no room for the noise's long waves, m².
@@ -248,8 +245,10 @@ impl Overlay {
         let mut meets = [false; 2];
         let mut turns = [0.0; 2];
         for ((place, at_m), path_m) in places.iter_mut().zip(&mut *position_m).zip(walked_m) {
-            *place = [0, 1].map(|axis: usize| self.axes[axis].place_after(path_m[axis], &mut turns[axis]));
-            *at_m = place.map(|place| place.at_m);
+            // One after the other: what goes through `map` is a call for each axis.
+            let [u, v] = &self.axes;
+            *place = [u.place_after(path_m[0], &mut turns[0]), v.place_after(path_m[1], &mut turns[1])];
+            *at_m = [place[0].at_m, place[1].at_m];
             meets = [meets[0] | (place[0].weight > 0.0), meets[1] | (place[1].weight > 0.0)];
         }
         if meets == [false; 2] {

@@ -190,7 +190,10 @@ fn stages(
 }
 
 /// Whether a path moved by a picometre is felt and heard the same.
-fn is_contractive(case: &Case, seed: u64) -> Result<bool, CliError> {
+///
+/// # Errors
+/// Never but by a defect.
+pub fn is_contractive(case: &Case, seed: u64) -> Result<bool, CliError> {
     let chain = Chain::default();
     let (mut moved, here) = (case.log(), take(case, seed, &chain, None)?);
     super::cases::move_along(&mut moved, 1e-12);

@@ -102,15 +102,22 @@ fn what_cubics_through_the_samples_miss_is_told_within_a_factor_of_one_and_a_hal
             .collect();
         // Midway a cubic misses most: 1.27 times its rms over the sample.
         let rms_m = libm::sqrt(beside.iter().map(|m| m * m).sum::<f64>() / beside.len() as f64) / 1.27;
-        let told_m = weights.missed_m(roughness, along * footprint_m, along * footprint_m);
+        let footprints_m = [along * footprint_m; 2];
+        let told_m = weights.missed(roughness, footprints_m, 0.0).all_m;
         assert!(
             (0.66..1.5).contains(&(told_m / rms_m)),
             "{footprint_m} m, R {roughness}: {told_m} for {rms_m}"
         );
-        // Octaves that it says are seen miss next to nothing.
-        let fine = weights.from_octave(unseen_between(along * footprint_m));
-        assert_eq!(fine.missed_m(roughness, along * footprint_m, along * footprint_m), told_m);
+        // What it says need not be looked at misses no more than it may, and with one octave more it would.
+        for share in [0.5, 0.1, 0.01, 0.001] {
+            let left_m = share * told_m;
+            let octave = weights.missed(roughness, footprints_m, left_m).octave;
+            let seen_m = |octave| weights.from_octave(octave).missed(roughness, footprints_m, 0.0).all_m;
+            let missed_m = |octave| libm::sqrt(told_m * told_m - seen_m(octave) * seen_m(octave));
+            assert!(missed_m(octave) <= left_m + 1e-9 * told_m, "{share}: {octave}");
+            assert!(missed_m(octave + 1) > left_m, "{share}: {octave}");
+        }
+        let nothing = weights.missed(roughness, [0.0; 2], 0.0);
+        assert_eq!((nothing.all_m, nothing.octave), (0.0, OCTAVES));
     }
-    assert_eq!(unseen_between(0.0), OCTAVES);
-    assert_eq!(unseen_between(1.0), 0);
 }

@@ -71,7 +71,7 @@ impl OctaveWeights {
     pub fn pinned(rms_at_1mm_m: f64, longest_wavelength_m: f64) -> Self {
         let of =
             |cell_m| [band_weight(cell_m, longest_wavelength_m) * rms_at_1mm_m as f32, 0.0, 0.0, 0.0, 0.0];
-        Self::of(cells_m().map(of))
+        Self::of(CELLS_M.map(of))
     }
 
     /// Of a surface, for a tip.
@@ -82,7 +82,7 @@ impl OctaveWeights {
             let at = |roughness| band * relief.share(PEAK_WAVELENGTH_CELLS * cell_m, roughness);
             polynomial([0.0, 0.25, 0.5, 0.75, 1.0].map(at)).map(|c| (c * relief.rms_at_1mm_m) as f32)
         };
-        Self::of(cells_m().map(of))
+        Self::of(CELLS_M.map(of))
     }
 
     fn of(of: [[f32; TERMS]; OCTAVES]) -> Self {
@@ -98,7 +98,8 @@ impl OctaveWeights {
         Self { of: self.of, coarsest: self.coarsest.max(octave.min(OCTAVES)) }
     }
 
-    /// Rms of the relief that lies beside the Catmull-Rom cubics through its samples, m.
+    /// Rms of the relief that lies beside the Catmull-Rom cubics through its samples, and which octaves have to be looked at between samples so
+    /// that the others miss no more than `left_m`.
     ///
     /// ```text
     /// e² = Σ (gᵢ κ(aᵢ/s))² · 0.093        κ(c) = 1.5/c³
@@ -106,7 +107,7 @@ impl OctaveWeights {
     /// s: `footprint_m`, the way between two samples; gᵢ: gain of the octave, faded as if that were `faded_m`. κ was measured on the noise
     /// (within 50 % from 2 to 24 samples a cell); longer cells count for nothing.
     #[must_use]
-    pub fn missed_m(&self, roughness: f64, footprint_m: f64, faded_m: f64) -> f64 {
+    pub fn missed(&self, roughness: f64, [footprint_m, faded_m]: [f64; 2], left_m: f64) -> Missed {
         let r = roughness.clamp(0.0, 1.0);
         let sum = |c: &[f32]| c.iter().rev().fold(0.0, |sum, c| f64::from(*c) + r * sum);
         let coarser = sum(&INVERSE_OCTAVE_RATIO);
@@ -114,28 +115,38 @@ impl OctaveWeights {
         let cube = ratio * ratio * ratio;
         // The finest octave is seven below that of 1.024 mm cells.
         let mut gain = sum(&LEVEL) * cube * cube * ratio;
-        let mut missed = 0.0;
-        for (octave, cell_m) in cells_m().into_iter().enumerate().skip(self.coarsest).rev() {
-            if cell_m > SEEN_CELLS * footprint_m {
+        let (mut squares, mut all) = ([0.0; OCTAVES], 0.0);
+        let each = CELLS_M.iter().zip(&self.of).zip(&mut squares).skip(self.coarsest).rev();
+        for ((cell_m, weight), square) in each {
+            if *cell_m > SEEN_CELLS * footprint_m {
                 break;
             }
             let alive = (0.5 * cell_m / faded_m - 1.0).clamp(0.0, 1.0);
             if alive > 0.0 {
                 let c = footprint_m / cell_m;
                 let beside = 1.5 * c * c * c * alive * alive * (3.0 - 2.0 * alive);
-                let part = gain * sum(&self.of[octave]) * beside;
-                missed += part * part;
+                let part = gain * sum(weight) * beside;
+                *square = part * part * VARIANCE;
+                all += *square;
             }
             gain *= coarser;
         }
-        libm::sqrt(missed * VARIANCE)
+        let (mut left, most) = (0.0, left_m * left_m);
+        let octave = squares.iter().position(|square| {
+            left += square;
+            left > most
+        });
+        Missed { all_m: libm::sqrt(all), octave: octave.unwrap_or(OCTAVES) }
     }
 }
 
-/// The coarsest octave that cubics through samples so far apart do not follow, by its index; [`OCTAVES`] for none.
-#[must_use]
-pub fn unseen_between(footprint_m: f64) -> usize {
-    cells_m().iter().position(|cell_m| *cell_m <= SEEN_CELLS * footprint_m).unwrap_or(OCTAVES)
+/// What cubics through samples miss of a relief.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Missed {
+    /// Rms, m.
+    pub all_m: f64,
+    /// The coarsest octave that has to be looked at between samples, by its index; [`OCTAVES`] for none.
+    pub octave: usize,
 }
 
 impl Relief {
@@ -164,13 +175,16 @@ impl Relief {
     }
 }
 
-fn cells_m() -> [f64; OCTAVES] {
-    let mut cell_m = 2.0 * super::LONGEST_CELL_M;
-    [0.0; OCTAVES].map(|_| {
-        cell_m *= 0.5;
-        cell_m
-    })
-}
+/// Cell lengths of the octaves, m.
+const CELLS_M: [f64; OCTAVES] = {
+    let mut cells_m = [super::LONGEST_CELL_M; OCTAVES];
+    let mut i = 1;
+    while i < OCTAVES {
+        cells_m[i] = 0.5 * cells_m[i - 1];
+        i += 1;
+    }
+    cells_m
+};
 
 /// The polynomial through values at 0, ¼, ½, ¾ and 1.
 fn polynomial(values: [f64; TERMS]) -> [f64; TERMS] {
@@ -216,7 +230,7 @@ mod tests {
     #[test]
     fn between_its_nodes_the_polynomial_keeps_to_the_law_within_half_a_decibel_where_the_octave_counts() {
         let weights = OctaveWeights::new(&MATTE);
-        for (cell_m, c) in cells_m().into_iter().zip(weights.of) {
+        for (cell_m, c) in CELLS_M.into_iter().zip(weights.of) {
             let strongest = MATTE.share(PEAK_WAVELENGTH_CELLS * cell_m, 1.0).max(1e-3);
             for n in 0..=40 {
                 let r = f64::from(n) / 40.0;

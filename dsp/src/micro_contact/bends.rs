@@ -1,47 +1,161 @@
-//! What a profile does between two samples beside the cubic through them, where it is known midway too.
+//! What a profile does between two samples beside the cubic through them, where it is known midway too, or at every quarter.
 //!
 //! ```text
 //! s(0) = 4/3 (m₊ − m₋) − 1/6 (h₊ − h₋)        bend = quartic(h₀, h₁, s(0), s(1), m) − cubic(h₀, h₁, (h₊ − h₋)/2 …)
 //! ```
 //! h are heights at samples and m those midway between. Slopes of differences over half a sample and the height midway make the profile
-//! exact to the fourth degree, where a Catmull-Rom cubic is to the second: what passes within four samples is missed by a twentieth of
-//! what the cubic misses. All terms are differences, and they add: of a sum of reliefs only those that need it have to be looked at midway.
+//! exact to the fourth degree, where a Catmull-Rom cubic is to the second: gradient noise that passes within four samples is missed by a
+//! twenty-fifth of what the cubic misses. Known at the quarters, each half is such a quartic over half the way: a three-hundredth. More
+//! differences bring little: the noise bends as it likes from cell to cell. All terms are differences, and they add: of a sum of reliefs
+//! only those that need it have to be looked at between samples.
+//!
+//! Four samples are worked out side by side, product and sum apart: the same bits on every set of instructions and in any blocks.
+
+use super::guard::MAX_HEIGHT_M;
+use crate::simd::{Level, Set, at_level};
+use fearless_simd::f64x4;
+use fearless_simd::prelude::*;
 
 /// c₁ … c₄ of the polynomial over a sample beyond the cubic's, m.
 pub type Bend = [f64; 4];
 
-/// Samples that have to be known before the first bend.
-const KNOWN: u8 = 3;
+/// What is known of the ground between samples; entry n belongs to the sample that ends at height n − 1.
+#[derive(Debug, Clone, Copy)]
+pub enum GroundBetween<'a> {
+    /// Nothing: it is the cubic.
+    AtSamples,
+    /// Its heights midway: a bend each.
+    Midway(&'a [Bend]),
+    /// Its heights at every quarter: a bend for each half, the second seen from midway.
+    Quarters(&'a [[Bend; 2]]),
+}
 
-/// The last heights at samples and midway, of which bends come.
+impl<'a> GroundBetween<'a> {
+    /// The first so many samples, and the rest.
+    #[inline(always)]
+    pub(super) fn split_at(self, count: usize) -> (Self, Self) {
+        match self {
+            Self::AtSamples => (self, self),
+            Self::Midway(bends) => {
+                let (first, rest) = bends.split_at(count.min(bends.len()));
+                (Self::Midway(first), Self::Midway(rest))
+            }
+            Self::Quarters(halves) => {
+                let (first, rest) = halves.split_at(count.min(halves.len()));
+                (Self::Quarters(first), Self::Quarters(rest))
+            }
+        }
+    }
+
+    /// Whether so many samples of it are known, none of them beyond what a height may be.
+    pub(super) fn is_sound(self, count: usize) -> bool {
+        match self {
+            Self::AtSamples => true,
+            Self::Midway(bends) => bends.len() == count && are_believed(bends),
+            Self::Quarters(halves) => halves.len() == count && are_believed(halves.as_flattened()),
+        }
+    }
+}
+
+/// Whether all of them can be.
+#[inline(always)]
+pub(super) fn are_believed(bends: &[Bend]) -> bool {
+    bends.as_flattened().iter().fold(true, |good, c| good & (c.abs() <= MAX_HEIGHT_M))
+}
+
+/// Samples that have to be known before the first bend.
+const KNOWN: usize = 3;
+/// Samples worked out at a time.
+const CHUNK: usize = 32;
+/// A vector's numbers.
+const WIDE: usize = 4;
+
+/// Heights of a stretch behind the last ones before it, and room for a whole vector at the end.
+struct Row([f64; KNOWN + CHUNK + WIDE]);
+
+impl Row {
+    /// So many old ones, and the next of a stretch; the last old ones become those of the stretch.
+    #[inline(always)]
+    fn new<const N: usize>(old: &mut [f64; N], new: &[f64]) -> Self {
+        let mut row = [0.0; KNOWN + CHUNK + WIDE];
+        row[..N].copy_from_slice(old);
+        row[N..N + new.len()].copy_from_slice(new);
+        old.copy_from_slice(&row[new.len()..new.len() + N]);
+        Self(row)
+    }
+
+    /// Four of them.
+    #[inline(always)]
+    fn at<S: Set>(&self, s: S, at: usize) -> f64x4<S> {
+        f64x4::from_slice(s, &self.0[at..at + WIDE])
+    }
+}
+
+/// The last heights at samples and between them, of which bends come.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bends {
     /// At the last three samples, oldest first, m.
-    at_m: [f64; 3],
-    /// Midway between them, m.
+    at_m: [f64; KNOWN],
+    /// Midway to the last two, m.
     midway_m: [f64; 2],
-    known: u8,
+    /// In the first half of the way to the last of them, and in the second half of the way to the last two, m.
+    first_m: [f64; 1],
+    second_m: [f64; 2],
+    known: usize,
 }
 
 impl Bends {
-    /// Takes the height at the next sample, and that midway from the sample before; the bend that ends at the sample before, zero where too
-    /// little is known yet.
-    #[must_use]
-    pub fn next(&mut self, at_m: f64, midway_m: f64) -> Bend {
-        let ([h0, h1, h2], h3) = (self.at_m, at_m);
-        let ([m0, m1], m2) = (self.midway_m, midway_m);
-        (self.at_m, self.midway_m) = ([h1, h2, h3], [m1, m2]);
-        if self.known < KNOWN {
-            self.known += 1;
-            return [0.0; 4];
+    /// Takes heights at samples and midway from the sample before each; the bends that end at the sample before each, zero where too little is
+    /// known yet. All slices are equally long.
+    pub fn midway(&mut self, level: Level, at_m: &[f64], midway_m: &[f64], bends: &mut [Bend]) {
+        let all = at_m.chunks(CHUNK).zip(midway_m.chunks(CHUNK)).zip(bends.chunks_mut(CHUNK));
+        for ((at_m, midway_m), bends) in all {
+            let rows = (Row::new(&mut self.at_m, at_m), Row::new(&mut self.midway_m, midway_m));
+            at_level!(level.at_most_256_bits(), s => {
+                for (k, bends) in bends.chunks_mut(WIDE).enumerate() {
+                    let turned = s.transpose(midway(s, &rows, WIDE * k));
+                    for (bend, turned) in bends.iter_mut().zip(turned) {
+                        *bend = turned.to_array();
+                    }
+                }
+            });
+            self.begin(bends);
         }
-        let (first, last) = (h2 - h0, h3 - h1);
-        // Slopes at both ends beyond the cubic's, and the height midway beyond that of the cubic with the new slopes.
-        let begin = (4.0 * (m1 - m0) - 2.0 * first) * (1.0 / 3.0);
-        let end = (4.0 * (m2 - m1) - 2.0 * last) * (1.0 / 3.0);
-        let slopes = (0.5 * first + begin) - (0.5 * last + end);
-        let middle = 16.0 * ((m1 - 0.5 * (h1 + h2)) - 0.125 * slopes);
-        [begin, middle - (2.0 * begin + end), (begin + end) - 2.0 * middle, middle]
+    }
+
+    /// The same with heights at the quarters: one in the first half of the way from the sample before, one in the second.
+    pub fn quarters(
+        &mut self,
+        level: Level,
+        at_m: &[f64],
+        midway_m: &[f64],
+        [first_m, second_m]: [&[f64]; 2],
+        bends: &mut [[Bend; 2]],
+    ) {
+        let between = first_m.chunks(CHUNK).zip(second_m.chunks(CHUNK));
+        let all = at_m.chunks(CHUNK).zip(midway_m.chunks(CHUNK)).zip(between).zip(bends.chunks_mut(CHUNK));
+        for (((at_m, midway_m), (first_m, second_m)), bends) in all {
+            let rows = (Row::new(&mut self.at_m, at_m), Row::new(&mut self.midway_m, midway_m));
+            let quarters = (Row::new(&mut self.first_m, first_m), Row::new(&mut self.second_m, second_m));
+            at_level!(level.at_most_256_bits(), s => {
+                for (k, bends) in bends.chunks_mut(WIDE).enumerate() {
+                    let [first, second] = quarters_of(s, &rows, &quarters, WIDE * k);
+                    let turned = s.transpose(first).into_iter().zip(s.transpose(second));
+                    for (bend, (first, second)) in bends.iter_mut().zip(turned) {
+                        *bend = [first.to_array(), second.to_array()];
+                    }
+                }
+            });
+            self.begin(bends);
+        }
+    }
+
+    /// The first are none.
+    #[inline(always)]
+    fn begin<B: Flat>(&mut self, bends: &mut [B]) {
+        let unknown = (KNOWN - self.known).min(bends.len());
+        bends[..unknown].iter_mut().for_each(|bend| *bend = B::NONE);
+        self.known += unknown;
     }
 
     /// What comes next has nothing to do with what was.
@@ -50,36 +164,152 @@ impl Bends {
     }
 }
 
+/// What is no bend.
+trait Flat {
+    const NONE: Self;
+}
+
+impl Flat for Bend {
+    const NONE: Self = [0.0; 4];
+}
+
+impl Flat for [Bend; 2] {
+    const NONE: Self = [[0.0; 4]; 2];
+}
+
+/// Bends of four samples, coefficient by coefficient.
+#[inline(always)]
+fn midway<S: Set>(s: S, (at, mid): &(Row, Row), n: usize) -> [f64x4<S>; 4] {
+    let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };
+    let (half, two, four, third) = (splat(0.5), splat(2.0), splat(4.0), splat(1.0 / 3.0));
+    let (h0, h1, h2, h3) = (at.at(s, n), at.at(s, n + 1), at.at(s, n + 2), at.at(s, n + 3));
+    let (m0, m1, m2) = (mid.at(s, n), mid.at(s, n + 1), mid.at(s, n + 2));
+    let (first, last) = (h2 - h0, h3 - h1);
+    // Slopes at both ends beyond the cubic's, and the height midway beyond that of the cubic with the new slopes.
+    let begin = (four * (m1 - m0) - two * first) * third;
+    let end = (four * (m2 - m1) - two * last) * third;
+    let slopes = (half * first + begin) - (half * last + end);
+    let middle = splat(16.0) * ((m1 - half * (h1 + h2)) - splat(0.125) * slopes);
+    [begin, middle - (two * begin + end), (begin + end) - two * middle, middle]
+}
+
+/// The same in halves.
+#[inline(always)]
+fn quarters_of<S: Set>(
+    s: S,
+    (at, mid): &(Row, Row),
+    (first, second): &(Row, Row),
+    n: usize,
+) -> [[f64x4<S>; 4]; 2] {
+    let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };
+    let (half, two, three_halves, sixth) = (splat(0.5), splat(2.0), splat(1.5), splat(1.0 / 6.0));
+    let (h0, h1, h2, h3) = (at.at(s, n), at.at(s, n + 1), at.at(s, n + 2), at.at(s, n + 3));
+    let (m0, m1, m2) = (mid.at(s, n), mid.at(s, n + 1), mid.at(s, n + 2));
+    let (a1, a2) = (first.at(s, n), first.at(s, n + 1));
+    let (b0, b1) = (second.at(s, n), second.at(s, n + 1));
+    let (before, inside, after) = (h1 - h0, h2 - h1, h3 - h2);
+    let k1 = half * (before + inside);
+    let k2 = (three_halves * inside - before) - half * after;
+    let k3 = half * (before + after) - inside;
+    // Slopes a half sample, where it begins, midway and where it ends.
+    let slope = |low, high, before, after| (splat(8.0) * (high - low) - (after - before)) * sixth;
+    let (s0, s1, s2) = (slope(b0, a1, m0, m1), slope(a1, b1, h1, h2), slope(b1, a2, m1, m2));
+    // The quartic of a half, in coefficients a whole sample.
+    let quartic = |rise: f64x4<S>, begin: f64x4<S>, end: f64x4<S>, middle: f64x4<S>| {
+        let bump = splat(16.0) * ((middle - half * rise) - splat(0.125) * (begin - end));
+        let square = (splat(3.0) * rise - (two * begin + end)) + bump;
+        let cube = (begin + end) - two * (rise + bump);
+        [two * begin, splat(4.0) * square, splat(8.0) * cube, splat(16.0) * bump]
+    };
+    let [c1, c2, c3, c4] = quartic(m1 - h1, s0, s1, a1 - h1);
+    let [d1, d2, d3, d4] = quartic(h2 - m1, s1, s2, b1 - m1);
+    // The cubic, seen from midway.
+    let (slope, curve) = (k1 + (k2 + splat(0.75) * k3), k2 + three_halves * k3);
+    [[c1 - k1, c2 - k2, c3 - k3, c4], [d1 - slope, d2 - curve, d3 - k3, d4]]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn height(x: f64) -> f64 {
+        3.0 - 0.7 * x + 0.3 * x * x - 0.11 * x * x * x + 0.013 * x * x * x * x
+    }
+
+    fn rise(c: [f64; 4], x: f64) -> f64 {
+        c.iter().rev().fold(0.0, |sum, c| x * (sum + c))
+    }
+
+    fn sum(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+        [0, 1, 2, 3].map(|k| a[k] + b[k])
+    }
+
+    /// Samples of the profile.
+    const COUNT: usize = 50;
+
+    /// Heights at them, so much later.
+    fn heights(later: f64) -> [f64; COUNT] {
+        core::array::from_fn(|n| height(0.1 * (n as f64 + later)))
+    }
+
+    /// Bends of them, taken in such blocks.
+    fn bends(level: Level, cuts: usize) -> ([Bend; COUNT], [[Bend; 2]; COUNT]) {
+        let [at, first, mid, second] = [0.0, -0.75, -0.5, -0.25].map(heights);
+        let (mut by_mid, mut by_quarters) = (Bends::default(), Bends::default());
+        let (mut bends, mut halves) = ([[0.0; 4]; COUNT], [[[0.0; 4]; 2]; COUNT]);
+        for (k, (bends, halves)) in bends.chunks_mut(cuts).zip(halves.chunks_mut(cuts)).enumerate() {
+            let now = k * cuts..k * cuts + bends.len();
+            by_mid.midway(level, &at[now.clone()], &mid[now.clone()], bends);
+            let quarters = [&first[now.clone()], &second[now.clone()]];
+            by_quarters.quarters(level, &at[now.clone()], &mid[now], quarters, halves);
+        }
+        (bends, halves)
+    }
+
     #[test]
     fn with_its_bend_a_cubic_is_a_polynomial_of_the_fourth_degree_to_rounding() {
-        let height = |x: f64| 3.0 - 0.7 * x + 0.3 * x * x - 0.11 * x * x * x + 0.013 * x * x * x * x;
-        let mut bends = Bends::default();
-        for n in 0..20 {
-            let at = f64::from(n);
-            let bend = bends.next(height(at), height(at - 0.5));
-            if n < 3 {
-                assert_eq!(bend, [0.0; 4]);
-                continue;
-            }
-            let [before, inside, after] =
-                [0.0, 1.0, 2.0].map(|k| height(at - 2.0 + k) - height(at - 3.0 + k));
-            let cubic = [
-                0.5 * (before + inside),
-                1.5 * inside - before - 0.5 * after,
-                0.5 * (before + after) - inside,
-                0.0,
-            ];
+        let (bends, halves) = bends(Level::detect(), 50);
+        assert_eq!((&bends[..3], &halves[..3]), (&[[0.0; 4]; 3][..], &[[[0.0; 4]; 2]; 3][..]));
+        let at = |x: f64| height(0.1 * x);
+        for (n, (bend, [first, second])) in bends.iter().zip(&halves).enumerate().skip(3) {
+            let end = n as f64 - 1.0;
+            let [before, inside, after] = [-1.0, 0.0, 1.0].map(|k| at(end + k) - at(end + k - 1.0));
+            let square = 1.5 * inside - before - 0.5 * after;
+            let cubic = [0.5 * (before + inside), square, 0.5 * (before + after) - inside, 0.0];
+            let [c1, c2, c3, _] = cubic;
+            let midway = [c1 + c2 + 0.75 * c3, c2 + 1.5 * c3, c3, 0.0];
             for x in [0.0, 0.2, 0.5, 0.9, 1.0] {
-                let rise = (0..4).rev().fold(0.0, |sum, k| x * (sum + cubic[k] + bend[k]));
-                let wanted = height(at - 2.0 + x) - height(at - 2.0);
-                assert!((rise - wanted).abs() < 1e-9, "{n}, {x}: {rise} and not {wanted}");
+                let wanted = at(end - 1.0 + x) - at(end - 1.0);
+                let found = rise(sum(cubic, *bend), x);
+                assert!((found - wanted).abs() < 1e-12, "{n}, {x}: {found} and not {wanted}");
+                let wanted = at(end - 1.0 + 0.5 * x) - at(end - 1.0);
+                let found = rise(sum(cubic, *first), 0.5 * x);
+                assert!((found - wanted).abs() < 1e-12, "{n}, first half, {x}: {found} and not {wanted}");
+                let wanted = at(end - 0.5 + 0.5 * x) - at(end - 0.5);
+                let found = rise(sum(midway, *second), 0.5 * x);
+                assert!((found - wanted).abs() < 1e-12, "{n}, second half, {x}: {found} and not {wanted}");
             }
         }
+    }
+
+    #[test]
+    fn bends_are_the_same_bits_on_every_set_of_instructions_and_in_any_blocks() {
+        let whole = bends(Level::detect(), 50);
+        for level in Level::available() {
+            for cuts in [1, 2, 3, 7, 33, 50] {
+                assert!(bends(level, cuts) == whole, "{level:?}, {cuts}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_forgotten_bends_nothing() {
+        let mut bends = Bends::default();
+        let mut out = [[1.0; 4]; 4];
+        bends.midway(Level::detect(), &[1.0, 2.0, 4.0, 3.0], &[0.0; 4], &mut out);
+        assert!(out[..3] == [[0.0; 4]; 3] && out[3] != [0.0; 4]);
         bends.forget();
-        assert_eq!(bends.next(5.0, 4.0), [0.0; 4]);
+        bends.midway(Level::detect(), &[5.0], &[4.0], &mut out[3..]);
+        assert_eq!(out[3], [0.0; 4]);
     }
 }

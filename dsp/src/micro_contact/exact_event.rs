@@ -1,7 +1,8 @@
 //! Exact regime maps with located events.
 //!
-//! A sample whose two ends lie in one regime costs one map, or two where its ground bends, because there a pad can land and leave, or leave
-//! and land, within it (that alone is worth 4–20 dB on a hopping pad). Otherwise the sample is walked in a
+//! A sample whose two ends lie in one regime costs one map. Where its ground bends a pad can land and leave, or leave and land, within it:
+//! it is asked midway too, and at the quarters where those are known (that alone is worth 4–20 dB on a hopping pad, each time). Otherwise
+//! the sample is walked in a
 //! binary tree: a piece that ends in the other regime is halved, down to a tick; the tick in which
 //! skin and surface meet or part is taken whole, and the force it had too much or too little, k_m·g
 //! with g a parabola over the part ρ of the tick after the event, is given back as its integrals
@@ -11,11 +12,11 @@
 //! costs at most 2·64 − 1 = 127 maps.
 //!
 //! The profile over a step is the Catmull-Rom cubic through four heights, hence one sample of
-//! latency, and what is known to bend beside it ([`Bend`]); the force is the mean of both ends.
+//! latency, and what is known to bend beside it ([`GroundBetween`]); the force is the mean of both ends.
 
-use super::bends::Bend;
+use super::bends::{Bend, GroundBetween};
 use super::flow::{MAX_LEVEL, Regime};
-use super::guard::{CleanBlock, MAX_PENETRATION_M, believed, rescue};
+use super::guard::{CleanBlock, MAX_PENETRATION_M, rescue};
 use super::quad::{Apart, Quad};
 use super::{ContactSample, ContactState, MicroContact, Onset, Probe};
 use crate::simd::{Level, at_level};
@@ -26,8 +27,21 @@ const TICK_PHASE: f64 = 0.07;
 /// Longest pressed map, radians: a longer one could leave and come back unseen.
 const PRESSED_PHASE: f64 = 1.0;
 
-/// Ground that bends can meet a pad and leave it within a sample: it is looked at in the middle of a sample too, 2⁻¹ of it.
-const BENT_LEVEL: usize = 1;
+/// Kinds of [`GroundBetween`], for what is compiled for each. Ground that bends can meet a pad and leave it within a sample: it is looked
+/// at wherever it is known, in pieces of 2⁻¹ of a sample or of 2⁻².
+pub(super) const AT_SAMPLES: u8 = 0;
+pub(super) const MIDWAY: u8 = 1;
+pub(super) const QUARTERS: u8 = 2;
+
+/// The profile of a sample as it is walked along.
+#[derive(Clone, Copy)]
+pub(super) struct Profile {
+    pub(super) c: [f64; 4],
+    /// From midway on, where that is another polynomial.
+    pub(super) later: Option<[f64; 4]>,
+    /// Its pieces are of this level or finer.
+    pub(super) least: usize,
+}
 
 /// Coefficients of the scheme.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,14 +104,34 @@ impl ExactEvent {
             softer.stiffness_per_mass + share * (harder.stiffness_per_mass - softer.stiffness_per_mass);
     }
 
-    /// Runs one clean block; row n describes input n − 1, and so does bend n, where there is one: it ends at that input.
+    /// Runs one clean block; row n describes input n − 1, and so does what is known of the ground: it ends at that input.
     #[inline(always)]
     pub fn run<Q: Quad>(
         &self,
         quad: Q,
         design: &MicroContact,
         state: &mut ContactState,
-        (block, bends): (&CleanBlock, &[Bend]),
+        (block, ground): (&CleanBlock, GroundBetween<'_>),
+        out: &mut [ContactSample],
+    ) {
+        match ground {
+            GroundBetween::AtSamples => self.run_on::<Q, AT_SAMPLES>(quad, design, state, block, &[], out),
+            GroundBetween::Midway(bends) => self.run_on::<Q, MIDWAY>(quad, design, state, block, bends, out),
+            GroundBetween::Quarters(halves) => {
+                self.run_on::<Q, QUARTERS>(quad, design, state, block, halves.as_flattened(), out);
+            }
+        }
+    }
+
+    /// The same on one kind of ground: a bend a sample, or two.
+    #[inline(always)]
+    fn run_on<Q: Quad, const KIND: u8>(
+        &self,
+        quad: Q,
+        design: &MicroContact,
+        state: &mut ContactState,
+        block: &CleanBlock,
+        bends: &[Bend],
         out: &mut [ContactSample],
     ) {
         let [mut h0, mut h1, mut h2] = state.heights_m;
@@ -109,25 +143,39 @@ impl ExactEvent {
             let [c1, c2, c3] = catmull_rom(h1 - h0, h2 - h1, h3 - h2);
             let force = 0.5 * (f1 + f2);
             let which = usize::from(pressed);
-            let regime = &self.regimes[which];
-            let (c, next, least, mut stays) = if let Some(bend) = bends.get(n) {
-                let [b1, b2, b3, b4] = believed(bend);
-                let c = [c1 + b1, c2 + b2, c3 + b3, b4];
-                let half = &regime.maps[BENT_LEVEL];
-                let middle = half.apply(y, c, force);
-                let next = half.apply(middle, at_end(c, 0.5), force);
-                (c, next, BENT_LEVEL, (middle.first() < 0.0) == pressed)
-            } else {
-                let next = regime.maps[0].apply_cubic(y, [c1, c2, c3], force);
-                ([c1, c2, c3, 0.0], next, 0, true)
+            let maps = &self.regimes[which].maps;
+            let bend = |half: usize| bends.get(half).copied().unwrap_or_default();
+            let (mut c, mut later) = ([c1, c2, c3, 0.0], None);
+            let (next, mut stays) = match KIND {
+                MIDWAY => {
+                    let [b1, b2, b3, b4] = bend(n);
+                    c = [c1 + b1, c2 + b2, c3 + b3, b4];
+                    let gap_m = maps[1].apply(y, c, force).first();
+                    (maps[0].apply(y, c, force), (gap_m < 0.0) == pressed && self.coarsest[which] == 0)
+                }
+                QUARTERS => {
+                    let ([a1, a2, a3, a4], [b1, b2, b3, b4]) = (bend(2 * n), bend(2 * n + 1));
+                    c = [c1 + a1, c2 + a2, c3 + a3, a4];
+                    let [l1, l2, l3] = from_midway([c1, c2, c3]);
+                    let end = [l1 + b1, l2 + b2, l3 + b3, b4];
+                    later = Some(end);
+                    let middle = maps[1].apply(y, c, force);
+                    let (early, late) = (maps[2].apply(y, c, force), maps[2].apply(middle, end, force));
+                    let touches = |at: Q| at.first() < 0.0;
+                    let alike = (touches(middle) == pressed) & (touches(early) == pressed);
+                    let alike = alike & (touches(late) == pressed);
+                    (maps[1].apply(middle, end, force), alike && self.coarsest[which] <= 1)
+                }
+                _ => (maps[0].apply_cubic(y, [c1, c2, c3], force), self.coarsest[which] == 0),
             };
-            stays &= (next.first() < 0.0) == pressed && self.coarsest[which] <= least;
+            stays &= (next.first() < 0.0) == pressed;
             let before = y.array();
             let (mut touched, mut onset) = (pressed, None);
             if stays {
                 y = next;
             } else {
-                let step = self.walk(design.level, before, (c, least), force);
+                let profile = Profile { c, later, least: usize::from(KIND) };
+                let step = self.walk(design.level, before, &profile, force);
                 (touched, onset) = (step.touched, step.onset);
                 y = quad.load(&step.y);
                 pressed = y.first() < 0.0;
@@ -164,10 +212,10 @@ impl ExactEvent {
         state.gap_m = y.first();
     }
 
-    /// One sample with events, piece by piece, over a profile and in pieces of at least this level. Products and sums round apart on every level.
+    /// One sample with events, piece by piece. Products and sums round apart on every level.
     #[cold]
     #[inline(never)]
-    pub(super) fn walk(&self, level: Level, y: [f64; 4], profile: ([f64; 4], usize), force_n: f64) -> Step {
+    pub(super) fn walk(&self, level: Level, y: [f64; 4], profile: &Profile, force_n: f64) -> Step {
         at_level!(level.at_most_256_bits(), s => {
             let zero: f64x4<_> = SimdBase::splat(s, 0.0);
             self.walk_in(Apart(zero), y, profile, force_n)
@@ -175,13 +223,8 @@ impl ExactEvent {
     }
 
     #[inline(always)]
-    fn walk_in<Q: Quad>(
-        &self,
-        quad: Q,
-        mut y: [f64; 4],
-        (mut c, least): ([f64; 4], usize),
-        force_n: f64,
-    ) -> Step {
+    fn walk_in<Q: Quad>(&self, quad: Q, mut y: [f64; 4], profile: &Profile, force_n: f64) -> Step {
+        let Profile { mut c, later, least } = *profile;
         let ticks = 1_usize << self.finest;
         let (mut now, mut level) = (0, 0);
         let (mut touched, mut onset, mut maps) = (false, None, 0);
@@ -211,6 +254,9 @@ impl ExactEvent {
             y = next;
             c = end;
             now += ticks >> level;
+            if now == ticks / 2 {
+                c = later.unwrap_or(c);
+            }
             while level > 0 && now % (ticks >> (level - 1)) == 0 {
                 level -= 1;
             }
@@ -260,6 +306,12 @@ pub(super) fn at_end(c: [f64; 4], size: f64) -> [f64; 4] {
     [c1 + size * (2.0 * c2 + (cubic + 4.0 * fourth)), c2 + (cubic + 6.0 * fourth), c3 + 4.0 * size * c4, c4]
 }
 
+/// The coefficients of a cubic seen from the middle of its sample.
+#[inline(always)]
+pub(super) fn from_midway([c1, c2, c3]: [f64; 3]) -> [f64; 3] {
+    [c1 + (c2 + 0.75 * c3), c2 + 1.5 * c3, c3]
+}
+
 fn at_least_zero(x: f64) -> f64 {
     if x > 0.0 { x } else { 0.0 }
 }
@@ -276,6 +328,10 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
 
+    fn plain(c: [f64; 4]) -> Profile {
+        Profile { c, later: None, least: 0 }
+    }
+
     /// Ground that rises as c t² meets a pad at rest g above it with 2 √(c g), wherever the ticks lie.
     #[test]
     fn a_collision_is_as_fast_as_the_ground_is_at_that_instant_and_not_in_the_mean_of_its_tick() {
@@ -285,7 +341,7 @@ mod tests {
         for share in 1..1000 {
             let gap_m = rise_m * f64::from(share) / 1000.0;
             let met = exact
-                .walk(Level::detect(), [gap_m, 0.0, 0.0, 0.0], ([0.0, rise_m, 0.0, 0.0], 0), 0.0)
+                .walk(Level::detect(), [gap_m, 0.0, 0.0, 0.0], &plain([0.0, rise_m, 0.0, 0.0]), 0.0)
                 .onset
                 .unwrap();
             let (at, closing_m_s) = (libm::sqrt(gap_m / rise_m), 2.0 * libm::sqrt(rise_m * gap_m) / step_s);
@@ -309,7 +365,8 @@ mod tests {
                     let c = [(); 4].map(|()| rng.normal() * size);
                     let speed = size * rate_hz * rng.normal();
                     let y = [rng.normal() * size * 0.3, 0.0, speed, 0.0];
-                    let step = exact.walk(Level::detect(), y, (c, BENT_LEVEL), 0.5);
+                    let profile = Profile { c, later: Some(c.map(|c| -c)), least: usize::from(QUARTERS) };
+                    let step = exact.walk(Level::detect(), y, &profile, 0.5);
                     assert!(step.y.iter().all(|y| y.is_finite()));
                     worst = worst.max(step.maps);
                 }

@@ -3,13 +3,14 @@
 //! | seen | done | counted |
 //! |---|---|---|
 //! | height or force not finite or beyond the [`limits`](crate::limits) | the last good one is held | yes |
-//! | a bend not finite or beyond the limits of a height | no bend | no |
+//! | a bend not finite or beyond the limits of a height, or missing | no bend | no |
 //! | force below zero | zero: a surface does not pull | no |
 //! | gap above the leash | upward velocities become zero | no |
 //! | gap beyond 0.1 m, penetration beyond 20 mm and twice what the force presses in | the contact rests on the surface again | yes |
 //! | magnitudes below 1e-100 | zero, so that no denormal ever slows a kernel | no |
 
-use super::{Bend, ContactState, MicroContact};
+use super::bends::{Bend, GroundBetween, are_believed};
+use super::{ContactState, MicroContact};
 pub(super) use crate::limits::{MAX_HEIGHT_M, MAX_NORMAL_FORCE_N as MAX_FORCE_N};
 
 /// Rows between two looks at vanishing magnitudes, on the contact's own clock.
@@ -108,10 +109,42 @@ pub(super) fn is_force(force_n: f64) -> bool {
     force_n.abs() <= MAX_FORCE_N
 }
 
-/// A bend that can be one, otherwise none.
-#[inline(always)]
-pub(super) fn believed(bend: &Bend) -> Bend {
-    if bend.iter().map(|c| c.abs()).sum::<f64>() <= MAX_HEIGHT_M { *bend } else { [0.0; 4] }
+/// Bends of up to [`GRID`] rows that a kernel can trust: what cannot be one is none.
+pub(super) struct CleanGround {
+    halves: [[Bend; 2]; GRID],
+    bends: [Bend; GRID],
+}
+
+impl CleanGround {
+    #[cold]
+    #[inline(never)]
+    pub fn of(ground: GroundBetween<'_>) -> Self {
+        let mut clean = Self { halves: [[[0.0; 4]; 2]; GRID], bends: [[0.0; 4]; GRID] };
+        match ground {
+            GroundBetween::AtSamples => {}
+            GroundBetween::Midway(bends) => {
+                clean.bends.iter_mut().zip(bends).for_each(|(to, from)| *to = believed(from))
+            }
+            GroundBetween::Quarters(halves) => {
+                let each = clean.halves.as_flattened_mut().iter_mut().zip(halves.as_flattened());
+                each.for_each(|(to, from)| *to = believed(from));
+            }
+        }
+        clean
+    }
+
+    /// The first so many of them, as many as `ground` knows.
+    pub fn ground(&self, ground: GroundBetween<'_>, count: usize) -> GroundBetween<'_> {
+        match ground {
+            GroundBetween::AtSamples => GroundBetween::AtSamples,
+            GroundBetween::Midway(_) => GroundBetween::Midway(&self.bends[..count]),
+            GroundBetween::Quarters(_) => GroundBetween::Quarters(&self.halves[..count]),
+        }
+    }
+}
+
+fn believed(bend: &Bend) -> Bend {
+    if are_believed(&[*bend]) { *bend } else { [0.0; 4] }
 }
 
 /// A height or force that a contact can start from.

@@ -48,8 +48,9 @@ mod semi_implicit;
 mod side_by_side;
 mod state;
 mod stiffening;
+mod together;
 
-pub use bends::{Bend, Bends};
+pub use bends::{Bend, Bends, GroundBetween};
 pub use choice::{
     Choice, EULER_MAX_PHASE, EXACT_MAX_PHASE, EXACT_MAX_STIFFNESS_N_M, Integrator, SUBSTEP_MAX_PHASE,
 };
@@ -67,7 +68,7 @@ use energy_conserving::EnergyConserving;
 use exact_event::ExactEvent;
 use fearless_simd::SimdBase;
 use fearless_simd::f64x4;
-use guard::{CleanBlock, GRID};
+use guard::{CleanBlock, CleanGround, GRID};
 use quad::{Halves, Quad};
 use semi_implicit::SemiImplicit;
 
@@ -191,6 +192,22 @@ impl MicroContact {
         state
     }
 
+    /// [`Self::riding`] up to the middle one of three heights, over the ground about it: one a sample before, there, and one a sample later.
+    /// The next input is the last of them, or with a latency the one after it.
+    #[must_use]
+    pub fn leaving_the_line(
+        &self,
+        heights_m: [f64; 3],
+        normal_force_n: f64,
+        velocity_m_s: f64,
+    ) -> ContactState {
+        let mut state = self.riding(heights_m[1], normal_force_n, velocity_m_s);
+        if self.latency_samples() == 1 && heights_m.iter().all(|height_m| guard::is_height(*height_m)) {
+            state.heights_m = heights_m;
+        }
+        state
+    }
+
     /// An unloaded pad that meets this height at the closing speed (at most 20 m/s), one sample before
     /// the first input: its onset is reported in the first rows. Without a closing speed above zero the finger is [`Self::at_rest`].
     #[must_use]
@@ -238,23 +255,22 @@ impl MicroContact {
         normal_force_n: &[f64],
         out: &mut [ContactSample],
     ) {
-        self.run_bent(state, height_m, normal_force_n, &[], out);
+        self.run_over(state, height_m, normal_force_n, GroundBetween::AtSamples, out);
     }
 
-    /// [`Self::run`] over ground that is known between its samples as well ([`Bends`]): bend n, where there is one, belongs to the sample
-    /// that ends at height n − 1. Only the exact scheme looks at it.
-    pub fn run_bent(
+    /// [`Self::run`] over ground that is known between its samples as well ([`Bends`]). Only the exact scheme looks at it.
+    pub fn run_over(
         &self,
         state: &mut ContactState,
         height_m: &[f64],
         normal_force_n: &[f64],
-        bends: &[Bend],
+        ground: GroundBetween<'_>,
         out: &mut [ContactSample],
     ) {
         // Four numbers fill no wider vector.
         at_level!(self.level.at_most_256_bits(), s => {
             let (quad, halves): (f64x4<_>, _) = (SimdBase::splat(s, 0.0), Halves::zero(s));
-            self.run_blocks(quad, halves, state, (height_m, normal_force_n, bends), out);
+            self.run_blocks(quad, halves, state, (height_m, normal_force_n, ground), out);
         });
     }
 
@@ -298,7 +314,7 @@ impl MicroContact {
         quad: Q,
         halves: E,
         state: &mut ContactState,
-        (mut height_m, mut force_n, mut bends): (&[f64], &[f64], &[Bend]),
+        (mut height_m, mut force_n, mut ground): (&[f64], &[f64], GroundBetween<'_>),
         mut out: &mut [ContactSample],
     ) {
         let mut block = CleanBlock::EMPTY;
@@ -310,19 +326,28 @@ impl MicroContact {
             }
             let (heights, later_heights) = height_m.split_at(count);
             let (forces, later_forces) = force_n.split_at(count);
-            let (bent, later_bends) = bends.split_at(count.min(bends.len()));
+            let (known, later_ground) = ground.split_at(count);
             let (rows, later_rows) = out.split_at_mut(count);
             block.fill(state, heights, forces);
             match &self.scheme {
                 Scheme::SemiImplicit(scheme) => scheme.run(halves, self, state, &block, rows),
-                Scheme::ExactEvent(scheme) => scheme.run(quad, self, state, (&block, bent), rows),
+                Scheme::ExactEvent(scheme) => {
+                    let clean;
+                    let known = if known.is_sound(count) {
+                        known
+                    } else {
+                        clean = CleanGround::of(known);
+                        clean.ground(known, count)
+                    };
+                    scheme.run(quad, self, state, (&block, known), rows);
+                }
                 Scheme::EnergyConserving(scheme) => scheme.run(quad, self, state, &block, rows),
             }
             state.clock = state.clock.wrapping_add(count as u32);
             if count == left {
                 guard::flush(state);
             }
-            (height_m, force_n, bends, out) = (later_heights, later_forces, later_bends, later_rows);
+            (height_m, force_n, ground, out) = (later_heights, later_forces, later_ground, later_rows);
         }
     }
 }

@@ -27,6 +27,9 @@ const TREND_S: f64 = 0.025;
 /// tenths of a second how it began.
 const LEAD_IN_S: f64 = 65.0 / 44_100.0;
 
+/// Heights about the place where it does.
+const ABOUT: usize = 3;
+
 impl Voice {
     /// How hard it presses at its last sample, N, and where it goes, m/s.
     pub(crate) fn going(&self) -> (f64, [f64; 2]) {
@@ -104,11 +107,17 @@ impl Voice {
         self.between.remember(scratch.profile.surface.roughness[MAX_BLOCK - 1]);
         self.look_between(shared, seat);
         let step_s = 1.0 / shared.sample_rate_hz;
-        // The line ends a step before the first height of the ground.
-        let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize - 1;
-        self.lay_behind(steps + 1, step_s, 1, at, seat, scratch);
-        self.pad.ride(scratch.profile.surface.height_m[0], scratch.profile.force_n[0], slope_m_s);
+        let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
+        // It leaves the line where the ground is known about it: a step before, there, and a step later.
+        self.lay_behind(steps + 1, step_s, ABOUT, at, seat, scratch);
         self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
+        let Scratch { lanes, profile, .. } = &mut *scratch;
+        self.rolling.lead_in(&mut profile.surface, ABOUT);
+        self.between.bend(shared, &profile.seen, ABOUT, &mut lanes[0].bends);
+        let [before_m, here_m, later_m, ..] = profile.surface.height_m;
+        let given = self.pad.ride([before_m, here_m, later_m], profile.force_n[0], slope_m_s);
+        // The line ends a step before the first height of the ground.
+        let steps = steps - 1 - given;
         let (mut left, mut row) = (steps, PadSample::default());
         while left > 0 {
             let count = left.min(MAX_BLOCK);
@@ -117,9 +126,8 @@ impl Voice {
             self.rolling.lead_in(&mut profile.surface, count);
             let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
             let Lane { rows, bends, .. } = &mut lanes[0];
-            let bends = &mut bends[..if self.between.looks() { count } else { 0 }];
-            self.between.bend(&profile.midway, bends);
-            row = self.pad.lead_in(heights_m, forces_n, bends, &mut rows[..count]);
+            let ground = self.between.bend(shared, &profile.seen, count, bends).ground(count, bends);
+            row = self.pad.lead_in(heights_m, forces_n, ground, &mut rows[..count]);
             left -= count;
             if left == 0 {
                 self.pad.appear(&row, heights_m[count - 1], forces_n[count - 1], slope_m_s);
@@ -145,8 +153,8 @@ impl Voice {
         self.path.lay_behind(steps, step_s, points);
         let PathPoint { position_m, velocity_m_s, .. } = points[0];
         let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);
-        let midway = self.between.on_the_way(from_m);
-        let along = Along { midway, ..self.along(at.shared, at.position, false) };
+        let between = self.between.on_the_way(from_m);
+        let along = Along { between, ..self.along(at.shared, at.position, false) };
         profile.run(seat, along, points, &mut self.cells);
     }
 
@@ -172,7 +180,7 @@ impl Voice {
     pub(super) fn along<'a>(&self, shared: &'a Shared, position: u64, slopes: bool) -> Along<'a> {
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
         let in_body = self.path.is_in_body();
-        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, midway: None }
+        Along { shared, tip_radius_m, contact: self.slot, position, slopes, in_body, between: None }
     }
 
     /// Goes on somewhere else; wakes a resting contact. A jump that no stroke makes changes nothing here: it

@@ -6,7 +6,7 @@
 use super::PadSample;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stiffness::{Ground, stiffness_n_m};
-use asperity_dsp::micro_contact::{Bend, Beside, ContactState, MicroContact, Probe};
+use asperity_dsp::micro_contact::{Beside, ContactState, GroundBetween, MicroContact, Probe};
 
 /// A contact force so many times what presses is a blow: no contact begins in the middle of one.
 const LEAD_IN_BLOW: f64 = 10.0;
@@ -69,8 +69,12 @@ impl Pad {
     ///
     /// Finger and pad rise with it: set off from rest they would still swing when they are heard. On the whole means over the
     /// time that a finger answers in: with the slope of a millisecond's roughness a lightly pressed one would be thrown.
-    pub(super) fn ride(&mut self, height_m: f64, force_n: f64, rise_m_s: f64) {
-        self.state = self.model.riding(height_m, force_n, rise_m_s);
+    ///
+    /// The heights are those a sample before it leaves that line, there, and a sample later; how many of the heights after the middle one it
+    /// has been given.
+    pub(super) fn ride(&mut self, heights_m: [f64; 3], force_n: f64, rise_m_s: f64) -> usize {
+        self.state = self.model.leaving_the_line(heights_m, force_n, rise_m_s);
+        self.model.latency_samples()
     }
 
     /// Then over these heights; the row it ends with.
@@ -78,10 +82,10 @@ impl Pad {
         &mut self,
         heights_m: &[f64],
         forces_n: &[f64],
-        bends: &[Bend],
+        ground: GroundBetween<'_>,
         rows: &mut [PadSample],
     ) -> PadSample {
-        self.model.run_bent(&mut self.state, heights_m, forces_n, bends, rows);
+        self.model.run_over(&mut self.state, heights_m, forces_n, ground, rows);
         rows.last().copied().unwrap_or_default()
     }
 
@@ -95,15 +99,15 @@ impl Pad {
         self.resets_told = self.state.resets();
     }
 
-    /// A row for each height, as the model gives it; bends where the ground is known between heights.
+    /// A row for each height, as the model gives it, over what is known of the ground between them.
     pub(super) fn run(
         &mut self,
         heights_m: &[f64],
         forces_n: &[f64],
-        bends: &[Bend],
+        ground: GroundBetween<'_>,
         rows: &mut [PadSample],
     ) {
-        self.model.run_bent(&mut self.state, heights_m, forces_n, bends, rows);
+        self.model.run_over(&mut self.state, heights_m, forces_n, ground, rows);
     }
 
     /// The contact as stiff as it is.
@@ -111,14 +115,15 @@ impl Pad {
         self.model.probe()
     }
 
-    /// [`Self::run`] without bends, for [`run_side_by_side`](asperity_dsp::micro_contact::run_side_by_side).
+    /// [`Self::run`] for [`run_side_by_side`](asperity_dsp::micro_contact::run_side_by_side).
     pub(super) fn beside<'a>(
         &'a mut self,
         height_m: &'a [f64],
         normal_force_n: &'a [f64],
+        ground: GroundBetween<'a>,
         out: &'a mut [PadSample],
     ) -> Beside<'a> {
-        Beside { design: &self.model, state: &mut self.state, height_m, normal_force_n, out }
+        Beside { design: &self.model, state: &mut self.state, height_m, normal_force_n, ground, out }
     }
 
     /// Rows of the model as they are felt; how often the state was no longer finite and begun anew.

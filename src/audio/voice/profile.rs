@@ -1,7 +1,7 @@
 //! Profile: heights along the path, with the micro-relief below the source's own band, as the probe's tip rides them.
 
 use super::shared::Shared;
-use crate::audio::seat::{MidwayNoise, Noise, Seat};
+use crate::audio::seat::{Look, Noise, NoiseBetween, Seat};
 use crate::prepared::overlay::{Room, TileCells};
 use asperity_dsp::pair::Pair;
 use asperity_dsp::trajectory::PathPoint;
@@ -21,25 +21,61 @@ pub(super) struct Along<'a> {
     pub(super) slopes: bool,
     /// The path lies at places of the body, [`Profile::at_m`].
     pub(super) in_body: bool,
-    /// What is looked at midway between samples too.
-    pub(super) midway: Option<FromThere>,
+    /// What is looked at between samples too.
+    pub(super) between: Option<FromThere>,
 }
 
-/// Short waves of the micro-relief are looked at midway between samples, from the place of the sample before the first.
+/// Short waves of the micro-relief are looked at between samples, from the place of the sample before the first.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FromThere {
     /// The coarsest octave that is.
     pub(super) octave: usize,
+    /// At the quarters too, and not midway only.
+    pub(super) quarters: bool,
     pub(super) from_m: [f64; 2],
 }
 
-/// Short waves of the micro-relief, m: at samples and midway from the sample before each.
-pub(super) struct Midway {
-    position_m: [[f64; 2]; MAX_BLOCK],
+/// Where on the way from one sample to the next it is looked.
+const WAYS: [f64; 3] = [0.5, 0.25, 0.75];
+
+/// Short waves of the micro-relief, m: at samples, and between the sample before and each: midway, in the first half, in the second.
+pub(super) struct Seen {
+    position_m: [[[f64; 2]; MAX_BLOCK]; WAYS.len()],
     pub(super) at_m: [f64; MAX_BLOCK],
-    pub(super) midway_m: [f64; MAX_BLOCK],
+    pub(super) between_m: [[f64; MAX_BLOCK]; WAYS.len()],
     /// False where the surface could not tell, as while it becomes another.
     pub(super) seen: bool,
+}
+
+impl Seen {
+    /// Lays out where it is looked on the way to these places.
+    fn look(&mut self, there: FromThere, position_m: &[[f64; 2]]) -> NoiseBetween<'_> {
+        let FromThere { octave, quarters, from_m } = there;
+        self.seen = false;
+        let n = position_m.len();
+        let looks = if quarters { WAYS.len() } else { 1 };
+        for (share, place_m) in WAYS.into_iter().zip(&mut self.position_m).take(looks) {
+            let mut before_m = from_m;
+            for ([x, y], at_m) in place_m.iter_mut().zip(position_m) {
+                *x = before_m[0] + share * (at_m[0] - before_m[0]);
+                *y = before_m[1] + share * (at_m[1] - before_m[1]);
+                before_m = *at_m;
+            }
+        }
+        let mut places = self.position_m.iter().zip(&mut self.between_m).take(looks);
+        let look = |_| {
+            places.next().map(|(position_m, height_m)| Look {
+                position_m: &position_m[..n],
+                height_m: &mut height_m[..n],
+            })
+        };
+        NoiseBetween {
+            octave,
+            looks: [(); WAYS.len()].map(look),
+            at_m: &mut self.at_m[..n],
+            seen: &mut self.seen,
+        }
+    }
 }
 
 /// The surface under one stretch of a path.
@@ -55,7 +91,7 @@ pub(super) struct Profile {
     /// What lies there.
     pub(super) surface: SurfaceBlock,
     /// What was seen between samples.
-    pub(super) midway: Midway,
+    pub(super) seen: Seen,
     rough: SurfaceBlock,
     room: Room,
 }
@@ -70,10 +106,10 @@ impl Profile {
             noise_footprint_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             surface: SurfaceBlock::default(),
-            midway: Midway {
-                position_m: [[0.0; 2]; MAX_BLOCK],
+            seen: Seen {
+                position_m: [[[0.0; 2]; MAX_BLOCK]; WAYS.len()],
                 at_m: [0.0; MAX_BLOCK],
-                midway_m: [0.0; MAX_BLOCK],
+                between_m: [[0.0; MAX_BLOCK]; WAYS.len()],
                 seen: false,
             },
             rough: SurfaceBlock::default(),
@@ -100,28 +136,14 @@ impl Profile {
             contact: along.contact,
             slopes: along.slopes,
         };
-        let midway = along.midway.map(|FromThere { octave, from_m }| {
-            let mut before_m = from_m;
-            for (midway_m, at_m) in self.midway.position_m.iter_mut().zip(&self.position_m[..n]) {
-                *midway_m = [0, 1].map(|axis| 0.5 * (before_m[axis] + at_m[axis]));
-                before_m = *at_m;
-            }
-            self.midway.seen = false;
-            // All others midway lie between two places of the path.
-            if let Some(first_m) = self.midway.position_m.first() {
-                let [low_m, high_m] = bounds_m;
-                bounds_m = [
-                    [0, 1].map(|axis| low_m[axis].min(first_m[axis])),
-                    [0, 1].map(|axis| high_m[axis].max(first_m[axis])),
-                ];
-            }
-            MidwayNoise {
-                octave,
-                position_m: &self.midway.position_m[..n],
-                at_m: &mut self.midway.at_m[..n],
-                midway_m: &mut self.midway.midway_m[..n],
-                seen: &mut self.midway.seen,
-            }
+        let between = along.between.map(|there| {
+            // All that is looked at lies between two places of the path or the one before it.
+            let ([low_m, high_m], from_m) = (bounds_m, there.from_m);
+            bounds_m = [
+                [0, 1].map(|axis| low_m[axis].min(from_m[axis])),
+                [0, 1].map(|axis| high_m[axis].max(from_m[axis])),
+            ];
+            self.seen.look(there, &self.position_m[..n])
         });
         let mut noise = Noise {
             field: &along.shared.noise,
@@ -130,7 +152,7 @@ impl Profile {
             tip_radius_m: along.tip_radius_m,
             cells,
             room: &mut self.room,
-            midway,
+            between,
         };
         if along.in_body {
             seat.lie_at(&self.at_m[..n]);

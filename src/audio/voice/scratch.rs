@@ -1,6 +1,7 @@
 //! What passes from stage to stage during one stretch; made once, used by every voice in turn.
 
 use super::ac_coupling::Coupled;
+use super::between::Closeness;
 use super::block::VoiceBlock;
 use super::exciters::ForceRun;
 use super::pad::Pad;
@@ -30,30 +31,19 @@ pub(super) struct Lane {
     pub(super) height_m: [f64; MAX_BLOCK],
     pub(super) force_n: [f64; MAX_BLOCK],
     pub(super) rows: [PadSample; MAX_BLOCK],
-    /// What the profile does between samples, where that is known.
-    pub(super) bends: [Bend; MAX_BLOCK],
-    bent: usize,
+    /// What the profile does between samples, and how closely that is known.
+    pub(super) bends: [[Bend; 2]; MAX_BLOCK],
+    pub(super) looks: Closeness,
     /// How often its pad was begun anew, and blows among the rows.
     pub(super) resets: u64,
     pub(super) blows: u64,
 }
 
 impl Lane {
-    /// Room for so many bends, of a profile that is known between samples or of none.
-    pub(super) fn bend(&mut self, count: usize) -> &mut [Bend] {
-        self.bent = count;
-        &mut self.bends[..count]
-    }
-
-    /// Whether the profile is known between samples.
-    pub(super) fn is_bent(&self) -> bool {
-        self.bent > 0
-    }
-
     /// A row of this lane's contact for each of its heights.
     pub(super) fn press(&mut self, pad: &mut Pad, n: usize) {
         let (heights_m, forces_n) = (&self.height_m[..n], &self.force_n[..n]);
-        pad.run(heights_m, forces_n, &self.bends[..self.bent], &mut self.rows[..n]);
+        pad.run(heights_m, forces_n, self.looks.ground(n, &self.bends), &mut self.rows[..n]);
     }
 }
 
@@ -64,8 +54,8 @@ impl Scratch {
             height_m: [0.0; MAX_BLOCK],
             force_n: [0.0; MAX_BLOCK],
             rows: [PadSample::default(); MAX_BLOCK],
-            bends: [[0.0; 4]; MAX_BLOCK],
-            bent: 0,
+            bends: [[[0.0; 4]; 2]; MAX_BLOCK],
+            looks: Closeness::AtSamples,
             resets: 0,
             blows: 0,
         };

@@ -6,6 +6,7 @@
 //! ```
 //! Surfaces are asked in the order of the contacts, and what contacts do is handed on in that order: the bits are those of one after the other.
 
+use super::between::Closeness;
 use super::shared::{At, Shared, Stretch};
 use super::{Lane, Pass, Scratch, Voice, VoiceBlock};
 use crate::audio::seat::Seat;
@@ -170,22 +171,28 @@ impl<'a, W> Company<'a, W> {
         }
     }
 
-    /// The pads of those that slide.
+    /// The pads of those that slide: those whose ground is known at the quarters by themselves, because their samples are two steps.
     fn touch_down(&mut self, n: usize, passes: &[Pass; LANES], lanes: &mut [Lane; LANES]) {
-        let mut beside = [const { None }; LANES];
-        let mut count = 0;
+        let (mut beside, mut in_steps) = ([const { None }; LANES], [const { None }; LANES]);
+        let (mut count, mut stepping) = (0, 0);
         for ((member, pass), lane) in self.members.iter_mut().zip(passes).zip(lanes) {
             let Some(Member { voice, .. }) = member.as_mut().filter(|_| pass.slides) else { continue };
-            if pass.n == n && !lane.is_bent() {
-                let (height_m, force_n) = (&lane.height_m[..n], &lane.force_n[..n]);
-                beside[count] = Some(voice.pad.beside(height_m, force_n, &mut lane.rows[..n]));
-                count += 1;
-            } else {
-                // It fades away in the middle of the stretch, or its ground is known between samples.
+            if pass.n != n {
+                // It fades away in the middle of the stretch.
                 lane.press(&mut voice.pad, pass.n);
+                continue;
+            }
+            let ground = lane.looks.ground(n, &lane.bends);
+            let (height_m, force_n) = (&lane.height_m[..n], &lane.force_n[..n]);
+            let one = Some(voice.pad.beside(height_m, force_n, ground, &mut lane.rows[..n]));
+            if lane.looks == Closeness::Quarters {
+                (in_steps[stepping], stepping) = (one, stepping + 1);
+            } else {
+                (beside[count], count) = (one, count + 1);
             }
         }
         in_one_row(beside, |all| run_side_by_side(all));
+        in_one_row(in_steps, |all| run_side_by_side(all));
     }
 }
 

@@ -10,7 +10,8 @@
 //! | `light` | micro-relief, R = 0.5 | 0.1 | 0.05 | hardly pressed, the pad hops |
 //!
 //! Wavelengths, heights and phases of a ground are drawn from a seed, so that there are as many profiles of a kind as wanted. What is
-//! stated of a case is the rms over [`SEEDS`]; the scene that is written is that of the first.
+//! stated of a case is the rms over [`SEEDS`] (of integrators over those whose stroke forgets how it began); the scene that is written is that of
+//! the first.
 
 mod files;
 mod render;
