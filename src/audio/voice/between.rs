@@ -6,8 +6,8 @@
 //! e: rms of the relief beside the cubics through its samples; F/k: how deep the pad is pressed in. A pad pressed in deeper follows the
 //! cubic as well as it would follow the ground: 0.1 of F/k on a stroke that leaves the ground at every crest is heard at −33 dB, 0.03 at
 //! −40, 0.01 at −50 dB. Known midway a twenty-fifth of e is left, which lightly pressed pads that hop make up to −20 dB of; known at the
-//! quarters, a three-hundredth. Only octaves are looked at without which more than 0.001 F/k would be missed. A stroke of 0.1 m/s under
-//! 0.8 N on a roughness of 0.5 does not pay. Decided where a contact begins and at the steps of the absolute sample grid, so that it depends
+//! quarters, a three-hundredth. Only octaves are looked at without which more than 0.001 F/k would be missed. A stroke of 0.05 m/s under
+//! 0.8 N pays on no roughness up to 0.8. Decided where a contact begins and at the steps of the absolute sample grid, so that it depends
 //! on no split into blocks; only for the scheme that knows events. What is looked at is kept for a while about a limit: to begin anew costs
 //! three samples of cubic.
 
