@@ -74,7 +74,7 @@ impl PreparedProbe {
         let colliding_kg = colliding_kg(probe);
         Ok(Self {
             waits: micro_contact.latency_samples() < row_latency(integrator),
-            ladder: Ladder::new(&micro_contact, integrator, sample_rate_hz)?,
+            ladder: Ladder::new(&micro_contact)?,
             micro_contact,
             mobility: Mobility::new(probe, sample_rate_hz)?,
             collision_mass_kg: colliding_kg * (1.0 + restitution(probe)),

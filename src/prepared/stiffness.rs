@@ -10,7 +10,7 @@
 
 use crate::model::material::Material;
 use asperity_dsp::DesignError;
-use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe, RUNGS_AN_OCTAVE};
+use asperity_dsp::micro_contact::{MicroContact, Probe, RUNGS_AN_OCTAVE};
 
 /// Forces between which the laws hold, N; beyond, the nearer end counts.
 const FORCE_N: (f64, f64) = (0.01, 300.0);
@@ -75,16 +75,12 @@ pub(crate) struct Ladder {
 
 impl Ladder {
     /// Around the probe's own stiffness, as far as the integrator that runs there reaches.
-    pub(crate) fn new(
-        own: &MicroContact,
-        integrator: Integrator,
-        sample_rate_hz: f64,
-    ) -> Result<Self, DesignError> {
+    pub(crate) fn new(own: &MicroContact) -> Result<Self, DesignError> {
         let probe = *own.probe();
         let rung = |step: i32| {
             let factor = libm::exp2(f64::from(step) / RUNGS_AN_OCTAVE as f64);
             let contact_stiffness_n_m = (probe.contact_stiffness_n_m * factor).clamp(1.0, 1e9);
-            MicroContact::new(&Probe { contact_stiffness_n_m, ..probe }, integrator, sample_rate_hz)
+            own.stiffened(contact_stiffness_n_m)
         };
         let (below, above) = ((OCTAVES.0 * RUNGS_AN_OCTAVE) as i32, (OCTAVES.1 * RUNGS_AN_OCTAVE) as i32);
         let steps = -below..=above;
@@ -116,6 +112,7 @@ impl Ladder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use asperity_dsp::micro_contact::Integrator;
 
     #[test]
     fn hard_ground_changes_nothing_and_rubber_halves_a_tool() {
@@ -137,7 +134,7 @@ mod tests {
     fn a_ladder_has_every_stiffness_between_its_ends() {
         let probe = Probe::default();
         let own = MicroContact::new(&probe, Integrator::ExactEvent, 44_100.0).unwrap();
-        let ladder = Ladder::new(&own, Integrator::ExactEvent, 44_100.0).unwrap();
+        let ladder = Ladder::new(&own).unwrap();
         let mut contact = own;
         for factor in [0.05, 0.5, 0.99, 1.0, 3.3, 7.0] {
             let wanted = factor * probe.contact_stiffness_n_m;

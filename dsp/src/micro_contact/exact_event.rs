@@ -79,13 +79,15 @@ struct Event {
 
 impl ExactEvent {
     pub fn new(probe: &Probe, step_s: f64) -> Self {
+        Self::beside(Regime::new(probe, 0.0, step_s), probe, step_s)
+    }
+
+    /// The scheme of a probe whose free regime is known: it is that of any contact stiffness.
+    pub fn beside(free: Regime, probe: &Probe, step_s: f64) -> Self {
         let phase = probe.contact_rate_per_s() * step_s;
         let level_for = |limit: f64| libm::ceil(libm::log2((phase / limit).max(1.0))) as usize;
         Self {
-            regimes: [
-                Regime::new(probe, 0.0, step_s),
-                Regime::new(probe, probe.contact_stiffness_n_m, step_s),
-            ],
+            regimes: [free, Regime::new(probe, probe.contact_stiffness_n_m, step_s)],
             coarsest: [0, level_for(PRESSED_PHASE).min(MAX_LEVEL)],
             finest: level_for(TICK_PHASE).clamp(3, MAX_LEVEL),
             step_s,

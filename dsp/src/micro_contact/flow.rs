@@ -154,10 +154,11 @@ fn norm(m: &Matrix) -> f64 {
     m.iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max)
 }
 
+/// Half of a flow's matrix is zero: what drives it does not answer to it.
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let mut c = [[0.0; N]; N];
     for (row, out) in a.iter().zip(c.iter_mut()) {
-        for (x, other) in row.iter().zip(b.iter()) {
+        for (x, other) in row.iter().zip(b.iter()).filter(|(x, _)| **x != 0.0) {
             for (sum, y) in out.iter_mut().zip(other.iter()) {
                 *sum += x * y;
             }

@@ -98,6 +98,19 @@ enum Scheme {
     EnergyConserving(EnergyConserving),
 }
 
+impl Scheme {
+    fn new(probe: &Probe, choice: Choice, step_s: f64) -> Self {
+        let euler =
+            |explicit| Self::SemiImplicit(SemiImplicit::new(probe, explicit, step_s, choice.substeps));
+        match choice.used {
+            Integrator::SemiImplicitEuler => euler(false),
+            Integrator::SemiImplicitEulerExplicitDamper => euler(true),
+            Integrator::ExactEvent => Self::ExactEvent(ExactEvent::new(probe, step_s)),
+            Integrator::EnergyConserving => Self::EnergyConserving(EnergyConserving::new(probe, step_s)),
+        }
+    }
+}
+
 impl MicroContact {
     /// Designs the contact; what runs may differ from `wanted` as [`Choice`] documents.
     ///
@@ -109,14 +122,26 @@ impl MicroContact {
         DesignError::check("sample_rate_hz", sample_rate_hz, expected, |r| (1e3..=2e7).contains(&r))?;
         let step_s = 1.0 / sample_rate_hz;
         let choice = Choice::new(probe, wanted, step_s);
-        let euler = |explicit| SemiImplicit::new(probe, explicit, step_s, choice.substeps);
-        let scheme = match choice.used {
-            Integrator::SemiImplicitEuler => Scheme::SemiImplicit(euler(false)),
-            Integrator::SemiImplicitEulerExplicitDamper => Scheme::SemiImplicit(euler(true)),
-            Integrator::ExactEvent => Scheme::ExactEvent(ExactEvent::new(probe, step_s)),
-            Integrator::EnergyConserving => Scheme::EnergyConserving(EnergyConserving::new(probe, step_s)),
-        };
+        let scheme = Scheme::new(probe, choice, step_s);
         Ok(Self { probe: *probe, choice, step_s, leash_m: probe.leash_m, scheme, level: Level::detect() })
+    }
+
+    /// The same probe, designed as it was, on a contact of another stiffness, N/m. A pad that flies does not feel that stiffness, so half of the
+    /// exact scheme is there already.
+    ///
+    /// # Errors
+    /// When the stiffness is outside the range of [`Probe`].
+    pub fn stiffened(&self, contact_stiffness_n_m: f64) -> Result<Self, DesignError> {
+        let (probe, step_s) = (Probe { contact_stiffness_n_m, ..self.probe }, self.step_s);
+        probe.check()?;
+        let choice = Choice::new(&probe, self.choice.wanted, step_s);
+        let scheme = match &self.scheme {
+            Scheme::ExactEvent(own) if choice.used == Integrator::ExactEvent => {
+                Scheme::ExactEvent(ExactEvent::beside(own.regimes[0], &probe, step_s))
+            }
+            _ => Scheme::new(&probe, choice, step_s),
+        };
+        Ok(Self { probe, choice, scheme, ..*self })
     }
 
     /// The same on a chosen instruction set. Whether products and sums round apart, as on [`Level::PORTABLE`], or together, as on all

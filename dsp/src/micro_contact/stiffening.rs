@@ -55,3 +55,27 @@ impl MicroContact {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Integrator, MicroContact, Probe};
+
+    #[test]
+    fn a_stiffened_contact_is_the_one_that_is_designed_for_that_stiffness() {
+        let probe = Probe::default();
+        for wanted in [
+            Integrator::ExactEvent,
+            Integrator::SemiImplicitEuler,
+            Integrator::SemiImplicitEulerExplicitDamper,
+            Integrator::EnergyConserving,
+        ] {
+            let own = MicroContact::new(&probe, wanted, 44_100.0).unwrap();
+            for contact_stiffness_n_m in [1.0, 3e3, 2e5, 5e6, 1e9] {
+                let designed = Probe { contact_stiffness_n_m, ..probe };
+                let designed = MicroContact::new(&designed, wanted, 44_100.0).unwrap();
+                assert!(own.stiffened(contact_stiffness_n_m).unwrap() == designed, "{contact_stiffness_n_m}");
+            }
+            assert!(own.stiffened(f64::NAN).is_err());
+        }
+    }
+}
