@@ -9,13 +9,13 @@ use asperity_batch::{DataSet, Spec};
 use std::path::Path;
 use std::time::Instant;
 
-/// Drawing and opening, of rendering alone.
-const MOST: f64 = 0.15;
+/// Drawing and opening, of rendering alone: 10 % by instructions, 12 to 16 % by time as the machine's memory is quick or slow on the day.
+const MOST: f64 = 0.2;
 /// The same where others keep the machine's memory busy: opening is made of it, rendering is not.
 const MOST_BESIDE_OTHERS: f64 = 0.4;
 
 #[test]
-fn drawing_and_opening_cost_at_most_a_seventh_of_rendering_a_stroke_of_a_second() {
+fn drawing_and_opening_cost_at_most_a_fifth_of_rendering_a_stroke_of_a_second() {
     if cfg!(debug_assertions) {
         return println!("skipped: an unoptimised build says nothing about cost");
     }
