@@ -2,8 +2,7 @@
 //!
 //! `examples/accepted_ranges.rs` does ten thousand of them.
 
-#[path = "common/random_ends.rs"]
-mod random_ends;
+use crate::random_ends;
 
 use random_ends::{Outcome, outcome};
 

@@ -1,7 +1,5 @@
 //! A changed scene file changes what sounds, without a step, or says in words why not.
 
-mod common;
-
 use asperity::files::Memory;
 use asperity::files::contact_log::Names;
 use asperity::files::scene_file::SceneFile;

@@ -1,6 +1,6 @@
 //! Any split of time into blocks, and any second run, gives the same bits.
 
-mod common;
+use crate::common;
 
 use asperity::offline::Options;
 use asperity::{ContactBlock, Tap};

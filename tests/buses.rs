@@ -1,6 +1,6 @@
 //! Sound leaves on buses, so that a game can place each body somewhere else.
 
-mod common;
+use crate::common;
 
 use asperity::{
     Actuator, AddError, AudioBus, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine,

@@ -1,11 +1,8 @@
 //! Parameters of a surface changed under a sliding contact, through the scene: no sample step above −60 dB
 //! of the signal, felt or heard.
 
-mod common;
-#[path = "common/sliding.rs"]
-mod sliding;
-#[path = "common/steps.rs"]
-mod steps;
+use crate::common;
+use crate::sliding;
 
 use asperity::Surface;
 use asperity::texture::combine::{BandSplit, Crossfade, Mask, Scale, Sum};

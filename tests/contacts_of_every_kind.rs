@@ -1,6 +1,6 @@
 //! Any probe, held by any body, felt by any channel or none: contacts and blows.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::LogEvent;
 use asperity::{

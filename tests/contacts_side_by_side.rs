@@ -1,6 +1,6 @@
 //! Contacts that are rendered together have the bits of each alone, whatever they are and however the time is cut.
 
-mod common;
+use crate::common;
 
 use asperity::{
     Actuator, ActuatorSettings, AudioBus, Body, Config, ContactEvent, ContactId, ContactSample, Engine,

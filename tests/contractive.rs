@@ -1,7 +1,7 @@
 //! The shipped defaults forget: a path moved by 1e-12 m is felt and heard the same. Where a contact bounces for good it would be chaotic
 //! instead, and only levels could be compared.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::offline::{Options, Render};

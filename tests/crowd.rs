@@ -1,8 +1,7 @@
 //! Crowds of contacts of which some are computed and the others spoken for.
 
-mod common;
-#[path = "common/counting.rs"]
-mod counting;
+use crate::common;
+use crate::counting;
 
 use asperity::{
     AudioBus, Config, ContactEvent, ContactId, ContactSample, Engine, ModalModel, Mode, Touching,

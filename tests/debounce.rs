@@ -1,9 +1,8 @@
 //! A contact that flickers (an end and a begin of the same contact at the same place, a frame apart)
 //! neither clicks nor sounds twice; a real landing does sound.
 
-mod common;
-#[path = "common/steps.rs"]
-mod steps;
+use crate::common;
+use crate::steps;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
 use asperity::offline::{self, Options, Render};

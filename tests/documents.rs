@@ -51,12 +51,40 @@ fn every_test_bench_and_example_that_the_figures_name_exists() {
     for (option, folder) in [("--test ", "tests"), ("--bench ", "benches"), ("--example ", "examples")] {
         for rest in text.split(option).skip(1) {
             let name: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-            // The head of the page explains the pattern itself.
-            if name != "NAME" {
-                assert!(exists(folder, &name), "docs/figures.md: {option}{name} does not exist");
-                named += 1;
-            }
+            assert!(exists(folder, &name), "docs/figures.md: {option}{name} does not exist");
+            named += 1;
+        }
+    }
+    for before in text.split("::`").filter(|before| before.len() < text.len()) {
+        let reversed = before.chars().rev().take_while(|c| c.is_alphanumeric() || *c == '_');
+        let name: String = reversed.collect::<Vec<_>>().into_iter().rev().collect();
+        // The head of the page explains the pattern itself.
+        if name != "NAME" && !name.is_empty() {
+            assert!(exists("tests", &name), "docs/figures.md: {name}:: does not exist");
+            named += 1;
         }
     }
     assert!(named > 20, "{named}");
+}
+
+#[test]
+fn no_test_is_left_out_of_its_crates_program() {
+    let mut seen = 0;
+    for within in ["", "dsp", "texture", "fit", "shape", "ports", "batch", "cli"] {
+        let folder = root().join(within).join("tests");
+        let program = fs::read_to_string(folder.join("main.rs")).unwrap();
+        let manifest = fs::read_to_string(root().join(within).join("Cargo.toml")).unwrap();
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            if path.extension().is_none_or(|kind| kind != "rs") || name == "main" {
+                continue;
+            }
+            let joined = program.contains(&format!("mod {name};"));
+            let alone = manifest.contains(&format!("\"tests/{name}.rs\""));
+            assert!(joined || alone, "{}: is compiled by nothing; add it to tests/main.rs", path.display());
+            seen += 1;
+        }
+    }
+    assert!(seen > 100, "{seen}");
 }

@@ -4,7 +4,7 @@
 //! steel-tipped tool stroked by hand, acceleration, 1 kHz. Nothing here was tuned on these surfaces one by one; medians are held, as one
 //! surface scatters by 3 dB.
 
-mod common;
+use crate::common;
 
 use asperity::{Extent, Quantity, Surface, Wrap};
 use asperity_dsp::rng::Rng;

@@ -4,7 +4,7 @@
 //! person, uncalibrated); skin vibration grows with force. The map and two Brownian grounds were looked at when the skin was made; the weaves
 //! were not.
 
-mod common;
+use crate::common;
 
 use asperity::{Quantity, Surface};
 use asperity_texture::raster::Raster;

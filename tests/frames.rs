@@ -1,7 +1,5 @@
 //! Surfaces that lie in a body: one block of stuff, cut by every face; one mapping between places and texture coordinates.
 
-mod common;
-
 use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, LogEvent, LogLine};
 use asperity::offline::{Options, render_tapped};

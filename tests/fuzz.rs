@@ -1,10 +1,8 @@
 //! Seeded mutations of valid files, for a few seconds: whatever is in a file, reading it gives a result or
 //! a message. The same targets run under libFuzzer (`fuzz/`); what they found stays here as a case.
 
-#[path = "../fuzz/mutation.rs"]
-mod mutation;
-#[path = "../fuzz/targets.rs"]
-mod targets;
+use crate::mutation;
+use crate::targets;
 
 use asperity_dsp::rng::Rng;
 use asperity_texture::image_io;

@@ -1,6 +1,6 @@
 //! A grating of wavelength λ felt at speed v vibrates at v/λ.
 
-mod common;
+use crate::common;
 
 use asperity::offline::Options;
 use asperity_measure::spectrum::strongest_bin;

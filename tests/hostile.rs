@@ -1,7 +1,7 @@
 //! Hostile games: bad numbers, floods, stalls, too many contacts. Nothing panics, every sample is
 //! finite, every loss is counted.
 
-mod common;
+use crate::common;
 
 use asperity::{
     Actuator, Config, ContactEvent, ContactId, ContactSample, Refusal, Renderer, Scene, SurfaceId,

@@ -1,6 +1,6 @@
 //! `Config::kernel` pins the instruction set: what it names is what runs, on any processor that has it.
 
-mod common;
+use crate::common;
 
 use asperity::dsp::simd::Level;
 use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Isa};

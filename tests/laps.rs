@@ -1,6 +1,6 @@
 //! Laps: texture coordinates that wrap come back to the same place on every source, without a seam.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;

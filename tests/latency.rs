@@ -1,6 +1,6 @@
 //! Latency from event to sample: at most one block and one sample in the engine; haptics and audio together.
 
-mod common;
+use crate::common;
 
 use asperity::{
     Actuator, ActuatorSettings, ClockMode, Config, ContactEvent, ContactId, ContactSample, Excitation,

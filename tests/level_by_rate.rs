@@ -1,6 +1,6 @@
 //! Rough strokes are equally loud and equally strong at every sample rate: means over seeds, because no two seeds collide alike.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::Names;
 use asperity::offline::{self, Options};

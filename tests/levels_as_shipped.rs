@@ -1,7 +1,7 @@
 //! Levels that nobody wrote: another stroke than the reference one lands near the reference levels on every material, strikes that add up are
 //! kept from clipping, and bodies in pascals sound as loud as they say.
 
-mod common;
+use crate::common;
 
 use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogHand, LogLine, Striker};

@@ -1,9 +1,8 @@
 //! Levels that nobody wrote, over the grid of speeds and forces on which tools are measured: nothing passes full scale, the limiter, which
 //! keeps it so, is seldom heard, and what nobody would feel or hear is listed and not lifted.
 
-mod common;
-#[path = "common/slanting.rs"]
-mod slanting;
+use crate::common;
+use crate::slanting;
 
 use asperity::files::Memory;
 use asperity::files::contact_log::ContactLog;

@@ -1,7 +1,7 @@
 //! A live game's clock: pauses, slow motion, restarts, stamps that are off, ticks in bursts. No strike is lost, no
 //! contact sticks, nothing falls silent, and the counts say what happened.
 
-mod common;
+use crate::common;
 
 use asperity::{
     Actuator, ActuatorSettings, BodyId, Config, ContactEvent, ContactId, ContactSample, Impact, Material,

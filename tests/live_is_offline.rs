@@ -1,7 +1,7 @@
 //! A log rendered live, block by block with a device's clock, gives the same samples as the same log
 //! rendered offline.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::ContactLog;
 use asperity::files::contact_log::Names;

@@ -1,7 +1,5 @@
 //! Many fingers: the engine tells every source its rate and its contacts, so that nobody feels nothing because a number was not passed on.
 
-mod common;
-
 use asperity::texture::combine::Crossfade;
 use asperity::texture::height_field::{HeightField, PathBlock, Setup, SurfaceBlock};
 use asperity::texture::height_map::HeightMap;

@@ -1,6 +1,6 @@
 //! Matte lies above shiny, felt as displacement and as acceleration, plain and as skin weighs it, at every speed of a hand.
 
-mod common;
+use crate::common;
 
 use asperity::offline::Options;
 use asperity::{ActuatorSettings, Config, ContactBlock, Quantity, Tap};

@@ -1,6 +1,6 @@
 //! Left-out work that nobody would miss, and the price of leaving it out.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};

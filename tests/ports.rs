@@ -1,8 +1,7 @@
 //! Ports: what they give is what leaves, whoever reads late is told, and the audio half does not notice.
 
-mod common;
-#[path = "common/counting.rs"]
-mod counting;
+use crate::common;
+use crate::counting;
 
 use asperity::live::ports::{Feed, Force, ForceRow, ForceRows, Of, Opened, Outlet, Pcm, Picture};
 use asperity::live::ports::{Levels, Point, PointSettings, Points, PortKind, PortSetup, Tone};

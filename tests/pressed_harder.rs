@@ -1,8 +1,7 @@
 //! What is pressed harder is felt more, in displacement as in acceleration, where nobody wrote a level; metres that a scene writes are the pad's own.
 
-mod common;
-#[path = "common/slanting.rs"]
-mod slanting;
+use crate::common;
+use crate::slanting;
 
 use asperity::files::Memory;
 use asperity::files::contact_log::ContactLog;

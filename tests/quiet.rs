@@ -1,6 +1,6 @@
 //! Gains, mute, pause, slow motion and an end to everything, while contacts touch and bodies ring.
 
-mod common;
+use crate::common;
 
 use asperity::{
     Actuator, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Emphasis, Engine, Impact,

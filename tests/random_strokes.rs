@@ -2,7 +2,7 @@
 //!
 //! Ten thousand of 20 ms in CI; `ASPERITY_STROKES=1000000` runs as many as one likes.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;

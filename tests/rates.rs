@@ -1,6 +1,6 @@
 //! The same scene sounds and feels the same at every sample rate.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};

@@ -2,13 +2,10 @@
 //! surfaces. The importers are those of the example `real_input`. Long renders and pictures of the same
 //! input are made by that example; the bars here are what those showed.
 
-mod common;
-#[path = "../examples/real_input/modal_tables.rs"]
-mod modal_tables;
-#[path = "../examples/real_input/profile.rs"]
-mod profile;
-#[path = "../examples/real_input/trajectories.rs"]
-mod trajectories;
+use crate::common;
+use crate::modal_tables;
+use crate::profile;
+use crate::trajectories;
 
 use asperity::files::contact_log::{ContactLog, Names};
 use asperity::offline::{self, Options};

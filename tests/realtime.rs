@@ -1,14 +1,10 @@
 //! The audio half never allocates or frees, whatever happens: events of every kind, surfaces and bodies
 //! swapped and removed while they sound, voices stolen, contacts lapsing, hostile numbers.
 
-#[path = "common/closed_forms.rs"]
-#[allow(dead_code)]
-mod closed_forms;
-mod common;
-#[path = "common/counting.rs"]
-mod counting;
-#[path = "common/random_game.rs"]
-mod random_game;
+use crate::closed_forms;
+use crate::common;
+use crate::counting;
+use crate::random_game;
 
 use asperity::{Actuator, Config, ContactEvent, ContactId, ContactSample, Renderer, Scene};
 use common::{bar, plate};

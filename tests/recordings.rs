@@ -1,7 +1,5 @@
 //! A recording holds the edits of a scene, in memory or streamed to a file, and renders to the bits of the game.
 
-mod common;
-
 use asperity::files::Memory;
 use asperity::files::contact_log::{ContactLog, LogEdit, LogEvent, Names};
 use asperity::files::scene_file::SceneFile;

@@ -1,7 +1,7 @@
 //! Reports as physics engines and trackers make them: steps without force, hitches, lost reports, slow first
 //! intervals, velocities that are always zero, teleports. None of it may be felt as a blow.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::{Options, Render};

@@ -1,6 +1,6 @@
 //! A body's residual: every impact plays it once, in the contact's own sample, as loud as the strike.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, LogEvent, Names};
 use asperity::offline::{self, Options, Render};

@@ -3,7 +3,7 @@
 //! Direction: rolling is heard through more of a low-pass than sliding (K. van den Doel, P. G. Kry, D. K. Pai, "FoleyAutomatic", 2001), and what
 //! presses changes the slower the larger the ball (M. M. J. Houben, A. Kohlrausch, D. J. Hermes 2004, recorded balls).
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, LogEvent};
 use asperity::offline::{self, Options, Render};

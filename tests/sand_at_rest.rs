@@ -1,6 +1,6 @@
 //! A finger that rests in sand: its print, what it feels, and that nothing hits it.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::{Options, Render};

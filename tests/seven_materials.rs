@@ -2,7 +2,6 @@
 //! third-octave spectra of the haptic channel, on strokes that were not used for the centroids. The example
 //! `seven_materials_blind` asks about many more strokes and pieces.
 
-mod common;
 #[path = "common/materials.rs"]
 mod materials;
 

@@ -3,7 +3,7 @@
 //! People named 95 of 112 (0.848); gravel and pebbles best, wood and granite least. What the observer says is printed and stands in
 //! `docs/feel.md`, whatever it is; held to is the control: shuffled labels at chance.
 
-mod common;
+use crate::common;
 
 use asperity::Surface;
 use asperity::texture::solid_materials::SolidMaterial;

@@ -1,6 +1,6 @@
 //! Several contacts on one body, several surfaces on one body, one actuator a finger: everything adds up.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, LogEvent, Names};
 use asperity::offline::{self, Options, Render};

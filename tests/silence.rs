@@ -1,6 +1,6 @@
 //! Nothing sounds or moves at rest, and a contact begins and ends without a click.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;

@@ -5,7 +5,7 @@
 //! the hand is, as the study's participants did. What it says is printed and stands in `docs/feel.md`, whatever it is; held to are
 //! the controls: shuffled labels and a plate against itself at chance, and the figures of people as far as they are reached.
 
-mod common;
+use crate::common;
 
 use asperity_observer::{Confusion, Judge, Percept, constants};
 use common::exploration::percepts;

@@ -1,6 +1,6 @@
 //! Soft ground: stones and shells that a finger meets in sand, and what a ball feels that stands in a cloth.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine};
 use asperity::offline::Options;

@@ -1,6 +1,6 @@
 //! What is heard of a stroke grows with speed and with force, over the grid on which tools are measured, but for a decibel of chance.
 
-mod common;
+use crate::common;
 
 use asperity::{Quantity, Surface};
 use common::strokes::{brownian, exponents, map, relief, take};

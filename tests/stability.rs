@@ -4,7 +4,7 @@
 //! The bound everywhere: what comes out is finite, the pad stays within a few times what the surface and the
 //! force can move it by, and once everything has ended the engine is silent.
 
-mod common;
+use crate::common;
 
 use asperity::{
     Actuator, ActuatorSettings, Config, ContactEvent, ContactId, ContactSample, Impact, Integrator, Material,

@@ -1,10 +1,7 @@
 //! Bowed and squealing bodies through the whole engine.
 
-#[path = "common/closed_forms.rs"]
-#[allow(dead_code)]
-mod closed_forms;
-#[path = "common/counting.rs"]
-mod counting;
+use crate::closed_forms;
+use crate::counting;
 
 use asperity::{
     Actuator, AddError, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Excitation, Exciter,

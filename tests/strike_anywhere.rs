@@ -1,8 +1,6 @@
 //! Bodies that are struck and stroked anywhere, through the whole engine.
 
-#[path = "common/closed_forms.rs"]
-#[allow(dead_code)]
-mod closed_forms;
+use crate::closed_forms;
 
 use asperity::{
     Actuator, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material, ModalModel,

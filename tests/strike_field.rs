@@ -1,8 +1,6 @@
 //! Strike position as a field, against bodies whose shapes are closed forms.
 
-#[path = "common/closed_forms.rs"]
-#[allow(dead_code)]
-mod closed_forms;
+use crate::closed_forms;
 
 use asperity::StrikeField;
 use asperity::dsp::rng::Rng;

@@ -1,10 +1,7 @@
 //! Surfaces and bodies replaced under a sliding contact: no sample step above −60 dB of the signal.
 
-mod common;
-#[path = "common/sliding.rs"]
-mod sliding;
-#[path = "common/steps.rs"]
-mod steps;
+use crate::common;
+use crate::sliding;
 
 use asperity::{Actuator, Material};
 use common::{grating, peak, plate};

@@ -1,9 +1,8 @@
 //! The two halves on two real threads, and games that misbehave: nothing is lost uncounted, nothing
 //! waits, nothing leaks.
 
-mod common;
-#[path = "common/steps.rs"]
-mod steps;
+use crate::common;
+use crate::steps;
 
 use asperity::{
     Actuator, ActuatorSettings, ClockMode, Config, ContactEvent, ContactId, ContactSample, Material,

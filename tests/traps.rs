@@ -13,7 +13,7 @@
 //! | 9 | denormals slow a decayed body down | `a_body_that_rang_out_is_exactly_silent` | dsp `no_state_is_ever_denormal_while_a_body_rings_out`, `a_contact_that_came_to_rest_is_not_slower_than_a_busy_one` |
 //! | 10 | an unloaded finger drifts away | `an_unloaded_finger_stays_on_its_leash` | dsp `an_unloaded_finger_stays_on_its_leash_and_comes_back` |
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::{ContactLog, ContactSample, LogEvent, LogLine, Names};
 use asperity::offline::{self, Options, Render};

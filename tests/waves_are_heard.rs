@@ -1,7 +1,7 @@
 //! Reliefs of the study are heard as such: by micro-collisions loud enough, with the force not far above, and with an envelope that beats with
 //! the waves, also where a finger follows them without leaping.
 
-mod common;
+use crate::common;
 
 use asperity::files::contact_log::Names;
 use asperity::offline::{self, Options};

@@ -1,6 +1,6 @@
 //! The shipped actuator profiles in a scene file: equalised and limited channels from outside.
 
-mod support;
+use crate::support;
 
 use support::{Scene, TOML};
 

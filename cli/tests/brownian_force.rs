@@ -1,7 +1,7 @@
 //! The thesis' four force renderings of Brownian relief through the scene file and `--force`: the rougher
 //! the relief, the larger the force, at any sample rate.
 
-mod support;
+use crate::support;
 
 use std::fs;
 use support::Scene;

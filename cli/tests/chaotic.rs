@@ -2,7 +2,7 @@
 //! Where a contact bounces for good it is chaotic, another waveform of the same level; the documents list which shipped
 //! scenes are.
 
-mod support;
+use crate::support;
 
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! `asperity demo`, `headroom` and `report` from outside.
 
-mod support;
+use crate::support;
 
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! `asperity export`: bodies as other tools read them, and back.
 
-mod support;
+use crate::support;
 
 use serde_json::{Value, json};
 use std::fs;

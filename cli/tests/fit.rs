@@ -1,7 +1,7 @@
 //! `asperity fit` from outside: what it writes, the round trip through the engine, tables, several strikes,
 //! and inputs that are no good recording of one strike.
 
-mod support;
+use crate::support;
 
 use serde_json::Value;
 use std::path::Path;

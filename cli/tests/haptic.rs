@@ -1,6 +1,6 @@
 //! `asperity haptic` and `render --port` from the outside: every format, every refusal.
 
-mod support;
+use crate::support;
 
 use serde_json::Value;
 use std::f64::consts::TAU;

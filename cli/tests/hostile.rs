@@ -1,7 +1,7 @@
 //! Inputs that are wrong, damaged, absurd or too many: one `error:` line, or a finite render that counts
 //! what it left out. Never a panic, never a sample that is not finite.
 
-mod support;
+use crate::support;
 
 use std::fmt::Write as _;
 use support::{MODES, Scene, TOML, assert_refused, stroke};

@@ -1,6 +1,6 @@
 //! Scenes with several buses, probes and held bodies, from outside.
 
-mod support;
+use crate::support;
 
 use support::{MODES, Scene, TOML, assert_refused, stroke};
 

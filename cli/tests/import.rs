@@ -1,6 +1,6 @@
 //! `asperity import`: scenes of the draft `KHR_audio_rigid_bodies`, and what is none.
 
-mod support;
+use crate::support;
 
 use serde_json::{Value, json};
 use std::fs;

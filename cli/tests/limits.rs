@@ -1,6 +1,6 @@
 //! One list of what is accepted: the reader of scene files, the engine and the documents say the same.
 
-mod support;
+use crate::support;
 
 use asperity::limits::{self, Range, brownian, material, output, probe, sand, solid};
 use std::fs;

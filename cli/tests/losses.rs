@@ -1,6 +1,6 @@
 //! Nothing is lost in silence: what a render refuses, loses or clips it says, with what mends it.
 
-mod support;
+use crate::support;
 
 use std::fmt::Write as _;
 use support::{MODES, Scene, TOML, assert_refused, impact, stroke, told};

@@ -1,11 +1,9 @@
 //! What the texture verbs say to pictures that are none, damaged or absurd, and to options that make no sense: one line that names the
 //! file or the option, and nothing left behind.
 
-#[path = "support/maps.rs"]
-mod maps;
-mod support;
-#[path = "../../texture/tests/surfaces/mod.rs"]
-mod surfaces;
+use crate::maps;
+use crate::support;
+use crate::surfaces;
 
 use asperity_texture::image_io::save_gray16;
 use asperity_texture::raster::Raster;

@@ -1,6 +1,6 @@
 //! `asperity render` from outside: its files, its report, its promises.
 
-mod support;
+use crate::support;
 
 use std::fs;
 use support::{MODES, Scene, TOML, assert_refused, impact, stroke, told};

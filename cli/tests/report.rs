@@ -1,6 +1,6 @@
 //! `asperity report` from outside: its tables, its scenes, and its errors against an integration that shares no code with the engine.
 
-mod support;
+use crate::support;
 
 use serde_json::Value;
 use std::f64::consts::TAU;

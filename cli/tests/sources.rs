@@ -1,6 +1,6 @@
 //! Every surface source through the scene file, sand outputs, and the pictures made from formulas.
 
-mod support;
+use crate::support;
 
 use std::fs;
 use support::{Scene, TOML, asperity, assert_refused, stroke, told};

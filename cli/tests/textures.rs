@@ -1,10 +1,8 @@
 //! The texture verbs from outside: what they print and write, and that their results go on into a render.
 
-#[path = "support/maps.rs"]
-mod maps;
-mod support;
-#[path = "../../texture/tests/surfaces/mod.rs"]
-mod surfaces;
+use crate::maps;
+use crate::support;
+use crate::surfaces;
 
 use asperity_texture::image_io::{Channel, load_channel};
 use asperity_texture::metamer::{Feel, MetamerOptions};

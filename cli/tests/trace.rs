@@ -1,7 +1,7 @@
 //! The heights in a trace of every source of a scene file are those of the source's own definition, to
 //! a nanometre: point evaluation in the library, a spline solved here, and Python.
 
-mod support;
+use crate::support;
 
 use asperity_texture::brownian::BrownianDesign;
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch};

@@ -1,6 +1,6 @@
 //! Wrong usage: status 2, one line, nothing on stdout, nothing written.
 
-mod support;
+use crate::support;
 
 use std::path::Path;
 use support::{Scene, asperity, told};

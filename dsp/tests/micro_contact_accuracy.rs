@@ -1,7 +1,7 @@
 //! Error of each integrator against a 64 times oversampled reference, and of that reference against
 //! figures that scipy made (`independent/micro_contact_reference.py`).
 
-mod profiles;
+use crate::profiles;
 
 use asperity_dsp::micro_contact::{Bends, ContactSample, GroundBetween, Integrator, MicroContact, Probe};
 use profiles::{HELD_OUT, Profile, SUITE};

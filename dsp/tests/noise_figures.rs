@@ -1,6 +1,6 @@
 //! The micro-relief against its law: slope, level, speed, aliasing, revisits, instruction sets.
 
-mod spectrum;
+use crate::spectrum;
 
 use asperity_dsp::fractal_noise::{FractalNoise, NoisePath, OctaveWeights};
 use asperity_dsp::rng::Rng;

@@ -1,7 +1,8 @@
 //! The corpus: recordings, maps and trajectories that tests try the programs on.
 //!
 //! They are not part of the repository. `ASPERITY_CORPUS` names their folder; without it, it is looked for at `../shared/corpus` beside
-//! the workspace. Where a piece is absent a test says that it skips, unless `ASPERITY_NOTHING_SKIPPED=1` demands it: `.ci/run` sets that.
+//! the workspace. Where a piece is absent a test says that it skips, unless `ASPERITY_NOTHING_SKIPPED=1` demands it: `.ci/run` sets that
+//! where the folder is there.
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! A rectangular block against Rayleigh–Ritz, which knows no elements, and against a measured one.
 
-mod common;
+use crate::common;
 
 use asperity_shape::Elastic;
 use asperity_shape::eigenmodes::{Wanted, solve};

@@ -1,6 +1,6 @@
 //! Bodies made of their surfaces against closed forms, independent calculations and meshes of their own.
 
-mod common;
+use crate::common;
 
 use asperity_shape::eigenmodes::Wanted;
 use asperity_shape::{Elastic, Making, Mesh, SolvedBody, make};

@@ -1,6 +1,6 @@
 //! Meshes as people have them: each becomes the right body or is refused with the reason.
 
-mod common;
+use crate::common;
 
 use asperity_shape::eigenmodes::Wanted;
 use asperity_shape::surface_mesh::SurfaceMesh;

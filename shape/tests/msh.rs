@@ -1,6 +1,6 @@
 //! Gmsh files of both versions, as text and in binary, are one body; what is cut short is refused.
 
-mod common;
+use crate::common;
 
 use asperity_shape::volume_mesh::VolumeMesh;
 use asperity_shape::{Mesh, load};

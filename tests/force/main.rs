@@ -1,7 +1,5 @@
 //! The 3-D force: the documents' laws at the ticks of a device, at every rate, from a force or from a depth.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod depths;
 mod laws;
 mod readers;

@@ -1,7 +1,7 @@
 //! Brownian surfaces and paths: measured dimension, law, seams, and the four renderings.
 #![cfg(feature = "brownian")]
 
-mod common;
+use crate::common;
 
 use asperity_texture::brownian::rendering::{BrownianForce, BrownianPath, BrownianSurface, Rendering};
 use asperity_texture::brownian::{BrownianDesign, Method};

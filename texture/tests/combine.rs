@@ -1,6 +1,6 @@
 //! Combinations of sources: what they add up to, and that they make neither clicks nor seams.
 
-mod common;
+use crate::common;
 
 use asperity_texture::combine::{BandSplit, Crossfade, Mask, Scale, Source, Sum};
 use asperity_texture::combine::{BandWeights, CrossfadeTo, ScaleTo};

@@ -2,8 +2,7 @@
 //! where there is none another way is taken and said.
 #![cfg(feature = "offline")]
 
-#[path = "support/framed.rs"]
-mod framed;
+use crate::framed;
 
 use asperity_dsp::rng::Rng;
 use asperity_texture::flat_ground::above_flat_ground;

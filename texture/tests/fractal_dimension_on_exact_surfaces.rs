@@ -1,8 +1,7 @@
 //! The dimension estimators against exact Brownian surfaces of known dimension.
 #![cfg(feature = "offline")]
 
-#[path = "support/exact_brownian.rs"]
-mod exact_brownian;
+use crate::exact_brownian;
 
 use asperity_measure::exact_brownian::ExactBrownian;
 use asperity_texture::fractal_dimension::{

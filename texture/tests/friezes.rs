@@ -1,10 +1,8 @@
 //! Patterns that repeat along one direction: the translation, the seven groups, stripes, and pictures that have none.
 #![cfg(feature = "offline")]
 
-#[path = "support/exact_brownian.rs"]
-mod exact_brownian;
-#[path = "support/patterns.rs"]
-mod patterns;
+use crate::exact_brownian;
+use crate::patterns;
 
 use asperity_dsp::rng::Rng;
 use asperity_measure::exact_brownian::ExactBrownian;

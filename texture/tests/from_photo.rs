@@ -2,7 +2,7 @@
 
 #![cfg(feature = "offline")]
 
-mod surfaces;
+use crate::surfaces;
 
 use asperity_texture::fft2::{Fft2, angular_frequency};
 use asperity_texture::from_photo::{

@@ -1,6 +1,6 @@
 //! Lattice textures: interpolation, endless repetition, smoothness across borders.
 
-mod common;
+use crate::common;
 
 use asperity_dsp::rng::Rng;
 use asperity_texture::height_field::HeightField;

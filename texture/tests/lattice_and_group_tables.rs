@@ -1,12 +1,9 @@
 //! The stress table of the lattice, the pictures that have none, all 17 wallpaper groups, and the corpus.
 #![cfg(feature = "offline")]
 
-#[path = "support/exact_brownian.rs"]
-mod exact_brownian;
-#[path = "support/patterns.rs"]
-mod patterns;
-#[path = "support/wallpaper.rs"]
-mod wallpaper;
+use crate::exact_brownian;
+use crate::patterns;
+use crate::wallpaper;
 
 use asperity_dsp::rng::Rng;
 use asperity_measure::exact_brownian::ExactBrownian;

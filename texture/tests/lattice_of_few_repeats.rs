@@ -1,8 +1,7 @@
 //! Maps that tile and repeat two to five times a side: the seam shows what the feature matrix cannot.
 #![cfg(feature = "offline")]
 
-#[path = "support/patterns.rs"]
-mod patterns;
+use crate::patterns;
 
 use asperity_dsp::rng::Rng;
 use asperity_texture::fft2::Fft2;

@@ -1,10 +1,8 @@
 //! Squares in frames and the reliefs of the thesis: no quarter or fifth of the lattice, no multiple.
 #![cfg(feature = "offline")]
 
-#[path = "support/framed.rs"]
-mod framed;
-#[path = "support/patterns.rs"]
-mod patterns;
+use crate::framed;
+use crate::patterns;
 
 use asperity_texture::raster::Raster;
 use asperity_texture::symmetry::find_lattice;

@@ -2,7 +2,7 @@
 
 #![cfg(feature = "offline")]
 
-mod surfaces;
+use crate::surfaces;
 
 use asperity_texture::borders::{Borders, SEAM_LIMIT, seam_ratio};
 use asperity_texture::fft2::Fft2;

@@ -2,8 +2,8 @@
 
 #![cfg(feature = "offline")]
 
-mod normals;
-mod surfaces;
+use crate::normals;
+use crate::surfaces;
 
 use asperity_texture::borders::Borders;
 use asperity_texture::gradient_field::{DERIVATIVES, Derivative, Slopes, differences, slopes};

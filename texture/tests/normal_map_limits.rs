@@ -3,8 +3,8 @@
 
 #![cfg(feature = "offline")]
 
-mod normals;
-mod surfaces;
+use crate::normals;
+use crate::surfaces;
 
 use asperity_fft::num_complex::Complex64;
 use asperity_texture::fft2::{Fft2, angular_frequency};

@@ -3,8 +3,8 @@
 
 #![cfg(feature = "offline")]
 
-mod normals;
-mod surfaces;
+use crate::normals;
+use crate::surfaces;
 
 use asperity_texture::gradient_field::{DERIVATIVES, Derivative, differences, slopes};
 use asperity_texture::image_io::{Channel, load_channel};

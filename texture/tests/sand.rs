@@ -1,7 +1,6 @@
 //! Sand: volume, angle of repose, cone, tools, speed.
 
-#[path = "common/naive_sand.rs"]
-mod naive_sand;
+use crate::naive_sand;
 
 use asperity_dsp::rng::Rng;
 use asperity_dsp::simd::Level;

@@ -1,6 +1,6 @@
 //! Sand as a surface: reproducible renders, a hand-over that never waits, what is felt and heard.
 
-mod common;
+use crate::common;
 
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
 use asperity_texture::raster::Raster;

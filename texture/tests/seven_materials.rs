@@ -1,8 +1,7 @@
 //! The seven materials are told apart by the heights under a finger and by the force on a tool; the example
 //! `materials_blind` asks about many more strokes and pieces.
 
-#[path = "common/materials.rs"]
-mod materials;
+use crate::materials;
 
 use materials::{Question, force, height_rate, identified, seven, stroke};
 

@@ -2,7 +2,7 @@
 
 #![cfg(feature = "offline")]
 
-mod surfaces;
+use crate::surfaces;
 
 use asperity_texture::gradient_field::{Derivative, slopes};
 use asperity_texture::light::{Light, estimate_light};

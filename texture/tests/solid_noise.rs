@@ -1,6 +1,6 @@
 //! Solid noise as a surface and as a force: its definition, its units, its changes at run time.
 
-mod common;
+use crate::common;
 
 use asperity_dsp::rng::Rng;
 use asperity_texture::height_field::{HeightField, PathBlock, Setup, SurfaceBlock, Touch};

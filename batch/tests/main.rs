@@ -1,0 +1,3 @@
+//! The tests of data sets in one program, but for the one that measures its cost.
+
+mod shards;

@@ -1,0 +1,30 @@
+//! The program's black-box tests in one program, but for the one that is empty where the page is in.
+
+mod actuators;
+mod brownian_force;
+mod chaotic;
+mod damping_from_recordings;
+mod demo;
+mod export;
+mod fit;
+mod haptic;
+mod hostile;
+mod house;
+mod import;
+mod limits;
+mod losses;
+#[path = "support/maps.rs"]
+mod maps;
+mod modes;
+mod path_estimate;
+mod perceptual_order;
+mod refused_pictures;
+mod render;
+mod report;
+mod sources;
+mod support;
+#[path = "../../texture/tests/surfaces/mod.rs"]
+mod surfaces;
+mod textures;
+mod trace;
+mod usage;

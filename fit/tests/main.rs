@@ -1,0 +1,7 @@
+//! The tests of fitting, in one program.
+
+mod hostile;
+mod recordings;
+mod sound_files;
+mod strikes;
+mod synthetic;

@@ -1,0 +1,4 @@
+//! The tests of haptic files in one program, but for the one that asks the formats' own decoders.
+
+mod formats;
+mod reduction;
