@@ -6,7 +6,6 @@
 
 mod contacts;
 mod crew;
-mod crowd;
 mod hand_over;
 mod messages;
 mod meter;
@@ -20,7 +19,6 @@ use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::Seat;
 use crate::audio::smoothed::Smoothed;
-use crate::audio::stand_in::StandIns;
 use crate::audio::voice::{Phase, Scratch, Shared, Voice};
 use crate::link::message::{Dead, Message};
 use crate::link::ring::{Receiver, Sender};
@@ -59,9 +57,6 @@ pub struct Renderer {
     /// Where each voice is on a body that has shapes.
     placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
-    /// What sounds of contacts that are not computed, and which voices are of those that came first.
-    stand_ins: StandIns,
-    came_first: Vec<bool>,
     seats: Vec<Seat>,
     bodies: Vec<BodySeat>,
     /// Which of the three are in use, so that empty places cost nothing.
@@ -130,8 +125,6 @@ impl Renderer {
             seats_used: Occupied::new(config.max_surfaces),
             bodies_used: Occupied::new(config.max_bodies),
             silent: Vec::with_capacity(config.max_contacts),
-            stand_ins: StandIns::new(config.exact_contacts, voices, rate),
-            came_first: vec![false; voices],
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
             bodies: (0..config.max_bodies).map(|_| BodySeat::new(rate)).collect(),
             channels: config
@@ -262,7 +255,6 @@ impl Renderer {
         let mut done = 0;
         while done < frames {
             self.apply_due();
-            self.look_at_crowds();
             let n = self.stretch(frames - done);
             self.render_contacts(n, tap);
             if self.outlets.are_open() {
@@ -321,7 +313,7 @@ impl Renderer {
             self.bodies[index].tidy(self.position, &mut self.to_game);
             !self.bodies[index].is_empty()
         });
-        let sounding = (self.sounding_count() + self.spoken_for()) as u64;
+        let sounding = self.sounding_count() as u64;
         let octaves = u64::from(self.governor.octaves_gone()) * self.sounding_count() as u64;
         Counters::add(&self.counters.shed, self.groups_shed as u64 + octaves);
         self.counters.contacts.store(sounding, Relaxed);

@@ -52,6 +52,12 @@ impl VoiceBlock {
         self.rub.normal_force_n[i] *= gain;
     }
 
+    /// A stretch begins of which some samples at its end stay silent.
+    pub(super) fn begin(&mut self, silent: std::ops::Range<usize>) {
+        self.silence(silent);
+        self.rub.rubs = false;
+    }
+
     /// Nothing felt and nothing heard of some samples.
     pub(super) fn silence(&mut self, samples: std::ops::Range<usize>) {
         self.haptic[samples.clone()].fill(0.0);

@@ -3,7 +3,7 @@
 use super::between::{Between, Pressed};
 use super::blows::Blows;
 use super::profile::Along;
-use super::scratch::{Lane, Scratch};
+use super::scratch::Scratch;
 use super::shared::{Shared, Stretch};
 use super::skin::ContactSkin;
 use super::tip::Tip;
@@ -31,17 +31,6 @@ const LEAD_IN_S: f64 = 65.0 / 44_100.0;
 const ABOUT: usize = 3;
 
 impl Voice {
-    /// How hard it presses at its last sample, N, and where it goes, m/s.
-    pub(crate) fn going(&self) -> (f64, [f64; 2]) {
-        (self.path.last.normal_force_n, self.path.last.velocity_m_s)
-    }
-
-    /// Where it is on a surface of this size.
-    pub(crate) fn uv(&self, [width_m, height_m]: [f64; 2]) -> [f64; 2] {
-        let [x_m, y_m] = self.path.last.position_m;
-        [x_m / width_m, y_m / height_m]
-    }
-
     /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed. `at` begins at the stamp.
     pub(crate) fn begin(
         &mut self,
@@ -111,9 +100,9 @@ impl Voice {
         // It leaves the line where the ground is known about it: a step before, there, and a step later.
         self.lay_behind(steps + 1, step_s, ABOUT, at, seat, scratch);
         self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
-        let Scratch { lanes, profile, .. } = &mut *scratch;
+        let Scratch { bends, profile, .. } = &mut *scratch;
         self.rolling.lead_in(&mut profile.surface, ABOUT);
-        self.between.bend(shared, &profile.seen, ABOUT, &mut lanes[0].bends);
+        self.between.bend(shared, &profile.seen, ABOUT, bends);
         let [before_m, here_m, later_m, ..] = profile.surface.height_m;
         let given = self.pad.ride([before_m, here_m, later_m], profile.force_n[0], slope_m_s);
         // The line ends a step before the first height of the ground.
@@ -122,10 +111,9 @@ impl Voice {
         while left > 0 {
             let count = left.min(MAX_BLOCK);
             self.lay_behind(left, step_s, count, at, seat, scratch);
-            let Scratch { lanes, profile, .. } = &mut *scratch;
+            let Scratch { rows, bends, profile, .. } = &mut *scratch;
             self.rolling.lead_in(&mut profile.surface, count);
             let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
-            let Lane { rows, bends, .. } = &mut lanes[0];
             let ground = self.between.bend(shared, &profile.seen, count, bends).ground(count, bends);
             row = self.pad.lead_in(heights_m, forces_n, ground, &mut rows[..count]);
             left -= count;
@@ -148,8 +136,8 @@ impl Voice {
         seat: &mut Seat,
         scratch: &mut Scratch,
     ) {
-        let Scratch { lanes, profile, .. } = scratch;
-        let points = &mut lanes[0].points[..count];
+        let Scratch { points, profile, .. } = scratch;
+        let points = &mut points[..count];
         self.path.lay_behind(steps, step_s, points);
         let PathPoint { position_m, velocity_m_s, .. } = points[0];
         let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);

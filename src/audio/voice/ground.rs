@@ -2,20 +2,21 @@
 
 use super::events::EMPTY_FORCE_N;
 use super::rolling::{RolledOver, Rolling};
-use super::shared::{At, Shared};
+use super::shared::{Shared, Stretch};
 use super::{Phase, Voice};
 use crate::audio::seat::Seat;
 use crate::prepared::area::{loudness, nestling};
 use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::micro_contact::Probe;
-use asperity_texture::height_field::Touch;
+use asperity_texture::height_field::{MAX_BLOCK, Touch};
 
 impl Voice {
     /// What presses on the touched body from here on; none within a cell of the absolute grid, where nobody asks. Before a stretch is rendered: how it
     /// presses at the end of one would depend on where the blocks are cut.
-    pub(crate) fn pressing_at(&self, at: At, shared: &Shared, seat: &Seat) -> Option<Probe> {
-        seat.current().filter(|_| at.is_on_grid()).and_then(|slot| self.pressing(shared, slot))
+    pub(super) fn pressing_at(&self, stretch: Stretch<'_>, seat: &Seat) -> Option<Probe> {
+        let on_grid = stretch.position.is_multiple_of(MAX_BLOCK as u64);
+        seat.current().filter(|_| on_grid).and_then(|slot| self.pressing(stretch.shared, slot))
     }
 
     /// What presses on the touched body: the probe, as stiff as its ground and the force make it, to a quarter of an octave. None while nothing

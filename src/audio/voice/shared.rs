@@ -63,17 +63,6 @@ pub(crate) struct Stretch<'a> {
     pub(crate) n: usize,
 }
 
-/// What one stretch is to a contact.
-#[derive(Clone, Copy)]
-pub(super) struct Pass {
-    /// Samples of it.
-    pub(super) n: usize,
-    /// Whether it moves, and not rests.
-    pub(super) slides: bool,
-    /// Its high-passes have run beside those of others.
-    pub(super) coupled: bool,
-}
-
 /// The samples at hand, for whoever renders voices.
 #[derive(Clone, Copy)]
 pub(crate) struct At {
