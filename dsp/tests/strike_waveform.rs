@@ -1,6 +1,6 @@
 //! A strike through ring, bank and first samples against the equation: the integrated Hertz force convolved with the modes.
 
-use asperity_dsp::hertz::{HertzPulse, take};
+use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY, take};
 use asperity_dsp::modal_bank::{FirstSamples, GroupOptions, GroupState, Inputs, ModalBank, design_groups};
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -89,7 +89,7 @@ fn rendered(modes: &[Mode], contact_s: f64, onset: f64, rate_hz: f64, count: usi
     let (mut input, mut out) = (vec![0.0; count], vec![0.0; count]);
     take(&mut impulses, 0, &mut input);
     bank.render(0, Inputs::One(&input), &mut out);
-    out.iter().zip(&early).map(|(y, early)| f64::from(*y) + f64::from(*early)).collect()
+    out.iter().zip(&early).skip(KERNEL_LATENCY).map(|(y, early)| f64::from(*y) + f64::from(*early)).collect()
 }
 
 fn bodies() -> Vec<(&'static str, Vec<Mode>)> {

@@ -32,6 +32,7 @@ use crate::model::strike_field::StrikePlace;
 use crate::prepared::probe::{PreparedProbe, row_latency};
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
+use asperity_dsp::hertz::KERNEL_LATENCY;
 use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
@@ -99,6 +100,7 @@ impl Renderer {
         let shared = Shared {
             sample_rate_hz: rate,
             inner,
+            inner_audio: InnerRate::new(config.inner_samples(), row_latency + KERNEL_LATENCY),
             slow_step: (MAX_BLOCK * config.oversampling) as u64,
             idle_path: TrajectoryDesign::new(config.path, config.path_cutoff_hz, rate, [f64::INFINITY; 2])?,
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
@@ -180,11 +182,20 @@ impl Renderer {
         self.shared.sample_rate_hz
     }
 
-    /// By how many samples every output lags behind the stamps of its events, besides the delay of the
-    /// path filter: the look-ahead of the contact model.
+    /// Samples by which haptic outputs lag behind the stamps of their events, besides the delay of the
+    /// path filter: the look-ahead of the contact model. Sound lags by
+    /// [`audio_latency_samples`](Self::audio_latency_samples).
     #[must_use]
     pub fn latency_samples(&self) -> usize {
         self.shared.inner.lag(self.shared.row_latency)
+    }
+
+    /// Samples by which the audio buses lag behind the stamps of their events: two inner samples more than
+    /// [`latency_samples`](Self::latency_samples), 45 µs at 44.1 kHz, the middle of the kernel that spreads
+    /// pulses over samples ([`KERNEL_LATENCY`]). From four inner samples a sample on, nothing of it is left.
+    #[must_use]
+    pub fn audio_latency_samples(&self) -> usize {
+        self.shared.inner_audio.lag(self.shared.row_latency + KERNEL_LATENCY)
     }
 
     /// Index of the next sample to be rendered.

@@ -311,8 +311,7 @@ impl Voice {
         let (probe, reaction) = (shared.probe(self.role.probe), self.reaction);
         let by = Excited { slot, probe, reaction, sample_rate_hz, slow_step, position };
         self.exciters.run(&by, rows, force, out);
-        let sent = [&mut out.impulse_n_s[..n], &mut out.force_n_s[..n]];
-        self.rolling.soften(position, slow_step, sent);
+        self.rolling.soften(position, slow_step, &mut out.impulse_n_s[..n]);
         self.exciters.rub(&by, points, rows, out);
         self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
     }

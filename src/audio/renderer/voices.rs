@@ -63,11 +63,11 @@ impl Gathering<'_> {
             return;
         }
         if let Some(holder) = voice.role.holder {
-            self.bodies[holder.index()].touch(holder, 0, out.sent(n), -1.0);
+            self.bodies[holder.index()].touch(holder, 0, &out.impulse_n_s[..n], -1.0);
         }
         if let Some((body, slot)) = touched {
             let spot = Spot { place: self.placed[index], position: slot.surface.strike_position };
-            self.bodies[body.index()].touch_at(body, owner, &spot, out.sent(n));
+            self.bodies[body.index()].touch_at(body, owner, &spot, &out.impulse_n_s[..n]);
         }
     }
 

@@ -11,7 +11,6 @@ impl Voice {
         let out = &mut scratch.out;
         self.ac.rest(&mut out.haptic[..n]);
         out.impulse_n_s[..n].fill(0.0);
-        out.force_n_s[..n].fill(0.0);
         out.excites = false;
         (out.collisions, out.shortened, out.resets, out.blows) = (0, 0, 0, 0);
     }

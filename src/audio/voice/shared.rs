@@ -18,6 +18,8 @@ pub(crate) struct Shared {
     /// Inside; which of these samples leave says `inner`.
     pub(crate) sample_rate_hz: f64,
     pub(crate) inner: InnerRate,
+    /// The same of what the bodies sound like, which lags by more.
+    pub(crate) inner_audio: InnerRate,
     /// Steps in which slow things are worked out, inner samples: as long in time however much the engine oversamples.
     pub(crate) slow_step: u64,
     /// The engine's own probe, and those that were added.
