@@ -36,10 +36,10 @@ use asperity_dsp::hertz::KERNEL_LATENCY;
 use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
-use asperity_texture::sand::{SandFigures, SandPicture, SandSource};
 use contacts::SilentContact;
 use crew::Crew;
 use outputs::{Bus, HapticChannel, Mix};
+use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -284,20 +284,13 @@ impl Renderer {
         self.counters.position.store(self.position, Relaxed);
     }
 
-    /// Figures and pictures of the surfaces that are sand, settled; for the end of an offline render.
-    pub(crate) fn finish_sand(&mut self) -> Vec<(SurfaceId, SandFigures, SandPicture)> {
-        let mut found = Vec::new();
-        for seat in &mut self.seats {
-            let (Some(id), Some(source)) = (seat.id(), seat.source()) else { continue };
-            source.visit(&mut |source| {
-                if let Some((figures, picture)) =
-                    source.downcast_mut::<SandSource>().and_then(SandSource::finish)
-                {
-                    found.push((id, figures, picture));
-                }
-            });
-        }
-        found
+    /// Results of the surfaces' sources, at the end of a render.
+    pub(crate) fn finish(&mut self) -> Vec<(SurfaceId, Box<dyn Any>)> {
+        let position = self.position;
+        let named = self.seats.iter_mut().filter_map(|seat| Some((seat.id()?, seat)));
+        named
+            .flat_map(|(id, seat)| seat.finish(position).into_iter().map(move |result| (id, result)))
+            .collect()
     }
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.

@@ -187,7 +187,7 @@ impl Voice {
         if self.asleep {
             self.rest(now.n, scratch);
         } else if seat.current().is_some() {
-            self.take_slow_step(now, seat);
+            self.take_slow_step(now, seat, scratch);
             self.follow_path(now, seat, scratch);
             self.sample_profile(now, tap.is_watching(), seat, scratch);
             self.run_pad(now, scratch);
@@ -212,22 +212,23 @@ impl Voice {
     /// same cell wherever it is cut into stretches. A sleeping contact still touches, and wakes when the ground stirs.
     fn touch(&mut self, Stretch { position, .. }: Stretch<'_>, seat: &mut Seat) {
         if position.is_multiple_of(MAX_BLOCK as u64) {
-            self.reaction = seat.react(&self.touch_at(position));
+            self.reaction = seat.touch(&self.touch_at(position));
             self.asleep &= !self.reaction.stirs;
         }
     }
 
     /// Updates what is slow, at the steps of the absolute grid. By itself, because most short stretches have none.
     #[inline(never)]
-    fn take_slow_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat) {
+    fn take_slow_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, position, .. } = stretch;
         if !position.is_multiple_of(shared.slow_step) {
             return;
         }
         let PathPoint { velocity_m_s, normal_force_n, .. } = self.path.last;
-        self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
+        let room = &mut scratch.profile.rough;
+        self.exciters.press(self.loudness(shared, position, seat, room), velocity_m_s);
         if self.rolling.rolls() {
-            self.roll(shared, seat, Rolling::turn);
+            self.roll(shared, seat, room, Rolling::turn);
         }
         let Some(slot) = seat.current() else { return };
         let probe = shared.probe(self.role.probe);

@@ -239,7 +239,7 @@ mod tests {
         let modes: Vec<(usize, Mode)> = model.unit_modes().map(|(mode, _)| mode).enumerate().collect();
         let groups = design_groups(&model.modes, RATE_HZ, &GroupOptions::IMPULSE_RING);
         let groups: Box<[ModeGroup]> = groups.collect::<Result<_, _>>().unwrap();
-        let mut field = BodyField::new(&model, &modes, &groups, [groups.len(); 5], RATE_HZ).unwrap().unwrap();
+        let mut field = BodyField::new(&model, &modes, &groups, RATE_HZ).unwrap().unwrap();
         let states: Box<[GroupState]> = vec![GroupState::REST; groups.len()].into();
         let mut bank: Bank = ModalBank::new(Level::PORTABLE, groups, states);
         let (mut last, mut worst, mut place) = ([None; 6], 0.0_f32, None);

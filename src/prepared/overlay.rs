@@ -57,8 +57,6 @@ const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 /// Memory that the overlay works in; it holds nothing between two paths.
 pub(crate) struct Room {
-    /// What relief the source really has at each sample, m².
-    pub(crate) local_power_m2: [f64; MAX_BLOCK],
     shares: [f64; MAX_BLOCK],
     parts_m: [[f64; MAX_BLOCK]; 2],
     lap: Lap,
@@ -69,8 +67,10 @@ pub(crate) struct NoiseWay<'a> {
     pub(crate) path: NoisePath<'a>,
     /// Its least and greatest coordinates, those midway between samples included.
     pub(crate) bounds_m: [[f64; 2]; 2],
-    /// The share of the noise's long waves, where it is the same everywhere (1 where the source has no relief, 0 where that [fills](Overlay::fills_m2) it); otherwise [`Room::local_power_m2`] is told.
+    /// The share of the noise's long waves, where it is the same everywhere (1 where the source has no relief, 0 where that [fills](Overlay::fills_m2) it); otherwise it follows from `power_m2`.
     pub(crate) share: Option<f64>,
+    /// Relief that the source really has at each sample, m².
+    pub(crate) power_m2: &'a [f64],
 }
 
 /// Where a path lies in its lap of the tile, and what meets there.
@@ -97,7 +97,7 @@ impl Room {
             gains: [[[1.0; 2]; 2]; MAX_BLOCK],
             parts_m: [none; MOST_SETS],
         };
-        Self { local_power_m2: none, shares: none, parts_m: [none; 2], lap }
+        Self { shares: none, parts_m: [none; 2], lap }
     }
 }
 
@@ -142,14 +142,14 @@ impl Overlay {
     pub(crate) fn add(
         &self,
         field: &FractalNoise,
-        NoiseWay { path, bounds_m: [low_m, high_m], share }: &NoiseWay<'_>,
+        NoiseWay { path, bounds_m: [low_m, high_m], share, power_m2 }: &NoiseWay<'_>,
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
         between: Option<&mut NoiseBetween<'_>>,
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
-        let Room { local_power_m2, shares, parts_m, lap } = own;
+        let Room { shares, parts_m, lap } = own;
         let [along_u, along_v] = &self.axes;
         lap.begin_m =
             [along_u.begin_of_all_m(low_m[0], high_m[0]), along_v.begin_of_all_m(low_m[1], high_m[1])];
@@ -168,7 +168,7 @@ impl Overlay {
         let cells = (cells, lap);
         let n = height_m.len().min(MAX_BLOCK);
         let shares = &mut shares[..if share.is_none() { n } else { 0 }];
-        for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
+        for (share, power_m2) in shares.iter_mut().zip(*power_m2) {
             *share = room(*power_m2, self.ordinary_m);
         }
         let everywhere = |wanted: f64| {

@@ -2,7 +2,7 @@
 
 use super::between::{Between, Pressed};
 use super::blows::Blows;
-use super::profile::Along;
+use super::profile::{Along, Profile};
 use super::scratch::Scratch;
 use super::shared::{Shared, Stretch};
 use super::skin::ContactSkin;
@@ -15,7 +15,7 @@ use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::actuator::ContactOutputState;
 use asperity_dsp::butterworth;
 use asperity_dsp::trajectory::Trajectory;
-use asperity_texture::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction};
+use asperity_texture::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction, Touch, TouchKind};
 
 /// A force that is no touch, N.
 pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
@@ -59,7 +59,7 @@ impl Voice {
         self.rolling.tell(sample);
         scratch.profile.at_m = [sample.at_m.unwrap_or_default(); MAX_BLOCK];
         let ground = slot.stroking.ground;
-        seat.land(&self.touch_at(position));
+        seat.touch(&Touch { kind: TouchKind::Begins, ..self.touch_at(position) });
         self.pad.begin(shared.probe(self.role.probe), ground, force_n);
         self.drag.begin();
         self.drag.press(force_n);
@@ -70,7 +70,8 @@ impl Voice {
             let height_m = scratch.profile.surface.height_m[0];
             self.between.remember(scratch.profile.surface.roughness[0]);
             self.look_between(shared, seat);
-            self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
+            let Profile { surface, rough, .. } = &mut scratch.profile;
+            self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
             // It touches at the stamp; without delay it would one sample before the voice's first.
             self.pad.land(height_m, force_n, sample.closing_m_s, 1.0 + stamp.fraction());
             self.ac.feel = ContactOutputState::begin(at.output, height_m, -sample.closing_m_s);
@@ -84,7 +85,7 @@ impl Voice {
         self.skin = ContactSkin::default();
         let probe = shared.probe(self.role.probe);
         self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
-        let loudness = self.loudness(shared, position, seat);
+        let loudness = self.loudness(shared, position, seat, &mut scratch.profile.rough);
         self.exciters.begin(contact.0 ^ position.rotate_left(32), position, loudness);
     }
 
@@ -99,7 +100,8 @@ impl Voice {
         let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
         // It leaves the line where the ground is known about it: a step before, there, and a step later.
         self.lay_behind(steps + 1, step_s, ABOUT, at, seat, scratch);
-        self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
+        let Profile { surface, rough, .. } = &mut scratch.profile;
+        self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
         let Scratch { bends, profile, .. } = &mut *scratch;
         self.rolling.lead_in(&mut profile.surface, ABOUT);
         self.between.bend(shared, &profile.seen, ABOUT, bends);
