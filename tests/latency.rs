@@ -1,4 +1,4 @@
-//! Latency from event to sample: at most one block and one sample in the engine; haptics and audio together.
+//! Latency from event to sample: at most one block and three samples in the engine; haptics and audio together.
 
 mod common;
 
@@ -99,18 +99,19 @@ fn latencies(block: usize, events: usize) -> Vec<f64> {
 }
 
 #[test]
-fn live_an_event_is_heard_within_one_block_and_one_sample() {
+fn live_an_event_is_heard_within_one_block_and_three_samples() {
     for block in [64, 128, 256, 512, 1024] {
         let found = latencies(block, 200);
         let most = found.iter().copied().fold(0.0, f64::max);
         let mean = found.iter().sum::<f64>() / found.len() as f64;
         eprintln!("blocks of {block}: latency mean {mean:.1}, at most {most:.1} samples");
-        assert!(most <= (block + 1) as f64, "blocks of {block}: {most} samples");
+        // Two of them are the ring's.
+        assert!(most <= (block + 3) as f64, "blocks of {block}: {most} samples");
     }
 }
 
 #[test]
-fn one_micro_collision_is_heard_two_samples_after_it_is_felt() {
+fn one_micro_collision_is_heard_within_two_samples_after_it_is_felt() {
     for excitation in [Excitation::COLLISIONS, Excitation::BOTH] {
         for begin in [1000u64, 1037, 1063, 1064] {
             let actuators = vec![ActuatorSettings {
@@ -135,11 +136,11 @@ fn one_micro_collision_is_heard_two_samples_after_it_is_felt() {
             scene.report(begin as f64 / RATE_HZ, event).unwrap();
             let (mut felt, mut heard) = (vec![0.0f32; 4096], vec![0.0f32; 4096]);
             renderer.render(&mut [&mut felt], &mut [&mut heard]);
-            let (felt_late, heard_late) = (renderer.latency_samples(), renderer.audio_latency_samples());
-            let felt = felt.iter().position(|x| *x != 0.0).unwrap() - felt_late;
-            let heard = onset(&heard) - heard_late;
+            let felt = felt.iter().position(|x| *x != 0.0).unwrap();
+            let heard = onset(&heard);
             eprintln!("{excitation:?} from {begin}: felt {felt}, heard {heard}");
-            assert_eq!(felt, heard, "{excitation:?} from {begin}");
+            // A pulse is spread over the ring's two samples before the middle of its sound and two after it.
+            assert!((felt..=felt + 2).contains(&heard), "{excitation:?} from {begin}: {felt}, {heard}");
         }
     }
 }

@@ -11,7 +11,7 @@ use asperity::texture::height_map::{Extent, HeightMap};
 use asperity::texture::tiled::Tiled;
 use asperity::{
     Actuator, Body, Config, ContactEvent, ContactId, ContactSample, Engine, Material, ModalModel, Mode,
-    Surface,
+    Surface, TipLaw,
 };
 use asperity_dsp::DesignError;
 use common::peak;
@@ -53,7 +53,8 @@ impl HeightField for Counting {
     fn properties(&self, _tile_m: [f64; 2]) -> Properties {
         count(&self.calls.properties);
         let band = WavelengthBand { shortest_m: 1e-3, longest_m: 2e-3 };
-        Properties { beyond: self.beyond, ..Properties::of(band) }
+        let tip_law = Some(TipLaw::Spring { compliance_m_n: 2e-3, friction: 0.0 });
+        Properties { beyond: self.beyond, tip_law, ..Properties::of(band) }
     }
 
     fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {

@@ -7,7 +7,7 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
-use crate::prepared::overlay::{NoiseWay, Room, TileCells};
+use crate::prepared::overlay::{NoiseBetween, NoiseWay, Room, TileCells};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
@@ -47,25 +47,6 @@ pub(crate) struct Noise<'a> {
     pub(crate) room: &'a mut Room,
     /// Its short waves by themselves, where they are wanted.
     pub(crate) between: Option<NoiseBetween<'a>>,
-}
-
-/// The short waves of the micro-noise, at samples and between each and the sample before.
-pub(crate) struct NoiseBetween<'a> {
-    /// The coarsest octave that counts among them.
-    pub(crate) octave: usize,
-    /// Between samples.
-    pub(crate) looks: [Option<Look<'a>>; 3],
-    /// At the samples, m.
-    pub(crate) at_m: &'a mut [f64],
-    /// Whether the surface told.
-    pub(crate) seen: &'a mut bool,
-}
-
-/// Some share of the way from the sample before each.
-pub(crate) struct Look<'a> {
-    pub(crate) position_m: &'a [[f64; 2]],
-    /// What is there, m.
-    pub(crate) height_m: &'a mut [f64],
 }
 
 /// What setting a surface means for the contacts on it.

@@ -56,6 +56,7 @@ use profile::Along;
 use rolling::Rolling;
 use skin::ContactSkin;
 use tip::Tip;
+use watching::Done;
 
 /// Where the sound and feel of a voice stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -315,6 +316,28 @@ impl Voice {
         self.rolling.soften(position, slow_step, &mut out.impulse_n_s[..n]);
         self.exciters.rub(&by, points, rows, out);
         self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
+    }
+
+    /// Shows the stretch to a tap that watches. A contact that has jumped is shown where it is, and not where it fades.
+    fn show<T: Tap>(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch, tap: &mut T) {
+        if !tap.is_watching() || self.left_behind {
+            return;
+        }
+        let Some(slot) = seat.current() else { return };
+        let Scratch { points, rows, profile, shown, out, .. } = scratch;
+        let done = Done {
+            contact: self.contact,
+            role: &self.role,
+            begun: self.begun,
+            last_point: self.path.last,
+            size_m: [slot.surface.width_m, slot.surface.height_m],
+            asleep: self.asleep,
+            points,
+            profile,
+            rows,
+            impulse_n_s: &out.impulse_n_s,
+        };
+        shown.show(stretch, &done, &mut self.tip, &mut self.unshown_n_s, tap);
     }
 
     /// Where the stretch leaves the contact.

@@ -13,7 +13,6 @@
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
 //! power: sine and cosine, because the two are unrelated.
 
-use crate::audio::seat::NoiseBetween;
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
@@ -60,6 +59,25 @@ pub(crate) struct Room {
     shares: [f64; MAX_BLOCK],
     parts_m: [[f64; MAX_BLOCK]; 2],
     lap: Lap,
+}
+
+/// The short waves of the micro-noise, at samples and between each and the sample before.
+pub(crate) struct NoiseBetween<'a> {
+    /// The coarsest octave that counts among them.
+    pub(crate) octave: usize,
+    /// Between samples.
+    pub(crate) looks: [Option<Look<'a>>; 3],
+    /// At the samples, m.
+    pub(crate) at_m: &'a mut [f64],
+    /// Whether the surface told.
+    pub(crate) seen: &'a mut bool,
+}
+
+/// Some share of the way from the sample before each.
+pub(crate) struct Look<'a> {
+    pub(crate) position_m: &'a [[f64; 2]],
+    /// What is there, m.
+    pub(crate) height_m: &'a mut [f64],
 }
 
 /// A path over the surface, and what is known of all of it.

@@ -1,8 +1,8 @@
 //! Profile: heights along the path, with the micro-relief below the source's own band, as the probe's tip rides them.
 
 use super::shared::Shared;
-use crate::audio::seat::{Look, Noise, NoiseBetween, Seat};
-use crate::prepared::overlay::{Room, TileCells};
+use crate::audio::seat::{Noise, Seat};
+use crate::prepared::overlay::{Look, NoiseBetween, Room, TileCells};
 use asperity_dsp::pair::Pair;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};

@@ -5,8 +5,6 @@ use super::profile::Profile;
 use super::role::Role;
 use super::shared::Stretch;
 use super::tip::{Ground, Tip};
-use super::{Scratch, Voice};
-use crate::audio::seat::Seat;
 use crate::link::tap::{ContactBlock, Tap};
 use crate::model::event::{Actuator, ContactId};
 use asperity_dsp::trajectory::PathPoint;
@@ -107,35 +105,5 @@ impl Shown {
             force_n: &self.force_n[..count],
             cap_n: &self.cap_n[..count],
         });
-    }
-}
-
-impl Voice {
-    /// Shows the stretch to a tap that watches. A contact that has jumped is shown where it is, and not where it fades.
-    pub(super) fn show<T: Tap>(
-        &mut self,
-        stretch: Stretch<'_>,
-        seat: &Seat,
-        scratch: &mut Scratch,
-        tap: &mut T,
-    ) {
-        if !tap.is_watching() || self.left_behind {
-            return;
-        }
-        let Some(slot) = seat.current() else { return };
-        let Scratch { points, rows, profile, shown, out, .. } = scratch;
-        let done = Done {
-            contact: self.contact,
-            role: &self.role,
-            begun: self.begun,
-            last_point: self.path.last,
-            size_m: [slot.surface.width_m, slot.surface.height_m],
-            asleep: self.asleep,
-            points,
-            profile,
-            rows,
-            impulse_n_s: &out.impulse_n_s,
-        };
-        shown.show(stretch, &done, &mut self.tip, &mut self.unshown_n_s, tap);
     }
 }
