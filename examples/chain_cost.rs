@@ -76,12 +76,13 @@ fn stages() {
         first_sample: 0,
         contact: 0,
         slopes: false,
+        ..PathBlock::default()
     };
     let mut out = SurfaceBlock::default();
     show("both maps", alone_ns(|| map.sample(&block, &mut out)));
     let noise = FractalNoise::new(1);
     let noise_path = NoisePath { position_m: &position_m, footprint_m: &footprint_m };
-    let longest_m = map.band().shortest_m;
+    let longest_m = map.properties([1.0; 2]).band.shortest_m;
     let mut height_m = out.height_m;
     show(
         "noise below the map",

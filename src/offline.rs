@@ -236,7 +236,10 @@ impl Take {
         for channel in self.haptic.iter_mut().chain(&mut self.audio) {
             channel.drain(..latency);
         }
-        let sand = self.renderer.finish_sand().into_iter();
+        let sand = self.renderer.finish().into_iter().filter_map(|(surface, result)| {
+            let (figures, picture) = *result.downcast::<(SandFigures, SandPicture)>().ok()?;
+            Some(SandAfter { surface, figures, picture })
+        });
         Render {
             sample_rate_hz: self.renderer.sample_rate_hz(),
             audio: self.audio,
@@ -244,7 +247,7 @@ impl Take {
             stats: self.scene.stats(),
             first_refused: self.first_refused,
             why_silent: self.scene.why_silent(),
-            sand: sand.map(|(surface, figures, picture)| SandAfter { surface, figures, picture }).collect(),
+            sand: sand.collect(),
             limiter_db: self.renderer.limiter_db(),
             processing: self.processing,
         }

@@ -1,4 +1,4 @@
-//! Latency from event to sample: at most one block and one sample in the engine; haptics and audio together.
+//! Latency from event to sample: at most one block and three samples in the engine; haptics and audio together.
 
 use crate::common;
 
@@ -44,22 +44,27 @@ fn a_stamped_event_sounds_at_its_own_sample() {
                 renderer.render(&mut [&mut h], &mut [&mut a]);
                 heard.extend(a);
             }
-            let onset = heard.iter().position(|x| *x != 0.0).unwrap() as u64;
-            let due = sample + renderer.latency_samples() as u64;
+            let onset = onset(&heard) as u64;
+            let due = sample + renderer.audio_latency_samples() as u64;
             assert!(onset >= due && onset <= due + 1, "sample {sample}: heard at {onset}, due at {due}");
         }
     }
 }
 
-/// Samples from an impact to the first that is not zero: a mode begins at the zero of its sine.
+/// The first sample that is more than what rounding leaves of the ring's two samples before a strike.
+fn onset(heard: &[f32]) -> usize {
+    let loudest = heard.iter().fold(0.0_f32, |loudest, x| loudest.max(x.abs()));
+    heard.iter().position(|x| x.abs() > 1e-5 * loudest).unwrap()
+}
+
+/// Samples from an impact to the first that is heard: a mode begins at the zero of its sine.
 fn rise_samples() -> f64 {
     let asperity::Engine { mut scene, mut renderer, .. } = Config::default().build().unwrap();
     let body = scene.add_body(tick()).unwrap();
     scene.report(100.0 / RATE_HZ, impact(body)).unwrap();
     let (mut h, mut a) = ([0.0; 512], [0.0; 512]);
     renderer.render(&mut [&mut h], &mut [&mut a]);
-    let onset = a.iter().position(|x| *x != 0.0).unwrap();
-    (onset - renderer.latency_samples()) as f64 - 100.0
+    (onset(&a) - renderer.audio_latency_samples()) as f64 - 100.0
 }
 
 /// A game that reports at random moments, a device that renders at the start of each block.
@@ -84,7 +89,7 @@ fn latencies(block: usize, events: usize) -> Vec<f64> {
         scene.report(77.0 + now / RATE_HZ, impact(body)).unwrap();
         let from = heard.len();
         render_to(&mut renderer, &mut heard, now + 2500.0);
-        let onset = from + heard[from..].iter().position(|x| *x != 0.0).unwrap();
+        let onset = from + onset(&heard[from..]);
         found.push(onset as f64 - now);
     }
     // An offline render has no latency: what its impact takes to rise is the mode's, not the engine's.
@@ -94,18 +99,19 @@ fn latencies(block: usize, events: usize) -> Vec<f64> {
 }
 
 #[test]
-fn live_an_event_is_heard_within_one_block_and_one_sample() {
+fn live_an_event_is_heard_within_one_block_and_three_samples() {
     for block in [64, 128, 256, 512, 1024] {
         let found = latencies(block, 200);
         let most = found.iter().copied().fold(0.0, f64::max);
         let mean = found.iter().sum::<f64>() / found.len() as f64;
         eprintln!("blocks of {block}: latency mean {mean:.1}, at most {most:.1} samples");
-        assert!(most <= (block + 1) as f64, "blocks of {block}: {most} samples");
+        // Two of them are the ring's.
+        assert!(most <= (block + 3) as f64, "blocks of {block}: {most} samples");
     }
 }
 
 #[test]
-fn one_micro_collision_is_felt_and_heard_at_the_same_sample() {
+fn one_micro_collision_is_heard_within_two_samples_after_it_is_felt() {
     for excitation in [Excitation::COLLISIONS, Excitation::BOTH] {
         for begin in [1000u64, 1037, 1063, 1064] {
             let actuators = vec![ActuatorSettings {
@@ -130,10 +136,11 @@ fn one_micro_collision_is_felt_and_heard_at_the_same_sample() {
             scene.report(begin as f64 / RATE_HZ, event).unwrap();
             let (mut felt, mut heard) = (vec![0.0f32; 4096], vec![0.0f32; 4096]);
             renderer.render(&mut [&mut felt], &mut [&mut heard]);
-            let first = |x: &[f32]| x.iter().position(|x| *x != 0.0).unwrap() as i64;
-            let (felt, heard) = (first(&felt), first(&heard));
+            let felt = felt.iter().position(|x| *x != 0.0).unwrap();
+            let heard = onset(&heard);
             eprintln!("{excitation:?} from {begin}: felt {felt}, heard {heard}");
-            assert_eq!(felt, heard, "{excitation:?} from {begin}");
+            // A pulse is spread over the ring's two samples before the middle of its sound and two after it.
+            assert!((felt..=felt + 2).contains(&heard), "{excitation:?} from {begin}: {felt}, {heard}");
         }
     }
 }

@@ -14,7 +14,6 @@ mod contacts_side_by_side;
 mod contractive;
 #[path = "common/counting.rs"]
 mod counting;
-mod crowd;
 mod debounce;
 mod documents;
 mod dragged_skin;
@@ -26,6 +25,7 @@ mod frames;
 mod fuzz;
 mod grating;
 mod hostile;
+mod imports;
 mod kernels;
 mod laps;
 mod latency;
@@ -42,6 +42,7 @@ mod modal_tables;
 #[path = "../fuzz/mutation.rs"]
 mod mutation;
 mod only_what_is_needed;
+mod own_sources;
 mod parameters;
 mod parts;
 mod ports;

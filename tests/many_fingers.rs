@@ -125,7 +125,7 @@ fn a_crossfade_comes_at_its_second_whatever_the_rate_of_the_engine() {
     };
     for rate_hz in [44_100.0, 48_000.0, 96_000.0] {
         let mut fade = Crossfade::new(plate(0.0), plate(1e-3)).at_s(0.5);
-        fade.prepare(&Setup { sample_rate_hz: rate_hz, voices: 1 }).unwrap();
+        fade.prepare(&Setup { sample_rate_hz: rate_hz, voices: 1, tip_radii_m: &[] }).unwrap();
         let mut height_at = |time_s: f64| {
             let mut out = SurfaceBlock::default();
             let path = PathBlock {
@@ -136,6 +136,7 @@ fn a_crossfade_comes_at_its_second_whatever_the_rate_of_the_engine() {
                 first_sample: (time_s * rate_hz).round() as u64,
                 contact: 0,
                 slopes: false,
+                ..PathBlock::default()
             };
             fade.sample(&path, &mut out);
             out.height_m[0]

@@ -202,12 +202,13 @@ fn sand_again(design: &SandDesign, rows: &[Row]) -> Vec<f64> {
         let before = rows[first - 1];
         // The bed is told the path's own velocity, by which it looks ahead of the finger.
         let of_path = [0, 1].map(|a| (rows[first].position_m[a] - before.position_m[a]) * RATE_HZ);
-        sand.react(&Touch {
+        sand.touch(&Touch {
             contact: 0,
             sample: block[0].sample,
             position_m: before.position_m,
             velocity_m_s: of_path,
             normal_force_n: before.normal_force_n,
+            ..Touch::default()
         });
         let position_m: Vec<_> = block.iter().map(|row| row.position_m).collect();
         let normal_force_n: Vec<_> = block.iter().map(|row| row.normal_force_n).collect();
@@ -220,6 +221,7 @@ fn sand_again(design: &SandDesign, rows: &[Row]) -> Vec<f64> {
             first_sample: block[0].sample,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         sand.sample(&path, &mut out);
         // The sand lies lower by as much as the finger presses it in.

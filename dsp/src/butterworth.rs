@@ -17,12 +17,9 @@
 //! map beside its input; this form in `f64` settles on it to rounding. The group delay at 0 Hz is
 //! √2/ω = 7.5 ms at 30 Hz.
 
-mod side_by_side;
-
 use crate::DesignError;
 use crate::pair::Pair;
 use core::f64::consts::{PI, SQRT_2};
-pub use side_by_side::{LANES, SideBySide, Signals};
 
 /// Coefficients of one filter; shared by every channel and contact at the same rate.
 ///

@@ -1,9 +1,7 @@
-//! A force that lasts, through the ring's taps, the bank and what the bank leaves out, against the convolution with the modes.
+//! A force that lasts, through the ring's taps and the bank, against the convolution with the modes two samples later.
 
-use asperity_dsp::hertz::{FORCE_HISTORY, HertzPulse, spread_force, take};
-use asperity_dsp::modal_bank::{
-    EARLY_HISTORY, FirstSamples, GroupOptions, GroupState, Inputs, ModalBank, add_early_force, design_groups,
-};
+use asperity_dsp::hertz::{FORCE_HISTORY, HertzPulse, KERNEL_LATENCY, spread_force, take};
+use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, design_groups};
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
 use core::f64::consts::PI;
@@ -52,24 +50,19 @@ fn convolved(modes: &[Mode], force: impl Fn(f64) -> f64) -> Vec<f64> {
     out
 }
 
-/// Bank alone, and with what it leaves out, for mean forces over the steps whose middles are the samples; cut into stretches.
-fn rendered(modes: &[Mode], steps: &[f64], spread: &[f64], cut: usize) -> [Vec<f64>; 2] {
+/// The bank under impulses, cut into stretches, as many samples earlier as the ring is late.
+fn rendered(modes: &[Mode], impulses: &[f64], cut: usize) -> Vec<f64> {
     let groups = design_groups(modes, RATE_HZ, &GroupOptions::IMPULSE_RING);
     let groups = groups.collect::<Result<Vec<_>, _>>().unwrap();
     let states = vec![GroupState::REST; groups.len()];
     let mut bank = ModalBank::new(Level::detect(), groups, states);
-    let input: Vec<f32> = spread.iter().map(|x| *x as f32).collect();
+    let input: Vec<f32> = impulses.iter().map(|x| *x as f32).collect();
     let mut out = vec![0.0; COUNT];
-    bank.render(0, Inputs::One(&input), &mut out);
-    let bare = out.iter().map(|y| f64::from(*y)).collect();
-    let taps = FirstSamples::new(modes.iter().copied(), RATE_HZ).unwrap().of_force();
-    let mut behind = vec![0.0; EARLY_HISTORY];
-    behind.extend(steps);
     for first in (0..COUNT).step_by(cut) {
-        let end = (first + cut).min(COUNT);
-        add_early_force(&taps, &behind[first..end + EARLY_HISTORY], &mut out[first..end]);
+        let stretch = first..(first + cut).min(COUNT);
+        bank.render(first as u64, Inputs::One(&input[stretch.clone()]), &mut out[stretch]);
     }
-    [bare, out.iter().map(|y| f64::from(*y)).collect()]
+    out[KERNEL_LATENCY..].iter().map(|y| f64::from(*y)).collect()
 }
 
 fn error_db(found: &[f64], wanted: &[f64]) -> f64 {
@@ -78,8 +71,8 @@ fn error_db(found: &[f64], wanted: &[f64]) -> f64 {
     10.0 * (square(&error) / square(wanted)).log10()
 }
 
-/// Before and after, dB, for a force over time in samples.
-fn errors(force: impl Fn(f64) -> f64) -> [f64; 2] {
+/// Error for a force over time in samples, dB.
+fn error_of(force: impl Fn(f64) -> f64) -> f64 {
     let modes = modes();
     let mean = |n: usize| {
         let fine = |k: usize| force(n as f64 - 0.5 + (k as f64 + 0.5) / FINE as f64);
@@ -91,10 +84,9 @@ fn errors(force: impl Fn(f64) -> f64) -> [f64; 2] {
     let mut spread = vec![0.0; COUNT];
     spread_force(&behind, &mut spread);
     let wanted = convolved(&modes, force);
-    let [bare, whole] = rendered(&modes, &steps, &spread, COUNT);
-    let [_, cut] = rendered(&modes, &steps, &spread, 7);
-    assert!(cut == whole, "the split into stretches is heard");
-    [error_db(&bare, &wanted), error_db(&whole, &wanted)]
+    let found = rendered(&modes, &spread, COUNT);
+    assert!(found == rendered(&modes, &spread, 7), "the split into stretches is heard");
+    error_db(&found, &wanted)
 }
 
 #[test]
@@ -113,37 +105,39 @@ fn a_force_that_lasts_is_the_convolution_with_the_modes() {
     };
     let mut all = Vec::new();
     for samples in [44.1, 14.7] {
-        all.push((format!("raised cosine of {samples} samples"), errors(cosine(samples))));
+        all.push((format!("raised cosine of {samples} samples"), error_of(cosine(samples))));
     }
     for hz in [50.0, 200.0, 1000.0, 3000.0, 6000.0, 8000.0] {
-        all.push((format!("sine of {hz} Hz"), errors(sine(hz))));
+        all.push((format!("sine of {hz} Hz"), error_of(sine(hz))));
     }
-    for (name, [before, after]) in &all {
-        println!("{name}: {before:.1} -> {after:.1} dB");
+    for (name, error_db) in &all {
+        println!("{name}: {error_db:.1} dB");
     }
-    for (name, [_, after]) in all {
-        let most = if name.contains("6000") || name.contains("8000") { -32.0 } else { -85.0 };
-        assert!(after <= most, "{name}: {after} dB");
+    // The direct term is exact for a slow force: what is left grows with frequency.
+    let bound_db = |name: &str| match name {
+        _ if name.starts_with("raised") => -55.0,
+        "sine of 3000 Hz" => -34.0,
+        "sine of 6000 Hz" => -20.0,
+        "sine of 8000 Hz" => -14.0,
+        _ => -65.0,
+    };
+    for (name, error_db) in all {
+        assert!(error_db <= bound_db(&name), "{name}: {error_db} dB");
     }
 }
 
 #[test]
-fn a_pulse_in_steps_gives_what_its_spread_form_leaves_out() {
+fn a_collision_of_25_samples_is_the_convolution_with_the_modes() {
     let modes = modes();
     let (onset, samples) = (20.6_f64, 25.0_f64);
     let pulse = HertzPulse { impulse_n_s: 1.0, contact_time_s: samples / RATE_HZ };
-    let (mut spread, mut steps) = (vec![0.0; 4096], vec![0.0; 4096]);
+    let mut spread = vec![0.0; 4096];
     pulse.deposit(&mut spread, onset as u64, onset.fract(), RATE_HZ);
-    pulse.deposit_steps(&mut steps, onset as u64, onset.fract(), RATE_HZ);
-    let kept = steps.iter().sum::<f64>();
-    assert!((kept - 1.0).abs() < 1e-7, "its impulse is kept: {kept}");
-    assert!(steps[..=onset as usize].iter().all(|x| *x == 0.0), "nothing comes before the contact");
     let wanted = convolved(&modes, |t| asperity_dsp::hertz::pulse_shape((t - onset) / samples) / samples);
     let mut input = vec![0.0; COUNT];
     take(&mut spread, 0, &mut input);
     let input: Vec<f64> = input.into_iter().map(f64::from).collect();
-    let [bare, whole] =
-        rendered(&modes, &steps[..COUNT], &input, COUNT).map(|found| error_db(&found, &wanted));
-    println!("{bare:.1} -> {whole:.1} dB");
-    assert!(whole <= -85.0, "{whole} dB");
+    let error_db = error_db(&rendered(&modes, &input, COUNT), &wanted);
+    println!("{error_db:.1} dB");
+    assert!(error_db <= -60.0, "{error_db} dB");
 }

@@ -218,7 +218,7 @@ fn worst_error(rate: f64, contact_time_s: f64, force: &[f64], rng: &mut Rng) -> 
             for (n, u) in ring.iter().enumerate() {
                 let y = design.tick(&mut state, *u);
                 if n >= end {
-                    let t = n as f64 / rate - onset;
+                    let t = (n - KERNEL_LATENCY) as f64 / rate - onset;
                     let decay = (-decay_per_s * t).exp();
                     let exact = level * decay * (omega * t + mode.phase_rad + angle).sin();
                     error = error.max((y - exact).abs() / decay);
@@ -300,7 +300,7 @@ fn sampled_force_and_pulses_reach_a_mode_at_the_same_time_and_level() {
     let angle = -mode.decay_per_s * omega * width * width;
     for (n, u) in ring.iter().enumerate().take(1_500) {
         let y = design.tick(&mut state, *u);
-        let t = n as f64 / rate - at;
+        let t = (n as f64 - KERNEL_LATENCY as f64) / rate - at;
         if t > 8.0 * width {
             let exact = level * (-30.0 * t).exp() * (omega * t + 0.2 + angle).sin();
             assert!((y - exact).abs() < 1e-3, "sample {n}: {y} {exact}");

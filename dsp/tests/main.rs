@@ -15,7 +15,6 @@ mod modal_bank;
 mod noise_figures;
 mod profiles;
 mod radiation;
-mod side_by_side;
 mod spectrum;
 mod stick_slip;
 mod strike_waveform;

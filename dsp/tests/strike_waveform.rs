@@ -1,6 +1,6 @@
 //! A strike through ring, bank and first samples against the equation: the integrated Hertz force convolved with the modes.
 
-use asperity_dsp::hertz::{HertzPulse, take};
+use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY, take};
 use asperity_dsp::modal_bank::{FirstSamples, GroupOptions, GroupState, Inputs, ModalBank, design_groups};
 use asperity_dsp::mode::Mode;
 use asperity_dsp::rng::Rng;
@@ -89,7 +89,7 @@ fn rendered(modes: &[Mode], contact_s: f64, onset: f64, rate_hz: f64, count: usi
     let (mut input, mut out) = (vec![0.0; count], vec![0.0; count]);
     take(&mut impulses, 0, &mut input);
     bank.render(0, Inputs::One(&input), &mut out);
-    out.iter().zip(&early).map(|(y, early)| f64::from(*y) + f64::from(*early)).collect()
+    out.iter().zip(&early).skip(KERNEL_LATENCY).map(|(y, early)| f64::from(*y) + f64::from(*early)).collect()
 }
 
 fn bodies() -> Vec<(&'static str, Vec<Mode>)> {
@@ -113,14 +113,14 @@ fn bodies() -> Vec<(&'static str, Vec<Mode>)> {
     ]
 }
 
-/// Error over the event's rms, and how much of it is there before the first sample after the onset.
+/// Error over the event's rms, and the share of its power before the first sample after the onset.
 fn errors(modes: &[Mode], pulse: &[f64], contact_s: f64, rate_hz: f64, onset: f64) -> (f64, f64) {
     let count = (0.06 * rate_hz) as usize;
     let wanted = convolved(modes, pulse, contact_s, onset, rate_hz, count);
     let found = rendered(modes, contact_s, onset, rate_hz, count);
     let square = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
     let error: Vec<f64> = found.iter().zip(&wanted).map(|(f, w)| f - w).collect();
-    let early = square(&found[..=onset as usize]);
+    let early = square(&found[..=onset as usize]) / square(&wanted);
     ((square(&error) / square(&wanted)).sqrt(), early)
 }
 
@@ -133,7 +133,8 @@ fn a_strike_is_the_modes_file_from_its_first_sample_on() {
             for contact_s in CONTACTS_S {
                 for onset in [100.0, 101.37, 102.93] {
                     let (error, early) = errors(&modes, &pulse, contact_s, rate_hz, onset);
-                    assert!(early == 0.0, "{name}: something sounds before the contact");
+                    // The ring reaches back two samples; ring and first samples cancel to rounding.
+                    assert!(early < 1e-12, "{name}: {early:e} sounds before the contact");
                     worst = if error > worst.0 { (error, contact_s) } else { worst };
                 }
             }

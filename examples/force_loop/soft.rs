@@ -76,6 +76,7 @@ fn share_felt(count: u32, radius_m: f64) -> Result<f64, Box<dyn Error>> {
         first_sample: 0,
         contact: 0,
         slopes: false,
+        ..PathBlock::default()
     };
     let mut out = SurfaceBlock::default();
     sample_under(&mut map, &path, &[radius_m], &mut out);

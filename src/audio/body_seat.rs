@@ -9,7 +9,6 @@ use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::Owner;
 use crate::prepared::body::{BodySlot, Terms};
 use crate::prepared::body_rub::RubAsked;
-use crate::prepared::early::Sent;
 use crate::prepared::spot::Spot;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
@@ -174,9 +173,9 @@ impl BodySeat {
     }
 
     /// Adds what one contact sends to the body of that name; to nobody, if it has gone.
-    pub(crate) fn touch(&mut self, id: BodyId, position: usize, sent: Sent<'_>, sign: f64) {
+    pub(crate) fn touch(&mut self, id: BodyId, position: usize, impulse_n_s: &[f64], sign: f64) {
         if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
-            body.touch(position, sent, sign);
+            body.touch(position, impulse_n_s, sign);
         }
     }
 
@@ -193,9 +192,9 @@ impl BodySeat {
     }
 
     /// As [`touch`](Self::touch), at a place of its own.
-    pub(crate) fn touch_at(&mut self, id: BodyId, owner: Owner, spot: &Spot, sent: Sent<'_>) {
+    pub(crate) fn touch_at(&mut self, id: BodyId, owner: Owner, spot: &Spot, impulse_n_s: &[f64]) {
         if let Some(body) = self.current.as_mut().filter(|_| self.id == Some(id)) {
-            body.touch_at(owner, spot, sent);
+            body.touch_at(owner, spot, impulse_n_s);
         }
     }
 

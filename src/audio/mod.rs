@@ -9,5 +9,4 @@ mod pool;
 pub(crate) mod renderer;
 pub(crate) mod seat;
 pub(crate) mod smoothed;
-pub(crate) mod stand_in;
 pub(crate) mod voice;

@@ -6,7 +6,6 @@
 
 mod contacts;
 mod crew;
-mod crowd;
 mod hand_over;
 mod messages;
 mod meter;
@@ -20,7 +19,6 @@ use crate::audio::occupied::Occupied;
 use crate::audio::outlets::Outlets;
 use crate::audio::seat::Seat;
 use crate::audio::smoothed::Smoothed;
-use crate::audio::stand_in::StandIns;
 use crate::audio::voice::{Phase, Scratch, Shared, Voice};
 use crate::link::message::{Dead, Message};
 use crate::link::ring::{Receiver, Sender};
@@ -34,13 +32,14 @@ use crate::model::strike_field::StrikePlace;
 use crate::prepared::probe::{PreparedProbe, row_latency};
 use asperity_dsp::actuator::{ContactOutput, Quantity, RELEASE_S};
 use asperity_dsp::fractal_noise::FractalNoise;
+use asperity_dsp::hertz::KERNEL_LATENCY;
 use asperity_dsp::simd::{Isa, Level};
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::MAX_BLOCK;
-use asperity_texture::sand::{SandFigures, SandPicture, SandSource};
 use contacts::SilentContact;
 use crew::Crew;
 use outputs::{Bus, HapticChannel, Mix};
+use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -59,9 +58,6 @@ pub struct Renderer {
     /// Where each voice is on a body that has shapes.
     placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
-    /// What sounds of contacts that are not computed, and which voices are of those that came first.
-    stand_ins: StandIns,
-    came_first: Vec<bool>,
     seats: Vec<Seat>,
     bodies: Vec<BodySeat>,
     /// Which of the three are in use, so that empty places cost nothing.
@@ -104,6 +100,7 @@ impl Renderer {
         let shared = Shared {
             sample_rate_hz: rate,
             inner,
+            inner_audio: InnerRate::new(config.inner_samples(), row_latency + KERNEL_LATENCY),
             slow_step: (MAX_BLOCK * config.oversampling) as u64,
             idle_path: TrajectoryDesign::new(config.path, config.path_cutoff_hz, rate, [f64::INFINITY; 2])?,
             idle_output: ContactOutput::new(Quantity::Displacement, 0.0, rate)?,
@@ -130,8 +127,6 @@ impl Renderer {
             seats_used: Occupied::new(config.max_surfaces),
             bodies_used: Occupied::new(config.max_bodies),
             silent: Vec::with_capacity(config.max_contacts),
-            stand_ins: StandIns::new(config.exact_contacts, voices, rate),
-            came_first: vec![false; voices],
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
             bodies: (0..config.max_bodies).map(|_| BodySeat::new(rate)).collect(),
             channels: config
@@ -187,11 +182,20 @@ impl Renderer {
         self.shared.sample_rate_hz
     }
 
-    /// By how many samples every output lags behind the stamps of its events, besides the delay of the
-    /// path filter: the look-ahead of the contact model.
+    /// Samples by which haptic outputs lag behind the stamps of their events, besides the delay of the
+    /// path filter: the look-ahead of the contact model. Sound lags by
+    /// [`audio_latency_samples`](Self::audio_latency_samples).
     #[must_use]
     pub fn latency_samples(&self) -> usize {
         self.shared.inner.lag(self.shared.row_latency)
+    }
+
+    /// Samples by which the audio buses lag behind the stamps of their events: two inner samples more than
+    /// [`latency_samples`](Self::latency_samples), 45 µs at 44.1 kHz, the middle of the kernel that spreads
+    /// pulses over samples ([`KERNEL_LATENCY`]). From four inner samples a sample on, nothing of it is left.
+    #[must_use]
+    pub fn audio_latency_samples(&self) -> usize {
+        self.shared.inner_audio.lag(self.shared.row_latency + KERNEL_LATENCY)
     }
 
     /// Index of the next sample to be rendered.
@@ -262,7 +266,6 @@ impl Renderer {
         let mut done = 0;
         while done < frames {
             self.apply_due();
-            self.look_at_crowds();
             let n = self.stretch(frames - done);
             self.render_contacts(n, tap);
             if self.outlets.are_open() {
@@ -281,20 +284,13 @@ impl Renderer {
         self.counters.position.store(self.position, Relaxed);
     }
 
-    /// Figures and pictures of the surfaces that are sand, settled; for the end of an offline render.
-    pub(crate) fn finish_sand(&mut self) -> Vec<(SurfaceId, SandFigures, SandPicture)> {
-        let mut found = Vec::new();
-        for seat in &mut self.seats {
-            let (Some(id), Some(source)) = (seat.id(), seat.source()) else { continue };
-            source.visit(&mut |source| {
-                if let Some((figures, picture)) =
-                    source.downcast_mut::<SandSource>().and_then(SandSource::finish)
-                {
-                    found.push((id, figures, picture));
-                }
-            });
-        }
-        found
+    /// Results of the surfaces' sources, at the end of a render.
+    pub(crate) fn finish(&mut self) -> Vec<(SurfaceId, Box<dyn Any>)> {
+        let position = self.position;
+        let named = self.seats.iter_mut().filter_map(|seat| Some((seat.id()?, seat)));
+        named
+            .flat_map(|(id, seat)| seat.finish(position).into_iter().map(move |result| (id, result)))
+            .collect()
     }
 
     /// Once every [`MAX_BLOCK`] samples: contacts that lapsed, modes that rang out, memory to free.
@@ -321,7 +317,7 @@ impl Renderer {
             self.bodies[index].tidy(self.position, &mut self.to_game);
             !self.bodies[index].is_empty()
         });
-        let sounding = (self.sounding_count() + self.spoken_for()) as u64;
+        let sounding = self.sounding_count() as u64;
         let octaves = u64::from(self.governor.octaves_gone()) * self.sounding_count() as u64;
         Counters::add(&self.counters.shed, self.groups_shed as u64 + octaves);
         self.counters.contacts.store(sounding, Relaxed);

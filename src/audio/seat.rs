@@ -7,12 +7,14 @@ use crate::link::message::Dead;
 use crate::link::ring::Sender;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::surface::{DEFAULT_ROUGHNESS, Roughness};
-use crate::prepared::overlay::{NoiseWay, Room, TileCells};
+use crate::prepared::overlay::{NoiseBetween, NoiseWay, Room, TileCells};
 use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 
 use asperity_dsp::fractal_noise::{FractalNoise, Missed, NoisePath, OCTAVES};
-use asperity_texture::height_field::{HeightField, LocalPower, PathBlock, Reaction, SurfaceBlock, Touch};
+use asperity_texture::height_field::{
+    Finish, HeightField, PathBlock, PowerKind, Reaction, SurfaceBlock, Touch, hollow_m,
+};
 use asperity_texture::height_map::FRICTION;
 use std::any::Any;
 
@@ -40,32 +42,11 @@ pub(crate) struct Noise<'a> {
     pub(crate) footprint_m: &'a [f64],
     /// The least and the greatest coordinates of the path, those midway included.
     pub(crate) bounds_m: [[f64; 2]; 2],
-    /// Radius of the sphere that rides there, m; 0 is a point.
-    pub(crate) tip_radius_m: f64,
     /// Where the contact was last.
     pub(crate) cells: &'a mut TileCells,
     pub(crate) room: &'a mut Room,
     /// Its short waves by themselves, where they are wanted.
     pub(crate) between: Option<NoiseBetween<'a>>,
-}
-
-/// The short waves of the micro-noise, at samples and between each and the sample before.
-pub(crate) struct NoiseBetween<'a> {
-    /// The coarsest octave that counts among them.
-    pub(crate) octave: usize,
-    /// Between samples.
-    pub(crate) looks: [Option<Look<'a>>; 3],
-    /// At the samples, m.
-    pub(crate) at_m: &'a mut [f64],
-    /// Whether the surface told.
-    pub(crate) seen: &'a mut bool,
-}
-
-/// Some share of the way from the sample before each.
-pub(crate) struct Look<'a> {
-    pub(crate) position_m: &'a [[f64; 2]],
-    /// What is there, m.
-    pub(crate) height_m: &'a mut [f64],
 }
 
 /// What setting a surface means for the contacts on it.
@@ -204,14 +185,13 @@ impl Seat {
 
     /// Whether what is here gives way nowhere, or is known to.
     pub(crate) fn is_hard(&self) -> bool {
-        let hard =
-            |slot: &SurfaceSlot| slot.surface.compliance_m_n == 0.0 && slot.surface.source.is_hard_and_told();
+        let hard = |slot: &SurfaceSlot| slot.surface.compliance_m_n == 0.0 && slot.properties.is_rigid;
         self.current.as_deref().is_none_or(hard) && self.previous.as_deref().is_none_or(hard)
     }
 
     /// Changes parameters of the source; tells whether it took the change.
     pub(crate) fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
-        self.source().is_some_and(|source| source.change(change, sample))
+        self.source().is_some_and(|source| source.set(change, sample))
     }
 
     /// What heights come from.
@@ -229,26 +209,24 @@ impl Seat {
         slot.surface.carries_n(position_m, depth_m).unwrap_or(0.0)
     }
 
-    /// The next path lies at these places of the surface's body.
-    pub(crate) fn lie_at(&mut self, at_m: &[[f64; 3]]) {
-        for slot in [&mut self.current, &mut self.previous].into_iter().flatten() {
-            slot.surface.source.lie_at(at_m);
-        }
-    }
-
-    /// Tells the surface that a contact begins.
-    pub(crate) fn land(&mut self, touch: &Touch) {
-        if let Some(slot) = &mut self.current {
-            slot.surface.source.land(touch);
-        }
+    /// Results of the source, at the end of a render.
+    pub(crate) fn finish(&mut self, sample: u64) -> Vec<Box<dyn Any>> {
+        let finish = Finish::default();
+        self.change(&finish, sample);
+        finish.0.into_inner()
     }
 
     /// How much higher the ground lies about a contact than under it, m, for a tip that rides on it.
-    pub(crate) fn hollow_m(&mut self, touch: &Touch, reach_m: f64, tip_radius_m: f64) -> f64 {
-        self.source().map_or(0.0, |source| {
-            source.ride(tip_radius_m);
-            source.hollow_m(touch, reach_m)
-        })
+    pub(crate) fn hollow_m(
+        &mut self,
+        touch: &Touch,
+        (reach_m, tip_radius_m): (f64, f64),
+        room: &mut SurfaceBlock,
+    ) -> f64 {
+        match self.current.as_deref_mut().filter(|slot| slot.properties.is_stateless) {
+            Some(slot) => hollow_m(&mut *slot.surface.source, touch, (reach_m, tip_radius_m), room),
+            None => 0.0,
+        }
     }
 
     /// What cubics through samples a footprint apart miss of the micro-relief, and what has to be looked at so that no more than `left_m` is
@@ -270,17 +248,27 @@ impl Seat {
     }
 
     /// Mean square of the relief that the source really has about a place, m²; of one that does not tell, a ninth of the square of its reach.
-    pub(crate) fn power_m2(&self, position_m: [f64; 2]) -> f64 {
-        let Some(slot) = &self.current else { return 0.0 };
-        let mut power_m2 = [0.0];
-        slot.surface.source.add_local_power(&[position_m], &mut power_m2);
-        let reach_m = slot.surface.source.reach_m() / 3.0;
-        if power_m2[0].is_finite() { power_m2[0] } else { reach_m * reach_m }
+    pub(crate) fn power_m2(&mut self, touch: &Touch, room: &mut SurfaceBlock) -> f64 {
+        let Some(slot) = &mut self.current else { return 0.0 };
+        let path = PathBlock {
+            position_m: &[touch.position_m],
+            velocity_m_s: &[touch.velocity_m_s],
+            footprint_m: &[0.0],
+            first_sample: touch.sample,
+            contact: touch.contact,
+            heights_only: true,
+            full_power_m2: Some(f64::INFINITY),
+            ..PathBlock::default()
+        };
+        room.power.kind = PowerKind::Full;
+        slot.surface.source.sample(&path, room);
+        let (power_m2, reach_m) = (room.power.at(0), slot.properties.reach_m / 3.0);
+        if power_m2.is_finite() { power_m2 } else { reach_m * reach_m }
     }
 
-    /// Tells the surface how it is touched.
-    pub(crate) fn react(&mut self, touch: &Touch) -> Reaction {
-        self.current.as_mut().map_or_else(Reaction::default, |slot| slot.surface.source.react(touch))
+    /// Touches the surface.
+    pub(crate) fn touch(&mut self, touch: &Touch) -> Reaction {
+        self.source().map_or_else(Reaction::default, |source| source.touch(touch))
     }
 }
 
@@ -312,19 +300,23 @@ impl SurfaceSlot {
     ) {
         let n = path.len();
         let surface = &mut self.surface;
-        // What a source does not know stays as the surface says.
-        let hard = surface.source.is_hard_and_told();
+        // An entry that a source does not fill stays as the surface says.
+        let hard = self.properties.is_rigid;
         if !hard {
             out.friction[..n].fill(FRICTION);
             out.roughness[..n].fill(DEFAULT_ROUGHNESS);
             out.compliance_m_n[..n].fill(0.0);
             out.answer.clear();
+            out.power.kind = PowerKind::Full;
         }
-        surface.source.ride(noise.tip_radius_m);
-        if surface.compliance_m_n > 0.0 && noise.tip_radius_m > 0.0 {
-            surface.sample_under(path, noise.tip_radius_m, out);
-        } else if hard && !all && surface.compliance_m_n == 0.0 {
-            surface.source.sample_heights(path, noise.bounds_m, out);
+        let fills = surface.micro_relief_m > 0.0 && self.overlay.minds_relief();
+        let path = &PathBlock {
+            heights_only: hard && !all && surface.compliance_m_n == 0.0,
+            full_power_m2: fills.then(|| self.overlay.fills_m2()),
+            ..*path
+        };
+        if surface.compliance_m_n > 0.0 && path.tip_radius_m > 0.0 {
+            surface.sample_under(path, out);
         } else {
             surface.source.sample(path, out);
         }
@@ -332,7 +324,8 @@ impl SurfaceSlot {
             Roughness::FromSource => {}
             Roughness::Constant(r) => out.roughness[..n].fill(*r),
             Roughness::Map(map) => {
-                map.sample(path, rough);
+                let drawn = PathBlock { tip_radius_m: 0.0, heights_only: true, full_power_m2: None, ..*path };
+                map.sample(&drawn, rough);
                 for (r, mapped) in out.roughness[..n].iter_mut().zip(&rough.height_m) {
                     *r = mapped.clamp(0.0, 1.0);
                 }
@@ -347,22 +340,17 @@ impl SurfaceSlot {
         if surface.micro_relief_m > 0.0 {
             let bounds_m = noise.bounds_m;
             // Mostly it is the same all along the path, and known without a look at each place.
-            let share = if self.overlay.minds_relief() {
-                let local_power_m2 = &mut noise.room.local_power_m2[..n];
-                let fills_m2 = self.overlay.fills_m2();
-                match surface.source.local_power(path.position_m, bounds_m, fills_m2, local_power_m2) {
-                    LocalPower::Nothing => Some(1.0),
-                    LocalPower::Full => Some(0.0),
-                    LocalPower::Told => None,
-                }
-            } else {
-                Some(1.0)
+            let share = match out.power.kind {
+                _ if !fills => Some(1.0),
+                PowerKind::None => Some(1.0),
+                PowerKind::Full => Some(0.0),
+                PowerKind::EachSample => None,
             };
-            self.overlay.tune(noise.tip_radius_m);
+            self.overlay.tune(path.tip_radius_m);
             let along = NoisePath { position_m: path.position_m, footprint_m: noise.footprint_m };
             self.overlay.add(
                 noise.field,
-                &NoiseWay { path: along, bounds_m, share },
+                &NoiseWay { path: along, bounds_m, share, power_m2: &out.power.each_m2[..n] },
                 &out.roughness[..n],
                 &mut out.height_m[..n],
                 (&mut *noise.cells, &mut *noise.room),

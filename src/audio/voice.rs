@@ -25,7 +25,6 @@ mod rolling;
 mod rub_block;
 mod scratch;
 mod shared;
-mod side_by_side;
 mod skin;
 mod tip;
 mod watching;
@@ -35,7 +34,6 @@ pub(crate) use events::EMPTY_FORCE_N;
 pub(crate) use role::Role;
 pub(crate) use scratch::Scratch;
 pub(crate) use shared::{At, Shared, Stretch};
-pub(crate) use side_by_side::{Company, Member};
 
 use crate::audio::seat::Seat;
 use crate::link::tap::Tap;
@@ -44,7 +42,7 @@ use crate::model::excitation::Exciter;
 use crate::prepared::overlay::TileCells;
 use ac_coupling::{AcCoupling, ForceCoupling};
 use asperity_dsp::actuator::{ContactOutputState, Quantity};
-use asperity_dsp::micro_contact::ContactSample as PadSample;
+use asperity_dsp::micro_contact::{ContactSample as PadSample, Probe};
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, Reaction};
 use between::Between;
@@ -56,8 +54,6 @@ use pad::Pad;
 use path::Path;
 use profile::Along;
 use rolling::Rolling;
-use scratch::Lane;
-use shared::Pass;
 use skin::ContactSkin;
 use tip::Tip;
 use watching::Done;
@@ -115,8 +111,8 @@ impl Voice {
         Self::idle(slot, shared, shared.sample_rate_hz)
     }
 
-    /// What stands in the place of a voice that another thread renders: it is never rendered itself, and small. Allocates.
-    pub(crate) fn stand_in(shared: &Shared) -> Self {
+    /// A small voice in the place of one that another thread renders; never rendered itself. Allocates.
+    pub(crate) fn placeholder(shared: &Shared) -> Self {
         Self::idle(0, shared, 0.0)
     }
 
@@ -177,95 +173,63 @@ impl Voice {
         }
     }
 
-    /// Renders a stretch into `scratch.out`.
+    /// Renders a stretch into `scratch.out`; returns what presses on the touched body, at the steps of the absolute grid.
     pub(crate) fn render<T: Tap>(
         &mut self,
         stretch: Stretch<'_>,
         seat: &mut Seat,
         scratch: &mut Scratch,
         tap: &mut T,
-    ) {
-        let pass = self.approach(stretch, (tap.is_watching(), false), seat, scratch, 0);
-        if pass.slides {
-            scratch.lanes[0].press(&mut self.pad, pass.n);
-            self.settle(stretch.shared, pass, &mut scratch.lanes[0]);
+    ) -> Option<Probe> {
+        let pressing = self.pressing_at(stretch, seat);
+        let now = self.until_silent(stretch);
+        scratch.out.begin(now.n..stretch.n);
+        self.touch(now, seat);
+        if self.asleep {
+            self.rest(now.n, scratch);
+        } else if seat.current().is_some() {
+            self.take_slow_step(now, seat, scratch);
+            self.follow_path(now, seat, scratch);
+            self.sample_profile(now, tap.is_watching(), seat, scratch);
+            self.run_pad(now, scratch);
+            self.couple(now, seat, scratch);
+            self.excite(now, seat, scratch);
         }
-        self.finish(stretch, pass, seat, scratch, 0, tap);
+        self.phase = self.fades.run(self.phase, self.role.gain, now.shared, now.n, &mut scratch.out);
+        self.show(now, seat, scratch, tap);
+        self.finish(now, scratch);
+        pressing
     }
 
-    /// Whether it moves through a whole stretch on its surface, whatever that does: its path asks nobody.
-    fn sets_out(&self) -> bool {
-        self.phase == Phase::Sounding && !self.asleep && !self.path.is_in_body()
+    /// The part of a stretch before a fade ends: nothing is computed, counted or shown after it, wherever the stretch ends.
+    fn until_silent<'a>(&self, stretch: Stretch<'a>) -> Stretch<'a> {
+        match self.phase {
+            Phase::Fading { left } => Stretch { n: stretch.n.min(left as usize), ..stretch },
+            Phase::Free | Phase::Sounding => stretch,
+        }
     }
 
-    /// The part of a stretch that asks the surface: from reports to the profile under `lane`, whose points are there if it has `set_out`.
-    fn approach(
-        &mut self,
-        stretch: Stretch<'_>,
-        (slopes, set_out): (bool, bool),
-        seat: &mut Seat,
-        scratch: &mut Scratch,
-        lane: usize,
-    ) -> Pass {
-        let (position, wanted) = (stretch.position, stretch.n);
-        // Nothing is computed, counted or shown after a fade, wherever the stretch ends.
-        let n = match self.phase {
-            Phase::Fading { left } => wanted.min(left as usize),
-            Phase::Free | Phase::Sounding => wanted,
-        };
-        // First the touch, then the heights: a surface that gives way answers within the same grid
-        // cell wherever it is cut into stretches. Who sleeps still touches, and wakes when the ground stirs.
+    /// Touches the surface, at the steps of the absolute grid and before its heights are sampled: a surface that gives way answers within the
+    /// same cell wherever it is cut into stretches. A sleeping contact still touches, and wakes when the ground stirs.
+    fn touch(&mut self, Stretch { position, .. }: Stretch<'_>, seat: &mut Seat) {
         if position.is_multiple_of(MAX_BLOCK as u64) {
-            self.reaction = seat.react(&self.touch_at(position));
+            self.reaction = seat.touch(&self.touch_at(position));
             self.asleep &= !self.reaction.stirs;
         }
-        let slides =
-            !self.asleep && self.slide_to(Stretch { n, ..stretch }, (slopes, set_out), seat, scratch, lane);
-        Pass { n, slides, coupled: false }
     }
 
-    /// Where the contact goes, and what lies there; false where there is no surface.
-    fn slide_to(
-        &mut self,
-        stretch: Stretch<'_>,
-        (slopes, set_out): (bool, bool),
-        seat: &mut Seat,
-        scratch: &mut Scratch,
-        lane: usize,
-    ) -> bool {
-        let Stretch { shared, output, position, n } = stretch;
-        if position.is_multiple_of(shared.slow_step) {
-            self.take_step(stretch, seat);
-        }
-        let Some(slot) = seat.current() else { return false };
-        let Scratch { lanes, profile, .. } = scratch;
-        let own = &mut lanes[lane];
-        let points = &mut own.points[..n];
-        let dragged = output.quantity() == Quantity::Tangential;
-        if !set_out {
-            self.path.run(slot, points, &mut profile.at_m);
-        }
-        let between = self.between.on_the_way(self.path.last.position_m);
-        let along = Along { between, ..self.along(shared, position, slopes || dragged) };
-        profile.run(seat, along, points, &mut self.cells);
-        self.rolling.run(position, shared.slow_step, &mut profile.surface, n, slopes || dragged);
-        own.height_m[..n].copy_from_slice(&profile.surface.height_m[..n]);
-        own.force_n[..n].copy_from_slice(&profile.force_n[..n]);
-        own.looks = self.between.bend(shared, &profile.seen, n, &mut own.bends);
-        if let Some(roughness) = profile.surface.roughness[..n].last() {
-            self.between.remember(*roughness);
-        }
-        true
-    }
-
-    /// What is slow, at the steps of the absolute grid. By itself, because most short stretches have none.
+    /// Updates what is slow, at the steps of the absolute grid. By itself, because most short stretches have none.
     #[inline(never)]
-    fn take_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat) {
+    fn take_slow_step(&mut self, stretch: Stretch<'_>, seat: &mut Seat, scratch: &mut Scratch) {
         let Stretch { shared, output, position, .. } = stretch;
+        if !position.is_multiple_of(shared.slow_step) {
+            return;
+        }
         let PathPoint { velocity_m_s, normal_force_n, .. } = self.path.last;
-        self.exciters.press(self.loudness(shared, position, seat), velocity_m_s);
+        let room = &mut scratch.profile.rough;
+        self.exciters.press(self.loudness(shared, position, seat, room), velocity_m_s);
         if self.rolling.rolls() {
-            self.roll(shared, seat, Rolling::turn);
+            self.roll(shared, seat, room, Rolling::turn);
         }
         let Some(slot) = seat.current() else { return };
         let probe = shared.probe(self.role.probe);
@@ -278,107 +242,89 @@ impl Voice {
         self.look_between(shared, seat);
     }
 
-    /// The rows of the pad's model as they are felt.
-    fn settle(&mut self, shared: &Shared, pass: Pass, lane: &mut Lane) {
-        let rows = &mut lane.rows[..pass.n];
-        lane.resets = self.pad.settle(shared.probe(self.role.probe).waits, rows);
-        lane.blows = self.blows.count(rows);
+    /// Path: reports become a point every sample.
+    fn follow_path(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
+        let Some(slot) = seat.current() else { return };
+        let Scratch { points, profile, .. } = scratch;
+        self.path.run(slot, &mut points[..stretch.n], &mut profile.at_m);
     }
 
-    /// The rest of a stretch, into `scratch.out`.
-    fn finish<T: Tap>(
+    /// Profile: the height under each point.
+    fn sample_profile(
         &mut self,
         stretch: Stretch<'_>,
-        pass: Pass,
-        seat: &Seat,
+        is_watched: bool,
+        seat: &mut Seat,
         scratch: &mut Scratch,
-        lane: usize,
-        tap: &mut T,
-    ) {
-        let (position, wanted) = (stretch.position, stretch.n);
-        let Pass { n, slides, coupled } = pass;
-        let stretch = Stretch { n, ..stretch };
-        scratch.out.silence(n..wanted);
-        scratch.out.rub.rubs = false;
-        if slides {
-            self.let_go(stretch, coupled, seat, scratch, lane);
-        } else if self.asleep {
-            self.rest(n, scratch, lane);
-        }
-        self.phase = self.fades.run(self.phase, self.role.gain, stretch.shared, n, &mut scratch.out);
-        // A contact that has jumped is shown where it is, and not where it fades.
-        if tap.is_watching() && !self.left_behind {
-            self.show(stretch, seat, scratch, lane, tap);
-        }
-        if self.phase == Phase::Free {
-            return;
-        }
-        self.path.last = scratch.lanes[lane].points[n - 1];
-        if (position + n as u64).is_multiple_of(MAX_BLOCK as u64) {
-            self.fall_asleep_when_still(stretch, scratch, lane);
-        }
-    }
-
-    /// From the pad's rows to what is felt and what strikes the body.
-    fn let_go(
-        &mut self,
-        stretch: Stretch<'_>,
-        coupled: bool,
-        seat: &Seat,
-        scratch: &mut Scratch,
-        lane: usize,
     ) {
         let Stretch { shared, output, position, n } = stretch;
-        let Scratch { lanes, coupled: among, profile, force, out, .. } = scratch;
-        let Lane { points, rows, resets, blows, .. } = &lanes[lane];
-        let (points, rows) = (&points[..n], &rows[..n]);
-        let probe = shared.probe(self.role.probe);
-        (out.resets, out.blows) = (*resets, *blows);
+        let Scratch { points, profile, .. } = scratch;
+        let slopes = is_watched || output.quantity() == Quantity::Tangential;
+        let between = self.between.on_the_way(self.path.last.position_m);
+        let along = Along { between, ..self.along(shared, position, slopes) };
+        profile.run(seat, along, &points[..n], &mut self.cells);
+        self.rolling.run(position, shared.slow_step, &mut profile.surface, n, slopes);
+    }
 
+    /// Pad: heights and forces become rows.
+    fn run_pad(&mut self, Stretch { shared, n, .. }: Stretch<'_>, scratch: &mut Scratch) {
+        let Scratch { profile, bends, rows, out, .. } = scratch;
+        let ground = self.between.bend(shared, &profile.seen, n, bends).ground(n, bends);
+        if let Some(roughness) = profile.surface.roughness[..n].last() {
+            self.between.remember(*roughness);
+        }
+        let rows = &mut rows[..n];
+        self.pad.run(&profile.surface.height_m[..n], &profile.force_n[..n], ground, rows);
+        out.resets = self.pad.settle(shared.probe(self.role.probe).waits, rows);
+        out.blows = self.blows.count(rows);
+    }
+
+    /// Coupling: the pad's motion becomes what is felt, the contact force what is heard.
+    fn couple(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
+        let Stretch { shared, output, position, n } = stretch;
         let Some(slot) = seat.current() else { return };
+        let Scratch { points, rows, profile, force, out, .. } = scratch;
         let sounds = slot.surface.excitation.has(Exciter::Force);
         let step_s = if sounds { 1.0 / shared.sample_rate_hz } else { 0.0 };
         let heard = ForceCoupling { high_pass: &slot.stroking.force_high_pass, step_s };
         let dragged = output.quantity() == Quantity::Tangential;
-        let felt = if dragged {
-            let (rows, from_m) = self.drag.run(points, &profile.surface, rows);
+        let mut felt = &rows[..n];
+        if dragged {
+            let (rows, from_m) = self.drag.run(&points[..n], &profile.surface, felt);
             // A skin that has been dragged for long begins as if it had been there for ever.
             if let Some(from_m) = from_m {
                 self.ac.feel = ContactOutputState::begin(output, from_m, 0.0);
             }
-            rows
-        } else {
-            rows
-        };
-        if coupled {
-            self.ac.leave(step_s, lane, among, &mut out.haptic[..n], force.samples(n));
-        } else {
-            self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
+            felt = rows;
         }
+        self.ac.run(output, heard, felt, &mut out.haptic[..n], force.samples(n));
         if !dragged {
             self.skin.pass(position, shared.slow_step, &mut out.haptic[..n]);
         }
-        let (reaction, sample_rate_hz) = (self.reaction, shared.sample_rate_hz);
-        let slow_step = shared.slow_step;
+    }
+
+    /// Exciters: rows, coupled force and the ground's grains become impulses on the body, friction what rubs it.
+    fn excite(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch) {
+        let Stretch { shared, position, n, .. } = stretch;
+        let Some(slot) = seat.current() else { return };
+        let Scratch { points, rows, force, out, .. } = scratch;
+        let (points, rows) = (&points[..n], &rows[..n]);
+        let (slow_step, sample_rate_hz) = (shared.slow_step, shared.sample_rate_hz);
+        let (probe, reaction) = (shared.probe(self.role.probe), self.reaction);
         let by = Excited { slot, probe, reaction, sample_rate_hz, slow_step, position };
         self.exciters.run(&by, rows, force, out);
-        let sent = [&mut out.impulse_n_s[..n], &mut out.force_n_s[..n]];
-        self.rolling.soften(position, slow_step, sent);
+        self.rolling.soften(position, slow_step, &mut out.impulse_n_s[..n]);
         self.exciters.rub(&by, points, rows, out);
         self.rolling.slow_down(position, slow_step, &mut out.rub.sweep_m_s[..n]);
     }
 
-    fn show<T: Tap>(
-        &mut self,
-        stretch: Stretch<'_>,
-        seat: &Seat,
-        scratch: &mut Scratch,
-        lane: usize,
-        tap: &mut T,
-    ) {
+    /// Shows the stretch to a tap that watches. A contact that has jumped is shown where it is, and not where it fades.
+    fn show<T: Tap>(&mut self, stretch: Stretch<'_>, seat: &Seat, scratch: &mut Scratch, tap: &mut T) {
+        if !tap.is_watching() || self.left_behind {
+            return;
+        }
         let Some(slot) = seat.current() else { return };
-        let Scratch { lanes, profile, shown, out, .. } = scratch;
-        let Lane { points, rows, .. } = &lanes[lane];
+        let Scratch { points, rows, profile, shown, out, .. } = scratch;
         let done = Done {
             contact: self.contact,
             role: &self.role,
@@ -392,5 +338,16 @@ impl Voice {
             impulse_n_s: &out.impulse_n_s,
         };
         shown.show(stretch, &done, &mut self.tip, &mut self.unshown_n_s, tap);
+    }
+
+    /// Where the stretch leaves the contact.
+    fn finish(&mut self, stretch: Stretch<'_>, scratch: &Scratch) {
+        if self.phase == Phase::Free {
+            return;
+        }
+        self.path.last = scratch.points[stretch.n - 1];
+        if (stretch.position + stretch.n as u64).is_multiple_of(MAX_BLOCK as u64) {
+            self.fall_asleep_when_still(stretch, scratch);
+        }
     }
 }

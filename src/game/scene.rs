@@ -37,7 +37,6 @@ use asperity_dsp::simd::Level;
 use asperity_dsp::trajectory::TrajectoryDesign;
 use asperity_texture::height_field::Setup;
 use asperity_texture::moving_picture::MovingPicture;
-use asperity_texture::sand::SandSource;
 use asperity_texture::tip_law::TipLaw;
 use std::any::Any;
 use std::collections::HashMap;
@@ -226,11 +225,12 @@ impl Scene {
         surface: Surface,
     ) -> Result<(Message, KnownSurface), AddError> {
         let mut surface = surface.checked()?.tiled();
-        let setup = Setup { sample_rate_hz: self.config.inner_rate_hz(), voices: self.config.voices() };
-        surface.source.prepare(&setup)?;
-        for radius_m in &self.tips_m {
-            surface.source.prepare_tip(*radius_m);
-        }
+        surface.source.prepare(&Setup {
+            sample_rate_hz: self.config.inner_rate_hz(),
+            voices: self.config.voices(),
+            tip_radii_m: &self.tips_m,
+        })?;
+        let properties = surface.properties();
         let silent = KnownBody {
             material: Body::DEFAULT_MATERIAL,
             lowest_mode_hz: f64::INFINITY,
@@ -251,19 +251,22 @@ impl Scene {
         };
         let (trajectory, place_trajectory) = (trajectory(period_m)?, trajectory([f64::INFINITY; 2])?);
         let relief = (surface.micro_relief_m, surface.outer_scale_m);
-        let overlay = Overlay::new(period_m, surface.source.band().shortest_m, relief);
+        let overlay = Overlay::new(period_m, properties.band.shortest_m, relief);
         let rings = body.lowest_mode_hz.is_finite();
-        let is_soft = surface.carries_n([0.0; 2], 0.0).is_some();
+        let is_soft = surface.compliance_m_n > 0.0 || properties.tip_law.is_some();
         let place = Place { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };
         let on = surface.body;
-        let mut picture = None;
-        let mut tip_law = (surface.compliance_m_n > 0.0).then(|| surface.spring());
-        surface.source.visit(&mut |part| {
-            picture = picture.take().or(part.downcast_ref().cloned());
-            tip_law = tip_law.or(part.downcast_ref::<SandSource>().map(SandSource::tip_law));
+        let picture = properties.picture.clone();
+        let tip_law = (surface.compliance_m_n > 0.0).then(|| surface.spring()).or(properties.tip_law);
+        let surface = Box::new(SurfaceSlot {
+            surface,
+            properties,
+            trajectory,
+            place_trajectory,
+            stroking,
+            overlay,
+            period_m,
         });
-        let surface =
-            Box::new(SurfaceSlot { surface, trajectory, place_trajectory, stroking, overlay, period_m });
         Ok((
             Message::SetSurface { id, surface },
             KnownSurface { rings, picture, place, tip_law, body: on, rubs },
@@ -271,7 +274,7 @@ impl Scene {
     }
 
     /// Changes parameters of a surface's source while it is touched, without a click. What a source takes is said where it is
-    /// documented: solid noise its parameters, sand its law, a scaled source a [`ScaleTo`](asperity_texture::combine::ScaleTo), one of your own
+    /// documented: solid noise its parameters, a scaled source a [`ScaleTo`](asperity_texture::combine::ScaleTo), one of your own
     /// whatever type it looks for. A change that no source of the surface takes (another type, or impossible numbers) is counted as
     /// quarantined. It holds from the stamp of the last event on, after everything that is queued already: a game that reports ahead gets it
     /// then, not now. Recordings hold no such change.

@@ -113,6 +113,7 @@ impl Ground<'_> {
                         first_sample: 0,
                         contact: 0,
                         slopes: true,
+                        ..PathBlock::default()
                     },
                     &mut out,
                 );

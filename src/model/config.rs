@@ -53,12 +53,6 @@ pub struct Config {
     pub audio: Vec<AudioBus>,
     /// Most contacts that sound at once, 1–4096, default 64; more steal the least important: force times speed times importance.
     pub max_contacts: usize,
-    /// Most contacts of one surface that are computed one by one where nobody feels or holds them: a crowd's feet, debris. Others on the same surface are
-    /// heard through those: one noise of the same spectrum a surface stands in for them, within 1.5 dB a third octave at 200
-    /// contacts, and costs as much as one contact. 2–4096; none, the default, computes all. All of them count in
-    /// [`Self::max_contacts`]. Contacts that an actuator plays, that hold something, that rub with stick–slip or touch ground that remembers
-    /// (sand) are always computed; on more than eight surfaces at once the rest are too.
-    pub exact_contacts: Option<usize>,
     /// Most probes, the engine's own not counted; 1–4096, default 64.
     pub max_probes: usize,
     /// Most ports that can be open at once; 1–4096, default 16.
@@ -104,7 +98,6 @@ impl Default for Config {
             actuators: vec![ActuatorSettings::default()],
             audio: vec![AudioBus::default()],
             max_contacts: 64,
-            exact_contacts: None,
             max_probes: 64,
             max_ports: 16,
             max_surfaces: 256,
@@ -192,11 +185,6 @@ impl Config {
         count("actuators", self.actuators.len(), 1024, "1–1024 channels")?;
         count("audio", self.audio.len(), MAX_BUSES, "1–64 buses")?;
         count("max_contacts", self.max_contacts, 4096, "1–4096 contacts")?;
-        if let Some(exact) = self.exact_contacts {
-            DesignError::check("exact_contacts", exact as f64, "2–4096 contacts", |n| {
-                (2.0..=4096.0).contains(&n)
-            })?;
-        }
         count("max_probes", self.max_probes, 4096, "1–4096 probes")?;
         count("max_ports", self.max_ports, 4096, "1–4096 ports")?;
         count("max_surfaces", self.max_surfaces, 65_536, "1–65536 surfaces")?;

@@ -27,9 +27,9 @@ impl InnerRate {
         ((LOWEST_INNER_HZ / sample_rate_hz - 1e-9).ceil() as usize).max(1)
     }
 
-    /// `every` inner samples for each that leaves, which lag by `latency_samples`.
+    /// `every` inner samples for each that leaves, which lag by `latency_samples`: a whole number of outer samples is left of that.
     pub(crate) fn new(every: usize, latency_samples: usize) -> Self {
-        Self { every, at: latency_samples.min(every - 1) }
+        Self { every, at: latency_samples % every }
     }
 
     /// Of a lag in inner samples, the outer samples that are left of it.

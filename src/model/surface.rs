@@ -8,7 +8,9 @@ use crate::model::material::Material;
 use asperity_dsp::limits;
 use asperity_dsp::stick_slip::Friction;
 use asperity_texture::footprint::{self, footprint_radius_m};
-use asperity_texture::height_field::{Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
+use asperity_texture::height_field::{
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Properties, SurfaceBlock, Touch, TouchKind,
+};
 use asperity_texture::height_map::{Extent, FRICTION, HeightMap, MapError};
 #[cfg(feature = "image")]
 use asperity_texture::image_io;
@@ -259,10 +261,10 @@ impl Surface {
     }
 
     /// Its source as a ball feels it that stands in it, as deep as its compliance says.
-    pub(crate) fn sample_under(&mut self, path: &PathBlock<'_>, tip_radius_m: f64, out: &mut SurfaceBlock) {
+    pub(crate) fn sample_under(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let mut radius_m = [0.0; MAX_BLOCK];
         for (i, radius_m) in radius_m.iter_mut().enumerate().take(path.len()) {
-            *radius_m = footprint_radius_m(tip_radius_m, self.compliance_m_n * path.pressed_n(i));
+            *radius_m = footprint_radius_m(path.tip_radius_m, self.compliance_m_n * path.pressed_n(i));
         }
         footprint::sample_under(&mut *self.source, path, &radius_m, out);
     }
@@ -273,12 +275,13 @@ impl Surface {
         TipLaw::Spring { compliance_m_n: self.compliance_m_n, friction }
     }
 
-    /// The force at which it carries a tip, N; none where it is hard. See [`HeightField::carries_n`].
+    /// The force at which it carries a tip, N; none where it is hard. See [`TouchKind::Stands`].
     pub(crate) fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
         if self.compliance_m_n > 0.0 {
             return Some(depth_m.max(0.0) / self.compliance_m_n);
         }
-        self.source.carries_n(position_m, depth_m)
+        let kind = TouchKind::Stands { depth_m };
+        self.source.touch(&Touch { kind, position_m, ..Touch::default() }).carries_n
     }
 
     /// What sliding sends to the body.
@@ -328,7 +331,7 @@ impl Surface {
     pub(crate) fn checked(mut self) -> Result<Self, BadValue> {
         within("micro_relief_m", self.micro_relief_m, limits::MICRO_RELIEF_M)?;
         within("outer_scale_m", self.outer_scale_m, limits::OUTER_SCALE_M)?;
-        let reach_m = self.source.reach_m();
+        let reach_m = self.properties().reach_m;
         within("relief_m", reach_m, limits::REACH_M)?;
         within("friction", self.friction.unwrap_or(0.0), limits::FRICTION)?;
         within("compliance_m_n", self.compliance_m_n, limits::COMPLIANCE_M_N)?;
@@ -345,10 +348,15 @@ impl Surface {
         Ok(self)
     }
 
+    /// Properties of its source on a tile of its size.
+    pub(crate) fn properties(&self) -> Properties {
+        self.source.properties([self.width_m, self.height_m])
+    }
+
     /// What the path stage may unwrap by, m.
     pub(crate) fn wrap_period_m(&self) -> [f64; 2] {
         let tile_m = [self.width_m, self.height_m];
-        match self.source.beyond(tile_m) {
+        match self.properties().beyond {
             Beyond::Same | Beyond::Fresh if self.wraps => tile_m,
             Beyond::Mirrored if self.wraps => tile_m.map(|side_m| 2.0 * side_m),
             _ => [f64::INFINITY; 2],
@@ -358,7 +366,7 @@ impl Surface {
     /// The same surface with a source that repeats, if its coordinates wrap.
     pub(crate) fn tiled(mut self) -> Self {
         let tile_m = [self.width_m, self.height_m];
-        if self.wraps && self.source.beyond(tile_m) == Beyond::Fresh {
+        if self.wraps && self.properties().beyond == Beyond::Fresh {
             self.source = Box::new(Tiled::new(self.source, tile_m));
         }
         self

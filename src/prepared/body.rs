@@ -8,15 +8,14 @@ use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, MODE_LEVELS, Owner, Sheddin
 use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
 use crate::prepared::body_rub::{BodyRub, RubAsked};
 use crate::prepared::bursts::Bursts;
-use crate::prepared::early::{EarlyForce, EarlySamples, Sent, first_samples};
 use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
-use asperity_dsp::hertz::HertzPulse;
+use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY};
 use asperity_dsp::masking::Ranked;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
-    self, FirstSamples, ForceTaps, GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank,
+    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, LaneGains, MissingSamples, ModalBank,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -51,8 +50,6 @@ pub(crate) struct BodySlot {
     strike_gain: f64,
     /// What the bank leaves out of the first samples of strikes, in the output's units, as far ahead as the places' buses.
     early: ImpulseRing<f32>,
-    /// The same of forces in the present stretch.
-    early_of_forces: EarlySamples,
 }
 
 /// One strike position: what reaches the body there.
@@ -61,9 +58,6 @@ struct Place {
     gains: Vec<LaneGains>,
     /// For each level of modes left out.
     first_samples: [FirstSamples; MODE_LEVELS],
-    /// The same for forces, and the forces.
-    force_taps: [ForceTaps; MODE_LEVELS],
-    early_force: EarlyForce,
     bus: ImpulseRing,
     /// What contacts send during the present stretch.
     contacts_n_s: [f64; MAX_BLOCK],
@@ -85,13 +79,11 @@ impl Place {
     fn new(gains: Vec<LaneGains>, first_samples: [FirstSamples; MODE_LEVELS], sample_rate_hz: f64) -> Self {
         let bus = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
         let (contacts_n_s, input) = ([0.0; MAX_BLOCK], [0.0; MAX_BLOCK]);
-        let force_taps = first_samples.map(|missing| missing.of_force());
-        let early_force = EarlyForce::REST;
-        Self { gains, first_samples, force_taps, early_force, bus, contacts_n_s, touched: false, input }
+        Self { gains, first_samples, bus, contacts_n_s, touched: false, input }
     }
 
     fn is_silent(&self, position: u64) -> bool {
-        !self.touched && self.early_force.is_silent() && self.bus.is_empty(position)
+        !self.touched && self.bus.is_empty(position)
     }
 
     /// Gathers the impulses of the next `n` samples, and tells whether there may be any.
@@ -149,7 +141,7 @@ impl BodySlot {
         let residual = model.residual.as_ref().map(|residual| residual.below(0.5 * output_rate_hz));
         let bursts = Bursts::new(residual.as_ref(), model.impulse_n_s, sample_rate_hz);
         let early = ImpulseRing::new(LONGEST_CONTACT_S, sample_rate_hz);
-        let field = BodyField::new(model, &unit, &groups, levels, sample_rate_hz)?;
+        let field = BodyField::new(model, &unit, &groups, sample_rate_hz)?;
         let units = match (&field, mass_kg) {
             (Some(field), _) => Some(field.unit_motion().into()),
             (None, Some(mass_kg)) => Some(vec![(ANTINODE / mass_kg).sqrt(); plain.len()].into()),
@@ -173,7 +165,6 @@ impl BodySlot {
             click: model.click,
             strike_gain: 1.0,
             early,
-            early_of_forces: EarlySamples::NONE,
         })
     }
 
@@ -210,24 +201,26 @@ impl BodySlot {
             }
         };
         let (sample, offset) = (stamp.sample(), stamp.fraction());
+        // With the modes, which sound the ring's latency later.
+        let sounds = sample + KERNEL_LATENCY as u64;
         self.early.write(end, |early| missing.deposit(pulse, early, sample, offset, sample_rate_hz));
         if let Some(click) = &self.click {
             let samples = click.samples_of(pulse, sample_rate_hz);
             if samples > 0 {
-                self.early.write(sample + samples, |early| {
-                    click.deposit(pulse, early, sample, offset, sample_rate_hz);
+                self.early.write(sounds + samples, |early| {
+                    click.deposit(pulse, early, sounds, offset, sample_rate_hz);
                 });
             }
         }
         // A burst is noise-like: the whole sample is near enough.
-        self.bursts.strike(stamp.sample(), pulse.impulse_n_s);
+        self.bursts.strike(sounds, pulse.impulse_n_s);
     }
 
     /// Adds what one contact sends during the present stretch to where it is.
-    pub(crate) fn touch_at(&mut self, owner: Owner, spot: &Spot, sent: Sent<'_>) {
+    pub(crate) fn touch_at(&mut self, owner: Owner, spot: &Spot, impulse_n_s: &[f64]) {
         let anywhere = self.field.as_mut().zip(spot.place.as_ref());
-        if !anywhere.is_some_and(|(field, place)| field.touch(owner, place, sent)) {
-            self.touch(spot.position, sent, 1.0);
+        if !anywhere.is_some_and(|(field, place)| field.touch(owner, place, impulse_n_s)) {
+            self.touch(spot.position, impulse_n_s, 1.0);
         }
     }
 
@@ -245,13 +238,12 @@ impl BodySlot {
     }
 
     /// Adds what one contact sends during the present stretch.
-    pub(crate) fn touch(&mut self, position: usize, sent: Sent<'_>, sign: f64) {
+    pub(crate) fn touch(&mut self, position: usize, impulse_n_s: &[f64], sign: f64) {
         let place = self.place(position);
         place.touched = true;
-        for (sum, x) in place.contacts_n_s.iter_mut().zip(sent.impulse_n_s) {
+        for (sum, x) in place.contacts_n_s.iter_mut().zip(impulse_n_s) {
             *sum += sign * x;
         }
-        place.early_force.add(sent.force_n_s, sign);
     }
 
     /// Forgets all that rings and all that is on its way.
@@ -261,7 +253,6 @@ impl BodySlot {
             place.bus.clear();
             place.contacts_n_s.fill(0.0);
             place.touched = false;
-            place.early_force.silence();
         }
         if let Some(field) = &mut self.field {
             field.silence();
@@ -308,7 +299,7 @@ impl BodySlot {
         }
     }
 
-    /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first samples of strikes and forces.
+    /// Adds to what was [rung](Self::ring): bursts, and what the bank leaves out of the first samples of strikes.
     pub(crate) fn add_strikes(&mut self, position: u64, out: &mut [f32]) {
         self.bursts.render(position, out);
         self.begin_strikes(position, out);
@@ -354,22 +345,8 @@ impl BodySlot {
             _ => Inputs::Placed(&inputs[..count]),
         };
         self.bank.render_leading(driven, terms.position, inputs, out);
-        self.begin_forces(terms, n);
         self.end_stretch(terms.position, n);
         groups - driven
-    }
-
-    /// Works out what the bank leaves out of the first samples of forces. It is added last, as that of strikes is: sums are in one order
-    /// however many threads ring.
-    fn begin_forces(&mut self, terms: Terms, n: usize) {
-        let early = &mut self.early_of_forces;
-        for place in self.places.iter_mut().filter(|place| !place.early_force.is_silent()) {
-            place.early_force.render(&place.force_taps[terms.mode_level], early.open(n));
-            place.early_force.end_stretch(n);
-        }
-        if let Some(field) = self.field.as_mut().filter(|field| field.forces_are_coming()) {
-            field.begin_forces(terms.position, terms.mode_level, early.open(n));
-        }
     }
 
     /// The stretch has been rendered, or nothing rings in it.
@@ -384,12 +361,36 @@ impl BodySlot {
         rub.end_stretch(position + n as u64);
     }
 
-    /// Adds what the bank leaves out of the first samples of strikes and forces.
+    /// Adds what the bank leaves out of the first samples of strikes.
     fn begin_strikes(&mut self, position: u64, out: &mut [f32]) {
-        self.early_of_forces.add_to(out);
         if !self.early.is_empty(position) {
             let mut next = self.early.drain(position);
             out.iter_mut().for_each(|y| *y += next());
         }
     }
+}
+
+/// What a bank of these modes leaves out of the first samples of a strike, for each place and each level of modes left out.
+fn first_samples(
+    modes: &[(Mode, [f32; MAX_POSITIONS])],
+    places: usize,
+    levels: &SheddingLevels,
+    sample_rate_hz: f64,
+) -> Result<Vec<[FirstSamples; MODE_LEVELS]>, DesignError> {
+    let mut sums = vec![MissingSamples::NOTHING; places];
+    let mut all = vec![[FirstSamples::NOTHING; MODE_LEVELS]; places];
+    for (group, modes) in modes.chunks(modal_bank::LANES).enumerate() {
+        for (mode, shares) in modes {
+            let missing = MissingSamples::of(mode, sample_rate_hz)?;
+            for (sum, share) in sums.iter_mut().zip(shares) {
+                sum.add(&missing, f64::from(*share));
+            }
+        }
+        for level in (0..MODE_LEVELS).filter(|level| levels[*level] == group + 1) {
+            for (place, sum) in all.iter_mut().zip(&sums) {
+                place[level] = sum.first_samples();
+            }
+        }
+    }
+    Ok(all)
 }

@@ -5,15 +5,14 @@
 use crate::model::modal_model::ModalModel;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner, SheddingLevels};
-use crate::prepared::early::Sent;
+use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, Owner};
 use crate::prepared::holding::{HeldModes, Holding};
 use crate::prepared::impulse_ring::ImpulseRing;
-use crate::prepared::slider::{self, NO_TAPS, PlaceTaps, Slider};
+use crate::prepared::slider::{self, Slider};
 use asperity_dsp::DesignError;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
-use asperity_dsp::modal_bank::{FirstSamples, ForceTaps, Input, LANES, LaneGains, MissingSamples, ModeGroup};
+use asperity_dsp::modal_bank::{FirstSamples, Input, LANES, LaneGains, MissingSamples, ModeGroup};
 use asperity_dsp::mode::Mode;
 use asperity_texture::height_field::MAX_BLOCK;
 
@@ -30,10 +29,6 @@ pub(crate) struct BodyField {
     motion: Box<[[f32; 3]]>,
     points: usize,
     missing: Box<[MissingSamples]>,
-    /// The same for forces.
-    force_taps: Box<[ForceTaps]>,
-    /// How many groups of the bank hear anything at each level of modes left out.
-    levels: SheddingLevels,
     holding: Holding,
     strikes: Box<[Struck]>,
     sliders: Box<[Slider]>,
@@ -57,7 +52,6 @@ impl BodyField {
         model: &ModalModel,
         modes: &[(usize, Mode)],
         groups: &[ModeGroup],
-        levels: SheddingLevels,
         sample_rate_hz: f64,
     ) -> Result<Option<Self>, DesignError> {
         let Some(shapes) = &model.shapes else { return Ok(None) };
@@ -76,9 +70,7 @@ impl BodyField {
         Ok(Some(Self {
             motion: motion.collect(),
             points: shapes.points_m.len(),
-            force_taps: missing.iter().map(|missing| missing.first_samples().of_force()).collect(),
             missing,
-            levels,
             holding: Holding::new(shapes, modes, groups, sample_rate_hz),
             strikes: (0..STRIKES).map(|_| struck()).collect(),
             sliders: (0..SLIDERS).map(|_| Slider::new(groups.len())).collect(),
@@ -112,7 +104,7 @@ impl BodyField {
     }
 
     /// Adds what a contact sends at its place during the present stretch; false where every slider is taken.
-    pub(crate) fn touch(&mut self, owner: Owner, place: &StrikePlace, sent: Sent<'_>) -> bool {
+    pub(crate) fn touch(&mut self, owner: Owner, place: &StrikePlace, impulse_n_s: &[f64]) -> bool {
         let known = self.sliders.iter().position(|slider| slider.owner == Some(owner));
         // One that has not been touched for a cell is free.
         let idle = |slider: &Slider| {
@@ -121,11 +113,8 @@ impl BodyField {
         };
         let Some(index) = known.or_else(|| self.sliders.iter().position(idle)) else { return false };
         let slider = &mut self.sliders[index];
-        slider.be_at(owner, place, |gains| {
-            fill(&self.motion, self.points, place, gains);
-            place_taps(&self.force_taps, &self.levels, gains)
-        });
-        slider.add(sent.impulse_n_s, sent.force_n_s);
+        slider.be_at(owner, place, |gains| fill(&self.motion, self.points, place, gains));
+        slider.add(impulse_n_s);
         true
     }
 
@@ -168,18 +157,6 @@ impl BodyField {
         }
     }
 
-    /// Whether the bank leaves out something of what contacts send.
-    pub(crate) fn forces_are_coming(&self) -> bool {
-        self.sliders.iter().any(|slider| !slider.is_silent())
-    }
-
-    /// Adds what the bank leaves out of the first samples of contacts, before [`end_stretch`](Self::end_stretch).
-    pub(crate) fn begin_forces(&mut self, position: u64, mode_level: usize, out: &mut [f32]) {
-        let first = position as usize % MAX_BLOCK;
-        let sliding = self.sliders.iter_mut().filter(|slider| !slider.is_silent());
-        sliding.for_each(|slider| slider.begin_forces(mode_level, first, out));
-    }
-
     /// The stretch has been rendered, or nothing rings in it; at the end of a cell gains go on. A group of the bank whose modes have
     /// changed, if one has.
     pub(crate) fn end_stretch(&mut self, position: u64, n: usize, bank: &mut Bank) -> Option<usize> {
@@ -206,22 +183,6 @@ impl BodyField {
     pub(crate) fn unit_motion(&self) -> &[f64] {
         self.holding.unit_motion()
     }
-}
-
-/// What the bank leaves out of forces at a place with these gains.
-fn place_taps(modes: &[ForceTaps], levels: &SheddingLevels, gains: &[LaneGains]) -> PlaceTaps {
-    let (mut all, mut sum) = (NO_TAPS, NO_TAPS[0]);
-    for (group, (modes, gains)) in modes.chunks(LANES).zip(gains).enumerate() {
-        for (taps, gain) in modes.iter().zip(gains.0) {
-            for (sum, tap) in sum.iter_mut().zip(taps) {
-                *sum += f64::from(gain) * tap;
-            }
-        }
-        for (to, _) in all.iter_mut().zip(levels).filter(|(_, heard)| **heard == group + 1) {
-            *to = sum;
-        }
-    }
-    all
 }
 
 /// The gains of a place.
@@ -278,7 +239,7 @@ mod tests {
         let modes: Vec<(usize, Mode)> = model.unit_modes().map(|(mode, _)| mode).enumerate().collect();
         let groups = design_groups(&model.modes, RATE_HZ, &GroupOptions::IMPULSE_RING);
         let groups: Box<[ModeGroup]> = groups.collect::<Result<_, _>>().unwrap();
-        let mut field = BodyField::new(&model, &modes, &groups, [groups.len(); 5], RATE_HZ).unwrap().unwrap();
+        let mut field = BodyField::new(&model, &modes, &groups, RATE_HZ).unwrap().unwrap();
         let states: Box<[GroupState]> = vec![GroupState::REST; groups.len()].into();
         let mut bank: Bank = ModalBank::new(Level::PORTABLE, groups, states);
         let (mut last, mut worst, mut place) = ([None; 6], 0.0_f32, None);
@@ -288,11 +249,7 @@ mod tests {
             // Reports 60 times a second, at 0.3 m/s; it stops in the end.
             let reported_s = (60.0 * t).floor() / 60.0;
             place = places.place([0.02 + 0.3 * reported_s.min(1.0), 0.005, 0.0], None).or(place);
-            assert!(field.touch(
-                (3, 0),
-                &place.unwrap(),
-                Sent { impulse_n_s: &[1e-6; MAX_BLOCK], force_n_s: &[] }
-            ));
+            assert!(field.touch((3, 0), &place.unwrap(), &[1e-6; MAX_BLOCK]));
             field.gather(position, MAX_BLOCK);
             for i in 0..MAX_BLOCK {
                 let mut heard = [0.0; 6];

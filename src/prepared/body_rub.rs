@@ -9,7 +9,7 @@ use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::{Bank, Owner};
 use crate::prepared::body_field::BodyField;
 use crate::prepared::holding::HeldModes;
-use crate::prepared::slider::{self, NO_TAPS, Slider};
+use crate::prepared::slider::{self, Slider};
 use crate::prepared::spot::Spot;
 use asperity_dsp::DesignError;
 use asperity_dsp::modal_bank::{
@@ -131,14 +131,12 @@ impl BodyRub {
         }
         let place = asked.spot.place.unwrap_or(StrikePlace::NOWHERE);
         let positions = &self.positions;
-        // What rubs is coupled to the body through the ring's taps as they are: nothing is added to it.
         self.slider.be_at(asked.owner, &place, |gains| {
             if let Some(field) = field {
                 field.fill(&place, gains);
             } else if let Some(at) = positions.get(asked.spot.position).or(positions.last()) {
                 gains.copy_from_slice(at);
             }
-            NO_TAPS
         });
         if self.owner.is_none() {
             self.owner = Some(asked.owner);
@@ -189,7 +187,7 @@ impl BodyRub {
         self.coupled.run(&self.friction, first, &self.sweep[..n], &struck_m_s[..n]);
         let mut impulse_n_s = [0.0; CELL];
         self.coupled.impulses(first, self.sample_rate_hz, &mut impulse_n_s[..n]);
-        self.slider.add(&impulse_n_s[..n], &[]);
+        self.slider.add(&impulse_n_s[..n]);
         self.slider.gather(first, n);
     }
 

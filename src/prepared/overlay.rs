@@ -13,7 +13,6 @@
 //! The noise never repeats by itself. Near the end of the tile it turns into that of its beginning, at constant
 //! power: sine and cosine, because the two are unrelated.
 
-use crate::audio::seat::NoiseBetween;
 use asperity_dsp::fractal_noise::{
     FractalNoise, LONGEST_CELL_M, NoiseCells, NoisePath, OctaveWeights, Relief, growth,
 };
@@ -57,11 +56,28 @@ const COPIES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 /// Memory that the overlay works in; it holds nothing between two paths.
 pub(crate) struct Room {
-    /// What relief the source really has at each sample, m².
-    pub(crate) local_power_m2: [f64; MAX_BLOCK],
     shares: [f64; MAX_BLOCK],
     parts_m: [[f64; MAX_BLOCK]; 2],
     lap: Lap,
+}
+
+/// The short waves of the micro-noise, at samples and between each and the sample before.
+pub(crate) struct NoiseBetween<'a> {
+    /// The coarsest octave that counts among them.
+    pub(crate) octave: usize,
+    /// Between samples.
+    pub(crate) looks: [Option<Look<'a>>; 3],
+    /// At the samples, m.
+    pub(crate) at_m: &'a mut [f64],
+    /// Whether the surface told.
+    pub(crate) seen: &'a mut bool,
+}
+
+/// Some share of the way from the sample before each.
+pub(crate) struct Look<'a> {
+    pub(crate) position_m: &'a [[f64; 2]],
+    /// What is there, m.
+    pub(crate) height_m: &'a mut [f64],
 }
 
 /// A path over the surface, and what is known of all of it.
@@ -69,8 +85,10 @@ pub(crate) struct NoiseWay<'a> {
     pub(crate) path: NoisePath<'a>,
     /// Its least and greatest coordinates, those midway between samples included.
     pub(crate) bounds_m: [[f64; 2]; 2],
-    /// The share of the noise's long waves, where it is the same everywhere (1 where the source has no relief, 0 where that [fills](Overlay::fills_m2) it); otherwise [`Room::local_power_m2`] is told.
+    /// The share of the noise's long waves, where it is the same everywhere (1 where the source has no relief, 0 where that [fills](Overlay::fills_m2) it); otherwise it follows from `power_m2`.
     pub(crate) share: Option<f64>,
+    /// Relief that the source really has at each sample, m².
+    pub(crate) power_m2: &'a [f64],
 }
 
 /// Where a path lies in its lap of the tile, and what meets there.
@@ -97,7 +115,7 @@ impl Room {
             gains: [[[1.0; 2]; 2]; MAX_BLOCK],
             parts_m: [none; MOST_SETS],
         };
-        Self { local_power_m2: none, shares: none, parts_m: [none; 2], lap }
+        Self { shares: none, parts_m: [none; 2], lap }
     }
 }
 
@@ -142,14 +160,14 @@ impl Overlay {
     pub(crate) fn add(
         &self,
         field: &FractalNoise,
-        NoiseWay { path, bounds_m: [low_m, high_m], share }: &NoiseWay<'_>,
+        NoiseWay { path, bounds_m: [low_m, high_m], share, power_m2 }: &NoiseWay<'_>,
         roughness: &[f64],
         height_m: &mut [f64],
         (cells, own): (&mut TileCells, &mut Room),
         between: Option<&mut NoiseBetween<'_>>,
     ) {
         let Tip { below, all: whole, .. } = &self.tips[self.now];
-        let Room { local_power_m2, shares, parts_m, lap } = own;
+        let Room { shares, parts_m, lap } = own;
         let [along_u, along_v] = &self.axes;
         lap.begin_m =
             [along_u.begin_of_all_m(low_m[0], high_m[0]), along_v.begin_of_all_m(low_m[1], high_m[1])];
@@ -168,7 +186,7 @@ impl Overlay {
         let cells = (cells, lap);
         let n = height_m.len().min(MAX_BLOCK);
         let shares = &mut shares[..if share.is_none() { n } else { 0 }];
-        for (share, power_m2) in shares.iter_mut().zip(&*local_power_m2) {
+        for (share, power_m2) in shares.iter_mut().zip(*power_m2) {
             *share = room(*power_m2, self.ordinary_m);
         }
         let everywhere = |wanted: f64| {

@@ -5,9 +5,8 @@
 //! those that come. So the bank hears no step, whatever the blocks.
 
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{MODE_LEVELS, Owner};
-use crate::prepared::early::EarlyForce;
-use asperity_dsp::modal_bank::{EARLY_HISTORY, ForceTaps, Input, LANES, LaneGains};
+use crate::prepared::bank::Owner;
+use asperity_dsp::modal_bank::{Input, LANES, LaneGains};
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// How fast gains follow a contact, s: less than the time between two reports of an ordinary game.
@@ -20,20 +19,12 @@ pub(crate) fn glide(sample_rate_hz: f64) -> f32 {
     (1.0 - libm::exp(-(MAX_BLOCK as f64) / (GLIDE_S * sample_rate_hz))) as f32
 }
 
-/// What the bank leaves out of a force at a place, for each level of modes left out.
-pub(crate) type PlaceTaps = [ForceTaps; MODE_LEVELS];
-/// Nothing is left out.
-pub(crate) const NO_TAPS: PlaceTaps = [[0.0; EARLY_HISTORY + 1]; MODE_LEVELS];
-
 /// A contact.
 pub(crate) struct Slider {
     pub(crate) owner: Option<Owner>,
     place: StrikePlace,
     /// At the beginning of the cell, at its end, and where they go.
     gains: [Box<[LaneGains]>; 3],
-    /// The same of what the bank leaves out.
-    taps: [PlaceTaps; 3],
-    early_force: EarlyForce,
     arrived: bool,
     pub(crate) touched: bool,
     /// When it was touched last.
@@ -50,8 +41,6 @@ impl Slider {
             owner: None,
             place: StrikePlace::NOWHERE,
             gains: [gains(), gains(), gains()],
-            taps: [NO_TAPS; 3],
-            early_force: EarlyForce::REST,
             arrived: true,
             touched: false,
             touched_at: 0,
@@ -60,26 +49,20 @@ impl Slider {
         }
     }
 
-    /// This contact is at this place; `fill` writes the gains there and tells what the bank leaves out.
-    pub(crate) fn be_at(
-        &mut self,
-        owner: Owner,
-        place: &StrikePlace,
-        fill: impl FnOnce(&mut [LaneGains]) -> PlaceTaps,
-    ) {
+    /// This contact is at this place; `fill` writes the gains there.
+    pub(crate) fn be_at(&mut self, owner: Owner, place: &StrikePlace, fill: impl FnOnce(&mut [LaneGains])) {
         let known = self.owner == Some(owner);
         if known && self.place == *place {
             return;
         }
         self.place = *place;
-        self.taps[2] = fill(&mut self.gains[2]);
+        fill(&mut self.gains[2]);
         self.arrived = !known;
         if !known {
             self.owner = Some(owner);
             let [from, to, wanted] = &mut self.gains;
             from.copy_from_slice(wanted);
             to.copy_from_slice(wanted);
-            self.taps = [self.taps[2]; 3];
         }
     }
 
@@ -89,9 +72,8 @@ impl Slider {
     }
 
     /// Adds what it sends during the present stretch.
-    pub(crate) fn add(&mut self, impulse_n_s: &[f64], force_n_s: &[f64]) {
+    pub(crate) fn add(&mut self, impulse_n_s: &[f64]) {
         self.touched = true;
-        self.early_force.add(force_n_s, 1.0);
         for (sum, x) in self.contacts_n_s.iter_mut().zip(impulse_n_s) {
             *sum += x;
         }
@@ -100,7 +82,6 @@ impl Slider {
     /// Forgets what is on its way.
     pub(crate) fn silence(&mut self) {
         self.contacts_n_s.fill(0.0);
-        self.early_force.silence();
         self.touched = false;
     }
 
@@ -124,27 +105,7 @@ impl Slider {
 
     /// Whether nothing is on its way.
     pub(crate) fn is_silent(&self) -> bool {
-        !self.touched && self.early_force.is_silent()
-    }
-
-    /// Adds what the bank leaves out during the stretch that begins at sample `first` of the cell.
-    pub(crate) fn begin_forces(&mut self, mode_level: usize, first: usize, out: &mut [f32]) {
-        let [from, to, _] = &self.taps;
-        let (from, to) = (&from[mode_level], &to[mode_level]);
-        if self.arrived {
-            self.early_force.render(to, out);
-        } else {
-            let mut ends = [[0.0; MAX_BLOCK]; 2];
-            for (y, taps) in ends.iter_mut().zip([from, to]) {
-                self.early_force.render(taps, &mut y[..out.len()]);
-            }
-            let [from, to] = ends;
-            for (i, y) in out.iter_mut().enumerate() {
-                let part = (first + i + 1) as f32 / MAX_BLOCK as f32;
-                *y += from[i] * (1.0 - part) + to[i] * part;
-            }
-        }
-        self.early_force.end_stretch(out.len());
+        !self.touched
     }
 
     /// The stretch up to `position` has been rendered; at the end of a cell gains go on.
@@ -169,13 +130,7 @@ impl Slider {
                 *to += glide * way;
             }
         }
-        let [from_taps, to_taps, wanted_taps] = &mut self.taps;
-        *from_taps = *to_taps;
-        for (to, wanted) in to_taps.as_flattened_mut().iter_mut().zip(wanted_taps.as_flattened()) {
-            *to += f64::from(glide) * (wanted - *to);
-        }
         if farthest < ARRIVED {
-            (*from_taps, *to_taps) = (*wanted_taps, *wanted_taps);
             to.copy_from_slice(wanted);
             from.copy_from_slice(wanted);
             self.arrived = true;

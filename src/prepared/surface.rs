@@ -4,10 +4,13 @@ use crate::model::surface::Surface;
 use crate::prepared::overlay::Overlay;
 use crate::prepared::stroking::Stroking;
 use asperity_dsp::trajectory::TrajectoryDesign;
+use asperity_texture::height_field::Properties;
 
 /// A surface as the audio half owns it: everything a contact needs, designed beforehand.
 pub(crate) struct SurfaceSlot {
     pub(crate) surface: Surface,
+    /// Of its source.
+    pub(crate) properties: Properties,
     pub(crate) trajectory: TrajectoryDesign,
     /// Through its body, where nothing wraps.
     pub(crate) place_trajectory: TrajectoryDesign,

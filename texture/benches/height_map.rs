@@ -44,6 +44,7 @@ fn height_map(c: &mut Criterion) {
                         first_sample: 0,
                         contact: 0,
                         slopes: true,
+                        ..PathBlock::default()
                     };
                     map_under.sample(&path, &mut out);
                     sum += out.height_m[7];

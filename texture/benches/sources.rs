@@ -66,6 +66,7 @@ fn blocks(c: &mut Criterion) {
                             first_sample,
                             contact: 0,
                             slopes: true,
+                            ..PathBlock::default()
                         }),
                         &mut out,
                     );
@@ -96,6 +97,7 @@ fn footprint(c: &mut Criterion) {
             first_sample: 0,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         group.bench_function(name, |b| {
             b.iter(|| sample_under(&mut map, black_box(&path), &[radius_m; MAX_BLOCK], &mut out));

@@ -33,6 +33,7 @@ fn ns_of(slopes: bool, mut sample: impl FnMut(&PathBlock<'_>, &mut SurfaceBlock)
             first_sample: 64 * block,
             contact: 0,
             slopes,
+            ..PathBlock::default()
         };
         let clock = Instant::now();
         sample(black_box(&path), &mut out);

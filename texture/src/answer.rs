@@ -115,3 +115,10 @@ impl Answer {
             (answer.force_n, answer.push_per_n, answer.cap_n);
     }
 }
+
+/// A force no larger than a cap, in its own direction.
+#[must_use]
+pub fn capped(force_n: [f64; 3], cap_n: f64) -> [f64; 3] {
+    let size_n = force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
+    if size_n > cap_n { force_n.map(|f| f * (cap_n / size_n)) } else { force_n }
+}

@@ -19,18 +19,18 @@ mod mixture;
 
 pub use band_split::{BandSplit, BandWeights};
 pub use mask::Mask;
-pub(crate) use mixture::add;
 
 use crate::fade::Fade;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
+    HeightField, MAX_BLOCK, Part, PathBlock, PowerKind, Properties, Setup, Shares, SurfaceBlock, Touch,
+    TouchKind, WavelengthBand, prepare_parts, set_parts,
 };
 use asperity_dsp::{DesignError, limits};
 use mixture::mix;
 use std::any::Any;
 
 /// A surface of any kind.
-pub type Source = Box<dyn HeightField>;
+pub type Source = Part;
 
 /// All reliefs on top of each other.
 pub struct Sum {
@@ -47,48 +47,15 @@ impl Sum {
 }
 
 impl HeightField for Sum {
-    fn prepare_tip(&mut self, radius_m: f64) {
-        self.sources.iter_mut().for_each(|source| source.prepare_tip(radius_m));
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
+        let each = self.sources.iter().map(|source| source.properties(tile_m));
+        let reach_m = each.clone().map(|properties| properties.reach_m).sum();
+        let nothing = Properties { is_stateless: true, ..Properties::of(WavelengthBand::EMPTY) };
+        Properties { reach_m, ..each.fold(nothing, Properties::union) }
     }
 
-    fn ride(&mut self, radius_m: f64) {
-        self.sources.iter_mut().for_each(|source| source.ride(radius_m));
-    }
-
-    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
-        self.sources.iter_mut().for_each(|source| source.lie_at(at_m));
-    }
-
-    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        self.sources.iter_mut().find_map(|source| source.carries_n(position_m, depth_m))
-    }
-
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
-    }
-
-    fn band(&self) -> WavelengthBand {
-        self.sources.iter().fold(WavelengthBand::EMPTY, |band, s| band.union(s.band()))
-    }
-
-    fn is_read_beside(&self) -> bool {
-        self.sources.iter().all(|s| s.is_read_beside())
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.sources.iter().map(|s| s.reach_m()).sum()
-    }
-
-    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        self.sources.iter().for_each(|s| s.add_local_power(position_m, power_m2));
-    }
-
-    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
-        self.sources.iter_mut().map(|s| s.hollow_m(touch, reach_m)).sum()
-    }
-
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
-        self.sources.iter().fold(Beyond::Same, |beyond, s| beyond.max(s.beyond(tile_m)))
+    fn parts(&mut self) -> &mut [Part] {
+        &mut self.sources
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -107,23 +74,8 @@ impl HeightField for Sum {
                 out.compliance_m_n[i] += self.part.compliance_m_n[i];
                 out.answer.mix(i, 1.0, &self.part.answer, 1.0);
             }
+            out.power.add(&self.part.power, n);
         }
-    }
-
-    fn land(&mut self, touch: &Touch) {
-        self.sources.iter_mut().for_each(|s| s.land(touch));
-    }
-
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        self.sources.iter_mut().fold(Reaction::default(), |sum, s| add(sum, s.react(touch), 1.0))
-    }
-
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
-        self.sources.iter_mut().fold(false, |done, s| s.change(change, sample) | done)
-    }
-
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        self.sources.iter_mut().for_each(|source| source.visit(see));
     }
 }
 
@@ -133,7 +85,7 @@ pub struct ScaleTo(pub f64);
 
 /// A source whose relief is multiplied by a factor that may change.
 pub struct Scale {
-    source: Source,
+    source: [Source; 1],
     factor: Fade<f64>,
 }
 
@@ -143,7 +95,7 @@ impl Scale {
     /// # Errors
     /// When the factor is not within ±1e3.
     pub fn new(source: Source, factor: f64) -> Result<Self, DesignError> {
-        Ok(Self { source, factor: Fade::new(check_factor(factor)?) })
+        Ok(Self { source: [source], factor: Fade::new(check_factor(factor)?) })
     }
 }
 
@@ -152,82 +104,54 @@ fn check_factor(factor: f64) -> Result<f64, DesignError> {
 }
 
 impl HeightField for Scale {
-    fn prepare_tip(&mut self, radius_m: f64) {
-        self.source.prepare_tip(radius_m);
-    }
-
-    fn ride(&mut self, radius_m: f64) {
-        self.source.ride(radius_m);
-    }
-
-    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
-        self.source.lie_at(at_m);
-    }
-
-    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        self.source.carries_n(position_m, depth_m)
-    }
-
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.factor.prepare(setup.sample_rate_hz);
-        self.source.prepare(setup)
-    }
-
-    fn band(&self) -> WavelengthBand {
-        self.source.band()
-    }
-
-    fn is_read_beside(&self) -> bool {
-        self.source.is_read_beside()
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.factor.target().abs() * self.source.reach_m()
-    }
-
-    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        let mut own = [0.0; MAX_BLOCK];
-        self.source.add_local_power(position_m, &mut own[..position_m.len().min(MAX_BLOCK)]);
-        let factor = self.factor.target();
-        power_m2.iter_mut().zip(&own).for_each(|(power, own)| *power += factor * factor * own);
-    }
-
-    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
-        self.factor.at(touch.sample) * self.source.hollow_m(touch, reach_m)
-    }
-
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
-        self.source.beyond(tile_m)
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
+        let own = self.source[0].properties(tile_m);
+        Properties { reach_m: self.factor.target().abs() * own.reach_m, is_rigid: false, ..own }
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        self.source.sample(path, out);
-        for i in 0..path.len().min(MAX_BLOCK) {
+        let n = path.len().min(MAX_BLOCK);
+        let square = self.factor.target() * self.factor.target();
+        let full_power_m2 = path.full_power_m2.map(|full_m2| full_m2 / square);
+        self.source[0].sample(&PathBlock { full_power_m2, ..*path }, out);
+        for i in 0..n {
             let factor = self.factor.at(path.first_sample + i as u64);
             out.height_m[i] *= factor;
             out.gradient[i] = out.gradient[i].map(|g| g * factor);
             out.answer.scale(i, factor);
         }
+        if square == 0.0 {
+            out.power.kind = PowerKind::None;
+        }
+        out.power.each_m2[..n].iter_mut().for_each(|power_m2| *power_m2 *= square);
     }
 
-    fn land(&mut self, touch: &Touch) {
-        self.source.land(touch);
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
+        self.factor.prepare(setup.sample_rate_hz);
+        prepare_parts(&mut self.source, setup)
     }
 
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        add(Reaction::default(), self.source.react(touch), self.factor.at(touch.sample))
-    }
-
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+    fn set(&mut self, change: &dyn Any, sample: u64) -> bool {
         match change.downcast_ref() {
             Some(ScaleTo(factor)) => check_factor(*factor).map(|f| self.factor.set(f, sample)).is_ok(),
-            None => self.source.change(change, sample),
+            None => set_parts(&mut self.source, change, sample),
         }
     }
 
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        self.source.visit(see);
+    fn parts(&mut self) -> &mut [Part] {
+        &mut self.source
     }
+
+    /// What carries a tip does not depend on the factor.
+    fn shares(&mut self, touch: &Touch) -> Shares {
+        let stands = matches!(touch.kind, TouchKind::Stands { .. });
+        shared([(*touch, if stands { 1.0 } else { self.factor.at(touch.sample) })])
+    }
+}
+
+/// The shares of the first parts of a combination.
+pub(crate) fn shared<const N: usize>(each: [(Touch, f64); N]) -> Shares {
+    std::array::from_fn(|part| each.get(part).map(|(touch, weight)| (part, *touch, *weight)))
 }
 
 /// Moves a [`Crossfade`]: 0 = all of the first source, 1 = all of the second.
@@ -259,56 +183,8 @@ impl Crossfade {
 }
 
 impl HeightField for Crossfade {
-    fn prepare_tip(&mut self, radius_m: f64) {
-        self.sources.iter_mut().for_each(|source| source.prepare_tip(radius_m));
-    }
-
-    fn ride(&mut self, radius_m: f64) {
-        self.sources.iter_mut().for_each(|source| source.ride(radius_m));
-    }
-
-    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
-        self.sources.iter_mut().for_each(|source| source.lie_at(at_m));
-    }
-
-    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        self.sources.iter_mut().find_map(|source| source.carries_n(position_m, depth_m))
-    }
-
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.position.prepare(setup.sample_rate_hz);
-        if let Some(at_s) = self.at_s {
-            self.position = Fade::new(0.0);
-            self.position.prepare(setup.sample_rate_hz);
-            self.position.set(1.0, (at_s * setup.sample_rate_hz).round() as u64);
-        }
-        self.sources.iter_mut().try_for_each(|source| source.prepare(setup))
-    }
-
-    fn band(&self) -> WavelengthBand {
-        self.sources[0].band().union(self.sources[1].band())
-    }
-
-    fn is_read_beside(&self) -> bool {
-        self.sources.iter().all(|s| s.is_read_beside())
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.sources[0].reach_m().max(self.sources[1].reach_m())
-    }
-
-    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        self.sources.iter().for_each(|s| s.add_local_power(position_m, power_m2));
-    }
-
-    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
-        let w = self.position.at(touch.sample);
-        let [first, second] = &mut self.sources;
-        (1.0 - w) * first.hollow_m(touch, reach_m) + w * second.hollow_m(touch, reach_m)
-    }
-
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
-        self.sources[0].beyond(tile_m).max(self.sources[1].beyond(tile_m))
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
+        self.sources[0].properties(tile_m).union(self.sources[1].properties(tile_m))
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -316,23 +192,25 @@ impl HeightField for Crossfade {
         // Both are always read: a source that remembers its contacts must not miss any path.
         first.sample(path, out);
         second.sample(path, &mut self.other);
-        for i in 0..path.len().min(MAX_BLOCK) {
+        let n = path.len().min(MAX_BLOCK);
+        for i in 0..n {
             let w = self.position.at(path.first_sample + i as u64);
             mix(out, &self.other, i, w);
         }
+        out.power.add(&self.other.power, n);
     }
 
-    fn land(&mut self, touch: &Touch) {
-        self.sources.iter_mut().for_each(|s| s.land(touch));
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
+        self.position.prepare(setup.sample_rate_hz);
+        if let Some(at_s) = self.at_s {
+            self.position = Fade::new(0.0);
+            self.position.prepare(setup.sample_rate_hz);
+            self.position.set(1.0, (at_s * setup.sample_rate_hz).round() as u64);
+        }
+        prepare_parts(&mut self.sources, setup)
     }
 
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        let w = self.position.at(touch.sample);
-        let [first, second] = &mut self.sources;
-        add(add(Reaction::default(), first.react(touch), 1.0 - w), second.react(touch), w)
-    }
-
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+    fn set(&mut self, change: &dyn Any, sample: u64) -> bool {
         if let Some(CrossfadeTo(position)) = change.downcast_ref() {
             let accepted = (0.0..=1.0).contains(position);
             if accepted {
@@ -341,10 +219,15 @@ impl HeightField for Crossfade {
             }
             return accepted;
         }
-        self.sources.iter_mut().fold(false, |done, s| s.change(change, sample) | done)
+        set_parts(&mut self.sources, change, sample)
     }
 
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        self.sources.iter_mut().for_each(|source| source.visit(see));
+    fn parts(&mut self) -> &mut [Part] {
+        &mut self.sources
+    }
+
+    fn shares(&mut self, touch: &Touch) -> Shares {
+        let w = self.position.at(touch.sample);
+        shared([(*touch, 1.0 - w), (*touch, w)])
     }
 }

@@ -38,7 +38,7 @@ pub fn footprint_radius_m(ball_radius_m: f64, depth_m: f64) -> f64 {
 }
 
 /// Samples a source as a ball feels it whose footprint is `radius_m` wide, one a sample: heights and slopes are means, the rest is as it is in the
-/// middle. A source that cannot be [read beside the path](HeightField::is_read_beside) is felt in the middle.
+/// middle. A source that is not [stateless](crate::height_field::Properties::is_stateless) is felt in the middle.
 pub fn sample_under(
     source: &mut (impl HeightField + ?Sized),
     path: &PathBlock<'_>,
@@ -47,7 +47,8 @@ pub fn sample_under(
 ) {
     source.sample(path, out);
     let n = path.len().min(radius_m.len()).min(MAX_BLOCK);
-    if !source.is_read_beside() || radius_m[..n].iter().all(|radius_m| *radius_m == 0.0) {
+    let is_stateless = source.properties([f64::INFINITY; 2]).is_stateless;
+    if !is_stateless || radius_m[..n].iter().all(|radius_m| *radius_m == 0.0) {
         return;
     }
     let (mut position_m, mut footprint_m) = ([[0.0; 2]; MAX_BLOCK], [0.0; MAX_BLOCK]);
@@ -74,6 +75,8 @@ pub fn sample_under(
                 velocity_m_s: &path.velocity_m_s[..n],
                 footprint_m: &footprint_m[..n],
                 normal_force_n: path.normal_force_n,
+                bounds_m: None,
+                full_power_m2: None,
                 ..*path
             };
             source.sample(&beside, &mut there);
@@ -131,6 +134,7 @@ mod tests {
             first_sample: 0,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         let mut out = SurfaceBlock::default();
         sample_under(map, &path, &[radius_m; 64], &mut out);
@@ -183,6 +187,7 @@ mod tests {
             first_sample: 0,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         let (mut point, mut ball) = (SurfaceBlock::default(), SurfaceBlock::default());
         map.sample(&path, &mut point);

@@ -7,9 +7,13 @@
 
 use crate::answer::{Answer, AnswerAt};
 pub use crate::block::{MAX_BLOCK, bounds};
-use crate::height_map::Working;
+use crate::moving_picture::MovingPicture;
+use crate::spline::Working;
+use crate::tip_law::TipLaw;
 use asperity_dsp::DesignError;
 use std::any::Any;
+use std::cell::RefCell;
+use std::sync::Arc;
 
 /// A force that is no touch, N: the weight of a tenth of a milligram.
 pub const NO_TOUCH_N: f64 = 1e-6;
@@ -31,8 +35,40 @@ pub struct PathBlock<'a> {
     pub first_sample: u64,
     /// Which contact this is (its slot in the engine), so that a source can keep state per contact.
     pub contact: usize,
-    /// Whether anybody will look at [`SurfaceBlock::gradient`]; a source may leave it as it is otherwise.
+    /// Whether [`SurfaceBlock::gradient`] is read; a source may leave it as it is otherwise.
     pub slopes: bool,
+    /// Whether only heights, roughness and power are read: a [rigid](Properties::is_rigid) source may then leave the rest as it is.
+    pub heights_only: bool,
+    /// Radius of the sphere that rides on the surface, m; 0 is a point. A source that was not [prepared](Setup::tip_radii_m) for it is
+    /// ridden by a point.
+    pub tip_radius_m: f64,
+    /// Places of the body that the path lies at, m, one a sample; empty where the surface is a plane of its body. A block of stuff is
+    /// cut there; a sheet ignores it.
+    pub at_m: &'a [[f64; 3]],
+    /// The least and the greatest coordinates of the path, where they are known ([`bounds`]).
+    pub bounds_m: Option<[[f64; 2]; 2]>,
+    /// Asks for [`SurfaceBlock::power`]: a mean square above which more makes no difference, m².
+    pub full_power_m2: Option<f64>,
+}
+
+impl Default for PathBlock<'_> {
+    /// No sample, a point, and only heights and slopes are asked for.
+    fn default() -> Self {
+        Self {
+            position_m: &[],
+            velocity_m_s: &[],
+            footprint_m: &[],
+            normal_force_n: &[],
+            first_sample: 0,
+            contact: 0,
+            slopes: false,
+            heights_only: false,
+            tip_radius_m: 0.0,
+            at_m: &[],
+            bounds_m: None,
+            full_power_m2: None,
+        }
+    }
 }
 
 impl PathBlock<'_> {
@@ -69,9 +105,11 @@ pub struct SurfaceBlock {
     /// How far the surface gives way over the force that presses it (the path's), m/N; 0 = rigid. It is
     /// the secant, not the slope: sand gives way by a law that is no straight line.
     pub compliance_m_n: [f64; MAX_BLOCK],
-    /// The force with which it answers; only where somebody looks at [slopes](PathBlock::slopes).
+    /// The force with which it answers; only where [slopes](PathBlock::slopes) are read.
     pub answer: Answer,
-    /// In which maps are worked out: memory that is at hand anyway, and that nobody clears.
+    /// Relief that the source really has about each sample, where the path [asks](PathBlock::full_power_m2).
+    pub power: Power,
+    /// Working memory of maps, uninitialised between blocks.
     pub(crate) working: Working,
 }
 
@@ -85,10 +123,9 @@ impl SurfaceBlock {
         self.friction[..n].fill(0.0);
         self.compliance_m_n[..n].fill(0.0);
         self.answer.clear();
+        self.power.kind = PowerKind::Full;
     }
-}
 
-impl SurfaceBlock {
     /// The relief of the first `n` entries has a force law of its own, so that its slope pushes no more.
     pub fn push_no_slope(&mut self, n: usize) {
         for (i, gradient) in self.gradient.iter().enumerate().take(n) {
@@ -106,13 +143,14 @@ impl Default for SurfaceBlock {
             friction: [0.0; MAX_BLOCK],
             compliance_m_n: [0.0; MAX_BLOCK],
             answer: Answer::default(),
+            power: Power::default(),
             working: Working::new(),
         }
     }
 }
 
 /// The wavelengths a source represents, metres. Where it has relief the engine adds the paper's micro-noise only
-/// below `shortest_m`, so that no scale is rough twice ([`HeightField::add_local_power`] tells where).
+/// below `shortest_m`, so that no scale is rough twice ([`SurfaceBlock::power`] tells where).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WavelengthBand {
     /// Shortest wavelength in the source; `f64::INFINITY` for a source without any relief.
@@ -135,13 +173,84 @@ impl WavelengthBand {
     }
 }
 
-/// How a contact presses on the surface, told to the source once every [`MAX_BLOCK`] samples on the
-/// absolute sample grid.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Mean square of a source's relief at wavelengths up to some millimetres about each sample of a path, m². The
+/// engine's micro-relief fills in what is missing.
+#[derive(Debug, Clone)]
+pub struct Power {
+    /// How it is given.
+    pub kind: PowerKind,
+    /// One value a sample, where [`PowerKind::EachSample`] says so.
+    pub each_m2: [f64; MAX_BLOCK],
+}
+
+/// How [`Power`] is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PowerKind {
+    /// No relief anywhere along the path.
+    None,
+    /// As much everywhere as leaves no room for the micro-relief; also that of a source that gives none.
+    Full,
+    /// In [`Power::each_m2`].
+    EachSample,
+}
+
+impl Default for Power {
+    fn default() -> Self {
+        Self { kind: PowerKind::Full, each_m2: [0.0; MAX_BLOCK] }
+    }
+}
+
+impl Power {
+    /// The value of one sample.
+    #[must_use]
+    pub fn at(&self, index: usize) -> f64 {
+        match self.kind {
+            PowerKind::None => 0.0,
+            PowerKind::Full => f64::INFINITY,
+            PowerKind::EachSample => self.each_m2[index],
+        }
+    }
+
+    /// Adds that of another part over `n` samples.
+    pub fn add(&mut self, other: &Self, n: usize) {
+        match (self.kind, other.kind) {
+            (_, PowerKind::None) | (PowerKind::Full, _) => {}
+            (_, PowerKind::Full) => self.kind = PowerKind::Full,
+            (PowerKind::None, PowerKind::EachSample) => {
+                self.kind = PowerKind::EachSample;
+                self.each_m2[..n].copy_from_slice(&other.each_m2[..n]);
+            }
+            (PowerKind::EachSample, PowerKind::EachSample) => {
+                let sums = self.each_m2[..n].iter_mut().zip(&other.each_m2);
+                sums.for_each(|(sum, part)| *sum += part);
+            }
+        }
+    }
+}
+
+/// What a touch is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum TouchKind {
+    /// A contact begins, before anything is read for it: what was kept of an earlier contact of this number is dropped.
+    Begins,
+    /// A contact presses on, moving or at rest: once every [`MAX_BLOCK`] samples of the absolute grid.
+    #[default]
+    Presses,
+    /// A tip stands `depth_m` below the untouched surface: which force carries it there?
+    Stands {
+        /// Depth, m; below 0 above the surface.
+        depth_m: f64,
+    },
+}
+
+/// A touch of the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Touch {
+    /// What it is.
+    pub kind: TouchKind,
     /// The contact's slot, as in [`PathBlock::contact`].
     pub contact: usize,
-    /// Absolute index of the sample this describes.
+    /// Absolute index of the sample it belongs to.
     pub sample: u64,
     /// Position on the surface, metres.
     pub position_m: [f64; 2],
@@ -158,8 +267,28 @@ pub struct Reaction {
     pub grain_rate_per_s: f64,
     /// Mean momentum of one such impact, N·s.
     pub grain_impulse_n_s: f64,
-    /// What lies under the contact is changing, whether it moves or not: a contact that rests must look.
+    /// The ground under the contact is changing, whether it moves or not: a contact that rests must be computed.
     pub stirs: bool,
+    /// The force that carries a tip where it [stands](TouchKind::Stands), N, 0 above the ground; none where the ground is hard.
+    pub carries_n: Option<f64>,
+}
+
+impl Reaction {
+    /// Adds a weighted reaction; grains keep their total momentum a second.
+    #[must_use]
+    pub fn plus(self, part: Self, weight: f64) -> Self {
+        let weighted_rate = weight.abs() * part.grain_rate_per_s;
+        let rate = self.grain_rate_per_s + weighted_rate;
+        let momentum =
+            self.grain_rate_per_s * self.grain_impulse_n_s + weighted_rate * part.grain_impulse_n_s;
+        let carried_n = part.carries_n.map(|n| self.carries_n.unwrap_or(0.0) + weight * n);
+        Self {
+            grain_rate_per_s: rate,
+            grain_impulse_n_s: if rate > 0.0 { momentum / rate } else { 0.0 },
+            stirs: self.stirs || part.stirs,
+            carries_n: carried_n.or(self.carries_n),
+        }
+    }
 }
 
 /// What lies beyond one tile of a source: what texture coordinates that wrap mean on it.
@@ -176,42 +305,100 @@ pub enum Beyond {
     Edge,
 }
 
-/// What a source says of its relief along a path ([`HeightField::local_power`]).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LocalPower {
-    /// It has none.
-    Nothing,
-    /// It has as much everywhere as leaves no room for the micro-noise.
-    Full,
-    /// So much as was written for each place.
-    Told,
+/// What never changes of a source.
+#[derive(Debug, Clone)]
+pub struct Properties {
+    /// The wavelengths it represents: every one that it can be steered to.
+    pub band: WavelengthBand,
+    /// How far from zero its heights can be, metres; 0 if it cannot tell.
+    pub reach_m: f64,
+    /// What lies beyond a tile.
+    pub beyond: Beyond,
+    /// Whether it is hard everywhere, and [`HeightField::sample`] fills every entry of a block besides slopes that are not read: friction,
+    /// roughness, compliance and answer too. The engine then fills nothing before it and lets nothing give way.
+    pub is_rigid: bool,
+    /// Whether its samples depend on nothing but their places, so that it may be read beside the path as well: under a ball that stands
+    /// in soft ground ([`crate::footprint`]), and about a contact for how the ground bends ([`hollow_m`]).
+    pub is_stateless: bool,
+    /// The law by which it carries a tip, for a device's own thread; none where it is hard.
+    pub tip_law: Option<TipLaw>,
+    /// Its picture, if it is one that changes.
+    pub picture: Option<Arc<MovingPicture>>,
 }
 
-/// What an engine tells a source when it takes it, on the game thread: nothing of it is the user's to know.
+impl Properties {
+    /// A source of these wavelengths that repeats, or whose relief does not belong to places.
+    #[must_use]
+    pub fn of(band: WavelengthBand) -> Self {
+        Self {
+            band,
+            reach_m: 0.0,
+            beyond: Beyond::Same,
+            is_rigid: false,
+            is_stateless: false,
+            tip_law: None,
+            picture: None,
+        }
+    }
+
+    /// Those of two sources of which either may be met at a place.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            band: self.band.union(other.band),
+            reach_m: self.reach_m.max(other.reach_m),
+            beyond: self.beyond.max(other.beyond),
+            is_rigid: false,
+            is_stateless: self.is_stateless && other.is_stateless,
+            tip_law: self.tip_law.or(other.tip_law),
+            picture: self.picture.or(other.picture),
+        }
+    }
+}
+
+/// Asks a source, as a [change](HeightField::set), for what it has become: at the end of a render it puts its results in here.
+#[derive(Debug, Default)]
+pub struct Finish(pub RefCell<Vec<Box<dyn Any>>>);
+
+/// The engine that a source is prepared for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Setup {
+pub struct Setup<'a> {
     /// Rate of the samples that [`PathBlock::first_sample`] counts, Hz.
     pub sample_rate_hz: f64,
     /// Contacts are numbered below this.
     pub voices: usize,
+    /// Radii of the spheres that will ride on it, m.
+    pub tip_radii_m: &'a [f64],
 }
 
-impl Default for Setup {
-    /// What every source is made for until an engine takes it: 44.1 kHz and the 96 voices of a default engine.
+impl Default for Setup<'_> {
+    /// 44.1 kHz, the 96 voices of a default engine, and points.
     fn default() -> Self {
-        Self { sample_rate_hz: 44_100.0, voices: 96 }
+        Self { sample_rate_hz: 44_100.0, voices: 96, tip_radii_m: &[] }
     }
 }
 
+/// A part of a combination.
+pub type Part = Box<dyn HeightField>;
+
+/// How the parts of a combination share a touch: up to [`MOST_SHARES`] of a part, the touch as that part gets it, and its weight in the reaction.
+pub type Shares = [Option<(usize, Touch, f64)>; MOST_SHARES];
+/// Parts, or copies of a part, that a touch can reach.
+pub const MOST_SHARES: usize = 8;
+
 /// A surface that can be sampled in real time.
 ///
-/// A source of one's own is these two methods. What changes while it is touched comes by [`change`](Self::change), at a sample that is known, or through a
-/// handle of its own (an atomic, a ring), which takes effect wherever the audio thread happens to be: a game steered so does not replay to the bit. Positions
-/// are metres from uv (0, 0) and run on beyond the surface; where texture coordinates wrap, heights must be the same again after the surface's
-/// width and height, or [`beyond`](Self::beyond) says that they are not:
+/// A source of one's own is [`properties`](Self::properties) and [`sample`](Self::sample), and as much of [`prepare`](Self::prepare),
+/// [`touch`](Self::touch) and [`set`](Self::set) as it needs. A change while it is touched comes by `set`, at a sample that is known, or through a
+/// handle of its own (an atomic, a ring), which takes effect wherever the audio thread happens to be: a game steered so does not replay to the bit.
+/// Positions are metres from uv (0, 0) and run on beyond the surface; where texture coordinates wrap, heights must be the same again after the
+/// surface's width and height, or [`Properties::beyond`] says that they are not.
+///
+/// A combination of other sources gives its [`parts`](Self::parts) instead, and [`shares`](Self::shares) where they do not all get
+/// every touch as it is: preparing, touching and changing are then forwarded here, once for all combinations.
 ///
 /// ```
-/// use asperity_texture::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
+/// use asperity_texture::height_field::{HeightField, PathBlock, Properties, SurfaceBlock, WavelengthBand};
 ///
 /// /// A corrugated sheet along u.
 /// struct Corrugated {
@@ -220,8 +407,9 @@ impl Default for Setup {
 /// }
 ///
 /// impl HeightField for Corrugated {
-///     fn band(&self) -> WavelengthBand {
-///         WavelengthBand { shortest_m: self.wavelength_m, longest_m: self.wavelength_m }
+///     fn properties(&self, _tile_m: [f64; 2]) -> Properties {
+///         let (shortest_m, longest_m) = (self.wavelength_m, self.wavelength_m);
+///         Properties::of(WavelengthBand { shortest_m, longest_m })
 ///     }
 ///
 ///     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -247,150 +435,99 @@ impl Default for Setup {
 ///     first_sample: 0,
 ///     contact: 0,
 ///     slopes: true,
+///     ..PathBlock::default()
 /// };
 /// sheet.sample(&path, &mut out);
 /// assert!((out.height_m[0] - 1e-4).abs() < 1e-12);
 /// ```
 pub trait HeightField: Send + Sync {
-    /// The wavelengths this source represents. Asked when the surface is added, not again: it covers every wavelength that the source can be
-    /// steered to.
-    fn band(&self) -> WavelengthBand;
-
-    /// Gets ready for an engine, before it is sampled, and again when that engine's rate changes; it may allocate. A source made of
-    /// others hands this on. What keeps time or remembers its contacts must take both from here: no contact touches, and
-    /// samples are counted anew.
-    ///
-    /// # Errors
-    /// When the source cannot serve such an engine; the message names the field.
-    fn prepare(&mut self, _setup: &Setup) -> Result<(), DesignError> {
-        Ok(())
-    }
-
-    /// Gets ready to be ridden by a sphere of this radius, m; it may allocate. A source made of others hands this on. One that
-    /// leaves it out is ridden by a point.
-    fn prepare_tip(&mut self, _radius_m: f64) {}
-
-    /// What is sampled from here on is what a sphere of this radius rides on, m; 0 is a point. A radius that was never
-    /// prepared is a point too.
-    fn ride(&mut self, _radius_m: f64) {}
-
-    /// Whether its samples depend on nothing but their places, so that it may be read beside the path as well: what lies under a ball that stands
-    /// in soft ground ([`crate::footprint`]). A source made of others hands this on.
-    fn is_read_beside(&self) -> bool {
-        false
-    }
-
-    /// How far from zero its heights can be, metres; 0 if the source cannot tell.
-    fn reach_m(&self) -> f64 {
-        0.0
-    }
-
-    /// Adds the mean square of the relief that the source really has about each place, at wavelengths up to some
-    /// millimetres, m². The engine's micro-noise fills in what is missing. A source that does not know has relief
-    /// everywhere in its [`band`](Self::band).
-    fn add_local_power(&self, _position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        power_m2.fill(f64::INFINITY);
-    }
-
-    /// What [`add_local_power`](Self::add_local_power) adds to nothing, of a path that lies between the corners of `bounds_m`, least and greatest [u, v]
-    /// ([`bounds`]). A source that sees at once that it is 0 at every place, or `fills_m2` and more, may say so and leave `power_m2` as it is.
-    fn local_power(
-        &self,
-        position_m: &[[f64; 2]],
-        _bounds_m: [[f64; 2]; 2],
-        _fills_m2: f64,
-        power_m2: &mut [f64],
-    ) -> LocalPower {
-        power_m2.fill(0.0);
-        self.add_local_power(position_m, power_m2);
-        LocalPower::Told
-    }
-
-    /// Whether it is hard everywhere, and [`sample`](Self::sample) fills every entry of a block besides slopes that nobody looks at: friction, roughness,
-    /// compliance and answer too. Nobody then fills them before it or lets it give way.
-    fn is_hard_and_told(&self) -> bool {
-        false
-    }
-
-    /// How much higher the ground lies on the mean of four points `reach_m` away, along u and v, than where it is touched, m: above 0
-    /// in a hollow, below 0 on a crest. A source that does not know is flat; one whose samples depend on nothing but their places has
-    /// [`hollow_by_samples_m`].
-    fn hollow_m(&mut self, _touch: &Touch, _reach_m: f64) -> f64 {
-        0.0
-    }
-
-    /// What lies beyond a tile of `tile_m` along u and v.
-    fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
-        Beyond::Same
-    }
-
-    /// The places of a body that the path of the next [`sample`](Self::sample) lies at, m, one a sample; none: the surface is a plane of
-    /// its body. What is cut from a block of stuff is cut there; a source that is a sheet need not mind. A source made of others hands this
-    /// on.
-    fn lie_at(&mut self, _at_m: &[[f64; 3]]) {}
-
-    /// The force at which the surface carries a tip that stands `depth_m` below the untouched surface, N, 0 above it; none where it is hard.
-    fn carries_n(&mut self, _position_m: [f64; 2], _depth_m: f64) -> Option<f64> {
-        None
-    }
+    /// Its properties on a surface of which one tile is `tile_m` along u and v. Read when the surface is added, not again.
+    fn properties(&self, tile_m: [f64; 2]) -> Properties;
 
     /// Fills the first `path.len()` entries of `out`.
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock);
 
-    /// [`sample`](Self::sample) of a path that lies between the corners of `bounds_m`, least and greatest [u, v] ([`bounds`]), where nobody looks at more
-    /// than heights and roughness: a source that [is hard and told](Self::is_hard_and_told) may leave the rest as it is.
-    fn sample_heights(&mut self, path: &PathBlock<'_>, _bounds_m: [[f64; 2]; 2], out: &mut SurfaceBlock) {
-        self.sample(path, out);
+    /// Gets ready for an engine, before it is sampled, and again when that engine's rate changes; it may allocate. A source that keeps
+    /// time or remembers its contacts must take both from here: no contact touches, and samples are counted anew.
+    ///
+    /// # Errors
+    /// When the source cannot serve such an engine; the message names the field.
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
+        prepare_parts(self.parts(), setup)
     }
 
-    /// Tells the source that a contact begins where it is touched, before anything is read for it: what
-    /// was kept of an earlier contact of this number is forgotten.
-    fn land(&mut self, _touch: &Touch) {}
-
-    /// Tells the source how it is touched, whether the contact moves or rests.
-    fn react(&mut self, _touch: &Touch) -> Reaction {
-        Reaction::default()
+    /// Answers a touch.
+    fn touch(&mut self, touch: &Touch) -> Reaction {
+        touch_parts(self, touch)
     }
 
     /// Changes the source at an absolute sample, counted at [`Setup::sample_rate_hz`] as [`PathBlock::first_sample`] is, without a click;
-    /// tells whether the change was meant for this source and acceptable. That nothing clicks is the source's to keep: a new pitch carries on the
-    /// phase of each contact ([`PathBlock::contact`]). A change is any plain value that the source knows by its type: parameters, a factor.
-    /// A source made of others hands on what it does not know.
-    fn change(&mut self, _change: &dyn Any, _sample: u64) -> bool {
-        false
+    /// returns whether the change was meant for this source and acceptable. That nothing clicks is the source's to keep: a new pitch carries
+    /// on the phase of each contact ([`PathBlock::contact`]). A change is any plain value that the source finds by its type: parameters, a factor.
+    fn set(&mut self, change: &dyn Any, sample: u64) -> bool {
+        set_parts(self.parts(), change, sample)
     }
 
-    /// Shows the source, and those that it is made of, to whoever knows their types: after a render, sand is asked for its figures. A
-    /// source that has nothing to say shows nothing.
-    fn visit(&mut self, _see: &mut dyn FnMut(&mut dyn Any)) {}
+    /// The parts of a combination.
+    fn parts(&mut self) -> &mut [Part] {
+        &mut []
+    }
+
+    /// The shares of a combination's parts in a touch; a contact that begins does so in each of them. Each part has the whole touch, unless
+    /// this says otherwise.
+    fn shares(&mut self, touch: &Touch) -> Shares {
+        let count = self.parts().len();
+        std::array::from_fn(|part| (part < count).then_some((part, *touch, 1.0)))
+    }
 }
 
-/// [`HeightField::hollow_m`] from five samples, blurred to an eighth of the reach.
-pub fn hollow_by_samples_m(source: &mut (impl HeightField + ?Sized), touch: &Touch, reach_m: f64) -> f64 {
-    hollow_between_m(touch, reach_m, |path| {
-        let mut out = SurfaceBlock::default();
-        source.sample(path, &mut out);
-        std::array::from_fn(|i| out.height_m[i])
+/// Prepares all parts of a combination.
+///
+/// # Errors
+/// That of the first part that cannot serve the engine.
+pub fn prepare_parts(parts: &mut [Part], setup: &Setup<'_>) -> Result<(), DesignError> {
+    parts.iter_mut().try_for_each(|part| part.prepare(setup))
+}
+
+/// Hands a change to all parts of a combination; returns whether one took it.
+pub fn set_parts(parts: &mut [Part], change: &dyn Any, sample: u64) -> bool {
+    parts.iter_mut().fold(false, |taken, part| part.set(change, sample) | taken)
+}
+
+/// Hands a touch to the parts of a combination as they share it; the sum of their reactions.
+pub fn touch_parts(combination: &mut (impl HeightField + ?Sized), touch: &Touch) -> Reaction {
+    let shares = combination.shares(touch);
+    let parts = combination.parts();
+    shares.into_iter().flatten().fold(Reaction::default(), |sum, (part, touch, weight)| {
+        match parts.get_mut(part) {
+            Some(part) => sum.plus(part.touch(&touch), weight),
+            None => sum,
+        }
     })
 }
 
-/// The same, given the heights along a path of five places.
-pub(crate) fn hollow_between_m(
+/// How much higher the ground lies on the mean of four points `reach_m` away, along u and v, than where it is touched by a tip of this
+/// radius, m: above 0 in a hollow, below 0 on a crest. The ground is blurred to an eighth of the reach. Only of a
+/// [stateless](Properties::is_stateless) source; `room` is overwritten.
+pub fn hollow_m(
+    source: &mut (impl HeightField + ?Sized),
     touch: &Touch,
-    reach_m: f64,
-    heights_m: impl FnOnce(&PathBlock<'_>) -> [f64; 5],
+    (reach_m, tip_radius_m): (f64, f64),
+    room: &mut SurfaceBlock,
 ) -> f64 {
     let [u_m, v_m] = touch.position_m;
     let position_m =
         [[u_m, v_m], [u_m - reach_m, v_m], [u_m + reach_m, v_m], [u_m, v_m - reach_m], [u_m, v_m + reach_m]];
-    let [here_m, about_m @ ..] = heights_m(&PathBlock {
+    let path = PathBlock {
         position_m: &position_m,
         velocity_m_s: &[[0.0; 2]; 5],
         footprint_m: &[0.125 * reach_m; 5],
-        normal_force_n: &[],
         first_sample: touch.sample,
         contact: touch.contact,
-        slopes: false,
-    });
-    0.25 * about_m.iter().sum::<f64>() - here_m
+        heights_only: true,
+        tip_radius_m,
+        ..PathBlock::default()
+    };
+    source.sample(&path, room);
+    0.25 * room.height_m[1..5].iter().sum::<f64>() - room.height_m[0]
 }

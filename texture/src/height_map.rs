@@ -18,13 +18,12 @@
 mod blend;
 mod extent;
 mod sampling;
-mod working;
 
 pub use extent::{Extent, MapError};
 
 use crate::height_field::{
-    Beyond, HeightField, LocalPower, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand,
-    hollow_between_m,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Power, PowerKind, Properties, Setup, SurfaceBlock,
+    WavelengthBand, bounds,
 };
 use crate::local_relief::LocalRelief;
 use crate::raster::Raster;
@@ -32,10 +31,10 @@ use crate::resample::halve;
 use crate::ridden::ridden;
 use crate::spline::{Places, Samples, Spline};
 use crate::wrap::Wrap;
+use asperity_dsp::DesignError;
 use blend::Blend;
 use extent::check;
 use std::sync::Arc;
-pub(crate) use working::Working;
 
 /// Coulomb friction coefficient of a map unless told otherwise: a dry finger on smooth hard material.
 /// Assumed; measured values range from 0.2 to above 1.
@@ -235,25 +234,6 @@ impl Pyramid {
         }
     }
 
-    /// What [`Self::sample_block`] gives at a few places that all have one footprint and no speed, each by itself: for so few the memory of a block
-    /// would have to be made first.
-    fn at_rest<const N: usize>(&self, path: &PathBlock<'_>) -> [f64; N] {
-        let (Some(finest), Some(position_m)) = (self.levels.first(), path.position_m.first_chunk()) else {
-            return [self.constant; N];
-        };
-        let footprint_m = path.footprint_m.first().copied().unwrap_or_default();
-        if is_sharp(footprint_m, finest.texels_per_metre()) {
-            return finest.values(position_m);
-        }
-        let (level, blend) = self.blur(finest, [0.0; 2], footprint_m);
-        let mut values = self.levels[level].values(position_m);
-        let coarser = self.levels.get(level + 1).map_or([0.0; N], |next| next.values(position_m));
-        for (value, coarser) in values.iter_mut().zip(coarser) {
-            *value += blend * (coarser - *value);
-        }
-        values
-    }
-
     /// The level that a footprint asks for, and how much of the next one is blended in.
     #[inline]
     fn blur(&self, finest: &Spline, velocity_m_s: [f64; 2], footprint_m: f64) -> (usize, f64) {
@@ -316,10 +296,35 @@ fn along([x, y]: [f64; 2], [u, v]: [f64; 2]) -> f64 {
 }
 
 impl HeightField for HeightMap {
-    fn band(&self) -> WavelengthBand {
-        self.band
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
+        Properties {
+            reach_m: self.reach_m,
+            beyond: self.beyond(tile_m),
+            is_rigid: true,
+            is_stateless: !self.heights.levels.is_empty(),
+            ..Properties::of(self.band)
+        }
     }
 
+    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
+        self.tip = self.tips.iter().position(|(known_m, _)| *known_m == path.tip_radius_m);
+        self.sample_in(path, path.bounds_m.as_ref(), out);
+        if !path.heights_only {
+            self.tell_the_rest(path.len(), out);
+        }
+        if let Some(full_m2) = path.full_power_m2 {
+            self.write_power(path, full_m2, &mut out.power);
+        }
+    }
+
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
+        setup.tip_radii_m.iter().for_each(|radius_m| self.prepare_tip(*radius_m));
+        Ok(())
+    }
+}
+
+impl HeightMap {
+    /// Makes the map that a sphere of this radius rides on.
     fn prepare_tip(&mut self, radius_m: f64) {
         let known = self.tips.iter().any(|(known_m, _)| *known_m == radius_m);
         let Some(finest) = self.heights.levels.first().filter(|_| radius_m > 0.0 && !known) else { return };
@@ -328,44 +333,14 @@ impl HeightField for HeightMap {
         self.tips.push((radius_m, Pyramid::new(&map, self.extent, self.wrap)));
     }
 
-    fn ride(&mut self, radius_m: f64) {
-        self.tip = self.tips.iter().position(|(known_m, _)| *known_m == radius_m);
-    }
-
-    fn is_read_beside(&self) -> bool {
-        !self.heights.levels.is_empty()
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.reach_m
-    }
-
-    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        if let Some(local) = &self.local {
-            local.add_along(position_m, power_m2);
-        }
-    }
-
-    fn local_power(
-        &self,
-        position_m: &[[f64; 2]],
-        bounds_m: [[f64; 2]; 2],
-        fills_m2: f64,
-        power_m2: &mut [f64],
-    ) -> LocalPower {
-        let Some(local) = &self.local else { return LocalPower::Nothing };
-        local.along(position_m, bounds_m, fills_m2, power_m2)
-    }
-
-    fn is_hard_and_told(&self) -> bool {
-        true
-    }
-
-    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
-        if self.heights.levels.is_empty() {
-            return 0.0;
-        }
-        hollow_between_m(touch, reach_m, |path| self.ridden().at_rest(path))
+    fn write_power(&self, path: &PathBlock<'_>, full_m2: f64, power: &mut Power) {
+        power.kind = match &self.local {
+            None => PowerKind::None,
+            Some(local) => {
+                let bounds_m = path.bounds_m.unwrap_or_else(|| bounds(path.position_m));
+                local.along(path.position_m, bounds_m, full_m2, &mut power.each_m2[..path.len()])
+            }
+        };
     }
 
     fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
@@ -380,14 +355,5 @@ impl HeightField for HeightMap {
             Wrap::Mirror if fits => Beyond::Mirrored,
             Wrap::Repeat | Wrap::Mirror => Beyond::Fresh,
         }
-    }
-
-    fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        self.sample_in(path, None, out);
-        self.tell_the_rest(path.len(), out);
-    }
-
-    fn sample_heights(&mut self, path: &PathBlock<'_>, bounds_m: [[f64; 2]; 2], out: &mut SurfaceBlock) {
-        self.sample_in(path, Some(&bounds_m), out);
     }
 }

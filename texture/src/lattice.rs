@@ -17,7 +17,7 @@
 //! dyadic scales take over (not thinned out, so that any cell size will do), down to its mean.
 
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, SurfaceBlock, Touch, WavelengthBand, hollow_by_samples_m,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Properties, SurfaceBlock, WavelengthBand,
 };
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
@@ -249,23 +249,7 @@ pub(crate) fn prefilter(line: &mut [f64]) {
 }
 
 impl HeightField for Lattice {
-    fn band(&self) -> WavelengthBand {
-        WavelengthBand { shortest_m: 2.0 * self.texel_m, longest_m: self.longest_m }
-    }
-
-    fn is_read_beside(&self) -> bool {
-        true
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.levels[0].iter().fold(0.0, |reach, c| reach.max(c.abs()))
-    }
-
-    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
-        hollow_by_samples_m(self, touch, reach_m)
-    }
-
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
         // A tile repeats if each of its sides is a whole number of cells along both translations.
         let whole = |side: [f64; 2]| {
             self.inverse.iter().all(|row| {
@@ -273,7 +257,14 @@ impl HeightField for Lattice {
                 (cells - cells.round()).abs() < 1e-9 * (1.0 + cells.abs())
             })
         };
-        if whole([tile_m[0], 0.0]) && whole([0.0, tile_m[1]]) { Beyond::Same } else { Beyond::Fresh }
+        let repeats = whole([tile_m[0], 0.0]) && whole([0.0, tile_m[1]]);
+        let band = WavelengthBand { shortest_m: 2.0 * self.texel_m, longest_m: self.longest_m };
+        Properties {
+            reach_m: self.levels[0].iter().fold(0.0, |reach, c| reach.max(c.abs())),
+            beyond: if repeats { Beyond::Same } else { Beyond::Fresh },
+            is_stateless: true,
+            ..Properties::of(band)
+        }
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {

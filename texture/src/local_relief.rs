@@ -8,7 +8,7 @@
 //! it keeps 3·10⁻⁴ at 2 mm. So P is the mean square of what the map has between two texels and about 4 mm, and 0
 //! where it is flat, whatever its resolution.
 
-use crate::height_field::LocalPower;
+use crate::height_field::PowerKind;
 use crate::raster::Raster;
 use crate::tiled::floor;
 use crate::wrap::Wrap;
@@ -64,7 +64,7 @@ impl LocalRelief {
         bounds_m: [[f64; 2]; 2],
         fills_m2: f64,
         power_m2: &mut [f64],
-    ) -> LocalPower {
+    ) -> PowerKind {
         let [low_m, high_m] = bounds_m;
         let ([x, y], [far_x, far_y]) = (self.place(low_m), self.place(high_m));
         if x.abs() < MOST_CELLS && y.abs() < MOST_CELLS {
@@ -74,21 +74,21 @@ impl LocalRelief {
                 let [[a, b], [c, d]] = corners.rows_m2;
                 // What lies between four numbers misses their range by the rounding of its sum at most.
                 if [a, b, c, d].iter().all(|power_m2| *power_m2 >= (1.0 + 1e-12) * fills_m2) {
-                    return LocalPower::Full;
+                    return PowerKind::Full;
                 }
                 if [a, b, c, d] == [0.0; 4] {
-                    return LocalPower::Nothing;
+                    return PowerKind::None;
                 }
                 for (position_m, power_m2) in position_m.iter().zip(power_m2) {
                     let [x, y] = self.place(*position_m);
                     *power_m2 = corners.between(x, y);
                 }
-                return LocalPower::Told;
+                return PowerKind::EachSample;
             }
         }
         power_m2.fill(0.0);
         self.add_along(position_m, power_m2);
-        LocalPower::Told
+        PowerKind::EachSample
     }
 
     #[inline(always)]
@@ -200,9 +200,9 @@ mod tests {
                 for (at, power_m2) in way.iter().zip(block) {
                     let alone_m2 = ridge.at(*at);
                     match how {
-                        LocalPower::Nothing => assert_eq!(alone_m2, 0.0, "{at:?}"),
-                        LocalPower::Full => assert!(alone_m2 >= fills_m2, "{at:?}"),
-                        LocalPower::Told => assert_eq!(power_m2.to_bits(), alone_m2.to_bits(), "{at:?}"),
+                        PowerKind::None => assert_eq!(alone_m2, 0.0, "{at:?}"),
+                        PowerKind::Full => assert!(alone_m2 >= fills_m2, "{at:?}"),
+                        PowerKind::EachSample => assert_eq!(power_m2.to_bits(), alone_m2.to_bits(), "{at:?}"),
                     }
                 }
             }

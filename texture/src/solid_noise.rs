@@ -32,7 +32,7 @@ pub use parameters::{ForceDirection, MAX_OCTAVES, NoiseModule, SolidNoiseParamet
 
 use crate::fade::Fade;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, HeightField, MAX_BLOCK, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch,
 };
 use asperity_dsp::DesignError;
 use asperity_dsp::gradient_noise_3d::{GradientNoise3d, Noise3Batch};
@@ -63,9 +63,6 @@ pub struct SolidNoise {
     cut: SolidCut,
     /// Length of a sample, s.
     step_s: f64,
-    /// Places of a body that the next path lies at, and how many.
-    lies_at_m: [[f64; 3]; MAX_BLOCK],
-    lies: usize,
 }
 
 impl SolidNoise {
@@ -83,8 +80,6 @@ impl SolidNoise {
             lattices: [core::array::from_fn(|i| lattice(0, i)), core::array::from_fn(|i| lattice(1, i))],
             cut: SolidCut::SLANTED,
             step_s: 1.0 / Setup::default().sample_rate_hz,
-            lies_at_m: [[0.0; 3]; MAX_BLOCK],
-            lies: 0,
         })
     }
 
@@ -104,7 +99,11 @@ impl SolidNoise {
     ///
     /// # Errors
     /// When a parameter is out of its range; nothing changes then.
-    pub fn set(&mut self, parameters: SolidNoiseParameters, sample: u64) -> Result<(), DesignError> {
+    pub fn set_parameters(
+        &mut self,
+        parameters: SolidNoiseParameters,
+        sample: u64,
+    ) -> Result<(), DesignError> {
         parameters.check()?;
         self.parameters.set(parameters, sample);
         Ok(())
@@ -168,9 +167,9 @@ impl SolidNoise {
     ) {
         let flows = parameters.flow_m_s != [0.0; 3];
         for (i, point_m) in point_m.iter_mut().enumerate().take(path.len()) {
-            *point_m = match self.lies_at_m.get(i) {
-                Some(at_m) if i < self.lies => SolidCut::in_body(*at_m),
-                _ => self.cut.at(path.position_m[i]),
+            *point_m = match path.at_m.get(i) {
+                Some(at_m) => SolidCut::in_body(*at_m),
+                None => self.cut.at(path.position_m[i]),
             };
             if flows {
                 let flown_m = self.flown_m(parameters, path.first_sample + i as u64);
@@ -232,22 +231,15 @@ fn resolved(footprint_cells: f64) -> f64 {
 }
 
 impl HeightField for SolidNoise {
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
         self.parameters.prepare(setup.sample_rate_hz);
         self.step_s = 1.0 / setup.sample_rate_hz;
         Ok(())
     }
 
-    fn band(&self) -> WavelengthBand {
-        self.parameters.target().band()
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.parameters.target().reach_m()
-    }
-
-    fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
-        Beyond::Fresh
+    fn properties(&self, _tile_m: [f64; 2]) -> Properties {
+        let target = self.parameters.target();
+        Properties { reach_m: target.reach_m(), beyond: Beyond::Fresh, ..Properties::of(target.band()) }
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -275,16 +267,10 @@ impl HeightField for SolidNoise {
         if path.slopes {
             out.push_no_slope(n);
         }
-        self.lies = 0;
-    }
-
-    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
-        self.lies = at_m.len().min(MAX_BLOCK);
-        self.lies_at_m[..self.lies].copy_from_slice(&at_m[..self.lies]);
     }
 
     /// What flows is felt by a resting finger.
-    fn react(&mut self, _touch: &Touch) -> Reaction {
+    fn touch(&mut self, _touch: &Touch) -> Reaction {
         Reaction {
             stirs: self.parameters.values().iter().any(|p| p.flow_m_s != [0.0; 3]),
             ..Reaction::default()
@@ -292,8 +278,8 @@ impl HeightField for SolidNoise {
     }
 
     /// Takes [`SolidNoiseParameters`].
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+    fn set(&mut self, change: &dyn Any, sample: u64) -> bool {
         let parameters = change.downcast_ref::<SolidNoiseParameters>();
-        parameters.is_some_and(|parameters| self.set(*parameters, sample).is_ok())
+        parameters.is_some_and(|parameters| self.set_parameters(*parameters, sample).is_ok())
     }
 }

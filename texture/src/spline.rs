@@ -13,6 +13,7 @@ mod place;
 #[cfg(test)]
 mod tests;
 mod vector;
+mod working;
 
 use crate::raster::Raster;
 use crate::wrap::Wrap;
@@ -22,6 +23,7 @@ pub use cell::Samples;
 use place::Axis;
 pub use place::Places;
 use vector::{Four, Rows, Vector};
+pub(crate) use working::Working;
 
 /// The pole of the prefilter, √3 − 2.
 const POLE: f64 = -0.267_949_192_431_122_7;
@@ -96,18 +98,6 @@ impl Spline {
             s => self.sample_block_in_lanes::<4, _, _, SLOPES>(Four(s), Four(s), (position_m, bounds_m), places, out),
             wide s => self.sample_block_in_lanes::<8, _, _, SLOPES>(vector::Eight(s), Four(s), (position_m, bounds_m), places, out)
         );
-    }
-
-    /// The values at a few positions, with the bits of [`Self::sample_block`].
-    pub fn values<const N: usize>(&self, position_m: &[[f64; 2]; N]) -> [f64; N] {
-        at_level!(self.level.at_most_256_bits(), s => {
-            let mut values = [0.0; N];
-            for (value, [x_m, y_m]) in values.iter_mut().zip(position_m) {
-                let (x, y) = (self.axes[0].place(*x_m), self.axes[1].place(*y_m));
-                *value = self.cell(Four(s), x.texel, y.texel).value(Four(s), [x.fraction, y.fraction]);
-            }
-            values
-        })
     }
 
     /// [`Self::sample_block`], N positions side by side. A slow finger stays in a cell for many samples, whose

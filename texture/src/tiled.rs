@@ -9,12 +9,10 @@
 //! weights add up to 1 in height, so whatever does repeat (a map in a sum) stays what it is; uncorrelated relief is
 //! 3 dB lower in the middle of the blend.
 
-use crate::combine::{Source, add};
+use crate::combine::Source;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, HeightField, MAX_BLOCK, Part, PathBlock, PowerKind, Properties, Shares, SurfaceBlock, Touch,
 };
-use asperity_dsp::DesignError;
-use std::any::Any;
 
 /// A place in a tile, and how much of it is already the next tile's beginning.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -123,20 +121,18 @@ pub(crate) fn floor(x: f64) -> f64 {
 
 /// A source that never repeats, made to repeat.
 pub struct Tiled {
-    source: Source,
+    source: [Source; 1],
     axes: [TileAxis; 2],
     part: SurfaceBlock,
-    /// The next path lies at places of a body, which need no tiles.
-    has_places: bool,
 }
 
 impl Tiled {
     /// A tile of `tile_m` along u and v; ∞ leaves an axis as it is.
     #[must_use]
     pub fn new(source: Source, tile_m: [f64; 2]) -> Self {
-        let longest_m = source.band().longest_m.max(1e-6);
+        let longest_m = source.properties(tile_m).band.longest_m.max(1e-6);
         let axes = tile_m.map(|length_m| TileAxis::new(length_m, longest_m));
-        Self { source, axes, part: SurfaceBlock::default(), has_places: false }
+        Self { source: [source], axes, part: SurfaceBlock::default() }
     }
 
     fn places(&self, position_m: [f64; 2]) -> [Place; 2] {
@@ -162,74 +158,32 @@ fn share(places: &[Place; 2], copy: [usize; 2]) -> (f64, [f64; 2]) {
 }
 
 impl HeightField for Tiled {
-    fn prepare_tip(&mut self, radius_m: f64) {
-        self.source.prepare_tip(radius_m);
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
+        let own = self.source[0].properties(tile_m);
+        Properties { beyond: Beyond::Same, is_rigid: false, ..own }
     }
 
-    fn ride(&mut self, radius_m: f64) {
-        self.source.ride(radius_m);
+    fn parts(&mut self) -> &mut [Part] {
+        &mut self.source
     }
 
-    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
-        self.has_places = !at_m.is_empty();
-        self.source.lie_at(at_m);
-    }
-
-    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        let position_m = self.places(position_m).map(|place| place.at_m);
-        self.source.carries_n(position_m, depth_m)
-    }
-
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.source.prepare(setup)
-    }
-
-    fn band(&self) -> WavelengthBand {
-        self.source.band()
-    }
-
-    fn is_read_beside(&self) -> bool {
-        self.source.is_read_beside()
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.source.reach_m()
-    }
-
-    fn add_local_power(&self, position_m: &[[f64; 2]], power_m2: &mut [f64]) {
-        for (position_m, power_m2) in position_m.iter().zip(power_m2) {
-            let places = self.places(*position_m);
-            for copy in COPIES {
-                let (weight, _) = share(&places, copy);
-                let mut own_m2 = [0.0];
-                if weight > 0.0 {
-                    self.source.add_local_power(&[self.back(&places, copy)], &mut own_m2);
-                    *power_m2 += weight * own_m2[0];
-                }
-            }
-        }
-    }
-
-    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
+    /// Every copy that meets there is touched.
+    fn shares(&mut self, touch: &Touch) -> Shares {
         let places = self.places(touch.position_m);
-        let part = |copy: &[usize; 2]| {
-            let (weight, _) = share(&places, *copy);
-            let position_m = self.back(&places, *copy);
-            (weight, Touch { position_m, ..*touch })
-        };
-        let parts = COPIES.map(|copy| part(&copy));
-        let present = parts.iter().filter(|(weight, _)| *weight > 0.0);
-        present.map(|(weight, touch)| weight * self.source.hollow_m(touch, reach_m)).sum()
-    }
-
-    fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
-        Beyond::Same
+        let mut shares = Shares::default();
+        for (to, copy) in shares.iter_mut().zip(COPIES) {
+            let (weight, _) = share(&places, copy);
+            let position_m = self.back(&places, copy);
+            *to = (weight > 0.0).then_some((0, Touch { position_m, ..*touch }, weight));
+        }
+        shares
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let n = path.len().min(MAX_BLOCK);
-        if std::mem::take(&mut self.has_places) {
-            return self.source.sample(path, out);
+        if !path.at_m.is_empty() {
+            // Places of a body need no tiles.
+            return self.source[0].sample(path, out);
         }
         let mut places = [[Place::default(); 2]; MAX_BLOCK];
         let mut position_m = [[0.0; 2]; MAX_BLOCK];
@@ -237,7 +191,7 @@ impl HeightField for Tiled {
             places[i] = self.places(path.position_m[i]);
             position_m[i] = places[i].map(|place| place.at_m);
         }
-        self.source.sample(&PathBlock { position_m: &position_m[..n], ..*path }, out);
+        self.source[0].sample(&PathBlock { position_m: &position_m[..n], bounds_m: None, ..*path }, out);
         let blended = |axis: usize| places[..n].iter().any(|place| place[axis].weight > 0.0);
         let meets = [blended(0), blended(1)];
         if meets == [false; 2] {
@@ -245,6 +199,8 @@ impl HeightField for Tiled {
         }
         let here = out.clone();
         out.clear(n);
+        out.power.kind = PowerKind::EachSample;
+        out.power.each_m2[..n].fill(0.0);
         for copy in COPIES {
             if (copy[0] == 1 && !meets[0]) || (copy[1] == 1 && !meets[1]) {
                 continue;
@@ -255,7 +211,8 @@ impl HeightField for Tiled {
                 for i in 0..n {
                     position_m[i] = self.back(&places[i], copy);
                 }
-                self.source.sample(&PathBlock { position_m: &position_m[..n], ..*path }, &mut self.part);
+                let back = PathBlock { position_m: &position_m[..n], bounds_m: None, ..*path };
+                self.source[0].sample(&back, &mut self.part);
                 &self.part
             };
             for (i, places) in places[..n].iter().enumerate() {
@@ -267,6 +224,9 @@ impl HeightField for Tiled {
                 out.roughness[i] += weight * part.roughness[i];
                 out.friction[i] += weight * part.friction[i];
                 out.compliance_m_n[i] += weight * part.compliance_m_n[i];
+                if weight > 0.0 {
+                    out.power.each_m2[i] += weight * part.power.at(i);
+                }
                 if !part.answer.is_empty() {
                     let mut answer = part.answer.at(i);
                     // The slope of the blend is none of the texture's.
@@ -277,26 +237,6 @@ impl HeightField for Tiled {
                 }
             }
         }
-    }
-
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        let places = self.places(touch.position_m);
-        COPIES.into_iter().fold(Reaction::default(), |sum, copy| {
-            let (weight, _) = share(&places, copy);
-            if weight == 0.0 {
-                return sum;
-            }
-            let position_m = self.back(&places, copy);
-            add(sum, self.source.react(&Touch { position_m, ..*touch }), weight)
-        })
-    }
-
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
-        self.source.change(change, sample)
-    }
-
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        self.source.visit(see);
     }
 }
 
@@ -320,6 +260,7 @@ mod tests {
                     first_sample: 0,
                     contact: 0,
                     slopes: true,
+                    ..PathBlock::default()
                 },
                 &mut out,
             );

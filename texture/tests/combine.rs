@@ -49,6 +49,7 @@ fn a_sum_is_the_sum_of_its_parts_in_height_slope_and_force() {
         first_sample: 0,
         contact: 0,
         slopes: true,
+        ..PathBlock::default()
     };
     let force = |mut s: Source| {
         let mut out = SurfaceBlock::default();
@@ -81,8 +82,8 @@ fn heights_and_slopes(mut source: Source) -> Vec<[f64; 3]> {
 fn a_crossfade_goes_from_one_source_to_the_other_without_a_step_above_minus_60_db() {
     let fade = || {
         let mut fade = Crossfade::new(flat(0.0), flat(1e-3));
-        assert!(fade.change(&CrossfadeTo(1.0), 700));
-        assert!(!fade.change(&CrossfadeTo(2.0), 700));
+        assert!(fade.set(&CrossfadeTo(1.0), 700));
+        assert!(!fade.set(&CrossfadeTo(2.0), 700));
         fade
     };
     let line = heights(fade());
@@ -93,7 +94,7 @@ fn a_crossfade_goes_from_one_source_to_the_other_without_a_step_above_minus_60_d
     // Before and after it is exactly one of the two; any split into blocks gives the same bits.
     let made = || {
         let mut fade = Crossfade::new(solid(SolidMaterial::Wood), solid(SolidMaterial::Gravel));
-        assert!(fade.change(&CrossfadeTo(1.0), 701));
+        assert!(fade.set(&CrossfadeTo(1.0), 701));
         fade
     };
     let line = heights(made());
@@ -105,16 +106,16 @@ fn a_crossfade_goes_from_one_source_to_the_other_without_a_step_above_minus_60_d
 #[test]
 fn a_scale_multiplies_and_changes_without_a_step() {
     let mut scale = Scale::new(flat(1e-3), 2.0).unwrap();
-    assert!(scale.change(&ScaleTo(0.5), 100));
-    assert!(!scale.change(&ScaleTo(f64::NAN), 100));
+    assert!(scale.set(&ScaleTo(0.5), 100));
+    assert!(!scale.set(&ScaleTo(f64::NAN), 100));
     let line = heights(scale);
     assert!((line[0] - 2e-3).abs() < 1e-15 && (line[8999] - 5e-4).abs() < 1e-15);
     let step = line.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
     assert!(20.0 * (step / 2e-3).log10() < -60.0);
     // Other messages reach the source inside.
     let mut scale = Scale::new(solid(SolidMaterial::Sand), 1.0).unwrap();
-    assert!(scale.change(&SolidMaterial::Wood.parameters(), 0));
-    assert!(!scale.change(&CrossfadeTo(0.5), 0));
+    assert!(scale.set(&SolidMaterial::Wood.parameters(), 0));
+    assert!(!scale.set(&CrossfadeTo(0.5), 0));
 }
 
 #[test]
@@ -166,7 +167,7 @@ fn a_band_split_takes_long_waves_from_one_source_and_short_ones_from_the_other()
     let wrong = heights(BandSplit::new(wave(16, 0.001), wave(64, 0.04), 0.005).unwrap());
     assert!(rms(&right) > 8e-5 && rms(&wrong) < 1.5e-5, "{} {}", rms(&right), rms(&wrong));
     let mut split = BandSplit::new(flat(1e-3), flat(0.0), 0.005).unwrap();
-    assert!(split.change(&BandWeights([0.25, 1.0]), 0));
+    assert!(split.set(&BandWeights([0.25, 1.0]), 0));
     let line = heights(split);
     assert!((line[8999] - 2.5e-4).abs() < 1e-15);
 }

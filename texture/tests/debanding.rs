@@ -26,6 +26,7 @@ fn heights_m(map: &mut HeightMap, start_m: [f64; 2], velocity_m_s: [f64; 2], sam
             first_sample: first as u64,
             contact: 0,
             slopes: false,
+            ..PathBlock::default()
         };
         map.sample(&path, &mut out);
         heights_m.extend_from_slice(&out.height_m[..position_m.len()]);

@@ -42,6 +42,7 @@ fn along_at(
             first_sample: seen.len() as u64,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         map.sample(&path, &mut out);
         seen.extend((0..position_m.len()).map(|n| Seen {
@@ -239,6 +240,7 @@ fn a_stroke_that_gathers_speed_is_blurred_the_same_wherever_it_is_cut() {
                 first_sample: start as u64,
                 contact: 0,
                 slopes: true,
+                ..PathBlock::default()
             };
             map.sample(&path, &mut out);
             heights.extend((0..cut.len()).map(|n| (out.height_m[n], out.gradient[n], out.roughness[n])));
@@ -292,13 +294,13 @@ fn the_blur_sets_in_smoothly_with_speed() {
 #[test]
 fn a_constant_map_has_no_band_and_other_maps_have_theirs() {
     let flat = HeightMap::flat(EXTENT, 0.7).unwrap();
-    assert_eq!(flat.band(), WavelengthBand::EMPTY);
+    assert_eq!(flat.properties([1.0; 2]).band, WavelengthBand::EMPTY);
     let grey = HeightMap::new(&Raster::constant(16, 16, 0.5), EXTENT, Wrap::Repeat).unwrap();
-    assert_eq!(grey.band(), WavelengthBand::EMPTY);
+    assert_eq!(grey.properties([1.0; 2]).band, WavelengthBand::EMPTY);
     let seen = along(&mut flat.clone(), &[[0.1, 0.2]], [0.1, 0.0], 64)[0];
     assert_eq!((seen.height_m, seen.gradient, seen.roughness), (0.0, [0.0; 2], 0.7));
     let map = HeightMap::new(&Raster::from_fn(100, 50, |x, _| x as f64), EXTENT, Wrap::Clamp).unwrap();
-    let band = map.band();
+    let band = map.properties([1.0; 2]).band;
     assert!((band.shortest_m - 2.8e-3).abs() < 1e-12 && band.longest_m == 0.14, "{band:?}");
 }
 
@@ -351,6 +353,7 @@ fn heights_are_the_same_bits_whether_or_not_anybody_asks_for_slopes() {
                     first_sample: start as u64,
                     contact: 0,
                     slopes,
+                    ..PathBlock::default()
                 };
                 let (mut asked, mut not_asked) = (SurfaceBlock::default(), SurfaceBlock::default());
                 not_asked.gradient = [untouched; MAX_BLOCK];

@@ -124,7 +124,7 @@ fn impossible_lattices_are_refused_by_name() {
     let mut hole = cell.clone();
     hole.values[3] = f64::NAN;
     assert_eq!(Lattice::new(&hole, T1, T2).unwrap_err().field, "cell.values");
-    assert!(Lattice::new(&cell, T1, T2).unwrap().band().shortest_m > 0.0);
+    assert!(Lattice::new(&cell, T1, T2).unwrap().properties([1.0; 2]).band.shortest_m > 0.0);
 }
 
 // scipy.ndimage.map_coordinates(order=3, mode="grid-wrap"); tests/independent/lattice.py.

@@ -57,14 +57,15 @@ fn heap_operations(source: &mut Source, change: &dyn Any) -> u64 {
         }
         let sample = 64 * block;
         if block % 100 == 50 {
-            source.change(change, sample);
+            source.set(change, sample);
         }
-        source.react(&Touch {
+        source.touch(&Touch {
             contact: 0,
             sample,
             position_m: position[0],
             velocity_m_s: [0.0441, 0.0],
             normal_force_n: 0.5,
+            ..Touch::default()
         });
         source.sample(
             &PathBlock {
@@ -75,6 +76,7 @@ fn heap_operations(source: &mut Source, change: &dyn Any) -> u64 {
                 first_sample: sample,
                 contact: 0,
                 slopes: true,
+                ..PathBlock::default()
             },
             &mut out,
         );

@@ -38,6 +38,7 @@ fn stroke(raster: &Raster, len: usize) -> Vec<f64> {
             first_sample: heights.len() as u64,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         map.sample(&path, &mut out);
         heights.extend_from_slice(&out.height_m[..position_m.len()]);
@@ -188,6 +189,7 @@ fn the_coin_has_its_millimetres() {
             first_sample: 0,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         map.sample(&path, &mut out);
         let expected = coin.raster.at(x, y) * 350.987e-6;

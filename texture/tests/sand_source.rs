@@ -2,7 +2,9 @@
 
 use crate::common;
 
-use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch};
+use asperity_texture::height_field::{
+    HeightField, MAX_BLOCK, PathBlock, Reaction, SurfaceBlock, Touch, TouchKind,
+};
 use asperity_texture::raster::Raster;
 use asperity_texture::sand::{SandDesign, SandLaw, SandSource, Tool};
 use common::{bits, rms};
@@ -38,8 +40,9 @@ fn play(
                 position_m: position(n),
                 velocity_m_s: velocity,
                 normal_force_n: force_n,
+                ..Touch::default()
             };
-            each(&source.react(&touch));
+            each(&source.touch(&touch));
         }
         let to_grid = MAX_BLOCK - (sample % MAX_BLOCK as u64) as usize;
         let length = lengths[turn % lengths.len()].min(to_grid).min(samples - n);
@@ -53,11 +56,18 @@ fn play(
             first_sample: sample,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         source.sample(&block, &mut out);
         heights.extend_from_slice(&out.height_m[..length]);
     }
     heights
+}
+
+/// The force that carries a tip at a depth, N.
+fn carries_n(sand: &mut SandSource, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
+    let kind = TouchKind::Stands { depth_m };
+    sand.touch(&Touch { kind, position_m, ..Touch::default() }).carries_n
 }
 
 #[test]
@@ -127,12 +137,13 @@ fn a_finger_that_was_lifted_is_put_down_again_and_not_dragged_across() {
         let mut sand = SandSource::synchronous(&design(), 1).unwrap();
         let tap = |sand: &mut SandSource, first: u64, u: f64| {
             for k in 0..40 {
-                sand.react(&Touch {
+                sand.touch(&Touch {
                     contact: 0,
                     sample: first + 64 * k,
                     position_m: [u, 0.05],
                     velocity_m_s: [0.0; 2],
                     normal_force_n: 3.0,
+                    ..Touch::default()
                 });
             }
             first + 64 * 40
@@ -216,10 +227,11 @@ fn the_force_of_another_law_comes_without_a_step() {
         position_m: [0.05, 0.05],
         velocity_m_s: [0.08, 0.0],
         normal_force_n: 1.0,
+        ..Touch::default()
     };
     for sample in 0..20_000 {
         if sample == 5000 {
-            assert!(sand.change(&SandLaw { drag_s_per_m: 200.0, ..SandLaw::default() }, sample));
+            assert!(sand.set(&SandLaw { drag_s_per_m: 200.0, ..SandLaw::default() }, sample));
         }
         forces.push(pushed(&mut sand, &touch(sample))[0]);
     }
@@ -232,8 +244,8 @@ fn the_force_of_another_law_comes_without_a_step() {
 fn another_law_is_taken_at_run_time_and_an_impossible_one_is_not() {
     let mut sand = SandSource::synchronous(&design(), 1).unwrap();
     let wet = SandLaw { wetness: 1.0, ..SandLaw::default() };
-    assert!(sand.change(&wet, 0));
-    assert!(!sand.change(&SandLaw { drag_s_per_m: -1.0, ..wet }, 0));
+    assert!(sand.set(&wet, 0));
+    assert!(!sand.set(&SandLaw { drag_s_per_m: -1.0, ..wet }, 0));
     assert_eq!(sand.simulation().unwrap().law().wetness, 1.0);
     let touch = Touch {
         contact: 0,
@@ -241,6 +253,7 @@ fn another_law_is_taken_at_run_time_and_an_impossible_one_is_not() {
         position_m: [0.05; 2],
         velocity_m_s: [0.08, 0.0],
         normal_force_n: 1.0,
+        ..Touch::default()
     };
     assert!((pushed(&mut sand, &touch)[0] + 1.6).abs() < 1e-12);
 }
@@ -255,6 +268,7 @@ fn pushed(sand: &mut SandSource, touch: &Touch) -> [f64; 2] {
         first_sample: touch.sample,
         contact: touch.contact,
         slopes: true,
+        ..PathBlock::default()
     };
     let mut out = SurfaceBlock::default();
     sand.sample(&path, &mut out);
@@ -271,9 +285,16 @@ fn the_drag_is_the_document_s_in_any_direction_and_a_resting_finger_is_not_pushe
             let t = k as f64 / RATE;
             let position_m = [0, 1].map(|a| 0.05 + velocity[a] * t);
             let (sample, normal_force_n) = (k, force);
-            let touch = Touch { contact: 0, sample, position_m, velocity_m_s: velocity, normal_force_n };
+            let touch = Touch {
+                contact: 0,
+                sample,
+                position_m,
+                velocity_m_s: velocity,
+                normal_force_n,
+                ..Touch::default()
+            };
             if k % 64 == 0 {
-                sand.react(&touch);
+                sand.touch(&touch);
             }
             let sideways = pushed(&mut sand, &touch);
             assert!((0..2).all(|a| (sideways[a] + 20.0 * velocity[a] * force).abs() < 1e-12), "{sideways:?}");
@@ -287,13 +308,13 @@ fn a_tip_is_carried_by_the_law_at_its_depth_below_the_sand_as_it_lies() {
         let bed = SandDesign { law, ..design() };
         let mut sand = SandSource::synchronous(&bed, 1).unwrap();
         for depth_m in [-0.01, 0.0, 0.001, 0.003, 0.008] {
-            let n = sand.carries_n([0.05, 0.05], depth_m).unwrap();
+            let n = carries_n(&mut sand, [0.05, 0.05], depth_m).unwrap();
             assert!((n - law.force_n(depth_m)).abs() <= 0.01 * law.force_n(depth_m), "{depth_m}: {n}");
         }
         // Where the bed is 2 mm lower there is 2 mm less of it to stand in.
         sand.shape(|_, _| bed.depth_m - 0.002);
-        assert_eq!(sand.carries_n([0.05, 0.05], 0.002), Some(0.0));
-        let n = sand.carries_n([0.05, 0.05], 0.005).unwrap();
+        assert_eq!(carries_n(&mut sand, [0.05, 0.05], 0.002), Some(0.0));
+        let n = carries_n(&mut sand, [0.05, 0.05], 0.005).unwrap();
         assert!((n / law.force_n(0.003) - 1.0).abs() < 1e-4, "{n}");
     }
 }
@@ -338,9 +359,10 @@ fn a_contact_lands_on_the_sand_as_it_lies_whether_that_is_simulated_here_or_else
             position_m: [u, 0.05],
             velocity_m_s: [0.0; 2],
             normal_force_n: 1.0,
+            ..Touch::default()
         };
         let [a, b] = [&mut here, &mut elsewhere].map(|sand| {
-            sand.land(&touch);
+            sand.touch(&Touch { kind: TouchKind::Begins, ..touch });
             let path = PathBlock {
                 position_m: &[touch.position_m],
                 velocity_m_s: &[[0.0; 2]],
@@ -349,12 +371,13 @@ fn a_contact_lands_on_the_sand_as_it_lies_whether_that_is_simulated_here_or_else
                 first_sample: 0,
                 contact: 0,
                 slopes: false,
+                ..PathBlock::default()
             };
             let mut out = SurfaceBlock::default();
             sand.sample(&path, &mut out);
             out.height_m[0]
         });
-        let carried = [&mut here, &mut elsewhere].map(|sand| sand.carries_n([u, 0.05], 0.003).unwrap());
+        let carried = [&mut here, &mut elsewhere].map(|sand| carries_n(sand, [u, 0.05], 0.003).unwrap());
         println!("u = {u}: {a:.6} m here, {b:.6} m elsewhere; {carried:.3?} N");
         assert!((a - b).abs() < 5e-5, "{a} {b}");
         assert!((carried[0] - carried[1]).abs() < 0.03 * carried[0], "{carried:?}");

@@ -74,8 +74,8 @@ fn any_split_into_blocks_gives_the_same_bits_also_across_a_change() {
     let run = |lengths: &[usize]| {
         let mut source = made(SolidMaterial::Wood);
         // The engine splits blocks at messages, so a change always meets the start of a block.
-        assert!(source.change(&SolidMaterial::Gravel.parameters(), 1001));
-        assert!(source.change(&SolidMaterial::Sand.parameters(), 3003));
+        assert!(source.set(&SolidMaterial::Gravel.parameters(), 1001));
+        assert!(source.set(&SolidMaterial::Sand.parameters(), 3003));
         stroke.heights(&mut source, lengths)
     };
     let whole = bits(&run(&[64]));
@@ -104,6 +104,7 @@ fn felt(source: &mut SolidNoise, first_sample: u64, normal_force_n: f64) -> Vec<
         first_sample,
         contact: 0,
         slopes: true,
+        ..PathBlock::default()
     };
     let mut out = SurfaceBlock::default();
     source.sample(&path, &mut out);
@@ -125,7 +126,7 @@ fn a_block_that_flows_is_felt_by_a_resting_tool_as_if_that_were_moving_and_keeps
     let still = SolidNoise::new(parameters, 7).unwrap();
     parameters.flow_m_s = [0.08, -0.03, 0.0];
     let mut flows = SolidNoise::new(parameters, 7).unwrap();
-    flows.prepare(&Setup { sample_rate_hz: RATE, voices: 1 }).unwrap();
+    flows.prepare(&Setup { sample_rate_hz: RATE, voices: 1, tip_radii_m: &[] }).unwrap();
     for block in [0, 100, 700] {
         for (i, force) in felt(&mut flows, 64 * block, 0.5).iter().enumerate() {
             let t = (64 * block + i as u64) as f64 / RATE;
@@ -133,13 +134,19 @@ fn a_block_that_flows_is_felt_by_a_resting_tool_as_if_that_were_moving_and_keeps
             assert!((force[0] - wanted[0]).abs() < 1e-6, "{force:?} {wanted:?}");
         }
     }
-    let touch =
-        Touch { contact: 0, sample: 0, position_m: [0.0; 2], velocity_m_s: [0.0; 2], normal_force_n: 0.5 };
-    assert!(flows.react(&touch).stirs && !still.clone().react(&touch).stirs);
+    let touch = Touch {
+        contact: 0,
+        sample: 0,
+        position_m: [0.0; 2],
+        velocity_m_s: [0.0; 2],
+        normal_force_n: 0.5,
+        ..Touch::default()
+    };
+    assert!(flows.touch(&touch).stirs && !still.clone().touch(&touch).stirs);
     // Out of the surface it boils in its place.
     parameters.flow_m_s = [0.0, 0.0, 0.05];
     let mut boils = SolidNoise::new(parameters, 7).unwrap();
-    boils.prepare(&Setup { sample_rate_hz: RATE, voices: 1 }).unwrap();
+    boils.prepare(&Setup { sample_rate_hz: RATE, voices: 1, tip_radii_m: &[] }).unwrap();
     assert!(felt(&mut boils, 0, 0.5)[0] == felt(&mut still.clone(), 0, 0.5)[0]);
     assert!(felt(&mut boils, 6400, 0.5)[0] != felt(&mut boils, 0, 0.5)[0]);
 }
@@ -195,8 +202,8 @@ fn no_change_of_parameters_makes_a_step_above_minus_60_db() {
                 let at = [0.0007 * f64::from(place), 0.011];
                 let stroke = Stroke::new(at, [0.0; 2], rate, (0.2 * rate) as usize);
                 let mut source = SolidNoise::new(from.parameters(), 7).unwrap();
-                source.prepare(&Setup { sample_rate_hz: rate, voices: 1 }).unwrap();
-                assert!(source.change(&change, 500));
+                source.prepare(&Setup { sample_rate_hz: rate, voices: 1, tip_radii_m: &[] }).unwrap();
+                assert!(source.set(&change, 500));
                 let heights = stroke.heights(&mut source, &[64]);
                 let step = heights.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
                 // The signal: what a stroke over the weaker of the two surfaces peaks at.
@@ -247,7 +254,7 @@ fn impossible_parameters_are_refused_by_name_and_change_nothing() {
         let mut parameters = before;
         spoil(&mut parameters);
         assert_eq!(SolidNoise::new(parameters, 1).unwrap_err().field, field);
-        assert!(!source.change(&parameters, 10));
+        assert!(!source.set(&parameters, 10));
         assert_eq!(source.parameters(), before);
     }
 }

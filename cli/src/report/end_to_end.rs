@@ -101,7 +101,8 @@ impl Reference {
     /// What is heard at each of the engine's samples, so much later, s.
     pub fn heard(&self, later_s: f64) -> Vec<f64> {
         let later = later_s * SAMPLE_RATE_HZ * INNER as f64;
-        (0..self.heard.len() / INNER).map(|n| between(&self.heard, (n * INNER) as f64 - later)).collect()
+        let at = |n: usize| (n * INNER) as f64 + LATE_SAMPLES - later;
+        (0..self.heard.len() / INNER).map(|n| between(&self.heard, at(n))).collect()
     }
 }
 
@@ -117,37 +118,40 @@ pub fn contact_of(take: &Take) -> [Vec<f64>; 2] {
     [take.pad_m.iter().step_by(every).copied().collect(), (0..count).map(mean).collect()]
 }
 
-/// A body under impulses as the tap tells them, in f64 and closed form.
+/// A body under impulses as the tap shows them, in f64, [`LATE_SAMPLES`] late.
 ///
-/// An impulse is what the force was in the step that ends at its sample, [`LATE_SAMPLES`] late and spread by a cubic B-spline: the
-/// engine's banks undo the spline and its delay, and so does this one.
+/// An impulse is the force of the step that ends at its sample, spread by a cubic B-spline and its delay; each mode undoes the spline. h₀ is
+/// the mode's continuous integral less the other samples of its response, so that a slow force is answered exactly whatever the phase.
 fn rung(impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
     let model = plate();
     let mut out = vec![0.0; impulse_n_s.len()];
     for mode in &model.modes {
         let (decay, angle) = (mode.decay_per_s / rate_hz, TAU * mode.frequency_hz / rate_hz);
-        let spline = ((0.5 * angle).sin() / (0.5 * angle)).powi(4);
-        let gain = mode.amplitude / model.impulse_n_s / spline;
-        let turn = |samples: f64, [re, im]: [f64; 2]| {
-            let (keep, (sin, cos)) = ((-samples * decay).exp(), (samples * angle).sin_cos());
-            [keep * (re * cos - im * sin), keep * (re * sin + im * cos)]
-        };
-        let (one, ahead) = (turn(1.0, [1.0, 0.0]), turn(LATE_SAMPLES, [1.0, 0.0]));
-        let by = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * c - b * d, a * d + b * c];
-        let mut state = [0.0; 2];
+        let (amplitude, (sin_phase, cos_phase)) =
+            (mode.amplitude / model.impulse_n_s, mode.phase_rad.sin_cos());
+        let gain = amplitude / ((0.5 * angle).sin() / (0.5 * angle)).powi(4);
+        let (keep, (sin, cos)) = ((-decay).exp(), angle.sin_cos());
+        let (step_re, step_im) = (keep * cos, keep * sin);
+        // Σ h over all later samples: the imaginary part of e^(iφ) z / (1 − z).
+        let distance = (1.0 - step_re) * (1.0 - step_re) + step_im * step_im;
+        let later = [(step_re - keep * keep) / distance, step_im / distance];
+        let continuous =
+            amplitude * (angle * cos_phase + decay * sin_phase) / (decay * decay + angle * angle);
+        let direct = continuous - gain * (later[1] * cos_phase + later[0] * sin_phase);
+        let [mut re, mut im] = [0.0; 2];
         for (y, impulse) in out.iter_mut().zip(impulse_n_s) {
-            state = by(state, one);
-            state[0] += impulse;
-            let [re, im] = by(state, ahead);
-            *y += gain * (im * mode.phase_rad.cos() + re * mode.phase_rad.sin());
+            [re, im] = [re * step_re - im * step_im, re * step_im + im * step_re];
+            *y += gain * (im * cos_phase + re * sin_phase) + direct * impulse;
+            re += impulse;
         }
     }
     out
 }
 
-/// By how much what a preset is heard of is behind, s: its forces are means over the inner sample that ends at a row.
+/// Delay of a preset's sound, s: its forces are means over the inner sample that ends at a row, and the ring's delay is left where the inner
+/// samples do not hide it.
 pub fn late_s(take: &Take) -> f64 {
-    0.5 / take.inner_rate_hz
+    0.5 / take.inner_rate_hz + take.sound_late_s
 }
 
 /// Power of a difference over the alternating power of the reference.

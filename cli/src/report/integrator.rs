@@ -127,7 +127,11 @@ pub fn rows() -> Result<Vec<Row>, CliError> {
                 .zip(truths)
                 .map(|((take, reference), truth)| {
                     // What rings is as late as the force is.
-                    let late_s = if is_centred(integrator) { 0.0 } else { super::end_to_end::late_s(take) };
+                    let late_s = if is_centred(integrator) {
+                        take.sound_late_s
+                    } else {
+                        super::end_to_end::late_s(take)
+                    };
                     let heard = truth.heard(late_s);
                     let all = after_the_lead_in(heard.len(), SAMPLE_RATE_HZ);
                     let heard_error = relative_error(take.audio[all.clone()].iter().copied(), &heard[all]);

@@ -82,6 +82,7 @@ fn spline(map: &mut HeightMap, course: &Course, step_m: f64) -> Vec<f64> {
             first_sample: (index * BLOCK) as u64,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         map.sample(&path, &mut out);
         heights.extend_from_slice(&out.height_m[..part.len()]);

@@ -1,6 +1,6 @@
 //! The impulse ring: where pulses of any length and sampled forces become one impulse a sample.
 
-use super::shape::{Smoothed, fourfold, fourfold_after, pulse_share};
+use super::shape::{Smoothed, fourfold, fourfold_after};
 use super::{HertzPulse, KERNEL_LATENCY};
 
 /// Shorter contacts are computed with this many samples of contact time: their spectrum is flat to 1e-6.
@@ -45,27 +45,6 @@ impl HertzPulse {
     pub fn end_sample(&self, onset_sample: u64, sample_rate_hz: f64) -> u64 {
         // A saturating cast: an endless pulse is cut to the ring by the deposit itself.
         onset_sample + (self.contact_time_s * sample_rate_hz) as u64 + KERNEL_SAMPLES as u64 + 2
-    }
-
-    /// Adds the pulse itself to `ring`, not spread: its impulse over the step whose middle is each sample, N·s, for a pulse
-    /// that [`deposit`](Self::deposit) lays into a ring as long. Nothing is added before the sample after the onset: what
-    /// falls into the half step before goes into its own.
-    pub fn deposit_steps(&self, ring: &mut [f64], onset_sample: u64, onset_offset: f64, sample_rate_hz: f64) {
-        let Some(length) = self.samples_in(ring.len(), sample_rate_hz).filter(|_| onset_offset.is_finite())
-        else {
-            return;
-        };
-        let mut write = Writer { ring, at: onset_sample.wrapping_add(1) };
-        let mut edge = 1.5 - onset_offset.clamp(0.0, 1.0);
-        let mut before = 0.0;
-        loop {
-            let now = pulse_share(edge / length);
-            write.push(self.impulse_n_s * (now - before));
-            if edge >= length {
-                break;
-            }
-            (before, edge) = (now, edge + 1.0);
-        }
     }
 
     /// Contact time in samples as a ring of this length holds it; `None` for a pulse that holds no finite number, or a ring

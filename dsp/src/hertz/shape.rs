@@ -113,13 +113,6 @@ pub fn pulse_shape(u: f64) -> f64 {
     w * (C[0] + w * (C[1] + w * (C[2] + w * (C[3] + w * C[4]))))
 }
 
-/// ∫ p from 0 to u: the part of the impulse by then.
-pub(super) fn pulse_share(u: f64) -> f64 {
-    let x = (2.0 * u - 1.0).clamp(-1.0, 1.0);
-    let powers = CENTRED.iter().enumerate().rev();
-    0.5 + 0.5 * x * powers.fold(0.0, |sum, (i, c)| sum * x * x + c / (2 * i + 1) as f64)
-}
-
 /// P(u) for u in 0..1.
 #[inline]
 pub(super) fn fourfold(u: f64) -> f64 {

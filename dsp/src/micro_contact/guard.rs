@@ -48,30 +48,6 @@ impl CleanBlock {
         }
     }
 
-    /// The same of one contact among others: value n goes to lane `lane` of row n of `heights` and of `forces`.
-    #[inline(always)]
-    pub fn fill_lane<const N: usize>(
-        state: &mut ContactState,
-        (height_m, force_n): (&[f64], &[f64]),
-        (heights, forces): (&mut [[f64; N]], &mut [[f64; N]]),
-        lane: usize,
-    ) {
-        let mut good = true;
-        let inputs = height_m.iter().zip(force_n);
-        for ((h, f), (&height, &force)) in heights.iter_mut().zip(&mut *forces).zip(inputs) {
-            good &= is_height(height) & is_force(force);
-            (h[lane], f[lane]) = tidy(height, force);
-        }
-        if !good {
-            let mut block = Self::EMPTY;
-            block.fill(state, height_m, force_n);
-            let clean = block.height_m.iter().zip(&block.force_n).take(height_m.len());
-            for ((h, f), (height, force)) in heights.iter_mut().zip(forces).zip(clean) {
-                (h[lane], f[lane]) = (*height, *force);
-            }
-        }
-    }
-
     #[cold]
     #[inline(never)]
     fn repair(&mut self, state: &mut ContactState, height_m: &[f64], force_n: &[f64]) {

@@ -45,10 +45,8 @@ mod guard;
 mod probe;
 mod quad;
 mod semi_implicit;
-mod side_by_side;
 mod state;
 mod stiffening;
-mod together;
 
 pub use bends::{Bend, Bends, GroundBetween};
 pub use choice::{
@@ -58,7 +56,6 @@ pub use probe::{
     CONTACT_STIFFNESS_N_M, FINGER_MASS_KG, FORCE_EXPONENT, LEASH_M, PAD_DAMPING_N_S_M, PAD_MASS_KG,
     PAD_STIFFNESS_N_M, Probe, RIDGE_M,
 };
-pub use side_by_side::{Beside, LANES, run_side_by_side};
 pub use state::{ContactSample, ContactState, Onset};
 pub use stiffening::RUNGS_AN_OCTAVE;
 

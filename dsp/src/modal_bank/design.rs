@@ -12,7 +12,8 @@ pub const GRID_SAMPLES: u64 = 64;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct GroupOptions {
     /// The bank is fed from an impulse ring ([`crate::hertz`]): each mode is divided by the ring's
-    /// cubic kernel at the mode's own complex frequency, and advanced by the kernel's latency.
+    /// cubic kernel at the mode's own complex frequency. It sounds the kernel's latency later, and its
+    /// direct term answers a slow force exactly.
     pub impulse_kernel_compensation: bool,
     /// Undo on the 64-sample grid what rounding R² and m to `f32` did to decay and pitch.
     pub true_t60: bool,
@@ -37,8 +38,10 @@ pub struct ModeGroup {
     pub(super) hot: [Lanes; HOT],
     /// Once in [`GRID_SAMPLES`]: v gains `trim[0][0]` · v + `trim[0][1]` · w, w the same of row 1.
     pub(super) trim: [[Lanes; 2]; 2],
-    /// The output at the turn's beginning, `now[0]` · v + `now[1]` · w; `now[0]` is h₀.
+    /// The output at the turn's beginning, `now[0]` · v + `now[1]` · w.
     pub(super) now: [Lanes; 2],
+    /// h₀, the direct term: what an impulse sends to the output of its own sample.
+    pub(super) direct: Lanes,
     /// The output a quarter period later, but for the decay: the other component of its phasor.
     pub(super) quarter: [Lanes; 2],
     /// What an impulse that all lanes hear sends to the output of its own and of the next three samples: h₀…h₃.
@@ -111,6 +114,8 @@ pub(super) struct Pole {
     pub theta: f64,
     pub amplitude: f64,
     pub phase_rad: f64,
+    /// Added to h₀: ∫ h − Σ hⱼ, j ≥ 0, of the wanted mode's continuous and this one's sampled response.
+    pub direct_correction: f64,
 }
 
 impl Pole {
@@ -128,11 +133,19 @@ impl Pole {
         let (mut amplitude, mut phase_rad) = (mode.amplitude, mode.phase_rad);
         if options.impulse_kernel_compensation {
             let (gain, angle) = crate::hertz::kernel_at(decay, theta);
-            let latency = crate::hertz::KERNEL_LATENCY as f64;
-            amplitude *= libm::exp(-decay * latency) / gain;
-            phase_rad += theta * latency - angle;
+            amplitude /= gain;
+            phase_rad -= angle;
         }
-        Ok(Some(Self { decay, theta, amplitude, phase_rad }))
+        let mut pole = Self { decay, theta, amplitude, phase_rad, direct_correction: 0.0 };
+        if options.impulse_kernel_compensation {
+            // A steady force is answered as by the equation; so is a slow one, up to its first derivative.
+            let (b0, b1) = pole.numerator();
+            let (sin, cos) = (libm::sin(mode.phase_rad), libm::cos(mode.phase_rad));
+            let continuous = mode.amplitude * (theta * cos + decay * sin) / (decay * decay + theta * theta);
+            let (r, cos_theta) = (libm::exp(-decay), libm::cos(theta));
+            pole.direct_correction = continuous - (b0 + b1) / (1.0 - 2.0 * r * cos_theta + r * r);
+        }
+        Ok(Some(pole))
     }
 
     /// b₀ and b₁ of the numerator b₀ + b₁ z⁻¹.
@@ -148,7 +161,7 @@ impl ModeGroup {
     pub const SILENT: Self = {
         let lanes = [0.0; LANES];
         let (two, four) = ([lanes; 2], [[lanes; 2]; 2]);
-        Self { hot: [lanes; HOT], trim: four, now: two, quarter: two, heard_as: [0.0; TURN] }
+        Self { hot: [lanes; HOT], trim: four, now: two, direct: lanes, quarter: two, heard_as: [0.0; TURN] }
     };
 
     fn set_lane(&mut self, lane: usize, pole: &Pole, options: &GroupOptions) {
@@ -174,7 +187,9 @@ impl ModeGroup {
         for (i, x) in out_of([h1, h2, h3, h4, h5]).into_iter().enumerate() {
             set(OUT + i, x);
         }
-        for (sum, h) in self.heard_as.iter_mut().zip([b0, h1, h2, h3]) {
+        let direct = b0 + pole.direct_correction;
+        self.direct[lane] = direct as f32;
+        for (sum, h) in self.heard_as.iter_mut().zip([direct, h1, h2, h3]) {
             *sum += h as f32;
         }
         for i in 0..2 {

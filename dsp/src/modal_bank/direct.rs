@@ -143,8 +143,8 @@ unsafe fn gained<T: Set, const P: usize>(token: T, groups: &[ModeGroup], gains: 
             let mut sums = [Vector::<T>::splat(token, 0.0); 1 + SUMS];
             for (group, gains) in groups.iter().zip(gains) {
                 let gains = load(token, gains.0.as_ptr().add(lane));
-                let now = load(token, group.now[0].as_ptr().add(lane));
-                sums[SUMS] = mul_add::<T>(now, gains, sums[SUMS]);
+                let direct = load(token, group.direct.as_ptr().add(lane));
+                sums[SUMS] = mul_add::<T>(direct, gains, sums[SUMS]);
                 for (i, sum) in sums[..SUMS].iter_mut().enumerate() {
                     *sum = mul_add::<T>(load_placed(token, &group.hot, OUT + i, lane), gains, *sum);
                 }

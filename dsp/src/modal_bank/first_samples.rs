@@ -1,22 +1,22 @@
 //! The first samples of a strike, which a bank behind an impulse ring leaves out.
 //!
-//! The ring spreads a pulse over four samples ([`crate::hertz`]), and the bank's modes are advanced by its latency
+//! The ring spreads a pulse over four samples ([`crate::hertz`]), and the bank sounds two samples late
 //! ([`super::GroupOptions::impulse_kernel_compensation`]). From four samples after the contact on nothing is missing; before, part of
-//! the spread pulse is still to come, and a mode rises through the kernel instead of beginning:
+//! the spread pulse is still to come, and a mode rises through the kernel instead of beginning two samples after the contact:
 //!
 //! ```text
-//! y(n) = Σₖ x(k) h'(n − k) + ∫ F(t) E(n − t₀ − t) dt        E(u) = h(u) − Σⱼ β³(u − 2 − j) h'(j),   0 ≤ j ≤ u < 4
+//! y(n) = Σₖ x(k) h'(n − k) + ∫ F(t) E(n − t₀ − t) dt        E(u) = h(u − 2) − Σⱼ β³(u − 2 − j) h'(j),   0 ≤ j ≤ u < 4
 //! ```
 //!
 //! | symbol | here |
 //! |---|---|
 //! | F, t₀ | the force and the onset of [`HertzPulse`] |
 //! | x, β³ | what the pulse leaves in the ring, and the ring's cubic kernel |
-//! | h, h' | response of all modes to an impulse, and of the advanced and compensated ones: the bank's |
+//! | h, h' | response of all modes to an impulse, 0 before it, and of the compensated ones with their direct terms: the bank's |
 //! | E | [`FirstSamples`]: a polynomial for each of its four samples, and its moments |
 //!
 //! What it brings (`dsp/tests/strike_waveform.rs`): ten modes to 9.5 kHz at 44.1 kHz were 5 % (a 10 µs contact, rms over 50 ms) to
-//! 14 % (the same with a tenth of the ringing) from the response of the equation, and are 0.03 %; no sample is added to the latency. What is left
+//! 14 % (the same with a tenth of the ringing) from the response of the equation, and are 0.03 %. What is left
 //! is the ring's: modes above 0.4 of the rate hear their image of contacts shorter than a sample.
 
 use super::design::{GroupOptions, Pole};
@@ -26,7 +26,7 @@ use crate::mode::Mode;
 use core::f64::consts::PI;
 
 /// Samples of which something is missing after each part of a pulse.
-pub(super) const REACH: usize = 2 * KERNEL_LATENCY;
+const REACH: usize = 2 * KERNEL_LATENCY;
 /// Chebyshev coefficients a sample: exact to 1e-5 for a mode at the Nyquist frequency.
 const TERMS: usize = 9;
 /// Coefficients of the pulse's polynomial in x = 2 t/τ − 1.
@@ -35,7 +35,7 @@ const POWERS: usize = 11;
 const LONG: f64 = 8.0;
 
 /// Places and weights of Gauss's rule on −1…1: exact to degree 11.
-pub(super) const GAUSS: [(f64, f64); 6] = [
+const GAUSS: [(f64, f64); 6] = [
     (-0.932_469_514_203_152, 0.171_324_492_379_170_3),
     (-0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
     (-0.238_619_186_083_196_9, 0.467_913_934_572_691),
@@ -63,13 +63,15 @@ impl MissingSamples {
         let (Some(heard), Some(wanted)) = (heard, Pole::new(mode, sample_rate_hz, &plain)?) else {
             return Ok(Self::NOTHING);
         };
-        let early: [f64; REACH] = core::array::from_fn(|j| heard.at(j as f64));
+        let early: [f64; REACH] =
+            core::array::from_fn(|j| heard.at(j as f64) + if j == 0 { heard.direct_correction } else { 0.0 });
         Ok(Self(core::array::from_fn(|first| {
             core::array::from_fn(|i| {
                 let u = first as f64 + 0.5 + 0.5 * chebyshev_node(i);
                 let latency = KERNEL_LATENCY as f64;
                 let risen = (0..=first).map(|j| cubic_kernel(u - latency - j as f64) * early[j]);
-                wanted.at(u) - risen.sum::<f64>()
+                let begun = if u >= latency { wanted.at(u - latency) } else { 0.0 };
+                begun - risen.sum::<f64>()
             })
         })))
     }
@@ -116,11 +118,6 @@ impl FirstSamples {
             all.add(&MissingSamples::of(&mode, sample_rate_hz)?, 1.0);
         }
         Ok(all.first_samples())
-    }
-
-    /// E in the sample after `first`, −1 ≤ x ≤ 1.
-    pub(super) fn missing_at(&self, first: usize, x: f64) -> f64 {
-        series(&self.pieces[first], x)
     }
 
     fn moment(&self, power: i32) -> f64 {

@@ -44,7 +44,7 @@
 //!   absolute grid: T60 within 0.006 %, pitch within 2e-4 cent for 30 Hz at up to 192 kHz, and a whole bank −114 to −122 dB
 //!   from the reference (−110 where products are rounded apart), for 0.06 operations a mode and sample where keeping 1 − R² apart costs a whole one.
 //! - *Phase.* φ costs one operation of four. It is needed even for the paper's φ = 0, because
-//!   [`GroupOptions::impulse_kernel_compensation`] advances each mode by the latency of the impulse ring.
+//!   [`GroupOptions::impulse_kernel_compensation`] turns each mode by the angle of the impulse ring's kernel.
 //! - Modes at or above the Nyquist frequency are silent.
 //! - Several inputs with a gain a lane ([`Inputs::Placed`]): strike positions, or the few modes of
 //!   several bodies in one group.
@@ -55,7 +55,7 @@
 //!
 //! [`ModalBank`] is its face: the modes and their memory, which instructions run them, and what sleeps. [`AheadGroup`] tells what they will do by
 //! themselves, [`Culling`] says which modes are worth it,
-//! [`FirstSamples`] what the impulse ring takes from the beginning of a strike and, sample by sample ([`add_early_force`]), of a contact.
+//! [`FirstSamples`] what the impulse ring takes from the beginning of a strike.
 
 mod ahead;
 mod awake;
@@ -63,7 +63,6 @@ mod bank;
 mod culling;
 mod design;
 mod direct;
-mod early_force;
 mod first_samples;
 mod job;
 mod kernel;
@@ -82,7 +81,6 @@ pub use culling::{Culling, audible};
 pub use design::{
     GRID_SAMPLES, GroupOptions, GroupState, LaneGains, ModeGroup, design_group, design_groups, sort_by_decay,
 };
-pub use early_force::{EARLY_HISTORY, ForceTaps, add_early_force};
 pub use first_samples::{FirstSamples, MissingSamples};
 pub use job::{Input, MAX_INPUTS};
 pub use reference::{ReferenceMode, ReferenceState};

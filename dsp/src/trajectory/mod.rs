@@ -45,7 +45,6 @@ mod design;
 mod history;
 mod reckoning;
 mod reports;
-mod side_by_side;
 mod standstill;
 #[cfg(test)]
 mod tests;
@@ -60,7 +59,6 @@ use history::History;
 use reckoning::Reckoning;
 pub use reports::{Moved, PathEvent, TELEPORT_FACTOR, TELEPORT_MARGIN_M, UNREPORTED_SPEED_M_S};
 use reports::{carried_back, is_sane};
-pub use side_by_side::{Beside, advance_side_by_side};
 use standstill::Standstill;
 
 /// Below this a reported or decayed velocity is rest, m/s.

@@ -3,18 +3,21 @@
 //! ```text
 //! h(u, v) = a · cos(2πu/p) · cos(2πv/p)      p: pitch of the threads, a: half of their height
 //! ```
-//! [`Woven`] is all a source is: its wavelengths and its heights along a path. [`Thread`] is its handle: the game thickens the threads while
-//! a finger strokes them. [`make`] is its key in scene files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 2e-5 }`.
+//! [`Woven`] is all a source is: its properties and its heights along a path. [`Thread`] is its handle: the game thickens the threads while
+//! fingers stroke them. [`make`] is its key in scene files, `own = { kind = "woven", pitch_m = 1e-3, height_m = 2e-5 }`.
 //!
 //! Run `cargo run --release -p asperity-own-source`: a finger strokes the cloth of a scene file, then one whose threads grow.
 
 use asperity::files::FileError;
 use asperity::files::scene_file::{OwnSource, SceneFile};
 use asperity::open::Overrides;
-use asperity::texture::height_field::{HeightField, PathBlock, SurfaceBlock, WavelengthBand};
+use asperity::texture::fade::Fade;
+use asperity::texture::height_field::{
+    HeightField, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
+};
 use asperity::{
-    Actuator, ActuatorSettings, Config, ContactEvent, ContactId, ContactSample, Engine, Renderer, Scene,
-    Surface, SurfaceId,
+    Actuator, ActuatorSettings, Config, ContactEvent, ContactId, ContactSample, DesignError, Engine,
+    Renderer, Scene, Surface, SurfaceId,
 };
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -25,10 +28,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// A woven cloth.
 struct Woven {
     pitch_m: f64,
-    /// Half of the threads' height, m, as the game wants it.
+    /// Half of the threads' height, m, as the game sets it.
     wanted_m: Arc<AtomicU64>,
-    /// The same as it is: it follows without a click.
-    amplitude_m: f64,
+    /// The same as it is, over absolute samples: every finger feels the same at the same sample, in blocks of any length.
+    amplitude_m: Fade<f64>,
+    /// The sample at which the game's height was read last.
+    read_at: Option<u64>,
 }
 
 /// Changes a [`Woven`] while it is touched.
@@ -52,8 +57,12 @@ struct Cloth {
 impl Cloth {
     fn weave(&self) -> (Woven, Thread) {
         let wanted_m = Arc::new(AtomicU64::new((0.5 * self.height_m).to_bits()));
-        let woven =
-            Woven { pitch_m: self.pitch_m, wanted_m: wanted_m.clone(), amplitude_m: 0.5 * self.height_m };
+        let woven = Woven {
+            pitch_m: self.pitch_m,
+            wanted_m: wanted_m.clone(),
+            amplitude_m: Fade::new(0.5 * self.height_m),
+            read_at: None,
+        };
         (woven, Thread(wanted_m))
     }
 }
@@ -64,20 +73,39 @@ fn make(own: &OwnSource, _size_m: [f64; 2]) -> Result<Box<dyn HeightField>, File
 }
 
 impl HeightField for Woven {
-    fn band(&self) -> WavelengthBand {
-        WavelengthBand { shortest_m: self.pitch_m, longest_m: self.pitch_m }
+    fn properties(&self, _tile_m: [f64; 2]) -> Properties {
+        Properties::of(WavelengthBand { shortest_m: self.pitch_m, longest_m: self.pitch_m })
+    }
+
+    /// Samples are counted anew, at this rate.
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
+        self.amplitude_m.prepare(setup.sample_rate_hz);
+        self.read_at = None;
+        Ok(())
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        let (wanted_m, turn) = (f64::from_bits(self.wanted_m.load(Ordering::Relaxed)), TAU / self.pitch_m);
+        let turn = TAU / self.pitch_m;
         out.clear(path.len());
         for (i, [u_m, v_m]) in path.position_m.iter().enumerate() {
-            // A tenth of a second from one height to another.
-            self.amplitude_m += (wanted_m - self.amplitude_m) * 5e-4;
+            let amplitude_m = self.amplitude_m.at(path.first_sample + i as u64);
             let ((su, cu), (sv, cv)) = ((turn * u_m).sin_cos(), (turn * v_m).sin_cos());
-            out.height_m[i] = self.amplitude_m * cu * cv;
-            out.gradient[i] = [-self.amplitude_m * turn * su * cv, -self.amplitude_m * turn * cu * sv];
+            out.height_m[i] = amplitude_m * cu * cv;
+            out.gradient[i] = [-amplitude_m * turn * su * cv, -amplitude_m * turn * cu * sv];
         }
+    }
+
+    /// Touches come at steps of the absolute sample grid, before that step is sampled. The first one of a step reads the game's height, for all
+    /// fingers.
+    fn touch(&mut self, touch: &Touch) -> Reaction {
+        if self.read_at != Some(touch.sample) {
+            self.read_at = Some(touch.sample);
+            let wanted_m = f64::from_bits(self.wanted_m.load(Ordering::Relaxed));
+            if wanted_m != self.amplitude_m.target() {
+                self.amplitude_m.set(wanted_m, touch.sample);
+            }
+        }
+        Reaction::default()
     }
 }
 

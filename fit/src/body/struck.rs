@@ -33,7 +33,7 @@ pub fn lead(partials: &[Partial], samples: &[f64], onset: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use asperity_dsp::hertz::{HertzPulse, take};
+    use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY, take};
     use asperity_dsp::modal_bank::{FirstSamples, GroupOptions, ReferenceMode, ReferenceState};
     use asperity_dsp::mode::Mode;
 
@@ -63,7 +63,8 @@ mod tests {
             }
         }
         let partials = modes.map(|mode| crate::body::fitted::partial_of(&mode, rate));
-        for (n, (said, played)) in struck(&partials, 20).iter().zip(&played[4..]).enumerate() {
+        for (n, (said, played)) in struck(&partials, 20).iter().zip(&played[4 + KERNEL_LATENCY..]).enumerate()
+        {
             assert!((said - played).abs() < 5e-3, "{n}: {said} {played}");
         }
     }

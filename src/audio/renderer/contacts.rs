@@ -1,7 +1,6 @@
 //! Contacts come, go on, are stolen, revived and let go.
 
 use super::Renderer;
-use super::crowd::SpokenFor;
 use crate::audio::voice::{EMPTY_FORCE_N, Phase, Role, Stretch, Voice};
 use crate::link::stats::Counters;
 use crate::model::event::{ContactEvent, ContactId, ContactSample, Emphasis, MAX_FORCE_N};
@@ -16,15 +15,13 @@ pub(super) struct SilentContact {
     pub(super) surface: usize,
     pub(super) role: Role,
     pub(super) stolen: bool,
-    /// Whether it sounds all the same, because others speak for it.
-    pub(super) spoken_for: Option<SpokenFor>,
 }
 
 impl SilentContact {
     /// A contact whose voice goes away.
     pub(super) fn of(voice: &Voice) -> Self {
         let (contact, surface, role) = (voice.contact, voice.surface, voice.role);
-        Self { contact, surface, role, stolen: false, spoken_for: None }
+        Self { contact, surface, role, stolen: false }
     }
 }
 
@@ -108,11 +105,8 @@ impl Renderer {
 
     /// A contact lands. One that neither presses nor falls is not there yet: its first force begins it.
     fn land(&mut self, contact: ContactId, surface: usize, role: Role, sample: &ContactSample, stamp: Stamp) {
-        let silent = SilentContact { contact, surface, role, stolen: false, spoken_for: None };
+        let silent = SilentContact { contact, surface, role, stolen: false };
         if sample.normal_force_n > EMPTY_FORCE_N || sample.closing_m_s > 0.0 {
-            if self.is_spoken_for(surface, role, sample) {
-                return self.speak_for(silent, sample, stamp);
-            }
             self.begin(contact, surface, role, sample, stamp);
         } else if self.seats[surface].is_open() {
             Counters::add(&self.counters.unpressed, 1);
@@ -148,7 +142,6 @@ impl Renderer {
         let output = role.actuator.map_or(&self.shared.idle_output, |channel| &self.channels[channel].output);
         let at = Stretch { shared: &self.shared, output, position: due.sample(), n: 1 };
         voice.begin(contact, sample, due, at, &mut self.seats[surface], &mut self.scratch);
-        self.note_crowd(index);
         Some(index)
     }
 
@@ -187,14 +180,7 @@ impl Renderer {
         let sample = self.carried(silent.surface, sample);
         if sample.normal_force_n <= EMPTY_FORCE_N {
             Counters::add(&self.counters.unpressed, 1);
-            self.silent[index].spoken_for = None;
             return;
-        }
-        let sample = self.with_velocity(&silent, sample, stamp);
-        if self.is_spoken_for(silent.surface, silent.role, &sample) {
-            // Whoever stood back for others may lie there now.
-            self.silent.retain(|other| other.contact != contact);
-            return self.speak_for(silent, &sample, stamp);
         }
         if silent.stolen && self.sounding_count() >= self.contact_limit() {
             Counters::add(&self.counters.orphaned, 1);
@@ -286,7 +272,6 @@ impl Renderer {
 
     /// Every contact waits for its next report.
     pub(super) fn silence_all(&mut self) {
-        self.silent.iter_mut().for_each(|silent| silent.spoken_for = None);
         for at in 0..self.voices_used.len() {
             let voice = self.voices_used.at(at);
             if self.voices[voice].phase == Phase::Sounding {

@@ -21,7 +21,8 @@ use crate::audio::body_seat::BodySeat;
 use crate::audio::occupied::Occupied;
 use crate::audio::pool::{Job, Pool};
 use crate::audio::seat::Seat;
-use crate::audio::voice::{At, Company, Member, Phase, Scratch, Shared, Voice, VoiceBlock};
+use crate::audio::voice::{At, Phase, Scratch, Shared, Stretch, Voice, VoiceBlock};
+use crate::link::tap::NoTap;
 use crate::prepared::body::{BodySlot, Terms};
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
@@ -83,22 +84,12 @@ impl Job for Share {
 impl SurfaceShare {
     fn run(&mut self, scratch: &mut Scratch) {
         let Some(shared) = &self.shared else { return };
-        let mut company = Company::new();
-        let mut render = |company: &mut Company<'_, _>| {
-            company.render(shared, self.at, &mut self.seat, scratch, |done| {
-                let (pressing, out): (&mut Option<Probe>, &mut Box<VoiceBlock>) = done.who;
-                *pressing = done.pressing;
-                std::mem::swap(out, done.out);
-            });
-        };
         for share in &mut self.voices {
             let VoiceShare { voice, output, pressing, out, .. } = &mut **share;
-            if !company.has_room(output) {
-                render(&mut company);
-            }
-            company.join(Member { voice, output: *output, who: (pressing, out) });
+            let stretch = Stretch { shared, output, position: self.at.position, n: self.at.n };
+            *pressing = voice.render(stretch, &mut self.seat, scratch, &mut NoTap);
+            std::mem::swap(out, &mut scratch.out);
         }
-        render(&mut company);
         // Nobody but the renderer holds it between two blocks.
         self.shared = None;
     }
@@ -153,7 +144,7 @@ impl Crew {
         let voice_share = |_| {
             Box::new(VoiceShare {
                 index: 0,
-                voice: Box::new(Voice::stand_in(shared)),
+                voice: Box::new(Voice::placeholder(shared)),
                 output: shared.idle_output,
                 pressing: None,
                 out: Box::new(VoiceBlock::new()),

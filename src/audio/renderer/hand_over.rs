@@ -39,8 +39,7 @@ impl Renderer {
         }
         let touching = self.voices.iter().filter(|voice| voice.phase == Phase::Sounding);
         let touching = touching.map(|voice| SilentContact::of(voice));
-        let silent = self.silent.iter().map(|silent| SilentContact { spoken_for: None, ..*silent });
-        let contacts = silent.chain(touching).collect();
+        let contacts = self.silent.iter().copied().chain(touching).collect();
         HandedOver {
             contacts,
             surfaces: self.seats.iter_mut().filter_map(crate::audio::seat::Seat::take).collect(),

@@ -113,7 +113,6 @@ impl Renderer {
             }
             Message::FadeAll => {
                 self.end_all();
-                self.stand_ins.silence();
                 self.bodies_used.iter().for_each(|body| self.bodies[body].damp());
             }
             Message::RemoveBody { slot } => self.bodies[slot].remove(),

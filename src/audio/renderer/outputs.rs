@@ -253,7 +253,7 @@ impl Renderer {
             crew.put_bodies_back();
         }
         self.groups_shed = shed;
-        let inner = self.shared.inner;
+        let inner = self.shared.inner_audio;
         for (index, bus) in self.buses.iter_mut().enumerate() {
             let Mix { body: own, master, mastered, .. } = &mut *self.mix;
             let mut out = audio.get_mut(index);

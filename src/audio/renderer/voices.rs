@@ -6,8 +6,7 @@ use super::outputs::HapticChannel;
 use crate::audio::body_seat::BodySeat;
 use crate::audio::occupied::Occupied;
 use crate::audio::seat::Seat;
-use crate::audio::stand_in::StandIns;
-use crate::audio::voice::{At, Company, Member, Phase, Scratch, Shared, Stretch, Voice, VoiceBlock};
+use crate::audio::voice::{At, Phase, Scratch, Shared, Stretch, Voice, VoiceBlock};
 use crate::link::stats::Counters;
 use crate::link::tap::Tap;
 use crate::model::strike_field::StrikePlace;
@@ -18,31 +17,12 @@ use crate::prepared::spot::Spot;
 use asperity_dsp::actuator::ContactOutput;
 use asperity_dsp::micro_contact::Probe;
 
-impl At {
-    /// Renders a voice into `scratch.out`; what presses on the touched body, at the steps of the absolute grid.
-    fn render<T: Tap>(
-        self,
-        shared: &Shared,
-        output: &ContactOutput,
-        voice: &mut Voice,
-        seat: &mut Seat,
-        scratch: &mut Scratch,
-        tap: &mut T,
-    ) -> Option<Probe> {
-        let stretch = Stretch { shared, output, position: self.position, n: self.n };
-        let pressing = voice.pressing_at(self, shared, seat);
-        voice.render(stretch, seat, scratch, tap);
-        pressing
-    }
-}
-
 /// Where the voices' outputs go, and what was counted.
 struct Gathering<'a> {
     at: At,
     channels: &'a mut [HapticChannel],
     bodies: &'a mut [BodySeat],
     placed: &'a [Option<StrikePlace>],
-    stand_ins: &'a mut StandIns,
     collisions: u64,
     shortened: u64,
     resets: u64,
@@ -83,16 +63,11 @@ impl Gathering<'_> {
             return;
         }
         if let Some(holder) = voice.role.holder {
-            self.bodies[holder.index()].touch(holder, 0, out.sent(n), -1.0);
+            self.bodies[holder.index()].touch(holder, 0, &out.impulse_n_s[..n], -1.0);
         }
         if let Some((body, slot)) = touched {
-            if self.stand_ins.are_on() {
-                let sent = out.sent(n);
-                let sent = [sent.impulse_n_s, sent.force_n_s];
-                self.stand_ins.hear(index, voice.surface, self.at.position, sent);
-            }
             let spot = Spot { place: self.placed[index], position: slot.surface.strike_position };
-            self.bodies[body.index()].touch_at(body, owner, &spot, out.sent(n));
+            self.bodies[body.index()].touch_at(body, owner, &spot, &out.impulse_n_s[..n]);
         }
     }
 
@@ -115,35 +90,6 @@ impl Gathering<'_> {
             crew.leave_bodies(index, (voice, seat), (terms, n), self.bodies);
             crew.put_back(share);
         }
-    }
-
-    /// Renders and adds a few at a time.
-    #[inline(never)]
-    fn side_by_side<'a>(
-        &mut self,
-        shared: &Shared,
-        voices: impl Iterator<Item = (usize, &'a mut Voice)>,
-        seats: &mut [Seat],
-        scratch: &mut Scratch,
-    ) {
-        let at = self.at;
-        let mut company = Company::new();
-        let mut render = |company: &mut Company<'_, usize>, gathering: &mut Self| {
-            company.render(shared, at, seats, scratch, |done| {
-                gathering.add(done.who, done.voice, done.seat, done.pressing, done.out);
-            });
-        };
-        for (index, voice) in voices {
-            if voice.phase == Phase::Free {
-                continue;
-            }
-            let output = *output(voice, self.channels, shared);
-            if !company.has_room(&output) {
-                render(&mut company, self);
-            }
-            company.join(Member { voice, output, who: index });
-        }
-        render(&mut company, self);
     }
 
     fn count(&self, counters: &Counters) {
@@ -172,7 +118,6 @@ impl Renderer {
             channels: &mut self.channels,
             bodies: &mut self.bodies,
             placed: &self.placed,
-            stand_ins: &mut self.stand_ins,
             collisions: 0,
             shortened: 0,
             resets: 0,
@@ -181,14 +126,10 @@ impl Renderer {
         };
         let shared = &*self.shared;
         if let Some(crew) = crew {
-            // Crowds are added up after all contacts.
-            if !gathering.stand_ins.are_on() {
-                crew.send_bodies(terms, n, gathering.bodies, &self.bodies_used);
-            }
+            crew.send_bodies(terms, n, gathering.bodies, &self.bodies_used);
             let voices = (&mut self.voices[..], &self.voices_used);
             gathering.gather(crew, terms, voices, &mut self.seats, &mut self.scratch);
-        } else if watched || self.voices_used.iter().nth(1).is_none() {
-            // One after the other, and one alone: nobody is to go beside it.
+        } else {
             for index in self.voices_used.iter() {
                 let voice = &mut self.voices[index];
                 if voice.phase == Phase::Free {
@@ -196,17 +137,12 @@ impl Renderer {
                 }
                 let seat = &mut self.seats[voice.surface];
                 let output = output(voice, gathering.channels, shared);
-                let pressing = at.render(shared, output, voice, seat, &mut self.scratch, tap);
+                let stretch = Stretch { shared, output, position: at.position, n };
+                let pressing = voice.render(stretch, seat, &mut self.scratch, tap);
                 gathering.add(index, voice, seat, pressing, &self.scratch.out);
             }
-        } else {
-            let voices = in_use(&mut self.voices, &self.voices_used);
-            gathering.side_by_side(shared, voices, &mut self.seats, &mut self.scratch);
         }
         gathering.count(&self.counters);
-        if self.stand_ins.are_on() {
-            self.render_crowds(n);
-        }
         let channels = &mut self.channels;
         self.blows.render(&self.shared, self.position, n, |channel, output, moves| {
             let (sum, design) = channels[channel].begun(n);
@@ -220,21 +156,6 @@ impl Renderer {
 /// What the contact's actuator plays.
 fn output<'a>(voice: &Voice, channels: &'a [HapticChannel], shared: &'a Shared) -> &'a ContactOutput {
     voice.role.actuator.map_or(&shared.idle_output, |channel| &channels[channel].output)
-}
-
-/// The voices in use, in ascending order.
-fn in_use<'a>(
-    voices: &'a mut [Box<Voice>],
-    used: &'a Occupied,
-) -> impl Iterator<Item = (usize, &'a mut Voice)> {
-    // From one to the next, and not past all that nobody uses: that would cost a short block as much as a contact does.
-    let (mut later, mut begin) = (voices, 0);
-    used.iter().filter_map(move |index| {
-        let from_there = std::mem::take(&mut later).get_mut(index.checked_sub(begin)?..)?;
-        let (voice, rest) = from_there.split_first_mut()?;
-        (later, begin) = (rest, index + 1);
-        Some((index, &mut **voice))
-    })
 }
 
 /// Where a contact rubs, and along what of the body.

@@ -2,10 +2,8 @@
 
 use super::PadSample;
 use asperity_dsp::actuator::{ContactOutput, ContactOutputState, Quantity};
-use asperity_dsp::butterworth::{self, Butterworth, SideBySide, Signals, Two};
+use asperity_dsp::butterworth::{self, Butterworth, Two};
 use asperity_dsp::pair::Pair;
-use asperity_dsp::simd::Level;
-use asperity_texture::height_field::MAX_BLOCK;
 
 /// What rounding leaves of a pad that does not move, m or m/s².
 const ROUNDING: f64 = 1e-13;
@@ -30,29 +28,6 @@ pub(super) struct ForceCoupling<'a> {
     pub(super) high_pass: &'a Butterworth,
     /// The time of a sample, s; 0 for a force that is not to sound.
     pub(super) step_s: f64,
-}
-
-/// The high-passes of several contacts side by side.
-pub(super) struct Coupled {
-    filters: SideBySide,
-    /// The pad's motion and the contact force, then what passes of them.
-    signals: [Signals; MAX_BLOCK],
-}
-
-impl Coupled {
-    pub(super) fn new() -> Self {
-        Self { filters: SideBySide::new(), signals: [Signals::default(); MAX_BLOCK] }
-    }
-
-    /// Nobody has entered yet.
-    pub(super) fn clear(&mut self) {
-        self.filters = SideBySide::new();
-    }
-
-    /// Runs the high-passes of all that have entered over `n` samples.
-    pub(super) fn run(&mut self, level: Level, n: usize) {
-        self.filters.high_pass(level, &mut self.signals[..n]);
-    }
 }
 
 impl AcCoupling {
@@ -82,43 +57,6 @@ impl AcCoupling {
                 self.round(by.step_s, felt, impulse_n_s);
             }
         }
-    }
-
-    /// The contact takes a lane among others with what its high-passes are to be given; false where it has none for its motion.
-    pub(super) fn enter(
-        &mut self,
-        output: &ContactOutput,
-        heard: &Butterworth,
-        rows: &[PadSample],
-        lane: usize,
-        among: &mut Coupled,
-    ) -> bool {
-        let Some(felt) = output.high_pass() else { return false };
-        let mut feel = self.feel;
-        among.filters.enter(lane, [felt, heard], [feel.highpass, self.force]);
-        for ([moved, force_n], row) in among.signals.iter_mut().zip(rows) {
-            moved[lane] = feel.quantity(output, row.pad_m, row.pad_velocity_m_s);
-            force_n[lane] = row.contact_force_n;
-        }
-        self.feel = feel;
-        true
-    }
-
-    /// Leaves its lane with what [`Self::run`] would have given.
-    pub(super) fn leave(
-        &mut self,
-        step_s: f64,
-        lane: usize,
-        among: &Coupled,
-        felt: &mut [f64],
-        impulse_n_s: &mut [f64],
-    ) {
-        [self.feel.highpass, self.force] = among.filters.states(lane);
-        let passed = felt.iter_mut().zip(impulse_n_s.iter_mut()).zip(&among.signals);
-        for ((felt, impulse_n_s), [moved, force_n]) in passed {
-            (*felt, *impulse_n_s) = (moved[lane], force_n[lane]);
-        }
-        self.round(step_s, felt, impulse_n_s);
     }
 
     /// Without what is only rounding, and the force as impulses.

@@ -1,16 +1,14 @@
 //! What a voice hands on: what is felt of it, what it sends to the body, what was counted.
 
 use super::rub_block::RubBlock;
-use crate::prepared::early::Sent;
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// What one voice adds to a stretch of samples.
 pub(crate) struct VoiceBlock {
     /// m or m/s², as the actuator plays it.
     pub(crate) haptic: [f64; MAX_BLOCK],
+    /// Sent to the body, N·s.
     pub(crate) impulse_n_s: [f64; MAX_BLOCK],
-    /// Mean force × step, not spread: what of it the bank leaves out begins at once.
-    pub(crate) force_n_s: [f64; MAX_BLOCK],
     /// What friction rubs the body with.
     pub(crate) rub: RubBlock,
     /// Whether `impulse_n_s` is more than zeros.
@@ -24,17 +22,11 @@ pub(crate) struct VoiceBlock {
 }
 
 impl VoiceBlock {
-    /// What the first `n` samples send to a body.
-    pub(crate) fn sent(&self, n: usize) -> Sent<'_> {
-        Sent { impulse_n_s: &self.impulse_n_s[..n], force_n_s: &self.force_n_s[..n] }
-    }
-
     /// Nothing.
     pub(crate) fn new() -> Self {
         Self {
             haptic: [0.0; MAX_BLOCK],
             impulse_n_s: [0.0; MAX_BLOCK],
-            force_n_s: [0.0; MAX_BLOCK],
             rub: RubBlock::STILL,
             excites: false,
             collisions: 0,
@@ -48,15 +40,19 @@ impl VoiceBlock {
     pub(super) fn scale(&mut self, i: usize, gain: f64) {
         self.haptic[i] *= gain;
         self.impulse_n_s[i] *= gain;
-        self.force_n_s[i] *= gain;
         self.rub.normal_force_n[i] *= gain;
+    }
+
+    /// A stretch begins of which some samples at its end stay silent.
+    pub(super) fn begin(&mut self, silent: std::ops::Range<usize>) {
+        self.silence(silent);
+        self.rub.rubs = false;
     }
 
     /// Nothing felt and nothing heard of some samples.
     pub(super) fn silence(&mut self, samples: std::ops::Range<usize>) {
         self.haptic[samples.clone()].fill(0.0);
         self.impulse_n_s[samples.clone()].fill(0.0);
-        self.force_n_s[samples.clone()].fill(0.0);
         self.rub.normal_force_n[samples].fill(0.0);
     }
 }

@@ -2,8 +2,8 @@
 
 use super::between::{Between, Pressed};
 use super::blows::Blows;
-use super::profile::Along;
-use super::scratch::{Lane, Scratch};
+use super::profile::{Along, Profile};
+use super::scratch::Scratch;
 use super::shared::{Shared, Stretch};
 use super::skin::ContactSkin;
 use super::tip::Tip;
@@ -15,7 +15,7 @@ use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::actuator::ContactOutputState;
 use asperity_dsp::butterworth;
 use asperity_dsp::trajectory::Trajectory;
-use asperity_texture::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction};
+use asperity_texture::height_field::{MAX_BLOCK, NO_TOUCH_N, Reaction, Touch, TouchKind};
 
 /// A force that is no touch, N.
 pub(crate) const EMPTY_FORCE_N: f64 = NO_TOUCH_N;
@@ -31,17 +31,6 @@ const LEAD_IN_S: f64 = 65.0 / 44_100.0;
 const ABOUT: usize = 3;
 
 impl Voice {
-    /// How hard it presses at its last sample, N, and where it goes, m/s.
-    pub(crate) fn going(&self) -> (f64, [f64; 2]) {
-        (self.path.last.normal_force_n, self.path.last.velocity_m_s)
-    }
-
-    /// Where it is on a surface of this size.
-    pub(crate) fn uv(&self, [width_m, height_m]: [f64; 2]) -> [f64; 2] {
-        let [x_m, y_m] = self.path.last.position_m;
-        [x_m / width_m, y_m / height_m]
-    }
-
     /// Lands on a surface: at rest on it when the closing speed is zero, otherwise with that speed. `at` begins at the stamp.
     pub(crate) fn begin(
         &mut self,
@@ -70,7 +59,7 @@ impl Voice {
         self.rolling.tell(sample);
         scratch.profile.at_m = [sample.at_m.unwrap_or_default(); MAX_BLOCK];
         let ground = slot.stroking.ground;
-        seat.land(&self.touch_at(position));
+        seat.touch(&Touch { kind: TouchKind::Begins, ..self.touch_at(position) });
         self.pad.begin(shared.probe(self.role.probe), ground, force_n);
         self.drag.begin();
         self.drag.press(force_n);
@@ -81,7 +70,8 @@ impl Voice {
             let height_m = scratch.profile.surface.height_m[0];
             self.between.remember(scratch.profile.surface.roughness[0]);
             self.look_between(shared, seat);
-            self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
+            let Profile { surface, rough, .. } = &mut scratch.profile;
+            self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
             // It touches at the stamp; without delay it would one sample before the voice's first.
             self.pad.land(height_m, force_n, sample.closing_m_s, 1.0 + stamp.fraction());
             self.ac.feel = ContactOutputState::begin(at.output, height_m, -sample.closing_m_s);
@@ -95,7 +85,7 @@ impl Voice {
         self.skin = ContactSkin::default();
         let probe = shared.probe(self.role.probe);
         self.skin.soften(probe, at.output, &self.path.last, shared.sample_rate_hz);
-        let loudness = self.loudness(shared, position, seat);
+        let loudness = self.loudness(shared, position, seat, &mut scratch.profile.rough);
         self.exciters.begin(contact.0 ^ position.rotate_left(32), position, loudness);
     }
 
@@ -110,10 +100,11 @@ impl Voice {
         let steps = (LEAD_IN_S * shared.sample_rate_hz).round() as usize;
         // It leaves the line where the ground is known about it: a step before, there, and a step later.
         self.lay_behind(steps + 1, step_s, ABOUT, at, seat, scratch);
-        self.roll(shared, seat, |rolling, over| rolling.begin(over, &scratch.profile.surface));
-        let Scratch { lanes, profile, .. } = &mut *scratch;
+        let Profile { surface, rough, .. } = &mut scratch.profile;
+        self.roll(shared, seat, rough, |rolling, over| rolling.begin(over, surface));
+        let Scratch { bends, profile, .. } = &mut *scratch;
         self.rolling.lead_in(&mut profile.surface, ABOUT);
-        self.between.bend(shared, &profile.seen, ABOUT, &mut lanes[0].bends);
+        self.between.bend(shared, &profile.seen, ABOUT, bends);
         let [before_m, here_m, later_m, ..] = profile.surface.height_m;
         let given = self.pad.ride([before_m, here_m, later_m], profile.force_n[0], slope_m_s);
         // The line ends a step before the first height of the ground.
@@ -122,10 +113,9 @@ impl Voice {
         while left > 0 {
             let count = left.min(MAX_BLOCK);
             self.lay_behind(left, step_s, count, at, seat, scratch);
-            let Scratch { lanes, profile, .. } = &mut *scratch;
+            let Scratch { rows, bends, profile, .. } = &mut *scratch;
             self.rolling.lead_in(&mut profile.surface, count);
             let (heights_m, forces_n) = (&profile.surface.height_m[..count], &profile.force_n[..count]);
-            let Lane { rows, bends, .. } = &mut lanes[0];
             let ground = self.between.bend(shared, &profile.seen, count, bends).ground(count, bends);
             row = self.pad.lead_in(heights_m, forces_n, ground, &mut rows[..count]);
             left -= count;
@@ -148,8 +138,8 @@ impl Voice {
         seat: &mut Seat,
         scratch: &mut Scratch,
     ) {
-        let Scratch { lanes, profile, .. } = scratch;
-        let points = &mut lanes[0].points[..count];
+        let Scratch { points, profile, .. } = scratch;
+        let points = &mut points[..count];
         self.path.lay_behind(steps, step_s, points);
         let PathPoint { position_m, velocity_m_s, .. } = points[0];
         let from_m = [0, 1].map(|axis| position_m[axis] - velocity_m_s[axis] * step_s);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! collisions, grains → Hertz pulses → ring ┐
-//! alternating contact force ───────────────┴ × loudness → impulses, N·s: spread for the bank, and as they are
+//! alternating contact force ───────────────┴ × loudness → impulses, N·s, spread for the bank
 //! friction ── speed and force along the motion → the body's own step
 //! ```
 //! Pulses and force meet sample by sample, not in the ring, so that the order of additions depends on no split into blocks.
@@ -12,7 +12,6 @@ mod force;
 mod friction;
 mod grains;
 mod loudness;
-mod pulses;
 
 pub(super) use force::ForceRun;
 pub(super) use loudness::Loudness;
@@ -21,6 +20,7 @@ use super::PadSample;
 use super::PathPoint;
 use super::block::VoiceBlock;
 use crate::model::excitation::Exciter;
+use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_texture::height_field::Reaction;
@@ -28,7 +28,6 @@ use collisions::Collisions;
 use force::ContactForce;
 use friction::Rubbing;
 use grains::Grains;
-use pulses::Pulses;
 
 /// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms, against jelly 20.
 const LONGEST_COLLISION_S: f64 = 0.04;
@@ -55,7 +54,7 @@ pub(super) struct Exciters {
     force: ContactForce,
     rubbing: Rubbing,
     loudness: Loudness,
-    pulses: Pulses,
+    pulses: ImpulseRing,
 }
 
 impl Exciters {
@@ -67,7 +66,7 @@ impl Exciters {
             force: ContactForce::default(),
             rubbing: Rubbing::default(),
             loudness: Loudness::default(),
-            pulses: Pulses::new(LONGEST_COLLISION_S, sample_rate_hz),
+            pulses: ImpulseRing::new(LONGEST_COLLISION_S, sample_rate_hz),
         }
     }
 
@@ -78,7 +77,9 @@ impl Exciters {
         self.force = ContactForce::default();
         self.rubbing = Rubbing::default();
         self.loudness = Loudness::of(loudness);
-        self.pulses.clear(position);
+        if !self.pulses.is_empty(position) {
+            self.pulses.clear();
+        }
     }
 
     /// More of it sounds, or less, and it moves elsewhere: called at the steps of the absolute sample grid.
@@ -119,10 +120,15 @@ impl Exciters {
                 self.grains.shift(by, sample, &mut self.pulses);
             }
         }
-        let (impulse_n_s, force_n_s) = (&mut out.impulse_n_s[..rows.len()], &mut out.force_n_s[..rows.len()]);
-        let beats = self.pulses.take(by.position, impulse_n_s, force_n_s);
-        self.force.add(force, impulse_n_s, force_n_s, beats);
-        self.loudness.weigh_both(by.position, by.slow_step, impulse_n_s, force_n_s);
+        let impulse_n_s = &mut out.impulse_n_s[..rows.len()];
+        // The ring is empty beyond its last pulse.
+        let beats = !self.pulses.is_empty(by.position);
+        if beats {
+            let mut next = self.pulses.drain(by.position);
+            impulse_n_s.iter_mut().for_each(|y| *y = next());
+        }
+        self.force.add(force, impulse_n_s, beats);
+        self.loudness.weigh(by.position, by.slow_step, impulse_n_s);
         (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
     }
 

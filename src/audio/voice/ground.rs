@@ -2,20 +2,21 @@
 
 use super::events::EMPTY_FORCE_N;
 use super::rolling::{RolledOver, Rolling};
-use super::shared::{At, Shared};
+use super::shared::{Shared, Stretch};
 use super::{Phase, Voice};
 use crate::audio::seat::Seat;
 use crate::prepared::area::{loudness, nestling};
 use crate::prepared::stiffness::stiffness_n_m;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::micro_contact::Probe;
-use asperity_texture::height_field::Touch;
+use asperity_texture::height_field::{MAX_BLOCK, SurfaceBlock, Touch, TouchKind};
 
 impl Voice {
     /// What presses on the touched body from here on; none within a cell of the absolute grid, where nobody asks. Before a stretch is rendered: how it
     /// presses at the end of one would depend on where the blocks are cut.
-    pub(crate) fn pressing_at(&self, at: At, shared: &Shared, seat: &Seat) -> Option<Probe> {
-        seat.current().filter(|_| at.is_on_grid()).and_then(|slot| self.pressing(shared, slot))
+    pub(super) fn pressing_at(&self, stretch: Stretch<'_>, seat: &Seat) -> Option<Probe> {
+        let on_grid = stretch.position.is_multiple_of(MAX_BLOCK as u64);
+        seat.current().filter(|_| on_grid).and_then(|slot| self.pressing(stretch.shared, slot))
     }
 
     /// What presses on the touched body: the probe, as stiff as its ground and the force make it, to a quarter of an octave. None while nothing
@@ -32,10 +33,16 @@ impl Voice {
     }
 
     /// How much of the contact sounds: the more, the harder it is pressed and the closer it nestles to the ground.
-    pub(super) fn loudness(&self, shared: &Shared, position: u64, seat: &mut Seat) -> f64 {
+    pub(super) fn loudness(
+        &self,
+        shared: &Shared,
+        position: u64,
+        seat: &mut Seat,
+        room: &mut SurfaceBlock,
+    ) -> f64 {
         let tip_radius_m = shared.probe(self.role.probe).tip_radius_m();
         let touch = self.touch_at(position);
-        let hollow_m = |reach_m| seat.hollow_m(&touch, reach_m, tip_radius_m);
+        let hollow_m = |reach_m| seat.hollow_m(&touch, (reach_m, tip_radius_m), room);
         loudness(self.path.last.normal_force_n) * nestling(tip_radius_m, hollow_m)
     }
 
@@ -43,13 +50,15 @@ impl Voice {
     pub(super) fn roll(
         &mut self,
         shared: &Shared,
-        seat: &Seat,
+        seat: &mut Seat,
+        room: &mut SurfaceBlock,
         then: impl FnOnce(&mut Rolling, RolledOver<'_>),
     ) {
+        let source_power_m2 = seat.power_m2(&self.touch_at(0), room);
         let Some(slot) = seat.current() else { return };
         let over = RolledOver {
             slot,
-            source_power_m2: seat.power_m2(self.path.last.position_m),
+            source_power_m2,
             probe: shared.probe(self.role.probe).micro_contact.probe(),
             at: &self.path.last,
             sample_rate_hz: shared.sample_rate_hz,
@@ -60,6 +69,7 @@ impl Voice {
     /// How the contact pressed at its last sample.
     pub(super) fn touch_at(&self, position: u64) -> Touch {
         Touch {
+            kind: TouchKind::Presses,
             contact: self.slot,
             sample: position,
             position_m: self.path.last.position_m,

@@ -6,7 +6,7 @@
 use super::PadSample;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::stiffness::{Ground, stiffness_n_m};
-use asperity_dsp::micro_contact::{Beside, ContactState, GroundBetween, MicroContact, Probe};
+use asperity_dsp::micro_contact::{ContactState, GroundBetween, MicroContact, Probe};
 
 /// A contact force so many times what presses is a blow: no contact begins in the middle of one.
 const LEAD_IN_BLOW: f64 = 10.0;
@@ -113,17 +113,6 @@ impl Pad {
     /// The contact as stiff as it is.
     pub(super) fn probe(&self) -> &Probe {
         self.model.probe()
-    }
-
-    /// [`Self::run`] for [`run_side_by_side`](asperity_dsp::micro_contact::run_side_by_side).
-    pub(super) fn beside<'a>(
-        &'a mut self,
-        height_m: &'a [f64],
-        normal_force_n: &'a [f64],
-        ground: GroundBetween<'a>,
-        out: &'a mut [PadSample],
-    ) -> Beside<'a> {
-        Beside { design: &self.model, state: &mut self.state, height_m, normal_force_n, ground, out }
     }
 
     /// Rows of the model as they are felt; how often the state was no longer finite and begun anew.

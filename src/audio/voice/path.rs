@@ -4,7 +4,7 @@ use super::body_path::BodyPath;
 use crate::model::event::ContactSample;
 use crate::model::stamp::Stamp;
 use crate::prepared::surface::SurfaceSlot;
-use asperity_dsp::trajectory::{Beside, Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
+use asperity_dsp::trajectory::{Moved, PathEvent, PathPoint, Trajectory, TrajectoryDesign};
 use asperity_texture::height_field::MAX_BLOCK;
 
 /// Landings within this distance of the lift-off can be the same touch, m: the width of a fingertip
@@ -52,11 +52,6 @@ impl Path {
         if let Some(body) = &mut self.body {
             body.advance(&slot.place_trajectory, &mut at_m[..points.len()]);
         }
-    }
-
-    /// The same of a path on the surface, for [`advance_side_by_side`](asperity_dsp::trajectory::advance_side_by_side).
-    pub(super) fn beside<'a>(&'a mut self, slot: &SurfaceSlot, out: &'a mut [PathPoint]) -> Beside<'a> {
-        Beside { design: slot.trajectory, path: &mut self.trajectory, out }
     }
 
     /// Whether places in the body are told.

@@ -1,8 +1,8 @@
 //! Profile: heights along the path, with the micro-relief below the source's own band, as the probe's tip rides them.
 
 use super::shared::Shared;
-use crate::audio::seat::{Look, Noise, NoiseBetween, Seat};
-use crate::prepared::overlay::{Room, TileCells};
+use crate::audio::seat::{Noise, Seat};
+use crate::prepared::overlay::{Look, NoiseBetween, Room, TileCells};
 use asperity_dsp::pair::Pair;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::height_field::{MAX_BLOCK, PathBlock, SurfaceBlock};
@@ -92,7 +92,8 @@ pub(super) struct Profile {
     pub(super) surface: SurfaceBlock,
     /// What was seen between samples.
     pub(super) seen: Seen,
-    rough: SurfaceBlock,
+    /// Room for another map, and for what is read beside the path.
+    pub(super) rough: SurfaceBlock,
     room: Room,
 }
 
@@ -135,6 +136,9 @@ impl Profile {
             first_sample: along.position,
             contact: along.contact,
             slopes: along.slopes,
+            tip_radius_m: along.tip_radius_m,
+            at_m: if along.in_body { &self.at_m[..n] } else { &[] },
+            ..PathBlock::default()
         };
         let between = along.between.map(|there| {
             // All that is looked at lies between two places of the path or the one before it.
@@ -149,14 +153,11 @@ impl Profile {
             field: &along.shared.noise,
             footprint_m: &self.noise_footprint_m[..n],
             bounds_m,
-            tip_radius_m: along.tip_radius_m,
             cells,
             room: &mut self.room,
             between,
         };
-        if along.in_body {
-            seat.lie_at(&self.at_m[..n]);
-        }
+        let path = PathBlock { bounds_m: Some(bounds_m), ..path };
         seat.sample(&path, &mut noise, &mut self.surface, &mut self.rough);
         if seat.is_hard() {
             return;

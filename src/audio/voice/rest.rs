@@ -5,21 +5,20 @@ use super::{PadSample, Scratch, Voice};
 
 impl Voice {
     /// A resting contact: nothing moves, so nothing is computed; the rows stay as they were.
-    pub(super) fn rest(&self, n: usize, scratch: &mut Scratch, lane: usize) {
-        scratch.lanes[lane].points[..n].fill(self.path.last);
-        scratch.lanes[lane].rows[..n].fill(self.last_row);
+    pub(super) fn rest(&self, n: usize, scratch: &mut Scratch) {
+        scratch.points[..n].fill(self.path.last);
+        scratch.rows[..n].fill(self.last_row);
         let out = &mut scratch.out;
         self.ac.rest(&mut out.haptic[..n]);
         out.impulse_n_s[..n].fill(0.0);
-        out.force_n_s[..n].fill(0.0);
         out.excites = false;
         (out.collisions, out.shortened, out.resets, out.blows) = (0, 0, 0, 0);
     }
 
     /// Falls asleep where nothing of it moves or sounds any more; called at the ends of grid cells.
-    pub(super) fn fall_asleep_when_still(&mut self, stretch: Stretch<'_>, scratch: &Scratch, lane: usize) {
+    pub(super) fn fall_asleep_when_still(&mut self, stretch: Stretch<'_>, scratch: &Scratch) {
         let Stretch { output, position, n, .. } = stretch;
-        let row = PadSample { onset: None, ..scratch.lanes[lane].rows[n - 1] };
+        let row = PadSample { onset: None, ..scratch.rows[n - 1] };
         self.last_row = row;
         if self.asleep {
             return;

@@ -33,7 +33,7 @@ pub(super) struct Rolling {
     filter: RollingFilter,
     force: RollingForce,
     ride: RollingState,
-    sent: [RollingForceState; 2],
+    sent: RollingForceState,
 }
 
 /// What is rolled over and how.
@@ -129,17 +129,15 @@ impl Rolling {
     }
 
     /// What is sent to the body comes from a patch that asperities enter and leave.
-    pub(super) fn soften(&mut self, position: u64, slow_step: u64, impulses_n_s: [&mut [f64]; 2]) {
+    pub(super) fn soften(&mut self, position: u64, slow_step: u64, impulses_n_s: &mut [f64]) {
         if !self.rolls() {
             self.sent = Default::default();
             return;
         }
-        for (state, impulses_n_s) in self.sent.iter_mut().zip(impulses_n_s) {
-            for (impulse_n_s, sample) in impulses_n_s.iter_mut().zip(position..) {
-                let share = share_at(self.share, sample, slow_step);
-                let patch_n_s = state.tick(&self.force, *impulse_n_s);
-                *impulse_n_s += share * (patch_n_s - *impulse_n_s);
-            }
+        for (impulse_n_s, sample) in impulses_n_s.iter_mut().zip(position..) {
+            let share = share_at(self.share, sample, slow_step);
+            let patch_n_s = self.sent.tick(&self.force, *impulse_n_s);
+            *impulse_n_s += share * (patch_n_s - *impulse_n_s);
         }
     }
 

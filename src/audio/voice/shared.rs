@@ -18,6 +18,8 @@ pub(crate) struct Shared {
     /// Inside; which of these samples leave says `inner`.
     pub(crate) sample_rate_hz: f64,
     pub(crate) inner: InnerRate,
+    /// The same of what the bodies sound like, which lags by more.
+    pub(crate) inner_audio: InnerRate,
     /// Steps in which slow things are worked out, inner samples: as long in time however much the engine oversamples.
     pub(crate) slow_step: u64,
     /// The engine's own probe, and those that were added.
@@ -61,17 +63,6 @@ pub(crate) struct Stretch<'a> {
     pub(crate) position: u64,
     /// How many.
     pub(crate) n: usize,
-}
-
-/// What one stretch is to a contact.
-#[derive(Clone, Copy)]
-pub(super) struct Pass {
-    /// Samples of it.
-    pub(super) n: usize,
-    /// Whether it moves, and not rests.
-    pub(super) slides: bool,
-    /// Its high-passes have run beside those of others.
-    pub(super) coupled: bool,
 }
 
 /// The samples at hand, for whoever renders voices.

@@ -4,8 +4,8 @@ use super::PadSample;
 use crate::model::event::ContactSample;
 use asperity_dsp::trajectory::PathPoint;
 use asperity_texture::answer::AnswerAt;
+use asperity_texture::answer::capped;
 use asperity_texture::height_field::SurfaceBlock;
-use asperity_texture::sand::law::capped;
 
 /// Below this speed friction no longer jumps, m/s.
 const STICK_M_S: f64 = 1e-3;

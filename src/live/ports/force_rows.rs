@@ -16,8 +16,8 @@
 
 use crate::link::tap::ContactBlock;
 use crate::model::event::{Actuator, ContactId};
+use asperity_texture::answer::capped;
 use asperity_texture::height_field::MAX_BLOCK;
-use asperity_texture::sand::law::capped;
 
 /// Half the length of h, ticks: how far rows lag behind what is rendered.
 pub const LAG_TICKS: u64 = 4;

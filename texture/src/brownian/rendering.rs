@@ -20,10 +20,9 @@
 use crate::answer::AnswerAt;
 pub use crate::force_rendering::Rendering;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, NO_TOUCH_N, PathBlock, Setup, SurfaceBlock, WavelengthBand,
+    HeightField, MAX_BLOCK, NO_TOUCH_N, Part, PathBlock, Properties, Setup, SurfaceBlock, WavelengthBand,
 };
 use asperity_dsp::DesignError;
-use std::any::Any;
 
 /// Grey levels over the range of the document's maps.
 pub const GREY_LEVELS: f64 = 256.0;
@@ -100,7 +99,7 @@ impl BrownianForce {
 
 /// A relief (a height map of a Brownian surface) that also answers with one of the forces.
 pub struct BrownianSurface {
-    relief: Box<dyn HeightField>,
+    relief: [Part; 1],
     force: BrownianForce,
 }
 
@@ -108,50 +107,22 @@ impl BrownianSurface {
     /// `relief` with a force rule.
     #[must_use]
     pub fn new(relief: Box<dyn HeightField>, force: BrownianForce) -> Self {
-        Self { relief, force }
+        Self { relief: [relief], force }
     }
 }
 
 impl HeightField for BrownianSurface {
-    fn prepare_tip(&mut self, radius_m: f64) {
-        self.relief.prepare_tip(radius_m);
-    }
-
-    fn ride(&mut self, radius_m: f64) {
-        self.relief.ride(radius_m);
-    }
-
-    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
-        self.relief.lie_at(at_m);
-    }
-
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
-        self.relief.prepare(setup)
-    }
-
-    fn band(&self) -> WavelengthBand {
-        self.relief.band()
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.relief.reach_m()
-    }
-
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
-        self.relief.beyond(tile_m)
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
+        Properties { is_rigid: false, ..self.relief[0].properties(tile_m) }
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
-        self.relief.sample(path, out);
+        self.relief[0].sample(path, out);
         self.force.answer(path, out);
     }
 
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
-        self.relief.change(change, sample)
-    }
-
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        self.relief.visit(see);
+    fn parts(&mut self) -> &mut [Part] {
+        &mut self.relief
     }
 }
 
@@ -227,18 +198,16 @@ impl BrownianPath {
 }
 
 impl HeightField for BrownianPath {
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+    fn properties(&self, _tile_m: [f64; 2]) -> Properties {
+        let longest_m = self.spacing_m * self.coefficients.len() as f64;
+        let reach_m = self.coefficients.iter().fold(0.0, |reach: f64, c| reach.max(c.abs()));
+        let band = WavelengthBand { shortest_m: 2.0 * self.spacing_m, longest_m };
+        Properties { reach_m, ..Properties::of(band) }
+    }
+
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
         self.contacts = vec![Travelled::default(); setup.voices.max(1)];
         Ok(())
-    }
-
-    fn band(&self) -> WavelengthBand {
-        let longest_m = self.spacing_m * self.coefficients.len() as f64;
-        WavelengthBand { shortest_m: 2.0 * self.spacing_m, longest_m }
-    }
-
-    fn reach_m(&self) -> f64 {
-        self.coefficients.iter().fold(0.0, |reach, c| reach.max(c.abs()))
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {

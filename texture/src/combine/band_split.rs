@@ -5,10 +5,11 @@
 //! ```
 //! coarse(h) is what a source gives to a footprint of half the wavelength.
 
-use super::{Source, add, check_factor};
+use super::{Source, check_factor, shared};
 use crate::fade::Fade;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
+    HeightField, MAX_BLOCK, Part, PathBlock, PowerKind, Properties, Setup, Shares, SurfaceBlock, Touch,
+    TouchKind, WavelengthBand, prepare_parts, set_parts,
 };
 use asperity_dsp::DesignError;
 use std::any::Any;
@@ -19,8 +20,8 @@ pub struct BandWeights(pub [f64; 2]);
 
 /// The long wavelengths of one source and the short wavelengths of another.
 pub struct BandSplit {
-    coarse: Source,
-    fine: Source,
+    /// Coarse, fine.
+    sources: [Source; 2],
     wavelength_m: f64,
     weights: Fade<[f64; 2]>,
     low: SurfaceBlock,
@@ -39,7 +40,7 @@ impl BandSplit {
         DesignError::check("wavelength_m", wavelength_m, "1e-6 to 1 m", range)?;
         let weights = Fade::new([1.0; 2]);
         let (low, all) = (SurfaceBlock::default(), SurfaceBlock::default());
-        Ok(Self { coarse, fine, wavelength_m, weights, low, all })
+        Ok(Self { sources: [coarse, fine], wavelength_m, weights, low, all })
     }
 
     fn weights_at(&self, sample: u64) -> [f64; 2] {
@@ -54,47 +55,32 @@ impl BandSplit {
 }
 
 impl HeightField for BandSplit {
-    fn prepare_tip(&mut self, radius_m: f64) {
-        [&mut self.coarse, &mut self.fine].into_iter().for_each(|source| source.prepare_tip(radius_m));
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
+        let [coarse, fine] = self.sources.each_ref().map(|source| source.properties(tile_m));
+        let band = WavelengthBand {
+            shortest_m: coarse.band.shortest_m.max(self.wavelength_m).min(fine.band.shortest_m),
+            longest_m: coarse.band.longest_m.max(fine.band.longest_m.min(self.wavelength_m)),
+        };
+        let reach_m = coarse.reach_m + 2.0 * fine.reach_m;
+        Properties { band, reach_m, ..coarse.union(fine) }
     }
 
-    fn ride(&mut self, radius_m: f64) {
-        [&mut self.coarse, &mut self.fine].into_iter().for_each(|source| source.ride(radius_m));
-    }
-
-    fn lie_at(&mut self, at_m: &[[f64; 3]]) {
-        [&mut self.coarse, &mut self.fine].into_iter().for_each(|source| source.lie_at(at_m));
-    }
-
-    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        self.coarse.carries_n(position_m, depth_m)
-    }
-
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
         self.weights.prepare(setup.sample_rate_hz);
-        self.coarse.prepare(setup)?;
-        self.fine.prepare(setup)
+        prepare_parts(&mut self.sources, setup)
     }
 
-    fn band(&self) -> WavelengthBand {
-        let (coarse, fine) = (self.coarse.band(), self.fine.band());
-        WavelengthBand {
-            shortest_m: coarse.shortest_m.max(self.wavelength_m).min(fine.shortest_m),
-            longest_m: coarse.longest_m.max(fine.longest_m.min(self.wavelength_m)),
-        }
+    fn parts(&mut self) -> &mut [Part] {
+        &mut self.sources
     }
 
-    fn reach_m(&self) -> f64 {
-        self.coarse.reach_m() + 2.0 * self.fine.reach_m()
-    }
-
-    fn hollow_m(&mut self, touch: &Touch, reach_m: f64) -> f64 {
-        let [low, _] = self.weights_at(touch.sample);
-        low * self.coarse.hollow_m(touch, reach_m)
-    }
-
-    fn beyond(&self, tile_m: [f64; 2]) -> Beyond {
-        self.coarse.beyond(tile_m).max(self.fine.beyond(tile_m))
+    /// The coarse part alone carries a tip.
+    fn shares(&mut self, touch: &Touch) -> Shares {
+        let [low, high] = match touch.kind {
+            TouchKind::Stands { .. } => [1.0, 0.0],
+            TouchKind::Begins | TouchKind::Presses => self.weights_at(touch.sample),
+        };
+        shared([(*touch, low), (*touch, high)])
     }
 
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
@@ -103,10 +89,12 @@ impl HeightField for BandSplit {
         for (blunt, &footprint) in blunt.iter_mut().zip(path.footprint_m) {
             *blunt = blunt.max(footprint);
         }
-        let blunt = PathBlock { footprint_m: &blunt[..n], ..*path };
-        self.coarse.sample(&blunt, out);
-        self.fine.sample(&blunt, &mut self.low);
-        self.fine.sample(path, &mut self.all);
+        let blunt = PathBlock { footprint_m: &blunt[..n], full_power_m2: None, ..*path };
+        let [coarse, fine] = &mut self.sources;
+        coarse.sample(&blunt, out);
+        fine.sample(&blunt, &mut self.low);
+        fine.sample(path, &mut self.all);
+        out.power.kind = PowerKind::Full;
         for i in 0..n {
             let [low, high] = self.weights_at(path.first_sample + i as u64);
             out.height_m[i] = low * out.height_m[i] + high * (self.all.height_m[i] - self.low.height_m[i]);
@@ -119,17 +107,7 @@ impl HeightField for BandSplit {
         }
     }
 
-    fn land(&mut self, touch: &Touch) {
-        self.coarse.land(touch);
-        self.fine.land(touch);
-    }
-
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        let [low, high] = self.weights_at(touch.sample);
-        add(add(Reaction::default(), self.coarse.react(touch), low), self.fine.react(touch), high)
-    }
-
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+    fn set(&mut self, change: &dyn Any, sample: u64) -> bool {
         if let Some(BandWeights(weights)) = change.downcast_ref() {
             let accepted = weights.iter().all(|&w| check_factor(w).is_ok());
             if accepted {
@@ -137,12 +115,6 @@ impl HeightField for BandSplit {
             }
             return accepted;
         }
-        let coarse = self.coarse.change(change, sample);
-        self.fine.change(change, sample) | coarse
-    }
-
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        self.coarse.visit(see);
-        self.fine.visit(see);
+        set_parts(&mut self.sources, change, sample)
     }
 }

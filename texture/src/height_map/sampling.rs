@@ -1,8 +1,8 @@
 //! A block of a map: heights, slopes and roughness along a path.
 
-use super::Working;
 use super::{HeightMap, Roughness};
 use crate::height_field::{PathBlock, SurfaceBlock};
+use crate::spline::Working;
 
 impl HeightMap {
     /// Heights, slopes and roughness that a path meets, worked out in the memory that the block has for it.

@@ -2,8 +2,7 @@
 
 use super::arrangement::{Correlation, correlation};
 use super::bands::{Parts, Scratch};
-use super::level::{Gait, Level, Task, add, on_grid};
-use super::search::Sought;
+use super::level::{Gait, Level, Sought, Task, add, on_grid};
 use super::spectrum::with_amplitudes;
 use super::terraces::{ground_under, heights_of_terraces};
 use super::{Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, check_finite};

@@ -79,6 +79,15 @@ pub(super) struct Task {
     pub gait: Gait,
 }
 
+/// What is to be made of which surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sought<'a> {
+    /// The part of it that tiles, and what is added for its heights.
+    pub original: &'a Raster,
+    pub seam: Option<&'a Raster>,
+    pub task: Task,
+}
+
 /// What a pass does beyond the change that matching the bands makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Gait {

@@ -2,7 +2,7 @@
 
 use super::bands::Scratch;
 use super::feel::{Feel, deviation, distances, mean};
-use super::level::{Gait, Level, Task, on_grid};
+use super::level::{Gait, Level, Sought, Task, on_grid};
 use super::{BORROWED, REACH};
 use crate::borders::Borders;
 use crate::raster::Raster;
@@ -35,15 +35,6 @@ impl Made {
     fn nearer(self, other: Self) -> Self {
         if other.mean < self.mean { other } else { self }
     }
-}
-
-/// What is to be made of which surface.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sought<'a> {
-    /// The part of it that tiles, and what is added for its heights.
-    pub original: &'a Raster,
-    pub seam: Option<&'a Raster>,
-    pub task: Task,
 }
 
 /// Where passes begin and how they go on from there.

@@ -31,6 +31,7 @@
 //! many of them at once.
 
 use super::buried::{Buried, MAX_BURIED, Met, first_met};
+use crate::answer::capped;
 use asperity_dsp::DesignError;
 use asperity_dsp::limits::{Range, sand as limits};
 
@@ -273,13 +274,6 @@ impl SandLaw {
         let rate = STRIKING_SHARE * displaced_m2 * speed_m_s / volume_m3;
         (rate, GRAIN_DENSITY_KG_M3 * volume_m3 * speed_m_s)
     }
-}
-
-/// A force no larger than a cap, in its own direction.
-#[must_use]
-pub fn capped(force_n: [f64; 3], cap_n: f64) -> [f64; 3] {
-    let size_n = force_n.iter().map(|f| f * f).sum::<f64>().sqrt();
-    if size_n > cap_n { force_n.map(|f| f * (cap_n / size_n)) } else { force_n }
 }
 
 #[cfg(test)]

@@ -32,7 +32,8 @@ use super::worker::SandWorker;
 use crate::answer::AnswerAt;
 use crate::fade::Fade;
 use crate::height_field::{
-    Beyond, HeightField, MAX_BLOCK, PathBlock, Reaction, Setup, SurfaceBlock, Touch, WavelengthBand,
+    Beyond, Finish, HeightField, MAX_BLOCK, PathBlock, Properties, Reaction, Setup, SurfaceBlock, Touch,
+    TouchKind, WavelengthBand,
 };
 use crate::moving_picture::MovingPicture;
 use crate::solid_materials::SolidMaterial;
@@ -123,7 +124,7 @@ impl SandSource {
     }
 
     /// Room for so many contacts that touch nothing yet, and the frames of a rate.
-    fn get_ready(&mut self, setup: &Setup) {
+    fn get_ready(&mut self, setup: &Setup<'_>) {
         self.slots = (0..setup.voices).map(|_| Slot::new()).collect();
         let frame_samples = frame_samples(setup.sample_rate_hz);
         let next_frame = (self.next_frame as f64 * setup.sample_rate_hz / self.sample_rate_hz) as u64;
@@ -246,6 +247,63 @@ impl SandSource {
             out.answer.set(i, AnswerAt { push_per_n, cap_n: law.cap_n, ..AnswerAt::NONE });
         }
     }
+
+    /// The force at which the sand carries a tip `depth_m` below the untouched bed, N.
+    fn carries_n(&self, position_m: [f64; 2], depth_m: f64) -> f64 {
+        // A tip on its way up still stands between the heaps of its way down.
+        let radius_m = WIDE * self.tool.print_radius_m(depth_m.max(BEARING_DEPTH_M));
+        let level_m = match &self.link {
+            Link::Here(simulation) => Some(simulation.level_m(position_m, radius_m)),
+            Link::Elsewhere { .. } => seen_level_m(&self.moving_picture, position_m, radius_m),
+        };
+        // Before the simulation has run, the bed is untouched.
+        let above_m = level_m.map_or(0.0, |level_m| level_m - self.depth_m);
+        let law = self.law.target();
+        law.force_over_n(law.met(position_m, above_m).as_ref(), depth_m + above_m)
+    }
+
+    /// Another contact begins here.
+    fn land(&mut self, touch: &Touch) {
+        self.catch_up(touch.sample);
+        let Some(slot) = self.slots.get_mut(touch.contact) else { return };
+        // Its patches belong to another place.
+        self.spare.extend(slot.old.take().into_iter().chain(slot.new.take()).chain(slot.waiting.take()));
+        slot.landed = true;
+        slot.next_touch = Some(touch.sample.next_multiple_of(MAX_BLOCK as u64));
+        match &self.link {
+            Link::Here(simulation) => simulation.write_landing(&pose(touch), &mut slot.ground),
+            Link::Elsewhere { .. } => {
+                let sinks_m = self.law.target().depth_m(touch.normal_force_n);
+                let radius_m = self.tool.print_radius_m(sinks_m);
+                match seen_level_m(&self.moving_picture, touch.position_m, radius_m) {
+                    Some(level_m) => {
+                        let (picture, pose) = (&self.moving_picture, &pose(touch));
+                        let (cell_m, depth_m) = (picture.cell_m(), self.depth_m);
+                        let cell_at = |at| picture.height_at(at).unwrap_or(level_m);
+                        let level_at = |at| level_around(cell_m, at, radius_m, cell_at);
+                        let around = Around { pose, radius_m, cell_m, depth_m, sinks_m };
+                        around.write(level_m, cell_at, level_at, &mut slot.ground);
+                    }
+                    // The simulation has not run yet.
+                    None => slot.ground.clone_from(&self.overview),
+                }
+            }
+        }
+    }
+
+    /// A contact presses on.
+    fn press(&mut self, touch: &Touch) -> Reaction {
+        self.exchange(touch);
+        let turned = self
+            .slots
+            .get_mut(touch.contact)
+            .map(|slot| slot.turn_over(touch.sample, fade_samples(self.frame_samples), &mut self.spare));
+        let (stirs, displaced_m2) = turned.unwrap_or((false, 0.0));
+        let law = self.law.target();
+        let speed = libm::hypot(touch.velocity_m_s[0], touch.velocity_m_s[1]);
+        let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
+        Reaction { grain_rate_per_s, grain_impulse_n_s, stirs, carries_n: None }
+    }
 }
 
 /// Where a touch is; a contact that has just landed says so itself.
@@ -260,24 +318,26 @@ fn pose(touch: &Touch) -> Pose {
 }
 
 impl HeightField for SandSource {
-    fn prepare(&mut self, setup: &Setup) -> Result<(), DesignError> {
+    /// The box has walls.
+    fn properties(&self, tile_m: [f64; 2]) -> Properties {
+        let shortest_m = self.grains.properties(tile_m).band.shortest_m;
+        Properties {
+            beyond: Beyond::Edge,
+            tip_law: Some(self.tip_law()),
+            picture: Some(self.moving_picture.clone()),
+            ..Properties::of(WavelengthBand { shortest_m, longest_m: self.longest_m })
+        }
+    }
+
+    fn prepare(&mut self, setup: &Setup<'_>) -> Result<(), DesignError> {
         self.law.prepare(setup.sample_rate_hz);
         self.get_ready(setup);
         self.grains.prepare(setup)
     }
 
-    fn band(&self) -> WavelengthBand {
-        WavelengthBand { shortest_m: self.grains.band().shortest_m, longest_m: self.longest_m }
-    }
-
-    /// The box has walls.
-    fn beyond(&self, _tile_m: [f64; 2]) -> Beyond {
-        Beyond::Edge
-    }
-
     fn sample(&mut self, path: &PathBlock<'_>, out: &mut SurfaceBlock) {
         let n = path.len().min(MAX_BLOCK);
-        self.grains.sample(path, &mut self.grain_relief);
+        self.grains.sample(&PathBlock { at_m: &[], full_power_m2: None, ..*path }, &mut self.grain_relief);
         out.clear(n);
         let fade_length = fade_samples(self.frame_samples) as f64;
         let Some(slot) = self.slots.get(path.contact) else { return };
@@ -322,62 +382,26 @@ impl HeightField for SandSource {
         }
     }
 
-    fn carries_n(&mut self, position_m: [f64; 2], depth_m: f64) -> Option<f64> {
-        // A tip on its way up still stands between the heaps of its way down.
-        let radius_m = WIDE * self.tool.print_radius_m(depth_m.max(BEARING_DEPTH_M));
-        let level_m = match &self.link {
-            Link::Here(simulation) => Some(simulation.level_m(position_m, radius_m)),
-            Link::Elsewhere { .. } => seen_level_m(&self.moving_picture, position_m, radius_m),
-        };
-        // Before the simulation has run, the bed is untouched.
-        let above_m = level_m.map_or(0.0, |level_m| level_m - self.depth_m);
-        let law = self.law.target();
-        Some(law.force_over_n(law.met(position_m, above_m).as_ref(), depth_m + above_m))
-    }
-
-    fn land(&mut self, touch: &Touch) {
-        self.catch_up(touch.sample);
-        let Some(slot) = self.slots.get_mut(touch.contact) else { return };
-        // Its patches belong to another place.
-        self.spare.extend(slot.old.take().into_iter().chain(slot.new.take()).chain(slot.waiting.take()));
-        slot.landed = true;
-        slot.next_touch = Some(touch.sample.next_multiple_of(MAX_BLOCK as u64));
-        match &self.link {
-            Link::Here(simulation) => simulation.write_landing(&pose(touch), &mut slot.ground),
-            Link::Elsewhere { .. } => {
-                let sinks_m = self.law.target().depth_m(touch.normal_force_n);
-                let radius_m = self.tool.print_radius_m(sinks_m);
-                match seen_level_m(&self.moving_picture, touch.position_m, radius_m) {
-                    Some(level_m) => {
-                        let (picture, pose) = (&self.moving_picture, &pose(touch));
-                        let (cell_m, depth_m) = (picture.cell_m(), self.depth_m);
-                        let cell_at = |at| picture.height_at(at).unwrap_or(level_m);
-                        let level_at = |at| level_around(cell_m, at, radius_m, cell_at);
-                        let around = Around { pose, radius_m, cell_m, depth_m, sinks_m };
-                        around.write(level_m, cell_at, level_at, &mut slot.ground);
-                    }
-                    // The simulation has not run yet.
-                    None => slot.ground.clone_from(&self.overview),
-                }
+    fn touch(&mut self, touch: &Touch) -> Reaction {
+        match touch.kind {
+            TouchKind::Begins => {
+                self.land(touch);
+                Reaction::default()
+            }
+            TouchKind::Presses => self.press(touch),
+            TouchKind::Stands { depth_m } => {
+                Reaction { carries_n: Some(self.carries_n(touch.position_m, depth_m)), ..Reaction::default() }
             }
         }
     }
 
-    fn react(&mut self, touch: &Touch) -> Reaction {
-        self.exchange(touch);
-        let turned = self
-            .slots
-            .get_mut(touch.contact)
-            .map(|slot| slot.turn_over(touch.sample, fade_samples(self.frame_samples), &mut self.spare));
-        let (stirs, displaced_m2) = turned.unwrap_or((false, 0.0));
-        let law = self.law.target();
-        let speed = libm::hypot(touch.velocity_m_s[0], touch.velocity_m_s[1]);
-        let (grain_rate_per_s, grain_impulse_n_s) = law.grains(displaced_m2, speed);
-        Reaction { grain_rate_per_s, grain_impulse_n_s, stirs }
-    }
-
-    /// Takes a [`SandLaw`].
-    fn change(&mut self, change: &dyn Any, sample: u64) -> bool {
+    /// Takes a [`SandLaw`], and gives its figures and picture to a [`Finish`].
+    fn set(&mut self, change: &dyn Any, sample: u64) -> bool {
+        if let Some(Finish(results)) = change.downcast_ref() {
+            let finished = self.finish().map(|finished| -> Box<dyn Any> { Box::new(finished) });
+            results.borrow_mut().extend(finished);
+            return true;
+        }
         let Some(law) = change.downcast_ref::<SandLaw>() else { return false };
         if law.check().is_err() {
             return false;
@@ -389,10 +413,5 @@ impl HeightField for SandSource {
             Link::Elsewhere { near, .. } => drop(near.laws.get_mut().push(*law)),
         }
         true
-    }
-
-    fn visit(&mut self, see: &mut dyn FnMut(&mut dyn Any)) {
-        see(&mut self.moving_picture);
-        see(self);
     }
 }

@@ -61,17 +61,6 @@ impl Cell {
         Self { powers }
     }
 
-    /// The value at one place.
-    #[inline(always)]
-    pub(super) fn value<V: Rows>(&self, v: V, [t, u]: [f64; 2]) -> f64 {
-        // The four powers of y side by side.
-        let [a, b, c, d] = &self.powers;
-        let mut level = [0.0; 4];
-        v.store(cubic(v, [v.load(a), v.load(b), v.load(c), v.load(d)], v.splat(t)), &mut level);
-        let [a, b, c, d] = level;
-        ((d * u + c) * u + b) * u + a
-    }
-
     /// Values, and slopes if `SLOPES`, at the places `start..end`, N side by side. What is written beyond `end`, up to whole
     /// vectors, means nothing.
     #[inline(always)]

@@ -52,6 +52,7 @@ pub fn height_rate(source: &mut SolidNoise, path: &[([f64; 2], [f64; 2])]) -> Ve
             first_sample: 64 * k as u64,
             contact: 0,
             slopes: true,
+            ..PathBlock::default()
         };
         source.sample(&path, &mut out);
         signal.extend(

@@ -52,6 +52,7 @@ impl Stroke {
                 first_sample,
                 contact: 0,
                 slopes: true,
+                ..PathBlock::default()
             };
             source.sample(&path, &mut out);
             for i in 0..length {

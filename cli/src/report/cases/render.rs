@@ -48,6 +48,8 @@ pub struct Take {
     pub haptic: Vec<f64>,
     /// Heard.
     pub audio: Vec<f64>,
+    /// By how much sound lags behind felt, s.
+    pub sound_late_s: f64,
     /// Time in the renderer, s.
     pub processing_s: f64,
     inner_rows: bool,
@@ -115,7 +117,9 @@ pub fn take(case: &Case, seed: u64, chain: &Chain, log: Option<&ContactLog>) -> 
     };
     let Engine { scene, renderer, names, .. } = Engine::from_scene(&file, &overrides).map_err(refused)?;
     let inner_rate_hz = scene.config().inner_rate_hz();
-    let mut taken = Take { inner_rate_hz, inner_rows: chain.inner_rows, ..Take::default() };
+    let late_samples = renderer.audio_latency_samples() - renderer.latency_samples();
+    let sound_late_s = late_samples as f64 / renderer.sample_rate_hz();
+    let mut taken = Take { inner_rate_hz, sound_late_s, inner_rows: chain.inner_rows, ..Take::default() };
     let options =
         Options { tail_s: file.tail_s, clock_s: Some(crate::measure::seconds), ..Options::default() };
     let log = log.unwrap_or(&own);

@@ -1,8 +1,8 @@
 //! Collisions: each time the pad meets the surface anew, a Hertz pulse (`dsp::hertz`).
 
-use super::pulses::Pulses;
 use super::{Excited, LONGEST_COLLISION_S};
 use crate::model::excitation::Exciter;
+use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::hertz::{HertzPulse, OnsetMerge};
 use asperity_dsp::micro_contact::Onset;
 
@@ -14,7 +14,13 @@ pub(super) struct Collisions {
 
 impl Collisions {
     /// Sends a collision's pulse on its way, where collisions sound; whether it had to be shortened.
-    pub(super) fn strike(&mut self, by: &Excited<'_>, onset: &Onset, row: u64, pulses: &mut Pulses) -> bool {
+    pub(super) fn strike(
+        &mut self,
+        by: &Excited<'_>,
+        onset: &Onset,
+        row: u64,
+        pulses: &mut ImpulseRing,
+    ) -> bool {
         if !by.slot.surface.excitation.has(Exciter::Collisions) {
             return false;
         }

@@ -24,24 +24,14 @@ pub(super) struct ContactForce {
 }
 
 impl ContactForce {
-    /// Adds the force as the bank hears it to `out`, and as it is to `unspread`; where nothing is there yet, it is written.
-    pub(super) fn add(
-        &mut self,
-        run: &mut ForceRun,
-        out: &mut [f64],
-        unspread: &mut [f64],
-        something_is_there: bool,
-    ) {
+    /// Adds the force, spread for the bank, to `out`; where nothing is there yet, it is written.
+    pub(super) fn add(&mut self, run: &mut ForceRun, out: &mut [f64], something_is_there: bool) {
         let n = out.len();
         run.0[..FORCE_HISTORY].copy_from_slice(&self.history_n_s);
         let forces_n_s = &run.0[..FORCE_HISTORY + n];
-        let now = unspread.iter_mut().zip(&forces_n_s[FORCE_HISTORY..]);
         if something_is_there {
-            now.for_each(|(sum, x)| *sum += x);
             hertz::spread_force(forces_n_s, out);
         } else {
-            // As if it were added to 0.
-            now.for_each(|(sum, x)| *sum = 0.0 + x);
             hertz::spread_force_alone(forces_n_s, out);
         }
         self.history_n_s.copy_from_slice(&run.0[n..n + FORCE_HISTORY]);

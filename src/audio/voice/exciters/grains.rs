@@ -1,7 +1,7 @@
 //! Grains that give way hit each other at random times: a Poisson process drawn sample by sample.
 
-use super::pulses::Pulses;
 use super::{Excited, LONGEST_COLLISION_S};
+use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::rng::Rng;
 
@@ -14,7 +14,7 @@ impl Grains {
     }
 
     /// What gives way during one sample, as often as the surface says.
-    pub(super) fn shift(&mut self, by: &Excited<'_>, sample: u64, pulses: &mut Pulses) {
+    pub(super) fn shift(&mut self, by: &Excited<'_>, sample: u64, pulses: &mut ImpulseRing) {
         let draw = self.0.uniform();
         let expected = by.reaction.grain_rate_per_s / by.sample_rate_hz;
         if draw < expected {

@@ -21,17 +21,6 @@ impl Loudness {
         self.ends = [self.ends[1], loudness];
     }
 
-    /// [`weigh`](Self::weigh) of two that are as long.
-    pub(super) fn weigh_both(&self, position: u64, slow_step: u64, one: &mut [f64], other: &mut [f64]) {
-        let [from, to] = self.ends;
-        let first = (position % slow_step) as u32 + 1;
-        let steps = slow_step as f64;
-        for (i, (one, other)) in (first..).zip(one.iter_mut().zip(other)) {
-            let gain = from + f64::from(i) / steps * (to - from);
-            (*one, *other) = (*one * gain, *other * gain);
-        }
-    }
-
     /// Weighs what a contact gives, of which the first sample has this place; `slow_step` samples lie between two steps of the grid.
     pub(in crate::audio::voice) fn weigh(&self, position: u64, slow_step: u64, samples: &mut [f64]) {
         let [from, to] = self.ends;

@@ -3,13 +3,13 @@
 //! It belongs to the block that is filled, which whoever asks has at hand: one of every map's own would be far away, one on the stack would have to be
 //! cleared for every block.
 
-use crate::spline::{Places, Samples};
+use super::{Places, Samples};
 
 /// It holds nothing between two blocks.
 #[derive(Debug, Clone)]
 pub(crate) struct Working {
-    pub(super) places: Places,
-    pub(super) samples: Samples,
+    pub(crate) places: Places,
+    pub(crate) samples: Samples,
 }
 
 impl Working {
