@@ -72,7 +72,7 @@ fn a_body_and_two_surfaces_render_and_a_mode_keeps_its_frequency_and_decay() {
         (Some(2), Some(1300.0))
     );
     assert_eq!(modes["modes"][0]["decay_per_s"].as_f64(), Some(12.0));
-    // φ·n at the three points: 2, −1, 0.5; half of the gain.
+    // φ·n at the three points, which share the triangle alike: 2, −1, 0.5; half of the gain.
     let rms = ((4.0 + 1.0 + 0.25_f64) / 3.0).sqrt();
     assert!((modes["shapes"]["gains"][0].as_f64().unwrap() - 0.5 * rms).abs() < 1e-6);
 }
@@ -160,4 +160,73 @@ fn every_sample_scene_of_the_draft_is_read_and_five_render() {
         }
     }
     println!("{} documents read", found.len());
+}
+
+/// A box of 0.1 × 0.05 × 0.02 m whose material has a normal texture, and the node that places it.
+fn textured_box(node: &Value, transform: &Value) -> (Value, Vec<u8>) {
+    let corners: Vec<[f32; 3]> = (0..8_u8)
+        .map(|i| [0.1 * f32::from(i & 1), 0.05 * f32::from(i >> 1 & 1), 0.02 * f32::from(i >> 2)])
+        .collect();
+    let quads: [[u16; 4]; 6] =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mut bytes: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    // Coordinates over the top: four repeats along x, two along y; the walls have none to speak of.
+    bytes.extend(corners.iter().flat_map(|[x, y, _]| [40.0 * x, 40.0 * y]).flat_map(f32::to_le_bytes));
+    let indices = quads.iter().flat_map(|[a, b, c, d]| [*a, *b, *c, *a, *c, *d]);
+    bytes.extend(indices.flat_map(u16::to_le_bytes));
+    let mut png = Vec::new();
+    let picture = image::RgbImage::from_fn(64, 64, |x, _| {
+        let slope = 0.3 * (std::f64::consts::TAU * (f64::from(x) + 0.5) / 16.0).cos();
+        let unit = 1.0 / (1.0 + slope * slope).sqrt();
+        let byte = |c: f64| ((0.5 + 0.5 * c) * 255.0).round() as u8;
+        image::Rgb([byte(-slope * unit), 128, byte(unit)])
+    });
+    picture.write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png).unwrap();
+    fs::create_dir_all(std::env::temp_dir()).unwrap();
+    let view =
+        |offset: usize, length: usize| json!({"buffer": 0, "byteOffset": offset, "byteLength": length});
+    let accessor = |view: usize, of: u32, kind: &str, count: usize| json!({"bufferView": view, "componentType": of, "type": kind, "count": count});
+    let document = json!({
+        "asset": {"version": "2.0"}, "buffers": [{"uri": "scene.bin", "byteLength": bytes.len()}],
+        "bufferViews": [view(0, 96), view(96, 64), view(160, 72)],
+        "accessors": [accessor(0, 5126, "VEC3", 8), accessor(1, 5126, "VEC2", 8), accessor(2, 5123, "SCALAR", 36)],
+        "meshes": [{"name": "brick", "primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": 0}]}],
+        "materials": [{"name": "clay", "pbrMetallicRoughness": {"roughnessFactor": 0.7},
+            "normalTexture": {"index": 0, "extensions": {"KHR_texture_transform": transform}}}],
+        "textures": [{"source": 0}], "images": [{"uri": "my%20normals.png"}],
+        "nodes": [node, {"mesh": 0}],
+    });
+    (document, [bytes, png].concat())
+}
+
+#[test]
+fn a_document_without_the_draft_gives_a_body_and_a_surface_in_true_metres() {
+    let plain = json!({"children": [1]});
+    let halved = json!({"children": [1], "scale": [0.5, 0.5, 0.5]});
+    let matrix = json!({"children": [1], "matrix": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 1, 1, 1]});
+    for (node, transform, factor, repeats) in [
+        (&plain, json!({}), 1.0, 1.0),
+        (&halved, json!({}), 0.5, 1.0),
+        (&matrix, json!({"scale": [2, 2]}), 2.0, 2.0),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let (document, bytes) = textured_box(node, &transform);
+        put(folder.path(), &document, &bytes[..232]);
+        fs::write(folder.path().join("my normals.png"), &bytes[232..]).unwrap();
+        let (status, out, err) =
+            told(&asperity(folder.path(), &["import", "scene.gltf", "-o", "out", "--json"]));
+        assert_eq!((status, err.as_str()), (0, ""), "{out}");
+        let report: Value = serde_json::from_str(&out).unwrap();
+        assert_eq!((report["bodies"].as_u64(), report["surfaces"].as_u64()), (Some(1), Some(1)), "{report}");
+        let scene: toml::Value =
+            toml::from_str(&fs::read_to_string(folder.path().join("out/scene.toml")).unwrap()).unwrap();
+        let surface = &scene["surface"][0];
+        let number = |key: &str| surface[key].as_float().unwrap();
+        // One repeat spans 25 mm on the faces that have coordinates; slopes of 0.3 over 4 periods of it.
+        let width_m = 0.025 * factor / repeats;
+        assert!((number("width_m") / width_m - 1.0).abs() < 0.01, "{}", number("width_m"));
+        let relief_m = 2.0 * 0.3 * (width_m / 4.0) / std::f64::consts::TAU;
+        assert!((number("relief_m") / relief_m - 1.0).abs() < 0.03, "{} {relief_m}", number("relief_m"));
+        assert_eq!(surface["body"].as_str(), scene["body"][0]["name"].as_str());
+    }
 }

@@ -169,10 +169,11 @@ fn what_cannot_be_read_is_named_in_one_line() {
     let of = |format: Vec<u8>| riff(b"RIFF", &[chunk(b"fmt ", &format), chunk(b"data", &pcm16())]);
     let mut own = extensible(1, 16, 16);
     own[30] = 9;
-    let cases: [(&str, Vec<u8>, &str); 14] = [
-        ("mp3", [b"ID3\x04".to_vec(), vec![0; 99]].concat(), "MP3"),
+    let cases: [(&str, Vec<u8>, &str); 15] = [
+        ("mp3", [b"\xff\xfb\x90".to_vec(), vec![0; 99]].concat(), "MP3"),
+        ("tag alone", [b"ID3\x04".to_vec(), vec![0; 99]].concat(), "zeros"),
         ("aiff", b"FORM\0\0\0\x10AIFFCOMM".to_vec(), "AIFF"),
-        ("m4a", b"\0\0\0\x20ftypM4A \0\0\0\0".to_vec(), "MP4"),
+        ("m4a", b"\0\0\0\x20ftypM4A \0\0\0\0".to_vec(), "M4A"),
         ("caf", b"caff\0\x01\0\0desc".to_vec(), "CAF"),
         ("text", b"this is no sound at all".to_vec(), "no header"),
         ("zeros", vec![0; 400], "zeros"),
@@ -199,4 +200,53 @@ fn a_wav_file_that_breaks_off_is_a_recording_that_says_so() {
     let file = riff(b"RIFF", &[chunk(b"fmt ", &format(1, 16, 4)), chunk(b"data", &pcm16())]);
     let cut = read("cut", &file[..44 + 4 * 2000 + 1]).unwrap();
     assert!(cut.truncated && cut.samples.len() == 2000, "{} {}", cut.truncated, cut.samples.len());
+}
+
+/// An ID3v2 tag of so many bytes in all.
+fn tag(version: u8, bytes: usize) -> Vec<u8> {
+    let size = bytes - 10;
+    let sizes = [21, 14, 7, 0].map(|shift| (size >> shift & 0x7f) as u8);
+    let mut tag = [b"ID3".to_vec(), vec![version, 0, 0], sizes.to_vec()].concat();
+    tag.resize(bytes, 0);
+    tag
+}
+
+/// 16-bit AIFF of the same two channels.
+fn aiff() -> Vec<u8> {
+    let little = pcm16();
+    let sound: Vec<u8> = little.as_chunks::<2>().0.iter().flat_map(|[low, high]| [*high, *low]).collect();
+    let frames = (little.len() / 4) as u32;
+    let mut common = vec![0, 2];
+    common.extend(frames.to_be_bytes());
+    common.extend([0, 16]);
+    // The rate as 80 bits.
+    let rate = 44_100_u64;
+    let exponent = 63 - rate.leading_zeros();
+    common.extend((16_383 + exponent as u16).to_be_bytes());
+    common.extend((rate << (63 - exponent)).to_be_bytes());
+    let piece = |name: &[u8], body: &[u8]| [name, &(body.len() as u32).to_be_bytes(), body].concat();
+    let body =
+        [b"AIFF".to_vec(), piece(b"COMM", &common), piece(b"SSND", &[vec![0; 8], sound].concat())].concat();
+    piece(b"FORM", &body)
+}
+
+#[test]
+fn tags_of_players_in_front_and_behind_change_nothing() {
+    let wav = riff(b"RIFF", &[chunk(b"fmt ", &format(1, 16, 4)), chunk(b"data", &pcm16())]);
+    let old = [b"TAG".to_vec(), vec![b'x'; 125]].concat();
+    assert_same("aiff", &aiff());
+    for (name, bytes) in [("wav", wav), ("flac", flac()), ("aiff", aiff())] {
+        for (version, size) in [(3, 55), (4, 70_000)] {
+            let file = [tag(version, size), bytes.clone(), old.clone()].concat();
+            assert_same(&format!("{name} {version}"), &file);
+        }
+        assert_same(&format!("{name} behind"), &[bytes, tag(4, 300)].concat());
+    }
+}
+
+#[test]
+fn a_frame_size_of_0_is_that_of_the_samples() {
+    let mut unsaid = format(1, 16, 4);
+    unsaid[12..14].fill(0);
+    assert_same("align", &riff(b"RIFF", &[chunk(b"fmt ", &unsaid), chunk(b"data", &pcm16())]));
 }

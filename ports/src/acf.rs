@@ -1,10 +1,11 @@
 //! ACF: an actuator configuration of Meta's haptic renderer, read for the range it says.
 //!
-//! It is JSON in which people write comments and trailing commas. Of it are used `continuous.frequency_min`, `frequency_max` and
+//! It is JSON5: comments, trailing commas, keys without quotes. Of it are used `continuous.frequency_min`, `frequency_max` and
 //! `emphasis_ducking`, and the strokes where it has them; it says no resonance, so nothing of an actuator's response comes from it.
 
 use crate::device::{Device, Stroke};
 use crate::error::PortError;
+use crate::json5_text;
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -40,15 +41,12 @@ impl End {
     }
 }
 
-/// A device from a configuration without its comments.
+/// A device from a configuration.
 pub(crate) fn device(text: &str) -> Result<Device, PortError> {
-    let acf: Acf = serde_json::from_str(text).map_err(|error| {
-        PortError::new(
-            "device",
-            error,
-            "must be an actuator configuration with continuous.frequency_min and frequency_max",
-        )
-    })?;
+    let right = "must be an actuator configuration with continuous.frequency_min and frequency_max";
+    let read = json5_text::value(text)
+        .and_then(|value| serde_json::from_value(value).map_err(|error| error.to_string()));
+    let acf: Acf = read.map_err(|error| PortError::new("device", error, right))?;
     let mut device = Device::quest();
     device.label = "From an actuator configuration".to_owned();
     device.band_hz = [acf.continuous.frequency_min, acf.continuous.frequency_max];
@@ -63,45 +61,6 @@ pub(crate) fn device(text: &str) -> Result<Device, PortError> {
     device.checked()
 }
 
-/// JSON5 as people write it → JSON: comments go, and commas before a closing bracket.
-pub(crate) fn without_comments(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
-    let mut rest = text.chars().peekable();
-    let (mut quoted, mut escaped) = (false, false);
-    while let Some(c) = rest.next() {
-        if quoted {
-            quoted = escaped || c != '"';
-            escaped = !escaped && c == '\\';
-            plain.push(c);
-            continue;
-        }
-        match (c, rest.peek()) {
-            ('/', Some('/')) => while rest.next_if(|c| *c != '\n').is_some() {},
-            ('/', Some('*')) => {
-                let mut before = ' ';
-                for c in rest.by_ref() {
-                    if before == '*' && c == '/' {
-                        break;
-                    }
-                    before = c;
-                }
-            }
-            (']' | '}', _) => {
-                let kept = plain.trim_end().len();
-                if plain[..kept].ends_with(',') {
-                    plain.truncate(kept - 1);
-                }
-                plain.push(c);
-            }
-            _ => {
-                quoted = c == '"';
-                plain.push(c);
-            }
-        }
-    }
-    plain
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -109,7 +68,7 @@ mod tests {
     #[test]
     fn a_configuration_with_comments_gives_its_range_and_strokes() {
         let text = r#"// a controller
-        { "continuous": { "gain": 1.0, "emphasis_ducking": 0.4, /* Hz */ "frequency_min": 60, "frequency_max": 180, },
+        { continuous: { gain: 1.0, "emphasis_ducking": 0.4, /* Hz */ "frequency_min": 60, "frequency_max": 180, },
           "emphasis": { "frequency_min": { "output_frequency": 60, "duration_ms": 30, "shape": "sine" },
                         "frequency_max": { "output_frequency": 170, "duration_ms": 12, "shape": "SQUARE" } } }"#;
         let device = Device::parse(text).unwrap();

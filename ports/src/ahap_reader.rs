@@ -1,11 +1,28 @@
-//! What an AHAP holds, gathered into envelopes and strokes.
+//! Events and parameters of an AHAP, gathered into envelopes and strokes.
+//!
+//! | in the file | here |
+//! |---|---|
+//! | `HapticIntensityControl` | multiplies the intensity of every event, strokes too |
+//! | `HapticSharpnessControl` | is added to the sharpness of every event, strokes too |
+//! | `ParameterCurve` | straight from point to point; it acts from its first point on and is held behind its last |
+//! | `Parameter` | a step that is held |
+//! | `AttackTime`, `DecayTime`, `ReleaseTime` | straight ramps of the intensity of as many seconds; decay without `Sustained` only |
+//!
+//! The vendor says of the three times that they run from 0 to 1 and grow, not by what law: they are told. Curves of a file that
+//! holds strokes alone do not reach the file beside it, as two patterns are played by themselves. Intensities are squared, so that
+//! a ramp of one bends: it is cut into pieces that stay within 0.3 dB of it.
 
 use crate::clip::{AmplitudePoint, Clip, Emphasis, FrequencyPoint, Line, Read};
 use crate::error::{PortError, within};
+use crate::track::Track;
 use serde_json::Value;
 
 /// How long a clip of strokes goes on behind the last one, s.
 const STROKE_S: f64 = 0.05;
+/// A ramp of intensity is straight enough when its ends differ by at most this part of their sum.
+const STRAIGHT: f64 = 0.17;
+/// Pieces of a ramp from 0 to 1.
+const PIECES: f64 = 16.0;
 
 /// A continuous event as it was read.
 struct Held {
@@ -13,14 +30,48 @@ struct Held {
     ends_s: f64,
     intensity: f64,
     sharpness: f64,
+    attack_s: f64,
+    release_s: f64,
+    /// Of an event that is not sustained.
+    decay_s: Option<f64>,
+}
+
+impl Held {
+    /// Where its intensity bends, s.
+    fn bends_s(&self) -> [f64; 5] {
+        let full_s = (self.begins_s + self.attack_s).min(self.ends_s);
+        let decayed_s = self.decay_s.map_or(self.ends_s, |decay_s| (full_s + decay_s).min(self.ends_s));
+        [self.begins_s, full_s, decayed_s, self.ends_s, self.ends_s + self.release_s]
+    }
+
+    /// Intensity at a time within it.
+    fn intensity_at(&self, time_s: f64) -> f64 {
+        let [begins_s, full_s, _, ends_s, _] = self.bends_s();
+        let held = |time_s: f64| {
+            let attack = if self.attack_s > 0.0 { (time_s - begins_s) / self.attack_s } else { 1.0 };
+            let decay = match self.decay_s {
+                Some(decay_s) if time_s > full_s => {
+                    if decay_s > 0.0 {
+                        1.0 - (time_s - full_s) / decay_s
+                    } else {
+                        0.0
+                    }
+                }
+                _ => 1.0,
+            };
+            attack.clamp(0.0, 1.0) * decay.max(0.0)
+        };
+        let release = if time_s > ends_s { 1.0 - (time_s - ends_s) / self.release_s.max(1e-12) } else { 1.0 };
+        self.intensity * held(time_s.min(ends_s)) * release.max(0.0)
+    }
 }
 
 #[derive(Default)]
 pub(crate) struct Pieces {
     held: Vec<Held>,
     strokes: Vec<(f64, Emphasis)>,
-    intensity: Vec<(f64, f64)>,
-    sharpness: Vec<(f64, f64)>,
+    intensity: Track,
+    sharpness: Track,
     told: Vec<String>,
 }
 
@@ -35,13 +86,22 @@ impl Pieces {
     /// Everything in a file.
     pub(crate) fn add_file(&mut self, source: &str) -> Result<(), PortError> {
         let right = "must be JSON with Version and Pattern, a list of Event and ParameterCurve";
-        let file: Value =
-            serde_json::from_str(source).map_err(|error| PortError::new("ahap", error, right))?;
+        let file = crate::json5_text::value(source).map_err(|error| PortError::new("ahap", error, right))?;
         let pattern = file.get("Pattern").and_then(Value::as_array);
         let pattern = pattern.ok_or_else(|| PortError::new("Pattern", "is no list", right))?;
+        let (first, before) = (self.strokes.len(), (self.intensity.clone(), self.sharpness.clone()));
+        (self.intensity, self.sharpness) = (Track::default(), Track::default());
         for (index, item) in pattern.iter().enumerate() {
             self.add(item).map_err(|error| error.within(format!("Pattern[{index}]")))?;
         }
+        let (intensity, sharpness) = (self.intensity.points(1.0), self.sharpness.points(0.0));
+        for (time_s, stroke) in &mut self.strokes[first..] {
+            let factor = intensity.at(*time_s, true).max(0.0);
+            stroke.amplitude = (stroke.amplitude * factor * factor).min(1.0);
+            stroke.frequency = (stroke.frequency + sharpness.at(*time_s, true)).clamp(0.0, 1.0);
+        }
+        self.intensity.append(before.0);
+        self.sharpness.append(before.1);
         Ok(())
     }
 
@@ -52,11 +112,27 @@ impl Pieces {
         if let Some(curve) = item.get("ParameterCurve") {
             return self.curve(curve);
         }
-        if item.get("Parameter").is_some() {
-            self.tell("a single Parameter is read past");
+        if let Some(parameter) = item.get("Parameter") {
+            let time_s = optional(parameter, "Time", TIME_S)?.unwrap_or(0.0);
+            let value = number(parameter, "ParameterValue", [-1e6, 1e6])?.clamp(-1.0, 1.0);
+            if let Some(track) = self.track(parameter) {
+                track.put(vec![(time_s, value)]);
+            }
             return Ok(());
         }
         Err(PortError::new("item", "is unknown", "must be Event, ParameterCurve or Parameter"))
+    }
+
+    /// What a parameter acts on.
+    fn track(&mut self, parameter: &Value) -> Option<&mut Track> {
+        match parameter.get("ParameterID").and_then(Value::as_str) {
+            Some("HapticIntensityControl") => Some(&mut self.intensity),
+            Some("HapticSharpnessControl") => Some(&mut self.sharpness),
+            _ => {
+                self.tell("curves of other parameters than intensity and sharpness are read past");
+                None
+            }
+        }
     }
 
     fn tell(&mut self, what: &str) {
@@ -68,14 +144,23 @@ impl Pieces {
     fn event(&mut self, event: &Value) -> Result<(), PortError> {
         let begins_s = number(event, "Time", TIME_S)?;
         let (mut intensity, mut sharpness) = (1.0, 0.5);
+        let (mut attack_s, mut decay_s, mut release_s, mut sustained) = (0.0, 0.0, 0.0, true);
         for parameter in event.get("EventParameters").and_then(Value::as_array).into_iter().flatten() {
             let value = number(parameter, "ParameterValue", [-1e6, 1e6])?.clamp(0.0, 1.0);
             match parameter.get("ParameterID").and_then(Value::as_str) {
                 Some("HapticIntensity") => intensity = value,
                 Some("HapticSharpness") => sharpness = value,
-                Some("AudioVolume" | "AudioPitch" | "AudioPan" | "AudioBrightness") => {}
-                _ => self.tell("attack, decay and release of events are read past"),
+                Some("AttackTime") => attack_s = value,
+                Some("DecayTime") => decay_s = value,
+                Some("ReleaseTime") => release_s = value,
+                Some("Sustained") => sustained = value > 0.0,
+                // The vendor's reader ignores what it does not know.
+                _ => {}
             }
+        }
+        let is_held = event.get("EventType").and_then(Value::as_str) == Some("HapticContinuous");
+        if is_held && (attack_s > 0.0 || release_s > 0.0 || !sustained) {
+            self.tell("attack, decay and release of events are read as straight ramps of as many seconds");
         }
         match event.get("EventType").and_then(Value::as_str) {
             Some("HapticTransient") => {
@@ -84,7 +169,8 @@ impl Pieces {
             }
             Some("HapticContinuous") => {
                 let ends_s = begins_s + number(event, "EventDuration", TIME_S)?;
-                self.held.push(Held { begins_s, ends_s, intensity, sharpness });
+                let decay_s = (!sustained).then_some(decay_s);
+                self.held.push(Held { begins_s, ends_s, intensity, sharpness, attack_s, release_s, decay_s });
             }
             Some("AudioCustom" | "AudioContinuous") => self.tell("sounds are no vibration and are read past"),
             other => {
@@ -106,32 +192,23 @@ impl Pieces {
                 "must be a list of Time and ParameterValue",
             )
         })?;
-        let into = match curve.get("ParameterID").and_then(Value::as_str) {
-            Some("HapticIntensityControl") => &mut self.intensity,
-            Some("HapticSharpnessControl") => &mut self.sharpness,
-            _ => {
-                self.tell("curves of other parameters than intensity and sharpness are read past");
-                return Ok(());
-            }
-        };
+        let mut read = Vec::with_capacity(points.len());
         for (index, point) in points.iter().enumerate() {
             let at = |error: PortError| error.within(format!("ParameterCurveControlPoints[{index}]"));
             let time_s = begins_s + number(point, "Time", TIME_S).map_err(at)?;
             let value = number(point, "ParameterValue", [-1e6, 1e6]).map_err(at)?;
-            into.push((time_s, value.clamp(-1.0, 1.0)));
+            read.push((time_s, value.clamp(-1.0, 1.0)));
+        }
+        if let Some(track) = self.track(curve) {
+            track.put(read);
         }
         Ok(())
     }
 
     /// The clip that all of it makes.
     pub(crate) fn clip(mut self) -> Result<Read, PortError> {
-        for points in [&mut self.intensity, &mut self.sharpness] {
-            points.sort_by(|a, b| a.0.total_cmp(&b.0));
-            // Joints of split curves, to the rounding of times that count from a curve's own beginning.
-            points.dedup_by(|b, a| (a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9);
-        }
         self.strokes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let ends_s = self.held.iter().map(|h| h.ends_s).fold(0.0, f64::max);
+        let ends_s = self.held.iter().map(|h| h.bends_s()[4]).fold(0.0, f64::max);
         // A stroke by itself lasts as long as strokes do.
         let rings_s = if self.held.is_empty() { STROKE_S } else { 0.0 };
         let last_s = self.strokes.last().map_or(ends_s, |(at, _)| ends_s.max(at + rings_s));
@@ -142,15 +219,23 @@ impl Pieces {
                 "must have a haptic event that lasts",
             ));
         }
-        let clip = Clip { amplitude: self.amplitude(last_s), frequency: self.frequency(), ..Clip::default() };
+        let (amplitude, mut frequency) = (self.amplitude(last_s), self.frequency());
+        // Edges of both are the same to rounding.
+        if let [first, .., last] = &amplitude[..] {
+            frequency.iter_mut().for_each(|p| p.time_s = p.time_s.clamp(first.time_s, last.time_s));
+        }
+        let clip = Clip { amplitude, frequency, ..Clip::default() };
         Ok(Read { clip: clip.checked()?, told: self.told })
     }
 
     /// Times at which the envelope bends: twice where it may jump.
     fn amplitude(&self, last_s: f64) -> Vec<AmplitudePoint> {
-        let mut edges: Vec<f64> = self.held.iter().flat_map(|h| [h.begins_s, h.ends_s]).collect();
+        let curve = self.intensity.points(1.0);
+        let mut edges: Vec<f64> = self.held.iter().flat_map(Held::bends_s).collect();
         edges.push(last_s);
         edges.extend(self.strokes.first().map(|(begins_s, _)| *begins_s));
+        let first_s = edges.iter().copied().fold(last_s, f64::min);
+        edges.extend(curve.times_s().filter(|t| *t > first_s && *t < last_s));
         edges.sort_by(f64::total_cmp);
         // Events that follow each other without a gap are one.
         edges.dedup_by(|b, a| (*a - *b).abs() < 1e-9);
@@ -158,25 +243,29 @@ impl Pieces {
             edges.insert(0, 0.0);
         }
         let mut points: Vec<(f64, f64)> = Vec::new();
-        let mut inner = self.intensity.iter().map(|p| p.0).peekable();
         for span in edges.windows(2) {
             let (from_s, to_s) = (span[0], span[1]);
             let middle_s = 0.5 * (from_s + to_s);
             let sounding: Vec<&Held> =
-                self.held.iter().filter(|h| h.begins_s <= middle_s && middle_s < h.ends_s).collect();
-            let level = |intensity: f64| -> f64 {
-                sounding.iter().map(|h| (h.intensity * intensity.max(0.0)).powi(2)).sum::<f64>().min(1.0)
+                self.held.iter().filter(|h| h.begins_s <= middle_s && middle_s < h.bends_s()[4]).collect();
+            // The edges of an event are its own only to rounding.
+            let inside = |h: &Held, t: f64| h.intensity_at(t.clamp(h.begins_s, h.bends_s()[4]));
+            let ends = |t: f64, behind: bool| -> Vec<f64> {
+                let factor = curve.at(t, behind).max(0.0);
+                let one_sided = if behind { t + 1e-12 } else { t - 1e-12 };
+                sounding.iter().map(|h| inside(h, one_sided) * factor).collect()
             };
-            points.push((from_s, level(self.intensity_at(from_s, true))));
-            while inner.next_if(|t| *t <= from_s).is_some() {}
-            while let Some(time_s) = inner.next_if(|t| *t < to_s) {
-                if points.last().is_some_and(|p| p.0 == time_s) {
-                    points.push((time_s, level(self.intensity_at(time_s, true))));
-                } else {
-                    points.push((time_s, level(self.intensity_at(time_s, false))));
-                }
+            let (from, to) = (ends(from_s, true), ends(to_s, false));
+            let steps = from.iter().zip(&to).map(|(a, b)| (b - a).abs() / (a + b).max(1e-12));
+            let bent = steps.fold(0.0, f64::max) > STRAIGHT;
+            let rise = from.iter().zip(&to).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
+            let pieces = if bent { (PIECES * rise).ceil().max(1.0) as usize } else { 1 };
+            for piece in 0..=pieces {
+                let part = piece as f64 / pieces as f64;
+                let power: f64 = from.iter().zip(&to).map(|(a, b)| (a + part * (b - a)).powi(2)).sum();
+                let time_s = if piece == pieces { to_s } else { from_s + part * (to_s - from_s) };
+                points.push((time_s, power.min(1.0)));
             }
-            points.push((to_s, level(self.intensity_at(to_s, false))));
         }
         points.dedup_by(|b, a| a.0 == b.0 && a.1 == b.1);
         let mut out: Vec<AmplitudePoint> = points
@@ -196,40 +285,40 @@ impl Pieces {
         out
     }
 
-    /// What the intensity curves multiply by at a time, before a jump or behind it; 1 without a curve.
-    fn intensity_at(&self, time_s: f64, behind: bool) -> f64 {
-        value_at(&self.intensity, time_s, behind).unwrap_or(1.0)
-    }
-
+    /// Sharpness of the events and what the curves add to it, stepping where events do.
     fn frequency(&self) -> Vec<FrequencyPoint> {
-        let own = |time_s: f64| {
-            let event = self.held.iter().rfind(|h| h.begins_s <= time_s + 1e-9 && time_s <= h.ends_s + 1e-9);
-            event.or(self.held.first()).map_or(0.5, |h| h.sharpness)
-        };
-        let ends_s = self.held.iter().map(|h| h.ends_s).fold(0.0, f64::max);
-        if self.sharpness.is_empty() {
-            let point = |h: &Held| FrequencyPoint { time_s: h.begins_s, frequency: h.sharpness };
-            return self.held.iter().map(point).collect();
+        let curve = self.sharpness.points(0.0);
+        let begins_s = self.held.iter().map(|h| h.begins_s).fold(f64::MAX, f64::min);
+        let ends_s = self.held.iter().map(|h| h.bends_s()[4]).fold(0.0, f64::max);
+        let mut edges: Vec<f64> = self.held.iter().flat_map(|h| [h.begins_s, h.bends_s()[4]]).collect();
+        edges.extend(curve.times_s().filter(|t| *t > begins_s && *t < ends_s));
+        edges.sort_by(f64::total_cmp);
+        edges.dedup_by(|b, a| (*a - *b).abs() < 1e-9);
+        let mut points: Vec<FrequencyPoint> = Vec::new();
+        for span in edges.windows(2) {
+            let middle_s = 0.5 * (span[0] + span[1]);
+            // The event that began last; a pause keeps the sharpness of the one before it.
+            let Some(own) = self.held.iter().filter(|h| h.begins_s <= middle_s).max_by(|a, b| {
+                let sounds = |h: &Held| middle_s < h.bends_s()[4];
+                sounds(a).cmp(&sounds(b)).then(a.begins_s.total_cmp(&b.begins_s))
+            }) else {
+                continue;
+            };
+            for (time_s, behind) in [(span[0], true), (span[1], false)] {
+                let frequency = (own.sharpness + curve.at(time_s, behind)).clamp(0.0, 1.0);
+                points.push(FrequencyPoint { time_s, frequency });
+            }
         }
-        self.sharpness
-            .iter()
-            .filter(|(time_s, _)| *time_s <= ends_s)
-            .map(|&(time_s, value)| FrequencyPoint {
-                time_s,
-                frequency: (own(time_s) + value).clamp(0.0, 1.0),
-            })
-            .collect()
+        points.dedup();
+        // What does not change needs one point.
+        if points.iter().all(|p| p.frequency == points[0].frequency) {
+            points.truncate(1);
+        }
+        points
     }
 }
 
-/// A curve's value at a time; at a jump the value before it or behind it.
-fn value_at(points: &[(f64, f64)], time_s: f64, behind: bool) -> Option<f64> {
-    let next = points.partition_point(|p| if behind { p.0 <= time_s } else { p.0 < time_s });
-    match (next.checked_sub(1).map(|i| points[i]), points.get(next)) {
-        (None, None) => None,
-        (None, Some(first)) => Some(first.1),
-        (Some(last), None) => Some(last.1),
-        (Some(a), Some(b)) if b.0 > a.0 => Some(a.1 + (time_s - a.0) / (b.0 - a.0) * (b.1 - a.1)),
-        (Some(a), Some(_)) => Some(a.1),
-    }
+/// A number that may be missing.
+fn optional(of: &Value, key: &str, range: [f64; 2]) -> Result<Option<f64>, PortError> {
+    if of.get(key).is_none() { Ok(None) } else { number(of, key, range).map(Some) }
 }

@@ -24,7 +24,10 @@ struct File {
 #[derive(Serialize, Deserialize)]
 struct Version {
     major: u32,
+    // The vendor's reader asks for the major number alone.
+    #[serde(default)]
     minor: u32,
+    #[serde(default)]
     patch: u32,
 }
 

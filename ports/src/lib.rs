@@ -32,6 +32,7 @@ mod error;
 pub mod felt;
 pub mod haptic_file;
 pub mod hjif;
+mod json5_text;
 pub mod keyframes;
 mod nodes;
 pub mod oscillator;
@@ -42,6 +43,7 @@ pub mod rumble;
 pub mod score;
 mod thinning;
 mod tone_track;
+mod track;
 mod wave_track;
 pub mod xr;
 

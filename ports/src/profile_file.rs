@@ -10,7 +10,12 @@ impl Device {
     /// # Errors
     /// When it is neither, or a number is one that no device has.
     pub fn parse(text: &str) -> Result<Self, PortError> {
-        let plain = acf::without_comments(text);
-        if plain.trim_start().starts_with('{') { acf::device(&plain) } else { Self::from_toml(text) }
+        // TOML begins with a name, a table or a hash; JSON5 with a brace or a comment.
+        let begins = text.trim_start_matches('\u{feff}').trim_start();
+        if begins.starts_with('{') || begins.starts_with('/') {
+            acf::device(text)
+        } else {
+            Self::from_toml(text)
+        }
     }
 }

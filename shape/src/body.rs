@@ -3,19 +3,22 @@
 use crate::eigenmodes::{Eigenmodes, MOST_MODES, Wanted, solve};
 use crate::elastic::Elastic;
 use crate::error::ShapeError;
+use crate::facets::round_out;
 use crate::filling::Body;
 use crate::mesh::Mesh;
+use crate::repair::Cracks;
 use crate::surface_field::{SurfaceField, surface_field};
 use crate::surface_mesh::SurfaceMesh;
 use crate::system::System;
-use crate::vector::{distance, longest_side};
-use crate::volume_mesh::{EDGES, MOST_DEGREES_OF_FREEDOM, VolumeMesh};
+use crate::triangle_tree::TriangleTree;
+use crate::vector::{add_scaled, distance, longest_side};
+use crate::volume_mesh::{EDGES, MOST_DEGREES_OF_FREEDOM, VolumeMesh, check_side};
 
 /// Spacings to the shortest wave through the body and along a wall: the highest mode is then right to about 1 %.
 const PER_SHEAR_WAVE: f64 = 6.0;
 const PER_BENDING_WAVE: f64 = 11.0;
-/// A body longer than this is likely to be in other units, m.
-const LARGE_M: f64 = 20.0;
+/// A body longer than this is likely to be in other units, m: a 5-inch print is read as 5 m.
+const LARGE_M: f64 = 2.0;
 /// A body shorter than this is likely to be in other units, m.
 const SMALL_M: f64 = 0.002;
 
@@ -26,6 +29,8 @@ pub struct Making {
     pub material: Elastic,
     /// Longest side it shall have, m; scales about the origin of its frame.
     pub size_m: Option<f64>,
+    /// Length of the mesh's unit, m, unless a size is given; none: metres, and doubtful sizes are told.
+    pub unit_m: Option<f64>,
     /// Thickness of the sheet that the surface is, m.
     pub thickness_m: Option<f64>,
     /// Which modes are wanted.
@@ -108,30 +113,55 @@ pub fn make_as_fine_as(
 ) -> Result<SolvedBody, ShapeError> {
     let material = making.material.checked()?;
     let mut told = Vec::new();
-    let mut mesh = mesh;
-    if let Some(size_m) = making.size_m {
-        scale_to(&mut mesh, size_m)?;
+    let mut mesh = mesh.used();
+    let middle = mesh.centre();
+    if let Mesh::Surface(surface) = mesh {
+        let cracks = if making.thickness_m.is_some() { Cracks::Hair } else { Cracks::Wide };
+        let mut surface = surface.joined(cracks, &mut told)?;
+        surface.leave_specks_out(&mut told);
+        mesh = Mesh::Surface(surface);
     }
-    tell_size(&mesh, &mut told);
-    match mesh {
-        Mesh::Volume(_) if making.thickness_m.is_some() => Err(ShapeError::new(
+    let scale = making.scale(&mesh, &mut told)?;
+    mesh.change(|p| p.map(|x| x * scale));
+    check_side(longest_side(mesh.points()))?;
+    let mut body = match mesh {
+        Mesh::Volume(_) | Mesh::Curved(..) if making.thickness_m.is_some() => Err(ShapeError::new(
             "--thickness",
             "the mesh is a solid",
             "leave it out: only a sheet has a thickness",
         )),
-        Mesh::Volume(volume) => {
-            let volume = volume.checked(&mut told)?;
-            let modes = solved(&volume, &material, &making.wanted, progress)?;
-            if let Some(top) = modes.1.frequency_hz.last() {
-                tell_coarse(&volume, &material, *top, &mut told);
-            }
-            Ok(finished(&volume, modes, told))
+        Mesh::Volume(volume) => from_volume(volume, None, &material, making, told, progress),
+        Mesh::Curved(volume, surface) => {
+            from_volume(volume, Some(&surface), &material, making, told, progress)
         }
         Mesh::Surface(surface) => {
             let body = Body::new(closed(surface, making.thickness_m, &mut told)?)?;
             from_surface(&body, &material, (making, fineness), told, progress)
         }
+    }?;
+    for point in &mut body.field.points {
+        *point = add_scaled(*point, scale, middle);
     }
+    Ok(body)
+}
+
+fn from_volume(
+    volume: VolumeMesh,
+    curved: Option<&SurfaceMesh>,
+    material: &Elastic,
+    making: &Making,
+    mut told: Vec<String>,
+    progress: &mut dyn FnMut(f64),
+) -> Result<SolvedBody, ShapeError> {
+    let mut volume = volume.checked(&mut told)?;
+    if let Some(surface) = curved {
+        round_out(&mut volume, &TriangleTree::new(&surface.all_corners()));
+    }
+    let modes = solved(&volume, material, &making.wanted, progress)?;
+    if let Some(top) = modes.1.frequency_hz.last() {
+        tell_coarse(&volume, material, *top, &mut told);
+    }
+    Ok(finished(&volume, modes, told))
 }
 
 fn closed(
@@ -139,14 +169,13 @@ fn closed(
     thickness_m: Option<f64>,
     told: &mut Vec<String>,
 ) -> Result<SurfaceMesh, ShapeError> {
-    let surface = surface.joined(told)?;
     let Some(thickness_m) = thickness_m else { return surface.closed(told) };
     let side = longest_side(&surface.points);
     if !(thickness_m > 0.0 && thickness_m < 0.5 * side) {
         let right = format!("must be above 0 and less than half of the longest side, {:.4} m", 0.5 * side);
         return Err(ShapeError::new("--thickness", format!("{thickness_m} is refused"), right));
     }
-    surface.thickened(thickness_m).joined(told)?.closed(told)
+    surface.thickened(thickness_m).joined(Cracks::Hair, told)?.closed(told)
 }
 
 /// Fills a surface at the spacing that walls and waves want, and once more where the highest mode turns out shorter.
@@ -220,31 +249,31 @@ fn finished(volume: &VolumeMesh, (system, modes): (System, Eigenmodes), told: Ve
     }
 }
 
-fn scale_to(mesh: &mut Mesh, size_m: f64) -> Result<(), ShapeError> {
-    let points = match mesh {
-        Mesh::Volume(volume) => &mut volume.points,
-        Mesh::Surface(surface) => &mut surface.points,
-    };
-    let side = longest_side(points);
-    if !(size_m > 0.0 && size_m.is_finite()) {
-        return Err(ShapeError::new("--size", format!("{size_m} is refused"), "must be above 0 m"));
-    }
-    if !(side > 0.0 && side.is_finite()) {
-        return Err(ShapeError::new("", "has no size", "its points must be finite and apart"));
-    }
-    points.iter_mut().flatten().for_each(|x| *x *= size_m / side);
-    Ok(())
-}
-
-fn tell_size(mesh: &Mesh, told: &mut Vec<String>) {
-    let side = longest_side(match mesh {
-        Mesh::Volume(volume) => &volume.points,
-        Mesh::Surface(surface) => &surface.points,
-    });
-    if side > LARGE_M || (side > 0.0 && side < SMALL_M) {
-        told.push(format!(
-            "the longest side is {side:.4} m; meshes are in metres, --size scales one in other units"
-        ));
+impl Making {
+    /// Metres to one unit of the mesh; a size that few objects have is told where nothing was said about it.
+    fn scale(&self, mesh: &Mesh, told: &mut Vec<String>) -> Result<f64, ShapeError> {
+        let side = longest_side(mesh.points());
+        if let Some(size_m) = self.size_m {
+            if !(size_m > 0.0 && size_m.is_finite()) {
+                return Err(ShapeError::new("--size", format!("{size_m} is refused"), "must be above 0 m"));
+            }
+            if !(side > 0.0 && side.is_finite()) {
+                return Err(ShapeError::new("", "has no size", "its points must be finite and apart"));
+            }
+            return Ok(size_m / side);
+        }
+        let Some(unit_m) = self.unit_m else {
+            if side > LARGE_M || (side > 0.0 && side < SMALL_M) {
+                told.push(format!(
+                    "the longest side is {side:.4} m; meshes are in metres, --unit or --size scales one in other units"
+                ));
+            }
+            return Ok(1.0);
+        };
+        if unit_m > 0.0 && unit_m.is_finite() {
+            return Ok(unit_m);
+        }
+        Err(ShapeError::new("--unit", format!("{unit_m} m is refused"), "must be above 0 m"))
     }
 }
 

@@ -26,6 +26,8 @@ const ROUNDS: usize = 8;
 const FLAT: f64 = 0.02;
 /// The mesh's volume may differ by this part from the surface's.
 const VOLUME: f64 = 0.03;
+/// Pieces of at most this part of the volume may fall off.
+const LOST: f64 = 0.01;
 
 /// A surface ready to be filled.
 pub struct Body {
@@ -106,11 +108,44 @@ impl Body {
             kept = self.inside(&delaunay);
         }
         peel(&mut kept, delaunay.points());
-        let mesh = VolumeMesh { points: delaunay.points().to_vec(), tets: kept };
+        let mut mesh = VolumeMesh { points: delaunay.points().to_vec(), tets: kept };
+        self.keep_one_part(&mut mesh, told)?;
         let mut mesh = mesh.checked(told)?;
         facets::round_out(&mut mesh, &self.tree);
         self.check_volume(&mesh)?;
         Ok(mesh)
+    }
+
+    /// Leaves out what hangs on by less than a face, where that is little.
+    fn keep_one_part(&self, mesh: &mut VolumeMesh, told: &mut Vec<String>) -> Result<(), ShapeError> {
+        let (lost, others) = mesh.keep_largest();
+        if others == 0 {
+            return Ok(());
+        }
+        let percent = 100.0 * lost;
+        if lost <= LOST {
+            told.push(format!(
+                "{others} pieces that hung on by less than a wall were left out, {percent:.2} %"
+            ));
+            return Ok(());
+        }
+        let pieces = self.mesh.pieces_count();
+        let (what, right) = if pieces > 1 {
+            let what = format!(
+                "has {} separate parts, and the largest has {:.0} % of the volume",
+                others + 1,
+                100.0 - percent
+            );
+            (what, "a body has one: name one with --part, or give each a file of its own")
+        } else {
+            let what = format!(
+                "falls apart at its thinnest places: the largest of {} pieces has {:.0} % of the volume",
+                others + 1,
+                100.0 - percent
+            );
+            (what, "give it thicker walls there")
+        };
+        Err(ShapeError::new("", what, right))
     }
 
     fn too_thin(&self, unknowns: f64) -> ShapeError {
@@ -124,35 +159,31 @@ impl Body {
 
     fn check_volume(&self, mesh: &VolumeMesh) -> Result<(), ShapeError> {
         // Where the surface crosses itself its own sum counts the overlap twice; darts do not.
-        let truth = self.volume_inside_m3();
+        let (truth, error) = self.volume_inside_m3();
         let ratio = mesh.volume_m3() / truth;
-        if (ratio - 1.0).abs() <= VOLUME {
+        if (ratio - 1.0).abs() <= VOLUME + 3.0 * error {
             return Ok(());
         }
         let what = format!("the mesh made of it has {:.0} % of its volume", 100.0 * ratio);
         Err(ShapeError::new("", what, "its walls must be thicker or its surface cleaner"))
     }
 
-    /// Volume of what the surface winds around, m³.
-    fn volume_inside_m3(&self) -> f64 {
-        let Some((low, high)) = crate::vector::bounds(&self.mesh.points) else { return 0.0 };
-        let middle = mean([low, high]);
+    /// Volume of what the surface winds around, m³, and its relative standard error.
+    fn volume_inside_m3(&self) -> (f64, f64) {
+        let Some((low, high)) = crate::vector::bounds(&self.mesh.points) else { return (0.0, 0.0) };
         let mut dice = Dice::new(17);
+        let mut dart = || -> Vec3 { std::array::from_fn(|c| low[c] + (high[c] - low[c]) * dice.roll()) };
         let crossings = (0..200).any(|_| {
-            let p: Vec3 = std::array::from_fn(|c| low[c] + (high[c] - low[c]) * dice.roll());
-            (self.tree.winding(p).round() - self.tree.winding(p)).abs() > 0.1 || self.tree.winding(p) > 1.5
+            let winding = self.tree.winding(dart());
+            (winding.round() - winding).abs() > 0.1 || winding > 1.5
         });
-        if !crossings || !middle[0].is_finite() {
-            return self.volume_m3;
+        if !crossings {
+            return (self.volume_m3, 0.0);
         }
         let darts = 60_000;
-        let hits = (0..darts)
-            .filter(|_| {
-                self.tree.contains(std::array::from_fn(|c| low[c] + (high[c] - low[c]) * dice.roll()))
-            })
-            .count();
+        let hits = (0..darts).filter(|_| self.tree.contains(dart())).count() as f64;
         let whole: f64 = (0..3).map(|c| high[c] - low[c]).product();
-        whole * hits as f64 / f64::from(darts)
+        (whole * hits / f64::from(darts), 1.0 / hits.max(1.0).sqrt())
     }
 
     /// The tetrahedra inside.

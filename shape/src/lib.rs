@@ -1,7 +1,7 @@
 //! Bodies from their shape: a mesh and a material become modes that ring wherever the body is struck.
 //!
 //! ```text
-//! mesh_file ─► surface_mesh (repair) ─► filling (sampling, delaunay, facets) ─► volume_mesh
+//! mesh_file ─► surface_mesh (repair, holes) ─► filling (sampling, delaunay, facets) ─► volume_mesh
 //!                                                                                   │
 //! damping_fit        surface_field ◄─ eigenmodes (lanczos, factor) ◄─ system (quadratic_tet)
 //! ```
@@ -9,6 +9,7 @@
 //! relative: nothing here has been compared with a measured sound pressure.
 
 pub mod body;
+mod curved;
 pub mod damping_fit;
 mod delaunay;
 mod dissection;
@@ -19,18 +20,25 @@ mod facets;
 mod factor;
 mod feature_lines;
 pub mod filling;
+pub mod gltf;
+mod holes;
 mod lanczos;
 pub mod mesh;
 pub mod mesh_file;
 mod msh;
 mod obj;
+mod parts;
+mod ply;
+mod polygon;
 mod quadratic_tet;
+pub mod repair;
 pub mod ringing;
 mod sampling;
 mod stl;
 pub mod surface_field;
 pub mod surface_mesh;
 pub mod system;
+mod text;
 mod triangle_tree;
 pub mod vector;
 pub mod volume_mesh;
@@ -39,4 +47,4 @@ pub use body::{Fineness, Making, SolvedBody, make, make_as_fine_as};
 pub use elastic::Elastic;
 pub use error::ShapeError;
 pub use mesh::Mesh;
-pub use mesh_file::{load, parse};
+pub use mesh_file::{load, load_part, parse};

@@ -1,8 +1,9 @@
 //! Gmsh `.msh`, versions 2.2 and 4.1, ASCII and binary (Gmsh reference manual, "MSH file format").
 //!
-//! Tetrahedra make a volume, of ten-node ones the four corners; a file with triangles only is a surface. Node tags may have
-//! gaps and any order.
+//! Tetrahedra make a volume; the nodes between corners of those of higher order say how their faces curve (`curved`). A file
+//! with triangles only is a surface. Node tags may have gaps and any order.
 
+use crate::curved::{self, Between, between};
 use crate::error::ShapeError;
 use crate::mesh::Mesh;
 use crate::surface_mesh::SurfaceMesh;
@@ -99,6 +100,8 @@ struct Found {
     tets: Vec<[i64; 4]>,
     triangles: Vec<[i64; 3]>,
     others: Option<i64>,
+    /// Nodes between two corners.
+    between: Between,
 }
 
 /// Nodes of an element type of Gmsh.
@@ -227,8 +230,14 @@ fn nodes_4(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeError>
 
 fn element(found: &mut Found, kind: i64, nodes: &[i64]) {
     match (kind, nodes) {
-        (4 | 11 | 29, &[a, b, c, d, ..]) => found.tets.push([a, b, c, d]),
-        (2 | 9, &[a, b, c, ..]) => found.triangles.push([a, b, c]),
+        (4 | 11 | 29, &[a, b, c, d, ..]) => {
+            found.tets.push([a, b, c, d]);
+            between(&mut found.between, [[a, b], [b, c], [c, a], [d, a], [d, c], [d, b]], &nodes[4..]);
+        }
+        (9, &[a, b, c, ab, bc, ca]) => {
+            found.triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        (2, &[a, b, c]) => found.triangles.push([a, b, c]),
         (3 | 10 | 16, &[a, b, c, d, ..]) => found.triangles.extend([[a, b, c], [a, c, d]]),
         // Points and lines carry no volume.
         (1 | 8 | 15, _) => {}
@@ -295,7 +304,7 @@ fn elements_4(reader: &mut Reader<'_>, found: &mut Found) -> Result<(), ShapeErr
 }
 
 fn assemble(found: Found) -> Result<Mesh, ShapeError> {
-    let Found { points, numbers, tets, triangles, others } = found;
+    let Found { points, numbers, tets, triangles, others, between } = found;
     if let Some(kind) = others {
         let what = format!("holds solids of element type {kind}");
         return Err(ShapeError::new("$Elements", what, "must be 4-node tetrahedra (type 4)"));
@@ -320,5 +329,7 @@ fn assemble(found: Found) -> Result<Mesh, ShapeError> {
         .into_iter()
         .map(|[a, b, c, d]| Ok([number(a)?, number(b)?, number(c)?, number(d)?]))
         .collect::<Result<_, ShapeError>>()?;
-    Ok(Mesh::Volume(VolumeMesh { points, tets }))
+    let volume = VolumeMesh { points, tets };
+    let surface = curved::surface(&volume, &between, &numbers);
+    Ok(surface.map_or_else(|| Mesh::Volume(volume.clone()), |surface| Mesh::Curved(volume.clone(), surface)))
 }

@@ -31,6 +31,16 @@ impl Dice {
         Self(seed | 1)
     }
 
+    /// Of its own for each cell of a grid (SplitMix64's finaliser).
+    fn of_cell(cell: [u64; 3]) -> Self {
+        let mixed = cell.into_iter().fold(0x9e37_79b9_7f4a_7c15_u64, |seed, x| {
+            let mut z = (seed ^ x).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            z ^ (z >> 31)
+        });
+        Self::new(mixed)
+    }
+
     /// 0 to 1.
     pub fn roll(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
@@ -227,28 +237,49 @@ fn put_on_faces(
     cells.cells.extend(on_lines.cells.drain());
 }
 
+/// Cells of half the spacing, of which each is tried once. Boxes of cells that the surface does not reach and that lie
+/// outside are passed over whole, so that the work grows with the body, not with the box around it.
 fn put_inside(samples: &mut Samples, mesh: &SurfaceMesh, tree: &TriangleTree, spacing_m: f64) {
     let Some((low, high)) = bounds(&mesh.points) else { return };
     let mut taken = Cells { width: spacing_m, cells: FxHashMap::default() };
-    let mut dice = Dice::new(3);
     let step = 0.5 * spacing_m;
-    let count = |c: usize| ((high[c] - low[c]) / step).ceil() as usize;
-    for i in 0..count(0) {
-        for j in 0..count(1) {
-            for k in 0..count(2) {
-                let cell = [i, j, k];
-                let p: Vec3 =
-                    std::array::from_fn(|c| low[c] + step * (cell[c] as f64 + 0.2 + 0.6 * dice.roll()));
-                let Some(near) = tree.nearest(p) else { continue };
-                if near.distance < INSET * spacing_m {
-                    continue;
-                }
-                let room = 0.95 * spacing_m + GROWTH * (near.distance - INSET * spacing_m);
-                if !taken.crowded(p, None, room) && tree.contains(p) {
-                    taken.add(p, [[0.0; 3]; 2]);
-                    samples.inside.push(p);
-                }
+    let most = (0..3).map(|c| (high[c] - low[c]) / step).fold(1.0, f64::max).ceil();
+    let mut boxes: Vec<([u64; 3], u64)> = vec![([0; 3], (most as u64).next_power_of_two())];
+    while let Some((first, wide)) = boxes.pop() {
+        let at =
+            |offset: f64| -> Vec3 { std::array::from_fn(|c| low[c] + step * (first[c] as f64 + offset)) };
+        if (0..3).any(|c| low[c] + step * first[c] as f64 > high[c]) {
+            continue;
+        }
+        if wide > 1 {
+            let middle = at(0.5 * wide as f64);
+            let reach = 0.87 * wide as f64 * step;
+            let Some(near) = tree.nearest(middle) else { continue };
+            if near.distance < reach || tree.contains(middle) {
+                let half = wide / 2;
+                boxes.extend((0..8).map(|i: u64| {
+                    (
+                        [
+                            first[0] + half * (i & 1),
+                            first[1] + half * (i >> 1 & 1),
+                            first[2] + half * (i >> 2),
+                        ],
+                        half,
+                    )
+                }));
             }
+            continue;
+        }
+        let mut dice = Dice::of_cell(first);
+        let p: Vec3 = std::array::from_fn(|c| low[c] + step * (first[c] as f64 + 0.2 + 0.6 * dice.roll()));
+        let Some(near) = tree.nearest(p) else { continue };
+        if near.distance < INSET * spacing_m {
+            continue;
+        }
+        let room = 0.95 * spacing_m + GROWTH * (near.distance - INSET * spacing_m);
+        if !taken.crowded(p, None, room) && tree.contains(p) {
+            taken.add(p, [[0.0; 3]; 2]);
+            samples.inside.push(p);
         }
     }
 }

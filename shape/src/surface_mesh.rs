@@ -1,21 +1,22 @@
-//! Surface of a body as games have it, and its repair: joined points, one sense of turning, closed holes.
+//! Surface of a body as games have it: joined points, one sense of turning, closed holes.
 
 use crate::error::ShapeError;
+use crate::holes::Caps;
+use crate::repair::{Cracks, edge_uses, open_edges};
 use crate::triangle_tree::{TriangleTree, area_vector};
-use crate::vector::{Vec3, cross, dot, length, longest_side, mean, sub};
-use crate::volume_mesh::{check_side, find, sorted};
-use std::collections::{HashMap, HashSet};
+use crate::vector::{Vec3, add_scaled, cross, dot, length, longest_side, mean, sub};
+use crate::volume_mesh::find;
 
 /// Most triangles that are read.
 pub const MOST_TRIANGLES: usize = 4_000_000;
-/// Points nearer than this part of the longest side are one.
-const JOINED: f64 = 1e-6;
 /// Holes whose triangles are more than this part of the whole surface make it an open sheet.
 const LARGEST_HOLES: f64 = 0.09;
 /// Single triangles that are missing were lost; they may be this part of the surface (a box has twelve in all).
 const LARGEST_LOST: f64 = 0.3;
 /// A part counts as lying inside another when this much of its area does.
 const NESTED: f64 = 0.9;
+/// Triangles of a part that are asked for that.
+const ASKED: usize = 64;
 
 /// Points and triangles, anticlockwise from outside.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -24,10 +25,6 @@ pub struct SurfaceMesh {
     pub points: Vec<Vec3>,
     /// Three corners each.
     pub triangles: Vec<[u32; 3]>,
-}
-
-fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
 }
 
 impl SurfaceMesh {
@@ -55,11 +52,11 @@ impl SurfaceMesh {
         self.all_corners().iter().map(|t| dot(t[0], cross(t[1], t[2])) / 6.0).sum()
     }
 
-    /// Joins points, leaves out triangles without area and doubled ones, and turns each part one way.
+    /// Joins points, leaves out triangles without area and doubled ones, closes cracks, and turns each part one way.
     ///
     /// # Errors
-    /// When a number is not finite, nothing is left, or the body is larger or smaller than any object.
-    pub fn joined(mut self, told: &mut Vec<String>) -> Result<Self, ShapeError> {
+    /// When a number is not finite or nothing is left.
+    pub fn joined(self, cracks: Cracks, told: &mut Vec<String>) -> Result<Self, ShapeError> {
         if let Some(i) = self.points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
             let what = format!("point {} is not a number", i + 1);
             return Err(ShapeError::new("", what, "coordinates must be finite metres"));
@@ -71,67 +68,33 @@ impl SurfaceMesh {
             let what = format!("has {} triangles", self.triangles.len());
             return Err(ShapeError::new("", what, format!("at most {MOST_TRIANGLES}")));
         }
-        let side = longest_side(&self.points);
-        check_side(side)?;
-        let mut at: HashMap<[i64; 3], u32> = HashMap::new();
-        let mut points = Vec::new();
-        let moved: Vec<u32> = self
-            .points
-            .iter()
-            .map(|p| {
-                let key = p.map(|x| (x / (JOINED * side)).round() as i64);
-                *at.entry(key).or_insert_with(|| {
-                    points.push(*p);
-                    points.len() as u32 - 1
-                })
-            })
-            .collect();
-        self.points = points;
-        self.triangles.iter_mut().flatten().for_each(|i| *i = moved[*i as usize]);
-        let flat = 1e-14 * side * side;
-        let points = &self.points;
-        self.triangles.retain(|t| length(area_vector(t.map(|i| points[i as usize]))) > flat);
-        let mut seen = HashSet::new();
-        let before = self.triangles.len();
-        self.triangles.retain(|&t| seen.insert(sorted(t)));
-        if self.triangles.len() < before {
-            told.push(format!("{} doubled triangles were left out", before - self.triangles.len()));
-        }
-        if self.triangles.is_empty() {
+        let mut repaired = self.repaired(cracks, told);
+        if repaired.triangles.is_empty() {
             return Err(ShapeError::new("", "every triangle is without area", "give the surface of a body"));
         }
-        self.turn_alike(told);
-        Ok(self)
+        repaired.turn_alike(told);
+        Ok(repaired)
     }
 
     /// Parts that hang together by edges of two triangles: the number of each triangle's part.
     fn parts(&self) -> Vec<usize> {
         let mut root: Vec<usize> = (0..self.triangles.len()).collect();
-        for pair in self.by_edge().values().filter(|t| t.len() == 2) {
-            let (a, b) = (find(&mut root, pair[0].0), find(&mut root, pair[1].0));
-            root[a] = b;
+        let uses = edge_uses(&self.triangles);
+        for pair in uses.chunk_by(|a, b| a.edge == b.edge).filter(|uses| uses.len() == 2) {
+            let (a, b) = (find(&mut root, pair[0].triangle), find(&mut root, pair[1].triangle));
+            root[a.max(b)] = a.min(b);
         }
         (0..root.len()).map(|i| find(&mut root, i)).collect()
-    }
-
-    /// The triangles at each edge, and whether they run along it upwards.
-    fn by_edge(&self) -> HashMap<[u32; 2], Vec<(usize, bool)>> {
-        let mut at: HashMap<[u32; 2], Vec<(usize, bool)>> = HashMap::with_capacity(self.triangles.len() * 2);
-        for (t, triangle) in self.triangles.iter().enumerate() {
-            for [a, b] in edges(*triangle) {
-                at.entry([a.min(b), a.max(b)]).or_default().push((t, a < b));
-            }
-        }
-        at
     }
 
     /// Turns the triangles of each part the way most of them are.
     fn turn_alike(&mut self, told: &mut Vec<String>) {
         let mut neighbours: Vec<Vec<(usize, bool)>> = vec![Vec::new(); self.triangles.len()];
-        for pair in self.by_edge().values().filter(|t| t.len() == 2) {
-            let against = pair[0].1 == pair[1].1;
-            neighbours[pair[0].0].push((pair[1].0, against));
-            neighbours[pair[1].0].push((pair[0].0, against));
+        let uses = edge_uses(&self.triangles);
+        for pair in uses.chunk_by(|a, b| a.edge == b.edge).filter(|uses| uses.len() == 2) {
+            let against = pair[0].upwards == pair[1].upwards;
+            neighbours[pair[0].triangle].push((pair[1].triangle, against));
+            neighbours[pair[1].triangle].push((pair[0].triangle, against));
         }
         let mut turned: Vec<Option<bool>> = vec![None; self.triangles.len()];
         let mut count = 0;
@@ -172,7 +135,7 @@ impl SurfaceMesh {
     /// When it is an open sheet or encloses nothing.
     pub fn closed(mut self, told: &mut Vec<String>) -> Result<Self, ShapeError> {
         let whole = self.area_m2();
-        let (caps, lost, loops) = self.caps();
+        let Caps { caps, lost, holes } = self.caps();
         let area = |triangles: &[[Vec3; 3]]| triangles.iter().map(|t| length(area_vector(*t))).sum::<f64>();
         let missing = area(&caps) + area(&lost);
         let closed = whole + missing;
@@ -187,14 +150,14 @@ impl SurfaceMesh {
         }
         if missing > 1e-9 * whole {
             let percent = 100.0 * missing / (whole + missing);
-            told.push(format!("{loops} holes were closed, {percent:.1} % of the surface"));
+            told.push(format!("{holes} holes were closed, {percent:.1} % of the surface"));
         }
         for [a, b, c] in caps.into_iter().chain(lost) {
             let first = self.points.len() as u32;
             self.points.extend([a, b, c]);
             self.triangles.push([first, first + 1, first + 2]);
         }
-        let mut rejoined = self.joined(&mut Vec::new())?;
+        let mut rejoined = self.joined(Cracks::Hair, &mut Vec::new())?;
         rejoined.turn_parts_outwards(told);
         let side = longest_side(&rejoined.points);
         let enclosed = rejoined.volume_m3();
@@ -209,99 +172,53 @@ impl SurfaceMesh {
         Ok(rejoined)
     }
 
-    /// Triangles that close the holes, each hole a fan around its middle; those that were lost singly; how many holes there are.
-    fn caps(&self) -> (Vec<[Vec3; 3]>, Vec<[Vec3; 3]>, usize) {
-        // A hole's rim runs against the triangles beside it.
-        let mut next: HashMap<u32, Vec<u32>> = HashMap::new();
-        let mut rims: Vec<(u32, u32)> = Vec::new();
-        for (edge, triangles) in self.by_edge() {
-            if let [(_, upwards)] = triangles[..] {
-                let [a, b] = if upwards { [edge[1], edge[0]] } else { edge };
-                next.entry(a).or_default().push(b);
-                rims.push((a, b));
-            }
-        }
-        rims.sort_unstable();
-        let (mut caps, mut lost, mut loops) = (Vec::new(), Vec::new(), 0);
-        for (start, _) in rims {
-            let mut rim = vec![start];
-            while let Some(to) = rim.last().and_then(|at| next.get_mut(at)).and_then(Vec::pop) {
-                if to == start {
-                    break;
-                }
-                rim.push(to);
-            }
-            if rim.len() < 3 {
-                continue;
-            }
-            loops += 1;
-            let places: Vec<Vec3> = rim.iter().map(|&i| self.points[i as usize]).collect();
-            let n = places.len();
-            if n == 3 {
-                lost.push([places[0], places[1], places[2]]);
-                continue;
-            }
-            let middle: Vec3 = std::array::from_fn(|c| places.iter().map(|p| p[c]).sum::<f64>() / n as f64);
-            caps.extend((0..n).map(|i| [places[i], places[(i + 1) % n], middle]));
-        }
-        (caps, lost, loops)
-    }
-
     /// Outer parts enclose a positive volume; a part inside another that is turned inwards is a cavity and stays.
     fn turn_parts_outwards(&mut self, told: &mut Vec<String>) {
         let part_of = self.parts();
-        let mut names = part_of.clone();
-        names.sort_unstable();
-        names.dedup();
+        let mut triangles_of: Vec<Vec<usize>> = vec![Vec::new(); self.triangles.len()];
+        part_of.iter().enumerate().for_each(|(t, &part)| triangles_of[part].push(t));
         let volume = |t: usize| {
             let [a, b, c] = self.corners(self.triangles[t]);
             dot(a, cross(b, c)) / 6.0
         };
-        let mut inverted: Vec<usize> = Vec::new();
-        if names.len() == 1 {
-            if (0..self.triangles.len()).map(volume).sum::<f64>() < 0.0 {
-                inverted.push(names[0]);
-            }
-        } else {
-            let volumes: HashMap<usize, f64> =
-                part_of.iter().enumerate().fold(HashMap::new(), |mut sum, (t, p)| {
-                    *sum.entry(*p).or_insert(0.0) += volume(t);
-                    sum
-                });
-            for &name in &names {
-                let others: Vec<[Vec3; 3]> = (0..part_of.len())
-                    .filter(|&t| part_of[t] != name)
-                    .map(|t| {
-                        let [a, b, c] = self.corners(self.triangles[t]);
-                        if volumes[&part_of[t]] < 0.0 { [a, c, b] } else { [a, b, c] }
-                    })
-                    .collect();
-                if volumes[&name] < 0.0
-                    && self.share_inside(&part_of, name, &TriangleTree::new(&others)) < NESTED
-                {
-                    inverted.push(name);
-                }
+        let inwards: Vec<usize> = (0..triangles_of.len())
+            .filter(|&part| triangles_of[part].iter().map(|&t| volume(t)).sum::<f64>() < 0.0)
+            .collect();
+        if inwards.is_empty() {
+            return;
+        }
+        let mut outwards = self.clone();
+        for &t in inwards.iter().flat_map(|&part| &triangles_of[part]) {
+            outwards.triangles[t].swap(1, 2);
+        }
+        let tree = TriangleTree::new(&outwards.all_corners());
+        let mut turned = false;
+        for part in inwards {
+            if outwards.share_inside(&triangles_of[part], &tree) < NESTED {
+                triangles_of[part].iter().for_each(|&t| self.triangles[t] = outwards.triangles[t]);
+                turned = true;
             }
         }
-        for (t, triangle) in self.triangles.iter_mut().enumerate() {
-            if inverted.contains(&part_of[t]) {
-                triangle.swap(1, 2);
-            }
-        }
-        if !inverted.is_empty() {
+        if turned {
             told.push("the surface was inside out and was turned".into());
         }
     }
 
-    /// How much of a part's area lies inside others.
-    fn share_inside(&self, part_of: &[usize], name: usize, others: &TriangleTree) -> f64 {
-        let mine: Vec<[Vec3; 3]> = (0..part_of.len())
-            .filter(|&t| part_of[t] == name)
-            .map(|t| self.corners(self.triangles[t]))
-            .collect();
-        let area = |t: &[Vec3; 3]| length(area_vector(*t));
-        let whole: f64 = mine.iter().map(area).sum();
-        mine.iter().filter(|t| others.contains(mean(**t))).map(area).sum::<f64>() / whole
+    /// How much of a part's area lies inside others, in a surface whose parts all enclose a positive volume.
+    fn share_inside(&self, part: &[usize], tree: &TriangleTree) -> f64 {
+        let under = 1e-6 * longest_side(&self.points);
+        let (mut inside, mut whole) = (0.0, 0.0);
+        for &t in part.iter().step_by(part.len().div_ceil(ASKED)) {
+            let corners = self.corners(self.triangles[t]);
+            let area = area_vector(corners);
+            let place = add_scaled(mean(corners), -under, crate::vector::unit(area));
+            whole += length(area);
+            // The part itself winds around it once.
+            if tree.winding(place) >= 1.5 {
+                inside += length(area);
+            }
+        }
+        inside / whole
     }
 
     /// Outward unit normal of each triangle.
@@ -317,16 +234,14 @@ impl SurfaceMesh {
         let n = self.points.len() as u32;
         let side = |sign: f64| {
             let half = 0.5 * sign * thickness_m;
-            self.points.iter().zip(&offsets).map(move |(p, o)| crate::vector::add_scaled(*p, half, *o))
+            self.points.iter().zip(&offsets).map(move |(p, o)| add_scaled(*p, half, *o))
         };
         let points = side(1.0).chain(side(-1.0)).collect();
         let mut triangles = self.triangles.clone();
         triangles.extend(self.triangles.iter().map(|&[a, b, c]| [a + n, c + n, b + n]));
-        for (edge, beside) in self.by_edge() {
-            if let [(_, upwards)] = beside[..] {
-                let [a, b] = if upwards { edge } else { [edge[1], edge[0]] };
-                triangles.extend([[b, a, a + n], [b, a + n, b + n]]);
-            }
+        for open in open_edges(&edge_uses(&self.triangles)) {
+            let [a, b] = if open.upwards { open.edge } else { [open.edge[1], open.edge[0]] };
+            triangles.extend([[b, a, a + n], [b, a + n, b + n]]);
         }
         triangles.sort_unstable();
         Self { points, triangles }
@@ -342,7 +257,7 @@ impl SurfaceMesh {
                 let (u, v) = (sub(corners[1], corners[0]), sub(corners[2], corners[0]));
                 let angle = length(cross(u, v)).atan2(dot(u, v));
                 let i = triangle[k] as usize;
-                sum[i] = crate::vector::add_scaled(sum[i], angle, normal);
+                sum[i] = add_scaled(sum[i], angle, normal);
                 around[i].push(normal);
             }
         }

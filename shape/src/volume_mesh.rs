@@ -2,6 +2,7 @@
 
 use crate::error::ShapeError;
 use crate::vector::{Vec3, cross, dot, longest_side, sub};
+use rustc_hash::FxHashMap;
 use std::collections::HashMap;
 
 /// Most unknowns that are solved for; a chunky body of that many needs about 2 GiB.
@@ -82,7 +83,7 @@ impl VolumeMesh {
         if parts > 1 {
             return refuse(
                 format!("has {parts} separate parts"),
-                "a body has one; give each a file of its own",
+                "a body has one: name one with --part, or give each a file of its own",
             );
         }
         let unknowns = self.degrees_of_freedom();
@@ -183,21 +184,44 @@ impl VolumeMesh {
     /// How many parts hang together by faces.
     #[must_use]
     pub fn parts(&self) -> usize {
+        let part_of = self.part_of();
+        (0..part_of.len()).filter(|&t| part_of[t] == t).count()
+    }
+
+    /// The part of each tetrahedron, by the first one in it.
+    fn part_of(&self) -> Vec<usize> {
         let mut root: Vec<usize> = (0..self.tets.len()).collect();
-        let mut faces: HashMap<[u32; 3], usize> = HashMap::with_capacity(self.tets.len() * 3);
-        let mut parts = self.tets.len();
+        let mut faces: FxHashMap<[u32; 3], usize> = FxHashMap::default();
         for (t, tet) in self.tets.iter().enumerate() {
             for face in FACES {
                 if let Some(other) = faces.insert(sorted(face.map(|i| tet[i])), t) {
                     let (a, b) = (find(&mut root, t), find(&mut root, other));
-                    if a != b {
-                        root[a] = b;
-                        parts -= 1;
-                    }
+                    root[a.max(b)] = a.min(b);
                 }
             }
         }
-        parts
+        (0..root.len()).map(|t| find(&mut root, t)).collect()
+    }
+
+    /// Keeps the part of the greatest volume; gives the share of the volume that is left out, and how many parts.
+    pub(crate) fn keep_largest(&mut self) -> (f64, usize) {
+        let part_of = self.part_of();
+        let mut volumes = vec![0.0; self.tets.len()];
+        let mut whole = 0.0;
+        for (t, &part) in part_of.iter().enumerate() {
+            let volume = tet_volume_m3(self.corners(self.tets[t])).abs();
+            volumes[part] += volume;
+            whole += volume;
+        }
+        let largest = (0..volumes.len()).max_by(|&a, &b| volumes[a].total_cmp(&volumes[b]));
+        let Some(largest) = largest else { return (0.0, 0) };
+        let others = (0..part_of.len()).filter(|&t| part_of[t] == t).count() - 1;
+        let mut t = 0;
+        self.tets.retain(|_| {
+            t += 1;
+            part_of[t - 1] == largest
+        });
+        (1.0 - volumes[largest] / whole, others)
     }
 }
 

@@ -9,7 +9,12 @@ const STEEL: Elastic = Elastic { young_pa: 200e9, poisson: 0.29, density_kg_m3: 
 
 fn body(mesh: Mesh, modes: usize) -> SolvedBody {
     let wanted = Wanted { up_to_hz: None, most: modes };
-    make(mesh, &Making { material: STEEL, size_m: None, thickness_m: None, wanted }, &mut |_| ()).unwrap()
+    make(
+        mesh,
+        &Making { material: STEEL, size_m: None, unit_m: None, thickness_m: None, wanted },
+        &mut |_| (),
+    )
+    .unwrap()
 }
 
 fn worst(body: &SolvedBody, expected_hz: &[f64]) -> f64 {

@@ -11,7 +11,7 @@ const MATERIAL: Elastic = Elastic { young_pa: 70e9, poisson: 0.24, density_kg_m3
 
 fn made(mesh: Mesh, thickness_m: Option<f64>) -> Result<SolvedBody, ShapeError> {
     let wanted = Wanted { up_to_hz: None, most: 4 };
-    make(mesh, &Making { material: MATERIAL, size_m: None, thickness_m, wanted }, &mut |_| ())
+    make(mesh, &Making { material: MATERIAL, size_m: None, unit_m: None, thickness_m, wanted }, &mut |_| ())
 }
 
 fn clean() -> SurfaceMesh {
@@ -126,7 +126,7 @@ fn another_size_and_stiffness_need_no_new_solve() {
     let lead = Elastic { young_pa: 16e9, density_kg_m3: 11_340.0, ..MATERIAL };
     let rescaled = body.rescaled(2.5, &MATERIAL, &lead);
     let wanted = Wanted { up_to_hz: None, most: 4 };
-    let making = Making { material: lead, size_m: Some(0.25), thickness_m: None, wanted };
+    let making = Making { material: lead, size_m: Some(0.25), unit_m: None, thickness_m: None, wanted };
     let solved = make(Mesh::Volume(mesh), &making, &mut |_| ()).unwrap();
     for (m, (a, b)) in rescaled.frequency_hz.iter().zip(&solved.frequency_hz).enumerate() {
         assert!(
@@ -135,4 +135,222 @@ fn another_size_and_stiffness_need_no_new_solve() {
         );
     }
     assert!((rescaled.mass_kg / solved.mass_kg - 1.0).abs() < 1e-9);
+}
+
+/// Deals the triangles out in another order, each begun at another corner.
+fn shuffled(mesh: &SurfaceMesh, step: usize) -> SurfaceMesh {
+    let n = mesh.triangles.len();
+    let triangles = (0..n).map(|t| {
+        let [a, b, c] = mesh.triangles[(t * step + 3) % n];
+        if t % 2 == 0 { [b, c, a] } else { [c, a, b] }
+    });
+    SurfaceMesh { points: mesh.points.clone(), triangles: triangles.collect() }
+}
+
+/// A box whose top edges have middle points that only the sides use, each sealed by a triangle of no area.
+fn needled() -> SurfaceMesh {
+    let mut mesh = clean();
+    for [a, b] in [[4, 5], [5, 7], [7, 6], [6, 4]] {
+        let middle = mesh.points.len() as u32;
+        let ends = [a, b].map(|i: u32| mesh.points[i as usize]);
+        mesh.points.push(std::array::from_fn(|c| 0.5 * (ends[0][c] + ends[1][c])));
+        // The triangle of the side is cut at the middle; the needle joins it with the top.
+        let side = |t: &[u32; 3]| {
+            t.contains(&a) && t.contains(&b) && t.iter().any(|&i| mesh.points[i as usize][2] == 0.0)
+        };
+        let t = mesh.triangles.iter().position(side).unwrap();
+        let [x, y, z] = mesh.triangles[t];
+        let turns = [[x, y, z], [y, z, x], [z, x, y]];
+        let [from, to, apex] = *turns.iter().find(|[_, _, apex]| *apex != a && *apex != b).unwrap();
+        mesh.triangles[t] = [from, middle, apex];
+        mesh.triangles.extend([[middle, to, apex], [from, to, middle]]);
+    }
+    mesh
+}
+
+#[test]
+fn a_box_sealed_by_needles_is_the_box_in_any_order_of_its_triangles() {
+    let expected = made(Mesh::Surface(clean()), None).unwrap();
+    let mesh = needled();
+    assert_eq!(mesh.triangles.len(), 20);
+    let first = made(Mesh::Surface(mesh.clone()), None).unwrap();
+    for (hz, e) in first.frequency_hz.iter().zip(&expected.frequency_hz) {
+        assert!((hz / e - 1.0).abs() < 5e-3, "{hz} {e}");
+    }
+    for step in [3, 7, 11] {
+        let again = made(Mesh::Surface(shuffled(&mesh, step)), None).unwrap();
+        assert_eq!(again.frequency_hz, first.frequency_hz);
+    }
+}
+
+#[test]
+fn points_that_no_face_uses_and_far_specks_are_no_size() {
+    let expected = made(Mesh::Surface(clean()), None).unwrap();
+    let mut stray = clean();
+    stray.points.insert(0, [5.0; 3]);
+    stray.triangles.iter_mut().flatten().for_each(|i| *i += 1);
+    let mut speck = clean();
+    let first = speck.points.len() as u32;
+    speck.points.extend([[5.0, 5.0, 5.0], [5.001, 5.0, 5.0], [5.0, 5.001, 5.0]]);
+    speck.triangles.push([first, first + 1, first + 2]);
+    for mesh in [stray, speck] {
+        let solved = made(Mesh::Surface(mesh), None).unwrap();
+        assert!((solved.volume_m3 / expected.volume_m3 - 1.0).abs() < 1e-9, "{}", solved.volume_m3);
+        assert!((solved.frequency_hz[0] / expected.frequency_hz[0] - 1.0).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn a_body_far_from_the_origin_is_the_body_and_stays_there() {
+    let expected = made(Mesh::Surface(clean()), None).unwrap();
+    let far = joined(SurfaceMesh::default(), &clean(), [5.4e6, -2e6, 3e5]);
+    let solved = made(Mesh::Surface(far), None).unwrap();
+    assert!((solved.frequency_hz[0] / expected.frequency_hz[0] - 1.0).abs() < 5e-3);
+    assert!((solved.field.points[0][0] - 5.4e6).abs() < 0.13);
+}
+
+#[test]
+fn cracks_and_corners_on_edges_are_closed_and_edges_stay_sharp() {
+    let expected =
+        made(Mesh::Surface(common::surface_of(&common::block([0.12, 0.08, 0.05], [4, 3, 2]))), None).unwrap();
+    for width in [1e-7, 1e-6, 1e-5, 1e-4, 5e-4] {
+        // Every triangle has corners of its own, each a little off.
+        let whole = common::surface_of(&common::block([0.12, 0.08, 0.05], [4, 3, 2]));
+        let (mut loose, mut dice) = (SurfaceMesh::default(), 1_u32);
+        for &triangle in &whole.triangles {
+            let first = loose.points.len() as u32;
+            loose.points.extend(whole.corners(triangle).map(|p| {
+                p.map(|x| {
+                    dice = dice.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    x + 0.12 * width * (f64::from(dice >> 8) / f64::from(1 << 24) - 0.5)
+                })
+            }));
+            loose.triangles.push([first, first + 1, first + 2]);
+        }
+        let solved = made(Mesh::Surface(loose), None).unwrap();
+        for (hz, e) in solved.frequency_hz.iter().zip(&expected.frequency_hz) {
+            assert!((hz / e - 1.0).abs() < 5e-3, "{width}: {hz} {e}");
+        }
+    }
+    // The middle of an edge that one side alone has.
+    let mut t_junction = needled();
+    t_junction.triangles.retain(|t| {
+        let p = t.map(|i| clean().points.get(i as usize).copied());
+        p.iter().flatten().count() != 2 || !t.iter().all(|&i| needled().points[i as usize][2] > 0.0)
+    });
+    assert_eq!(t_junction.triangles.len(), 16);
+    let solved = made(Mesh::Surface(t_junction), None).unwrap();
+    let expected = made(Mesh::Surface(clean()), None).unwrap();
+    assert!((solved.frequency_hz[0] / expected.frequency_hz[0] - 1.0).abs() < 5e-3);
+}
+
+#[test]
+fn holes_that_share_a_corner_are_closed_each_for_itself() {
+    let expected = made(Mesh::Surface(common::surface_of(&common::ball(0.05, 6))), None).unwrap();
+    let mut mesh = common::surface_of(&common::ball(0.05, 6));
+    let corner = mesh.triangles[0][0];
+    let fan: Vec<usize> =
+        (0..mesh.triangles.len()).filter(|&t| mesh.triangles[t].contains(&corner)).collect();
+    let (first, second) = (fan[0], fan[fan.len() / 2]);
+    let mut t = 0;
+    mesh.triangles.retain(|_| {
+        t += 1;
+        t - 1 != first && t - 1 != second
+    });
+    for step in [1, 5, 7] {
+        let solved = made(Mesh::Surface(shuffled(&mesh, step)), None).unwrap();
+        assert!((solved.frequency_hz[0] / expected.frequency_hz[0] - 1.0).abs() < 5e-3);
+        assert!((solved.volume_m3 / expected.volume_m3 - 1.0).abs() < 5e-3);
+    }
+}
+
+#[test]
+fn a_coarse_ball_of_curved_elements_has_the_balls_volume_and_pitch() {
+    // Ten-node tetrahedra whose middle nodes lie on the ball, as a Gmsh file.
+    let radius_m = 0.05;
+    let coarse = common::ball(radius_m, 2);
+    let mut nodes = coarse.points.clone();
+    let mut elements = String::new();
+    // Gmsh's order of the middle nodes.
+    const GMSH: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
+    let on_ball = |p: [f64; 3]| (p.iter().map(|x| x * x).sum::<f64>().sqrt() / radius_m - 1.0).abs() < 1e-9;
+    for (e, t) in coarse.tets.iter().enumerate() {
+        elements.push_str(&format!("{} 11 2 0 1", e + 1));
+        t.iter().for_each(|i| elements.push_str(&format!(" {}", i + 1)));
+        for [a, b] in GMSH {
+            let (a, b) = (coarse.points[t[a] as usize], coarse.points[t[b] as usize]);
+            let mut middle: [f64; 3] = std::array::from_fn(|c| 0.5 * (a[c] + b[c]));
+            if on_ball(a) && on_ball(b) {
+                let long = middle.iter().map(|x| x * x).sum::<f64>().sqrt();
+                middle.iter_mut().for_each(|x| *x *= radius_m / long);
+            }
+            let number = nodes.iter().position(|n| *n == middle).unwrap_or_else(|| {
+                nodes.push(middle);
+                nodes.len() - 1
+            });
+            elements.push_str(&format!(" {}", number + 1));
+        }
+        elements.push('\n');
+    }
+    let listed: String =
+        nodes.iter().enumerate().map(|(i, p)| format!("{} {} {} {}\n", i + 1, p[0], p[1], p[2])).collect();
+    let text = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{listed}$EndNodes\n$Elements\n{}\n{elements}$EndElements\n",
+        nodes.len(),
+        coarse.tets.len()
+    );
+    let mesh = asperity_shape::parse(std::path::Path::new("ball.msh"), text.as_bytes()).unwrap();
+    let solved = made(mesh, None).unwrap();
+    let ball_m3 = 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
+    let straight = coarse.volume_m3() / ball_m3;
+    assert!(straight < 0.75, "{straight}");
+    assert!(
+        (solved.volume_m3 / ball_m3 - 1.0).abs() < 0.25 * (1.0 - straight),
+        "{}",
+        solved.volume_m3 / ball_m3
+    );
+}
+
+#[test]
+fn a_concave_sheet_is_the_same_plate_from_whichever_corner_its_polygon_begins() {
+    let corners = [[0.0, 0.0], [0.2, 0.0], [0.2, 0.1], [0.1, 0.1], [0.1, 0.2], [0.0, 0.2]];
+    let points: String = corners.iter().map(|[x, y]| format!("v {x} {y} 0\n")).collect();
+    for first in 0..6 {
+        let face: String = (0..6).map(|i| format!(" {}", (first + i) % 6 + 1)).collect();
+        let text = format!("{points}f{face}\n");
+        let mesh = asperity_shape::parse(std::path::Path::new("l.obj"), text.as_bytes()).unwrap();
+        let solved = made(mesh, Some(0.004)).unwrap();
+        assert!((solved.volume_m3 / 1.2e-4 - 1.0).abs() < 5e-3, "{first}: {}", solved.volume_m3);
+    }
+}
+
+#[test]
+fn one_part_of_a_file_is_named_or_the_largest() {
+    let file = |name: &str, by: f64, first: u32| {
+        let mesh = joined(
+            SurfaceMesh::default(),
+            &common::box_surface([0.1 + by, 0.08, 0.05]),
+            [3.0 * by, 0.0, 0.0],
+        );
+        let points: String = mesh.points.iter().map(|p| format!("v {} {} {}\n", p[0], p[1], p[2])).collect();
+        let faces: String = mesh
+            .triangles
+            .iter()
+            .map(|t| format!("f {} {} {}\n", t[0] + first, t[1] + first, t[2] + first))
+            .collect();
+        format!("o {name}\n{points}{faces}")
+    };
+    let text = file("small", 0.0, 1) + &file("large", 0.1, 9);
+    let path = std::env::temp_dir().join(format!("asperity-parts-{}.obj", std::process::id()));
+    std::fs::write(&path, text).unwrap();
+    let load = |part: Option<&str>| asperity_shape::load_part(&path, part);
+    let message = made(load(None).unwrap(), None).unwrap_err().to_string();
+    assert!(message.contains("--part"), "{message}");
+    for (part, volume_m3) in [("small", 4e-4), ("large", 8e-4), ("largest", 8e-4)] {
+        let solved = made(load(Some(part)).unwrap(), None).unwrap();
+        assert!((solved.volume_m3 / volume_m3 - 1.0).abs() < 5e-3, "{part}");
+    }
+    let message = load(Some("medium")).unwrap_err().to_string();
+    assert!(message.contains("small, large or largest"), "{message}");
+    std::fs::remove_file(&path).unwrap();
 }

@@ -56,7 +56,7 @@ pub fn modes<'py>(
         (None, None) => return Err(refused("mesh: is missing; give a path, or points and triangles")),
     };
     let source = path.unwrap_or_else(|| PathBuf::from("mesh"));
-    let making = Making { material: elastic, size_m, thickness_m, wanted };
+    let making = Making { material: elastic, size_m, unit_m: None, thickness_m, wanted };
     let pulse = Pulse::new(progress);
     let solved =
         py.detach(|| pulse.run(|tell| asperity_shape::make(mesh, &making, &mut |done| tell(done))))?;

@@ -1,7 +1,7 @@
 //! Modal tables of other programs become modes files.
 //!
-//! CSV as [`asperity_fit::after::table`] reads it, a modes file, or JSON: one object of equally long number
-//! lists, or a list of such objects with a `name` each. Beside the names of the CSV columns these are known:
+//! CSV with the columns of [`asperity_fit::after::table`] or of `columns`, a modes file, or JSON: one object of equally long number
+//! lists, a list of such objects with a `name` each, or rows: objects with a number for each column. Beside these are known:
 //!
 //! | key | meaning |
 //! |---|---|
@@ -12,6 +12,7 @@
 //!
 //! Rows that are no mode (a frequency of 0 stands for "none" in some tables) are left out with a warning.
 
+use super::columns;
 use crate::error::CliError;
 use asperity::{MAX_POSITIONS, ModalModel};
 use asperity_dsp::mode::Mode;
@@ -21,6 +22,9 @@ use std::path::Path;
 
 /// Largest table, bytes.
 const MAX_BYTES: u64 = 64 << 20;
+
+/// Names of columns with levels.
+const LEVELS: [&str; 4] = ["amplitude", "gain", "level_db", "op"];
 
 /// What a table lacks.
 #[derive(Debug, Clone, Default)]
@@ -65,14 +69,14 @@ pub fn read(path: &Path, missing: &Missing) -> Result<Imported, CliError> {
     let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
     let in_file = |error: CliError| error.within(path.display());
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
-        let modes = table::from_csv(&text).map_err(|error| in_file(CliError::told(error)))?;
-        return Ok(Imported { modes, positions: Vec::new(), impulse_n_s: None, warnings: Vec::new() });
+        return of_columns(columns::of_csv(&text)).map_err(in_file);
     }
-    let json: Value = serde_json::from_str(&text).map_err(|error| {
+    let text = text.trim_start_matches('\u{feff}');
+    let json: Value = serde_json::from_str(text).map_err(|error| {
         CliError::file(path, format!("is no JSON ({error})"), "name a table in JSON or CSV")
     })?;
     if json.get("format").and_then(Value::as_str) == Some("asperity.modes") {
-        let model = ModalModel::parse(&text).map_err(|error| in_file(CliError::told(error)))?;
+        let model = ModalModel::parse(text).map_err(|error| in_file(CliError::told(error)))?;
         return Ok(Imported {
             modes: model.modes,
             positions: model.positions,
@@ -80,8 +84,24 @@ pub fn read(path: &Path, missing: &Missing) -> Result<Imported, CliError> {
             warnings: Vec::new(),
         });
     }
+    if let Some(columns) = columns::of_rows(&json).filter(|_| missing.entry.is_none()) {
+        return of_columns(columns).map_err(in_file);
+    }
     let entry = entry(&json, missing.entry.as_deref()).map_err(in_file)?;
     body(entry, missing).map_err(in_file)
+}
+
+/// Modes of columns as they were read; of amplitude 1 where none is given, as tables of modal analysis have them.
+fn of_columns(columns: Vec<columns::Column>) -> Result<Imported, CliError> {
+    let mut columns = columns::understood(columns);
+    let mut warnings = without_placeholders(&mut columns, &mut []);
+    if !columns.iter().any(|(name, _)| LEVELS.contains(&name.as_str())) {
+        let rows = columns.first().map_or(0, |(_, values)| values.len());
+        columns.push(("amplitude".to_owned(), vec![1.0; rows]));
+        warnings.push("the table has no amplitudes: all modes have 1".to_owned());
+    }
+    let modes = table::from_columns(&columns).map_err(CliError::told)?;
+    Ok(Imported { modes, positions: Vec::new(), impulse_n_s: None, warnings })
 }
 
 /// The object to read.
@@ -120,6 +140,7 @@ fn body(entry: &Map<String, Value>, missing: &Missing) -> Result<Imported, CliEr
             columns.push((key.clone(), numbers));
         }
     }
+    let mut columns = columns::understood(columns);
     let scaled = |key: &str, columns: &[(String, Vec<f64>)]| {
         let found = columns.iter().find(|(name, _)| name == key);
         found.map(|(_, values)| values.clone())
@@ -139,8 +160,7 @@ fn body(entry: &Map<String, Value>, missing: &Missing) -> Result<Imported, CliEr
     }
     let rows = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
     let has = |names: &[&str]| columns.iter().any(|(name, _)| names.contains(&name.as_str()));
-    let (decays, levels) =
-        (has(&["decay_per_s", "t60_s", "t60", "rt"]), has(&["amplitude", "gain", "level_db", "op"]));
+    let (decays, levels) = (has(&["decay_per_s", "t60_s", "t60", "rt"]), has(&LEVELS));
     if !decays {
         let t60_s = missing.t60_s.ok_or_else(|| {
             CliError::new("table", "has no decays", "say with --t60 how long its modes ring, in s")

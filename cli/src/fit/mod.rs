@@ -8,6 +8,7 @@
 //! | [`places`] | where the merged strikes were made on a body with shapes |
 //! | [`report`] | what `--json` and the terminal say |
 
+mod columns;
 mod import;
 mod modes_file;
 mod picture;
@@ -38,7 +39,7 @@ const STEPS: u64 = 200;
 /// Turn one recorded impact into modes
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Recording of a strike: WAV, FLAC or Ogg Vorbis, 1 kHz – 1 MHz; or a modal table (.csv, .json), or a modes file
+    /// Recording of a strike: WAV, AIFF, FLAC, Ogg Vorbis, MP3 or M4A, 1 kHz – 1 MHz; or a modal table (.csv, .json), or a modes file
     #[arg(value_name = "RECORDING.wav")]
     pub recording: PathBuf,
     /// Modes file to write

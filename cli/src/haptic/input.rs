@@ -36,7 +36,7 @@ pub fn read(path: &Path, channel: usize, _device: &Device) -> Result<Input, CliE
     let ending = name.rsplit('.').next().unwrap_or_default().to_lowercase();
     let told = |error: asperity_ports::PortError| CliError::told(error.within(path.display()));
     match ending.as_str() {
-        "wav" | "flac" | "ogg" => sound(path, channel),
+        "wav" | "aif" | "aiff" | "flac" | "ogg" | "oga" | "mp3" | "m4a" => sound(path, channel),
         "toml" => scene(path, channel),
         "haptic" => {
             let read = haptic_file::parse(&text(path)?).map_err(told)?;
@@ -56,7 +56,7 @@ pub fn read(path: &Path, channel: usize, _device: &Device) -> Result<Input, CliE
         _ => Err(CliError::file(
             path,
             "is no format that is read",
-            "must end in .wav, .flac, .ogg, .toml, .haptic, .ahap or .hjif",
+            "must end in .wav, .aiff, .flac, .ogg, .mp3, .m4a, .toml, .haptic, .ahap or .hjif",
         )),
     }
 }

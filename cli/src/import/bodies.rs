@@ -1,8 +1,8 @@
 //! Modal models → modes files.
 
-use super::document::Document;
 use crate::error::CliError;
 use asperity::ModeShapes;
+use asperity_shape::gltf::Document;
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_2;
 
@@ -20,21 +20,26 @@ pub fn modes(document: &Document, model: &Value, at: &str, gain: f64) -> Result<
             decays.len(),
             shapes.len()
         );
-        return Err(document.wrong(at, what, "must hold a decay a mode and a shape a mode and point"));
+        return Err(document.wrong(at, what, "must hold a decay a mode and a shape a mode and point").into());
     }
     if let Some(bad) = frequencies.iter().zip(&decays).position(|(hz, decay)| *hz <= 0.0 || *decay < 0.0) {
         let what = format!("mode {bad} has {} Hz and decays by {} 1/s", frequencies[bad], decays[bad]);
-        return Err(document.wrong(at, what, "must be positive, and not grow"));
+        return Err(document.wrong(at, what, "must be positive, and not grow").into());
     }
     let triangles = triangles(document, model, at, count)?;
-    let normals = normals(&points, &triangles);
+    let (normals, areas) = normals(&points, &triangles);
+    let whole: f64 = areas.iter().sum();
     let along = |mode: usize, point: usize| dot(shapes[mode * count + point], normals[point]);
-    // As `asperity modes` has it: a mode's gain is the root mean square of its motion out of the surface.
-    let gains: Vec<f64> = (0..modes)
-        .map(|mode| gain * ((0..count).map(|p| along(mode, p).powi(2)).sum::<f64>() / count as f64).sqrt())
-        .collect();
-    let lively = |point: usize| (0..modes).map(|mode| (gains[mode] * along(mode, point)).abs()).sum::<f64>();
-    let struck_point = (0..count).fold(0, |best, p| if lively(p) > lively(best) { p } else { best });
+    // As `asperity modes` has it: a mode's gain is the root mean square, over the surface, of its motion out of it.
+    let square = |mode: usize| (0..count).map(|p| areas[p] * along(mode, p).powi(2)).sum::<f64>() / whole;
+    let gains: Vec<f64> = (0..modes).map(|mode| gain * square(mode).sqrt()).collect();
+    // Where a strike excites all modes most evenly.
+    let lively = |point: usize| -> f64 {
+        let power = |mode: usize| along(mode, point).powi(2) + 1e-4 * square(mode);
+        (0..modes).map(|mode| power(mode).max(f64::MIN_POSITIVE).ln()).sum()
+    };
+    let scores: Vec<f64> = (0..count).map(lively).collect();
+    let struck_point = (0..count).max_by(|&a, &b| scores[a].total_cmp(&scores[b])).unwrap_or(0);
     let list: Vec<Value> = (0..modes)
         .map(|mode| {
             json!({
@@ -76,20 +81,19 @@ fn triangles(document: &Document, model: &Value, at: &str, count: usize) -> Resu
     let at = format!("{at}.indices");
     let corners = document.accessor(&model["indices"], "SCALAR", &at)?.values;
     if corners.len() % 3 != 0 || corners.iter().any(|corner| *corner >= count as f64) {
-        return Err(document.wrong(
-            at,
-            "are no triangles of the points",
-            "must be threes, each below the number of points",
-        ));
+        return Err(document
+            .wrong(at, "are no triangles of the points", "must be threes, each below the number of points")
+            .into());
     }
     Ok(corners.chunks_exact(3).map(|c| [c[0] as u32, c[1] as u32, c[2] as u32]).collect())
 }
 
-/// Out of the surface at every point; without triangles away from the middle.
-fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[f64; 3]> {
+/// Out of the surface at every point, and its share of the area; without triangles away from the middle, and all alike.
+fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> (Vec<[f64; 3]>, Vec<f64>) {
     let middle: [f64; 3] =
         std::array::from_fn(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64);
     let mut normals = vec![[0.0; 3]; points.len()];
+    let mut areas = vec![if triangles.is_empty() { 1.0 } else { 0.0 }; points.len()];
     for triangle in triangles {
         let [a, b, c] = triangle.map(|i| points[i as usize]);
         let (u, v) = (minus(b, a), minus(c, a));
@@ -97,9 +101,10 @@ fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[f64; 3]> {
         for corner in triangle {
             let normal = &mut normals[*corner as usize];
             *normal = std::array::from_fn(|k| normal[k] + area[k]);
+            areas[*corner as usize] += dot(area, area).sqrt() / 3.0;
         }
     }
-    normals
+    let normals = normals
         .iter()
         .zip(points)
         .map(|(normal, point)| {
@@ -107,7 +112,8 @@ fn normals(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[f64; 3]> {
             let length = dot(outwards, outwards).sqrt();
             if length > 0.0 { outwards.map(|x| x / length) } else { [0.0, 0.0, 1.0] }
         })
-        .collect()
+        .collect();
+    (normals, areas)
 }
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

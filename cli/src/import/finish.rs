@@ -6,9 +6,9 @@
 //! so     R = (2.5 + p)/1.5 within 0–1,  L = ℓ,  m such that Σ over octaves of a² = σ²
 //! ```
 
-use super::document::Document;
 use crate::error::CliError;
-use asperity_texture::normal_map::{NormalMapOptions, heights_from_normals};
+use asperity_shape::gltf::Document;
+use asperity_texture::normal_map::{Green, NormalMapOptions, heights_from_normals};
 use asperity_texture::raster::Raster;
 use serde_json::Value;
 
@@ -31,7 +31,8 @@ pub fn finish(document: &Document, surface: &Value, at: &str) -> Result<Finish, 
         if inside {
             Ok(value)
         } else {
-            Err(document.wrong(format!("{at}.{key}"), format!("{} is refused", surface[key]), &right))
+            let what = format!("{} is refused", surface[key]);
+            Err(document.wrong(format!("{at}.{key}"), what, &right).into())
         }
     };
     let sigma_m = number("roughness", 2e-6, 0.0, 0.01)?;
@@ -53,25 +54,36 @@ pub fn finish(document: &Document, surface: &Value, at: &str) -> Result<Finish, 
     Ok(Finish { roughness, micro_relief_m, outer_scale_m })
 }
 
-/// Heights of a normal texture: a 16-bit picture's greys, and white over black in texels.
+/// Heights of a normal texture: a 16-bit picture's greys, and white over black in metres.
 pub struct Heights {
     pub width: usize,
     pub height: usize,
     pub grey: Vec<u16>,
-    pub relief_px: f64,
+    pub relief_m: f64,
 }
 
-/// Solves a normal texture for heights; `scale` multiplies its slopes.
-pub fn heights(document: &Document, texture: &Value, at: &str) -> Result<Heights, CliError> {
+/// Solves a normal texture that spans `extent_m` for heights; its `scale` multiplies its slopes. Green points up the image, as
+/// glTF says.
+pub fn heights(
+    document: &Document,
+    texture: &Value,
+    extent_m: [f64; 2],
+    at: &str,
+) -> Result<Heights, CliError> {
     let picture = document.picture(&texture["index"], at)?;
     let wrong = |what: String| document.wrong(at, what, "must be a normal map as PNG or JPEG");
     let picture = image::load_from_memory(&picture).map_err(|error| wrong(error.to_string()))?.to_rgb16();
     let (width, height) = (picture.width() as usize, picture.height() as usize);
-    let channel = |k: usize| {
-        let values = picture.pixels().map(|p| f64::from(p.0[k]) / 65_535.0).collect();
-        Raster { width, height, values }
-    };
-    let found = heights_from_normals(&channel(0), &channel(1), &channel(2), &NormalMapOptions::default())
+    let texel_m = [extent_m[0] / width.max(1) as f64, extent_m[1] / height.max(1) as f64];
+    let higher = texel_m[1] / texel_m[0];
+    let normals = picture.pixels().map(|p| {
+        let rgb = p.0.map(|c| f64::from(c) / 65_535.0);
+        if (higher - 1.0).abs() > 0.01 { stretched(rgb, higher) } else { rgb }
+    });
+    let normals: Vec<[f64; 3]> = normals.collect();
+    let channel = |k: usize| Raster { width, height, values: normals.iter().map(|n| n[k]).collect() };
+    let options = NormalMapOptions { green: Green::OpenGl, ..NormalMapOptions::default() };
+    let found = heights_from_normals(&channel(0), &channel(1), &channel(2), &options)
         .map_err(|error| wrong(error.to_string()))?;
     let (low, high) = found.height_px.range();
     let scale = texture["scale"].as_f64().filter(|s| s.is_finite()).unwrap_or(1.0);
@@ -80,5 +92,15 @@ pub fn heights(document: &Document, texture: &Value, at: &str) -> Result<Heights
     let part = |z: f64| if relief > 0.0 { (z - low) / relief } else { 0.5 };
     let grey = |z: &f64| ((if up { part(*z) } else { 1.0 - part(*z) }) * 65_535.0).round() as u16;
     let grey = found.height_px.values.iter().map(grey).collect();
-    Ok(Heights { width, height, grey, relief_px: relief * scale.abs() })
+    Ok(Heights { width, height, grey, relief_m: relief * scale.abs() * texel_m[0] })
+}
+
+/// A normal where texels are `higher` times as high as wide: slopes along v count that much more a texel.
+fn stretched(rgb: [f64; 3], higher: f64) -> [f64; 3] {
+    let [x, y, z] = rgb.map(|c| 2.0 * c - 1.0);
+    // Maps of two channels leave blue empty.
+    let z = if z > 0.05 { z } else { (1.0 - x * x - y * y).max(0.0025).sqrt() };
+    let y = y * higher;
+    let length = (x * x + y * y + z * z).sqrt();
+    [x, y, z].map(|c| 0.5 + 0.5 * c / length)
 }

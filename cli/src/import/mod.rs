@@ -1,14 +1,17 @@
-//! `asperity import SCENE.gltf -o DIR`: a scene of the draft `KHR_audio_rigid_bodies` becomes one that renders.
+//! `asperity import SCENE.gltf -o DIR`: a glTF document becomes a scene that renders, by the draft `KHR_audio_rigid_bodies` or,
+//! without it, by its meshes and normal textures.
 
 mod bodies;
-mod document;
+mod extent;
 mod finish;
+mod plain;
 
 use crate::error::CliError;
 use crate::output::{self, Outputs, ensure_folder};
 use crate::pixels;
+use asperity_shape::ShapeError;
+use asperity_shape::gltf::{Document, Placed};
 use clap::Args;
-use document::Document;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -16,12 +19,16 @@ use std::path::PathBuf;
 
 /// The extension, as of the draft's commit 2ea03a8 of 2026-08-22.
 pub const EXTENSION: &str = "KHR_audio_rigid_bodies";
-/// Side of a surface whose node has no mesh, m.
-const PLAIN_SIDE_M: f64 = 0.1;
-/// Relief of a surface without a normal texture, m.
-const FLAT_M: f64 = 0.0;
+/// Most relief that a scene takes, m.
+const MOST_RELIEF_M: f64 = 0.1;
 
-/// Make a scene of a glTF document with acoustic bodies and surfaces (the draft KHR_audio_rigid_bodies)
+impl From<ShapeError> for CliError {
+    fn from(error: ShapeError) -> Self {
+        Self::told(error)
+    }
+}
+
+/// Make a scene of a glTF document: its acoustic bodies and surfaces (the draft KHR_audio_rigid_bodies), or its meshes and normal textures
 #[derive(Debug, Args)]
 pub struct Options {
     /// The document
@@ -30,6 +37,9 @@ pub struct Options {
     /// Folder to fill: scene.toml, contacts.jsonl, modes and heights
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: PathBuf,
+    /// What bodies are made of where the document does not say: a preset
+    #[arg(long, value_name = "NAME", default_value = "ceramic")]
+    pub material: String,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -49,7 +59,7 @@ struct Report {
 /// When the document is no glTF, its extension breaks the draft, or a file cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let document = Document::read(&options.document)?;
-    let mut scene = Scene::of(&document)?;
+    let mut scene = Scene::of(&document, options)?;
     ensure_folder(&options.output)?;
     let mut outputs = Outputs::new();
     for (name, bytes) in &scene.files {
@@ -86,19 +96,27 @@ struct Scene {
 }
 
 impl Scene {
-    fn of(document: &Document) -> Result<Self, CliError> {
+    fn of(document: &Document, options: &Options) -> Result<Self, CliError> {
         let mut scene = Self::default();
-        let nodes = document.json["nodes"].as_array().map_or(&[][..], Vec::as_slice);
-        for (index, node) in nodes.iter().enumerate() {
+        let maps = document.placed()?;
+        let mut has_draft = false;
+        for (index, node) in document.list("nodes").iter().enumerate() {
             let extension = &node["extensions"][EXTENSION];
-            if extension.is_object() {
-                scene.node(document, node, extension, index)?;
+            if let (true, Some(map)) = (extension.is_object(), &maps[index]) {
+                has_draft = true;
+                scene.node(document, node, extension, index, map)?;
             }
         }
+        if !has_draft {
+            scene.plain(document, &maps, &options.material, &options.document)?;
+        }
         if scene.bodies.is_empty() && scene.surfaces.is_empty() {
-            let right =
-                format!("must have a node with {EXTENSION} that names a modalModel or an acousticSurface");
-            return Err(document.wrong("nodes", "hold nothing that sounds or is touched", &right));
+            let right = format!(
+                "must have a node with {EXTENSION}, or a closed mesh or a normal texture that a node places"
+            );
+            let why = scene.told.first().map_or(String::new(), |told| format!(" ({told})"));
+            let what = format!("hold nothing that sounds or is touched{why}");
+            return Err(document.wrong("nodes", what, &right).into());
         }
         Ok(scene)
     }
@@ -115,6 +133,7 @@ impl Scene {
         node: &Value,
         extension: &Value,
         index: usize,
+        map: &Placed,
     ) -> Result<(), CliError> {
         let at = format!("nodes[{index}].extensions.{EXTENSION}");
         let root = &document.json["extensions"][EXTENSION];
@@ -125,18 +144,13 @@ impl Scene {
             let found = extension[key].as_u64().and_then(|i| root[list].get(i as usize));
             let right = format!("must be the index of one of {list}");
             found.map(Some).ok_or_else(|| {
-                document.wrong(format!("{at}.{key}"), format!("{} is not there", extension[key]), &right)
+                let what = format!("{} is not there", extension[key]);
+                document.wrong(format!("{at}.{key}"), what, &right).into()
             })
         };
         let gain = extension["gain"].as_f64().unwrap_or(1.0);
         if !(gain.is_finite() && gain >= 0.0) {
-            return Err(document.wrong(format!("{at}.gain"), "is below 0", "must be 0 or more"));
-        }
-        if node["scale"].as_array().is_some_and(|scale| scale.iter().any(|s| s.as_f64() != Some(1.0))) {
-            self.tell(
-                "scales of nodes are read past: modes and shapes are those of the model's own size"
-                    .to_owned(),
-            );
+            return Err(document.wrong(format!("{at}.gain"), "is below 0", "must be 0 or more").into());
         }
         let name = format!("{}-{index}", plain(node["name"].as_str().unwrap_or("node")));
         let model = entry("modalModels", "modalModel")?;
@@ -145,6 +159,11 @@ impl Scene {
             of.and_then(|of| of["material"].as_u64()).and_then(|i| root["acousticMaterials"].get(i as usize))
         };
         if let Some(model) = model {
+            let scale = |column: usize| map[column].iter().map(|x| x * x).sum::<f64>().sqrt();
+            if (0..3).any(|column| (scale(column) - 1.0).abs() > 1e-6) {
+                let told = "scales of nodes do not reach modes: they and their shapes are those of the model's own size";
+                self.tell(told.to_owned());
+            }
             let text = bodies::modes(document, model, &format!("{at}.modalModel"), gain)?;
             let file = format!("{name}.modes.json");
             let mut table = format!("[[body]]\nname = {}\nmodes = {}\n", json!(name), json!(file));
@@ -155,7 +174,7 @@ impl Scene {
         if let Some(surface) = surface {
             let body = model.is_some().then_some(name.as_str());
             let at = format!("{at}.acousticSurface");
-            self.surface(document, node, surface, &name, body, &at)?;
+            self.surface(document, (node, map), surface, &name, body, &at)?;
         }
         Ok(())
     }
@@ -163,7 +182,7 @@ impl Scene {
     fn surface(
         &mut self,
         document: &Document,
-        node: &Value,
+        (node, map): (&Value, &Placed),
         surface: &Value,
         name: &str,
         body: Option<&str>,
@@ -176,24 +195,13 @@ impl Scene {
                     .to_owned(),
             );
         }
-        let [width_m, height_m] = extent_m(document, node);
+        let texture = &surface["normalTexture"];
+        let extent = extent::extent_m(document, node, map, texture)?;
         let mut table = format!("[[surface]]\nname = {}\n", json!(name));
         if let Some(body) = body {
             let _ = writeln!(table, "body = {}", json!(body));
         }
-        let mut relief_m = FLAT_M;
-        if surface["normalTexture"].is_object() {
-            let heights =
-                finish::heights(document, &surface["normalTexture"], &format!("{at}.normalTexture"))?;
-            relief_m = (heights.relief_px * width_m / heights.width.max(1) as f64).min(0.1);
-            let file = format!("{name}.heights.png");
-            let _ = writeln!(table, "displacement = {}", json!(file));
-            self.files.push((file, pixels::png16(heights.width, heights.height, &heights.grey)));
-        }
-        let _ = writeln!(table, "width_m = {width_m:?}\nheight_m = {height_m:?}");
-        if relief_m > 0.0 {
-            let _ = writeln!(table, "relief_m = {relief_m:?}");
-        }
+        self.heights(document, texture, extent, (name, &format!("{at}.normalTexture")), &mut table)?;
         let _ = writeln!(table, "roughness = {:?}", finish.roughness);
         let _ = writeln!(
             table,
@@ -204,9 +212,37 @@ impl Scene {
         Ok(())
     }
 
+    /// Heights of a normal texture and the metres it spans, as lines of a surface's table.
+    fn heights(
+        &mut self,
+        document: &Document,
+        texture: &Value,
+        [width_m, height_m]: [f64; 2],
+        (name, at): (&str, &str),
+        table: &mut String,
+    ) -> Result<(), CliError> {
+        let mut relief_m = 0.0;
+        if texture.is_object() {
+            let heights = finish::heights(document, texture, [width_m, height_m], at)?;
+            relief_m = heights.relief_m;
+            if relief_m > MOST_RELIEF_M {
+                self.tell(format!("{name}: a relief of {relief_m:.3} m is held at {MOST_RELIEF_M} m"));
+                relief_m = MOST_RELIEF_M;
+            }
+            let file = format!("{name}.heights.png");
+            let _ = writeln!(table, "displacement = {}", json!(file));
+            self.files.push((file, pixels::png16(heights.width, heights.height, &heights.grey)));
+        }
+        let _ = writeln!(table, "width_m = {width_m:?}\nheight_m = {height_m:?}");
+        if relief_m > 0.0 {
+            let _ = writeln!(table, "relief_m = {relief_m:?}");
+        }
+        Ok(())
+    }
+
     fn toml(&self) -> String {
         let mut text = format!(
-            "# From a glTF document with {EXTENSION}, a draft.\ncontacts = \"contacts.jsonl\"\ntail_s = 1.0\n"
+            "# From a glTF document (by {EXTENSION}, a draft, where it has that).\ncontacts = \"contacts.jsonl\"\ntail_s = 1.0\n"
         );
         for (_, table) in self.bodies.iter().chain(&self.surfaces) {
             let _ = write!(text, "\n{table}");
@@ -254,23 +290,6 @@ fn stiffness(material: Option<&Value>) -> String {
         }
         _ => String::new(),
     }
-}
-
-/// The two longest sides of a node's mesh, m.
-fn extent_m(document: &Document, node: &Value) -> [f64; 2] {
-    let mesh = node["mesh"]
-        .as_u64()
-        .map(|i| &document.json["meshes"][i as usize]["primitives"][0]["attributes"]["POSITION"]);
-    let accessor = mesh.and_then(Value::as_u64).map(|i| &document.json["accessors"][i as usize]);
-    let side = |k: usize| {
-        let bound = |key: &str| accessor.and_then(|a| a[key][k].as_f64());
-        Some(bound("max")? - bound("min")?)
-            .filter(|side| side.is_finite() && *side > 1e-3)
-            .map(|side| side.min(100.0))
-    };
-    let mut sides: Vec<f64> = (0..3).filter_map(side).collect();
-    sides.sort_by(|a, b| b.total_cmp(a));
-    [sides.first().copied().unwrap_or(PLAIN_SIDE_M), sides.get(1).copied().unwrap_or(PLAIN_SIDE_M)]
 }
 
 /// A name that a file may have.

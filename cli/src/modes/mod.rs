@@ -8,6 +8,7 @@ use crate::output::{self, Outputs, check_destination};
 use crate::progress::Progress;
 use asperity_shape::Making;
 use asperity_tools::modes_file::ModesFile;
+use options::Unit;
 pub use options::{Options, preset};
 use serde::Serialize;
 use std::time::Instant;
@@ -62,8 +63,14 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
     options.plot.as_deref().map_or(Ok(()), check_destination)?;
     let wanted = options.wanted()?;
     let (material, damping) = options.material()?;
-    let mesh = asperity_shape::load(&options.body).map_err(CliError::told)?;
-    let making = Making { material, size_m: options.size, thickness_m: options.thickness, wanted };
+    let mesh = asperity_shape::load_part(&options.body, options.part.as_deref()).map_err(CliError::told)?;
+    let making = Making {
+        material,
+        size_m: options.size,
+        unit_m: options.unit.map(Unit::metres),
+        thickness_m: options.thickness,
+        wanted,
+    };
     let name = options.body.display().to_string();
     let mut body = asperity_shape::make(mesh, &making, progress).map_err(|error| {
         CliError::told(if error.at.starts_with("--") { error } else { error.within(&name) })

@@ -16,8 +16,8 @@ const HEARD_HZ: f64 = 20_000.0;
 /// Turn the shape of a body into modes that ring wherever it is struck
 #[derive(Debug, Args)]
 pub struct Options {
-    /// Shape of the body in metres: its surface (.obj, .stl), or tetrahedra or its surface from Gmsh (.msh 2.2, 4.1)
-    #[arg(value_name = "BODY.(obj|stl|msh)")]
+    /// Shape of the body in metres: its surface (.obj, .stl, .ply, .glb, .gltf), or tetrahedra or its surface from Gmsh (.msh 2.2, 4.1)
+    #[arg(value_name = "BODY.(obj|stl|ply|glb|gltf|msh)")]
     pub body: PathBuf,
     /// Modes file to write
     #[arg(short, long = "output", value_name = "OUT.modes.json")]
@@ -34,6 +34,12 @@ pub struct Options {
     /// Density, kg/m³, instead of the material's
     #[arg(long, value_name = "KG_M3")]
     pub density_kg_m3: Option<f64>,
+    /// One of the file's parts: an object or a group of an .obj, a solid of an .stl, a node or a mesh of a glTF, or `largest`
+    #[arg(long, value_name = "NAME")]
+    pub part: Option<String>,
+    /// Unit of the file's numbers, metres where nothing is said
+    #[arg(long, value_name = "UNIT", conflicts_with = "size")]
+    pub unit: Option<Unit>,
     /// Longest side, m: scales the mesh about the origin of its frame
     #[arg(long, value_name = "M")]
     pub size: Option<f64>,
@@ -66,6 +72,31 @@ pub struct Options {
     pub json: bool,
 }
 
+/// Unit of the numbers of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Unit {
+    /// Millimetres
+    Mm,
+    /// Centimetres
+    Cm,
+    /// Inches
+    In,
+    /// Metres
+    M,
+}
+
+impl Unit {
+    /// Its length, m.
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Mm => 1e-3,
+            Self::Cm => 1e-2,
+            Self::In => 0.0254,
+            Self::M => 1.0,
+        }
+    }
+}
+
 impl Options {
     /// The options of `asperity modes BODY -o OUT`.
     #[must_use]
@@ -77,6 +108,8 @@ impl Options {
             young_pa: None,
             poisson: None,
             density_kg_m3: None,
+            part: None,
+            unit: None,
             size: None,
             thickness: None,
             damping_from: None,

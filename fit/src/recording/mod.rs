@@ -1,11 +1,11 @@
 //! One channel of a recording, in `f64`, with what its file says about its own faults.
 //!
-//! WAV, FLAC or Ogg (`sound_file`), up to 64 channels, 1 kHz – 1 MHz. Long files are read
+//! WAV, AIFF, FLAC, Ogg, MP3 or M4A (`sound_file`), up to 64 channels, 1 kHz – 1 MHz. Long files are read
 //! in two passes, so that only the minute around the first strike is ever in memory.
 //!
 //! | file | from → to |
 //! |---|---|
-//! | `sound_file`, `wav_file`, `packed_file` | WAV; FLAC, Ogg → frames |
+//! | `sound_file`, `wav_file`, `packed_file` | WAV; AIFF, FLAC, Ogg, MP3, M4A → frames |
 //! | `sound_format` | what a header says, and why a file is refused |
 //! | `whitened` | channel → what its past does not predict |
 //! | [`Sound`] | a channel of a file as it stands there |
@@ -59,7 +59,7 @@ pub enum RecordingError {
         source: std::io::Error,
     },
     /// The bytes are no sound, or packed in a way that is not read.
-    #[error("{path}: cannot be decoded ({what}); WAV, FLAC or Ogg Vorbis would be read", path = path.display())]
+    #[error("{path}: cannot be decoded ({what}); WAV, AIFF, FLAC, Ogg Vorbis, MP3 or M4A would be read", path = path.display())]
     NotSound {
         /// The file.
         path: PathBuf,

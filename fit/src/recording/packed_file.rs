@@ -1,6 +1,8 @@
-//! FLAC and Ogg (Vorbis or FLAC inside) frame by frame, decoded by `symphonia`; the only place that names it.
+//! FLAC, Ogg (Vorbis or FLAC inside), AIFF, MP3, M4A and WAV of ADPCM frame by frame, decoded by `symphonia`; the only place that
+//! names it.
 //!
-//! FLAC gives the integers that were packed, exactly; Vorbis what its decoder makes of it.
+//! FLAC, AIFF and ALAC give the integers that were packed, exactly; the others what their decoders make of them. Of chained Ogg
+//! streams the first is read, as libsndfile reads them.
 
 use crate::recording::sound_format::{Format, MOST_CHANNELS, Refusal};
 use std::fs::File;
@@ -23,15 +25,18 @@ pub(crate) struct PackedFile {
     frames_read: u64,
     truncated: bool,
     ended: bool,
+    /// What the file is, for errors.
+    kind: &'static str,
 }
 
 impl PackedFile {
-    pub(crate) fn open(file: File) -> Result<Self, Refusal> {
+    pub(crate) fn open(file: File, kind: &'static str) -> Result<Self, Refusal> {
         let stream = MediaSourceStream::new(Box::new(file), MediaSourceStreamOptions::default());
         let (format, meta) = (FormatOptions::default(), MetadataOptions::default());
-        let reader =
-            symphonia::default::get_probe().probe(&Hint::new(), stream, format, meta).map_err(refusal)?;
-        let unknown = || Refusal::Not("FLAC or Ogg without a sound that can be decoded; Opus cannot".into());
+        let reader = symphonia::default::get_probe()
+            .probe(&Hint::new(), stream, format, meta)
+            .map_err(|e| refusal(e, kind))?;
+        let unknown = || Refusal::Not(format!("{kind} without a sound that can be decoded; Opus cannot"));
         let track = reader.default_track(TrackType::Audio).ok_or_else(unknown)?;
         let parameters =
             track.codec_params.as_ref().and_then(|parameters| parameters.audio()).ok_or_else(unknown)?;
@@ -40,7 +45,7 @@ impl PackedFile {
             .map_err(|_| unknown())?;
         let channels = parameters.channels.as_ref().map_or(0, |channels| channels.count());
         if channels == 0 || channels > MOST_CHANNELS {
-            return Err(Refusal::Not(format!("FLAC or Ogg of {channels} channels")));
+            return Err(Refusal::Not(format!("{kind} of {channels} channels")));
         }
         let bits = parameters.bits_per_sample.unwrap_or(0);
         let format = Format {
@@ -61,6 +66,7 @@ impl PackedFile {
             frames_read: 0,
             truncated: false,
             ended: false,
+            kind,
         })
     }
 
@@ -74,6 +80,10 @@ impl PackedFile {
 
     pub(crate) fn next(&mut self, frame: &mut [f64]) -> Result<bool, Refusal> {
         let channels = self.format.channels;
+        // Behind the last frame tags may lie, which are no packets.
+        if self.frames_read >= self.format.frames {
+            return Ok(false);
+        }
         while self.read + channels > self.samples.len() {
             if self.ended || !self.packet()? {
                 let said = self.format.frames;
@@ -96,13 +106,18 @@ impl PackedFile {
                 return Ok(false);
             }
             Ok(Some(packet)) if packet.track_id != self.track => return Ok(true),
+            // Another stream is chained on.
+            Err(Error::ResetRequired) => {
+                self.ended = true;
+                return Ok(false);
+            }
             Ok(Some(packet)) => self.decoder.decode(&packet),
             Err(error) => Err(error),
         };
         match decoded {
             Ok(buffer) => {
                 if buffer.spec().channels().count() != self.format.channels {
-                    return Err(Refusal::Not("FLAC or Ogg whose number of channels changes".into()));
+                    return Err(Refusal::Not(format!("{} whose number of channels changes", self.kind)));
                 }
                 buffer.copy_to_vec_interleaved(&mut self.samples);
                 self.read = 0;
@@ -112,14 +127,14 @@ impl PackedFile {
                 (self.ended, self.truncated) = (true, true);
                 Ok(false)
             }
-            Err(error) => Err(refusal(error)),
+            Err(error) => Err(refusal(error, self.kind)),
         }
     }
 }
 
-fn refusal(error: Error) -> Refusal {
+fn refusal(error: Error, kind: &str) -> Refusal {
     match error {
         Error::IoError(error) if error.kind() != std::io::ErrorKind::UnexpectedEof => Refusal::Io(error),
-        error => Refusal::Not(format!("FLAC or Ogg with a fault: {error}")),
+        error => Refusal::Not(format!("{kind} with a fault: {error}")),
     }
 }

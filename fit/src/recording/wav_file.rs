@@ -171,6 +171,8 @@ impl Layout {
         if channels == 0 || channels > MOST_CHANNELS {
             return Err(Refusal::Not(format!("WAV of {channels} channels")));
         }
+        // Some recorders leave the size of a frame at 0; it is then as large as its samples.
+        let frame_bytes = if frame_bytes == 0 { channels * bits.div_ceil(8) as usize } else { frame_bytes };
         let width = frame_bytes / channels;
         if width == 0 || frame_bytes % channels != 0 {
             return Err(Refusal::Not(format!("WAV of {channels} channels in frames of {frame_bytes} bytes")));

@@ -77,6 +77,7 @@ pub extern "C" fn shape_solve(
     let making = Making {
         material: Elastic { young_pa, poisson, density_kg_m3 },
         size_m: (size_m > 0.0).then_some(size_m),
+        unit_m: None,
         thickness_m: None,
         wanted: Wanted { most: most.clamp(1, MOST_MODES), up_to_hz: Some(HEARD_HZ) },
     };
@@ -102,10 +103,7 @@ fn solved(inbox: &[u8], name_bytes: usize, making: &Making, damping: Damping) ->
     let (name, mesh) = named.ok_or("inbox: has no name; must hold the file's name, then the file")?;
     let damping = damping.checked().map_err(|error| error.to_string())?;
     let mesh = parse(Path::new(name), mesh).map_err(|error| error.to_string())?;
-    let side = longest_side(match &mesh {
-        Mesh::Volume(volume) => &volume.points,
-        Mesh::Surface(surface) => &surface.points,
-    });
+    let side = longest_side(mesh.points());
     let mut making = *making;
     let is_odd = making.size_m.is_none() && !LIKELY_M.contains(&side);
     if is_odd {

@@ -1,6 +1,6 @@
 //! A glTF document: JSON with numbers in buffers beside it or inside it.
 
-use crate::error::CliError;
+use crate::error::ShapeError;
 use base64::Engine as _;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -24,15 +24,25 @@ pub struct Rows {
 
 impl Document {
     /// Reads `.gltf` and `.glb`.
-    pub fn read(path: &Path) -> Result<Self, CliError> {
-        let bytes = file(path)?;
-        let (json, chunk) =
-            if bytes.starts_with(b"glTF") { chunks(&bytes, path)? } else { (&bytes[..], None) };
+    ///
+    /// # Errors
+    /// When the file or one it names cannot be read, or it is no glTF of version 2.
+    pub fn read(path: &Path) -> Result<Self, ShapeError> {
+        Self::parse(path, &file(path)?)
+    }
+
+    /// Reads a document that was loaded already; files that it names lie beside `path`.
+    ///
+    /// # Errors
+    /// Those of [`Document::read`].
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, ShapeError> {
+        let (json, chunk) = if bytes.starts_with(b"glTF") { chunks(bytes, path)? } else { (bytes, None) };
+        let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
         let json: Value = serde_json::from_slice(json).map_err(|error| {
-            CliError::file(path, format!("is no glTF ({error})"), "must be .gltf or .glb of version 2")
+            at_file(path, format!("is no glTF ({error})"), "must be .gltf or .glb of version 2")
         })?;
         if json["asset"]["version"].as_str().is_none_or(|version| !version.starts_with("2.")) {
-            return Err(CliError::new(
+            return Err(ShapeError::new(
                 format!("{}: asset.version", path.display()),
                 "is missing or unknown",
                 "must be 2.x",
@@ -59,17 +69,36 @@ impl Document {
     }
 
     /// An error at a place of the document.
-    pub fn wrong(&self, at: impl std::fmt::Display, what: impl std::fmt::Display, right: &str) -> CliError {
-        CliError::new(format!("{}: {at}", self.path.display()), what, right)
+    pub fn wrong(&self, at: impl std::fmt::Display, what: impl std::fmt::Display, right: &str) -> ShapeError {
+        ShapeError::new(format!("{}: {at}", self.path.display()), what.to_string(), right)
+    }
+
+    /// A list of the document; empty where it has none.
+    #[must_use]
+    pub fn list(&self, key: &str) -> &[Value] {
+        self.json[key].as_array().map_or(&[][..], Vec::as_slice)
+    }
+
+    /// Positions are packed by an extension that is not read.
+    #[must_use]
+    pub fn is_packed(&self, primitive: &Value) -> bool {
+        let meshopt = |accessor: &Value| {
+            let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().unwrap_or(0) as usize];
+            view["extensions"].as_object().is_some_and(|e| e.keys().any(|key| key.contains("meshopt")))
+        };
+        let accessor = primitive["attributes"]["POSITION"].as_u64();
+        !primitive["extensions"]["KHR_draco_mesh_compression"].is_null()
+            || accessor.is_some_and(|i| meshopt(&self.json["accessors"][i as usize]))
     }
 
     /// The bytes that a uri names: inside it, or in a file beside the document.
-    fn fetched(&self, uri: &str, at: &str) -> Result<Vec<u8>, CliError> {
+    fn fetched(&self, uri: &str, at: &str) -> Result<Vec<u8>, ShapeError> {
         if let Some((_, text)) = uri.strip_prefix("data:").and_then(|rest| rest.split_once(";base64,")) {
             return base64::engine::general_purpose::STANDARD.decode(text).map_err(|error| {
                 self.wrong(at, format!("is no base64 ({error})"), "must be a data uri or a file's name")
             });
         }
+        let uri = &percent_decoded(uri);
         if uri.contains(':') || uri.starts_with('/') || uri.split('/').any(|part| part == "..") {
             return Err(self.wrong(
                 at,
@@ -80,7 +109,7 @@ impl Document {
         file(&self.path.with_file_name(uri))
     }
 
-    fn view(&self, index: &Value, at: &str) -> Result<&[u8], CliError> {
+    fn view(&self, index: &Value, at: &str) -> Result<&[u8], ShapeError> {
         let wrong = || self.wrong(at, "lies outside its buffer", "must name a bufferView inside a buffer");
         let number = |value: &Value| value.as_u64().and_then(|n| usize::try_from(n).ok());
         let view = number(index).and_then(|i| self.json["bufferViews"].get(i)).ok_or_else(wrong)?;
@@ -92,28 +121,31 @@ impl Document {
     }
 
     /// The numbers of an accessor of the type that is wanted.
-    pub fn accessor(&self, index: &Value, kind: &str, at: &str) -> Result<Rows, CliError> {
+    ///
+    /// # Errors
+    /// When there is none of that type, or it lies outside its buffer.
+    pub fn accessor(&self, index: &Value, kind: &str, at: &str) -> Result<Rows, ShapeError> {
         let wrong = |what: String, right: &str| self.wrong(at, what, right);
         let accessor = index.as_u64().and_then(|i| self.json["accessors"].get(i as usize));
         let accessor =
             accessor.ok_or_else(|| wrong(format!("{index} is no accessor"), "must be the index of one"))?;
         if accessor["type"].as_str() != Some(kind) || !accessor["sparse"].is_null() {
-            return Err(wrong(
-                format!("is {}", accessor["type"]),
-                "must be plain numbers of the type the draft wants",
-            ));
+            let right = format!("must be plain numbers of type {kind}");
+            return Err(wrong(format!("is {}", accessor["type"]), &right));
         }
-        let width = if kind == "VEC3" { 3 } else { 1 };
-        let size = match accessor["componentType"].as_u64() {
-            Some(5126 | 5125) => 4,
-            Some(5123) => 2,
-            _ => {
-                return Err(wrong(
-                    "has another component type".to_owned(),
-                    "must be FLOAT, UNSIGNED_INT or UNSIGNED_SHORT",
-                ));
-            }
+        let width = match kind {
+            "VEC2" => 2,
+            "VEC3" => 3,
+            _ => 1,
         };
+        let component = accessor["componentType"].as_u64().unwrap_or(0);
+        let size = match component {
+            5120 | 5121 => 1,
+            5122 | 5123 => 2,
+            5125 | 5126 => 4,
+            _ => return Err(wrong("has another component type".to_owned(), "must be one of glTF 2.0")),
+        };
+        let normalised = accessor["normalized"].as_bool() == Some(true);
         let bytes = self.view(&accessor["bufferView"], at)?;
         let offset = accessor["byteOffset"].as_u64().unwrap_or(0) as usize;
         let stride =
@@ -128,14 +160,9 @@ impl Document {
         if needed.is_none_or(|needed| needed > bytes.len()) {
             return Err(wrong(format!("counts {count}"), "must be at least 1 and lie inside its bufferView"));
         }
-        let float = accessor["componentType"].as_u64() == Some(5126);
         let values: Vec<f64> = (0..count)
             .flat_map(|row| (0..width).map(move |column| offset + row * stride + column * size))
-            .map(|at| {
-                let mut word = [0; 4];
-                word[..size].copy_from_slice(&bytes[at..at + size]);
-                if float { f64::from(f32::from_le_bytes(word)) } else { f64::from(u32::from_le_bytes(word)) }
-            })
+            .map(|at| number(&bytes[at..at + size], component, normalised))
             .collect();
         if values.iter().any(|x| !x.is_finite()) {
             return Err(wrong("holds a number that is not finite".to_owned(), "must be finite"));
@@ -144,7 +171,10 @@ impl Document {
     }
 
     /// The bytes of the picture of a texture.
-    pub fn picture(&self, texture: &Value, at: &str) -> Result<Vec<u8>, CliError> {
+    ///
+    /// # Errors
+    /// When the texture has no picture, or it cannot be read.
+    pub fn picture(&self, texture: &Value, at: &str) -> Result<Vec<u8>, ShapeError> {
         let wrong =
             || self.wrong(at, "names no picture", "must be the index of a texture whose source is an image");
         let texture =
@@ -160,22 +190,65 @@ impl Document {
 
 impl Rows {
     /// Rows of three.
+    #[must_use]
     pub fn triples(&self) -> Vec<[f64; 3]> {
         self.values.chunks_exact(3).map(|row| [row[0], row[1], row[2]]).collect()
     }
 }
 
-fn file(path: &Path) -> Result<Vec<u8>, CliError> {
-    let length = std::fs::metadata(path).map_err(|error| CliError::read(path, &error))?.len();
-    if length > LARGEST {
-        return Err(CliError::file(path, format!("has {length} bytes"), "must be at most 1 GiB"));
+/// A number as it is written; a normalised integer as the part of its range that it is.
+fn number(bytes: &[u8], component: u64, normalised: bool) -> f64 {
+    let mut word = [0; 4];
+    word[..bytes.len()].copy_from_slice(bytes);
+    let bits = u32::from_le_bytes(word);
+    let (value, most) = match component {
+        5120 => (f64::from(bits as u8 as i8), 127.0),
+        5121 => (f64::from(bits), 255.0),
+        5122 => (f64::from(bits as u16 as i16), 32_767.0),
+        5123 => (f64::from(bits), 65_535.0),
+        5126 => return f64::from(f32::from_bits(bits)),
+        _ => return f64::from(bits),
+    };
+    if normalised { (value / most).max(-1.0) } else { value }
+}
+
+/// `%20` is a space.
+fn percent_decoded(uri: &str) -> String {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, after @ ..] = rest {
+        let code = after.get(..2).and_then(|hex| std::str::from_utf8(hex).ok());
+        match code.and_then(|hex| u8::from_str_radix(hex, 16).ok()).filter(|_| *first == b'%') {
+            Some(byte) => {
+                bytes.push(byte);
+                rest = &after[2..];
+            }
+            None => {
+                bytes.push(*first);
+                rest = after;
+            }
+        }
     }
-    std::fs::read(path).map_err(|error| CliError::read(path, &error))
+    String::from_utf8(bytes).unwrap_or_else(|_| uri.to_owned())
+}
+
+fn at_file(path: &Path, what: impl Into<String>, right: &str) -> ShapeError {
+    ShapeError::new(path.display().to_string(), what, right)
+}
+
+fn file(path: &Path) -> Result<Vec<u8>, ShapeError> {
+    let readable =
+        |error: std::io::Error| at_file(path, format!("cannot be read ({error})"), "give a readable file");
+    let length = std::fs::metadata(path).map_err(readable)?.len();
+    if length > LARGEST {
+        return Err(at_file(path, format!("has {length} bytes"), "must be at most 1 GiB"));
+    }
+    std::fs::read(path).map_err(readable)
 }
 
 /// JSON and binary chunk of a `.glb`.
-fn chunks<'a>(bytes: &'a [u8], path: &Path) -> Result<(&'a [u8], Option<&'a [u8]>), CliError> {
-    let wrong = || CliError::file(path, "is a broken .glb", "must have a JSON chunk and a binary one");
+fn chunks<'a>(bytes: &'a [u8], path: &Path) -> Result<(&'a [u8], Option<&'a [u8]>), ShapeError> {
+    let wrong = || at_file(path, "is a broken .glb", "must have a JSON chunk and a binary one");
     let chunk = |from: usize| {
         let head = bytes.get(from..from + 8)?;
         let length = u32::from_le_bytes(head[..4].try_into().ok()?) as usize;

@@ -1,0 +1,100 @@
+//! PLY, ASCII or binary: points, and faces cut into triangles; everything else is left out.
+
+use crate::error::ShapeError;
+use crate::parts::Names;
+use crate::polygon;
+use crate::surface_mesh::{MOST_TRIANGLES, SurfaceMesh};
+use serde::Deserialize;
+
+/// Most corners of one face.
+const MOST_CORNERS: usize = 10_000;
+
+#[derive(Deserialize)]
+struct File {
+    #[serde(default)]
+    vertex: Vec<Vertex>,
+    #[serde(default)]
+    face: Vec<Face>,
+}
+
+#[derive(Deserialize)]
+struct Vertex {
+    x: f64,
+    y: f64,
+    z: f64,
+}
+
+#[derive(Deserialize)]
+struct Face {
+    #[serde(alias = "vertex_index")]
+    vertex_indices: Vec<i64>,
+}
+
+/// Reads a PLY file.
+///
+/// # Errors
+/// When it is no PLY, is cut short, names a point that is not there, or has no face.
+pub(crate) fn parse(bytes: &[u8]) -> Result<(SurfaceMesh, Names), ShapeError> {
+    let file: File = serde_ply::from_reader(bytes).map_err(|error| {
+        let what = error.to_string().replace('\n', " ");
+        ShapeError::new("", format!("is no whole PLY ({what})"), "must hold vertices with x, y, z and faces")
+    })?;
+    let points: Vec<[f64; 3]> = file.vertex.iter().map(|v| [v.x, v.y, v.z]).collect();
+    if let Some(i) = points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
+        let what = format!("vertex {i} has a coordinate that is not a number");
+        return Err(ShapeError::new("", what, "must be finite metres"));
+    }
+    let mut triangles = Vec::new();
+    // Points and edges among the faces enclose nothing.
+    for (i, face) in file.face.iter().enumerate().filter(|(_, face)| face.vertex_indices.len() >= 3) {
+        let corners = face.vertex_indices.iter().map(|&c| u32::try_from(c).ok()).collect::<Option<Vec<_>>>();
+        let cut = corners
+            .filter(|corners| corners.len() <= MOST_CORNERS)
+            .and_then(|corners| polygon::triangles(&points, &corners));
+        triangles.extend(cut.ok_or_else(|| {
+            let right =
+                format!("must name three vertices or more of 0 to {}", points.len().saturating_sub(1));
+            ShapeError::new(format!("face {i}"), "is no face", right)
+        })?);
+        if triangles.len() > MOST_TRIANGLES {
+            return Err(ShapeError::new("", "too many triangles", format!("at most {MOST_TRIANGLES}")));
+        }
+    }
+    if triangles.is_empty() {
+        return Err(ShapeError::new("", "has no face", "give the surface of a body, not points alone"));
+    }
+    Ok((SurfaceMesh { points, triangles }, Names::default()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEAD: &str = "element vertex 4\nproperty float x\nproperty float y\nproperty double z\nproperty uchar red\n\
+         element face 1\nproperty list uchar int vertex_index\nelement edge 1\nproperty int vertex1\nend_header\n";
+
+    #[test]
+    fn text_and_binary_files_of_coloured_points_are_the_same_mesh() {
+        let text = format!(
+            "ply\nformat ascii 1.0\ncomment made\n{HEAD}0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0.5 9\n4 0 1 2 3\n0\n"
+        );
+        let mut binary = format!("ply\nformat binary_big_endian 1.0\n{HEAD}").into_bytes();
+        for [x, y, z] in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.5]] {
+            binary.extend((x as f32).to_be_bytes());
+            binary.extend((y as f32).to_be_bytes());
+            binary.extend(f64::to_be_bytes(z));
+            binary.push(9);
+        }
+        binary.push(4);
+        (0..4_i32).for_each(|i| binary.extend(i.to_be_bytes()));
+        binary.extend(0_i32.to_be_bytes());
+        let mesh = parse(text.as_bytes()).unwrap().0;
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(mesh.points[3], [0.0, 1.0, 0.5]);
+        assert_eq!(parse(&binary).unwrap().0, mesh);
+        for part in [20, 50, 90, 99] {
+            assert!(parse(&binary[..binary.len() * part / 100]).is_err(), "{part}");
+        }
+        assert!(parse(text.replace("4 0 1 2 3", "4 0 1 2 9").as_bytes()).is_err());
+    }
+}
