@@ -209,17 +209,15 @@ impl ContactLog {
         let mut before = 0.0;
         for (index, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
             let place = || format!("{name}:{}", index + 1);
-            if !keys::check(text, place, &mut unread)? {
-                continue;
-            }
-            let line: LogLine = serde_json::from_str(text)
+            let Some(line) = keys::line(text, &place, &mut unread)? else { continue };
+            let line = LogLine::of(line)
                 .map_err(|error| LogError::Malformed { place: place(), message: error.to_string() })?;
             if line.t.is_nan() || line.t < before {
                 return Err(LogError::TimeBackwards { place: place(), t: line.t, before });
             }
             if line.t > MAX_TIME_S {
-                let message = format!("t = {:?} s is more than a day", line.t);
-                return Err(LogError::Malformed { place: place(), message });
+                let what = format!("{:?} s is more than a day", line.t);
+                return Err(LogError::Key { place: place(), key: "t".into(), what, right: "must be in seconds".into() });
             }
             before = line.t;
             lines.push(line);
@@ -238,18 +236,31 @@ impl ContactLog {
     /// Whether every event that is felt is felt on one of so many channels: on another it would be felt nowhere.
     ///
     /// # Errors
-    /// [`LogError::NoActuator`], the first.
+    /// [`LogError::Event`], the first.
     pub fn check_actuators(&self, channels: usize) -> Result<(), LogError> {
         let hand = |event: &LogEvent| match event {
             LogEvent::Begin { touching, .. } => touching.hand.actuator,
             LogEvent::Impact { hand, .. } => hand.actuator,
             LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => None,
         };
-        let missing = |line: &LogLine| {
+        let missing = |(index, line): (usize, &LogLine)| {
             let actuator = hand(&line.event).filter(|actuator| usize::from(*actuator) >= channels)?;
-            Some(LogError::NoActuator { t: line.t, actuator, channels })
+            Some(line.in_log(index, LogError::NoActuator { actuator, channels }))
         };
-        self.lines.iter().find_map(missing).map_or(Ok(()), Err)
+        self.lines.iter().enumerate().find_map(missing).map_or(Ok(()), Err)
+    }
+
+    /// Checks every name in the log against those of a scene, unless the log itself edits the scene.
+    ///
+    /// # Errors
+    /// [`LogError::Event`], the first whose names are not all in `names`.
+    pub fn check_names(&self, names: &Names) -> Result<(), LogError> {
+        let edits = |line: &LogLine| matches!(line.event, LogEvent::Edit(_));
+        if self.lines.iter().any(edits) {
+            return Ok(());
+        }
+        let unknown = |(index, line): (usize, &LogLine)| Some(line.in_log(index, line.event.resolve(names).err()?));
+        self.lines.iter().enumerate().find_map(unknown).map_or(Ok(()), Err)
     }
 
     /// Time of the last event, s; 0 for an empty log.
@@ -260,6 +271,19 @@ impl ContactLog {
 }
 
 impl LogLine {
+    /// A line whose keys are checked.
+    fn of(line: keys::Line) -> serde_json::Result<Self> {
+        let keys = serde_json::Value::Object(line.keys);
+        let event =
+            if line.is_edit { LogEvent::Edit(serde_json::from_value(keys)?) } else { serde_json::from_value(keys)? };
+        Ok(Self { t: line.t, event })
+    }
+
+    /// A problem with the line, which is the one of that index.
+    pub(crate) fn in_log(&self, index: usize, problem: LogError) -> LogError {
+        LogError::Event { number: index + 1, t: self.t, problem: Box::new(problem) }
+    }
+
     /// Writes the line; the first of a log says the version.
     pub(crate) fn write(&self, is_first: bool, mut out: impl Write) -> io::Result<()> {
         #[derive(Serialize)]

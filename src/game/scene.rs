@@ -11,6 +11,7 @@ mod touched;
 
 use crate::files::contact_log::LogEdit;
 use crate::game::clock::Clock;
+use crate::game::contradiction::{Motions, Sheet};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
 use crate::game::silence::{Reported, SilentBecause};
@@ -83,6 +84,8 @@ pub struct Scene {
     pub(crate) strike_gain: f64,
     /// For [`Scene::why_silent`].
     reported: Reported,
+    /// What the reports say twice.
+    motions: Motions,
     /// What each contact touches, and the place in its body that its newest report told.
     touched: HashMap<ContactId, Touched>,
 }
@@ -102,6 +105,7 @@ pub(crate) struct KnownSurface {
     /// How it looks, if it changes.
     picture: Option<Arc<MovingPicture>>,
     place: Place,
+    sheet: Sheet,
     tip_law: Option<TipLaw>,
     body: Option<BodyId>,
     /// Whether contacts on it stick and slip.
@@ -144,6 +148,7 @@ impl Scene {
             given: HashMap::new(),
             strike_gain: 1.0,
             reported: Reported::default(),
+            motions: Motions::default(),
             held: Vec::new(),
             config,
             kernel,
@@ -255,6 +260,7 @@ impl Scene {
         let rings = body.lowest_mode_hz.is_finite();
         let is_soft = surface.carries_n([0.0; 2], 0.0).is_some();
         let place = Place { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };
+        let sheet = Sheet { size_m: place.size_m, period_m };
         let on = surface.body;
         let mut picture = None;
         let mut tip_law = (surface.compliance_m_n > 0.0).then(|| surface.spring());
@@ -266,7 +272,7 @@ impl Scene {
             Box::new(SurfaceSlot { surface, trajectory, place_trajectory, stroking, overlay, period_m });
         Ok((
             Message::SetSurface { id, surface },
-            KnownSurface { rings, picture, place, tip_law, body: on, rubs },
+            KnownSurface { rings, picture, place, sheet, tip_law, body: on, rubs },
         ))
     }
 
@@ -345,8 +351,8 @@ impl Scene {
         self.to_audio.free() <= self.to_audio.capacity() / 4 + 1
     }
 
-    /// What speaks against anything being heard or felt, the likeliest reason first; empty when nothing
-    /// does. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
+    /// What speaks against anything being heard or felt, or against its being right, the likeliest reason first; empty when nothing
+    /// does: reports that contradict themselves are among it. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
     ///
     /// ```
     /// use asperity::{Config, Engine};
@@ -357,7 +363,10 @@ impl Scene {
     /// ```
     #[must_use]
     pub fn why_silent(&self) -> Vec<SilentBecause> {
-        self.reported.why_silent(&self.stats(), &self.config)
+        let contradictions = self.motions.contradictions().into_iter().map(SilentBecause::Contradicts);
+        let mut because = self.reported.why_silent(&self.stats(), &self.config);
+        because.extend(contradictions);
+        because
     }
 
     /// Game time begins anew: the next report holds at the sample that is rendered next, whatever its time, and

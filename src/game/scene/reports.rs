@@ -7,7 +7,7 @@ use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::error::{Refusal, ReportError};
 use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact};
-use crate::model::id::{BodyId, ProbeId};
+use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::LONGEST_CONTACT_S;
@@ -52,9 +52,12 @@ impl Scene {
         self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
         self.flush_held();
         let stamp = stamped.stamp;
+        let in_game_time = event;
         let event = event.at_pace(self.clock.pace());
         self.send_stamped(stamp, event)?;
         self.reported.accept(&event, stamp, self.rings(&event));
+        let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
+        self.motions.note(time_s, &in_game_time, self.config.contact_timeout_s, sheet);
         if let Some(recording) = &mut self.recording {
             recording.settle(position as f64 / self.config.inner_rate_hz());
             recording.note(stamp.samples() / self.config.inner_rate_hz(), &event.at_place_of(&told));
