@@ -1,8 +1,8 @@
 //! Logs that contradict themselves are told, with the unit that was meant; right ones are not.
 
 use asperity::{
-    Config, Contradiction, ContactEvent, ContactId, ContactSample, Engine, Likely, Scene, SilentBecause, Surface,
-    Touching,
+    Config, ContactEvent, ContactId, ContactSample, Contradiction, Engine, Likely, Scene, SilentBecause,
+    Surface, Touching,
 };
 use asperity_dsp::rng::Rng;
 use std::f64::consts::TAU;
@@ -111,7 +111,8 @@ fn told(stroke: &Stroke, wraps: bool) -> Vec<Contradiction> {
 
 fn contradictions(scene: &Scene) -> Vec<Contradiction> {
     let told = scene.why_silent().into_iter();
-    told.filter_map(|reason| if let SilentBecause::Contradicts(told) = reason { Some(told) } else { None }).collect()
+    told.filter_map(|reason| if let SilentBecause::Contradicts(told) = reason { Some(told) } else { None })
+        .collect()
 }
 
 /// A slip, and whether what is told of it is right.
@@ -146,16 +147,29 @@ fn slips() -> [Slip; 14] {
             |s| each(s, |report, _| report.uv = [report.uv[0] * 1024.0, report.uv[1] * 768.0]),
             |told, s| {
                 // 1024 texels over a metre and millimetres are the same motion.
-                is(told, Likely::UvInTexels) || s.size_m.iter().zip([1024.0, 768.0]).all(|(m, n)| (m * 1e3 / n).ln().abs() < 0.15)
+                is(told, Likely::UvInTexels)
+                    || s.size_m.iter().zip([1024.0, 768.0]).all(|(m, n)| (m * 1e3 / n).ln().abs() < 0.15)
             },
         ),
         (
             "velocity in uv a second",
-            |s| each(s, |report, size_m| report.velocity_m_s = [0, 1].map(|c| report.velocity_m_s[c] / size_m[c])),
+            |s| {
+                each(s, |report, size_m| {
+                    report.velocity_m_s = [0, 1].map(|c| report.velocity_m_s[c] / size_m[c])
+                })
+            },
             |told, _| is(told, Likely::UvInMetres),
         ),
-        ("velocity in mm/s", |s| scaled_velocity(s, 1000.0), |told, _| is(told, Likely::VelocityInMillimetres)),
-        ("velocity in cm/s", |s| scaled_velocity(s, 100.0), |told, _| is(told, Likely::VelocityInCentimetres)),
+        (
+            "velocity in mm/s",
+            |s| scaled_velocity(s, 1000.0),
+            |told, _| is(told, Likely::VelocityInMillimetres),
+        ),
+        (
+            "velocity in cm/s",
+            |s| scaled_velocity(s, 100.0),
+            |told, _| is(told, Likely::VelocityInCentimetres),
+        ),
         (
             "velocity backwards",
             |s| scaled_velocity(s, -1.0),
@@ -179,14 +193,19 @@ fn slips() -> [Slip; 14] {
         (
             "two fingers under one number",
             |s| {
-                let second = |report: &Report| Report { uv: [report.uv[0] + 0.04 / 0.06, report.uv[1]], ..*report };
+                let second =
+                    |report: &Report| Report { uv: [report.uv[0] + 0.04 / 0.06, report.uv[1]], ..*report };
                 s.reports = s.reports.iter().flat_map(|report| [*report, second(report)]).collect();
             },
             |told, _| matches!(told, Contradiction::TwoPlaces { .. } | Contradiction::BeginsAgain { .. }),
         ),
         (
             "a plane of another size",
-            |s| each(s, |report, size_m| report.uv = [0, 1].map(|c| report.uv[c] * size_m[c] / (PLANE * size_m[c].sqrt()))),
+            |s| {
+                each(s, |report, size_m| {
+                    report.uv = [0, 1].map(|c| report.uv[c] * size_m[c] / (PLANE * size_m[c].sqrt()))
+                })
+            },
             |told, s| match told {
                 Contradiction::Speed { likely: Likely::AnotherSize(plane_m), .. } => [0, 1].iter().all(|c| {
                     plane_m[*c].is_none_or(|m| (m / (PLANE * s.size_m[*c].sqrt())).ln().abs() < 0.1)
@@ -280,7 +299,8 @@ fn a_right_log_is_not_called_a_contradiction() {
             // Places that are reported twice, between two steps of the physics.
             5 => {
                 for i in (1..reports.len()).step_by(2) {
-                    (reports[i].uv, reports[i].velocity_m_s) = (reports[i - 1].uv, reports[i - 1].velocity_m_s);
+                    (reports[i].uv, reports[i].velocity_m_s) =
+                        (reports[i - 1].uv, reports[i - 1].velocity_m_s);
                 }
             }
             _ => {}

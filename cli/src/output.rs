@@ -35,7 +35,11 @@ pub fn refuse_input(path: &Path) -> Result<(), CliError> {
     READ.with_borrow(|read| match read.iter().find(same) {
         None => Ok(()),
         Some(read) => {
-            let what = if read == path { "is read as well".to_owned() } else { format!("is {}, which is read", read.display()) };
+            let what = if read == path {
+                "is read as well".to_owned()
+            } else {
+                format!("is {}, which is read", read.display())
+            };
             Err(CliError::file(path, what, "write somewhere else: an input is never written over"))
         }
     })

@@ -91,7 +91,11 @@ fn ends_in(path: &Path, ending: &str) -> Result<(), CliError> {
     if path.extension().is_some_and(|is| is.eq_ignore_ascii_case(ending)) {
         return Ok(());
     }
-    Err(CliError::file(path, format!("is not named as what it will hold: .{ending}"), format!("must end in .{ending}")))
+    Err(CliError::file(
+        path,
+        format!("is not named as what it will hold: .{ending}"),
+        format!("must end in .{ending}"),
+    ))
 }
 
 #[cfg(test)]

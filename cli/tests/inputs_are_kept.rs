@@ -38,9 +38,27 @@ const CASES: [Case; 27] = [
     (&["texture", "from-normals", "a.stl", "-o", "c.png", "--stl", "OUT"], "a.stl"),
     (&["texture", "analyze", "a.png", "--primitive", "OUT"], "a.png"),
     (&["texture", "from-photo", "a.stl", "-o", "photo", "--stl", "OUT"], "a.stl"),
-    (&["texture", "from-photo", "a.png", "--known", "a.stl", "--known-relief-m", "0.001", "-o", "photo", "--stl", "OUT"], "a.stl"),
+    (
+        &[
+            "texture",
+            "from-photo",
+            "a.png",
+            "--known",
+            "a.stl",
+            "--known-relief-m",
+            "0.001",
+            "-o",
+            "photo",
+            "--stl",
+            "OUT",
+        ],
+        "a.stl",
+    ),
     (&["fit", "other.wav", "-o", "a.json", "--plot", "b.svg", "--residual", "OUT"], "other.wav"),
-    (&["modes", "mesh.obj", "-o", "shape.json", "--damping-from", "shape.json", "--plot", "a.svg"], "shape.json"),
+    (
+        &["modes", "mesh.obj", "-o", "shape.json", "--damping-from", "shape.json", "--plot", "a.svg"],
+        "shape.json",
+    ),
 ];
 
 /// A verb whose outputs get their names from a stem or a folder, and the input that one of them would be.
@@ -53,7 +71,20 @@ const NAMED: [Case; 14] = [
     (&["texture", "from-photo", "roughness.png", "-o", "OUT."], "roughness.png"),
     (&["texture", "from-photo", "overview.png", "-o", "OUT."], "overview.png"),
     (&["texture", "from-photo", "displacement.png", "-o", "OUT."], "displacement.png"),
-    (&["texture", "from-photo", "a.png", "--known", "symmetric.png", "--known-relief-m", "0.001", "-o", "OUT."], "symmetric.png"),
+    (
+        &[
+            "texture",
+            "from-photo",
+            "a.png",
+            "--known",
+            "symmetric.png",
+            "--known-relief-m",
+            "0.001",
+            "-o",
+            "OUT.",
+        ],
+        "symmetric.png",
+    ),
     (&["import", "scene.toml", "-o", "OUT."], "scene.toml"),
     (&["modes", "ball.glb", "--shapes-glb", "-o", "OUTball.json"], "ball.glb"),
     (&["import", "doc.gltf", "-o", "OUT."], "contacts.jsonl"),
@@ -80,12 +111,18 @@ fn fill(folder: &Path) {
     let map = GrayImage::from_fn(96, 96, |x, y| Luma([(x * 37 + y * 11) as u8]));
     let png = |name: &str| {
         let path = folder.join("now.png");
-        if name == "map" { map.save(&path).unwrap() } else { picture.save(&path).unwrap() }
+        if name == "map" {
+            map.save(&path).unwrap()
+        } else {
+            picture.save(&path).unwrap()
+        }
         let bytes = fs::read(&path).unwrap();
         fs::remove_file(&path).unwrap();
         bytes
     };
-    for name in ["a.png", "b.png", "a.stl", "roughness.png", "overview.png", "displacement.png", "symmetric.png"] {
+    for name in
+        ["a.png", "b.png", "a.stl", "roughness.png", "overview.png", "displacement.png", "symmetric.png"]
+    {
         put(name, &png("picture"));
     }
     for name in ["take.svg", "take.bed.sand.png"] {
@@ -103,7 +140,10 @@ fn fill(folder: &Path) {
     put("named.toml", scene("take.trace.csv", "").as_bytes());
     put("log-is-audio.toml", scene("take.audio.wav", "").as_bytes());
     put("log-is-force.toml", scene("take.force.csv", "").as_bytes());
-    put("map-is-plot.toml", scene("stroke.jsonl", "displacement = \"take.svg\"\nrelief_m = 1e-4\n").as_bytes());
+    put(
+        "map-is-plot.toml",
+        scene("stroke.jsonl", "displacement = \"take.svg\"\nrelief_m = 1e-4\n").as_bytes(),
+    );
     let bed = "[[surface]]\nname = \"bed\"\nwidth_m = 0.1\nheight_m = 0.1\nsand = {}\n";
     let map = "displacement = \"take.bed.sand.png\"\nrelief_m = 1e-4\n";
     put("sand.toml", format!("{}{bed}", scene("stroke.jsonl", map)).as_bytes());
@@ -152,7 +192,8 @@ fn an_output_that_is_an_input_is_refused_by_every_verb_and_by_whatever_path() {
             hard.clone(),
         ];
         for way in ways {
-            let arguments: Vec<&str> = arguments.iter().map(|part| if *part == "OUT" { &*way } else { part }).collect();
+            let arguments: Vec<&str> =
+                arguments.iter().map(|part| if *part == "OUT" { &*way } else { part }).collect();
             assert_refused(&asperity(at, &arguments), &["read", "write somewhere else"]);
             assert_eq!(everything(at), before, "{arguments:?}");
             refused += 1;
@@ -189,8 +230,10 @@ fn an_output_that_gets_its_name_from_a_stem_or_a_folder_is_never_an_input() {
 fn a_file_that_is_no_input_is_replaced_as_ever() {
     let folder = tempfile::tempdir().unwrap();
     for _ in 0..2 {
-        let (status, _, err) =
-            told(&asperity(folder.path(), &["texture", "solid", "granite", "--size", "64", "-o", "granite.png"]));
+        let (status, _, err) = told(&asperity(
+            folder.path(),
+            &["texture", "solid", "granite", "--size", "64", "-o", "granite.png"],
+        ));
         assert_eq!((status, err.as_str()), (0, ""));
     }
 }

@@ -21,7 +21,8 @@ pub(crate) fn refused(text: &str, error: &toml::de::Error) -> PortError {
     let message = error.message();
     let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let line = error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
-    let key = text.lines().nth(line - 1).and_then(|written| written.split_once('=')).map(|(key, _)| key.trim());
+    let key =
+        text.lines().nth(line - 1).and_then(|written| written.split_once('=')).map(|(key, _)| key.trim());
     let at = |key: &str| format!("line {line}: {key}");
     match words.as_slice() {
         [unknown, known @ ..] if message.starts_with("unknown field") => {

@@ -129,7 +129,8 @@ impl ActuatorPreset {
     /// # Errors
     /// When it is no profile.
     pub fn parse(text: &str, place: &str) -> Result<Self, PresetError> {
-        let malformed = |error: FileError| PresetError::Malformed { place: place.into(), message: error.to_string() };
+        let malformed =
+            |error: FileError| PresetError::Malformed { place: place.into(), message: error.to_string() };
         let right = "a profile is TOML with label, the seven numbers of a device and [source]";
         let written: Written =
             toml::from_str(text).map_err(|error| malformed(FileError::toml(text, &error, right)))?;
@@ -193,6 +194,9 @@ mod tests {
         assert!(refused.starts_with("mine.toml: quality: "), "{refused}");
         let text = SHIPPED[0].1.replace("quality", "qality");
         let refused = ActuatorPreset::parse(&text, "x").unwrap_err().to_string();
-        assert!(refused.starts_with("x: line ") && refused.contains("qality: unknown key; write quality"), "{refused}");
+        assert!(
+            refused.starts_with("x: line ") && refused.contains("qality: unknown key; write quality"),
+            "{refused}"
+        );
     }
 }

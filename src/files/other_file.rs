@@ -2,14 +2,18 @@
 
 /// What a file is and what reads it, by its first bytes; `None` where it may be a scene with a slip.
 pub(crate) fn other_file(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
-    const RECORDING: (&str, &str) =
-        ("is a recording, not a scene", "`asperity fit` makes a body of it, `asperity haptic` a clip for hardware");
+    const RECORDING: (&str, &str) = (
+        "is a recording, not a scene",
+        "`asperity fit` makes a body of it, `asperity haptic` a clip for hardware",
+    );
     const PICTURE: (&str, &str) = (
         "is a picture, not a scene",
         "`asperity texture from-photo` makes a scene of a photograph; a height map goes under displacement in [[surface]]",
     );
-    const MESH: (&str, &str) =
-        ("is a glTF document, not a scene", "`asperity import` makes a scene of it, `asperity modes` a body of a mesh");
+    const MESH: (&str, &str) = (
+        "is a glTF document, not a scene",
+        "`asperity import` makes a scene of it, `asperity modes` a body of a mesh",
+    );
     let starts: [(&[u8], (&str, &str)); 16] = [
         (b"RIFF", RECORDING),
         (b"RF64", RECORDING),
@@ -49,7 +53,9 @@ fn of_text(text: &str) -> Option<(&'static str, &'static str)> {
     if head.starts_with('{') && holds("\"asset\"") {
         return Some(("is a glTF document, not a scene", "`asperity import` makes a scene of it"));
     }
-    let is_mesh = head.lines().any(|line| line.starts_with("v ")) || head.starts_with("solid ") || head.starts_with("$MeshFormat");
+    let is_mesh = head.lines().any(|line| line.starts_with("v "))
+        || head.starts_with("solid ")
+        || head.starts_with("$MeshFormat");
     is_mesh.then_some(("is a mesh, not a scene", "`asperity modes` makes a body of it"))
 }
 

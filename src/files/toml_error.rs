@@ -61,9 +61,15 @@ mod tests {
     #[test]
     fn a_slip_in_a_profile_names_its_line_its_key_and_what_would_be_right() {
         for (text, told) in [
-            ("label = \"x\"\nbnad_hz = [1, 2]", "line 2: bnad_hz: unknown key; write band_hz; accepted here: band_hz, label"),
+            (
+                "label = \"x\"\nbnad_hz = [1, 2]",
+                "line 2: bnad_hz: unknown key; write band_hz; accepted here: band_hz, label",
+            ),
             ("label = \"x\"", "band_hz: is missing; must be a profile"),
-            ("band_hz = [1, 2]\nlabel = 3", "line 2: label: invalid type: integer `3`, expected a string; must be a profile"),
+            (
+                "band_hz = [1, 2]\nlabel = 3",
+                "line 2: label: invalid type: integer `3`, expected a string; must be a profile",
+            ),
             ("label = \"x\"\nband_hz = [1", "line 2: band_hz: "),
         ] {
             let error = toml::from_str::<Profile>(text).unwrap_err();

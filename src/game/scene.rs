@@ -14,7 +14,7 @@ use crate::game::clock::Clock;
 use crate::game::contradiction::{Motions, Sheet};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
-use crate::game::silence::{Reported, SilentBecause};
+use crate::game::silence::Reported;
 use crate::link::message::{Dead, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
@@ -349,24 +349,6 @@ impl Scene {
     /// Whether another move might be held back because the audio half lags behind.
     pub(crate) fn is_filling(&mut self) -> bool {
         self.to_audio.free() <= self.to_audio.capacity() / 4 + 1
-    }
-
-    /// What speaks against anything being heard or felt, or against its being right, the likeliest reason first; empty when nothing
-    /// does: reports that contradict themselves are among it. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
-    ///
-    /// ```
-    /// use asperity::{Config, Engine};
-    ///
-    /// let Engine { scene, .. } = Config::default().build()?;
-    /// assert!(scene.why_silent()[0].to_string().contains("Renderer::render"));
-    /// # Ok::<(), asperity::ConfigError>(())
-    /// ```
-    #[must_use]
-    pub fn why_silent(&self) -> Vec<SilentBecause> {
-        let contradictions = self.motions.contradictions().into_iter().map(SilentBecause::Contradicts);
-        let mut because = self.reported.why_silent(&self.stats(), &self.config);
-        because.extend(contradictions);
-        because
     }
 
     /// Game time begins anew: the next report holds at the sample that is rendered next, whatever its time, and

@@ -147,7 +147,9 @@ pub enum SilentBecause {
     )]
     NothingRings,
     /// No contact presses.
-    #[error("no contact was pressed onto its surface; report a normal_force_n above 0, or a depth_m on what gives way")]
+    #[error(
+        "no contact was pressed onto its surface; report a normal_force_n above 0, or a depth_m on what gives way"
+    )]
     NeverPressed,
     /// No contact moves.
     #[error(

@@ -9,6 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Audio peaks below this are silence: −120 dB of full scale.
 const SILENT: f32 = 1e-6;
+/// Of these, peaks above are faint: something sounds, as a ball does that rolls slowly, and nobody hears it.
+const FAINT: f32 = 1e-9;
 /// Haptic peaks below this are silence, m or m/s²: a hundredth of what a fingertip just feels.
 const UNFELT: f64 = 1e-9;
 
@@ -43,8 +45,13 @@ impl Rendered<'_> {
         match audio.as_slice() {
             all if all.len() == self.render.audio.len() => {
                 let peak = self.render.audio.iter().map(|bus| peak(bus)).fold(0.0, f32::max);
-                let why: Vec<String> = if all.len() == 1 { vec![self.unheard(0)] } else { self.each(all, |bus| self.unheard(bus)) };
-                told.push(format!("the audio is silence (peak {peak:.1e}): {}", why.join("; ")));
+                let why: Vec<String> = if all.len() == 1 {
+                    vec![self.unheard(0)]
+                } else {
+                    self.each(all, |bus| self.unheard(bus))
+                };
+                let is = if peak > FAINT { "faint" } else { "silence" };
+                told.push(format!("the audio is {is} (peak {peak:.1e}): {}", why.join("; ")));
             }
             some => told.extend(some.iter().map(|bus| {
                 let name = self.file.audio.get(*bus).and_then(|bus| bus.name.clone()).unwrap_or_default();
@@ -56,9 +63,10 @@ impl Rendered<'_> {
                 let why = self.each(all, |channel| self.unfelt(channel));
                 told.push(format!("every haptic channel is silence: {}", why.join("; ")));
             }
-            some => told.extend(some.iter().map(|channel| {
-                format!("haptic channel {channel} is silence: {}", self.unfelt(*channel))
-            })),
+            some => told
+                .extend(some.iter().map(|channel| {
+                    format!("haptic channel {channel} is silence: {}", self.unfelt(*channel))
+                })),
         }
         told
     }
@@ -88,13 +96,18 @@ impl Rendered<'_> {
         let name = entry.and_then(|entry| entry.name.as_deref());
         let plays = |body: &str| {
             let body = file.bodies.iter().find(|entry| entry.name == body);
-            body.is_some_and(|body| body.bus.is_none() && bus == 0 || body.bus.is_some() && body.bus.as_deref() == name)
+            body.is_some_and(|body| {
+                body.bus.is_none() && bus == 0 || body.bus.is_some() && body.bus.as_deref() == name
+            })
         };
         if entry.is_some_and(|entry| entry.gain == Some(0.0)) {
             return "gain under [audio] is 0; raise it".to_owned();
         }
         if file.audio.len() > 1 && !file.bodies.iter().any(|body| plays(&body.name)) {
-            return format!("no body plays on it; write bus = \"{}\" in a [[body]]", name.unwrap_or_default());
+            return format!(
+                "no body plays on it; write bus = \"{}\" in a [[body]]",
+                name.unwrap_or_default()
+            );
         }
         let touched = self.touched();
         if file.audio.len() > 1 && !touched.iter().any(|body| plays(body)) {
@@ -109,9 +122,14 @@ impl Rendered<'_> {
         let rings = |name: &&str| self.surface(name).is_some_and(|surface| surface.body.is_some());
         if let Some(name) = surfaces.iter().find(|name| rings(name))
             && !strikes
-            && surfaces.iter().filter_map(|name| self.surface(name)).all(|surface| surface.excitation == Excitation::NONE)
+            && surfaces
+                .iter()
+                .filter_map(|name| self.surface(name))
+                .all(|surface| surface.excitation == Excitation::NONE)
         {
-            return format!("sliding on \"{name}\" sends nothing to its body; write excitation = \"both\" in its [[surface]]");
+            return format!(
+                "sliding on \"{name}\" sends nothing to its body; write excitation = \"both\" in its [[surface]]"
+            );
         }
         self.because(&[], "nothing was loud enough; raise gain under [audio], or press or strike harder")
     }
@@ -125,8 +143,11 @@ impl Rendered<'_> {
         let mine: Vec<&&LogHand> = hands.iter().filter(|hand| felt_by(hand) == Some(channel)).collect();
         if mine.is_empty() && !hands.is_empty() {
             let begins = self.log.lines.iter().any(|line| matches!(line.event, LogEvent::Begin { .. }));
-            let of = if begins { "\"begin\" of the contact" } else { "\"impact\"; no contact begins in the log" };
-            return format!("nothing in the log names it; write \"actuator\":{channel} in the {of} that it feels");
+            let of =
+                if begins { "\"begin\" of the contact" } else { "\"impact\"; no contact begins in the log" };
+            return format!(
+                "nothing in the log names it; write \"actuator\":{channel} in the {of} that it feels"
+            );
         }
         if !mine.is_empty() && mine.iter().all(|hand| hand.gain == Some(0.0)) {
             return "\"gain\" is 0 in every begin and impact that it feels; raise it".to_owned();
@@ -139,7 +160,8 @@ impl Rendered<'_> {
 
     fn because(&self, but: &[SilentBecause], otherwise: &str) -> String {
         let counts = |reason: &&SilentBecause| {
-            !but.contains(reason) && !matches!(reason, SilentBecause::Contradicts(_) | SilentBecause::TurnedDown { .. })
+            !but.contains(reason)
+                && !matches!(reason, SilentBecause::Contradicts(_) | SilentBecause::TurnedDown { .. })
         };
         let because = || self.render.why_silent.iter().filter(counts);
         // What was lost is told by itself.

@@ -16,8 +16,8 @@ use asperity::files::scene_file::{SceneFile, Source, SurfaceEntry};
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
-use asperity_tools::silence::Rendered;
 use asperity::{Integrator, Isa, PathMode, Preset, Quantity, SurfaceId};
+use asperity_tools::silence::Rendered;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
@@ -245,7 +245,9 @@ fn check_outputs(options: &Options, file: &SceneFile) -> Result<(), CliError> {
     };
     let suffixes = ["audio.wav", "haptic.wav", "trace.csv", "force.csv", "svg"].map(str::to_owned);
     let of_stem = suffixes.into_iter().chain(file.surfaces.iter().filter_map(sand));
-    of_stem.map(|suffix| with_suffix(&options.output, &suffix)).try_for_each(|path| check_destination(&path))?;
+    of_stem
+        .map(|suffix| with_suffix(&options.output, &suffix))
+        .try_for_each(|path| check_destination(&path))?;
     options.port.as_deref().map_or(Ok(()), check_destination)
 }
 

@@ -66,7 +66,9 @@ pub enum LogError {
     #[error("stopped before its end; render again")]
     Stopped,
     /// A contact that would be felt on a channel which is not there.
-    #[error("actuator: {actuator} is not in the scene; must be below {channels}, the number of [[actuator]] tables")]
+    #[error(
+        "actuator: {actuator} is not in the scene; must be below {channels}, the number of [[actuator]] tables"
+    )]
     NoActuator {
         /// The channel.
         actuator: u16,
@@ -132,5 +134,6 @@ fn one_of(kind: &str, name: &str, known: &str) -> String {
     }
     let names: Vec<&str> = known.split(", ").collect();
     let meant = nearest(name, &names).filter(|_| names.len() > 1);
-    meant.map_or_else(String::new, |meant| format!("write \"{meant}\"; ")) + &format!("must be one of: {known}")
+    meant.map_or_else(String::new, |meant| format!("write \"{meant}\"; "))
+        + &format!("must be one of: {known}")
 }

@@ -162,7 +162,12 @@ pub(super) fn line(
     unread: &mut Unread,
 ) -> Result<Option<Line>, LogError> {
     let Object(mut keys) = serde_json::from_str(text).map_err(|error| malformed(place(), &error))?;
-    let refuse = |key: &str, what: String, right: String| LogError::Key { place: place(), key: key.into(), what, right };
+    let refuse = |key: &str, what: String, right: String| LogError::Key {
+        place: place(),
+        key: key.into(),
+        what,
+        right,
+    };
     let version = keys.remove("version");
     if let Some(version) = version.as_ref().filter(|version| version.as_u64() != Some(VERSION)) {
         return Err(LogError::Version { place: place(), version: version.to_string() });
@@ -182,11 +187,18 @@ pub(super) fn line(
         }
     }
     keys.retain(|key, value| !value.is_null() && !event.read_past.contains(&key.as_str()));
-    let t = keys.remove("t").ok_or_else(|| refuse("t", "is missing".into(), "write \"t\":0.5, its time in seconds".into()))?;
-    let t = t.as_f64().ok_or_else(|| refuse("t", shown(&t), "must be a number, the time in seconds".into()))?;
+    let t = keys
+        .remove("t")
+        .ok_or_else(|| refuse("t", "is missing".into(), "write \"t\":0.5, its time in seconds".into()))?;
+    let t =
+        t.as_f64().ok_or_else(|| refuse("t", shown(&t), "must be a number, the time in seconds".into()))?;
     for ((name, _), or, example) in event.needs {
         if !keys.contains_key(*name) && !or.iter().any(|or| keys.contains_key(*or)) {
-            return Err(refuse(name, format!("is missing in \"{}\"", event.name), format!("write {example}")));
+            return Err(refuse(
+                name,
+                format!("is missing in \"{}\"", event.name),
+                format!("write {example}"),
+            ));
         }
     }
     for (name, holds) in event.keys() {
@@ -213,7 +225,8 @@ fn event_of(keys: &Map<String, Value>) -> Result<&'static Event, (String, String
     let word = written.as_str().unwrap_or_default();
     let names: Vec<&str> = EVENTS.iter().map(|event| event.name).collect();
     EVENTS.iter().find(|event| event.name == word).ok_or_else(|| {
-        let right = nearest(word, &names).map_or(format!("must be {usual}"), |meant| format!("write \"{meant}\""));
+        let right =
+            nearest(word, &names).map_or(format!("must be {usual}"), |meant| format!("write \"{meant}\""));
         ("event".into(), format!("{written} is unknown"), right)
     })
 }
@@ -270,7 +283,8 @@ fn striker(value: &Value) -> Result<(), String> {
         Value::String(name) => {
             let names = Material::names();
             let known: Vec<&str> = names.split(", ").collect();
-            let meant = nearest(name, &known).map_or_else(String::new, |meant| format!("write \"{meant}\"; "));
+            let meant =
+                nearest(name, &known).map_or_else(String::new, |meant| format!("write \"{meant}\"; "));
             Err(format!("{meant}must be one of: {names}"))
         }
         Value::Object(_) => serde_json::from_value::<Material>(value.clone())
@@ -341,7 +355,9 @@ mod tests {
 
     #[test]
     fn the_document_has_every_key_of_an_event_and_says_which_are_needed() {
-        for (name, begins) in [("begin", "`begin`: a contact lands."), ("impact", "`impact`: a rigid striker hits a body.")] {
+        for (name, begins) in
+            [("begin", "`begin`: a contact lands."), ("impact", "`impact`: a rigid striker hits a body.")]
+        {
             let event = EVENTS.iter().find(|event| event.name == name).unwrap();
             let (mut written, needed) = table(begins);
             let mut known: Vec<&str> = event.keys().map(|(key, _)| key).collect();

@@ -1,4 +1,7 @@
 use super::*;
+use crate::model::event::{Actuator, ContactEvent, Impact};
+use crate::model::id::{BodyId, ProbeId, SurfaceId};
+use std::collections::HashMap;
 
 const LOG: &str = r#"{"t":0.0,"event":"begin","contact":1,"surface":"tiles","actuator":0,"uv":[0.1,0.5],"velocity_m_s":[0.08,0.0],"normal_force_n":0.6,"closing_m_s":0.05}
 {"t":0.0167,"event":"move","contact":1,"uv":[0.11,0.5],"normal_force_n":0.62}
@@ -129,7 +132,11 @@ const SLIPS: [(&str, &str, &str); 32] = [
     ("\"begin\"", "\"Begin\"", "event: \"Begin\" is unknown; write \"begin\""),
     ("\"begin\"", "\"began\"", "event: \"began\" is unknown; write \"begin\""),
     ("\"begin\"", "\"start\"", "event: \"start\" is unknown; write \"begin\""),
-    ("\"begin\"", "\"jump\"", "event: \"jump\" is unknown; must be \"begin\", \"move\", \"end\" or \"impact\""),
+    (
+        "\"begin\"",
+        "\"jump\"",
+        "event: \"jump\" is unknown; must be \"begin\", \"move\", \"end\" or \"impact\"",
+    ),
     ("\"begin\"", "7", "event: 7 is unknown; must be \"begin\", "),
     ("\"t\":0.0,", "", "t: is missing; write \"t\":"),
     ("\"t\":0.0", "\"time\":0.0", "time: unknown key of \"begin\"; write t"),
@@ -149,7 +156,11 @@ const SLIPS: [(&str, &str, &str); 32] = [
     ("[0.1,0.5]", "[0.1,null]", "uv: [0.1,null] is refused; must be two numbers"),
     ("\"uv\"", "\"UV\"", "UV: unknown key of \"begin\"; write uv"),
     ("[0.08,0.0]", "0.08", "velocity_m_s: 0.08 is refused; must be two numbers, along u and along v"),
-    ("\"normal_force_n\":0.6,", "", "normal_force_n: is missing in \"begin\"; write \"normal_force_n\":0.5; or depth_m"),
+    (
+        "\"normal_force_n\":0.6,",
+        "",
+        "normal_force_n: is missing in \"begin\"; write \"normal_force_n\":0.5; or depth_m",
+    ),
     ("0.6", "\"0.6\"", "normal_force_n: \"0.6\" is refused; must be a number"),
     ("normal_force_n", "force", "force: unknown key of \"begin\"; write normal_force_n"),
     ("normal_force_n", "normal_froce_n", "normal_froce_n: unknown key of \"begin\"; write normal_force_n"),
@@ -164,7 +175,11 @@ const IMPACT_SLIPS: [(&str, &str, &str); 8] = [
     ("\"radius_m\":0.005,", "", "radius_m: is missing in \"impact\"; write \"radius_m\":0.01"),
     (",\"striker\":\"steel\"", "", "striker: is missing in \"impact\"; write \"striker\":\"steel\""),
     ("\"steel\"", "\"stele\"", "striker: \"stele\" is refused; write \"steel\"; must be one of: "),
-    ("\"steel\"", "{\"young_pa\":1e9}", "striker: {\"young_pa\":1000000000.0} is refused; must hold the constants"),
+    (
+        "\"steel\"",
+        "{\"young_pa\":1e9}",
+        "striker: {\"young_pa\":1000000000.0} is refused; must hold the constants",
+    ),
     ("\"mass_kg\"", "\"mass\"", "mass: unknown key of \"impact\"; write mass_kg"),
 ];
 
@@ -177,7 +192,8 @@ fn a_slip_is_told_with_its_line_its_key_what_is_wrong_and_what_would_be_right() 
         let slipped = line.replacen(from, to, 1);
         assert_ne!(slipped, line, "{from}");
         // Behind a line that only says the version, and an empty one.
-        let message = ContactLog::parse(&format!("{{\"version\":1}}\n\n{slipped}\n"), "log").unwrap_err().to_string();
+        let message =
+            ContactLog::parse(&format!("{{\"version\":1}}\n\n{slipped}\n"), "log").unwrap_err().to_string();
         assert!(message.starts_with(&format!("log:3: {told}")), "{message}\nis not\n{told}");
         assert_eq!(message.lines().count(), 1);
     }

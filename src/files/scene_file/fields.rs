@@ -247,7 +247,8 @@ impl Fields {
             None => Ok(()),
             Some(key) => {
                 self.accepted.sort_unstable();
-                let meant = nearest(&key, &self.accepted).map_or_else(String::new, |meant| format!("write {meant}; "));
+                let meant = nearest(&key, &self.accepted)
+                    .map_or_else(String::new, |meant| format!("write {meant}; "));
                 let right = format!("{meant}accepted here: {}", self.accepted.join(", "));
                 Err(self.refuse(&key, "unknown key", right))
             }

@@ -1,6 +1,7 @@
 //! Reports of the game: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
 
 use super::Scene;
+use crate::game::silence::SilentBecause;
 use crate::link::message::{Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::bad_value::within;
@@ -38,6 +39,24 @@ impl Scene {
             self.reported.refuse(reason);
             ReportError { event, reason }
         })
+    }
+
+    /// What speaks against anything being heard or felt, or against its being right, the likeliest reason first; empty when nothing
+    /// does: reports that contradict themselves are among it. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
+    ///
+    /// ```
+    /// use asperity::{Config, Engine};
+    ///
+    /// let Engine { scene, .. } = Config::default().build()?;
+    /// assert!(scene.why_silent()[0].to_string().contains("Renderer::render"));
+    /// # Ok::<(), asperity::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn why_silent(&self) -> Vec<SilentBecause> {
+        let contradictions = self.motions.contradictions().into_iter().map(SilentBecause::Contradicts);
+        let mut because = self.reported.why_silent(&self.stats(), &self.config);
+        because.extend(contradictions);
+        because
     }
 
     fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
