@@ -135,7 +135,7 @@ fn is(told: &Contradiction, meant: Likely) -> bool {
     matches!(told, Contradiction::Speed { likely, .. } if *likely == meant)
 }
 
-const PLANE: f64 = 4.0;
+const PLANE: f64 = 6.0;
 
 fn slips() -> [Slip; 14] {
     [
@@ -331,10 +331,56 @@ fn taps_of_one_number_and_a_finger_that_rests_are_right() {
 
 #[test]
 fn both_speeds_and_the_unit_stand_in_the_sentence() {
-    let mut stroke = stroke("line", &mut Rng::new(3));
+    let mut stroke = stroke("arc", &mut Rng::new(3));
     scaled_velocity(&mut stroke, 1000.0);
     let [told] = told(&stroke, true)[..] else { panic!("nothing was told") };
     let text = told.to_string();
     assert!(text.starts_with("uv moves at 0.") && text.contains("velocity_m_s says "), "{text}");
     assert!(text.contains("is velocity_m_s in mm/s?"), "{text}");
+}
+
+/// Columns of a table of numbers; lines that hold none are left out.
+fn table(text: &str) -> Vec<Vec<f64>> {
+    let row = |line: &str| line.split([',', ' ']).map(str::parse).collect::<Result<Vec<f64>, _>>().ok();
+    text.lines().filter_map(row).collect()
+}
+
+/// A stroke of measured places and velocities, m and m/s, begun anew where time does.
+fn measured(rows: impl Iterator<Item = (f64, f64, [f64; 2], [f64; 2])>) -> Stroke {
+    let size_m = [0.31, 0.24];
+    let mut reports: Vec<Report> = Vec::new();
+    let (mut run, mut shift_s) = (f64::NAN, 0.0);
+    for (number, t, place_m, velocity_m_s) in rows {
+        let begins = number != run;
+        if begins {
+            run = number;
+            shift_s = reports.last().map_or(0.0, |last| last.t + 1.0) - t;
+        }
+        let uv = [0, 1].map(|c| place_m[c] / size_m[c]);
+        reports.push(Report { t: t + shift_s, contact: 1, uv, velocity_m_s, begins });
+    }
+    Stroke { size_m, reports }
+}
+
+#[test]
+fn measured_trajectories_are_right_and_in_millimetres_they_are_not() {
+    let Some(corpus) = asperity_measure::corpus::corpus("haptics") else { return };
+    let text = |name: &str| std::fs::read_to_string(corpus.join(name)).unwrap();
+    // Cubes that are tossed and slide, positions and velocities as a tracker measured them.
+    let tosses = table(&text("cube_tosses_148hz.csv"));
+    let tosses = measured(tosses.iter().map(|r| (r[0], r[1], [r[2], r[3]], [r[9], r[10]])));
+    // A pen that paints: velocities are differences of its places.
+    let pen = table(&text("stylus_painting30sec_first_half.dat"));
+    let pen = measured(pen.windows(2).map(|r| {
+        let velocity = [1, 2].map(|c| 1e-3 * (r[1][c] - r[0][c]) / (r[1][0] - r[0][0]));
+        (0.0, r[1][0], [1e-3 * r[1][1], 1e-3 * r[1][2]], velocity)
+    }));
+    for stroke in [tosses, pen] {
+        assert!(stroke.reports.len() > 500, "{}", stroke.reports.len());
+        assert_eq!(told(&stroke, false), []);
+        let mut spoilt = stroke.clone();
+        scaled_uv(&mut spoilt, 1000.0);
+        let told = told(&spoilt, false);
+        assert!(told.len() == 1 && is(&told[0], Likely::UvInMillimetres), "{told:?}");
+    }
 }

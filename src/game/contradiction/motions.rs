@@ -34,6 +34,10 @@ const LONG_STEP_S: f64 = 0.3;
 const FACTOR: f64 = 2.0;
 /// So many fields on either side of the median count as its own.
 const NEAR: usize = 8;
+/// A step over a larger share of the surface may have crossed its edge.
+const FAST: f64 = 0.4;
+/// More laps in a step are no motion, but another unit.
+const MOST_LAPS: f64 = 2.5;
 /// Factors of one unit differ by less.
 const ALIKE: f64 = 1.15;
 
@@ -43,6 +47,8 @@ struct Last {
     surface: SurfaceId,
     time_s: f64,
     sample: ContactSample,
+    /// When its place changed last: it may be reported more often than it moves.
+    since_s: f64,
     step_m: Option<[f64; 2]>,
 }
 
@@ -114,9 +120,15 @@ impl Motions {
             tally.reports += 1;
             let touches = |last: Last| time_s - last.time_s <= timeout_s;
             tally.begins_again += u32::from(begins && last.is_some_and(touches));
-            last.and_then(|last| tally.step(&last, time_s, &sample))
+            last.filter(|last| last.sample.uv != sample.uv)
+                .and_then(|last| tally.step(&last, time_s, &sample))
         });
-        self.contacts.insert(contact, Last { surface, time_s, sample, step_m });
+        let stays = last.filter(|last| last.sample.uv == sample.uv);
+        let last = match stays {
+            Some(last) => Last { time_s, ..last },
+            None => Last { surface, time_s, sample, since_s: time_s, step_m },
+        };
+        self.contacts.insert(contact, last);
     }
 
     /// What contradicts itself, surface by surface.
@@ -147,7 +159,7 @@ impl Tally {
 
     /// Counts a step of a contact; how far its place moved.
     fn step(&mut self, last: &Last, time_s: f64, sample: &ContactSample) -> Option<[f64; 2]> {
-        let step_s = time_s - last.time_s;
+        let step_s = time_s - last.since_s;
         let said = last.sample.velocity_m_s.zip(sample.velocity_m_s);
         let e = said.map(|(a, b)| [0, 1].map(|c| 0.5 * (a[c] + b[c]) * step_s));
         let d = self.sheet.moved_m(last.sample.uv, sample.uv, e.unwrap_or_default());
@@ -161,7 +173,7 @@ impl Tally {
         }
         if let (Some(e), Some((a, b))) = (e, said) {
             let goes_on = a[0] * b[0] + a[1] * b[1] > 0.0 && length(a).min(length(b)) >= LEAST_SPEED_M_S;
-            if goes_on && step_s > 0.0 && d != [0.0; 2] {
+            if goes_on && step_s > 0.0 {
                 self.compare(d, e, step_s);
             }
         }
@@ -246,20 +258,19 @@ impl Tally {
 impl Sheet {
     /// How far a place has moved, m: over the edge of a surface that repeats, the way that the velocity says or the shorter one.
     fn moved_m(&self, from: [f64; 2], to: [f64; 2], said_m: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|c| {
-            let (d, period_m) = ((to[c] - from[c]) * self.size_m[c], self.period_m[c]);
-            let inside = [from[c], to[c]].iter().all(|uv| (0.0..=1.0).contains(uv));
-            if !period_m.is_finite() || !inside {
-                return d;
-            }
-            let laps = (said_m[c] - d) / period_m;
-            match laps.round() {
-                whole if said_m[c].abs() > 0.4 * period_m && (laps - whole).abs() < 0.1 => {
-                    d + whole * period_m
-                }
-                _ if d.abs() > 0.5 * period_m => d - period_m.copysign(d),
-                _ => d,
-            }
+        let d = [0, 1].map(|c| (to[c] - from[c]) * self.size_m[c]);
+        let wraps = |c: usize| {
+            self.period_m[c].is_finite() && [from[c], to[c]].iter().all(|uv| (0.0..=1.0).contains(uv))
+        };
+        // So fast that an edge is crossed at every other step: whole laps are no movement, if they are few.
+        let is_fast = |c: &usize| wraps(*c) && said_m[*c].abs() > FAST * self.period_m[*c];
+        let laps = [0, 1].map(|c| (said_m[c] - d[c]) / self.period_m[c]);
+        let whole = |c: usize| (laps[c] - laps[c].round()).abs() < 0.05 && laps[c].abs() < MOST_LAPS;
+        let by_velocity = [0, 1].into_iter().filter(is_fast).all(whole);
+        [0, 1].map(|c| match self.period_m[c] {
+            period_m if is_fast(&c) && by_velocity => d[c] + laps[c].round() * period_m,
+            period_m if wraps(c) && d[c].abs() > 0.5 * period_m => d[c] - period_m.copysign(d[c]),
+            _ => d[c],
         })
     }
 }
