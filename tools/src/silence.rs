@@ -143,11 +143,15 @@ impl Rendered<'_> {
         let mine: Vec<&&LogHand> = hands.iter().filter(|hand| felt_by(hand) == Some(channel)).collect();
         if mine.is_empty() && !hands.is_empty() {
             let begins = self.log.lines.iter().any(|line| matches!(line.event, LogEvent::Begin { .. }));
-            let of =
-                if begins { "\"begin\" of the contact" } else { "\"impact\"; no contact begins in the log" };
-            return format!(
-                "nothing in the log names it; write \"actuator\":{channel} in the {of} that it feels"
-            );
+            let mends = format!("write \"actuator\":{channel} in the");
+            return if begins {
+                format!("nothing in the log names it; {mends} \"begin\" of the contact that it feels")
+            } else {
+                format!(
+                    "no contact begins in the log, and no impact names it; {mends} \"impact\" that it feels, or \
+                     write a \"begin\" and moves"
+                )
+            };
         }
         if !mine.is_empty() && mine.iter().all(|hand| hand.gain == Some(0.0)) {
             return "\"gain\" is 0 in every begin and impact that it feels; raise it".to_owned();
