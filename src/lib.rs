@@ -95,6 +95,7 @@ pub use engine::Engine;
 pub use files::actuator_profile::{ActuatorPreset, PresetError};
 pub use files::shapes_file::{load_shapes, parse_shapes};
 pub use files::shapes_sidecar::{shapes_from_bytes, shapes_to_bytes, shapes_to_file};
+pub use game::contradiction::{Contradiction, Likely};
 pub use game::scene::Scene;
 pub use game::silence::SilentBecause;
 pub use link::stats::Stats;

@@ -132,12 +132,11 @@ pub fn render_edited<T: Tap>(
     let every = (inner_rate / rate).round() as u64;
     let frames = ((log.end_s() + options.tail_s.max(0.0)) * rate).ceil() as usize;
     // What is misnamed is told before anything is rendered, unless an edit may bring it.
-    if !log.lines.iter().any(|line| matches!(line.event, LogEvent::Edit(_))) {
-        log.lines.iter().try_for_each(|line| line.event.resolve(names).map(drop))?;
-    }
+    log.check_names(names)?;
     let mut names = names.clone();
     let mut take = Take::new(scene, renderer, frames, options);
-    for LogLine { t, event } in &log.lines {
+    for (index, line) in log.lines.iter().enumerate() {
+        let LogLine { t, event } = line;
         if take.stopped {
             break;
         }
@@ -150,7 +149,7 @@ pub fn render_edited<T: Tap>(
                 .map_err(|problem| LogError::CannotEdit { t: *t, problem })?;
             continue;
         }
-        let event = event.resolve(&names)?;
+        let event = event.resolve(&names).map_err(|problem| line.in_log(index, problem))?;
         take.make_room(sample, tap);
         // Refusals are counted by the scene; the rest of the log still renders.
         if let Err(refused) = take.scene.report(*t, event) {

@@ -14,8 +14,8 @@
 //! Every value under `surface`, `body`, `probe` and `finger` may be a distribution ([`crate::distribution`]).
 
 use crate::codec::Codec;
-use asperity::Isa;
-use asperity::files::FileError;
+use asperity::files::{FileError, nearest};
+use asperity::{Isa, Material};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -24,6 +24,8 @@ use toml::{Table, Value};
 
 /// Most strokes of a data set; their numbers have twelve digits.
 pub const MOST_STROKES: u64 = 1_000_000_000_000;
+/// Names of distributions.
+const DISTRIBUTIONS: [&str; 4] = ["uniform", "log_uniform", "normal", "choice"];
 /// Most strokes of a shard.
 pub const MOST_PER_SHARD: u64 = 1_000_000;
 
@@ -245,22 +247,16 @@ impl Spec {
     /// # Errors
     /// As [`Self::load`].
     pub fn parse(text: String, path: &Path) -> Result<Self, FileError> {
-        let says: Says = toml::from_str(&text).map_err(|error| {
-            let at =
-                error.span().map_or(1, |span| 1 + text[..span.start.min(text.len())].matches('\n').count());
-            let message = error.message().lines().collect::<Vec<_>>().join(" ");
-            FileError::file(
-                path,
-                format!("line {at}: {message}"),
-                "docs/formats.md has the keys of a specification",
-            )
-        })?;
+        let right = "docs/formats.md has the keys of a specification";
+        let says: Says = toml::from_str(&text)
+            .map_err(|error| FileError::toml(&text, &error, right).within(path.display()))?;
         let mut spec = Self { path: path.to_owned(), text, says };
         if spec.says.name.is_empty() {
             spec.says.name =
                 path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         }
-        spec.check().map_err(|error| error.within(path.display()))?;
+        let checked = spec.check().and_then(|()| spec.check_words());
+        checked.map_err(|error| error.at_line_in(&spec.text).within(path.display()))?;
         Ok(spec)
     }
 
@@ -282,17 +278,28 @@ impl Spec {
         Isa::from_name(&self.says.kernel).unwrap_or(Isa::Portable)
     }
 
+    /// Words that are drawn or looked up only when a stroke is rendered: distributions and materials.
+    fn check_words(&self) -> Result<(), FileError> {
+        let says = &self.says;
+        let Finger { speed_m_s, force_n, path, duration_s, reports_hz } = &says.finger;
+        let finger = [speed_m_s, force_n, path, duration_s, reports_hz];
+        let tables = [&says.body, &says.probe, &says.surface.over].into_iter().flat_map(Table::values);
+        let values = tables.chain(finger).chain(&says.surface.choice);
+        values.map(check_distribution).collect::<Result<Vec<_>, _>>()?;
+        match says.body.get("material") {
+            Some(Value::String(name)) if Material::by_name(name).is_none() => {
+                Err(unknown("body.material", name, &Material::names()))
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn check(&self) -> Result<(), FileError> {
         let says = &self.says;
         whole("strokes", says.strokes, MOST_STROKES)?;
         whole("per_shard", says.per_shard, MOST_PER_SHARD)?;
         if Isa::from_name(&says.kernel).is_none() {
-            let names = Isa::ALL.map(Isa::name).join(", ");
-            return Err(FileError::new(
-                "kernel",
-                format!("\"{}\" is unknown", says.kernel),
-                format!("must be one of {names}"),
-            ));
+            return Err(unknown("kernel", &says.kernel, &Isa::ALL.map(Isa::name).join(", ")));
         }
         if says.surface.choice.is_empty() {
             let right = "write choice = [\"maps/*.toml\", { solid = \"granite\" }]";
@@ -309,12 +316,7 @@ impl Spec {
         number("output.tail_s", says.output.tail_s, [0.0, 60.0], "must be 0 to 60 s")?;
         let known = ["displacement", "acceleration", "tangential"];
         if !known.contains(&says.output.haptic.output.as_str()) {
-            let what = format!("\"{}\" is unknown", says.output.haptic.output);
-            return Err(FileError::new(
-                "output.haptic.output",
-                what,
-                format!("must be one of {}", known.join(", ")),
-            ));
+            return Err(unknown("output.haptic.output", &says.output.haptic.output, &known.join(", ")));
         }
         says.output.audio.codec.check(says.output.audio.rate_hz)?;
         let shares =
@@ -332,6 +334,31 @@ impl Spec {
         }
         Ok(())
     }
+}
+
+/// Refuses a table that holds a misspelt distribution, however deep.
+fn check_distribution(value: &Value) -> Result<(), FileError> {
+    let inner: Vec<&Value> = match value {
+        Value::Table(table) => {
+            if let (1, Some((key, Value::Array(_)))) = (table.len(), table.iter().next())
+                && !DISTRIBUTIONS.contains(&key.as_str())
+                && let Some(meant) = nearest(key, &DISTRIBUTIONS)
+            {
+                return Err(FileError::new(key, "unknown key", format!("write {meant}")));
+            }
+            table.values().collect()
+        }
+        Value::Array(values) => values.iter().collect(),
+        _ => Vec::new(),
+    };
+    inner.into_iter().try_for_each(check_distribution)
+}
+
+/// A word that is none of those that would be right.
+fn unknown(at: &str, word: &str, known: &str) -> FileError {
+    let meant = nearest(word, &known.split(", ").collect::<Vec<_>>());
+    let meant = meant.map_or_else(String::new, |meant| format!("write \"{meant}\"; "));
+    FileError::new(at, format!("\"{word}\" is unknown"), format!("{meant}must be one of {known}"))
 }
 
 fn whole(name: &str, value: u64, most: u64) -> Result<(), FileError> {

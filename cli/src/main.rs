@@ -5,7 +5,8 @@
 //! | file | what every verb uses it for |
 //! |---|---|
 //! | [`error`] | one line that says what is wrong and what would be right |
-//! | [`output`] | files that appear complete, together, or not at all |
+//! | [`output`] | files that appear complete, together, or not at all, and never over an input |
+//! | [`paths`] | which arguments are read and which written |
 //! | [`progress`] | a bar on a terminal, after a second, and nothing in a pipe |
 //! | [`wav`], [`csv`] | samples and tables on disk |
 //! | [`pixels`] | PNG pictures |
@@ -31,6 +32,7 @@ mod import;
 mod measure;
 mod modes;
 mod output;
+mod paths;
 mod pixels;
 mod play;
 mod plot;
@@ -42,7 +44,7 @@ mod texture;
 mod wav;
 mod web;
 
-use clap::{Parser, Subcommand, error::ErrorKind};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, error::ErrorKind};
 use error::CliError;
 use std::process::ExitCode;
 
@@ -93,13 +95,17 @@ fn run(verb: Verb) -> Result<(), CliError> {
 }
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
-        Ok(arguments) => arguments,
+    let given = Arguments::command().try_get_matches();
+    let parsed = given.and_then(|given| Ok((Arguments::from_arg_matches(&given)?, given)));
+    let (arguments, given) = match parsed {
+        Ok(parsed) => parsed,
         Err(refusal) => return usage(&refusal),
     };
     // A panic is a defect of ours; whoever runs the program still gets one line and a status.
     std::panic::set_hook(Box::new(|_| {}));
-    let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| run(arguments.verb)));
+    let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        paths::check(&given).and_then(|()| run(arguments.verb))
+    }));
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => {

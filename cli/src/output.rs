@@ -1,12 +1,49 @@
-//! Files that appear complete, together, or not at all; and the one JSON object on stdout.
+//! Files that appear complete, together, or not at all, and never over an input; and the one JSON object on stdout.
+//!
+//! A verb hands over what it reads ([`reads`]); whatever is written afterwards is compared with it, as the file system does: through links, hard
+//! links and detours of a path.
 //!
 //! Every file is written beside its final name under a temporary one. [`Outputs::commit`] gives all of
 //! them their names at the end of the verb; an error or a panic before that leaves nothing behind.
 
 use crate::error::CliError;
+use std::cell::RefCell;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+
+thread_local! {
+    /// Files that the verb of this thread reads.
+    static READ: RefCell<Vec<PathBuf>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Notes files that are read: none of them is written over. Names that are no file are passed over.
+pub fn reads<P: Into<PathBuf>>(paths: impl IntoIterator<Item = P>) {
+    let files = paths.into_iter().map(Into::into).filter(|path| path.is_file());
+    READ.with_borrow_mut(|read| read.extend(files));
+}
+
+/// Refuses a path to write that is a file which is read, before any work is done for it.
+///
+/// # Errors
+/// When it is one, by whatever path.
+pub fn refuse_input(path: &Path) -> Result<(), CliError> {
+    if !path.is_file() {
+        return Ok(());
+    }
+    let same = |read: &&PathBuf| same_file::is_same_file(path, read).unwrap_or(false);
+    READ.with_borrow(|read| match read.iter().find(same) {
+        None => Ok(()),
+        Some(read) => {
+            let what = if read == path {
+                "is read as well".to_owned()
+            } else {
+                format!("is {}, which is read", read.display())
+            };
+            Err(CliError::file(path, what, "write somewhere else: an input is never written over"))
+        }
+    })
+}
 
 /// The files of one verb.
 #[derive(Debug, Default)]
@@ -30,7 +67,7 @@ impl Outputs {
     /// Opens a file that will be called `path` after [`Self::commit`].
     ///
     /// # Errors
-    /// When the folder is missing or cannot be written, or `path` is a folder.
+    /// When the folder is missing or cannot be written, or `path` is a folder or a file that is read.
     pub fn create(&mut self, path: &Path) -> Result<BufWriter<File>, CliError> {
         check_destination(path)?;
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -111,7 +148,7 @@ impl Drop for Outputs {
 /// Refuses a path that cannot become a file, before any work is done for it.
 ///
 /// # Errors
-/// When the path has no file name, is a folder, or lies in a folder that does not exist.
+/// When the path has no file name, is a folder or a file that is read, or lies in a folder that does not exist.
 pub fn check_destination(path: &Path) -> Result<(), CliError> {
     if path.file_name().is_none() {
         return Err(CliError::file(path, "is not a file name", "name the file to write"));
@@ -125,7 +162,7 @@ pub fn check_destination(path: &Path) -> Result<(), CliError> {
             format!("the folder {} does not exist", folder.display()),
             "create it, or write somewhere else",
         )),
-        _ => Ok(()),
+        _ => refuse_input(path),
     }
 }
 
@@ -189,6 +226,28 @@ mod tests {
         assert_eq!(outputs.commit().unwrap().len(), 2);
         assert_eq!(fs::read(folder.path().join("b")).unwrap(), b"2");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn an_input_is_refused_as_an_output_by_whatever_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("in.wav"), b"sound").unwrap();
+        fs::write(at("other.wav"), b"sound").unwrap();
+        std::os::unix::fs::symlink(at("in.wav"), at("link.wav")).unwrap();
+        fs::hard_link(at("in.wav"), at("hard.wav")).unwrap();
+        reads([at("in.wav"), at("missing.wav")]);
+        for name in ["in.wav", "./in.wav", "../x/in.wav", "link.wav", "hard.wav"] {
+            let name = name.replace('x', &folder.path().file_name().unwrap().to_string_lossy());
+            let refused = Outputs::new().create(&at(&name)).unwrap_err().to_string();
+            assert!(refused.contains("which is read") || refused.contains("is read as well"), "{refused}");
+            assert!(refused.contains("; write somewhere else"), "{refused}");
+        }
+        for name in ["other.wav", "missing.wav", "new.wav"] {
+            Outputs::new().create(&at(name)).unwrap();
+        }
+        assert_eq!(fs::read(at("in.wav")).unwrap(), b"sound");
     }
 
     #[test]

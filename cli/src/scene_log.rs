@@ -1,10 +1,14 @@
 //! Scene log: the contact log that a scene file names, for every verb that renders it.
 
 use crate::error::CliError;
-use asperity::files::contact_log::ContactLog;
+use crate::output;
+use asperity::files::contact_log::{ContactLog, Names};
 use asperity::files::scene_file::SceneFile;
+use asperity::{BodyId, ProbeId, SurfaceId};
+use std::path::Path;
 
-/// The contact log that a scene file names, and the keys in it that are read past.
+/// The contact log that a scene file names, and the keys in it that are read past. Every file of the scene is noted as
+/// one that is read ([`output::reads`]).
 ///
 /// # Errors
 /// When none is named, it is no log, or it speaks of a channel that the scene does not have.
@@ -16,12 +20,25 @@ pub fn load_log(file: &SceneFile) -> Result<(ContactLog, Vec<String>), CliError>
             "write contacts = \"NAME.jsonl\", the events to render",
         )
     })?;
+    output::reads(file.named_files().into_iter().chain([&*file.path, &**path]));
+    let folder = file.path.parent().unwrap_or(Path::new(""));
+    let devices = file.actuators.iter().flat_map(|actuator| [&actuator.equalise, &actuator.limit]);
+    output::reads(devices.flatten().map(|device| folder.join(device)));
     let text = std::fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
     let (log, unread) =
         ContactLog::parse_telling(&text, &path.display().to_string()).map_err(CliError::told)?;
-    let felt = log.check_actuators(file.actuators.len());
-    felt.map_err(|error| CliError::told(error).within(path.display()))?;
+    let fits = log.check_actuators(file.actuators.len()).and_then(|()| log.check_names(&names_of(file)));
+    fits.map_err(|error| error.in_text(&text, &path.display().to_string()))?;
     Ok((log, unread))
+}
+
+/// The names of a scene that is not built yet: their ids are none of an engine.
+fn names_of(file: &SceneFile) -> Names {
+    Names {
+        surfaces: file.surfaces.iter().map(|entry| (entry.name.clone(), SurfaceId::from_bits(0))).collect(),
+        bodies: file.bodies.iter().map(|entry| (entry.name.clone(), BodyId::from_bits(0))).collect(),
+        probes: file.probes.iter().map(|(name, _)| (name.clone(), ProbeId::from_bits(0))).collect(),
+    }
 }
 
 /// A key of the log format that this version does not act on.

@@ -149,3 +149,55 @@ fn an_impact_that_lasts_longer_than_is_played_is_told() {
     let slow = foam.replace("\"speed_m_s\":0.5", "\"speed_m_s\":0.001");
     assert_says(&said(TOML, &slow), &["1 impacts or micro-collisions would outlast", "(0.17 s"]);
 }
+
+#[test]
+fn each_output_that_is_silent_is_told_with_its_own_reason() {
+    let unnamed = stroke(1, 0.3).replace("\"actuator\":0,", "");
+    assert_says(
+        &said(TOML, &unnamed),
+        &[
+            "every haptic channel is silence: nothing in the log names it; write \"actuator\":0 in the \"begin\"",
+        ],
+    );
+    let two = format!("{TOML}\n[[actuator]]\nfull_scale = 1.0\n");
+    let told = said(&two, &stroke(1, 0.3));
+    assert_says(&told, &["haptic channel 1 is silence: nothing in the log names it; write \"actuator\":1"]);
+    assert!(!told.contains("channel 0") && !told.contains("audio"), "{told}");
+    let buses = format!("{TOML}\n[[audio]]\nname = \"room\"\n[[audio]]\nname = \"hand\"\n");
+    let told = said(&buses, &stroke(1, 0.3));
+    assert_says(
+        &told,
+        &["audio bus \"hand\" is silence: no body plays on it; write bus = \"hand\" in a [[body]]"],
+    );
+    let muted = stroke(1, 0.3).replace("\"event\":\"begin\"", "\"event\":\"begin\",\"gain\":0");
+    let told = said(TOML, &muted);
+    assert_says(&told, &["the audio is silence", "\"gain\" is 0 in every begin and impact of the log"]);
+    assert_says(&told, &["every haptic channel is silence: \"gain\" is 0"]);
+    let unheard = TOML.replace("roughness = 0.7", "roughness = 0.7\nexcitation = []");
+    assert_says(
+        &said(&unheard, &stroke(1, 0.3)),
+        &["sends nothing to its body; write excitation = \"both\""],
+    );
+}
+
+#[test]
+fn an_impact_that_is_felt_and_sand_that_answers_a_depth_are_not_called_silent() {
+    let felt = impact(0.1).replace("\"striker\"", "\"actuator\":0,\"striker\"");
+    let told = said(TOML, &felt);
+    assert!(!told.contains("haptic"), "{told}");
+    let sand = TOML.replace("roughness = 0.7", "sand = { cells = 64, depth_m = 0.02 }");
+    let deep = stroke(1, 0.3).replace("\"normal_force_n\":0.6", "\"depth_m\":0.004");
+    assert_ne!(deep, stroke(1, 0.3));
+    let told = said(&sand, &deep);
+    assert!(!told.contains("no contact was pressed"), "{told}");
+}
+
+#[test]
+fn a_log_that_contradicts_itself_is_told_with_both_speeds() {
+    let log = stroke(1, 0.5).replace("\"velocity_m_s\":[0.08,", "\"velocity_m_s\":[80,");
+    assert_ne!(log, stroke(1, 0.5));
+    assert_says(
+        &said(TOML, &log),
+        &["uv moves at 0.08", "where velocity_m_s says 80.000 m/s", "is velocity_m_s in mm/s?"],
+    );
+}

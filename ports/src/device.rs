@@ -90,11 +90,8 @@ impl Device {
     }
 
     pub(crate) fn from_toml(text: &str) -> Result<Self, PortError> {
-        let device: Self = toml::from_str(text).map_err(|error| {
-            let right =
-                "must be TOML with label, band_hz, pcm_rate_hz, points_per_s, [emphasis] and [source]";
-            PortError::new("device", error.message(), right)
-        })?;
+        let device: Self =
+            toml::from_str(text).map_err(|error| crate::profile_file::refused(text, &error))?;
         device.checked()
     }
 
@@ -157,6 +154,6 @@ mod tests {
             let error = Device::parse(&text.replace(from, to)).unwrap_err();
             assert_eq!(error.at, field, "{error}");
         }
-        assert!(Device::parse("x = 1").unwrap_err().to_string().starts_with("device: "));
+        assert!(Device::parse("x = 1").unwrap_err().to_string().starts_with("line 1: x: unknown key"));
     }
 }

@@ -13,6 +13,7 @@
 //! resonance_hz = "data sheet"
 //! ```
 
+use super::FileError;
 use super::storage::{self, Disk, Files};
 use crate::model::actuator::DeviceProfile;
 use std::collections::BTreeMap;
@@ -45,7 +46,7 @@ pub enum PresetError {
         source: std::io::Error,
     },
     /// It is not a profile.
-    #[error("{place}: {message}; must be TOML with label, the seven numbers of a profile and [source]")]
+    #[error("{place}: {message}")]
     Malformed {
         /// The file.
         place: String,
@@ -60,6 +61,22 @@ pub enum PresetError {
         /// Which number, and what would be right.
         problem: asperity_dsp::DesignError,
     },
+}
+
+/// A profile as its file holds it.
+#[derive(serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    label: String,
+    resonance_hz: f64,
+    quality: f64,
+    felt_at_resonance_m: f64,
+    excursion_m: f64,
+    band_hz: [f64; 2],
+    rated_drive: f64,
+    thermal_time_s: f64,
+    #[serde(default)]
+    source: BTreeMap<String, String>,
 }
 
 /// The profiles that ship with the engine, by name.
@@ -113,14 +130,20 @@ impl ActuatorPreset {
     /// When it is no profile.
     pub fn parse(text: &str, place: &str) -> Result<Self, PresetError> {
         let malformed =
-            |message: &str| PresetError::Malformed { place: place.into(), message: message.to_owned() };
-        let mut table: toml::Table =
-            text.parse().map_err(|error: toml::de::Error| malformed(error.message()))?;
-        let label = table.remove("label").ok_or_else(|| malformed("missing field `label`"))?;
-        let label = label.as_str().ok_or_else(|| malformed("label is no text"))?.to_owned();
-        let source = table.remove("source").map_or(Ok(BTreeMap::new()), toml::Value::try_into);
-        let source = source.map_err(|error| malformed(error.message()))?;
-        let profile: DeviceProfile = table.try_into().map_err(|error| malformed(error.message()))?;
+            |error: FileError| PresetError::Malformed { place: place.into(), message: error.to_string() };
+        let right = "a profile is TOML with label, the seven numbers of a device and [source]";
+        let written: Written =
+            toml::from_str(text).map_err(|error| malformed(FileError::toml(text, &error, right)))?;
+        let Written { label, source, .. } = written;
+        let profile = DeviceProfile {
+            resonance_hz: written.resonance_hz,
+            quality: written.quality,
+            felt_at_resonance_m: written.felt_at_resonance_m,
+            excursion_m: written.excursion_m,
+            band_hz: written.band_hz,
+            rated_drive: written.rated_drive,
+            thermal_time_s: written.thermal_time_s,
+        };
         profile
             .check(CHECK_RATE_HZ)
             .map_err(|problem| PresetError::Impossible { place: place.into(), problem })?;
@@ -170,6 +193,10 @@ mod tests {
         let refused = ActuatorPreset::parse(&text, "mine.toml").unwrap_err().to_string();
         assert!(refused.starts_with("mine.toml: quality: "), "{refused}");
         let text = SHIPPED[0].1.replace("quality", "qality");
-        assert!(matches!(ActuatorPreset::parse(&text, "x"), Err(PresetError::Malformed { .. })));
+        let refused = ActuatorPreset::parse(&text, "x").unwrap_err().to_string();
+        assert!(
+            refused.starts_with("x: line ") && refused.contains("qality: unknown key; write quality"),
+            "{refused}"
+        );
     }
 }

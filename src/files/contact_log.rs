@@ -7,17 +7,17 @@
 mod edit;
 mod error;
 mod keys;
+mod names;
 
 use super::storage::{self, Disk, Files};
 pub use crate::model::event::ContactSample;
-use crate::model::event::{Actuator, ContactEvent, ContactId, Emphasis, Impact, Touching};
-use crate::model::id::{BodyId, ProbeId, SurfaceId};
+use crate::model::event::Emphasis;
 use crate::model::material::Material;
 pub use edit::{LogBody, LogEdit, LogSurface};
 pub use error::LogError;
 use keys::Unread;
+pub use names::Names;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -149,17 +149,6 @@ fn loss_free() -> f64 {
     1.0
 }
 
-/// Which id of a running scene a name stands for.
-#[derive(Debug, Clone, Default)]
-pub struct Names {
-    /// Surfaces by name.
-    pub surfaces: HashMap<String, SurfaceId>,
-    /// Bodies by name.
-    pub bodies: HashMap<String, BodyId>,
-    /// Probes by name.
-    pub probes: HashMap<String, ProbeId>,
-}
-
 /// Latest stamp a log may hold, s: a day.
 pub const MAX_TIME_S: f64 = 86_400.0;
 
@@ -209,17 +198,20 @@ impl ContactLog {
         let mut before = 0.0;
         for (index, text) in text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()) {
             let place = || format!("{name}:{}", index + 1);
-            if !keys::check(text, place, &mut unread)? {
-                continue;
-            }
-            let line: LogLine = serde_json::from_str(text)
+            let Some(line) = keys::line(text, &place, &mut unread)? else { continue };
+            let line = LogLine::of(line)
                 .map_err(|error| LogError::Malformed { place: place(), message: error.to_string() })?;
             if line.t.is_nan() || line.t < before {
                 return Err(LogError::TimeBackwards { place: place(), t: line.t, before });
             }
             if line.t > MAX_TIME_S {
-                let message = format!("t = {:?} s is more than a day", line.t);
-                return Err(LogError::Malformed { place: place(), message });
+                let what = format!("{:?} s is more than a day", line.t);
+                return Err(LogError::Key {
+                    place: place(),
+                    key: "t".into(),
+                    what,
+                    right: "must be in seconds".into(),
+                });
             }
             before = line.t;
             lines.push(line);
@@ -238,18 +230,18 @@ impl ContactLog {
     /// Whether every event that is felt is felt on one of so many channels: on another it would be felt nowhere.
     ///
     /// # Errors
-    /// [`LogError::NoActuator`], the first.
+    /// [`LogError::Event`], the first.
     pub fn check_actuators(&self, channels: usize) -> Result<(), LogError> {
         let hand = |event: &LogEvent| match event {
             LogEvent::Begin { touching, .. } => touching.hand.actuator,
             LogEvent::Impact { hand, .. } => hand.actuator,
             LogEvent::Move { .. } | LogEvent::End { .. } | LogEvent::Edit(_) => None,
         };
-        let missing = |line: &LogLine| {
+        let missing = |(index, line): (usize, &LogLine)| {
             let actuator = hand(&line.event).filter(|actuator| usize::from(*actuator) >= channels)?;
-            Some(LogError::NoActuator { t: line.t, actuator, channels })
+            Some(line.in_log(index, LogError::NoActuator { actuator, channels }))
         };
-        self.lines.iter().find_map(missing).map_or(Ok(()), Err)
+        self.lines.iter().enumerate().find_map(missing).map_or(Ok(()), Err)
     }
 
     /// Time of the last event, s; 0 for an empty log.
@@ -260,6 +252,22 @@ impl ContactLog {
 }
 
 impl LogLine {
+    /// A line whose keys are checked.
+    fn of(line: keys::Line) -> serde_json::Result<Self> {
+        let keys = serde_json::Value::Object(line.keys);
+        let event = if line.is_edit {
+            LogEvent::Edit(serde_json::from_value(keys)?)
+        } else {
+            serde_json::from_value(keys)?
+        };
+        Ok(Self { t: line.t, event })
+    }
+
+    /// A problem with the line, which is the one of that index.
+    pub(crate) fn in_log(&self, index: usize, problem: LogError) -> LogError {
+        LogError::Event { number: index + 1, t: self.t, problem: Box::new(problem) }
+    }
+
     /// Writes the line; the first of a log says the version.
     pub(crate) fn write(&self, is_first: bool, mut out: impl Write) -> io::Result<()> {
         #[derive(Serialize)]
@@ -294,100 +302,6 @@ impl LogEvent {
     pub fn moved(contact: u64, sample: ContactSample) -> Self {
         Self::Move { contact, sample, emphasis: Emphasis::default() }
     }
-
-    /// The event for a scene whose ids `names` gives.
-    ///
-    /// # Errors
-    /// When the event names a surface, body or striker that is not there.
-    pub fn resolve(&self, names: &Names) -> Result<ContactEvent, LogError> {
-        Ok(match self {
-            Self::Begin { contact, touching, sample } => ContactEvent::Begin {
-                contact: ContactId(*contact),
-                touching: touching.resolve(names)?,
-                sample: *sample,
-            },
-            Self::Move { contact, sample, emphasis } => {
-                ContactEvent::moved_with(ContactId(*contact), *sample, *emphasis)
-            }
-            Self::End { contact } => ContactEvent::end(ContactId(*contact)),
-            Self::Impact {
-                body,
-                other,
-                speed_m_s,
-                mass_kg,
-                radius_m,
-                striker,
-                restitution,
-                position,
-                at_m,
-                direction,
-                hand,
-            } => ContactEvent::Impact(Impact {
-                body: find("body", body, &names.bodies)?,
-                other: other.as_ref().map(|name| find("body", name, &names.bodies)).transpose()?,
-                speed_m_s: *speed_m_s,
-                mass_kg: *mass_kg,
-                radius_m: *radius_m,
-                striker: striker.material()?,
-                restitution: *restitution,
-                position: *position,
-                at_m: *at_m,
-                direction: *direction,
-                actuator: hand.actuator.map(Actuator),
-                holder: hand.holder(names)?,
-                probe: hand.probe(names)?,
-                gain: hand.gain.unwrap_or(1.0),
-            }),
-            Self::Edit(_) => return Err(LogError::Edit),
-        })
-    }
-}
-
-impl LogTouching {
-    fn resolve(&self, names: &Names) -> Result<Touching, LogError> {
-        let hand = &self.hand;
-        let mut touching = Touching::on(find("surface", &self.surface, &names.surfaces)?);
-        touching.actuator = hand.actuator.map(Actuator);
-        (touching.probe, touching.holder) = (hand.probe(names)?, hand.holder(names)?);
-        Ok(touching.gain(hand.gain.unwrap_or(1.0)).importance(self.importance.unwrap_or(1.0)))
-    }
-}
-
-impl LogHand {
-    fn probe(&self, names: &Names) -> Result<Option<ProbeId>, LogError> {
-        self.probe.as_ref().map(|name| find("probe", name, &names.probes)).transpose()
-    }
-
-    fn holder(&self, names: &Names) -> Result<Option<BodyId>, LogError> {
-        self.holder.as_ref().map(|name| find("holder", name, &names.bodies)).transpose()
-    }
-}
-
-impl From<Material> for Striker {
-    fn from(material: Material) -> Self {
-        material.name().map_or(Self::Constants(material), |name| Self::Preset(name.into()))
-    }
-}
-
-impl Striker {
-    fn material(&self) -> Result<Material, LogError> {
-        match self {
-            Self::Constants(material) => Ok(*material),
-            Self::Preset(name) => Material::by_name(name).ok_or_else(|| LogError::UnknownName {
-                kind: "striker",
-                name: name.clone(),
-                known: Material::names(),
-            }),
-        }
-    }
-}
-
-fn find<Id: Copy>(kind: &'static str, name: &str, ids: &HashMap<String, Id>) -> Result<Id, LogError> {
-    ids.get(name).copied().ok_or_else(|| {
-        let mut known: Vec<_> = ids.keys().map(String::as_str).collect();
-        known.sort_unstable();
-        LogError::UnknownName { kind, name: name.into(), known: known.join(", ") }
-    })
 }
 
 #[cfg(test)]

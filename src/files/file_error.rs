@@ -17,6 +17,12 @@ impl FileError {
         Self { at: at.to_string(), what: what.to_string(), right: right.to_string() }
     }
 
+    /// The file, field or option that it names.
+    #[must_use]
+    pub fn at(&self) -> &str {
+        &self.at
+    }
+
     /// An error at a file.
     pub fn file(path: &Path, what: impl fmt::Display, right: impl fmt::Display) -> Self {
         Self::new(path.display(), what, right)

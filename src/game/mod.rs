@@ -1,6 +1,7 @@
 //! The game thread's half: takes resources and reports, checks them, stamps them, sends them.
 
 pub(crate) mod clock;
+pub(crate) mod contradiction;
 pub(crate) mod places;
 pub(crate) mod recording;
 pub(crate) mod scene;

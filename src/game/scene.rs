@@ -11,9 +11,10 @@ mod touched;
 
 use crate::files::contact_log::LogEdit;
 use crate::game::clock::Clock;
+use crate::game::contradiction::{Motions, Sheet};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
-use crate::game::silence::{Reported, SilentBecause};
+use crate::game::silence::Reported;
 use crate::link::message::{Dead, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
@@ -82,6 +83,8 @@ pub struct Scene {
     pub(crate) strike_gain: f64,
     /// For [`Scene::why_silent`].
     reported: Reported,
+    /// What the reports say twice.
+    motions: Motions,
     /// What each contact touches, and the place in its body that its newest report told.
     touched: HashMap<ContactId, Touched>,
 }
@@ -101,6 +104,7 @@ pub(crate) struct KnownSurface {
     /// How it looks, if it changes.
     picture: Option<Arc<MovingPicture>>,
     place: Place,
+    sheet: Sheet,
     tip_law: Option<TipLaw>,
     body: Option<BodyId>,
     /// Whether contacts on it stick and slip.
@@ -143,6 +147,7 @@ impl Scene {
             given: HashMap::new(),
             strike_gain: 1.0,
             reported: Reported::default(),
+            motions: Motions::default(),
             held: Vec::new(),
             config,
             kernel,
@@ -255,6 +260,7 @@ impl Scene {
         let rings = body.lowest_mode_hz.is_finite();
         let is_soft = surface.compliance_m_n > 0.0 || properties.tip_law.is_some();
         let place = Place { frame: surface.frame, size_m: [surface.width_m, surface.height_m], is_soft };
+        let sheet = Sheet { size_m: place.size_m, period_m };
         let on = surface.body;
         let picture = properties.picture.clone();
         let tip_law = (surface.compliance_m_n > 0.0).then(|| surface.spring()).or(properties.tip_law);
@@ -269,7 +275,7 @@ impl Scene {
         });
         Ok((
             Message::SetSurface { id, surface },
-            KnownSurface { rings, picture, place, tip_law, body: on, rubs },
+            KnownSurface { rings, picture, place, sheet, tip_law, body: on, rubs },
         ))
     }
 
@@ -346,21 +352,6 @@ impl Scene {
     /// Whether another move might be held back because the audio half lags behind.
     pub(crate) fn is_filling(&mut self) -> bool {
         self.to_audio.free() <= self.to_audio.capacity() / 4 + 1
-    }
-
-    /// What speaks against anything being heard or felt, the likeliest reason first; empty when nothing
-    /// does. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
-    ///
-    /// ```
-    /// use asperity::{Config, Engine};
-    ///
-    /// let Engine { scene, .. } = Config::default().build()?;
-    /// assert!(scene.why_silent()[0].to_string().contains("Renderer::render"));
-    /// # Ok::<(), asperity::ConfigError>(())
-    /// ```
-    #[must_use]
-    pub fn why_silent(&self) -> Vec<SilentBecause> {
-        self.reported.why_silent(&self.stats(), &self.config)
     }
 
     /// Game time begins anew: the next report holds at the sample that is rendered next, whatever its time, and

@@ -4,6 +4,7 @@
 //! [`Scene::why_silent`](crate::Scene::why_silent) answers with what speaks against sound, the likeliest
 //! reason first. It reads counters only and can be asked at any time, of a scene that sounds as well.
 
+use crate::game::contradiction::Contradiction;
 use crate::link::stats::Stats;
 use crate::model::config::Config;
 use crate::model::error::Refusal;
@@ -66,8 +67,8 @@ pub enum SilentBecause {
     },
     /// Contacts faded because their moves stayed away.
     #[error(
-        "{count} contacts faded because nothing was heard of them for {timeout_s} s; report a move of every \
-         contact more often than that, or raise Config::contact_timeout_s"
+        "{count} contacts faded because nothing was reported of them for {timeout_s} s; report a move of every \
+         contact more often than that, with times in seconds, or raise Config::contact_timeout_s"
     )]
     Lapsed {
         /// How many times.
@@ -133,6 +134,9 @@ pub enum SilentBecause {
         /// By how much at most, dB.
         by_db: u64,
     },
+    /// The reports of a surface contradict themselves: something sounds, and not what was meant.
+    #[error("{0}")]
+    Contradicts(Contradiction),
     /// The audio gain is zero.
     #[error("the audio gain is 0; raise gain under [audio], AudioBus::gain")]
     AudioGainZero,
@@ -143,7 +147,9 @@ pub enum SilentBecause {
     )]
     NothingRings,
     /// No contact presses.
-    #[error("no contact was pressed onto its surface; report a normal_force_n above 0")]
+    #[error(
+        "no contact was pressed onto its surface; report a normal_force_n above 0, or a depth_m on what gives way"
+    )]
     NeverPressed,
     /// No contact moves.
     #[error(
@@ -187,7 +193,9 @@ impl Reported {
     }
 
     fn touch(&mut self, sample: &ContactSample) {
-        self.pressed |= sample.normal_force_n > 0.0;
+        // A depth, or a place that tells one, is answered by what gives way.
+        self.pressed |= sample.normal_force_n > 0.0
+            || sample.depth_m.map_or(sample.normal_force_n.is_nan(), |depth_m| depth_m > 0.0);
         let first_uv = *self.first_uv.get_or_insert(sample.uv);
         self.moved |= sample.uv != first_uv;
     }
@@ -253,7 +261,7 @@ impl Reported {
 }
 
 impl SilentBecause {
-    /// How often it happened; 0 for what is a state.
+    /// How often it happened, 1 for a contradiction; 0 for what is a state.
     #[must_use]
     pub fn count(&self) -> u64 {
         match self {
@@ -266,6 +274,7 @@ impl SilentBecause {
             | Self::Quarantined { count }
             | Self::Shortened { count, .. }
             | Self::Shed { count } => *count,
+            Self::Contradicts(_) => 1,
             _ => 0,
         }
     }

@@ -6,7 +6,7 @@ use crate::handles::{SCENES, asp_scene};
 use crate::sized::{self, Sized32};
 use crate::status::{ASP_BAD_ARGUMENT, ASP_FILE, ASP_UNKNOWN, Failure};
 use crate::text;
-use asperity::files::contact_log::{ContactLog, LogEvent};
+use asperity::files::contact_log::{ContactLog, LogError, LogEvent};
 use std::ffi::c_char;
 
 /// Reads the text of a contact log (JSON Lines; docs/formats.md) into `events` and `times_s`, both of `capacity`, with the ids that the
@@ -36,6 +36,8 @@ pub unsafe extern "C" fn asp_read_log(
         }
         let times_s = array_mut(times_s, room, usize::MAX, "times_s")?;
         let half = SCENES.hold(scene as usize)?;
+        let unknown = |error: LogError| Failure::new(ASP_UNKNOWN, error.in_text(text, "log"));
+        log.check_names(&half.names).map_err(unknown)?;
         for (index, line) in log.lines.iter().enumerate() {
             if matches!(line.event, LogEvent::Edit(_)) {
                 let right = "replay it with `asperity render`";

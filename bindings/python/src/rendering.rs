@@ -5,13 +5,14 @@ use crate::interrupt::Pulse;
 use crate::pictures;
 use crate::sources::{self, Sources};
 use crate::watch::Watch;
+use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogError};
 use asperity::files::scene_file::SceneFile;
 use asperity::files::{FileError, Files};
 use asperity::offline::{self, Options, Render};
 use asperity::open::Overrides;
 use asperity::open::levels::Levels;
-use asperity::{Engine, SilentBecause};
+use asperity_tools::silence::Rendered;
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -39,6 +40,8 @@ struct Made {
     levels: Levels,
     surfaces: Vec<(String, asperity::SurfaceId)>,
     unread: Vec<String>,
+    lost: Vec<String>,
+    silences: Vec<String>,
     watch: Watch,
 }
 
@@ -96,15 +99,17 @@ fn made(wanted: &Wanted<'_>, pulse: Pulse) -> PyResult<Made> {
     let (text, name) = log_text(wanted, &file)?;
     let (log, unread) = ContactLog::parse_telling(&text, &name).map_err(refused)?;
     let at = |error: LogError| refused(FileError::told(error).within(&name));
-    log.check_actuators(file.actuators.len()).map_err(at)?;
+    let in_text = |error: LogError| refused(error.in_text(&text, &name));
+    log.check_actuators(file.actuators.len()).map_err(in_text)?;
     let engine = Engine::from_scene(&file, &wanted.overrides).map_err(told)?;
+    log.check_names(&engine.names).map_err(in_text)?;
     let rate_hz = engine.renderer.sample_rate_hz();
     let channels = engine.renderer.haptic_channels() + engine.renderer.audio_buses();
     check_length(&name, (log.end_s() + file.tail_s) * rate_hz, channels, rate_hz)?;
     check_force_rate(wanted.force_rate_hz, rate_hz)?;
     let kernel = engine.renderer.kernel().name();
     let levels = engine.levels.clone();
-    let surfaces = engine.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
+    let surfaces: Vec<_> = engine.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
     let mut watch = Watch::new(pulse, wanted.trace, wanted.force_rate_hz, rate_hz);
     let options = Options { block_frames: wanted.block_frames, tail_s: file.tail_s, clock_s: None };
     let Engine { scene, renderer, names, .. } = engine;
@@ -112,7 +117,11 @@ fn made(wanted: &Wanted<'_>, pulse: Pulse) -> PyResult<Made> {
     if let Some(error) = watch.error() {
         return Err(error);
     }
-    Ok(Made { render: render.map_err(at)?, kernel, levels, surfaces, unread, watch })
+    let render = render.map_err(at)?;
+    let full_scale = &levels.full_scale;
+    let rendered = Rendered { file: &file, log: &log, render: &render, full_scale, surfaces: &surfaces };
+    let (lost, silences) = (rendered.losses(), rendered.silences());
+    Ok(Made { render, kernel, levels, surfaces, unread, lost, silences, watch })
 }
 
 /// The text of the log and its name in messages.
@@ -158,7 +167,7 @@ fn check_force_rate(force_rate_hz: Option<f64>, rate_hz: f64) -> PyResult<()> {
 }
 
 fn in_python(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
-    let Made { render, kernel, levels, surfaces, unread, watch } = made;
+    let Made { render, kernel, levels, surfaces, unread, lost, silences, watch } = made;
     let result = PyDict::new(py);
     result.set_item("sr", render.sample_rate_hz)?;
     result.set_item("kernel", kernel)?;
@@ -167,16 +176,8 @@ fn in_python(py: Python<'_>, made: Made) -> PyResult<Bound<'_, PyDict>> {
     result.set_item("strike_gain", levels.strike_gain)?;
     result.set_item("limiter_db", render.limiter_db)?;
     result.set_item("stats", serde_json::to_string(&render.stats).map_err(refused)?)?;
-    let in_words = |reason: &SilentBecause| match (reason, render.first_refused) {
-        (SilentBecause::Refused { count, of, .. }, Some((t, error))) => {
-            format!("{count} of {of} events were refused, the first at t = {t} s: {error}")
-        }
-        _ => reason.to_string(),
-    };
-    let (lost, states): (Vec<&SilentBecause>, Vec<_>) =
-        render.why_silent.iter().partition(|reason| reason.count() > 0);
-    result.set_item("lost", lost.into_iter().map(in_words).collect::<Vec<_>>())?;
-    result.set_item("why_silent", states.into_iter().map(in_words).collect::<Vec<_>>())?;
+    result.set_item("lost", lost)?;
+    result.set_item("silences", silences)?;
     result.set_item("unread", unread)?;
     let sand = PyDict::new(py);
     for after in render.sand {

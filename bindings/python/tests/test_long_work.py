@@ -225,7 +225,6 @@ def test_progress_is_told_and_what_it_raises_stops_the_work():
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:nothing is heard")
 def test_a_callback_in_python_keeps_nine_tenths_of_the_headroom_of_the_loop_in_rust():
     seconds, rate, frames = 4.0, 48_000, 64
     scene, rows = dataclasses.replace(scene_of_fingers(), tail_s=0.0), strokes(seconds)

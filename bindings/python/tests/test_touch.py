@@ -52,7 +52,6 @@ def test_every_source_sounds_and_is_felt(heights_m):
     assert bed.shape == (128, 128) and 1e-4 < np.ptp(bed) < 0.05 and abs(bed.mean() - 0.02) < 2e-3
 
 
-@pytest.mark.filterwarnings("ignore:nothing is heard")
 def test_rows_of_an_array_run_from_top_to_bottom():
     # Flat above, rough below: v = 0.25 is felt less than v = 0.75.
     heights_m = np.zeros((128, 128))
@@ -162,7 +161,7 @@ def refusals(heights_m, tmp_path):
         (lambda: asp.render(tmp_path / "bad.toml"), "name"),
         (lambda: asp.render(surface, tmp_path / "log.jsonl"), "log.jsonl:1: contakt: unknown key"),
         (lambda: asp.render(surface, [{"t": 0.0, "event": "move", "contact": 1, "uv": [np.inf, 0]}]), "event 1: uv: is not finite"),
-        (lambda: asp.render(surface, asp.contacts.stroke(extent=(1, 1), actuator=4)), "actuator 4"),
+        (lambda: asp.render(surface, asp.contacts.stroke(extent=(1, 1), actuator=4)), "contacts:1: actuator: 4 is not in the scene"),
         (lambda: asp.render(surface, asp.contacts.stroke(extent=(1, 1), surface="floor")), '"floor" is unknown; must be one of: surface'),
         (lambda: asp.render(surface, rows, block=0), "block: 0 is refused"),
         (lambda: asp.render(surface, rows, force=1e9), "force_rate"),
@@ -207,7 +206,49 @@ def test_refused_events_and_silence_are_warned_of(heights_m):
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
         asp.render(surface, [{"t": 0.1, "event": "end", "contact": 1}])
-    assert any("nothing is heard or felt" in str(w.message) for w in told)
+    said = [str(w.message) for w in told]
+    assert any(w.startswith("the audio is silence") for w in said)
+    assert any(w.startswith("every haptic channel is silence") for w in said)
+
+
+def test_each_output_that_is_silent_is_warned_of_with_its_own_reason(heights_m):
+    surface = asp.Surface(heights_m, 0.14)
+    with pytest.warns(asp.TouchWarning, match=r"the audio is silence .*: nothing touched has modes") as told:
+        asp.stroke(surface, duration=0.2)
+    assert not any("haptic" in str(w.message) for w in told)
+    rows = asp.contacts.stroke(duration=0.2, extent=surface.extent)
+    rows["actuator"] = -1
+    with pytest.warns(asp.TouchWarning, match='every haptic channel is silence: nothing in the log names it; write "actuator":0'):
+        asp.render(surface.on(asp.Body.stock("bar", 0.2, "steel")), rows)
+
+
+def test_contacts_that_contradict_themselves_are_warned_of(heights_m):
+    surface = asp.Surface(heights_m, 0.14).on(asp.Body.stock("bar", 0.2, "steel"))
+    for extent, speed, unit in [(0.14, 80.0, "is velocity_m_s in mm/s"), (140.0, 0.1, "is uv in|is uv 1 of a plane")]:
+        rows = asp.contacts.stroke(speed=speed, duration=0.4, extent=(extent, extent))
+        if speed == 80.0:
+            # As somebody does who counts in millimetres a second, beside places that are right.
+            rows["uv"] = asp.contacts.stroke(speed=0.08, duration=0.4, extent=(extent, extent))["uv"]
+        with pytest.warns(asp.TouchWarning, match=unit):
+            asp.render(surface, rows)
+
+
+def test_a_missing_file_and_an_unknown_name_are_refused_where_they_stand(tmp_path):
+    for act, piece in [
+        (lambda: asp.Body.stock("plaet", 0.2, "steel"), 'stock: "plaet" is unknown; write "plate"; must be one of: '),
+        (lambda: asp.Body.stock("plate", 0.2, "porcelain"), 'material: "porcelain" is unknown; '),
+        (lambda: asp.Solid("granit"), 'solid: "granit" is unknown; write "granite"'),
+        (lambda: asp.SceneFile(asp.Solid("granite"), probe="fingerpit"), 'probe: "fingerpit" is unknown; write "fingertip"'),
+    ]:
+        with pytest.raises(ValueError, match=piece):
+            act()
+    for act in (
+        lambda: asp.Surface(tmp_path / "gone.png", 0.1, relief_m=1e-3),
+        lambda: asp.Body(tmp_path / "gone.modes.json"),
+        lambda: asp.Solid("granite", roughness=tmp_path / "gone.png"),
+    ):
+        with pytest.raises(FileNotFoundError, match="gone.*no such file"):
+            act()
 
 
 def test_a_take_shows_itself_with_a_player_and_its_waves(heights_m):

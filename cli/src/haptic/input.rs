@@ -79,6 +79,7 @@ fn clip_of_ahap(path: &Path) -> Result<Input, CliError> {
         let read = ahap::parse(&main).map_err(|error| at(path, error))?;
         return Ok(Input::Clip { clip: read.clip, told: read.told });
     }
+    crate::output::reads([&beside]);
     let read = ahap::parse_both(&main, &text(&beside)?).map_err(|error| at(path, error))?;
     let mut told = read.told;
     told.push(format!("strokes are from {}", name_of(&beside)));

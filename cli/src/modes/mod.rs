@@ -61,6 +61,8 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
     let started = Instant::now();
     check_destination(&options.output)?;
     options.plot.as_deref().map_or(Ok(()), check_destination)?;
+    let beside = options.output.with_extension(if options.shapes_glb { "glb" } else { "shapes" });
+    output::refuse_input(&beside)?;
     let wanted = options.wanted()?;
     let (material, damping) = options.material()?;
     let mesh = asperity_shape::load_part(&options.body, options.part.as_deref()).map_err(CliError::told)?;
@@ -82,7 +84,6 @@ pub fn make(options: &Options, progress: &mut dyn FnMut(f64)) -> Result<Report, 
         .map_err(|error| CliError::file(&options.output, error, "please report it with the input"))?;
     // What the engine would refuse is no body.
     asperity::ModalModel::parse(&text).map_err(CliError::told)?;
-    let beside = options.output.with_extension(if options.shapes_glb { "glb" } else { "shapes" });
     let name = beside.file_name().map(|name| name.to_string_lossy().into_owned());
     let written = if let (true, Some(name)) = (options.shapes_beside || options.shapes_glb, name) {
         if let Some(bytes) = file.put_shapes_beside(name) {

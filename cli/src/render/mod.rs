@@ -12,11 +12,12 @@ use crate::scene_log::{load_log, read_past};
 use crate::{haptic, pixels, plot, wav};
 use asperity::Engine;
 use asperity::files::contact_log::{ContactLog, LogEvent};
-use asperity::files::scene_file::SceneFile;
+use asperity::files::scene_file::{SceneFile, Source, SurfaceEntry};
 use asperity::limits::output as limits;
 use asperity::offline::{self, Render};
 use asperity::open::Overrides;
 use asperity::{Integrator, Isa, PathMode, Preset, Quantity, SurfaceId};
+use asperity_tools::silence::Rendered;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use picture::ContactCurve;
@@ -164,6 +165,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let mut file = SceneFile::load(&options.scene)?;
     file.seed = options.seed.or(file.seed);
     let (log, unread) = load_log(&file)?;
+    check_outputs(options, &file)?;
     let overrides = Overrides {
         sample_rate_hz: options.rate,
         seed: options.seed,
@@ -196,12 +198,15 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
     let mut report = report(&render, kernel, levels, watching);
     report.warnings = unread.iter().map(|place| read_past(place)).collect();
-    report.warnings.extend(told::warnings(&file, &log, &render, &report));
+    let full_scale = report.full_scale.clone();
+    let rendered =
+        Rendered { file: &file, log: &log, render: &render, full_scale: &full_scale, surfaces: &names };
+    report.warnings.extend(told::warnings(&rendered, &report));
     for sand in &render.sand {
         let Some((name, _)) = names.iter().find(|(_, id)| *id == sand.surface) else { continue };
         let raster = &sand.picture.raster;
         let grey: Vec<u16> = raster.values.iter().map(|height| (height * 65_535.0).round() as u16).collect();
-        let path = with_suffix(stem, &format!("{}.sand.png", file_name(name)));
+        let path = with_suffix(stem, &sand_suffix(name));
         outputs.write(&path, &pixels::png16(raster.width, raster.height, &grey))?;
         report.sand.insert(
             name.clone(),
@@ -231,6 +236,24 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     }
     report.files = outputs.commit()?;
     Ok(report)
+}
+
+/// Refuses outputs that cannot be written, before any work is done for them.
+fn check_outputs(options: &Options, file: &SceneFile) -> Result<(), CliError> {
+    let sand = |surface: &SurfaceEntry| {
+        matches!(surface.source, Source::Sand(_)).then(|| sand_suffix(&surface.name))
+    };
+    let suffixes = ["audio.wav", "haptic.wav", "trace.csv", "force.csv", "svg"].map(str::to_owned);
+    let of_stem = suffixes.into_iter().chain(file.surfaces.iter().filter_map(sand));
+    of_stem
+        .map(|suffix| with_suffix(&options.output, &suffix))
+        .try_for_each(|path| check_destination(&path))?;
+    options.port.as_deref().map_or(Ok(()), check_destination)
+}
+
+/// What the picture of a surface of sand is called after the stem.
+fn sand_suffix(surface: &str) -> String {
+    format!("{}.sand.png", file_name(surface))
 }
 
 fn check_length(file: &SceneFile, duration_s: f64, rate_hz: f64) -> Result<(), CliError> {

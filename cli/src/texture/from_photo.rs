@@ -94,11 +94,31 @@ fn light(text: &str) -> Result<Light, String> {
     Light::new(numbers).map_err(|error| error.to_string())
 }
 
+/// Files that every run writes, or may write: none of them can be the photograph.
+const WRITTEN: [&str; 15] = [
+    "displacement.png",
+    "roughness.png",
+    "primitive.png",
+    "symmetric.png",
+    "residual.png",
+    "overview.png",
+    "cell.png",
+    "scene.toml",
+    "scene_lattice.toml",
+    "scene_x1.toml",
+    "scene_x2.toml",
+    "scene_x4.toml",
+    "stroke.jsonl",
+    "surface.modes.json",
+    "report.json",
+];
+
 /// Runs the verb.
 ///
 /// # Errors
 /// When a photograph cannot be read or is too small, or the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
+    WRITTEN.iter().try_for_each(|name| output::refuse_input(&options.output.join(name)))?;
     let photograph = load(&options.photo)?;
     options.object.check_destination()?;
     let width_m = options.object.width_mm.map(|mm| 1e-3 * mm).or(options.width_m);

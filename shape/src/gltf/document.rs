@@ -106,7 +106,9 @@ impl Document {
                 "must be a data uri or a file beside the document",
             ));
         }
-        file(&self.path.with_file_name(uri))
+        let beside = self.path.with_file_name(uri);
+        crate::output::reads([&beside]);
+        file(&beside)
     }
 
     fn view(&self, index: &Value, at: &str) -> Result<&[u8], ShapeError> {

@@ -1,7 +1,7 @@
 //! Refusals of a log: which line, what is wrong there, what would be right.
 
 use super::VERSION;
-use crate::files::FileError;
+use crate::files::{FileError, nearest};
 use std::io;
 use std::path::PathBuf;
 
@@ -26,6 +26,18 @@ pub enum LogError {
         place: String,
         /// What is wrong.
         message: String,
+    },
+    /// A key is missing, or holds what it cannot.
+    #[error("{place}: {key}: {what}; {right}")]
+    Key {
+        /// File and line.
+        place: String,
+        /// The key.
+        key: String,
+        /// What is wrong with it.
+        what: String,
+        /// What would be right.
+        right: String,
     },
     /// A line has a key that its event does not know.
     #[error("{place}: {key}: unknown key of \"{event}\"; {right}")]
@@ -55,11 +67,9 @@ pub enum LogError {
     Stopped,
     /// A contact that would be felt on a channel which is not there.
     #[error(
-        "actuator: actuator {actuator} at t = {t} s is not in the scene; must be below {channels}, the number of [[actuator]] tables"
+        "actuator: {actuator} is not in the scene; must be below {channels}, the number of [[actuator]] tables"
     )]
     NoActuator {
-        /// Time of its line, s.
-        t: f64,
         /// The channel.
         actuator: u16,
         /// How many there are.
@@ -83,8 +93,18 @@ pub enum LogError {
         /// The stamp before it, s.
         before: f64,
     },
+    /// An event of a log that a scene cannot take.
+    #[error("event {number} at t = {t} s: {problem}")]
+    Event {
+        /// Its number among the log's events, from 1.
+        number: usize,
+        /// Its time, s.
+        t: f64,
+        /// What is wrong with it.
+        problem: Box<Self>,
+    },
     /// A name the scene does not know.
-    #[error("{kind} \"{name}\" is unknown; must be one of: {known}")]
+    #[error("{kind}: \"{name}\" is unknown; {}", one_of(kind, name, known))]
     UnknownName {
         /// "surface", "body", "probe", "holder" or "striker".
         kind: &'static str,
@@ -93,4 +113,27 @@ pub enum LogError {
         /// Every name that would be right.
         known: String,
     },
+}
+
+impl LogError {
+    /// The error with the line of the log's text that it speaks of; `name` is what errors call the log.
+    #[must_use]
+    pub fn in_text(self, text: &str, name: &str) -> FileError {
+        let Self::Event { number, problem, .. } = self else { return FileError::told(self).within(name) };
+        let is_event = |line: &&str| line.contains("\"event\"");
+        let lines = text.lines().enumerate().filter(|(_, line)| is_event(line));
+        let line = lines.map(|(index, _)| index + 1).nth(number - 1).unwrap_or(number);
+        FileError::told(problem).within(format!("{name}:{line}"))
+    }
+}
+
+/// Names that would be right, the one that was meant first.
+fn one_of(kind: &str, name: &str, known: &str) -> String {
+    if known.is_empty() {
+        return format!("the scene names no {kind}; leave it out, or give the scene one with that name");
+    }
+    let names: Vec<&str> = known.split(", ").collect();
+    let meant = nearest(name, &names).filter(|_| names.len() > 1);
+    meant.map_or_else(String::new, |meant| format!("write \"{meant}\"; "))
+        + &format!("must be one of: {known}")
 }

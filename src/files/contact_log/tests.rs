@@ -1,4 +1,7 @@
 use super::*;
+use crate::model::event::{Actuator, ContactEvent, Impact};
+use crate::model::id::{BodyId, ProbeId, SurfaceId};
+use std::collections::HashMap;
 
 const LOG: &str = r#"{"t":0.0,"event":"begin","contact":1,"surface":"tiles","actuator":0,"uv":[0.1,0.5],"velocity_m_s":[0.08,0.0],"normal_force_n":0.6,"closing_m_s":0.05}
 {"t":0.0167,"event":"move","contact":1,"uv":[0.11,0.5],"normal_force_n":0.62}
@@ -47,7 +50,7 @@ fn names_become_the_ids_of_the_scene() {
 fn an_unknown_name_is_answered_with_the_names_there_are() {
     let line: LogLine = serde_json::from_str(&LOG.lines().next().unwrap().replace("tiles", "tils")).unwrap();
     let message = line.event.resolve(&names()).unwrap_err().to_string();
-    assert_eq!(message, "surface \"tils\" is unknown; must be one of: tiles");
+    assert_eq!(message, "surface: \"tils\" is unknown; must be one of: tiles");
 }
 
 #[test]
@@ -119,4 +122,95 @@ fn a_log_says_its_version_and_one_of_another_is_refused() {
     }
     assert_eq!(ContactLog::parse(&format!("{{\"version\":1}}\n{LOG}"), "log").unwrap(), log);
     assert!(ContactLog::parse("{\"version\":\"1\"}", "log").is_err());
+}
+
+/// Slips of a line: what is written, what stands there instead, and what is told of it.
+const SLIPS: [(&str, &str, &str); 32] = [
+    ("\"event\":\"begin\",", "", "event: is missing; write \"event\":\"begin\", "),
+    ("\"event\"", "\"Event\"", "Event: unknown key; write event, "),
+    ("\"event\"", "\"type\"", "type: unknown key; write event, "),
+    ("\"begin\"", "\"Begin\"", "event: \"Begin\" is unknown; write \"begin\""),
+    ("\"begin\"", "\"began\"", "event: \"began\" is unknown; write \"begin\""),
+    ("\"begin\"", "\"start\"", "event: \"start\" is unknown; write \"begin\""),
+    (
+        "\"begin\"",
+        "\"jump\"",
+        "event: \"jump\" is unknown; must be \"begin\", \"move\", \"end\" or \"impact\"",
+    ),
+    ("\"begin\"", "7", "event: 7 is unknown; must be \"begin\", "),
+    ("\"t\":0.0,", "", "t: is missing; write \"t\":"),
+    ("\"t\":0.0", "\"time\":0.0", "time: unknown key of \"begin\"; write t"),
+    ("\"t\":0.0", "\"t\":\"0.0\"", "t: \"0.0\" is refused; must be a number, the time in seconds"),
+    ("\"t\":0.0", "\"t\":9e9", "t: 9000000000.0 s is more than a day; must be in seconds"),
+    ("\"contact\":1,", "", "contact: is missing in \"begin\"; write \"contact\":1"),
+    ("\"contact\":1", "\"contact\":-1", "contact: -1 is refused; must be a whole number from 0 on"),
+    ("\"contact\":1", "\"contact\":\"finger\"", "contact: \"finger\" is refused; must be a whole number"),
+    ("\"contact\"", "\"id\"", "id: unknown key of \"begin\"; write contact"),
+    ("\"surface\":\"tiles\",", "", "surface: is missing in \"begin\"; write \"surface\":\"NAME\""),
+    ("\"surface\":\"tiles\"", "\"surface\":0", "surface: 0 is refused; must be a name in quotes"),
+    ("\"actuator\":0", "\"actuator\":0.5", "actuator: 0.5 is refused; must be a whole number"),
+    ("\"uv\":[0.1,0.5],", "", "uv: is missing in \"begin\"; write \"uv\":[0.5,0.5]; or at_m"),
+    ("[0.1,0.5]", "\"0.1,0.5\"", "uv: \"0.1,0.5\" is refused; must be two numbers"),
+    ("[0.1,0.5]", "[0.1,0.5,0.0]", "uv: [0.1,0.5,0.0] is refused; must be two numbers"),
+    ("[0.1,0.5]", "{\"x\":0.1,\"y\":0.5}", "uv: {\"x\":0.1,\"y\":0.5} is refused; must be two numbers"),
+    ("[0.1,0.5]", "[0.1,null]", "uv: [0.1,null] is refused; must be two numbers"),
+    ("\"uv\"", "\"UV\"", "UV: unknown key of \"begin\"; write uv"),
+    ("[0.08,0.0]", "0.08", "velocity_m_s: 0.08 is refused; must be two numbers, along u and along v"),
+    (
+        "\"normal_force_n\":0.6,",
+        "",
+        "normal_force_n: is missing in \"begin\"; write \"normal_force_n\":0.5; or depth_m",
+    ),
+    ("0.6", "\"0.6\"", "normal_force_n: \"0.6\" is refused; must be a number"),
+    ("normal_force_n", "force", "force: unknown key of \"begin\"; write normal_force_n"),
+    ("normal_force_n", "normal_froce_n", "normal_froce_n: unknown key of \"begin\"; write normal_force_n"),
+    ("\"closing_m_s\":0.05", "\"uv\":[0,0]", "uv: is written twice at column "),
+    ("0.05}", "0.05,}", "trailing comma at column "),
+];
+
+const IMPACT_SLIPS: [(&str, &str, &str); 8] = [
+    ("\"body\":\"tile\",", "", "body: is missing in \"impact\"; write \"body\":\"NAME\""),
+    ("\"speed_m_s\":0.8,", "", "speed_m_s: is missing in \"impact\"; write \"speed_m_s\":1.0"),
+    ("\"mass_kg\":0.01,", "", "mass_kg: is missing in \"impact\"; write \"mass_kg\":0.05"),
+    ("\"radius_m\":0.005,", "", "radius_m: is missing in \"impact\"; write \"radius_m\":0.01"),
+    (",\"striker\":\"steel\"", "", "striker: is missing in \"impact\"; write \"striker\":\"steel\""),
+    ("\"steel\"", "\"stele\"", "striker: \"stele\" is refused; write \"steel\"; must be one of: "),
+    (
+        "\"steel\"",
+        "{\"young_pa\":1e9}",
+        "striker: {\"young_pa\":1000000000.0} is refused; must hold the constants",
+    ),
+    ("\"mass_kg\"", "\"mass\"", "mass: unknown key of \"impact\"; write mass_kg"),
+];
+
+#[test]
+fn a_slip_is_told_with_its_line_its_key_what_is_wrong_and_what_would_be_right() {
+    let lines: Vec<&str> = LOG.lines().collect();
+    let of_begin = SLIPS.iter().map(|slip| (lines[0], slip));
+    let of_impact = IMPACT_SLIPS.iter().map(|slip| (lines[2], slip));
+    for (line, (from, to, told)) in of_begin.chain(of_impact) {
+        let slipped = line.replacen(from, to, 1);
+        assert_ne!(slipped, line, "{from}");
+        // Behind a line that only says the version, and an empty one.
+        let message =
+            ContactLog::parse(&format!("{{\"version\":1}}\n\n{slipped}\n"), "log").unwrap_err().to_string();
+        assert!(message.starts_with(&format!("log:3: {told}")), "{message}\nis not\n{told}");
+        assert_eq!(message.lines().count(), 1);
+    }
+}
+
+#[test]
+fn an_unknown_name_and_a_missing_channel_are_told_with_the_line_of_the_text() {
+    let text = format!("{{\"version\":1}}\n\n{}", LOG.replace("\"tile\"", "\"tilee\""));
+    let log = ContactLog::parse(&text, "log").unwrap();
+    let told = log.check_names(&names()).unwrap_err();
+    assert!(told.to_string().starts_with("event 3 at t = 0.2 s: body: \"tilee\" is unknown; "), "{told}");
+    let line = told.in_text(&text, "log").to_string();
+    assert_eq!(line, "log:5: body: \"tilee\" is unknown; write \"tile\"; must be one of: pen, tile");
+    let line = log.check_actuators(0).unwrap_err().in_text(&text, "log").to_string();
+    assert!(line.starts_with("log:3: actuator: 0 is not in the scene; must be below 0"), "{line}");
+    let unnamed = Names { probes: HashMap::new(), ..names() };
+    let probe = LOG.replacen("\"uv\"", "\"probe\":\"pen\",\"uv\"", 1);
+    let told = ContactLog::parse(&probe, "log").unwrap().check_names(&unnamed).unwrap_err().to_string();
+    assert!(told.ends_with("probe: \"pen\" is unknown; the scene names no probe; leave it out, or give the scene one with that name"), "{told}");
 }

@@ -1,6 +1,6 @@
 //! Reads a TOML table key by key, so that every refusal can name the place, the value and the remedy.
 
-use crate::files::FileError;
+use crate::files::{FileError, nearest};
 use crate::parameters::Parameter;
 use asperity_dsp::limits::Range;
 use std::path::{Path, PathBuf};
@@ -247,7 +247,10 @@ impl Fields {
             None => Ok(()),
             Some(key) => {
                 self.accepted.sort_unstable();
-                Err(self.refuse(&key, "unknown key", format!("accepted here: {}", self.accepted.join(", "))))
+                let meant = nearest(&key, &self.accepted)
+                    .map_or_else(String::new, |meant| format!("write {meant}; "));
+                let right = format!("{meant}accepted here: {}", self.accepted.join(", "));
+                Err(self.refuse(&key, "unknown key", right))
             }
         }
     }

@@ -21,6 +21,7 @@ pub use source::{Brownian, Lattice, Source};
 pub use surface::{RoughnessEntry, SurfaceEntry};
 
 use crate::files::FileError;
+use crate::files::other_file::other_file;
 use crate::files::storage::{Disk, Files};
 use crate::model::actuator::{ActuatorSettings, Quantity};
 use crate::model::bus::MAX_BUSES;
@@ -133,6 +134,9 @@ impl SceneFile {
         if bytes.len() > MAX_BYTES {
             let right = format!("a scene file has at most {} MB", MAX_BYTES >> 20);
             return Err(FileError::file(path, format!("is {} MB long", bytes.len() >> 20), right));
+        }
+        if let Some((what, right)) = other_file(&bytes) {
+            return Err(FileError::file(path, what, right));
         }
         match std::str::from_utf8(&bytes) {
             Ok(text) => Self::parse(text, path),

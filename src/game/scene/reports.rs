@@ -1,13 +1,14 @@
 //! Reports of the game: checked, stamped, and sent in order; moves wait, and give way to newer ones, when the way is full.
 
 use super::Scene;
+use crate::game::silence::SilentBecause;
 use crate::link::message::{Felt, Message};
 use crate::link::stats::Counters;
 use crate::model::bad_value::within;
 use crate::model::body::Body;
 use crate::model::error::{Refusal, ReportError};
 use crate::model::event::{Actuator, ContactEvent, ContactId, ContactSample, Emphasis, Impact};
-use crate::model::id::{BodyId, ProbeId};
+use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
 use crate::prepared::bank::LONGEST_CONTACT_S;
@@ -40,6 +41,24 @@ impl Scene {
         })
     }
 
+    /// What speaks against anything being heard or felt, or against its being right, the likeliest reason first; empty when nothing
+    /// does: reports that contradict themselves are among it. Each reason says what would be right. To be asked when a scene is silent, or to be logged.
+    ///
+    /// ```
+    /// use asperity::{Config, Engine};
+    ///
+    /// let Engine { scene, .. } = Config::default().build()?;
+    /// assert!(scene.why_silent()[0].to_string().contains("Renderer::render"));
+    /// # Ok::<(), asperity::ConfigError>(())
+    /// ```
+    #[must_use]
+    pub fn why_silent(&self) -> Vec<SilentBecause> {
+        let contradictions = self.motions.contradictions().into_iter().map(SilentBecause::Contradicts);
+        let mut because = self.reported.why_silent(&self.stats(), &self.config);
+        because.extend(contradictions);
+        because
+    }
+
     fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
         let told = event;
         let event = self.checked(event)?;
@@ -52,9 +71,12 @@ impl Scene {
         self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
         self.flush_held();
         let stamp = stamped.stamp;
+        let in_game_time = event;
         let event = event.at_pace(self.clock.pace());
         self.send_stamped(stamp, event)?;
         self.reported.accept(&event, stamp, self.rings(&event));
+        let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
+        self.motions.note(time_s, &in_game_time, self.config.contact_timeout_s, sheet);
         if let Some(recording) = &mut self.recording {
             recording.settle(position as f64 / self.config.inner_rate_hz());
             recording.note(stamp.samples() / self.config.inner_rate_hz(), &event.at_place_of(&told));

@@ -22,11 +22,10 @@ _TRACE = (
     "u", "v", "height_m", "normal_force_n", "pad_m", "pad_velocity_m_s", "finger_m", "contact_force_n", "impulse_n_s",
 )  # fmt: skip
 _FORCE = ("x_n", "y_n", "z_n")
-_SILENT = 1e-6
 
 
 class TouchWarning(UserWarning):
-    """What was refused, lost or left out of a render."""
+    """What was refused, lost or left out of a render, what its reports contradict themselves in, and which output is silent, and why."""
 
 
 def render(
@@ -51,7 +50,7 @@ def render(
     progress: a bar, or a callable that is told the part done.
 
     Runs without the GIL; Ctrl-C stops it. Raises ValueError or FileNotFoundError in the engine's words; warns with `TouchWarning` of
-    events that were refused or lost, and of silence.
+    events that were refused or lost, of contacts that contradict themselves (velocity against uv), and of each output that is silent.
     """
     path, files = sources(scene)
     if contacts is None and isinstance(scene, SceneFile | _Surface | list | tuple):
@@ -111,10 +110,7 @@ def _take(made: dict[str, Any], force_rate: float | None) -> Take:
     audio: npt.NDArray[np.float32] = made["audio"]
     stats = json.loads(made["stats"]) | {key: made[key] for key in ("kernel", "full_scale", "gain", "strike_gain", "limiter_db")}
     told = [f"{place}: is a key of the format, but this version does not act on it" for place in made["unread"]]
-    told += made["lost"]
-    loudest = max(float(np.max(np.abs(part), initial=0.0)) for part in (audio, made["haptic"]))
-    if loudest < _SILENT:
-        told.append(f"nothing is heard or felt: {'; '.join(made['why_silent']) or 'nothing was strong enough'}")
+    told += made["lost"] + made["silences"]
     for warning in told:
         warnings.warn(warning, TouchWarning, stacklevel=3)
     return Take(

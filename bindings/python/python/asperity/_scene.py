@@ -7,6 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from typing import Any, TypeVar, Union
 
 import numpy as np
@@ -27,7 +28,8 @@ class Body:
 
     Body(modes="tile.modes.json") rings as a modes file says, `Body.stock("plate", 0.14, "ceramic")` as a stock shape does,
     `asperity.fit(...).body()` as a recording; Body() is silent. material: a preset of `names_of("material")` or a table of constants.
-    Further keys are those of [[body]] in docs/formats.md.
+    Further keys are those of [[body]] in docs/formats.md. Raises FileNotFoundError where the modes file is missing, ValueError where the
+    material is none.
     """
 
     modes: Path | None = None
@@ -36,9 +38,16 @@ class Body:
     keys: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
+    def __post_init__(self) -> None:
+        if self.modes is not None and os.fspath(self.modes) not in self.files:
+            _there(self.modes, "modes")
+        if isinstance(self.material, str):
+            _known("material", self.material)
+
     @classmethod
     def stock(cls, shape: str, size_m: float, material: str | Mapping[str, float], name: str = "body") -> Body:
         """A stock shape of `names_of("stock")`, its longest side or diameter `size_m` metres."""
+        _known("stock", shape)
         return cls(None, material, name, {"stock": shape, "size_m": size_m})
 
     def table(self) -> dict[str, Any]:
@@ -88,6 +97,22 @@ def _sides(extent: Extent, aspect: float = 1.0) -> dict[str, float]:
     return {"width_m": float(width_m), "height_m": float(height_m)}
 
 
+def _known(kind: str, name: str) -> None:
+    """Refuses a name that is none of `names_of(kind)`."""
+    names = _native.names_of(kind)
+    if name not in names:
+        meant = get_close_matches(name, names, 1)
+        right = f'write "{meant[0]}"; ' if meant else ""
+        raise ValueError(f'{kind}: "{name}" is unknown; {right}must be one of: {", ".join(names)}')
+
+
+def _there(path: Path, what: str) -> None:
+    """Refuses a file that does not exist."""
+    if not os.path.exists(path):
+        where = "" if os.path.isabs(path) else f" in {os.getcwd()}"
+        raise FileNotFoundError(f"{what}: {os.fspath(path)}: no such file{where}; name a file that exists")
+
+
 def _is_path(image: object) -> bool:
     return isinstance(image, str | os.PathLike)
 
@@ -95,6 +120,7 @@ def _is_path(image: object) -> bool:
 def _picture(image: Image, at: str, files: Files, what: str) -> tuple[str, float]:
     """Under which name a scene finds a picture, and its height over its width; what it holds is kept in `files`."""
     if isinstance(image, str | os.PathLike):
+        _there(image, what)
         return os.path.abspath(os.fspath(image)), 1.0
     array = np.asarray(image)
     if array.ndim != 2 or 0 in array.shape:
@@ -138,7 +164,8 @@ class Surface(_Surface):
     white over black. extent: (width, height) in metres that it covers, or the width alone. roughness: R from 0 to 1, a number, an array
     or a path. Further keys (wrap, micro_relief_m, excitation, friction, compliance_m_n, ...) are those of [[surface]] in docs/formats.md.
 
-    Raises ValueError where an array is not finite, has other axes, or holds greys without `relief_m`.
+    Raises ValueError where an array is not finite, has other axes, or holds greys without `relief_m`, and FileNotFoundError where a
+    picture is missing.
     """
 
     def __init__(
@@ -173,6 +200,7 @@ class Solid(_Surface):
         name: str = "surface",
         **keys: Any,
     ) -> None:
+        _known("solid", preset)
         files: Files = {}
         source = {"solid": {"preset": preset, **(parameters or {})}}
         super().__init__(name, source | _sides(extent) | _rough(roughness, name, files) | keys, files)
@@ -241,7 +269,7 @@ class SceneFile:
 
     surfaces: one or several. bodies: those that no surface lies on. probe: a preset of `names_of("probe")` or a table of fields.
     actuators: tables of [[actuator]], in channel order. audio: a table of [audio], or a list of buses. tail_s: ring-out, s.
-    Everything is checked when it is rendered or opened, in the engine's words.
+    Names are checked where they stand, everything else when it is rendered or opened, in the engine's words.
     """
 
     surfaces: _Surface | Sequence[_Surface]
@@ -252,6 +280,10 @@ class SceneFile:
     tail_s: float | None = None
 
     PATH = "scene.toml"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.probe, str):
+            _known("probe", self.probe)
 
     def tables(self) -> dict[str, Any]:
         """The scene as tables."""
