@@ -12,6 +12,7 @@ mod common;
 mod contacts_of_every_kind;
 mod contacts_side_by_side;
 mod contractive;
+mod contradictions;
 #[path = "common/counting.rs"]
 mod counting;
 mod debounce;

@@ -2,7 +2,7 @@
 
 #![cfg(unix)]
 
-mod support;
+use crate::support;
 
 use image::{GrayImage, Luma, RgbImage};
 use std::fs;

@@ -11,6 +11,7 @@ mod haptic;
 mod hostile;
 mod house;
 mod import;
+mod inputs_are_kept;
 mod limits;
 mod losses;
 #[path = "support/maps.rs"]

@@ -1,4 +1,5 @@
 //! The tests of haptic files in one program, but for the one that asks the formats' own decoders.
 
+mod ahap_rules;
 mod formats;
 mod reduction;
