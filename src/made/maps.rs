@@ -32,9 +32,8 @@ pub(crate) struct MapOf {
 }
 
 impl MapOf {
-    fn make(&self, files: &dyn Files, remarks: &mut Vec<String>) -> Result<HeightMap, FileError> {
-        let read = storage::channel(files, &self.image)?;
-        remarks.extend(remark(&self.image, &read, self.values.key()));
+    fn make(&self, files: &dyn Files, maps: &Maps) -> Result<HeightMap, FileError> {
+        let read = maps.read(&self.image, self.values.key(), files)?;
         let raster = self.values.of(read, self.wrap);
         let raster = if self.invert { raster.map(|value| 1.0 - value) } else { raster };
         HeightMap::new(&raster, self.extent, self.wrap)
@@ -79,12 +78,16 @@ impl Maps {
         self.remarks.borrow().clone()
     }
 
-    /// One channel of a picture that becomes no map, and what is doubtful in it.
-    pub(crate) fn channel(&self, image: &Pixels, files: &dyn Files) -> Result<ChannelImage, FileError> {
+    /// One channel of a picture, which `key` of a scene file names; what is doubtful in it is kept.
+    pub(crate) fn read(
+        &self,
+        image: &Pixels,
+        key: &str,
+        files: &dyn Files,
+    ) -> Result<ChannelImage, FileError> {
         let read = storage::channel(files, image)?;
-        let remark = remark(image, &read, "channel");
-        let mut remarks = self.remarks.borrow_mut();
-        remarks.extend(remark.filter(|remark| !remarks.contains(remark)));
+        let remark = remark(image, &read, key).filter(|remark| !self.remarks.borrow().contains(remark));
+        self.remarks.borrow_mut().extend(remark);
         Ok(read)
     }
 
@@ -93,7 +96,7 @@ impl Maps {
         if let Some((_, map)) = self.made.borrow().iter().find(|(made, _)| *made == of) {
             return Ok(map.clone());
         }
-        let map = of.make(files, &mut self.remarks.borrow_mut())?;
+        let map = of.make(files, self)?;
         self.made.borrow_mut().push((of, map.clone()));
         Ok(map)
     }

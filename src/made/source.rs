@@ -191,7 +191,7 @@ impl Ground<'_> {
 
     fn lattice(self, entry: &LatticeEntry) -> Result<Lattice, FileError> {
         let relief_m = entry.relief_m;
-        let cell = self.maker.maps.channel(&entry.cell, self.maker.files)?.debanded(Wrap::Repeat);
+        let cell = self.maker.maps.read(&entry.cell, "channel", self.maker.files)?.debanded(Wrap::Repeat);
         let cell = upright(cell, entry.invert);
         Lattice::new(&cell.map(|height| height * relief_m), entry.t1_m, entry.t2_m)
             .map_err(|error| FileError::told(error).within("lattice"))
