@@ -36,6 +36,8 @@ pub struct Engine {
     pub workers: Vec<SandWorker>,
     /// Levels that were written or resolved, where the engine was built from a file; empty otherwise.
     pub levels: Levels,
+    /// What is doubtful in the files that were read and no error, a line each: a coloured picture taken by its brightness.
+    pub remarks: Vec<String>,
 }
 
 impl std::fmt::Debug for Engine {
@@ -67,6 +69,7 @@ impl Config {
             names: Names::default(),
             workers: Vec::new(),
             levels: Levels::default(),
+            remarks: Vec::new(),
         })
     }
 }

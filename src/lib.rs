@@ -68,7 +68,8 @@
 //! |---|---|
 //! | `device`, `jack`, `pulseaudio` | sound cards through cpal |
 //! | `brownian` | Brownian surfaces, which need an FFT when they are made |
-//! | `exr` | 16-bit EXR maps |
+//! | `exr` | EXR maps |
+//! | `more-pictures` | WebP, TIFF, TGA and BMP maps |
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

@@ -133,6 +133,7 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
     let levels = levels::resolve(file, &calibrated(file, overrides)?, trial)?;
     let mut engine = assemble(file, overrides, maps, &levels, |config| config)?;
     engine.levels = levels;
+    engine.remarks = maps.remarks();
     Ok(engine)
 }
 
@@ -190,7 +191,8 @@ fn assemble(
         let id = scene.add_surface(surface).map_err(|error| place(FileError::told(error)))?;
         names.surfaces.insert(entry.name.clone(), id);
     }
-    Ok(Engine { scene, renderer, names, workers: workers.into_inner(), levels: Levels::default() })
+    let workers = workers.into_inner();
+    Ok(Engine { scene, renderer, names, workers, levels: Levels::default(), remarks: Vec::new() })
 }
 
 /// How loud impacts are on a body that is added later: as on those that share what the level policy has found.

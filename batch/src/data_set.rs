@@ -61,6 +61,12 @@ impl DataSet {
         &self.spec
     }
 
+    /// What is doubtful in the pictures that were read so far ([`Maps::remarks`]).
+    #[must_use]
+    pub fn remarks(&self) -> Vec<String> {
+        self.maps.remarks()
+    }
+
     /// The file of a shard.
     #[must_use]
     pub fn file(&self, index: u64) -> String {

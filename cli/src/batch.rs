@@ -143,6 +143,9 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
         report.shards,
         folder.join(asperity_batch::manifest::NAME).display()
     ));
+    for remark in set.remarks() {
+        output::say(&format!("warning: {remark}"));
+    }
     if report.clipped_samples > 0 {
         output::say(&format!(
             "warning: {} samples of the sound were beyond full scale and cut off; lower output.audio.gain, or write codec = \"f32\"",

@@ -32,8 +32,8 @@ pub(crate) struct MapOf {
 }
 
 impl MapOf {
-    fn make(&self, files: &dyn Files) -> Result<HeightMap, FileError> {
-        let read = storage::channel(files, &self.image)?;
+    fn make(&self, files: &dyn Files, maps: &Maps) -> Result<HeightMap, FileError> {
+        let read = maps.read(&self.image, self.values.key(), files)?;
         let raster = self.values.of(read, self.wrap);
         let raster = if self.invert { raster.map(|value| 1.0 - value) } else { raster };
         HeightMap::new(&raster, self.extent, self.wrap)
@@ -41,7 +41,22 @@ impl MapOf {
     }
 }
 
+/// What a picture holds that is read past, and the key that would name it.
+fn remark(image: &Pixels, read: &ChannelImage, key: &str) -> Option<String> {
+    let ignored = read.ignored?;
+    let path = image.path.display();
+    Some(format!("{path}: {ignored}; write {key} = \"r\", \"g\", \"b\" or \"a\" if one of these is the map"))
+}
+
 impl Values {
+    /// The key that names a channel of such a picture.
+    fn key(self) -> &'static str {
+        match self {
+            Self::AsTheyAre => "roughness_channel",
+            Self::Debanded => "channel",
+        }
+    }
+
     fn of(self, read: ChannelImage, wrap: Wrap) -> Raster {
         match self {
             Self::AsTheyAre => read.raster,
@@ -52,16 +67,37 @@ impl Values {
 
 /// The maps that were made so far.
 #[derive(Default)]
-pub struct Maps(RefCell<Vec<(MapOf, HeightMap)>>);
+pub struct Maps {
+    made: RefCell<Vec<(MapOf, HeightMap)>>,
+    remarks: RefCell<Vec<String>>,
+}
 
 impl Maps {
+    /// What is doubtful in the pictures that were read, a line each.
+    pub fn remarks(&self) -> Vec<String> {
+        self.remarks.borrow().clone()
+    }
+
+    /// One channel of a picture, which `key` of a scene file names; what is doubtful in it is kept.
+    pub(crate) fn read(
+        &self,
+        image: &Pixels,
+        key: &str,
+        files: &dyn Files,
+    ) -> Result<ChannelImage, FileError> {
+        let read = storage::channel(files, image)?;
+        let remark = remark(image, &read, key).filter(|remark| !self.remarks.borrow().contains(remark));
+        self.remarks.borrow_mut().extend(remark);
+        Ok(read)
+    }
+
     /// The map of that description.
     pub(crate) fn get(&self, of: MapOf, files: &dyn Files) -> Result<HeightMap, FileError> {
-        if let Some((_, map)) = self.0.borrow().iter().find(|(made, _)| *made == of) {
+        if let Some((_, map)) = self.made.borrow().iter().find(|(made, _)| *made == of) {
             return Ok(map.clone());
         }
-        let map = of.make(files)?;
-        self.0.borrow_mut().push((of, map.clone()));
+        let map = of.make(files, self)?;
+        self.made.borrow_mut().push((of, map.clone()));
         Ok(map)
     }
 }

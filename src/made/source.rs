@@ -192,7 +192,7 @@ impl Ground<'_> {
 
     fn lattice(self, entry: &LatticeEntry) -> Result<Lattice, FileError> {
         let relief_m = entry.relief_m;
-        let cell = storage::channel(self.maker.files, &entry.cell)?.debanded(Wrap::Repeat);
+        let cell = self.maker.maps.read(&entry.cell, "channel", self.maker.files)?.debanded(Wrap::Repeat);
         let cell = upright(cell, entry.invert);
         Lattice::new(&cell.map(|height| height * relief_m), entry.t1_m, entry.t2_m)
             .map_err(|error| FileError::told(error).within("lattice"))

@@ -14,6 +14,10 @@
 //! | N_step | an eighth bit's rounding |
 //! | N_most | [`MOST_NOISE`]: what is stronger is not a camera's, but a rough surface under a low light, which is white as well |
 //!
+//! Uneven light is no noise and no relief: octaves are those of the picture [without it](crate::symmetry::detrended), which comes back where anything
+//! is left. Where each octave has noise's even spread of power and less than [`FAINT`], noise that somebody blurred (denoised, reduced, recompressed) and
+//! a faint surface are the same picture, and it is flat; so it is where less than [`NOTHING`] is left of 4–128 texels.
+//!
 //! Power is subtracted, not filtered by least squares (Wiener), so that what stays has the strength it had: levels are compared
 //! by power. Source: spectral subtraction (S. F. Boll, IEEE ASSP 27, 1979) over rings instead of frames; limits ours.
 //! Measured: a wall of 200 ± 1 of 255 keeps 1 % of its noise, one of 2 levels of noise saved as JPEG at quality 85–95 a tenth; a
@@ -21,6 +25,7 @@
 
 use crate::borders::{Borders, SplitBorders};
 use crate::raster::Raster;
+use crate::symmetry::detrended;
 use crate::waves::Waves;
 use std::f64::consts::{PI, TAU};
 
@@ -43,6 +48,15 @@ const MARGIN: f64 = 1.3;
 /// Rms of the white noise that a JPEG of divisor 1 hides, levels of 255: quantisation takes what is below half a divisor, and steps of its
 /// block means are white noise of 1/√12 of it. Source: ours, above what walls of quality 76–92 keep (0.35–0.7).
 const HIDDEN: f64 = 0.8;
+/// Rms of an octave that cannot be told from blurred noise, of white: 0.4 of a level. Source: ours; denoised, reduced and recompressed walls have up to
+/// 0.37, bricks at a twentieth of their contrast 0.43.
+pub const FAINT: f64 = 0.4 / 255.0;
+/// Mean over logarithmic mean of an octave's power up to which it is noise's: 1 of noise, 1.2 where JPEG thinned it, 3 and more of patterns.
+const EVEN: f64 = 1.7;
+/// Rms of all octaves together that is nothing, of white: a fifth of a level.
+pub const NOTHING: f64 = 0.2 / 255.0;
+/// Longest waves of the octaves, texels.
+const LONGEST: f64 = 128.0;
 /// Euler's and Mascheroni's.
 const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 /// Standard errors that a ring's noise may be above its mean.
@@ -67,14 +81,16 @@ pub fn without_camera_noise(picture: &Raster) -> Quiet {
 /// ([`PhotoOptions::jpeg_divisor`](crate::from_photo::PhotoOptions::jpeg_divisor)).
 #[must_use]
 pub fn without_noise_and_steps(picture: &Raster, jpeg_divisor: f64) -> Quiet {
-    let split = SplitBorders::of(picture, Borders::Detect);
+    let level = detrended(picture);
+    let split = SplitBorders::of(&level, Borders::Detect.decide(picture));
     let mut waves = Waves::of(&split.periodic);
     drop(split.periodic);
     let rings = Rings::of(&waves, picture);
     let texels = picture.values.len() as f64;
     let hidden = HIDDEN * jpeg_divisor / 255.0;
-    let [noise, taken] = floor(&waves, texels, hidden * hidden)
-        .map(|power| power.clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE));
+    let Floor { noise, taken, is_faint } = floor(&waves, texels, hidden * hidden);
+    let [noise, taken] =
+        [noise, taken].map(|power| power.clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE));
     let gains: Vec<f64> = rings
         .power
         .iter()
@@ -83,9 +99,16 @@ pub fn without_noise_and_steps(picture: &Raster, jpeg_divisor: f64) -> Quiet {
             if power > least { (1.0 - least / power).sqrt() } else { 0.0 }
         })
         .collect();
+    if is_faint || rings.left(&gains, texels) < NOTHING * NOTHING {
+        let even = Raster::constant(picture.width, picture.height, picture.mean());
+        return Quiet { picture: even, noise: noise.sqrt() };
+    }
     let mut quiet = waves.weighed_by_frequency(|r| if r > 0.0 { gains[rings.of_frequency(r)] } else { 1.0 });
     if let Some(smooth) = split.smooth {
         quiet.values.iter_mut().zip(&smooth.values).for_each(|(v, s)| *v += s);
+    }
+    for ((value, picture), level) in quiet.values.iter_mut().zip(&picture.values).zip(&level.values) {
+        *value += picture - level;
     }
     Quiet { picture: quiet, noise: noise.sqrt() }
 }
@@ -111,15 +134,31 @@ impl Rings {
         rings
     }
 
+    /// Mean power a texel that these gains leave of waves of up to [`LONGEST`].
+    fn left(&self, gains: &[f64], texels: f64) -> f64 {
+        let first = self.of_frequency(TAU / LONGEST);
+        let rings = self.power.iter().zip(gains).skip(first);
+        rings.map(|((power, count), gain)| power * count * gain * gain).sum::<f64>() / texels
+    }
+
     /// One ring a wave over the shorter side; of a wave of so many radians a texel.
     fn of_frequency(&self, frequency: f64) -> usize {
         (frequency / TAU * self.shorter_side + 0.5) as usize
     }
 }
 
-/// Power of the noise, of the corner, of the plateau, of level octaves or of what JPEG hides (at most `hidden`), whichever is most; and what
-/// is to be taken off.
-fn floor(waves: &Waves, texels: f64, hidden: f64) -> [f64; 2] {
+/// What octaves say of the noise.
+struct Floor {
+    /// Power of the corner, of the plateau, of level octaves or of what JPEG hides, whichever is most.
+    noise: f64,
+    /// What is to be taken off.
+    taken: f64,
+    /// Nothing rises above blurred noise.
+    is_faint: bool,
+}
+
+/// The noise of a picture of which JPEG hides at most `hidden`.
+fn floor(waves: &Waves, texels: f64, hidden: f64) -> Floor {
     let mut corner = Mean::default();
     let mut octaves: [Mean; OCTAVES] = Default::default();
     waves.each(|wave| {
@@ -136,7 +175,17 @@ fn floor(waves: &Waves, texels: f64, hidden: f64) -> [f64; 2] {
     let level = octaves[1..].windows(3).map(of_level_octaves).fold(0.0, f64::max);
     let level = level.max(of_hidden_octaves(&octaves[1..], hidden));
     let noise = corner.get().max(plateau(&octaves));
-    [noise.max(level), noise.max(MARGIN * level)]
+    let is_faint = are_faint(&octaves[1..], texels);
+    Floor { noise: noise.max(level), taken: noise.max(MARGIN * level), is_faint }
+}
+
+/// Whether three octaves or more are seen, and none rises above [`FAINT`] or is more uneven than noise.
+fn are_faint(octaves: &[Mean], texels: f64) -> bool {
+    let seen = || octaves.iter().filter(|octave| octave.count >= FEWEST_WAVES);
+    let is_faint = |octave: &Mean| {
+        octave.of_noise() * octave.count / texels <= FAINT * FAINT && octave.get() <= EVEN * octave.of_noise()
+    };
+    seen().count() >= 3 && seen().all(is_faint)
 }
 
 /// The most power of the octaves from the first on that are no stronger than what JPEG hides, if there are three of them.

@@ -116,7 +116,7 @@ impl std::fmt::Display for Doubt {
                 "the finest waves are as strong as a noisy camera's: what is felt above 200 Hz may be noise",
             ),
             Self::Flat => {
-                f.write_str("nothing in the picture rises above a camera's noise: the surface is flat")
+                f.write_str("nothing in the picture can be told from noise (a camera's, or what blurring, reducing and recompressing leave of it): the surface is flat")
             }
             Self::MicroReliefCut => {
                 write!(f, "the micro-relief was cut to {:.0} µm", LARGEST_MICRO_RELIEF_M * 1e6)

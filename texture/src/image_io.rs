@@ -1,14 +1,18 @@
-//! Maps as artists have them: one channel of a PNG, JPEG, PGM, GIF or EXR file, and 16-bit PNG back.
+//! Maps as artists have them: one channel of a PNG, JPEG, PGM, GIF, WebP, TIFF, TGA, BMP or EXR file, and 16-bit PNG back.
 //!
-//! The only file that names the `image` crate. What the file *is* decides, never what it is called:
+//! The only room that names the `image` crate and its decoders. What the file *is* decides, never what it is called:
 //! palettes are expanded (the index of a pixel is not its grey), interlacing is undone, the file may
 //! have any shape, 16 bits stay 16 bits, a picture that EXIF calls turned is turned back, of a moving GIF the first frame counts. A header is believed only within [`MAX_SIDE`] and
 //! [`MAX_TEXELS`], before any pixel is decoded.
 
+#[cfg(feature = "exr")]
+mod exr;
 #[cfg(feature = "offline")]
 mod jpeg;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "more-pictures")]
+mod tiff;
 
 #[cfg(feature = "offline")]
 use crate::fractal_dimension::ColourSums;
@@ -17,13 +21,14 @@ pub use crate::picture::{
     Channel, ChannelImage, ImageError, MAX_FILE_BYTES, MAX_SIDE, MAX_TEXELS, Picture, Problem,
 };
 use crate::raster::Raster;
-#[cfg(feature = "offline")]
-use image::ColorType;
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader, BufWriter, Cursor, Seek, Write};
+use std::io::{BufRead, BufReader, BufWriter, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
+
+/// Bytes by which a kind of file is known.
+const FIRST_BYTES: u64 = 64;
 
 /// Reads one channel of a picture.
 ///
@@ -94,7 +99,7 @@ pub fn load_reduced_photograph(path: impl AsRef<Path>, most_texels: usize) -> Re
 /// # Errors
 /// As [`load_channel`].
 pub fn read_channel(bytes: &[u8], channel: Channel) -> Result<ChannelImage, Problem> {
-    picture(decode(Cursor::new(bytes), channel)?)?.channel(channel)
+    decode(Cursor::new(bytes), channel)?.channel(channel)
 }
 
 /// Reads one channel of a picture as a map of a surface ([`Picture::map`]), from the bytes of its file.
@@ -102,7 +107,7 @@ pub fn read_channel(bytes: &[u8], channel: Channel) -> Result<ChannelImage, Prob
 /// # Errors
 /// As [`load_channel`], and when it is a normal map.
 pub fn read_map(bytes: &[u8], channel: Channel) -> Result<ChannelImage, Problem> {
-    picture(decode(Cursor::new(bytes), channel)?)?.map(channel)
+    decode(Cursor::new(bytes), channel)?.map(channel)
 }
 
 /// [`read_map`] of a file.
@@ -111,7 +116,7 @@ pub fn read_map(bytes: &[u8], channel: Channel) -> Result<ChannelImage, Problem>
 /// As [`read_map`].
 pub fn load_map(path: impl AsRef<Path>, channel: Channel) -> Result<ChannelImage, ImageError> {
     let path = path.as_ref();
-    let read = open(path).and_then(|file| picture(decode(file, channel)?)?.map(channel));
+    let read = open(path).and_then(|file| decode(file, channel)?.map(channel));
     read.map_err(|problem| ImageError { file: path.to_path_buf(), problem })
 }
 
@@ -126,7 +131,7 @@ pub fn save_gray16(path: impl AsRef<Path>, raster: &Raster) -> Result<(), ImageE
 }
 
 fn load(path: &Path, channel: Channel) -> Result<ChannelImage, Problem> {
-    picture(decode(open(path)?, channel)?)?.channel(channel)
+    decode(open(path)?, channel)?.channel(channel)
 }
 
 fn open(path: &Path) -> Result<BufReader<File>, Problem> {
@@ -144,24 +149,33 @@ fn open(path: &Path) -> Result<BufReader<File>, Problem> {
 /// The picture of a photograph's file, with the brightness that the file itself has, and how much of it is colour.
 #[cfg(feature = "offline")]
 fn decode_photograph(file: impl BufRead + Seek) -> Result<(Picture, f64), Problem> {
-    let (image, format) = decode_as(file, Channel::Luma)?;
-    let colour = colour_of(&image);
-    let photograph = picture(image)?;
+    let (photograph, format) = decode_as(file, Channel::Luma)?;
+    let colour = colour_of(&photograph);
     Ok((if format == ImageFormat::Jpeg { photograph.of_jpeg() } else { photograph }, colour))
 }
 
 /// The picture of a file that has this channel, turned as EXIF says.
-fn decode(file: impl BufRead + Seek, channel: Channel) -> Result<DynamicImage, Problem> {
+fn decode(file: impl BufRead + Seek, channel: Channel) -> Result<Picture, Problem> {
     Ok(decode_as(file, channel)?.0)
 }
 
 /// The same, and what kind of file it is.
-fn decode_as(file: impl BufRead + Seek, channel: Channel) -> Result<(DynamicImage, ImageFormat), Problem> {
-    let mut reader = ImageReader::new(file).with_guessed_format().map_err(Problem::Io)?;
-    let format = match reader.format() {
-        Some(format) if format.reading_enabled() => format,
-        _ => return Err(Problem::UnknownFormat),
-    };
+fn decode_as(mut file: impl BufRead + Seek, channel: Channel) -> Result<(Picture, ImageFormat), Problem> {
+    let format = format_of(&mut file)?;
+    #[cfg(feature = "exr")]
+    if format == ImageFormat::OpenExr {
+        return Ok((exr::read(file)?, format));
+    }
+    #[cfg(feature = "more-pictures")]
+    if format == ImageFormat::Tiff
+        && let Some(picture) = tiff::read(&mut file)?
+    {
+        return Ok((picture, format));
+    }
+    if !format.reading_enabled() {
+        return Err(Problem::UnknownFormat);
+    }
+    let mut reader = ImageReader::with_format(file, format);
     let mut limits = Limits::default();
     limits.max_alloc = Some(MAX_TEXELS * 16 + MAX_FILE_BYTES);
     reader.limits(limits);
@@ -180,28 +194,39 @@ fn decode_as(file: impl BufRead + Seek, channel: Channel) -> Result<(DynamicImag
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     let mut image = DynamicImage::from_decoder(decoder).map_err(translate)?;
     image.apply_orientation(orientation);
-    Ok((image, format))
+    Ok((picture(image)?, format))
+}
+
+/// What kind of file it is, by its first bytes.
+fn format_of(file: &mut (impl BufRead + Seek)) -> Result<ImageFormat, Problem> {
+    let mut first = Vec::new();
+    file.by_ref().take(FIRST_BYTES).read_to_end(&mut first).map_err(Problem::Io)?;
+    file.rewind().map_err(Problem::Io)?;
+    match image::guess_format(&first) {
+        Ok(format) => Ok(format),
+        Err(_) if is_tga(&first) => Ok(ImageFormat::Tga),
+        Err(_) => Err(Problem::UnknownFormat),
+    }
+}
+
+/// Whether these are the first bytes of a TGA file, which has no signature: palette or none, a kind of picture, bits a pixel.
+/// Source: Truevision, TGA file format specification 2.0, field 1–5.
+fn is_tga(first: &[u8]) -> bool {
+    let [_, palette, kind, .., bits, descriptor] = first.first_chunk::<18>().unwrap_or(&[0; 18]);
+    let is_indexed = matches!(kind, 1 | 9);
+    let bits_of = if matches!(kind, 3 | 11) { &[8, 16][..] } else { &[8, 15, 16, 24, 32][..] };
+    *palette <= 1
+        && matches!(kind, 1..=3 | 9..=11)
+        && (*palette == 1) >= is_indexed
+        && bits_of.contains(bits)
+        && descriptor & 0xC0 == 0
 }
 
 /// How much of a picture is colour; 0 of a grey one.
 #[cfg(feature = "offline")]
-fn colour_of(image: &DynamicImage) -> f64 {
+fn colour_of(picture: &Picture) -> f64 {
     let mut sums = ColourSums::default();
-    let channels = usize::from(image.color().channel_count());
-    match image.color() {
-        ColorType::L8 | ColorType::La8 | ColorType::L16 | ColorType::La16 => {}
-        ColorType::Rgb8 | ColorType::Rgba8 => {
-            for pixel in image.as_bytes().chunks_exact(channels) {
-                sums.add([pixel[0], pixel[1], pixel[2]].map(f64::from));
-            }
-        }
-        ColorType::Rgb16 | ColorType::Rgba16 => {
-            for pixel in image.as_bytes().chunks_exact(2 * channels) {
-                sums.add([0, 2, 4].map(|at| f64::from(u16::from_ne_bytes([pixel[at], pixel[at + 1]]))));
-            }
-        }
-        _ => image.to_rgb32f().pixels().for_each(|pixel| sums.add(pixel.0.map(f64::from))),
-    }
+    picture.each_colour(|colour| sums.add(colour));
     sums.fraction()
 }
 
@@ -236,6 +261,7 @@ fn picture(image: DynamicImage) -> Result<Picture, Problem> {
         DynamicImage::ImageLumaA16(pixels) => Samples::U16(pixels.into_raw()),
         DynamicImage::ImageRgb16(pixels) => Samples::U16(pixels.into_raw()),
         DynamicImage::ImageRgba16(pixels) => Samples::U16(pixels.into_raw()),
+        DynamicImage::ImageRgb32F(pixels) => Samples::F32(pixels.into_raw()),
         other => Samples::F32(other.into_rgba32f().into_raw()),
     };
     Picture::new(width, height, samples)

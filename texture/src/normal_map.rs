@@ -18,7 +18,7 @@
 //! ```
 //! and [`SlopeSpectrum::heights`] takes no more height from the slopes than that leaves. Normals that were resized, saved as JPEG or
 //! painted over are those of no surface by more than that: how much is measured at every frequency, as what lies across the derivative, and taken off too. What made
-//! such a map is never certain; where it is flat but for walls, these are taken for narrower than they look ([`Walls`]); of the derivatives that may have, the one that raises short waves the least is taken. 8-bit maps have no number for 0 (127.5),
+//! such a map is never certain, and where heights by differences would have more of the shortest waves than of longer ones ([`short_waves`]), true slopes are taken; where it is flat but for walls, these are taken for narrower than they look ([`Walls`]); of the derivatives that may have, the one that raises short waves the least is taken. 8-bit maps have no number for 0 (127.5),
 //! so that a flat map tilts by 0.4 %: the mean slope of a map that tiles is
 //! dropped, and of one that does not, too, unless [`NormalMapOptions::keep_tilt`]. What is flat in a map comes out at the step next to 0:
 //! where that step stands out of the others, its texels are taken for what they are on average.
@@ -31,6 +31,7 @@ mod decode;
 mod next_to_zero;
 mod plausible;
 mod seams;
+mod short_waves;
 
 pub use plausible::MOST_DOWN;
 
@@ -39,6 +40,7 @@ use crate::gradient_field::{Derivative, SlopeSpectrum, Walls, integrate_periodic
 use crate::raster::Raster;
 use asperity_dsp::DesignError;
 use decode::{rounding_noise, rounding_steps, slopes_of_normals};
+use short_waves::outgrow_longer_ones;
 
 /// A green convention is only decided when its curl is at most this fraction of the other's.
 const DECIDED: f64 = 0.8;
@@ -119,16 +121,17 @@ pub fn heights_from_normals(
     let mut spectrum = SlopeSpectrum::of(field, tileable);
     let (green, green_is_certain) = which_green(&mut spectrum, options.green);
     let (derivative, derivative_is_certain) = which_derivative(&spectrum, noise, options.derivative);
-    let curl = spectrum.curl(derivative);
-    // Normals made of this map's own heights by differences are those heights'; of others' walls they say too much.
-    let may_be_baked =
-        matches!(derivative, Derivative::Exact | Derivative::ExactOrCentral) && !derivative_is_certain;
-    let walls = if may_be_baked { Walls::of(spectrum.field()) } else { Walls::NONE };
-    let height_px = match steps {
-        None if tileable => integrate_periodic(spectrum.field(), derivative),
-        None => spectrum.heights(derivative, f64::INFINITY, walls),
-        Some(_) => spectrum.heights(derivative, noise, walls),
-    };
+    let rounding = steps.map(|_| noise);
+    // Differences that did not make the slopes raise what resizing left in waves that they hardly see.
+    let is_guess =
+        options.derivative.is_none() && matches!(derivative, Derivative::Central | Derivative::Sobel);
+    let again = is_guess.then(|| spectrum.field().clone());
+    let mut made = Made::of(spectrum, derivative, derivative_is_certain, rounding, tileable);
+    if let Some(field) = again.filter(|_| outgrow_longer_ones(&made.height_px)) {
+        let spectrum = SlopeSpectrum::of(field, tileable);
+        made = Made::of(spectrum, Derivative::Exact, false, rounding, tileable);
+    }
+    let Made { height_px, derivative, derivative_is_certain, walls, curl } = made;
     Ok(NormalMapHeights {
         height_px,
         green,
@@ -139,6 +142,38 @@ pub fn heights_from_normals(
         walls: walls.share(),
         curl,
     })
+}
+
+/// Heights by one derivative.
+struct Made {
+    height_px: Raster,
+    derivative: Derivative,
+    derivative_is_certain: bool,
+    walls: Walls,
+    curl: f64,
+}
+
+impl Made {
+    /// Of slopes that rounding left a variance of `rounding` in, if they were rounded.
+    fn of(
+        spectrum: SlopeSpectrum,
+        derivative: Derivative,
+        derivative_is_certain: bool,
+        rounding: Option<f64>,
+        tileable: bool,
+    ) -> Self {
+        let curl = spectrum.curl(derivative);
+        // Normals made of this map's own heights by differences are those heights'; of others' walls they say too much.
+        let may_be_baked =
+            matches!(derivative, Derivative::Exact | Derivative::ExactOrCentral) && !derivative_is_certain;
+        let walls = if may_be_baked { Walls::of(spectrum.field()) } else { Walls::NONE };
+        let height_px = match rounding {
+            None if tileable => integrate_periodic(spectrum.field(), derivative),
+            None => spectrum.heights(derivative, f64::INFINITY, walls),
+            Some(noise) => spectrum.heights(derivative, noise, walls),
+        };
+        Self { height_px, derivative, derivative_is_certain, walls, curl }
+    }
 }
 
 fn check(channels: [&Raster; 3]) -> Result<(), DesignError> {

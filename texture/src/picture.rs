@@ -3,11 +3,13 @@
 //! Nothing here decodes a file, so that a game that has its textures in memory already hands them over as they are.
 
 mod brightness;
+mod ignored;
 mod normals;
 
 use crate::deband::deband;
 use crate::raster::Raster;
 use crate::wrap::Wrap;
+pub use ignored::Ignored;
 use std::path::PathBuf;
 
 /// Most texels a side may have.
@@ -32,6 +34,32 @@ pub enum Channel {
     B,
     /// Alpha: where packed textures keep the height.
     A,
+    /// One number over two channels of 8 bits: 256 R + G.
+    Rg,
+    /// One number over three channels of 8 bits: 65536 R + 256 G + B.
+    Rgb,
+}
+
+impl Channel {
+    /// Every channel, by the word that files and options write for it.
+    pub const ALL: [(&'static str, Self); 7] = [
+        ("luma", Self::Luma),
+        ("r", Self::R),
+        ("g", Self::G),
+        ("b", Self::B),
+        ("a", Self::A),
+        ("rg", Self::Rg),
+        ("rgb", Self::Rgb),
+    ];
+
+    /// White of one number that channels of 8 bits hold together.
+    fn packed_white(self) -> Option<u32> {
+        match self {
+            Self::Rg => Some(0xFFFF),
+            Self::Rgb => Some(0xFF_FFFF),
+            _ => None,
+        }
+    }
 }
 
 /// The numbers of a picture, pixel by pixel, row by row from the top left.
@@ -127,10 +155,16 @@ impl Picture {
         if channel == Channel::A && self.channels % 2 == 1 {
             return Err(Problem::NoAlpha);
         }
+        let packed = channel.packed_white();
+        let holds_packed = self.channels > 2 && matches!(self.samples, Samples::U8(_));
+        if packed.is_some() && !holds_packed {
+            return Err(Problem::NotPacked);
+        }
         let shape = [width * height, self.channels];
         let (values, step) = match &self.samples {
             Samples::U8(samples) => {
-                integers(samples.iter().map(|&s| u16::from(s)), shape, 255, channel, self.luma)
+                let white = packed.unwrap_or(255);
+                integers(samples.iter().map(|&s| u16::from(s)), shape, white, channel, self.luma)
             }
             Samples::U16(samples) => integers(samples.iter().copied(), shape, 65_535, channel, self.luma),
             Samples::F32(samples) => {
@@ -145,7 +179,7 @@ impl Picture {
         let raster = Raster { width, height, values };
         match raster.values.iter().position(|v| !v.is_finite()) {
             Some(at) => Err(Problem::NotFinite { x: at % width, y: at / width }),
-            None => Ok(ChannelImage { raster, step }),
+            None => Ok(ChannelImage { raster, step, ignored: self.ignored(channel) }),
         }
     }
 }
@@ -158,6 +192,8 @@ pub struct ChannelImage {
     /// Distance between two neighbouring levels of the file, in the raster's units; 0 for floating
     /// point. Measured, so that 8-bit data in a 16-bit file is known for what it is.
     pub step: f64,
+    /// What else the picture holds, where nobody named a channel.
+    pub ignored: Option<Ignored>,
 }
 
 impl ChannelImage {
@@ -186,7 +222,9 @@ pub enum Problem {
     #[error("{0}; a readable file (or a writable folder for output) is needed")]
     Io(std::io::Error),
     /// Its first bytes are of no picture format we read.
-    #[error("not a picture this program reads; PNG, JPEG, PGM, GIF{} are read", if cfg!(feature = "exr") { " and EXR" } else { " (and EXR with the feature `exr`)" })]
+    #[error("not a picture this program reads; PNG, JPEG, PGM, GIF{}{} are read",
+        if cfg!(feature = "more-pictures") { ", WebP, TIFF, TGA, BMP" } else { "" },
+        if cfg!(feature = "exr") { " and EXR" } else { " (and EXR with the feature `exr`)" })]
     UnknownFormat,
     /// The picture is cut off or contradicts itself.
     #[error("damaged or cut off ({0}); a complete file is needed")]
@@ -217,9 +255,17 @@ pub enum Problem {
     /// The file itself is too long.
     #[error("{0} bytes are too many; at most {MAX_FILE_BYTES} are read")]
     TooLong(u64),
+    /// Several layers, none of which is the picture.
+    #[error("has several layers ({0}); save the one that is the map as a picture of its own")]
+    Layers(String),
     /// The channel asked for is not in the picture.
     #[error("has no alpha channel; choose `luma`, `r`, `g` or `b`, or a picture with alpha")]
     NoAlpha,
+    /// Its channels are not of 8 bits, or too few.
+    #[error(
+        "has no red, green and blue of 8 bits, which `rg` and `rgb` put together; choose `luma`, `r`, `g`, `b` or `a`"
+    )]
+    NotPacked,
     /// Samples that do not fill the pixels.
     #[error("{count} samples do not fill {width} × {height} pixels; one to four a pixel are needed")]
     Samples {
@@ -253,7 +299,7 @@ pub enum Problem {
 fn integers(
     samples: impl Iterator<Item = u16>,
     [texels, channels]: [usize; 2],
-    white: u16,
+    white: u32,
     channel: Channel,
     luma: Luma,
 ) -> (Vec<f64>, f64) {
@@ -268,7 +314,7 @@ fn integers(
             filled = 0;
             let value = channel_of(&pixel[..channels], channel, luma);
             if common != 1 {
-                common = greatest_common_divisor(common, value.round() as u16);
+                common = greatest_common_divisor(common, value.round() as u32);
             }
             values.push(value / f64::from(white));
         }
@@ -276,7 +322,7 @@ fn integers(
     (values, f64::from(common) / f64::from(white))
 }
 
-fn greatest_common_divisor(mut a: u16, mut b: u16) -> u16 {
+fn greatest_common_divisor(mut a: u32, mut b: u32) -> u32 {
     while b != 0 {
         (a, b) = (b, a % b);
     }
@@ -287,6 +333,8 @@ fn channel_of(pixel: &[f64], channel: Channel, luma: Luma) -> f64 {
     let is_grey = pixel.len() < 3;
     match channel {
         Channel::A => pixel[pixel.len() - 1],
+        Channel::Rg => 256.0 * pixel[0] + pixel[1],
+        Channel::Rgb => 65_536.0 * pixel[0] + 256.0 * pixel[1] + pixel[2],
         Channel::Luma if !is_grey => luma.of(pixel[0], pixel[1], pixel[2]),
         Channel::G if !is_grey => pixel[1],
         Channel::B if !is_grey => pixel[2],

@@ -4,6 +4,7 @@ use asperity_dsp::rng::Rng;
 use asperity_texture::deband::deband;
 use asperity_texture::height_field::{HeightField, MAX_BLOCK, PathBlock, SurfaceBlock};
 use asperity_texture::height_map::{Extent, HeightMap};
+use asperity_texture::picture::{Channel, Picture, Samples};
 use asperity_texture::raster::Raster;
 use asperity_texture::wrap::Wrap;
 use std::f64::consts::{PI, TAU};
@@ -104,4 +105,61 @@ fn a_finely_quantised_or_constant_map_is_left_alone() {
     assert_eq!(deband(&fine, 1.0 / 65_535.0, Wrap::Repeat), fine);
     let constant = Raster::constant(64, 64, 0.5);
     assert_eq!(deband(&constant, 1.0 / 255.0, Wrap::Clamp), constant);
+}
+
+/// One channel of a picture of `levels` even greys of `white`, debanded.
+fn debanded(white: u16, levels: u16, cell: impl Fn(usize, usize) -> u16) -> (Raster, Raster) {
+    let grey =
+        |at: usize| (f64::from(white) * f64::from(cell(at % 192, at / 192)) / f64::from(levels - 1)).round();
+    let samples = (0..192 * 128).map(|at| (grey(at) / f64::from(white) * 65_535.0).round() as u16);
+    let picture = Picture::new(192, 128, Samples::U16(samples.collect())).unwrap();
+    let read = picture.channel(Channel::Luma).unwrap();
+    (read.debanded(Wrap::Repeat), read.raster)
+}
+
+/// Gain of `found` over `stored` about their means.
+fn gain(found: &Raster, stored: &Raster) -> f64 {
+    let mean = stored.mean();
+    let about = |raster: &Raster| {
+        raster.values.iter().zip(&stored.values).map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>()
+    };
+    about(found) / about(stored)
+}
+
+#[test]
+fn a_grating_of_black_and_white_is_no_flat_glass() {
+    for bits in [1_u32, 2, 4, 8, 12, 16] {
+        let white = ((1_u32 << bits) - 1) as u16;
+        for levels in [2_u16, 4, 16].into_iter().filter(|levels| *levels - 1 <= white) {
+            for period in [2, 8, 16, 32, 64] {
+                let grating = |x: usize, _: usize| u16::from(x % period < period / 2);
+                let stairs = |x: usize, _: usize| (x / (period / 2)) as u16 % levels;
+                let dots = |x: usize, y: usize| {
+                    let [x, y] = [x, y].map(|at| at as f64 - 32.0 * (at as f64 / 32.0).round());
+                    u16::from(x.hypot(y) < period as f64 / 8.0)
+                };
+                let cells: [&dyn Fn(usize, usize) -> u16; 3] = [&grating, &stairs, &dots];
+                for (shape, cell) in cells.iter().enumerate() {
+                    let (found, stored) = debanded(white, levels, cell);
+                    let range = stored.range();
+                    if range.0 == range.1 {
+                        continue;
+                    }
+                    let gain = gain(&found, &stored);
+                    let what = format!("{bits} bits, {levels} levels, period {period}, shape {shape}");
+                    assert!((gain - 1.0).abs() < 0.02, "{what}: gain {gain}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn letters_of_two_greys_keep_their_edges() {
+    for [dark, bright] in [[0, 255], [100, 200], [100, 101]] {
+        let letters = |at: usize| if (at % 64 / 5 * (at / 64 / 7)) % 3 == 0 { bright } else { dark };
+        let picture = Picture::new(64, 64, Samples::U8((0..64 * 64).map(letters).collect())).unwrap();
+        let read = picture.channel(Channel::Luma).unwrap();
+        assert_eq!(read.debanded(Wrap::Repeat), read.raster, "{dark} and {bright}");
+    }
 }

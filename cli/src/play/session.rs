@@ -103,6 +103,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     };
     let overrides = Overrides { sample_rate_hz: rate, live: true, ..Overrides::default() };
     let built = Engine::from_scene(&file, &overrides)?;
+    built.remarks.iter().for_each(|remark| eprintln!("warning: {remark}"));
     let watch = options.watch.then(|| Watch::new(file.clone(), overrides));
     let summary = play(built, &log, &file, &device_options, watch)?;
     if options.json { output::say_json(&summary) } else { print(&summary) }

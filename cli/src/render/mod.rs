@@ -179,7 +179,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let built = Engine::from_scene(&file, &overrides)?;
     let names: Vec<(String, SurfaceId)> =
         built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
-    let levels = built.levels.clone();
+    let (levels, remarks) = (built.levels.clone(), built.remarks.clone());
     for (actuator, full_scale) in file.actuators.iter_mut().zip(&levels.full_scale) {
         actuator.full_scale = Some(*full_scale);
     }
@@ -197,7 +197,7 @@ pub fn render(options: &Options) -> Result<Report, CliError> {
     let haptic: Vec<&[f32]> = render.haptic.iter().map(Vec::as_slice).collect();
     wav::write(&mut outputs, &with_suffix(stem, "haptic.wav"), &haptic, rate_hz)?;
     let mut report = report(&render, kernel, levels, watching);
-    report.warnings = unread.iter().map(|place| read_past(place)).collect();
+    report.warnings = unread.iter().map(|place| read_past(place)).chain(remarks).collect();
     let full_scale = report.full_scale.clone();
     let rendered =
         Rendered { file: &file, log: &log, render: &render, full_scale: &full_scale, surfaces: &names };

@@ -8,6 +8,7 @@ use asperity_texture::from_photo::TEXEL_M;
 use asperity_texture::gradient_field::Derivative;
 use asperity_texture::image_io::{self, Channel};
 use asperity_texture::normal_map::{Green, NormalMapOptions, heights_from_normals};
+use asperity_texture::raster::Raster;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -27,6 +28,9 @@ pub struct Options {
     /// What took the map's slopes from heights; found out unless given
     #[arg(long, value_name = "HOW")]
     pub derivative: Option<DerivativeName>,
+    /// Take x from alpha: DXT5nm, where red is blank
+    #[arg(long)]
+    pub x_in_alpha: bool,
     /// Keep the mean slope of a map that does not tile
     #[arg(long)]
     pub keep_tilt: bool,
@@ -136,12 +140,13 @@ struct Report {
 pub fn run(options: &Options) -> Result<(), CliError> {
     output::check_destination(&options.output)?;
     options.object.check_destination()?;
-    let [red, green, blue] = [Channel::R, Channel::G, Channel::B];
-    let (red, green, blue) = (
-        channel(&options.normals, red)?,
-        channel(&options.normals, green)?,
-        channel(&options.normals, blue)?,
-    );
+    let x = if options.x_in_alpha { Channel::A } else { Channel::R };
+    let (red, green) = (channel(&options.normals, x)?, channel(&options.normals, Channel::G)?);
+    let blue = match options.x_in_alpha {
+        // Such maps keep a copy of y there, or nothing.
+        true => Raster::constant(red.width, red.height, 1.0),
+        false => channel(&options.normals, Channel::B)?,
+    };
     let settings = NormalMapOptions {
         green: match options.green {
             None => Green::Detect,
@@ -165,6 +170,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     let heights_m = found.height_px.map(|z| z * texel_m.unwrap_or(TEXEL_M));
     options.object.write(&mut outputs, &heights_m, texel_m.unwrap_or(TEXEL_M))?;
     let size = texel_m.map(|texel_m| SizeMm::of(&heights_m, texel_m));
+    let mut warnings = warnings(options, relief_per_px, size);
+    warnings.extend(doubtful_normals(options, [&red, &green], found.tileable));
     let report = Report {
         width: scaled.width,
         height: scaled.height,
@@ -178,7 +185,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         tileable: found.tileable,
         walls: found.walls,
         curl: found.curl,
-        warnings: warnings(options, relief_per_px, size),
+        warnings,
         files: outputs.commit()?,
     };
     if options.json {
@@ -211,4 +218,33 @@ fn warnings(options: &Options, relief_per_px: f64, size: Option<SizeMm>) -> Vec<
         (relief_per_px == 0.0).then(|| "all normals of the map are alike: the surface is flat".to_string());
     let coarse = options.object.stl.as_ref().and(size.and_then(|size| size.warning()));
     flat.into_iter().chain(coarse).collect()
+}
+
+/// Mean of x or y from which a map that tiles was not stored as normals are.
+const LEANS: f64 = 0.1;
+
+/// What is wrong with the way normals are stored: x in alpha, or a gamma.
+fn doubtful_normals(options: &Options, [red, green]: [&Raster; 2], tileable: bool) -> Option<String> {
+    let varies = |raster: &Raster| raster.range().1 - raster.range().0 > LEANS;
+    let (low, high) = red.range();
+    if low == high && varies(green) {
+        let alpha = channel(&options.normals, Channel::A).is_ok_and(|alpha| varies(&alpha));
+        return alpha.then(|| {
+            "red is the same everywhere and alpha varies: if x lies there (DXT5nm), write --x-in-alpha"
+                .to_owned()
+        });
+    }
+    let neutral = [red, green].map(Raster::mean);
+    let [x, y] = neutral.map(|mean| 2.0 * mean - 1.0);
+    let leans = x.abs().max(y.abs()) > LEANS;
+    // A gamma moves both the same way; a surface leans either way.
+    let both = x * y > 0.0 && x.abs().min(y.abs()) > LEANS;
+    (both || (leans && tileable)).then(|| {
+        format!(
+            "its normals lean: red and green are {:.0} and {:.0} of 255 on average, where a flat place has 128; a map that was saved through a gamma (sRGB) has to be \
+             converted first, or its heights are wrong",
+            255.0 * neutral[0],
+            255.0 * neutral[1]
+        )
+    })
 }

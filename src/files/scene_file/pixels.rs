@@ -5,8 +5,7 @@ use crate::files::FileError;
 pub use crate::files::storage::Pixels;
 use asperity_texture::picture::Channel;
 
-/// `r`, `g`, `b`, `a` or `luma`.
+/// One of [`Channel::ALL`].
 pub fn read_channel(fields: &mut Fields, key: &'static str) -> Result<Channel, FileError> {
-    use Channel::{A, B, G, Luma, R};
-    Ok(fields.word(key, &[("r", R), ("g", G), ("b", B), ("a", A), ("luma", Luma)])?.unwrap_or_default())
+    Ok(fields.word(key, &Channel::ALL)?.unwrap_or_default())
 }
