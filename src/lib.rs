@@ -128,6 +128,7 @@ pub use model::surface::{
     DEFAULT_MICRO_RELIEF_M, DEFAULT_ROUGHNESS, DEFAULT_STICK_SLIP, EXCITER_MATERIAL, EXCITER_RADIUS_M,
     Roughness, Surface, SurfaceError,
 };
+pub use model::uv_mapping::{UvMapping, UvPlace};
 pub use model::uv_triangle::UvTriangle;
 pub use rate::{AtRate, RateError};
 

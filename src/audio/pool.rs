@@ -13,18 +13,13 @@
 //! the time that the audio thread is done with its own job it runs itself, so that a helper that wakes late costs nothing. All it ever waits for
 //! is a job that a helper is in the middle of; after [`LOOKS`] looks it offers its processor, in case the helper has none.
 
-use crossbeam_queue::ArrayQueue;
+use crate::link::threads::Arc;
+use crate::link::threads::atomic::Ordering::{Relaxed, SeqCst};
+use crate::link::threads::atomic::{AtomicBool, fence};
+use crate::link::threads::waiting::{ArrayQueue, Builder, JoinHandle, LOOKS, park, spin_loop, yield_now};
 use std::any::Any;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::Arc;
-use std::sync::atomic::Ordering::{Relaxed, SeqCst};
-use std::sync::atomic::{AtomicBool, fence};
-use std::thread::{Builder, JoinHandle, park, yield_now};
-
-/// How often a thread that has nothing to do looks again before it sleeps: some 30–100 µs, longer than from the last job of a block to the first of the
-/// next where blocks are rendered one after the other.
-const LOOKS: u32 = 2048;
 
 /// Something that any thread can do.
 pub(crate) trait Job: Send + 'static {
@@ -134,7 +129,7 @@ impl<J: Job> Queues<J> {
                 self.finish(job, room);
             } else if looks < LOOKS {
                 looks += 1;
-                std::hint::spin_loop();
+                spin_loop();
             } else {
                 self.sleep(index);
                 looks = 0;
@@ -162,7 +157,7 @@ impl<J: Job> Queues<J> {
 fn look_again(looks: &mut u32) {
     if *looks < LOOKS {
         *looks += 1;
-        std::hint::spin_loop();
+        spin_loop();
     } else {
         yield_now();
     }

@@ -96,6 +96,15 @@ pub enum SilentBecause {
         /// How many.
         count: u64,
     },
+    /// Reports beyond what the models reach counted as their limits.
+    #[error(
+        "{count} events told a force above 1e4 N, a speed above 100 m/s or a mass above 1e4 kg, which counted as that; a game whose \
+         unit is the centimetre has to report metres"
+    )]
+    Held {
+        /// How many.
+        count: u64,
+    },
     /// Contacts lasted longer than the engine plays.
     #[error(
         "{count} impacts or micro-collisions would outlast the longest contact that is played ({longest_s:.2} s, a \
@@ -248,6 +257,7 @@ impl Reported {
             SilentBecause::Lapsed { count: stats.lapsed, timeout_s: config.contact_timeout_s },
             SilentBecause::Stolen { count: stats.stolen, limit: config.max_contacts },
             SilentBecause::Quarantined { count: stats.quarantined },
+            SilentBecause::Held { count: stats.held },
             SilentBecause::Shortened {
                 count: stats.shortened + stats.shortened_collisions,
                 longest_s: LONGEST_CONTACT_S,
@@ -272,6 +282,7 @@ impl SilentBecause {
             | Self::Leapt { count }
             | Self::Stolen { count, .. }
             | Self::Quarantined { count }
+            | Self::Held { count }
             | Self::Shortened { count, .. }
             | Self::Shed { count } => *count,
             Self::Contradicts(_) => 1,

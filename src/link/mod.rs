@@ -6,3 +6,4 @@ pub(crate) mod overwriting;
 pub(crate) mod ring;
 pub(crate) mod stats;
 pub(crate) mod tap;
+pub(crate) mod threads;

@@ -84,6 +84,8 @@ counters! {
     unpressed,
     /// Events refused on the game side: bad numbers, unknown names, time running backwards.
     refused,
+    /// Reports with a force, speed, mass or radius beyond what the models reach, which counted as the limit.
+    held,
     /// Contacts reset on the audio half after their numbers went bad.
     quarantined,
     /// Events that arrived after the sample they were stamped for.

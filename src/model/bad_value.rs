@@ -18,3 +18,14 @@ pub struct BadValue {
 pub(crate) fn within(field: &'static str, value: f64, range: Range) -> Result<f64, BadValue> {
     if range.holds(value) { Ok(value) } else { Err(BadValue { field, value, expected: range.words }) }
 }
+
+/// A magnitude of a report: beyond its range it is held at the limit, and `held` says so. What is not finite is refused, and so is a
+/// negative one where none can be.
+///
+/// # Errors
+/// Names the field and what it must be.
+pub(crate) fn held(field: &'static str, value: f64, range: Range, held: &mut bool) -> Result<f64, BadValue> {
+    let beyond = value.is_finite() && (value > range.high || (value < range.low && range.low < 0.0));
+    *held |= beyond;
+    if beyond { Ok(value.clamp(range.low, range.high)) } else { within(field, value, range) }
+}

@@ -8,7 +8,7 @@
 //! A device's loop knows where its tip is and wants to know the force: it reports a depth. Only what gives way can answer; on a hard
 //! surface a depth says nothing about the force, and is refused.
 
-use crate::model::bad_value::{BadValue, within};
+use crate::model::bad_value::{BadValue, held, within};
 use crate::model::error::Refusal;
 use crate::model::frame::SurfaceFrame;
 use asperity_dsp::limits;
@@ -188,27 +188,45 @@ impl ContactSample {
         self
     }
 
-    /// The same sample with a negative force set to 0.
+    /// The same sample with a negative force set to 0, and force and speeds that no model reaches held at their limits: 1e4 N and
+    /// 100 m/s, of a velocity in its own direction.
     ///
     /// # Errors
-    /// When a number is not finite or beyond the limits of this module.
-    pub fn checked(mut self) -> Result<Self, BadValue> {
+    /// When a number is not finite, or a place beyond the limits of this module.
+    pub fn checked(self) -> Result<Self, BadValue> {
+        self.held().map(|(sample, _)| sample)
+    }
+
+    /// The same, and whether something was held at its limit.
+    pub(crate) fn held(mut self) -> Result<(Self, bool), BadValue> {
+        let mut at_limit = false;
         for x in self.at_m.into_iter().flatten() {
             within("at_m", x, limits::PLACE_M)?;
         }
         for uv in self.uv {
             within("uv", uv, limits::UV)?;
         }
-        for v in self.velocity_m_s.into_iter().flatten() {
-            within("velocity_m_s", v, limits::VELOCITY_M_S)?;
+        if let Some(v) = &mut self.velocity_m_s {
+            let fastest = v.iter().fold(0.0f64, |most, v| most.max(v.abs()));
+            for component in &mut *v {
+                held("velocity_m_s", *component, limits::VELOCITY_M_S, &mut at_limit)?;
+                let slowed = *component * (limits::MAX_SPEED_M_S / fastest).min(1.0);
+                *component = slowed.clamp(-limits::MAX_SPEED_M_S, limits::MAX_SPEED_M_S);
+            }
         }
-        within("normal_force_n", self.normal_force_n, limits::NORMAL_FORCE_N)?;
+        let pressed_n = held("normal_force_n", self.normal_force_n, limits::NORMAL_FORCE_N, &mut at_limit)?;
+        self.normal_force_n = pressed_n.max(0.0);
         within("depth_m", self.depth_m.unwrap_or(0.0), limits::TIP_DEPTH_M)?;
-        within("closing_m_s", self.closing_m_s, limits::SPEED_M_S)?;
-        within("slip_m_s", self.slip_m_s.unwrap_or(0.0), limits::SPEED_M_S)?;
-        within("roll_radius_m", self.roll_radius_m.unwrap_or(1.0), limits::impact::RADIUS_M)?;
-        self.normal_force_n = self.normal_force_n.max(0.0);
-        Ok(self)
+        self.closing_m_s = held("closing_m_s", self.closing_m_s, limits::SPEED_M_S, &mut at_limit)?;
+        for (field, value, range) in [
+            ("slip_m_s", &mut self.slip_m_s, limits::SPEED_M_S),
+            ("roll_radius_m", &mut self.roll_radius_m, limits::impact::RADIUS_M),
+        ] {
+            if let Some(value) = value {
+                *value = held(field, *value, range, &mut at_limit)?;
+            }
+        }
+        Ok((self, at_limit))
     }
 
     /// On its surface: a place in a frame becomes texture coordinates and, where nothing else presses, a depth. On a surface without a
@@ -277,7 +295,7 @@ mod tests {
 
     #[test]
     fn numbers_that_no_contact_has_are_refused_by_name() {
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let cases = [
                 ("uv", ContactSample { uv: [0.0, bad], ..sample() }),
                 ("velocity_m_s", ContactSample { velocity_m_s: Some([bad, 0.0]), ..sample() }),
@@ -292,5 +310,28 @@ mod tests {
                 assert_eq!(case.checked().unwrap_err().field, field);
             }
         }
+        for (field, case) in [
+            ("uv", ContactSample { uv: [0.0, 1e300], ..sample() }),
+            ("depth_m", ContactSample::at_depth([0.1; 2], 1e300)),
+            ("at_m", sample().placed([0.0, 1e300, 0.0])),
+            ("closing_m_s", sample().landing(-1.0)),
+            ("slip_m_s", sample().slipping(-1.0)),
+        ] {
+            assert_eq!(case.checked().unwrap_err().field, field);
+        }
+    }
+
+    #[test]
+    fn what_weighs_tonnes_or_outruns_sound_is_held_at_the_limit_in_its_own_direction() {
+        let lorry = ContactSample { normal_force_n: 2e5, ..sample() }.sliding([-150.0, 300.0]).slipping(1e6);
+        let (held, at_limit) = lorry.held().unwrap();
+        assert!(at_limit);
+        assert_eq!((held.normal_force_n, held.slip_m_s), (1e4, Some(100.0)));
+        let [u, v] = held.velocity_m_s.unwrap();
+        assert!((u + 50.0).abs() < 1e-9 && (v - 100.0).abs() < 1e-9, "{u} {v}");
+        assert_eq!(sample().held(), Ok((sample(), false)));
+        assert_eq!(ContactSample { normal_force_n: -1e6, ..sample() }.checked().unwrap().normal_force_n, 0.0);
+        let [u, v] = sample().sliding([1e300, -1e300]).checked().unwrap().velocity_m_s.unwrap();
+        assert!((u - 100.0).abs() < 1e-9 && u <= 100.0 && v == -u, "{u} {v}");
     }
 }

@@ -13,7 +13,7 @@
 //! faded to, without a landing, and is counted in [`Stats::debounced`](crate::Stats::debounced). A begin
 //! of a contact that never ended is a landing.
 
-use crate::model::bad_value::{BadValue, within};
+use crate::model::bad_value::{BadValue, held, within};
 pub use crate::model::contact_sample::ContactSample;
 use crate::model::id::{BodyId, ProbeId, SurfaceId};
 use crate::model::material::Material;
@@ -332,21 +332,34 @@ impl Impact {
         self
     }
 
+    /// The same, with speed, mass and radius beyond what the models reach held at their limits: 100 m/s, 1e4 kg, 10 m.
+    ///
     /// # Errors
     /// When a number is not finite or no striker can have it.
     pub fn checked(self) -> Result<Self, BadValue> {
-        within("speed_m_s", self.speed_m_s, limits::SPEED_M_S)?;
-        within("mass_kg", self.mass_kg, limits::impact::MASS_KG)?;
-        within("radius_m", self.radius_m, limits::impact::RADIUS_M)?;
+        self.held().map(|(impact, _)| impact)
+    }
+
+    /// The same, and whether something was held at its limit.
+    pub(crate) fn held(mut self) -> Result<(Self, bool), BadValue> {
+        let mut at_limit = false;
+        for (field, value, range) in [
+            ("speed_m_s", &mut self.speed_m_s, limits::SPEED_M_S),
+            ("mass_kg", &mut self.mass_kg, limits::impact::MASS_KG),
+            ("radius_m", &mut self.radius_m, limits::impact::RADIUS_M),
+        ] {
+            *value = held(field, *value, range, &mut at_limit)?;
+        }
         within("restitution", self.restitution, limits::impact::RESTITUTION)?;
         within("gain", self.gain, limits::impact::GAIN)?;
-        for x in self.at_m.into_iter().flatten() {
-            within("at_m", x, limits::PLACE_M)?;
+        // The nearest point of the body counts: a place far off is as good as the one at the limit.
+        for x in self.at_m.iter_mut().flatten() {
+            *x = held("at_m", *x, limits::PLACE_M, &mut at_limit)?;
         }
         if let Some(direction) = self.direction {
             within("direction", direction.iter().map(|x| x * x).sum::<f64>().sqrt(), limits::AXIS)?;
         }
         self.striker.checked()?;
-        Ok(self)
+        Ok((self, at_limit))
     }
 }

@@ -27,4 +27,5 @@ pub(crate) mod stamp;
 pub(crate) mod stock;
 pub(crate) mod strike_field;
 pub(crate) mod surface;
+pub(crate) mod uv_mapping;
 pub(crate) mod uv_triangle;

@@ -73,6 +73,19 @@ impl UvTriangle {
         (self.uv + w1 * self.uv_edges[0] + w2 * self.uv_edges[1]).to_array()
     }
 
+    /// Direction across the triangle, of length 1; either of the two.
+    pub(crate) fn normal(&self) -> DVec3 {
+        let [p, q] = self.edges_m;
+        p.cross(q).normalize_or_zero()
+    }
+
+    /// Lengths of ∂P/∂u and ∂P/∂v: what uv 1 spans, m.
+    pub(crate) fn spans_m(&self) -> [f64; 2] {
+        let ([p, q], [s, t]) = (self.edges_m, self.uv_edges);
+        let area_uv = s.perp_dot(t);
+        [(p * t.y - q * s.y) / area_uv, (q * s.x - p * t.x) / area_uv].map(DVec3::length)
+    }
+
     /// A velocity, m/s, along the unit vectors of growing u and v.
     #[must_use]
     pub fn along<T: Into<f64>>(&self, velocity_m_s: impl Into<Vector3<T>>) -> [f64; 2] {

@@ -4,14 +4,20 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `notice` | what a game should know of its things |
 //! | `side` | one of the two: what it is to asperity, and how it moves |
 //! | `pair` | one pair over time: lands, slides, rolls, rests, leaves |
+//! | `step` | what of a pair's step follows from mechanics alone |
 
+mod notice;
 mod pair;
 mod side;
+mod step;
 
-pub use pair::{Doing, Kind, Pair, Solved, Step};
-pub use side::{EDGE_RADIUS_M, Motion, Side, Thing, mobility_per_kg, radius_m};
+pub use notice::{Notice, ODD_GRAVITY_M_S2, ODD_SIZE_M};
+pub use pair::{Doing, Kind, Pair};
+pub use side::{EDGE_RADIUS_M, Motion, Side, Thing, axis_radius_m, lies_across, mobility_per_kg, radius_m};
+pub use step::{NOMINAL_FORCE_N, Solved, Step};
 
 /// Vectors in space, m or m/s.
 pub use glam::Vec3;

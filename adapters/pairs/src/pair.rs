@@ -1,11 +1,10 @@
 //! One pair of colliders over time: it lands, slides or rolls, rests, and leaves.
 
-use crate::side::{Side, radius_m};
-use asperity::{ContactEvent, ContactId, ContactSample, Impact, ProbeId, SurfaceId, Touching};
+use crate::step::{QUIET_LANDING_M_S, Solved, Step};
+use asperity::texture::triplanar::TriplanarPath;
+use asperity::{ContactEvent, ContactId, ContactSample, SurfaceId, Touching, UvPlace};
 use glam::Vec3;
 
-/// Slower landings are rest, not impacts, m/s.
-const QUIET_LANDING_M_S: f32 = 0.02;
 /// A place of contact that moves slower rests, m/s.
 const REST_M_S: f32 = 0.002;
 /// Steps of rest after which a contact ends.
@@ -16,8 +15,6 @@ const PULL: f32 = 0.3;
 const TELEPORT_M: f32 = 0.01;
 /// A pair whose slip is below this share of its path rolls.
 const ROLLING: f32 = 0.3;
-/// The least mobility that a blow is reckoned with, 1/kg: a blow between two things that nothing moves is one of 10 t.
-const LEAST_MOBILITY_PER_KG: f64 = 1e-4;
 
 /// What a pair does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,34 +41,8 @@ pub struct Doing {
     pub slip_m_s: f32,
     /// Force between them, mean of the step, N.
     pub force_n: f32,
-}
-
-/// A contact as the solver left it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solved {
-    /// Where, in space, m: the mean of its points, weighted by their impulses.
-    pub point_m: Vec3,
-    /// Of length 1, from the first collider to the second.
-    pub normal: Vec3,
-    /// Along the normal, over the whole step, N·s.
-    pub impulse_n_s: f32,
-    /// Rebound over approach speed, 0 to 1.
-    pub restitution: f32,
-    /// Approach speed there as the solver met it, m/s; 0 where only gravity's share of the step brings the two together, as it does to all
-    /// that rests.
-    pub closing_m_s: f32,
-}
-
-/// What a pair needs to know of a step.
-pub struct Step<'a> {
-    /// The two, in the physics engine's order.
-    pub sides: [&'a dyn Side; 2],
-    /// Their contact; none: nothing presses.
-    pub solved: Option<Solved>,
-    /// What things touch with that do not say otherwise.
-    pub rigid: ProbeId,
-    /// Length of the step, s.
-    pub step_s: f32,
+    /// The one of the two that has a surface but no texture coordinates where it is touched: nothing can be heard of it.
+    pub unplaced: Option<usize>,
 }
 
 /// A pair that the physics engine lists, from step to step.
@@ -81,6 +52,11 @@ pub struct Pair {
     contact: Option<ContactId>,
     /// Place of contact in the space of the scraped collider.
     local_m: Option<Vec3>,
+    /// How far the scraped one's own surface has run since the contact began, in its space.
+    run_m: Vec3,
+    /// The plane that it is mapped on by its normal, kept until another is clearly nearer.
+    path: Option<TriplanarPath>,
+    unplaced: Option<usize>,
     resting_steps: u32,
 }
 
@@ -97,14 +73,16 @@ impl Pair {
         let landed = self.doing.is_none();
         let closing_m_s = if landed { solved.closing_m_s } else { 0.0 };
         let felt_landing = step.sides.iter().any(|side| side.thing().is_finger());
-        let strikes = closing_m_s > QUIET_LANDING_M_S && !felt_landing;
+        // What only a hand's own force presses is not thrown.
+        let strikes = closing_m_s > QUIET_LANDING_M_S && !felt_landing && !solved.is_nominal;
         if strikes && let Some(impact) = step.impact(&solved) {
             events.push(ContactEvent::Impact(impact));
         }
         let scraped = step.scraped();
+        let solved = step.in_the_middle(solved, scraped.unwrap_or(0));
         let (path, slip) = step.velocities(&solved, scraped.unwrap_or(0));
         let kind = match (path.length(), slip.length()) {
-            (path, _) if path < REST_M_S => Kind::Rests,
+            (path, slip) if path.max(slip) < REST_M_S => Kind::Rests,
             (path, slip) if slip < ROLLING * path => Kind::Rolls,
             _ => Kind::Scrapes,
         };
@@ -118,6 +96,7 @@ impl Pair {
             path_m_s: path.length(),
             slip_m_s: slip.length(),
             force_n: solved.impulse_n_s / step.step_s,
+            unplaced: self.unplaced,
         });
     }
 
@@ -131,16 +110,17 @@ impl Pair {
         events: &mut Vec<ContactEvent>,
     ) {
         let toucher = step.sides[1 - scraped].thing();
-        let rests = path.length() < REST_M_S && toucher.actuator.is_none();
+        let rests = path.length().max(slip.length()) < REST_M_S && toucher.actuator.is_none();
         self.resting_steps = if rests { self.resting_steps + 1 } else { 0 };
         if self.resting_steps > REST_STEPS || (rests && self.contact.is_none()) {
+            self.unplaced = None;
             return self.end(events);
         }
-        let Some((mut sample, surface)) = self.sample(step, solved, scraped, path) else {
-            return self.end(events);
-        };
+        let placed = self.sample(step, solved, scraped, path);
+        self.unplaced = placed.is_none().then_some(scraped);
+        let Some((mut sample, surface)) = placed else { return self.end(events) };
         // What is not round slides as fast as it moves.
-        if let Some(radius_m) = step.roll_radius_m(scraped) {
+        if let Some(radius_m) = step.roll_radius_m(solved, scraped) {
             sample = sample.rolling(radius_m).slipping(f64::from(slip.length()));
         }
         if let Some(contact) = self.contact {
@@ -169,10 +149,39 @@ impl Pair {
         let side = step.sides[scraped];
         let surface = side.thing().surface?;
         let local_path = side.direction(path);
-        let local_m = self.follow(side.place_m(solved.point_m), local_path * step.step_s);
-        let triangle = side.triangle(local_m)?;
+        // What lies on a belt stands still on its surface.
+        let told_m = side.place_m(solved.point_m) - self.run_m;
+        self.run_m += side.direction(side.belt_m_s()) * step.step_s;
+        let local_m = self.follow(told_m, local_path * step.step_s);
         let force_n = f64::from(solved.impulse_n_s / step.step_s);
-        Some((triangle.sample(local_m.to_array(), local_path.to_array(), force_n), surface))
+        let outward = side.direction(solved.normal * if scraped == 0 { 1.0 } else { -1.0 });
+        let sample = self.on(side.coordinates(local_m, outward)?, local_m, local_path, outward, force_n)?;
+        Some((sample, surface))
+    }
+
+    /// A place in the scraped one's space on its surface.
+    fn on(
+        &mut self,
+        place: UvPlace,
+        local_m: Vec3,
+        along: Vec3,
+        outward: Vec3,
+        force_n: f64,
+    ) -> Option<ContactSample> {
+        match place {
+            UvPlace::Triangle(triangle) => {
+                self.path = None;
+                Some(triangle.sample(local_m.to_array(), along.to_array(), force_n))
+            }
+            UvPlace::ByNormal { span_m } => {
+                if self.path.is_none() {
+                    self.path = TriplanarPath::new(span_m).ok();
+                }
+                let [place, along, outward] = [local_m, along, outward].map(|v| v.to_array().map(f64::from));
+                let point = self.path.as_mut()?.at(place, along, outward);
+                Some(ContactSample::new(point.uv, force_n).sliding(point.velocity_m_s))
+            }
+        }
     }
 
     /// The path is integrated and pulled gently to where the solver says, because its point belongs to the start of the step and jumps as
@@ -190,7 +199,7 @@ impl Pair {
     }
 
     fn end(&mut self, events: &mut Vec<ContactEvent>) {
-        self.local_m = None;
+        (self.local_m, self.path, self.run_m) = (None, None, Vec3::ZERO);
         if let Some(contact) = self.contact.take() {
             events.push(ContactEvent::end(contact));
         }
@@ -199,85 +208,7 @@ impl Pair {
     /// Nothing presses any more, or the physics engine does not list it any more.
     pub fn leave(&mut self, events: &mut Vec<ContactEvent>) {
         self.end(events);
-        self.doing = None;
+        (self.doing, self.unplaced) = (None, None);
         self.resting_steps = 0;
-    }
-}
-
-impl Solved {
-    /// The closing speed of two that moved like this before the step, of which gravity has `gained_m_s` by itself in it.
-    #[must_use]
-    pub fn closing_m_s(
-        before: [crate::Motion; 2],
-        gained_m_s: [Vec3; 2],
-        point_m: Vec3,
-        normal: Vec3,
-    ) -> f32 {
-        let [first, second] = before.map(|motion| motion.at(point_m));
-        let approach = (first - second).dot(normal);
-        if approach <= QUIET_LANDING_M_S {
-            return 0.0;
-        }
-        approach + (gained_m_s[0] - gained_m_s[1]).dot(normal)
-    }
-}
-
-impl Step<'_> {
-    /// The blow of a landing; none where nothing rings.
-    fn impact(&self, solved: &Solved) -> Option<Impact> {
-        let things = self.sides.map(Side::thing);
-        let struck = things.iter().position(|thing| thing.body.is_some() && thing.actuator.is_none());
-        let struck = struck.or_else(|| things.iter().position(|thing| thing.body.is_some()))?;
-        let (thing, striker) = (things[struck], things[1 - struck]);
-        let mobility: f32 =
-            self.sides.iter().map(|side| side.mobility_per_kg(solved.point_m, solved.normal)).sum();
-        let mut impact = Impact {
-            speed_m_s: f64::from(solved.closing_m_s),
-            mass_kg: 1.0 / f64::from(mobility).max(LEAST_MOBILITY_PER_KG),
-            radius_m: radius_m(self.sides.map(Side::radius_m)),
-            striker: striker.material,
-            restitution: f64::from(solved.restitution).clamp(0.0, 1.0),
-            ..Impact::on(thing.body?)
-        };
-        // A tool in the hand rings as its holder and is felt; any other striker rings beside what it strikes.
-        (impact.holder, impact.other) =
-            if striker.actuator.is_some() { (striker.body, None) } else { (None, striker.body) };
-        impact.actuator = striker.actuator.or(thing.actuator);
-        Some(impact)
-    }
-
-    /// Radius of the round one that touches the scraped one, m.
-    fn roll_radius_m(&self, scraped: usize) -> Option<f64> {
-        let radius_m = radius_m(self.sides.map(Side::radius_m));
-        self.sides[1 - scraped].is_round().then_some(radius_m)
-    }
-
-    /// Which of the two is scraped: the one with a surface; of two the one that moves less easily.
-    fn scraped(&self) -> Option<usize> {
-        let things = self.sides.map(Side::thing);
-        match things.map(|thing| thing.surface.is_some()) {
-            [false, false] => None,
-            [true, false] => Some(0),
-            [false, true] => Some(1),
-            [true, true] => {
-                // What is in the hand scrapes; of two others the lighter one.
-                let [first, second] = self.sides.map(Side::mass_kg);
-                let held = things[0].actuator.is_some() && things[1].actuator.is_none();
-                Some(usize::from(held || (second > first && things[1].actuator.is_none())))
-            }
-        }
-    }
-
-    /// Tangential velocities of the other one over the scraped one, after the step: of the place of contact, and of what is there.
-    fn velocities(&self, solved: &Solved, scraped: usize) -> (Vec3, Vec3) {
-        let [ground, other] = [self.sides[scraped].motion(), self.sides[1 - scraped].motion()];
-        let along = |v: Vec3| v - solved.normal * v.dot(solved.normal);
-        let slip = along(other.at(solved.point_m) - ground.at(solved.point_m));
-        if !self.sides[1 - scraped].is_round() {
-            return (slip, slip);
-        }
-        let spin = solved.normal * (other.angular_rad_s - ground.angular_rad_s).dot(solved.normal);
-        let centre = other.linear_m_s - ground.at(other.centre_m);
-        (along(centre + spin.cross(solved.point_m - other.centre_m)), slip)
     }
 }

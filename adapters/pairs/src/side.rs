@@ -1,6 +1,6 @@
 //! One of the two of a pair: what it is to asperity, and how it moves.
 
-use asperity::{Actuator, BodyId, Material, ProbeId, SurfaceId, UvTriangle};
+use asperity::{Actuator, BodyId, Material, ProbeId, SurfaceId, UvPlace};
 use glam::Vec3;
 
 /// Radius of an edge or a corner that nobody gave one, m: what is broken with sandpaper. Assumed.
@@ -58,16 +58,25 @@ pub trait Side {
     fn mass_kg(&self) -> f32;
     /// How much faster its point goes along a direction after an impulse of 1 N·s along it there, 1/kg: 0 for what nothing moves.
     fn mobility_per_kg(&self, point_m: Vec3, along: Vec3) -> f32;
-    /// Whether it rolls: then its place of contact moves with its centre.
-    fn is_round(&self) -> bool;
-    /// Radius of curvature where it strikes, m; none = an edge.
+    /// Radius of curvature with which it rolls on something that it meets at a point with a normal, m: then its place of contact moves with
+    /// its centre. None where it does not roll: of a box, of a cylinder that stands on its end.
+    fn rolls_m(&self, point_m: Vec3, normal: Vec3) -> Option<f64>;
+    /// Radius of curvature where it strikes, m; none = as it rolls, or an edge.
     fn radius_m(&self) -> Option<f64>;
+    /// Axis of what is longer than round, in space, of length 1: of a cylinder, a capsule, a cone.
+    fn axis(&self) -> Option<Vec3> {
+        None
+    }
+    /// Velocity of its surface beside its own motion, in space, m/s: a conveyor belt, a track.
+    fn belt_m_s(&self) -> Vec3 {
+        Vec3::ZERO
+    }
     /// A place in the collider's own space, m.
     fn place_m(&self, point_m: Vec3) -> Vec3;
     /// A direction in the collider's own space.
     fn direction(&self, along: Vec3) -> Vec3;
-    /// The triangle with texture coordinates on which a place of its own space lies.
-    fn triangle(&self, place_m: Vec3) -> Option<UvTriangle>;
+    /// Texture coordinates about a place of its own space, where its surface faces along `outward`.
+    fn coordinates(&self, place_m: Vec3, outward: Vec3) -> Option<UvPlace>;
 }
 
 /// [`Side::mobility_per_kg`] of a body that moves: 1/m and inverse inertia in space are given as what they do to a vector.
@@ -89,6 +98,23 @@ pub fn radius_m(own: [Option<f64>; 2]) -> f64 {
     if curvature > 0.0 { 1.0 / curvature } else { EDGE_RADIUS_M }
 }
 
+/// |cos| between an axis and a normal up to which what is round about the axis lies on its side.
+const ACROSS: f32 = 0.5;
+
+/// Whether what is round about an axis lies on its side.
+#[must_use]
+pub fn lies_across(axis: Vec3, normal: Vec3) -> bool {
+    axis.dot(normal).abs() < ACROSS
+}
+
+/// Radius of a cylinder or a cone where it lies on its side, m: from its axis, through `origin_m`, to the point.
+#[must_use]
+pub fn axis_radius_m(axis: Vec3, origin_m: Vec3, point_m: Vec3, normal: Vec3) -> Option<f64> {
+    let arm_m = point_m - origin_m;
+    let radius_m = f64::from((arm_m - axis * arm_m.dot(axis)).length());
+    (lies_across(axis, normal) && radius_m > 0.0).then_some(radius_m.max(EDGE_RADIUS_M))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,6 +124,13 @@ mod tests {
         assert_eq!(radius_m([Some(0.03), Some(0.03)]), 0.015);
         assert_eq!(radius_m([None, Some(0.03)]), 0.03);
         assert_eq!(radius_m([None, None]), EDGE_RADIUS_M);
+    }
+
+    #[test]
+    fn a_barrel_on_its_side_has_its_own_radius_and_none_on_its_end() {
+        let radius_m = |normal| axis_radius_m(Vec3::X, Vec3::ZERO, Vec3::new(0.4, -0.3, 0.0), normal);
+        assert!((radius_m(Vec3::Y).unwrap() - 0.3).abs() < 1e-7);
+        assert_eq!(radius_m(Vec3::X), None);
     }
 
     #[test]

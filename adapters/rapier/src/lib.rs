@@ -7,6 +7,7 @@
 //! | `view` | the parts of a physics world, whoever owns them |
 //! | `thing` | what a collider is to asperity |
 //! | `solved` | a pair's contact as the solver left it |
+//! | `notices` | what the game should know of its things |
 //! | `side` | one of the two of a pair, for the rules of the crate `asperity-pairs` |
 //! | `vector` | vectors of one and the other |
 
@@ -14,18 +15,21 @@
 #[cfg(feature = "bevy-rapier-0-36")]
 extern crate rapier3d_of_bevy as rapier3d;
 
+mod notices;
 mod side;
 mod solved;
 mod thing;
 mod vector;
 mod view;
 
-pub use asperity_pairs::{EDGE_RADIUS_M, Kind};
+pub use asperity_pairs::{EDGE_RADIUS_M, Kind, NOMINAL_FORCE_N, Notice};
+pub use notices::Warning;
 pub use thing::{Mapping, Thing};
 pub use view::View;
 
 use asperity::{AddError, ContactEvent, ContactId, ProbeId, Scene, probe_by_name};
 use asperity_pairs::{Motion, Pair, Side, Step};
+use notices::Notices;
 use rapier3d::prelude::*;
 use side::ColliderSide;
 use std::collections::{BTreeMap, HashMap};
@@ -49,6 +53,8 @@ pub struct Touch {
     pub slip_m_s: f32,
     /// Force between them, mean of the step, N.
     pub force_n: f32,
+    /// Whether it is not heard because its mapping tells no texture coordinates there.
+    pub is_unplaced: bool,
 }
 
 /// All pairs of a physics world, as contact events.
@@ -58,6 +64,7 @@ pub struct Adapter {
     /// In order, so that the same world gives the same events.
     pairs: BTreeMap<[(u32, u32); 2], Listed>,
     before: HashMap<RigidBodyHandle, Motion>,
+    notices: Notices,
     rigid: ProbeId,
     next_contact: u64,
 }
@@ -81,6 +88,7 @@ impl Adapter {
             things: HashMap::new(),
             pairs: BTreeMap::new(),
             before: HashMap::new(),
+            notices: Notices::default(),
             rigid,
             next_contact: FIRST_CONTACT,
         })
@@ -109,6 +117,12 @@ impl Adapter {
         for (handle, body) in view.bodies.iter() {
             self.before.insert(handle, view::motion(body));
         }
+        self.notices.look_at(view, &self.things);
+    }
+
+    /// What the game should know of its things and its world since it last asked, each of it once: to be logged.
+    pub fn warnings(&mut self) -> Vec<Warning> {
+        self.notices.take()
     }
 
     /// To be called right after the physics step: what happened in it, to be reported at its game time.
@@ -128,7 +142,7 @@ impl Adapter {
                 .map(|(handle, collider, thing)| ColliderSide { view, handle, collider, thing });
             let step = Step {
                 sides: [&sides[0] as &dyn Side, &sides[1]],
-                solved: solved::solved(contact, view, before),
+                solved: solved::solved(contact, view, before, [first.nominal_n, second.nominal_n]),
                 rigid: self.rigid,
                 step_s: view.step_s,
             };
@@ -137,6 +151,9 @@ impl Adapter {
             let listed = self.pairs.entry(key).or_insert_with(new);
             (listed.seen, listed.colliders) = (true, colliders);
             listed.pair.advance(&step, &mut self.next_contact, &mut events);
+            if let Some(unplaced) = listed.pair.doing().and_then(|doing| doing.unplaced) {
+                self.notices.note(Some(colliders[unplaced]), Notice::Unplaced);
+            }
         }
         for listed in self.pairs.values_mut().filter(|listed| !listed.seen) {
             listed.pair.leave(&mut events);
@@ -156,6 +173,7 @@ impl Adapter {
                 path_m_s: doing.path_m_s,
                 slip_m_s: doing.slip_m_s,
                 force_n: doing.force_n,
+                is_unplaced: doing.unplaced.is_some(),
             })
         })
     }

@@ -1,9 +1,9 @@
 //! One of the two of a pair, as rapier knows it.
 
-use crate::thing::{Thing, is_round, own_radius_m};
+use crate::thing::{Thing, axis, rolls_m};
 use crate::vector::{own, told};
 use crate::view::View;
-use asperity::UvTriangle;
+use asperity::UvPlace;
 use asperity_pairs::{Motion, Side, Vec3, mobility_per_kg};
 use rapier3d::prelude::*;
 
@@ -46,12 +46,20 @@ impl Side for ColliderSide<'_> {
         )
     }
 
-    fn is_round(&self) -> bool {
-        is_round(self.collider)
+    fn rolls_m(&self, point_m: Vec3, normal: Vec3) -> Option<f64> {
+        rolls_m(self.thing, self.collider, point_m, normal)
     }
 
     fn radius_m(&self) -> Option<f64> {
-        own_radius_m(self.thing, self.collider)
+        self.thing.radius_m
+    }
+
+    fn axis(&self) -> Option<Vec3> {
+        axis(self.collider)
+    }
+
+    fn belt_m_s(&self) -> Vec3 {
+        told(self.collider.position().rotation * self.thing.belt_m_s)
     }
 
     fn place_m(&self, point_m: Vec3) -> Vec3 {
@@ -62,8 +70,8 @@ impl Side for ColliderSide<'_> {
         told(self.collider.position().rotation.inverse() * own(along))
     }
 
-    fn triangle(&self, place_m: Vec3) -> Option<UvTriangle> {
+    fn coordinates(&self, place_m: Vec3, outward: Vec3) -> Option<UvPlace> {
         let (_, mapping) = self.thing.surface.as_ref()?;
-        mapping.triangle_at(self.collider.shape(), own(place_m))
+        mapping.coordinates(self.collider.shape(), place_m, outward)
     }
 }

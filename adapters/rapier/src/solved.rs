@@ -5,8 +5,13 @@ use crate::view::View;
 use asperity_pairs::{Motion, Solved};
 use rapier3d::prelude::*;
 
-/// `None` when nothing presses. `before`: how both moved before the step.
-pub(crate) fn solved(pair: &ContactPair, view: &View<'_>, before: [Motion; 2]) -> Option<Solved> {
+/// `None` when nothing presses. `before`: how both moved before the step; `nominal_n`: what presses where neither is moved by the other.
+pub(crate) fn solved(
+    pair: &ContactPair,
+    view: &View<'_>,
+    before: [Motion; 2],
+    nominal_n: [f32; 2],
+) -> Option<Solved> {
     let first = view.colliders.get(pair.collider1)?.position();
     let (mut point_m, mut normal, mut impulse_n_s, mut restitution) =
         (Vector::ZERO, Vector::ZERO, 0.0, 0.0f32);
@@ -22,7 +27,7 @@ pub(crate) fn solved(pair: &ContactPair, view: &View<'_>, before: [Motion; 2]) -
         }
     }
     if impulse_n_s <= 0.0 {
-        return None;
+        return overlapping(pair, view, nominal_n);
     }
     let (point_m, normal) = (told(point_m / impulse_n_s), told(normal.normalize_or_zero()));
     let gained_m_s = [pair.collider1, pair.collider2].map(|collider| {
@@ -30,7 +35,36 @@ pub(crate) fn solved(pair: &ContactPair, view: &View<'_>, before: [Motion; 2]) -
         told(view.gravity * (body.map_or(0.0, |body| body.gravity_scale()) * view.step_s))
     });
     let closing_m_s = Solved::closing_m_s(before, gained_m_s, point_m, normal);
-    Some(Solved { point_m, normal, impulse_n_s, restitution, closing_m_s })
+    Some(Solved { point_m, normal, impulse_n_s, restitution, closing_m_s, is_nominal: false })
+}
+
+/// Two that the solver never pushes apart, because nothing moves either, one of them a hand or a character: where they overlap they press with a
+/// nominal impulse.
+fn overlapping(pair: &ContactPair, view: &View<'_>, nominal_n: [f32; 2]) -> Option<Solved> {
+    let bodies = [pair.collider1, pair.collider2].map(|collider| view.body_of(collider));
+    let hands = bodies.iter().zip(nominal_n).filter(|(body, _)| body.is_some_and(RigidBody::is_kinematic));
+    let impulse_n_s = view.step_s * hands.fold(0.0f32, |most, (_, force_n)| most.max(force_n));
+    if bodies.iter().flatten().any(|body| body.is_dynamic()) || impulse_n_s <= 0.0 {
+        return None;
+    }
+    let first = view.colliders.get(pair.collider1)?.position();
+    let (mut point_m, mut normal, mut count) = (Vector::ZERO, Vector::ZERO, 0.0);
+    for manifold in pair.manifolds() {
+        let place = manifold.subshape_pos1().map_or(*first, |part| *first * part);
+        for contact in manifold.points.iter().filter(|contact| contact.dist <= 0.0) {
+            point_m += place * contact.local_p1;
+            normal += place.rotation * manifold.local_n1;
+            count += 1.0;
+        }
+    }
+    (count > 0.0).then(|| Solved {
+        point_m: told(point_m / count),
+        normal: told(normal.normalize_or_zero()),
+        impulse_n_s,
+        restitution: 0.0,
+        closing_m_s: 0.0,
+        is_nominal: true,
+    })
 }
 
 /// What a point has pushed in the step, N·s.

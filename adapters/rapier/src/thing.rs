@@ -1,6 +1,8 @@
 //! A collider to asperity: what it is made of, what rings, what can be stroked on it, and who feels it.
 
-use asperity::{Actuator, BodyId, Material, ProbeId, SurfaceId, UvTriangle};
+use crate::vector::{own, told};
+use asperity::{Actuator, BodyId, Material, ProbeId, SurfaceId, UvMapping, UvPlace, UvTriangle};
+use asperity_pairs::{NOMINAL_FORCE_N, Vec3, axis_radius_m};
 use rapier3d::parry::query::PointQueryWithLocation;
 use rapier3d::parry::shape::ShapeType;
 use rapier3d::prelude::*;
@@ -14,16 +16,27 @@ pub struct Thing {
     pub(crate) actuator: Option<Actuator>,
     pub(crate) probe: Option<ProbeId>,
     pub(crate) radius_m: Option<f64>,
+    pub(crate) belt_m_s: Vector,
+    pub(crate) nominal_n: f32,
 }
 
 impl Thing {
     /// A thing that strikes but does not ring and cannot be stroked.
     #[must_use]
     pub fn of(material: Material) -> Self {
-        Self { material, body: None, surface: None, actuator: None, probe: None, radius_m: None }
+        Self {
+            material,
+            body: None,
+            surface: None,
+            actuator: None,
+            probe: None,
+            radius_m: None,
+            belt_m_s: Vector::ZERO,
+            nominal_n: NOMINAL_FORCE_N,
+        }
     }
 
-    /// Rings as this body.
+    /// Rings as this body. The body's frame is the collider's own space: that is where blows are told to land.
     #[must_use]
     pub fn ringing(mut self, body: BodyId) -> Self {
         self.body = Some(body);
@@ -51,10 +64,28 @@ impl Thing {
         self
     }
 
-    /// Radius of what strikes, m: a ball's own and [`EDGE_RADIUS_M`](crate::EDGE_RADIUS_M) for an edge unless told otherwise.
+    /// Radius of what strikes or rolls, m: a ball's, a capsule's or a lying cylinder's own, and [`EDGE_RADIUS_M`](crate::EDGE_RADIUS_M) for an
+    /// edge unless told otherwise.
     #[must_use]
     pub fn radius_m(mut self, radius_m: f64) -> Self {
         self.radius_m = Some(radius_m);
+        self
+    }
+
+    /// Its surface runs with this velocity in the collider's own space, m/s: a conveyor belt, whose physics is a hook's
+    /// `tangent_velocity`. What rests on it is silent.
+    #[must_use]
+    pub fn running(mut self, belt_m_s: [f32; 3]) -> Self {
+        self.belt_m_s = Vector::from_array(belt_m_s);
+        self
+    }
+
+    /// Presses with this force on what nothing moves either, N: a kinematic hand or character on fixed ground, of which rapier tells no
+    /// force. [`NOMINAL_FORCE_N`](crate::NOMINAL_FORCE_N) unless told otherwise; with 0 it is not heard there. Its collider needs
+    /// `ActiveCollisionTypes::all()`.
+    #[must_use]
+    pub fn pressing(mut self, force_n: f32) -> Self {
+        self.nominal_n = force_n;
         self
     }
 
@@ -73,8 +104,9 @@ impl Thing {
 /// From a place on a collider, in its own space, to texture coordinates.
 #[derive(Debug, Clone)]
 pub enum Mapping {
-    /// A plane.
-    Plane(UvTriangle),
+    /// By the place and the direction in which the collider faces there: planes, boxes, hulls, spheres, cylinders. A plane serves a height
+    /// field as well.
+    Shape(UvMapping),
     /// A triangle mesh with one coordinate a vertex, in the order of the collider's vertices. rapier's flags that merge vertices renumber
     /// them, and those that delete triangles move the rest.
     Mesh(Vec<[f64; 2]>),
@@ -89,35 +121,69 @@ impl Mapping {
     pub fn plane(origin_m: [f64; 3], u_m: [f64; 3], v_m: [f64; 3]) -> Self {
         let end = |edge: [f64; 3]| [0, 1, 2].map(|axis| origin_m[axis] + edge[axis]);
         let triangle = UvTriangle::new([origin_m, end(u_m), end(v_m)], [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-        Self::Plane(triangle.expect("the edges of a plane span an area"))
+        Self::Shape(UvMapping::Plane(triangle.expect("the edges of a plane span an area")))
     }
 
-    /// The triangle that a place lies on. On a mesh it comes from the projection: clustered contacts of several triangles carry no single
+    /// Every flat side by its normal: a box, a hull, a compound; uv 1 spans `span_m`, the surface's width and height.
+    #[must_use]
+    pub fn by_normal(span_m: [f64; 2]) -> Self {
+        Self::Shape(UvMapping::ByNormal { span_m })
+    }
+
+    /// Around a ball.
+    #[must_use]
+    pub fn sphere(radius_m: f64, span_m: [f64; 2]) -> Self {
+        Self::Shape(UvMapping::Sphere { radius_m, span_m })
+    }
+
+    /// Around a cylinder or a capsule along y.
+    #[must_use]
+    pub fn cylinder(radius_m: f64, span_m: [f64; 2]) -> Self {
+        Self::Shape(UvMapping::Cylinder { radius_m, span_m })
+    }
+
+    /// Texture coordinates about a place. On a mesh they come from the projection: clustered contacts of several triangles carry no single
     /// sub-shape index.
-    pub(crate) fn triangle_at(&self, shape: &dyn Shape, local_m: Vector) -> Option<UvTriangle> {
+    pub(crate) fn coordinates(&self, shape: &dyn Shape, local_m: Vec3, outward: Vec3) -> Option<UvPlace> {
         match self {
-            Self::Plane(triangle) => Some(*triangle),
+            Self::Shape(mapping) => {
+                let [place, outward] = [local_m, outward].map(|v| v.to_array().map(f64::from));
+                mapping.at(place, outward)
+            }
             Self::Mesh(uv) => {
                 let mesh = shape.as_trimesh()?;
-                let (_, (triangle, _)) = mesh.project_local_point_and_get_location(local_m, false);
+                let (_, (triangle, _)) = mesh.project_local_point_and_get_location(own(local_m), false);
                 let corners = *mesh.indices().get(triangle as usize)?;
                 let uv = corners.map(|corner| uv.get(corner as usize).copied());
                 let [Some(a), Some(b), Some(c)] = uv else { return None };
-                UvTriangle::new(corners.map(|corner| mesh.vertices()[corner as usize].to_array()), [a, b, c])
+                let corners = corners.map(|corner| mesh.vertices()[corner as usize].to_array());
+                UvTriangle::new(corners, [a, b, c]).map(UvPlace::Triangle)
             }
         }
     }
 }
 
-/// Whether a collider rolls: then its place of contact moves with its centre.
-pub(crate) fn is_round(collider: &Collider) -> bool {
-    use ShapeType::{Ball, Capsule, Cone, Cylinder, RoundCone, RoundCylinder};
-    matches!(collider.shape().shape_type(), Ball | Capsule | Cylinder | Cone | RoundCylinder | RoundCone)
+/// Axis of what is longer than round, in space.
+pub(crate) fn axis(collider: &Collider) -> Option<Vec3> {
+    use ShapeType::{Capsule, Cone, Cylinder, RoundCone, RoundCylinder};
+    let own_axis = match collider.shape().shape_type() {
+        Capsule => {
+            let segment = &collider.shape().as_capsule()?.segment;
+            segment.b - segment.a
+        }
+        Cylinder | Cone | RoundCylinder | RoundCone => Vector::Y,
+        _ => return None,
+    };
+    let axis = told(collider.position().rotation * own_axis).normalize_or_zero();
+    (axis != Vec3::ZERO).then_some(axis)
 }
 
-/// Radius of curvature of a thing where it strikes, m; none = an edge.
-pub(crate) fn own_radius_m(thing: &Thing, collider: &Collider) -> Option<f64> {
-    let ball = collider.shape().as_ball().map(|ball| f64::from(ball.radius));
-    let capsule = collider.shape().as_capsule().map(|capsule| f64::from(capsule.radius));
-    thing.radius_m.or(ball).or(capsule)
+/// Radius with which a collider rolls on what it meets at a point with a normal, m; none: it does not.
+pub(crate) fn rolls_m(thing: &Thing, collider: &Collider, point_m: Vec3, normal: Vec3) -> Option<f64> {
+    let shape = collider.shape();
+    let ball = shape.as_ball().map(|ball| ball.radius);
+    let own = ball.or(shape.as_capsule().map(|capsule| capsule.radius)).map(f64::from);
+    let middle_m = told(collider.position().translation);
+    let rolls = own.or_else(|| axis_radius_m(axis(collider)?, middle_m, point_m, normal))?;
+    Some(thing.radius_m.unwrap_or(rolls))
 }

@@ -11,15 +11,17 @@
 use crate::component::TouchThing;
 use crate::plugin::TouchSystems;
 use crate::touch::Touch;
-use asperity::{Actuator, ContactEvent, UvTriangle, probe_by_name};
-use asperity_pairs::{Motion, Pair, Side, Solved, Step, Thing, Vec3, mobility_per_kg};
+use asperity::{Actuator, ContactEvent, UvPlace, probe_by_name};
+use asperity_pairs::{
+    Motion, Notice, ODD_GRAVITY_M_S2, Pair, Side, Solved, Step, Thing, Vec3, axis_radius_m, mobility_per_kg,
+};
 use avian3d::dynamics::rigid_body::{RigidBodyQueryReadOnly, RigidBodyQueryReadOnlyItem};
 use avian3d::math::Vector;
-use avian3d::prelude::{Collider, Collisions, ContactPair, PhysicsSystems, Position, Rotation};
+use avian3d::prelude::{Collider, Collisions, ContactPair, Gravity, PhysicsSystems, Position, Rotation};
 use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// Name of the probe that things touch with, in recordings.
 pub const RIGID_PROBE: &str = "avian's rigid things";
@@ -44,7 +46,9 @@ impl Plugin for AvianTouchPlugin {
         match touch.scene().add_probe(probe_by_name("rigid").unwrap_or_default()) {
             Ok(rigid) => {
                 touch.name_own_probe(RIGID_PROBE, rigid);
-                app.insert_resource(Listener { rigid, pairs: BTreeMap::new(), next_contact: FIRST_CONTACT });
+                let pairs = BTreeMap::new();
+                let told = HashSet::new();
+                app.insert_resource(Listener { rigid, pairs, next_contact: FIRST_CONTACT, told });
                 app.add_systems(
                     FixedPostUpdate,
                     listen.after(PhysicsSystems::Last).in_set(TouchSystems::Report),
@@ -61,6 +65,8 @@ struct Listener {
     rigid: asperity::ProbeId,
     pairs: BTreeMap<[Entity; 2], Listed>,
     next_contact: u64,
+    /// What was warned of: an entity that cannot be heard, none: the world.
+    told: HashSet<Option<Entity>>,
 }
 
 #[derive(Default)]
@@ -79,15 +85,17 @@ fn told(v: Vector) -> Vec3 {
     Vec3::from_array(v.to_array())
 }
 
-/// The impulse-weighted mean of a pair's points; `None` when nothing presses.
-fn solved(pair: &ContactPair) -> Option<Solved> {
+/// The impulse-weighted mean of a pair's points; `None` when nothing presses. Two that nothing moves press with `nominal_n_s` where they overlap.
+fn solved(pair: &ContactPair, nominal_n_s: f32) -> Option<Solved> {
     let (mut point_m, mut normal) = (Vector::ZERO, Vector::ZERO);
     let (mut impulse_n_s, mut closing_m_s, mut restitution) = (0.0, 0.0f32, 0.0f32);
     for manifold in &pair.manifolds {
         for point in &manifold.points {
-            point_m += point.point * point.normal_impulse;
-            normal += manifold.normal * point.normal_impulse;
-            impulse_n_s += point.normal_impulse;
+            let overlaps = f32::from(u8::from(nominal_n_s > 0.0 && point.penetration >= 0.0));
+            let weight = if nominal_n_s > 0.0 { overlaps } else { point.normal_impulse };
+            point_m += point.point * weight;
+            normal += manifold.normal * weight;
+            impulse_n_s += weight;
             closing_m_s = closing_m_s.max(-point.normal_speed);
         }
         restitution = restitution.max(manifold.restitution);
@@ -95,9 +103,10 @@ fn solved(pair: &ContactPair) -> Option<Solved> {
     (impulse_n_s > 0.0).then(|| Solved {
         point_m: told(point_m / impulse_n_s),
         normal: told(normal.normalize_or_zero()),
-        impulse_n_s: impulse_n_s / COUNTED,
+        impulse_n_s: if nominal_n_s > 0.0 { nominal_n_s } else { impulse_n_s / COUNTED },
         restitution,
         closing_m_s,
+        is_nominal: nominal_n_s > 0.0,
     })
 }
 
@@ -142,18 +151,31 @@ impl Side for ColliderSide<'_, '_, '_> {
         )
     }
 
-    fn is_round(&self) -> bool {
+    fn rolls_m(&self, point_m: Vec3, normal: Vec3) -> Option<f64> {
         let shape = self.collider.shape_scaled();
-        shape.as_ball().is_some()
-            || shape.as_capsule().is_some()
-            || shape.as_cylinder().is_some()
-            || shape.as_cone().is_some()
+        let ball = shape.as_ball().map(|ball| ball.radius);
+        let own = ball.or(shape.as_capsule().map(|capsule| capsule.radius)).map(f64::from);
+        let rolls = own.or_else(|| axis_radius_m(self.axis()?, told(self.position), point_m, normal))?;
+        Some(self.is.radius_m.unwrap_or(rolls))
     }
 
     fn radius_m(&self) -> Option<f64> {
+        self.is.radius_m
+    }
+
+    fn axis(&self) -> Option<Vec3> {
         let shape = self.collider.shape_scaled();
-        let ball = shape.as_ball().map(|ball| f64::from(ball.radius));
-        self.is.radius_m.or(ball).or(shape.as_capsule().map(|capsule| f64::from(capsule.radius)))
+        let own_axis = match shape.as_capsule() {
+            Some(capsule) => capsule.segment.b - capsule.segment.a,
+            None if shape.as_cylinder().is_some() || shape.as_cone().is_some() => Vector::Y,
+            None => return None,
+        };
+        let axis = told(self.rotation * own_axis).normalize_or_zero();
+        (axis != Vec3::ZERO).then_some(axis)
+    }
+
+    fn belt_m_s(&self) -> Vec3 {
+        told(self.rotation * Vector::from_array(self.is.belt_m_s))
     }
 
     fn place_m(&self, point_m: Vec3) -> Vec3 {
@@ -164,9 +186,23 @@ impl Side for ColliderSide<'_, '_, '_> {
         told(self.rotation.inverse() * own(along))
     }
 
-    fn triangle(&self, _: Vec3) -> Option<UvTriangle> {
-        self.is.triangle()
+    fn coordinates(&self, place_m: Vec3, outward: Vec3) -> Option<UvPlace> {
+        let [place, outward] = [place_m, outward].map(|v| v.to_array().map(f64::from));
+        self.is.surface_mapping()?.at(place, outward)
     }
+}
+
+/// Impulse of a hand or a character on what nothing moves either; 0 where avian tells the force.
+fn nominal_n_s(
+    things: [&TouchThing; 2],
+    bodies: [Option<&RigidBodyQueryReadOnlyItem<'_, '_>>; 2],
+    step_s: f32,
+) -> f32 {
+    if bodies.iter().flatten().any(|body| body.rb.is_dynamic()) {
+        return 0.0;
+    }
+    let hands = things.iter().zip(bodies).filter(|(_, body)| body.is_some_and(|body| body.rb.is_kinematic()));
+    step_s * hands.fold(0.0f32, |most, (thing, _)| most.max(thing.nominal_force_n))
 }
 
 type ThingQuery<'a> = (&'a TouchThing, &'a Collider, &'a Position, &'a Rotation);
@@ -176,10 +212,15 @@ fn listen(
     things: Query<ThingQuery<'_>>,
     bodies: Query<RigidBodyQueryReadOnly>,
     time: Res<Time<Fixed>>,
+    gravity: Res<Gravity>,
     mut listener: ResMut<Listener>,
     mut touch: ResMut<Touch>,
 ) {
-    let Listener { rigid, pairs, next_contact } = &mut *listener;
+    let Listener { rigid, pairs, next_contact, told: warned } = &mut *listener;
+    let gravity_m_s2 = gravity.0.length();
+    if gravity_m_s2 > ODD_GRAVITY_M_S2 && warned.insert(None) {
+        log::warn!("asperity: {}", Notice::Gravity { m_s2: gravity_m_s2 });
+    }
     pairs.values_mut().for_each(|listed| listed.seen = false);
     let mut events: Vec<ContactEvent> = Vec::new();
     let mut pressing: Vec<_> = collisions.iter().filter(|pair| pair.is_touching()).collect();
@@ -189,17 +230,25 @@ fn listen(
         let entities = [contact.collider1, contact.collider2];
         let [Ok(first), Ok(second)] = entities.map(|entity| things.get(entity)) else { continue };
         let bodies = [contact.body1, contact.body2].map(|body| body.and_then(|body| bodies.get(body).ok()));
+        let nominal_n_s =
+            nominal_n_s([first.0, second.0], [0, 1].map(|k| bodies[k].as_ref()), time.delta_secs());
         let first = side(thing_of(entities[0], first.0, &touch), first, bodies[0].as_ref());
         let second = side(thing_of(entities[1], second.0, &touch), second, bodies[1].as_ref());
         let step = Step {
             sides: [&first, &second],
-            solved: solved(contact),
+            solved: solved(contact, nominal_n_s),
             rigid: *rigid,
             step_s: time.delta_secs(),
         };
         let listed = pairs.entry(entities).or_default();
         listed.seen = true;
         listed.pair.advance(&step, next_contact, &mut events);
+        let unplaced = listed.pair.doing().and_then(|doing| doing.unplaced);
+        if let Some(entity) = unplaced.map(|side| entities[side])
+            && warned.insert(Some(entity))
+        {
+            log::warn!("asperity, {entity}: {}", Notice::Unplaced);
+        }
     }
     for listed in pairs.values_mut().filter(|listed| !listed.seen) {
         listed.pair.leave(&mut events);
@@ -223,7 +272,7 @@ fn thing_of(entity: Entity, is: &TouchThing, touch: &Touch) -> Thing {
         material: is.material,
         body: touch.body(entity),
         // A plane without area has no texture coordinates: the thing is then struck only.
-        surface: touch.surface(entity).filter(|_| is.triangle().is_some()),
+        surface: touch.surface(entity).filter(|_| is.surface_mapping().is_some()),
         actuator: is.actuator.map(Actuator),
         probe: None,
     }

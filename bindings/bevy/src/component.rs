@@ -1,6 +1,6 @@
 //! What entities are to touch. Adding a component puts it into the scene, removing it or the entity takes it out.
 
-use asperity::{Body, Material, Probe, Surface};
+use asperity::{Body, Material, Probe, Surface, UvMapping};
 use bevy_ecs::prelude::*;
 use std::sync::{Mutex, PoisonError};
 
@@ -65,26 +65,61 @@ impl TouchProbe {
 pub struct TouchThing {
     /// What it is made of.
     pub material: Material,
-    /// The plane of its surface in the collider's own space, m: the place of uv (0, 0), the edge along u, the edge along v. Needed for
-    /// a collider with a surface.
+    /// The plane of its surface in the collider's own space, m: the place of uv (0, 0), the edge along u, the edge along v. A collider with a
+    /// surface needs it, or a `mapping`.
     pub plane_m: Option<[[f64; 3]; 3]>,
+    /// How places on it become texture coordinates, where that is no plane: by the normal, around a sphere or a cylinder.
+    pub mapping: Option<UvMapping>,
     /// The haptic channel that feels what it touches: a finger, or a tool in the hand.
     pub actuator: Option<u16>,
-    /// Radius of what strikes, m; none = the shape's own, where it is round.
+    /// Radius of what strikes or rolls, m; none = the shape's own, where it is round.
     pub radius_m: Option<f64>,
+    /// Velocity of its surface in its own space, m/s: a conveyor belt.
+    pub belt_m_s: [f32; 3],
+    /// With how much it presses on what nothing moves either, N: a kinematic hand on fixed ground, of which the physics tells no force.
+    pub nominal_force_n: f32,
 }
 
 impl TouchThing {
     /// A thing that strikes, and rings where it has a body.
     #[must_use]
     pub fn of(material: Material) -> Self {
-        Self { material, plane_m: None, actuator: None, radius_m: None }
+        Self {
+            material,
+            plane_m: None,
+            mapping: None,
+            actuator: None,
+            radius_m: None,
+            belt_m_s: [0.0; 3],
+            nominal_force_n: 1.0,
+        }
     }
 
     /// Its surface lies on this plane of the collider: place of uv (0, 0), edge along u, edge along v, m.
     #[must_use]
     pub fn plane(mut self, origin_m: [f64; 3], u_m: [f64; 3], v_m: [f64; 3]) -> Self {
         self.plane_m = Some([origin_m, u_m, v_m]);
+        self
+    }
+
+    /// Its surface lies on it so: [`UvMapping::ByNormal`] for a box or a hull.
+    #[must_use]
+    pub fn mapped(mut self, mapping: UvMapping) -> Self {
+        self.mapping = Some(mapping);
+        self
+    }
+
+    /// Its surface runs with this velocity in its own space, m/s.
+    #[must_use]
+    pub fn running(mut self, belt_m_s: [f32; 3]) -> Self {
+        self.belt_m_s = belt_m_s;
+        self
+    }
+
+    /// Presses with this force on what nothing moves either, N.
+    #[must_use]
+    pub fn pressing(mut self, force_n: f32) -> Self {
+        self.nominal_force_n = force_n;
         self
     }
 
@@ -102,11 +137,15 @@ impl TouchThing {
         self
     }
 
-    /// The plane as the engine takes it; `None` without one, or where it has no area.
+    /// Its mapping as the engine takes it; `None` without one, or where its plane has no area.
     #[cfg(any(feature = "avian", feature = "rapier"))]
-    pub(crate) fn triangle(&self) -> Option<asperity::UvTriangle> {
+    pub(crate) fn surface_mapping(&self) -> Option<UvMapping> {
+        if self.mapping.is_some() {
+            return self.mapping;
+        }
         let [origin, u, v] = self.plane_m?;
         let end = |edge: [f64; 3]| [0, 1, 2].map(|axis| origin[axis] + edge[axis]);
-        asperity::UvTriangle::new([origin, end(u), end(v)], [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        let uv = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        asperity::UvTriangle::new([origin, end(u), end(v)], uv).map(UvMapping::Plane)
     }
 }

@@ -109,6 +109,13 @@ fn before(
         simulation.integration_parameters.contact_recycling = false;
         adapter.before_step(&view((&simulation, colliders, bodies, configuration), &mode));
     }
+    for warning in adapter.warnings() {
+        let of = known.iter().find(|(_, handle)| Some(**handle) == warning.collider);
+        match of {
+            Some((entity, _)) => log::warn!("asperity, {entity}: {}", warning.notice),
+            None => log::warn!("asperity: {}", warning.notice),
+        }
+    }
 }
 
 fn thing_of(entity: Entity, thing: &TouchThing, touch: &Touch) -> Thing {
@@ -117,11 +124,10 @@ fn thing_of(entity: Entity, thing: &TouchThing, touch: &Touch) -> Thing {
         is = is.ringing(body);
     }
     // A plane without area has no texture coordinates: the thing is then struck only.
-    if let (Some(surface), Some([origin, u, v])) = (touch.surface(entity), thing.plane_m)
-        && thing.triangle().is_some()
-    {
-        is = is.with_surface(surface, Mapping::plane(origin, u, v));
+    if let (Some(surface), Some(mapping)) = (touch.surface(entity), thing.surface_mapping()) {
+        is = is.with_surface(surface, Mapping::Shape(mapping));
     }
+    is = is.running(thing.belt_m_s).pressing(thing.nominal_force_n);
     if let Some(actuator) = thing.actuator {
         is = is.felt_by(Actuator(actuator));
     }

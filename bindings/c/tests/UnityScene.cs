@@ -81,6 +81,31 @@ static class UnityScene
         }
         Must(heard[1] > 1e-6f && heard[1] < 0.7f * heard[0], "what rolls is softer than what slides: " + heard[1] + " beside " + heard[0]);
         Must(world.Scene.Stats().Refused == 0 && Debug.Warned == "", "nothing is refused");
+
+        // Down its side it scrapes as over its top, and what rides on a belt is silent.
+        var crate = new GameObject("Crate").AddComponent<Rigidbody>();
+        var box = crate.gameObject.AddComponent<AsperitySlider>();
+        Func<Vector3, Vector3, float> slides = (along, normal) =>
+        {
+            crate.Velocity = along;
+            var on = new Collision { collider = plate.GetComponent<Collider>(), impulse = new Vector3(0, 0.02f, 0), Normal = normal };
+            float peak = Second(step =>
+            {
+                on.Point = along * (0.02f * step);
+                crate.Centre = on.Point;
+                Messages.Send(box, "OnCollisionStay", on);
+            });
+            Messages.Send(box, "OnCollisionExit", on);
+            Second(step => { });
+            return peak;
+        };
+        float above = slides(new Vector3(0.5f, 0, 0), new Vector3(0, 1, 0));
+        float down = slides(new Vector3(0, -0.5f, 0), new Vector3(1, 0, 0));
+        Must(down > 0.7f * above && down < 1.4f * above, "a side is a surface: " + down + " beside " + above);
+        plate.BeltMS = new Vector3(0.5f, 0, 0);
+        float ridden = slides(new Vector3(0.5f, 0, 0), new Vector3(0, 1, 0));
+        Must(ridden < 0.01f * above, "what rides on a belt is silent: " + ridden + " beside " + above);
+        plate.BeltMS = new Vector3();
         Physics.Ground = plate.GetComponent<Collider>();
 
         // With a mixer the world leaves its own object silent and tells the effect which engine is its.

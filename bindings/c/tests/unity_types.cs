@@ -16,7 +16,7 @@ namespace UnityEngine
     public class MonoBehaviour : Behaviour { }
     public class Transform : Component
     {
-        public Vector3 position, forward, localScale;
+        public Vector3 position, localScale, right = new Vector3(1, 0, 0), up = new Vector3(0, 1, 0), forward = new Vector3(0, 0, 1);
         public void LookAt(Vector3 at) { forward = new Vector3(at.x - position.x, at.y - position.y, at.z - position.z); }
     }
     public enum PrimitiveType { Sphere, Cube }
@@ -113,27 +113,29 @@ namespace UnityEngine
         public Vector2 textureCoord { get { return new Vector2(); } }
         public Vector3 point { get; set; }
         public float distance { get; set; }
+        public Vector3 normal { get { return new Vector3(0, 1, 0); } }
     }
     public static class Physics
     {
         /// <summary>The one thing that rays meet: a plane at height Top, which belongs to Ground.</summary>
         public static Collider Ground;
         public static float Top;
+        public static Vector3 gravity { get { return new Vector3(0, -9.81f, 0); } }
         public static bool Raycast(Vector3 from, Vector3 along, out RaycastHit hit, float reach)
         {
             hit = new RaycastHit { collider = Ground, point = new Vector3(from.x, Top, from.z), distance = from.y - Top };
             return Ground != null && along.y < 0 && from.y > Top && hit.distance <= reach;
         }
     }
-    public struct ContactPoint { public Vector3 point { get; set; } public Vector3 normal { get { return new Vector3(0, 1, 0); } } }
+    public struct ContactPoint { public Vector3 point { get; set; } public Vector3 normal { get; set; } }
     public class Collision
     {
         public Vector3 impulse { get; set; }
         public Vector3 relativeVelocity { get; set; }
         public Collider collider { get; set; }
         public Rigidbody rigidbody { get { return null; } }
-        public Vector3 Point;
-        public ContactPoint GetContact(int index) { return new ContactPoint { point = Point }; }
+        public Vector3 Point, Normal = new Vector3(0, 1, 0);
+        public ContactPoint GetContact(int index) { return new ContactPoint { point = Point, normal = Normal }; }
     }
     public class TextAsset : Object { public string text { get { return ""; } } }
     [AttributeUsage(AttributeTargets.Field)] public class TooltipAttribute : Attribute { public TooltipAttribute(string words) { } }

@@ -97,6 +97,11 @@ impl AsperityBody {
         self.surface.as_ref().map_or(uv, |surface| surface.bind().on_maps(uv))
     }
 
+    /// Where a place in metres lies on the maps of its surface.
+    pub(crate) fn in_spans(&self, place_m: Vector2) -> Vector2 {
+        self.surface.as_ref().map_or(place_m, |surface| surface.bind().in_spans(place_m))
+    }
+
     fn join(&mut self) {
         let Some(tree) = self.base().is_inside_tree().then(|| self.base().get_tree()) else { return };
         let Some(mut world) = AsperityWorld::of(&tree) else {

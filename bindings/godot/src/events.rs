@@ -22,6 +22,16 @@ pub(crate) fn channel(number: i64) -> Result<Option<Actuator>, String> {
 /// What a script leaves out.
 pub(crate) const NOT_TOLD: f64 = f64::NAN;
 
+/// A place or a velocity that a script leaves out.
+pub(crate) const NO_PLACE: Vector3 = Vector3::new(f32::NAN, f32::NAN, f32::NAN);
+/// The same along u and v.
+pub(crate) const NO_VELOCITY: Vector2 = Vector2::new(f32::NAN, f32::NAN);
+
+/// A velocity, where it is told.
+pub(crate) fn velocity(told: Vector2) -> Option<Vector2> {
+    Some(told).filter(|v| !(v.x.is_nan() && v.y.is_nan()))
+}
+
 /// How much of a contact's motion is slip, m/s, and the radius of what rolls, m; not told: it is a stroke, with the probe's tip.
 #[derive(Clone, Copy)]
 pub(crate) struct Rolling {
@@ -67,6 +77,7 @@ pub(crate) fn impact(
     radius_m: f64,
     striker: &str,
     number: i64,
+    at_m: Vector3,
 ) -> Result<Impact, String> {
     let mut impact = Impact::on(BodyId::from_bits(body as u64));
     (impact.speed_m_s, impact.mass_kg, impact.radius_m) = (speed_m_s, mass_kg, radius_m);
@@ -78,5 +89,7 @@ pub(crate) fn impact(
         })?;
     }
     impact.actuator = channel(number)?;
+    let at_m = [at_m.x, at_m.y, at_m.z];
+    impact.at_m = Some(at_m.map(f64::from)).filter(|_| !at_m.iter().all(|x| x.is_nan()));
     Ok(impact)
 }

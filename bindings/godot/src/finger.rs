@@ -1,14 +1,14 @@
 //! `AsperityFinger3D`: touches the meshes of a scene.
 
 use crate::body::AsperityBody;
-use crate::events::Rolling;
-use crate::triangles::Triangles;
+use crate::events::{NO_VELOCITY, Rolling};
+use crate::triangles::{Triangles, on_side, side};
 use crate::world::AsperityWorld;
 use godot::classes::{INode3D, Mesh, MeshInstance3D, PhysicsRayQueryParameters3D};
 use godot::prelude::*;
 
 /// A finger tip: every physics tick it casts a ray along its own -Y, and reports what it touches: the collider's `AsperityBody`, at the
-/// texture coordinates of the collider's `MeshInstance3D`.
+/// texture coordinates of the collider's `MeshInstance3D`; of one that has none, on the side that its normal is nearest to, in metres.
 #[derive(GodotClass)]
 #[class(init, base = Node3D)]
 pub struct AsperityFinger3D {
@@ -36,6 +36,10 @@ pub struct AsperityFinger3D {
     world: Option<Gd<AsperityWorld>>,
     /// Which of the world's engines it touches in.
     build: u64,
+    /// Where it was in the space of what it touched a tick ago, m.
+    last: Option<(i64, Vector3)>,
+    /// The side that it is on of what has no texture coordinates.
+    side: Option<usize>,
     mesh: Option<Gd<Mesh>>,
     triangles: Triangles,
     base: Base<Node3D>,
@@ -43,11 +47,14 @@ pub struct AsperityFinger3D {
 
 #[godot_api]
 impl INode3D for AsperityFinger3D {
-    fn physics_process(&mut self, _delta: f64) {
+    fn physics_process(&mut self, delta: f64) {
         let Some(world) = self.living_world() else { return };
         match self.hit() {
-            Some((surface, uv)) => self.touch(world, surface, uv),
-            None => self.lift(),
+            Some(hit) => self.touch(world, &hit, delta),
+            None => {
+                self.last = None;
+                self.lift();
+            }
         }
     }
 
@@ -86,8 +93,13 @@ impl AsperityFinger3D {
         self.world.clone()
     }
 
-    fn touch(&mut self, mut world: Gd<AsperityWorld>, surface: i64, uv: Vector2) {
+    fn touch(&mut self, mut world: Gd<AsperityWorld>, hit: &Hit, delta: f64) {
+        let Hit { surface, uv, place, axes } = *hit;
         let contact = self.contact();
+        let before = self.last.replace((surface, place)).filter(|(touched, _)| *touched == surface);
+        // Over what it touches, from where it was a tick ago.
+        let along = before.filter(|_| delta > 0.0).map(|(_, last)| (place - last) / delta as f32);
+        let velocity_m_s = along.map_or(NO_VELOCITY, |v| Vector2::new(v.dot(axes[0]), v.dot(axes[1])));
         let builds = world.bind().builds();
         if self.build != builds {
             // Of an engine that is gone nothing is left to be lifted from.
@@ -95,13 +107,23 @@ impl AsperityFinger3D {
         }
         let Rolling { slip_m_s, radius_m } = Rolling::NONE;
         if self.touched == surface
-            && world.bind_mut().report_move(contact, uv, self.force_n, slip_m_s, radius_m)
+            && world.bind_mut().report_move(contact, uv, self.force_n, slip_m_s, radius_m, velocity_m_s)
         {
             return;
         }
         self.lift();
         let (force_n, channel) = (self.force_n, self.channel);
-        if world.bind_mut().report_begin(contact, surface, uv, force_n, channel, slip_m_s, radius_m) {
+        let begun = world.bind_mut().report_begin(
+            contact,
+            surface,
+            uv,
+            force_n,
+            channel,
+            slip_m_s,
+            radius_m,
+            velocity_m_s,
+        );
+        if begun {
             self.touched = surface;
         }
     }
@@ -119,7 +141,7 @@ impl AsperityFinger3D {
     }
 
     /// The surface under the finger, and where.
-    fn hit(&mut self) -> Option<(i64, Vector2)> {
+    fn hit(&mut self) -> Option<Hit> {
         if !self.pressing {
             return None;
         }
@@ -143,18 +165,61 @@ impl AsperityFinger3D {
             };
             drawn = child.try_cast::<MeshInstance3D>().ok().or(drawn);
         }
-        let (touched, drawn) = (touched?, drawn?);
+        let touched = touched?;
         let surface = touched.bind().surface_id();
         if surface == 0 {
             return None;
         }
+        if let Some(drawn) = drawn
+            && let Some(hit) = self.on_mesh(&drawn, &touched, surface, point)
+        {
+            return Some(hit);
+        }
+        let normal = hit.get("normal")?.try_to::<Vector3>().ok()?;
+        let frame = collider.try_cast::<Node3D>().ok()?.get_global_transform().orthonormalized();
+        let place = frame.affine_inverse() * point;
+        let held = side(frame.basis.transposed() * normal, self.side);
+        self.side = Some(held);
+        let uv = touched.bind().in_spans(on_side(place, held));
+        let axes = [0, 1].map(|k| on_side_axis(held, k));
+        Some(Hit { surface, uv, place, axes })
+    }
+
+    /// On a mesh that has texture coordinates.
+    fn on_mesh(
+        &mut self,
+        drawn: &Gd<MeshInstance3D>,
+        touched: &Gd<AsperityBody>,
+        surface: i64,
+        point: Vector3,
+    ) -> Option<Hit> {
         let mesh = drawn.get_mesh()?;
         if self.mesh.as_ref() != Some(&mesh) {
             self.triangles = Triangles::of(&mesh);
             self.mesh = Some(mesh);
         }
-        let local = drawn.get_global_transform().affine_inverse() * point;
-        let uv = self.triangles.uv_at(local)?;
-        Some((surface, touched.bind().on_maps(uv)))
+        let frame = drawn.get_global_transform();
+        let (uv, axes) = self.triangles.uv_at(frame.affine_inverse() * point)?;
+        // In metres: a mesh that is drawn larger is touched over longer ways.
+        let scale = frame.basis.get_scale();
+        let place = (frame.affine_inverse() * point) * scale;
+        let axes = axes.map(|axis| (axis * scale).try_normalized().unwrap_or(Vector3::ZERO));
+        Some(Hit { surface, uv: touched.bind().on_maps(uv), place, axes })
     }
+}
+
+/// What the finger touches: a surface, where, and how u and v run there in the space of what is touched, of length 1.
+#[derive(Clone, Copy)]
+struct Hit {
+    surface: i64,
+    uv: Vector2,
+    place: Vector3,
+    axes: [Vector3; 2],
+}
+
+/// The direction of u (0) or v (1) on a side.
+fn on_side_axis(side: usize, along: usize) -> Vector3 {
+    let unit = [Vector3::RIGHT, Vector3::UP, Vector3::BACK];
+    let of = |axis: Vector3| if along == 0 { on_side(axis, side).x } else { on_side(axis, side).y };
+    unit.into_iter().find(|axis| of(*axis) != 0.0).unwrap_or(Vector3::ZERO)
 }

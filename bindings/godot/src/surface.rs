@@ -118,6 +118,12 @@ impl AsperitySurface {
         uv * self.uv_scale + self.uv_offset
     }
 
+    /// Where a place in metres lies on the maps.
+    pub(crate) fn in_spans(&self, place_m: Vector2) -> Vector2 {
+        let [u, v] = self.spans_m();
+        Vector2::new(place_m.x / u as f32, place_m.y / v as f32)
+    }
+
     /// Takes the heights of a material's normal map, where it draws one.
     fn feel_normals(&mut self, material: &Gd<BaseMaterial3D>) {
         let normals = material.get_texture(TextureParam::NORMAL);

@@ -37,18 +37,48 @@ impl Triangles {
         Self { all }
     }
 
-    /// The texture coordinates of the place nearest to `point`; none where there are none.
-    pub(crate) fn uv_at(&self, point: Vector3) -> Option<Vector2> {
-        let mut best: Option<(f32, Vector2)> = None;
+    /// The texture coordinates of the place nearest to `point`, and how the mesh runs along u and v there; none where there are none.
+    pub(crate) fn uv_at(&self, point: Vector3) -> Option<(Vector2, [Vector3; 2])> {
+        let mut best: Option<(f32, Vector2, [Vector3; 2])> = None;
         for (corners, uv) in &self.all {
             let weights = nearest(corners, point);
             let place = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
             let far = place.distance_squared_to(point);
-            if best.is_none_or(|(nearest, _)| far < nearest) {
-                best = Some((far, uv[0] * weights[0] + uv[1] * weights[1] + uv[2] * weights[2]));
+            if best.is_none_or(|(nearest, ..)| far < nearest) {
+                let here = uv[0] * weights[0] + uv[1] * weights[1] + uv[2] * weights[2];
+                best = Some((far, here, axes(corners, uv)));
             }
         }
-        best.map(|(_, uv)| uv)
+        best.map(|(_, uv, axes)| (uv, axes))
+    }
+}
+
+/// ∂P/∂u and ∂P/∂v up to a factor of one sign; zero where the texture has no area.
+fn axes(corners: &[Vector3; 3], uv: &[Vector2; 3]) -> [Vector3; 2] {
+    let (p, q) = (corners[1] - corners[0], corners[2] - corners[0]);
+    let (s, t) = (uv[1] - uv[0], uv[2] - uv[0]);
+    let sign = s.cross(t).signum();
+    [(p * t.y - q * s.y) * sign, (q * s.x - p * t.x) * sign]
+}
+
+/// How much nearer another side has to be than the one that a finger is on.
+const HOLD: f32 = 1.2;
+
+/// The axis that a normal is nearest to: 0, 1, 2 for x, y, z; the one before, until another is clearly nearer.
+pub(crate) fn side(normal: Vector3, before: Option<usize>) -> usize {
+    let along = |axis: usize| {
+        let own = [normal.x, normal.y, normal.z][axis].abs();
+        if before == Some(axis) { HOLD * own } else { own }
+    };
+    [1, 0, 2].into_iter().max_by(|a, b| along(*a).total_cmp(&along(*b))).unwrap_or(1)
+}
+
+/// A vector along u and v of a side.
+pub(crate) fn on_side(v: Vector3, side: usize) -> Vector2 {
+    match side {
+        0 => Vector2::new(v.z, v.y),
+        1 => Vector2::new(v.x, v.z),
+        _ => Vector2::new(v.x, v.y),
     }
 }
 

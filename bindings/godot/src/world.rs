@@ -11,7 +11,7 @@ use asperity::live::ports::{Feed, Pcm, PcmPort};
 use asperity::open::Overrides;
 use asperity::texture::sand::{SandThread, SandWorker};
 use asperity::{ActuatorSettings, AudioBus, ClockMode, Config, ContactEvent, Engine, Scene, SurfaceId};
-use godot::classes::{AudioServer, AudioStreamPlayer, INode, SceneTree};
+use godot::classes::{AudioServer, AudioStreamPlayer, INode, ProjectSettings, SceneTree};
 use godot::prelude::*;
 use std::path::Path;
 
@@ -24,6 +24,11 @@ pub(crate) const BODIES: &str = "asperity_bodies";
 
 /// How far a stamp may lead the audio, s: Godot catches up with up to 8 physics ticks in one frame, 133 ms at 60 Hz.
 const CLOCK: ClockMode = ClockMode::Live { max_lead_s: 0.2 };
+
+/// Gravity beyond which a project's unit is taken for the centimetre, m/s².
+const ODD_GRAVITY_M_S2: f64 = 100.0;
+/// The project's gravity.
+const GRAVITY: &str = "physics/3d/default_gravity";
 
 /// How much of a haptic channel waits for its stream, s.
 const HOLDS_S: f64 = 0.25;
@@ -84,6 +89,11 @@ impl INode for AsperityWorld {
         self.base_mut().set_physics_process_priority(-1000);
         if self.running.is_none() {
             self.build();
+        }
+        let settings = ProjectSettings::singleton();
+        let gravity: f64 = settings.get_setting(GRAVITY).try_to().unwrap_or(0.0);
+        if gravity > ODD_GRAVITY_M_S2 {
+            godot_warn!("AsperityWorld: gravity is {gravity}; asperity takes metres: scale the physics");
         }
     }
 
@@ -200,7 +210,8 @@ impl AsperityWorld {
 
     /// A contact begins: a number of your own, the surface, where (uv), how hard (N), which haptic channel feels it (-1: none). Report once a
     /// physics tick; the time is the tick's. What rolls tells with every report how fast it slips where it touches, m/s (0: it only rolls), and
-    /// its radius, m; left out, it is a stroke. False, and an error, where it is refused.
+    /// its radius, m; left out, it is a stroke. How fast it moves along u and v, m/s, tells whoever knows it: contact points of a physics engine
+    /// hop, and without it each hop is a motion. False, and an error, where it is refused.
     #[func]
     #[allow(
         clippy::too_many_arguments,
@@ -215,15 +226,17 @@ impl AsperityWorld {
         channel: i64,
         #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
         #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
+        #[opt(default = events::NO_VELOCITY)] velocity_m_s: Vector2,
     ) -> bool {
         self.report("report_begin", || {
             let touching = events::touching(surface, channel)?;
-            let sample = events::sample(uv, force_n, None, Rolling { slip_m_s, radius_m: roll_radius_m });
+            let rolling = Rolling { slip_m_s, radius_m: roll_radius_m };
+            let sample = events::sample(uv, force_n, events::velocity(velocity_m_s), rolling);
             Ok(ContactEvent::begin_with(events::contact(contact)?, touching, sample))
         })
     }
 
-    /// A contact has moved; what rolls tells it as in `report_begin`.
+    /// A contact has moved; what rolls, and how fast, is told as in `report_begin`.
     #[func]
     pub(crate) fn report_move(
         &mut self,
@@ -232,9 +245,11 @@ impl AsperityWorld {
         force_n: f64,
         #[opt(default = events::NOT_TOLD)] slip_m_s: f64,
         #[opt(default = events::NOT_TOLD)] roll_radius_m: f64,
+        #[opt(default = events::NO_VELOCITY)] velocity_m_s: Vector2,
     ) -> bool {
         self.report("report_move", || {
-            let sample = events::sample(uv, force_n, None, Rolling { slip_m_s, radius_m: roll_radius_m });
+            let rolling = Rolling { slip_m_s, radius_m: roll_radius_m };
+            let sample = events::sample(uv, force_n, events::velocity(velocity_m_s), rolling);
             Ok(ContactEvent::moved(events::contact(contact)?, sample))
         })
     }
@@ -263,8 +278,13 @@ impl AsperityWorld {
         self.report("report_end", || Ok(ContactEvent::end(events::contact(contact)?)))
     }
 
-    /// A body is struck: m/s, kg and m of the striker, its material ("": the engine's default), the haptic channel that feels it (-1: none).
+    /// A body is struck: m/s, kg and m of the striker, its material ("": the engine's default), the haptic channel that feels it (-1: none), and where
+    /// in its own space, m, for a body whose modes have shapes.
     #[func]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "a script calls it, and scripts have no structs to name things in"
+    )]
     fn report_impact(
         &mut self,
         body: i64,
@@ -273,9 +293,10 @@ impl AsperityWorld {
         radius_m: f64,
         striker: GString,
         channel: i64,
+        #[opt(default = events::NO_PLACE)] at_m: Vector3,
     ) -> bool {
         self.report("report_impact", || {
-            events::impact(body, speed_m_s, mass_kg, radius_m, &striker.to_string(), channel)
+            events::impact(body, speed_m_s, mass_kg, radius_m, &striker.to_string(), channel, at_m)
                 .map(ContactEvent::Impact)
         })
     }

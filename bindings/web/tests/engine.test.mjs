@@ -132,7 +132,7 @@ test('what is wrong is said in words, and the engine goes on', () => {
   for (const [bad, words] of [
     [{ ...good, surface: 'moon' }, /moon.*must be one of surface/], [{ ...good, event: 'dance' }, /begin, move, end or impact/],
     [{ ...good, normal_force_n: NaN }, /normal_force_n/], [{ ...good, uv: [NaN, 0] }, /uv/], [{ ...good, contact: -1 }, /contact/],
-    [{ ...good, actuator: 9 }, /actuator/], [{ ...good, colour: 'red' }, /colour/], [{ event: 'impact', body: 'body', speed_m_s: 1e9 }, /speed_m_s/],
+    [{ ...good, actuator: 9 }, /actuator/], [{ ...good, colour: 'red' }, /colour/], [{ event: 'impact', body: 'body', speed_m_s: -1 }, /speed_m_s/],
     [{ event: 'impact', body: 'body', striker: 'cheese' }, /cheese.*steel/],
   ]) assert.throws(() => engine.report(0, bad), words, JSON.stringify(bad));
   assert.throws(() => engine.do('explode'), /mute/);

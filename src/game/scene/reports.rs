@@ -61,8 +61,9 @@ impl Scene {
 
     fn try_report(&mut self, time_s: f64, event: ContactEvent) -> Result<(), Refusal> {
         let told = event;
-        let event = self.checked(event)?;
+        let (event, held) = self.checked(event)?;
         self.checked_time(time_s)?;
+        Counters::add(&self.counters.held, u64::from(held));
         self.note_touch(&told);
         let position = self.counters.position.load(Relaxed);
         let stamped = self.clock.stamp(time_s, position);
@@ -128,27 +129,36 @@ impl Scene {
         Ok(())
     }
 
-    fn checked(&self, event: ContactEvent) -> Result<ContactEvent, Refusal> {
+    /// The event as it is sent, and whether a number of it was held at its limit.
+    fn checked(&self, event: ContactEvent) -> Result<(ContactEvent, bool), Refusal> {
         Ok(match event {
-            ContactEvent::Begin { contact, touching, sample } => {
+            ContactEvent::Begin { contact, mut touching, sample } => {
                 let known = self.known_surface(touching.surface).map_err(|_| Refusal::UnknownSurface)?;
                 let sample = sample.on(&known.place)?;
                 self.check_hand(touching.actuator, touching.holder, touching.probe)?;
                 within("gain", touching.gain, limits::impact::GAIN)?;
                 within("importance", touching.importance, limits::impact::IMPORTANCE)?;
-                ContactEvent::Begin { contact, touching, sample: sample.checked()? }
+                // What rubs itself rings once: the same impulses back on it would cancel to silence.
+                touching.holder = touching.holder.filter(|holder| known.body != Some(*holder));
+                let (sample, held) = sample.held()?;
+                (ContactEvent::Begin { contact, touching, sample }, held)
             }
             ContactEvent::Moved { contact, sample, emphasis } => {
                 let sample = self.on_touched(contact, sample)?;
-                ContactEvent::moved_with(contact, sample.checked()?, emphasis.checked()?)
+                let (sample, held) = sample.held()?;
+                (ContactEvent::moved_with(contact, sample, emphasis.checked()?), held)
             }
-            ContactEvent::End { .. } => event,
+            ContactEvent::End { .. } => (event, false),
             ContactEvent::Impact(impact) => {
                 for body in [Some(impact.body), impact.other].into_iter().flatten() {
                     self.known_body(body).map_err(|_| Refusal::UnknownBody)?;
                 }
                 self.check_hand(impact.actuator, impact.holder, impact.probe)?;
-                ContactEvent::Impact(impact.checked()?)
+                let (mut impact, held) = impact.held()?;
+                for body in [&mut impact.other, &mut impact.holder] {
+                    *body = body.filter(|body| *body != impact.body);
+                }
+                (ContactEvent::Impact(impact), held)
             }
         })
     }

@@ -21,6 +21,9 @@ namespace Asperity
         [Tooltip("Weaker collisions are not reported, N s")]
         public float LeastImpulseNS = 1e-4f;
 
+        [Tooltip("Velocity of its surface in its own space, m/s: a conveyor belt")]
+        public Vector3 BeltMS;
+
         public ulong Body { get; private set; }
         public ulong Surface { get; private set; }
 
@@ -48,16 +51,42 @@ namespace Asperity
             return true;
         }
 
-        /// <summary>Where a place lies on it that knows no texture coordinates: on a plane in the world, u along x and y, v along z.</summary>
-        public Vector2 PlaneUv(Vector3 point) { return new Vector2(point.x + point.y, point.z) / UvSizeM; }
+        /// <summary>A direction in its own space, m: its scale does not count.</summary>
+        public Vector3 Own(Vector3 along)
+        {
+            return new Vector3(Vector3.Dot(along, transform.right), Vector3.Dot(along, transform.up), Vector3.Dot(along, transform.forward));
+        }
+
+        /// <summary>A place in its own space, m.</summary>
+        public Vector3 OwnPlace(Vector3 point) { return Own(point - transform.position); }
+
+        /// <summary>The axis of its own that a normal is nearest to; the one before (-1: none), until another is clearly nearer.</summary>
+        public int Side(Vector3 normal, int before)
+        {
+            var own = Own(normal);
+            float[] along = { Mathf.Abs(own.x), Mathf.Abs(own.y), Mathf.Abs(own.z) };
+            if (before >= 0) along[before] *= 1.2f;
+            return along[1] >= along[0] && along[1] >= along[2] ? 1 : along[0] >= along[2] ? 0 : 2;
+        }
+
+        /// <summary>A vector of its own space along u and v of one of its sides.</summary>
+        public static Vector2 OnSide(Vector3 own, int side)
+        {
+            return side == 1 ? new Vector2(own.x, own.z) : side == 0 ? new Vector2(own.z, own.y) : new Vector2(own.x, own.y);
+        }
 
         void OnCollisionEnter(Collision collision)
         {
             float impulse = collision.impulse.magnitude;
             if (impulse < LeastImpulseNS || !Join()) return;
             // The approach along the normal; a resting contact has none.
-            float speed = Mathf.Abs(Vector3.Dot(collision.relativeVelocity, collision.GetContact(0).normal));
-            if (speed > 0f) AsperityWorld.Current.Report(Event.Collision(Body, impulse, speed, 0.5));
+            var contact = collision.GetContact(0);
+            float speed = Mathf.Abs(Vector3.Dot(collision.relativeVelocity, contact.normal));
+            if (speed <= 0f) return;
+            var blow = Event.Collision(Body, impulse, speed, 0.5);
+            var at = OwnPlace(contact.point);
+            blow.AtX = at.x; blow.AtY = at.y; blow.AtZ = at.z;
+            AsperityWorld.Current.Report(blow);
         }
 
         void OnDestroy()

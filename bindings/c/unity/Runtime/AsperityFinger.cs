@@ -16,6 +16,8 @@ namespace Asperity
         AsperityBody touched;
         Scene scene;
         Vector2 uv;
+        Vector3 last;
+        int side;
 
         void FixedUpdate()
         {
@@ -25,8 +27,13 @@ namespace Asperity
             var found = Physics.Raycast(transform.position, transform.forward, out hit, ReachM) ? hit.collider.GetComponent<AsperityBody>() : null;
             if (found != touched || world.Scene != scene) Lift(world);
             if (found == null || !found.Join() || found.Surface == 0) return;
-            // Mesh colliders know texture coordinates; any other is a plane in the world.
-            uv = hit.collider is MeshCollider ? hit.textureCoord : found.PlaneUv(hit.point);
+            // Mesh colliders know texture coordinates; of any other the side counts that the finger is on.
+            bool drawn = hit.collider is MeshCollider;
+            var own = found.OwnPlace(hit.point);
+            side = found.Side(hit.normal, touched == null ? -1 : side);
+            uv = drawn ? hit.textureCoord : AsperityBody.OnSide(own, side) / found.UvSizeM;
+            var along = AsperityBody.OnSide((own - last) * (1f / Time.fixedDeltaTime), side);
+            last = own;
             double force = StiffnessNM * (ReachM - hit.distance);
             if (touched == null)
             {
@@ -35,7 +42,13 @@ namespace Asperity
                 scene = world.Scene;
                 world.Report(Event.Begin(contact, found.Surface, HapticChannel, uv.x, uv.y, force));
             }
-            else world.Report(Event.Move(contact, uv.x, uv.y, force));
+            else
+            {
+                var told = Event.Move(contact, uv.x, uv.y, force);
+                // Along u and v of a mesh nobody but the mesh knows it: there the engine finds it out.
+                if (!drawn) { told.VelocityU = along.x; told.VelocityV = along.y; }
+                world.Report(told);
+            }
         }
 
         void Lift(AsperityWorld world)

@@ -17,7 +17,8 @@ namespace Asperity
 
         static ulong names = 1UL << 32;   // a game's own contacts stay free below
         ulong contact;
-        int rested;
+        int rested, side;
+        Vector3 run;
         AsperityBody ground;
         Scene scene;
         Rigidbody body;
@@ -34,17 +35,22 @@ namespace Asperity
             if (found == null || ground != null && found != ground || !found.Join() || found.Surface == 0) return;
             var at = collision.GetContact(0);
             var beneath = collision.rigidbody == null ? new Vector3() : collision.rigidbody.GetPointVelocity(at.point);
+            beneath = beneath + found.transform.right * found.BeltMS.x + found.transform.up * found.BeltMS.y + found.transform.forward * found.BeltMS.z;
             var slip = Along(body.GetPointVelocity(at.point) - beneath, at.normal);
             var path = RollRadiusM > 0f ? Along(body.GetPointVelocity(body.worldCenterOfMass) - beneath, at.normal) : slip;
-            rested = path.magnitude < RestMS ? rested + 1 : 0;
+            rested = Mathf.Max(path.magnitude, slip.magnitude) < RestMS ? rested + 1 : 0;
             if (rested > (ground == null ? 0 : RestSteps)) { Leave(world); return; }
-            var uv = found.PlaneUv(at.point);
+            // What lies on a belt stands still on its surface.
+            side = found.Side(at.normal, ground == null ? -1 : side);
+            run = ground == null ? new Vector3() : run + found.BeltMS * Time.fixedDeltaTime;
+            var uv = AsperityBody.OnSide(found.OwnPlace(at.point) - run, side) / found.UvSizeM;
+            var along = AsperityBody.OnSide(found.Own(path), side);
             double force = collision.impulse.magnitude / Time.fixedDeltaTime;
             var told = ground == null
                 ? Event.Begin(contact = ++names, found.Surface, HapticChannel, uv.x, uv.y, force)
                 : Event.Move(contact, uv.x, uv.y, force);
-            told.VelocityU = path.x + path.y;   // as PlaneUv lies
-            told.VelocityV = path.z;
+            told.VelocityU = along.x;
+            told.VelocityV = along.y;
             world.Report(RollRadiusM > 0f ? told.Rolling(RollRadiusM, slip.magnitude) : told);
             ground = found;
         }

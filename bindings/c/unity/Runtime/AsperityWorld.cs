@@ -39,6 +39,8 @@ namespace Asperity
             Scene = Scene.Build(out renderer, AudioSettings.outputSampleRate, HapticChannels, more: audio + haptics);
             Renderer = renderer;
             Current = this;
+            if (Physics.gravity.magnitude > 100f)
+                Debug.LogWarning("Asperity: gravity is " + Physics.gravity.magnitude + "; asperity takes metres: scale the physics");
             // Unity hears an object only where one of these is on it.
             if (Mixer == null && GetComponent<AudioSource>() == null && GetComponent<AudioListener>() == null) gameObject.AddComponent<AudioSource>();
             if (Mixer != null && !Mixer.SetFloat(EngineParameter, renderer.UnitySlot()))

@@ -1,0 +1,342 @@
+//! Shapes, faces, belts and hands of a rapier world: what rolls is no louder than what slides, every side of a box sounds as its top, what rests on
+//! a belt is silent, and a blow lands where it lands.
+
+use asperity::{
+    Actuator, Body, Config, ContactEvent, Engine, Impact, Material, Renderer, Scene, Stock, Surface,
+    SurfaceId,
+};
+use asperity_rapier::{Adapter, Kind, Mapping, Notice, Thing};
+use rapier3d::prelude::*;
+
+const STEP_S: f64 = 1.0 / 60.0;
+
+struct World {
+    physics: PhysicsWorld,
+    adapter: Adapter,
+    scene: Scene,
+    renderer: Renderer,
+    top: SurfaceId,
+    steps: u32,
+    events: Vec<ContactEvent>,
+    /// What was heard in the last run.
+    heard: Vec<f32>,
+}
+
+impl World {
+    /// A block of stone of 40 m by 1 m by 40 m whose top lies at height 0, every side of which is mapped.
+    fn new(mapping: Mapping) -> Self {
+        let mut config = Config::live(48_000.0);
+        config.audio[0].limit = false;
+        let Engine { mut scene, renderer, .. } = config.build().unwrap();
+        let mut physics = PhysicsWorld::default();
+        physics.integration_parameters.contact_recycling = false;
+        let slab = scene.add_body(Body::stock(Stock::Plate, Material::STONE, 0.5).unwrap()).unwrap();
+        let top = Surface::flat(1.0, 1.0).unwrap().of(Material::STONE).on(slab);
+        let top = scene.add_surface(top).unwrap();
+        let floor = ColliderBuilder::cuboid(20.0, 20.0, 20.0).translation(Vector::new(0.0, -20.0, 0.0));
+        let (_, floor) = physics.insert(RigidBodyBuilder::fixed(), floor);
+        let mut adapter = Adapter::new(&mut scene).unwrap();
+        adapter.insert(floor, Thing::of(Material::STONE).ringing(slab).with_surface(top, mapping));
+        Self { physics, adapter, scene, renderer, top, steps: 0, events: Vec::new(), heard: Vec::new() }
+    }
+
+    fn insert(&mut self, body: RigidBodyBuilder, collider: ColliderBuilder, thing: Thing) -> RigidBodyHandle {
+        let (body, collider) = self.physics.insert(body, collider);
+        self.adapter.insert(collider, thing);
+        body
+    }
+
+    fn run(&mut self, seconds: f64) {
+        self.run_by(seconds, |_| ());
+    }
+
+    fn run_by(&mut self, seconds: f64, mut before: impl FnMut(&mut PhysicsWorld)) {
+        self.heard.clear();
+        for _ in 0..(seconds / STEP_S).round() as u32 {
+            before(&mut self.physics);
+            self.adapter.before_step(&(&self.physics).into());
+            self.physics.step();
+            for event in self.adapter.after_step(&(&self.physics).into()) {
+                self.scene.report(f64::from(self.steps) * STEP_S, event).unwrap();
+                self.events.push(event);
+            }
+            self.steps += 1;
+            let (mut haptic, mut audio) = ([0.0; 800], [0.0; 800]);
+            self.renderer.render(&mut [&mut haptic], &mut [&mut audio]);
+            self.heard.extend(audio);
+        }
+    }
+
+    /// Rms of what was heard in the last run, dB.
+    fn level_db(&self) -> f64 {
+        let power: f64 = self.heard.iter().map(|x| f64::from(*x).powi(2)).sum();
+        10.0 * (power / self.heard.len() as f64).max(1e-30).log10()
+    }
+
+    fn impacts(&self) -> Vec<Impact> {
+        self.events
+            .iter()
+            .filter_map(|event| if let ContactEvent::Impact(impact) = event { Some(*impact) } else { None })
+            .collect()
+    }
+
+    /// Velocity and uv of the last report.
+    fn last(&self) -> ([f64; 2], [f64; 2]) {
+        let told = self.events.iter().rev().find_map(|event| match event {
+            ContactEvent::Moved { sample, .. } => Some((sample.velocity_m_s.unwrap(), sample.uv)),
+            _ => None,
+        });
+        told.expect("nothing moves")
+    }
+}
+
+fn at(x: f32, y: f32, z: f32) -> RigidBodyBuilder {
+    RigidBodyBuilder::dynamic().translation(Vector::new(x, y, z))
+}
+
+fn faces() -> Mapping {
+    Mapping::by_normal([1.0, 1.0])
+}
+
+fn of_mass(collider: ColliderBuilder, mass_kg: f32) -> ColliderBuilder {
+    collider.mass(mass_kg)
+}
+
+/// Level while a round thing of 20 kg and 0.3 m rolls at a speed, or slides without turning.
+fn round_db(shape: &str, speed_m_s: f32, rolls: bool) -> f64 {
+    let mut world = World::new(faces());
+    let collider = match shape {
+        "ball" => ColliderBuilder::ball(0.3),
+        "capsule" => ColliderBuilder::capsule_z(0.4, 0.3),
+        "cylinder" => ColliderBuilder::cylinder(0.4, 0.3),
+        _ => ColliderBuilder::round_cylinder(0.35, 0.25, 0.05),
+    };
+    let mut body = at(-15.0, 0.301, 0.0).linvel(Vector::new(speed_m_s, 0.0, 0.0));
+    if shape.ends_with("cylinder") {
+        body = body.rotation(Vector::new(std::f32::consts::FRAC_PI_2, 0.0, 0.0));
+    }
+    let body =
+        if rolls { body.angvel(Vector::new(0.0, 0.0, -speed_m_s / 0.3)) } else { body.lock_rotations() };
+    let collider = of_mass(collider, 20.0).friction(if rolls { 0.8 } else { 0.0 });
+    let collider = collider.friction_combine_rule(if rolls {
+        CoefficientCombineRule::Max
+    } else {
+        CoefficientCombineRule::Min
+    });
+    world.insert(body, collider, Thing::of(Material::STEEL));
+    world.run(0.7);
+    world.run(1.0);
+    let kinds: Vec<Kind> = world.adapter.touches().map(|touch| touch.kind).collect();
+    let wanted = if rolls { Kind::Rolls } else { Kind::Scrapes };
+    assert!(kinds.iter().all(|kind| *kind == wanted), "{shape} at {speed_m_s} m/s: {kinds:?}");
+    assert_eq!(world.scene.stats().refused, 0);
+    world.level_db()
+}
+
+#[test]
+fn a_rolling_barrel_is_as_soft_as_a_rolling_ball_and_sliding_is_louder() {
+    for speed_m_s in [0.5, 3.0, 8.0] {
+        let level = |shape, rolls| round_db(shape, speed_m_s, rolls);
+        let capsule = level("capsule", true);
+        for shape in ["ball", "cylinder", "round cylinder"] {
+            let (rolling, sliding) = (level(shape, true), level(shape, false));
+            println!("{shape} {speed_m_s} m/s: rolls {rolling:.1} slides {sliding:.1}, capsule {capsule:.1}");
+            assert!(rolling < sliding, "{shape} at {speed_m_s} m/s: {rolling} against {sliding} dB");
+            if shape == "cylinder" {
+                assert!((rolling - capsule).abs() < 6.0, "{speed_m_s} m/s: {rolling} against {capsule} dB");
+            }
+        }
+    }
+}
+
+/// Level, and velocity told, while a box is pressed onto a side of the block and driven along it.
+fn along_db(mapping: Mapping, face: usize, sign: f32, along: usize, speed_m_s: f32) -> (f64, [f64; 2]) {
+    let mut world = World::new(mapping);
+    let axis = |index: usize, length: f32| {
+        let mut v = [0.0; 3];
+        v[index] = length;
+        Vector::from_array(v)
+    };
+    // The block's middle lies at (0, −20, 0).
+    let place = Vector::new(0.0, -20.0, 0.0) + axis(face, sign * 20.1005);
+    world.physics.gravity = axis(face, -sign * 9.81);
+    let body = RigidBodyBuilder::dynamic().translation(place).lock_rotations().can_sleep(false);
+    let cube = of_mass(ColliderBuilder::cuboid(0.1, 0.1, 0.1), 8.0).friction(0.0);
+    let cube = cube.friction_combine_rule(CoefficientCombineRule::Min);
+    let body = world.insert(body, cube, Thing::of(Material::STEEL));
+    let drive = |physics: &mut PhysicsWorld| {
+        let body = &mut physics.bodies[body];
+        let falls = body.linvel().to_array()[face];
+        body.set_linvel(axis(along, speed_m_s) + axis(face, falls), true);
+    };
+    world.run_by(0.5, drive);
+    world.run_by(1.0, drive);
+    assert!(world.adapter.touches().all(|touch| touch.contact.is_some() && !touch.is_unplaced));
+    (world.level_db(), world.last().0)
+}
+
+#[test]
+fn every_side_of_a_box_sounds_as_its_top_in_both_directions_also_where_only_the_top_was_mapped() {
+    let top = Mapping::plane([-20.0, 20.0, -20.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    for mapping in [faces(), top] {
+        let (reference, _) = along_db(faces(), 1, 1.0, 0, 0.5);
+        for face in 0..3 {
+            for sign in [-1.0, 1.0] {
+                for along in (0..3).filter(|along| *along != face) {
+                    let (level, told) = along_db(mapping.clone(), face, sign, along, 0.5);
+                    println!("face {face} {sign} along {along}: {level:.2} dB of {reference:.2}, {told:?}");
+                    assert!(
+                        (level - reference).abs() < 1.5,
+                        "{face} {sign} {along}: {level} of {reference} dB"
+                    );
+                    let axes = told.map(|v| (v.abs() > 0.4) as u8);
+                    assert_eq!(axes.iter().sum::<u8>(), 1, "goes along one of both axes: {told:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_rests_on_a_belt_is_silent_and_what_stands_still_above_it_is_heard() {
+    for belt_m_s in [2.0f32, -2.0] {
+        let level_db = |riding: bool| {
+            let mut world = World::new(faces());
+            let belt = world.adapter.rigid_probe();
+            let (_, floor) = world.physics.insert(
+                RigidBodyBuilder::fixed(),
+                ColliderBuilder::cuboid(19.0, 0.1, 1.0).translation(Vector::new(0.0, 0.1, 0.0)),
+            );
+            let belt_of = Thing::of(Material::STONE).running([belt_m_s, 0.0, 0.0]).touching_with(belt);
+            world.adapter.insert(floor, belt_of.with_surface(world.top, faces()));
+            let body = at(0.0, 0.3005, 0.0).lock_rotations().can_sleep(false);
+            let cube = of_mass(ColliderBuilder::cuboid(0.1, 0.1, 0.1), 2.0).friction(0.0);
+            let cube = cube.friction_combine_rule(CoefficientCombineRule::Min);
+            let body = world.insert(body, cube, Thing::of(Material::STEEL));
+            let drive = |physics: &mut PhysicsWorld| {
+                let falls = physics.bodies[body].linvel().y;
+                let along = if riding { belt_m_s } else { 0.0 };
+                physics.bodies[body].set_linvel(Vector::new(along, falls, 0.0), true);
+            };
+            world.run_by(1.5, drive);
+            world.run_by(1.0, drive);
+            (world.level_db(), world.adapter.touches().next().unwrap().kind)
+        };
+        let (riding, kind) = level_db(true);
+        assert!(riding < -100.0 && kind == Kind::Rests, "{belt_m_s} m/s: {riding} dB, {kind:?}");
+        let (held, kind) = level_db(false);
+        assert!(held > -60.0 && kind == Kind::Scrapes, "{belt_m_s} m/s: {held} dB, {kind:?}");
+    }
+}
+
+#[test]
+fn a_wheel_that_spins_on_the_spot_is_reported_with_its_slip() {
+    for spin_rad_s in [1.0f32, 10.0, 60.0] {
+        let mut world = World::new(faces());
+        let wheel = at(0.0, 0.301, 0.0).can_sleep(false).enabled_translations(false, true, false);
+        let ball = of_mass(ColliderBuilder::ball(0.3), 20.0).friction(0.0);
+        let ball = ball.friction_combine_rule(CoefficientCombineRule::Min);
+        world.insert(wheel.angvel(Vector::new(0.0, 0.0, spin_rad_s)), ball, Thing::of(Material::STEEL));
+        world.run(1.0);
+        let touch = world.adapter.touches().next().unwrap();
+        assert!(touch.kind == Kind::Scrapes && touch.contact.is_some(), "{touch:?}");
+        assert!((touch.slip_m_s / (0.3 * spin_rad_s) - 1.0).abs() < 0.05, "{touch:?}");
+    }
+}
+
+#[test]
+fn what_weighs_a_hundred_tonnes_or_flies_at_a_kilometre_a_second_is_never_refused() {
+    for mass_kg in [1e-3, 1.0, 1.1e3, 1e5] {
+        let mut world = World::new(faces());
+        let cube = of_mass(ColliderBuilder::cuboid(0.5, 0.5, 0.5), mass_kg).friction(0.0);
+        let cube = cube.friction_combine_rule(CoefficientCombineRule::Min);
+        let body = at(-5.0, 0.51, 0.0).linvel(Vector::new(2.0, -1.0, 0.0)).lock_rotations();
+        world.insert(body, cube, Thing::of(Material::STONE));
+        world.run(1.0);
+        let stats = world.scene.stats();
+        assert_eq!((stats.refused, stats.lapsed), (0, 0), "{mass_kg} kg");
+        assert!(world.level_db() > -140.0, "{mass_kg} kg: {} dB", world.level_db());
+        assert_eq!(stats.held > 0, mass_kg > 1e3, "{mass_kg} kg: {} held", stats.held);
+    }
+    for speed_m_s in [1e-3, 50.0, 105.0, 400.0, 1000.0] {
+        let mut world = World::new(faces());
+        let bullet = at(0.0, 1.0, 0.0).linvel(Vector::new(0.0, -speed_m_s, 0.0)).ccd_enabled(true);
+        world.insert(bullet, of_mass(ColliderBuilder::ball(0.005), 0.008), Thing::of(Material::STEEL));
+        world.run(1.0);
+        assert_eq!(world.scene.stats().refused, 0, "{speed_m_s} m/s");
+        assert!(!world.impacts().is_empty(), "{speed_m_s} m/s: no blow");
+        let told = world.scene.why_silent().iter().any(|reason| reason.to_string().contains("100 m/s"));
+        assert_eq!(told, speed_m_s > 100.0, "{speed_m_s} m/s: {:?}", world.scene.why_silent());
+    }
+}
+
+#[test]
+fn a_blow_tells_where_it_lands_in_the_frame_of_what_it_strikes() {
+    for (x, z) in [(0.0, 0.0), (0.9, 0.0), (-0.9, 0.9)] {
+        let mut world = World::new(faces());
+        let plate = world.scene.add_body(Body::stock(Stock::Plate, Material::STEEL, 1.0).unwrap()).unwrap();
+        // A plate of 2 m by 2 m on end, turned by a right angle about z: its own y looks along −x.
+        let turned = RigidBodyBuilder::fixed().translation(Vector::new(0.0, 1.0, 0.0)).rotation(Vector::new(
+            0.0,
+            0.0,
+            std::f32::consts::FRAC_PI_2,
+        ));
+        world.insert(
+            turned,
+            ColliderBuilder::cuboid(0.01, 1.0, 1.0),
+            Thing::of(Material::STEEL).ringing(plate),
+        );
+        let ball = of_mass(ColliderBuilder::ball(0.02), 0.1);
+        let falling = at(x, 1.2, z).linvel(Vector::new(0.0, -2.0, 0.0));
+        world.insert(falling, ball, Thing::of(Material::STEEL));
+        world.run(0.4);
+        let impact = world.impacts()[0];
+        let at_m = impact.at_m.expect("it tells its place");
+        // Turned back: (x, y) → (y, −x) about the plate's middle.
+        let wanted = [0.01, -f64::from(x), f64::from(z)];
+        let far: f64 = at_m.iter().zip(wanted).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        assert!(impact.body == plate && far < 0.005, "{at_m:?} against {wanted:?}");
+    }
+}
+
+#[test]
+fn a_kinematic_hand_on_a_fixed_table_is_heard_by_a_nominal_force_and_says_what_it_lacks() {
+    for listed in [true, false] {
+        let mut world = World::new(faces());
+        let hand = RigidBodyBuilder::kinematic_velocity_based()
+            .translation(Vector::new(0.0, 0.048, 0.0))
+            .linvel(Vector::new(0.3, 0.0, 0.0));
+        let mut collider = ColliderBuilder::cuboid(0.05, 0.05, 0.05);
+        if listed {
+            collider = collider.active_collision_types(ActiveCollisionTypes::all());
+        }
+        world.insert(hand, collider, Thing::of(Material::NAIL).felt_by(Actuator(0)));
+        world.run(1.0);
+        let warnings: Vec<Notice> = world.adapter.warnings().iter().map(|warning| warning.notice).collect();
+        if listed {
+            let touch = world.adapter.touches().next().expect("it touches");
+            assert!(touch.contact.is_some() && (touch.force_n - 1.0).abs() < 1e-3, "{touch:?}");
+            assert!((world.last().0[0].hypot(world.last().0[1]) - 0.3).abs() < 0.02, "{:?}", world.last());
+            assert!(warnings.is_empty() && world.impacts().is_empty(), "{warnings:?}");
+        } else {
+            assert_eq!(warnings, [Notice::Unlisted]);
+        }
+    }
+}
+
+#[test]
+fn a_mesh_mapping_on_what_is_no_mesh_and_a_world_in_centimetres_are_told_once() {
+    let mut world = World::new(Mapping::Mesh(vec![[0.0, 0.0]]));
+    world.physics.gravity = Vector::new(0.0, -981.0, 0.0);
+    let cube = of_mass(ColliderBuilder::cuboid(0.1, 0.1, 0.1), 1.0);
+    let body = at(0.0, 0.1, 0.0).linvel(Vector::new(30.0, 0.0, 0.0));
+    world.insert(body, cube, Thing::of(Material::STEEL));
+    world.run(0.5);
+    assert!(world.adapter.touches().all(|touch| touch.is_unplaced || touch.kind == Kind::Rests));
+    let warnings = world.adapter.warnings();
+    let notices: Vec<Notice> = warnings.iter().map(|warning| warning.notice).collect();
+    assert_eq!(notices, [Notice::Gravity { m_s2: 981.0 }, Notice::Unplaced], "{warnings:?}");
+    assert!(warnings[1].collider.is_some() && warnings[1].to_string().contains("plane"));
+    world.run(0.5);
+    assert!(world.adapter.warnings().is_empty());
+}

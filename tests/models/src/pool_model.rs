@@ -1,0 +1,38 @@
+//! The pool: jobs go out and all come home, however helpers sleep and wake; it ends whenever it is asked to.
+
+use crate::pool::{Job, Pool};
+use crate::schedules;
+
+struct Double(u32);
+
+impl Job for Double {
+    type Room = u32;
+
+    fn run(&mut self, room: &mut u32) {
+        self.0 *= 2;
+        *room += 1;
+    }
+}
+
+/// Rounds of jobs as the crew sends them: all out, helpers woken, home in any order.
+fn rounds(helpers: usize, rounds: &[u32]) {
+    let mut pool = Pool::new(vec![0; helpers], 4).unwrap();
+    let mut room = 0;
+    for jobs in rounds {
+        for job in 0..*jobs {
+            assert!(pool.send(Double(job + 1)).is_ok());
+        }
+        pool.wake();
+        let mut home: Vec<u32> = std::iter::from_fn(|| pool.next(&mut room)).map(|job| job.0).collect();
+        home.sort_unstable();
+        assert_eq!(home, (1..=*jobs).map(|job| 2 * job).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn a_block_rendered_by_several_threads_is_whole_and_the_threads_end_with_it() {
+    let one = schedules(3, || rounds(1, &[2]));
+    let two = schedules(2, || rounds(2, &[3]));
+    println!("{one} and {two} schedules");
+    assert!(one >= 1000 && two >= 1000, "{one} and {two} schedules");
+}
