@@ -4,13 +4,14 @@ use crate::build::Build;
 use crate::draw::Draws;
 use crate::manifest::{self, Manifest};
 use crate::record::{Record, Samples};
-use crate::spec::{Format, Spec, SplitBy, hex};
+use crate::spec::{Format, Haptic, Spec, SplitBy, hex};
 use crate::stroke::{DataLevels, Stroke, data_levels};
 use crate::surfaces::{Choice, choices, split};
 use crate::{parquet_file, webdataset, whole_file};
 use asperity::files::FileError;
 use asperity::open::Maps;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -23,6 +24,32 @@ pub struct DataSet {
     levels: DataLevels,
     build: Build,
     maps: Maps,
+    fresh: Fresh,
+}
+
+/// Strokes that are looked at for a part without any.
+const MOST_COUNTED: u64 = 100_000;
+
+/// The first folder that had to be made for a data set; none where it was there.
+#[derive(Debug, Clone)]
+struct Fresh(Option<PathBuf>);
+
+impl Fresh {
+    fn make(folder: &Path) -> Result<Self, FileError> {
+        let missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+        let made = folder.ancestors().take_while(missing).last().map(Path::to_owned);
+        fs::create_dir_all(folder).map_err(|error| FileError::write(folder, &error))?;
+        Ok(Self(made))
+    }
+
+    /// Removes it again, unless a shard lies there or is being made.
+    fn undo(&self, folder: &Path) {
+        let Some(made) = &self.0 else { return };
+        let mut names = fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
+        if names.all(|entry| !entry.file_name().to_string_lossy().contains("shard-")) {
+            let _ = fs::remove_dir_all(made);
+        }
+    }
 }
 
 /// What became of a shard.
@@ -43,7 +70,11 @@ impl DataSet {
     /// # Errors
     /// When a surface cannot be used, the folder cannot be written, or holds shards of another build.
     pub fn open(spec: Spec, folder: &Path) -> Result<Self, FileError> {
-        fs::create_dir_all(folder).map_err(|error| FileError::write(folder, &error))?;
+        let fresh = Fresh::make(folder)?;
+        Self::in_folder(spec, folder, fresh.clone()).inspect_err(|_| fresh.undo(folder))
+    }
+
+    fn in_folder(spec: Spec, folder: &Path, fresh: Fresh) -> Result<Self, FileError> {
         let build = Build::of(&spec);
         if let Some(there) = Manifest::load(folder)? {
             same_build(&folder.join(manifest::NAME), &build, &there.build)?;
@@ -52,7 +83,31 @@ impl DataSet {
         let maps = Maps::default();
         let levels = data_levels(&spec, &choices, folder, &maps)?;
         whole_file::write_once(&folder.join("spec.toml"), spec.text.as_bytes())?;
-        Ok(Self { spec, folder: folder.to_owned(), choices, levels, build, maps })
+        Ok(Self { spec, folder: folder.to_owned(), choices, levels, build, maps, fresh })
+    }
+
+    /// Parts of the data set that have a share and no stroke, and why.
+    #[must_use]
+    pub fn empty_parts(&self) -> Option<String> {
+        let says = &self.spec.says;
+        let count = self.choices.len();
+        let parts: BTreeSet<&str> = match says.split.by {
+            SplitBy::Surface => (0..count).map(|surface| split(&self.spec, surface, count, 0)).collect(),
+            SplitBy::Stroke => (0..says.strokes.min(MOST_COUNTED))
+                .map(|stroke| split(&self.spec, 0, count, stroke))
+                .collect(),
+        };
+        let shares =
+            [("train", says.split.train), ("validation", says.split.validation), ("test", says.split.test)];
+        let empty = shares.iter().filter(|(name, share)| *share > 0.0 && !parts.contains(name));
+        let empty: Vec<&str> = empty.map(|(name, _)| *name).collect();
+        let right = match says.split.by {
+            SplitBy::Surface => format!(
+                "there are {count} surfaces, and none is parted; add surfaces, write by = \"stroke\", or other shares under [split]"
+            ),
+            SplitBy::Stroke => "make more strokes, or write other shares under [split]".to_owned(),
+        };
+        (!empty.is_empty()).then(|| format!("no stroke belongs to {}: {right}", empty.join(" and ")))
     }
 
     /// What it is made of.
@@ -77,7 +132,11 @@ impl DataSet {
     ///
     /// # Errors
     /// When a stroke is refused, the disk is full, or the shard that is there is of another build.
-    pub fn shard(&self, index: u64, mut progress: impl FnMut()) -> Result<Outcome, FileError> {
+    pub fn shard(&self, index: u64, progress: impl FnMut()) -> Result<Outcome, FileError> {
+        self.made(index, progress).inspect_err(|_| self.fresh.undo(&self.folder))
+    }
+
+    fn made(&self, index: u64, mut progress: impl FnMut()) -> Result<Outcome, FileError> {
         let name = self.file(index);
         let path = self.folder.join(&name);
         let per_shard = self.spec.says.per_shard;
@@ -86,10 +145,14 @@ impl DataSet {
             (first..last).for_each(|_| progress());
             return Ok(Outcome::Kept);
         }
+        // Another process that clears up must not come between the file and its lock.
+        let began = manifest::lock(&self.folder)?;
+        let mut began = Some(began);
         let mut clipped = 0;
         let mut sum = String::new();
         let mut refused = None;
         let written = whole_file::write_with(&path, |file| {
+            drop(began.take());
             let mut out = Summed { out: file, sum: Sha256::new() };
             let made = self.write(&mut out, first..last, &mut clipped, &mut progress);
             sum = hex(&out.sum.finalize_reset());
@@ -127,7 +190,7 @@ impl DataSet {
                 .collect(),
             SplitBy::Stroke => Default::default(),
         };
-        let mut manifest = Manifest::new(&self.spec, &self.build, self.levels, splits);
+        let mut manifest = Manifest::new(&self.spec, &self.build, &self.levels, splits);
         manifest.write(&self.folder)?;
         Ok(manifest)
     }
@@ -152,12 +215,20 @@ impl DataSet {
         progress: &mut impl FnMut(),
     ) -> Result<(), Failure> {
         let output = &self.spec.says.output;
-        let more = [
+        let mut more = [
             ("audio_rate_hz", output.audio.rate_hz.to_string()),
-            ("haptic_rate_hz", output.haptic.rate_hz.to_string()),
-            ("haptic_full_scale", self.levels.full_scale.to_string()),
+            ("haptic_rate_hz", output.haptic[0].rate_hz.to_string()),
+            ("haptic_full_scale", self.levels.full_scale[0].to_string()),
             ("audio_gain", self.levels.gain.to_string()),
-        ];
+        ]
+        .map(|(key, value)| (key.to_owned(), value))
+        .to_vec();
+        for (haptic, full_scale) in output.haptic.iter().zip(&self.levels.full_scale).skip(1) {
+            let column = haptic.further_column();
+            more.push((format!("{column}_rate_hz"), haptic.rate_hz.to_string()));
+            more.push((format!("{column}_full_scale"), full_scale.to_string()));
+        }
+        more.extend(output.force.map(|force| ("force_rate_hz".to_owned(), force.rate_hz.to_string())));
         let records = strokes.map(|number| {
             let record = self.record(number);
             progress();
@@ -165,8 +236,7 @@ impl DataSet {
         });
         match output.format {
             Format::Parquet => {
-                let mut shard =
-                    parquet_file::Shard::begin(out, &self.build, output.audio.codec, &more).map_err(disk)?;
+                let mut shard = parquet_file::Shard::begin(out, &self.build, output, &more).map_err(disk)?;
                 for record in records {
                     shard.add(record.map_err(Failure::Refused)?).map_err(disk)?;
                 }
@@ -175,7 +245,8 @@ impl DataSet {
             Format::WebDataset => {
                 let mut shard = webdataset::Shard::begin(out, &self.build, &more);
                 for record in records {
-                    shard.add(&record.map_err(Failure::Refused)?).map_err(Failure::Disk)?;
+                    let record = record.map_err(Failure::Refused)?;
+                    shard.add(&record, &output.haptic[1..]).map_err(Failure::Disk)?;
                 }
                 shard.finish().and_then(Write::flush).map_err(Failure::Disk)
             }
@@ -187,11 +258,11 @@ impl DataSet {
     /// # Errors
     /// When a draw is out of its range, or the scene cannot be rendered.
     pub fn record(&self, number: u64) -> Result<Record, FileError> {
-        let stroke = Stroke::drawn(&self.spec, &self.choices, Some(self.levels), number, &self.folder)?;
-        let render = stroke
-            .rendered(self.spec.kernel(), &self.maps)
+        let stroke = Stroke::drawn(&self.spec, &self.choices, Some(&self.levels), number, &self.folder)?;
+        let take = stroke
+            .rendered(&self.spec, &self.levels, &self.maps)
             .map_err(|error| error.within(format!("{}: stroke {number}", self.spec.path.display())))?;
-        let samples = Samples::of(&stroke.id, &render, &self.spec.says.output)?;
+        let samples = Samples::of(&stroke.id, take, &self.spec.says.output)?;
         Ok(Record { stroke, samples })
     }
 }
@@ -215,6 +286,11 @@ fn disk(error: parquet::errors::ParquetError) -> Failure {
 fn same_build(path: &Path, ours: &Build, theirs: &Build) -> Result<(), FileError> {
     match ours.differs(theirs) {
         None => Ok(()),
+        Some(_) if ours.spec_sha256 != theirs.spec_sha256 => Err(FileError::file(
+            path,
+            "is of another specification",
+            "choose another folder, or the specification that began this one: its copy is spec.toml there",
+        )),
         Some(what) => Err(FileError::file(
             path,
             format!("is of another build: {what}"),
@@ -231,9 +307,14 @@ pub(crate) fn build_of(path: &Path) -> Result<(Build, u64), FileError> {
 /// Some records of a shard.
 pub(crate) fn records(
     path: &Path,
+    further: &[Haptic],
     wanted: &dyn Fn(u64) -> bool,
 ) -> Result<Vec<parquet_file::Kept>, FileError> {
-    if is_tar(path) { webdataset::records(path, wanted) } else { parquet_file::records(path, wanted) }
+    if is_tar(path) {
+        webdataset::records(path, further, wanted)
+    } else {
+        parquet_file::records(path, further, wanted)
+    }
 }
 
 fn is_tar(path: &Path) -> bool {

@@ -23,6 +23,7 @@ pub mod codec;
 mod data_set;
 pub mod distribution;
 pub mod draw;
+pub mod force;
 pub mod manifest;
 pub mod parquet_file;
 pub mod path;

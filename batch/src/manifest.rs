@@ -4,13 +4,14 @@
 //! that runs on many machines that share a folder end with a manifest of all that is there.
 
 use crate::build::Build;
+use crate::force;
 use crate::spec::Spec;
 use crate::stroke::DataLevels;
 use crate::whole_file;
 use asperity::files::FileError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::path::Path;
 use std::time::Duration;
 
@@ -43,6 +44,12 @@ pub struct Manifest {
     pub levels: Levels,
     /// What samples are in, and how many there are a second.
     pub units: Units,
+    /// Further quantities that are felt, in the order of their columns.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub further_haptic: Vec<FurtherHaptic>,
+    /// The force and the path, where they are kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<ForceUnits>,
     /// The part that each surface belongs to, where parts are made by surface.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub splits: BTreeMap<String, String>,
@@ -57,6 +64,35 @@ pub struct Levels {
     pub haptic_full_scale: f64,
     /// Gain of `audio`.
     pub audio_gain: f64,
+}
+
+/// A further quantity that is felt.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FurtherHaptic {
+    /// Its column.
+    pub column: String,
+    /// What is felt.
+    pub output: String,
+    /// Unit of `full_scale`.
+    pub unit: String,
+    /// What sample value 1 stands for.
+    pub full_scale: f64,
+    /// Samples a second, Hz.
+    pub rate_hz: f64,
+}
+
+/// The force and the path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ForceUnits {
+    /// Rows a second, Hz.
+    pub rate_hz: f64,
+    /// Its columns, whose names say their units.
+    pub columns: Vec<String>,
+}
+
+/// Unit of a quantity.
+fn unit_of(output: &str) -> String {
+    if output == "acceleration" { "m/s^2" } else { "m" }.to_owned()
 }
 
 /// Units and rates.
@@ -90,9 +126,10 @@ pub struct Shard {
 impl Manifest {
     /// Of a specification, without shards.
     #[must_use]
-    pub fn new(spec: &Spec, build: &Build, levels: DataLevels, splits: BTreeMap<String, String>) -> Self {
-        let (haptic, audio) = (&spec.says.output.haptic, &spec.says.output.audio);
-        let unit = if haptic.output == "acceleration" { "m/s^2" } else { "m" };
+    pub fn new(spec: &Spec, build: &Build, levels: &DataLevels, splits: BTreeMap<String, String>) -> Self {
+        let output = &spec.says.output;
+        let (haptic, audio) = (&output.haptic[0], &output.audio);
+        let further = output.haptic.iter().zip(&levels.full_scale).skip(1);
         Self {
             format: FORMAT,
             name: spec.says.name.clone(),
@@ -100,18 +137,39 @@ impl Manifest {
             seed: spec.says.seed,
             strokes: spec.says.strokes,
             per_shard: spec.says.per_shard,
-            levels: Levels { haptic_full_scale: levels.full_scale, audio_gain: levels.gain },
+            levels: Levels { haptic_full_scale: levels.full_scale[0], audio_gain: levels.gain },
             units: Units {
-                haptic: unit.to_owned(),
+                haptic: unit_of(&haptic.output),
                 haptic_output: haptic.output.clone(),
                 haptic_rate_hz: haptic.rate_hz,
                 audio: "full scale".to_owned(),
                 audio_rate_hz: audio.rate_hz,
                 audio_codec: audio.codec.name().to_owned(),
             },
+            further_haptic: further
+                .map(|(haptic, full_scale)| FurtherHaptic {
+                    column: haptic.further_column(),
+                    output: haptic.output.clone(),
+                    unit: unit_of(&haptic.output),
+                    full_scale: *full_scale,
+                    rate_hz: haptic.rate_hz,
+                })
+                .collect(),
+            force: output.force.map(|force| ForceUnits {
+                rate_hz: force.rate_hz,
+                columns: force::COLUMNS.map(str::to_owned).to_vec(),
+            }),
             splits,
             shards: Vec::new(),
         }
+    }
+
+    /// The levels that its strokes were made with.
+    #[must_use]
+    pub fn data_levels(&self) -> DataLevels {
+        let further = self.further_haptic.iter().map(|haptic| haptic.full_scale);
+        let full_scale = std::iter::once(self.levels.haptic_full_scale).chain(further).collect();
+        DataLevels { full_scale, gain: self.levels.audio_gain }
     }
 
     /// Reads the manifest of a data set; none where there is none yet.
@@ -144,14 +202,9 @@ impl Manifest {
     /// # Errors
     /// When the folder cannot be read or written.
     pub fn write(&mut self, folder: &Path) -> Result<(), FileError> {
-        let lock = folder.join(LOCK);
-        let held = File::create(&lock).map_err(|error| FileError::write(&lock, &error))?;
-        // A file system without locks has no worse fate than a manifest that the next run completes.
-        let _ = held.lock();
+        let _held = lock(folder)?;
         self.shards = listed(folder, self.strokes, self.per_shard)?;
-        if self.shards.len() as u64 == self.strokes.div_ceil(self.per_shard) {
-            remove_left_behind(folder);
-        }
+        remove_left_behind(folder);
         let path = folder.join(NAME);
         let mut text = serde_json::to_string_pretty(self)
             .map_err(|error| FileError::told(error).within(path.display()))?;
@@ -166,16 +219,33 @@ pub fn sum_name(file: &str) -> String {
     format!("{file}.sha256")
 }
 
-/// Removes what killed runs have left half-written of shards that are there by now. What was written to within the hour stays: another
-/// machine may be making a shard once more. A file that cannot be removed harms nobody.
+/// Holds the folder for as long as it is kept: nobody else begins a file, counts shards or clears up.
+///
+/// # Errors
+/// When the lock cannot be made.
+pub(crate) fn lock(folder: &Path) -> Result<File, FileError> {
+    let path = folder.join(LOCK);
+    let held = File::create(&path).map_err(|error| FileError::write(&path, &error))?;
+    // A file system without locks has no worse fate than a manifest that the next run completes.
+    let _ = held.lock();
+    Ok(held)
+}
+
+/// Removes what killed runs have left half-written: files that no process holds. Where the file system has no locks, those that
+/// nobody has written to within the hour. A file that cannot be removed harms nobody.
 fn remove_left_behind(folder: &Path) {
     let is_old = |path: &Path| {
         let age = fs::metadata(path).and_then(|about| about.modified()).ok().and_then(|at| at.elapsed().ok());
         age.is_some_and(|age| age > ABANDONED)
     };
+    let is_left = |path: &Path| match File::open(path).map(|file| file.try_lock()) {
+        Ok(Ok(())) => true,
+        Ok(Err(TryLockError::WouldBlock)) => false,
+        _ => is_old(path),
+    };
     for entry in fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok) {
         let name = entry.file_name().to_string_lossy().into_owned();
-        if name.starts_with(".shard-") && name.ends_with(".part") && is_old(&entry.path()) {
+        if name.starts_with('.') && name.ends_with(".part") && is_left(&entry.path()) {
             let _ = fs::remove_file(entry.path());
         }
     }

@@ -5,17 +5,20 @@
 //! | `id`, `split`, `surface` | text |
 //! | `speed_m_s`, `force_n`, `duration_s` | double |
 //! | `audio` | list of float, or bytes of a FLAC file |
-//! | `haptic` | list of float |
+//! | `haptic`, and `haptic_QUANTITY` of further ones | list of float |
+//! | the columns of [`crate::force`], where they are kept | list of double |
 //! | `contacts`, `scene` | text |
 //!
 //! The file's key–value metadata hold the build, rates and levels.
 
 use crate::build::Build;
 use crate::codec::Codec;
+use crate::force::{COLUMNS, ForceTable};
 use crate::record::{Record, Samples, Sound};
+use crate::spec::{Haptic, Output};
 use asperity::files::FileError;
 use parquet::basic::Compression;
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -44,8 +47,13 @@ impl<W: Write + Send> Shard<W> {
     ///
     /// # Errors
     /// When the disk is full.
-    pub fn begin(out: W, build: &Build, codec: Codec, more: &[(&str, String)]) -> Result<Self, ParquetError> {
-        let schema = parse_message_type(&schema(codec))?;
+    pub fn begin(
+        out: W,
+        build: &Build,
+        output: &Output,
+        more: &[(String, String)],
+    ) -> Result<Self, ParquetError> {
+        let schema = parse_message_type(&schema(output))?;
         let mut metadata = vec![KeyValue::new(BUILD.to_owned(), serde_json::to_string(build).ok())];
         metadata
             .extend(more.iter().map(|(key, value)| KeyValue::new(format!("asperity.{key}"), value.clone())));
@@ -101,6 +109,14 @@ impl<W: Write + Send> Shard<W> {
             })?,
         }
         lists(&mut group, &rows, |row| &row.samples.haptic)?;
+        for place in 0..rows[0].samples.further.len() {
+            lists(&mut group, &rows, |row| &row.samples.further[place])?;
+        }
+        for place in 0..rows[0].samples.force.as_ref().map_or(0, |force| force.len()) {
+            numbers_lists(&mut group, &rows, |row| {
+                row.samples.force.as_ref().map_or(&[], |force| &force[place])
+            })?;
+        }
         texts(&mut group, &rows, |row| &row.stroke.contacts)?;
         texts(&mut group, &rows, |row| &row.stroke.scene)?;
         group.close()?;
@@ -108,19 +124,21 @@ impl<W: Write + Send> Shard<W> {
     }
 }
 
-fn schema(codec: Codec) -> String {
-    let list = |name: &str| {
-        format!("REQUIRED GROUP {name} (LIST) {{ REPEATED GROUP list {{ REQUIRED FLOAT element; }} }}")
+fn schema(output: &Output) -> String {
+    let list = |kind: &str, name: &str| {
+        format!("REQUIRED GROUP {name} (LIST) {{ REPEATED GROUP list {{ REQUIRED {kind} element; }} }} ")
     };
-    let audio = match codec {
-        Codec::F32 => list("audio"),
+    let further = output.haptic[1..].iter().map(|haptic| list("FLOAT", &haptic.further_column()));
+    let force = output.force.iter().flat_map(|_| COLUMNS).map(|name| list("DOUBLE", name));
+    let felt: String = std::iter::once(list("FLOAT", "haptic")).chain(further).chain(force).collect();
+    let audio = match output.audio.codec {
+        Codec::F32 => list("FLOAT", "audio"),
         Codec::Flac16 => "REQUIRED BYTE_ARRAY audio;".to_owned(),
     };
     format!(
         "message stroke {{ REQUIRED BYTE_ARRAY id (UTF8); REQUIRED BYTE_ARRAY split (UTF8); REQUIRED BYTE_ARRAY surface (UTF8); \
-         REQUIRED DOUBLE speed_m_s; REQUIRED DOUBLE force_n; REQUIRED DOUBLE duration_s; {audio} {} \
-         REQUIRED BYTE_ARRAY contacts (UTF8); REQUIRED BYTE_ARRAY scene (UTF8); }}",
-        list("haptic")
+         REQUIRED DOUBLE speed_m_s; REQUIRED DOUBLE force_n; REQUIRED DOUBLE duration_s; {audio} {felt}\
+         REQUIRED BYTE_ARRAY contacts (UTF8); REQUIRED BYTE_ARRAY scene (UTF8); }}"
     )
 }
 
@@ -156,11 +174,27 @@ fn numbers<W: Write + Send>(
     column.close()
 }
 
-/// Lists are written as one column of samples, with the places where a row begins: repetition 0. Definition 0 is an empty list.
 fn lists<W: Write + Send>(
     group: &mut Group<'_, W>,
     rows: &[Record],
     of: impl Fn(&Record) -> &[f32],
+) -> Result<(), ParquetError> {
+    lists_of::<FloatType, W>(group, rows, of)
+}
+
+fn numbers_lists<W: Write + Send>(
+    group: &mut Group<'_, W>,
+    rows: &[Record],
+    of: impl Fn(&Record) -> &[f64],
+) -> Result<(), ParquetError> {
+    lists_of::<DoubleType, W>(group, rows, of)
+}
+
+/// Lists are written as one column of samples, with the places where a row begins: repetition 0. Definition 0 is an empty list.
+fn lists_of<T: DataType, W: Write + Send>(
+    group: &mut Group<'_, W>,
+    rows: &[Record],
+    of: impl Fn(&Record) -> &[T::T],
 ) -> Result<(), ParquetError> {
     let mut column = next(group)?;
     for row in rows {
@@ -170,7 +204,7 @@ fn lists<W: Write + Send>(
         } else {
             (vec![1; samples.len()], (0..samples.len()).map(|i| i16::from(i > 0)).collect::<Vec<_>>())
         };
-        column.typed::<FloatType>().write_batch(samples, Some(&definitions), Some(&repetitions))?;
+        column.typed::<T>().write_batch(samples, Some(&definitions), Some(&repetitions))?;
     }
     column.close()
 }
@@ -221,7 +255,11 @@ pub struct Kept {
 ///
 /// # Errors
 /// When it is no whole shard of ours.
-pub fn records(path: &Path, wanted: &dyn Fn(u64) -> bool) -> Result<Vec<Kept>, FileError> {
+pub fn records(
+    path: &Path,
+    further: &[Haptic],
+    wanted: &dyn Fn(u64) -> bool,
+) -> Result<Vec<Kept>, FileError> {
     let reader = reader(path)?;
     let broken = |error: ParquetError| {
         FileError::file(path, format!("cannot be read ({error})"), "remove it and make it again")
@@ -231,13 +269,13 @@ pub fn records(path: &Path, wanted: &dyn Fn(u64) -> bool) -> Result<Vec<Kept>, F
     for (number, row) in rows.enumerate() {
         let row = row.map_err(broken)?;
         if wanted(number as u64) {
-            kept.push(kept_of(&row).map_err(broken)?);
+            kept.push(kept_of(&row, further).map_err(broken)?);
         }
     }
     Ok(kept)
 }
 
-fn kept_of(row: &parquet::record::Row) -> Result<Kept, ParquetError> {
+fn kept_of(row: &parquet::record::Row, further: &[Haptic]) -> Result<Kept, ParquetError> {
     let place =
         |name: &str| row.get_column_iter().position(|(column, _)| column == name).unwrap_or(usize::MAX);
     let text = |name: &str| row.get_string(place(name)).cloned();
@@ -255,6 +293,25 @@ fn kept_of(row: &parquet::record::Row) -> Result<Kept, ParquetError> {
         Ok(bytes) => Sound::Flac(bytes.data().to_vec()),
         Err(_) => Sound::F32(samples("audio")?),
     };
-    let samples = Samples { audio, haptic: samples("haptic")?, clipped: 0 };
+    let numbers = |name: &str| -> Result<Vec<f64>, ParquetError> {
+        let list = row.get_list(place(name))?;
+        list.elements()
+            .iter()
+            .map(|field| match field {
+                parquet::record::Field::Double(number) => Ok(*number),
+                other => Err(ParquetError::General(format!("{name} holds {other}, no number"))),
+            })
+            .collect()
+    };
+    let mut force = None;
+    if place(COLUMNS[0]) < usize::MAX {
+        let table = force.insert(ForceTable::default());
+        for (column, name) in table.iter_mut().zip(COLUMNS) {
+            *column = numbers(name)?;
+        }
+    }
+    let further: Result<_, ParquetError> =
+        further.iter().map(|haptic| samples(&haptic.further_column())).collect();
+    let samples = Samples { audio, haptic: samples("haptic")?, further: further?, force, clipped: 0 };
     Ok(Kept { id: text("id")?, scene: text("scene")?, contacts: text("contacts")?, samples })
 }

@@ -1,10 +1,10 @@
 //! Record: all that is kept of a stroke, enough to render it again.
 
 use crate::codec::{Codec, flac16};
+use crate::force::ForceTable;
 use crate::spec::Output;
-use crate::stroke::Stroke;
+use crate::stroke::{Stroke, Take};
 use asperity::files::FileError;
-use asperity::offline::Render;
 use asperity_ports::resample::resampled;
 
 /// What is heard, as it is stored.
@@ -21,8 +21,12 @@ pub enum Sound {
 pub struct Samples {
     /// What is heard.
     pub audio: Sound,
-    /// What is felt, at its own rate.
+    /// The first quantity that is felt, at its own rate.
     pub haptic: Vec<f32>,
+    /// The further ones, each at its own.
+    pub further: Vec<Vec<f32>>,
+    /// The force and the path, where they are kept.
+    pub force: Option<ForceTable>,
     /// Samples of the sound beyond ±1 that a codec of whole numbers has cut off.
     pub clipped: u64,
 }
@@ -37,12 +41,12 @@ pub struct Record {
 }
 
 impl Samples {
-    /// A render as an output keeps it; `id` names the stroke in messages.
+    /// A take as an output keeps it; `id` names the stroke in messages.
     ///
     /// # Errors
     /// When the codec refuses the samples.
-    pub fn of(id: &str, render: &Render, output: &Output) -> Result<Self, FileError> {
-        let audio = &render.audio[0];
+    pub fn of(id: &str, take: Take, output: &Output) -> Result<Self, FileError> {
+        let audio = &take.render.audio[0];
         let (audio, clipped) = match output.audio.codec {
             Codec::F32 => (Sound::F32(audio.clone()), 0),
             Codec::Flac16 => {
@@ -56,8 +60,13 @@ impl Samples {
                 (Sound::Flac(bytes), clipped)
             }
         };
-        let haptic = at_rate(&render.haptic[0], output.audio.rate_hz, output.haptic.rate_hz);
-        Ok(Self { audio, haptic, clipped })
+        let felt = std::iter::once(&take.render.haptic[0]).chain(&take.further);
+        let mut felt = felt
+            .zip(&output.haptic)
+            .map(|(samples, haptic)| at_rate(samples, output.audio.rate_hz, haptic.rate_hz));
+        let haptic = felt.next().unwrap_or_default();
+        let further = felt.collect();
+        Ok(Self { audio, haptic, further, force: take.force, clipped })
     }
 
     /// Whether two hold the same bits.
@@ -70,7 +79,16 @@ impl Samples {
             (Sound::F32(a), Sound::F32(b)) => same(a, b),
             (a, b) => a == b,
         };
-        sounds && same(&self.haptic, &other.haptic)
+        let further = self.further.iter().zip(&other.further).all(|(a, b)| same(a, b));
+        let bits = |force: &Option<ForceTable>| {
+            let columns = force.iter().flatten();
+            columns.map(|column| column.iter().map(|x| x.to_bits()).collect()).collect::<Vec<Vec<u64>>>()
+        };
+        sounds
+            && same(&self.haptic, &other.haptic)
+            && self.further.len() == other.further.len()
+            && further
+            && bits(&self.force) == bits(&other.force)
     }
 }
 

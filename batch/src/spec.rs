@@ -111,10 +111,22 @@ pub struct Output {
     pub format: Format,
     /// Ring-out after the finger lifts, s.
     pub tail_s: f64,
-    /// What is felt.
-    pub haptic: Haptic,
+    /// What is felt, a quantity each: the first is the column `haptic`, further ones are `haptic_QUANTITY`.
+    #[serde(deserialize_with = "haptics")]
+    pub haptic: Vec<Haptic>,
+    /// The 3-D force and the path, as `STEM.force.csv` has them; missing: not kept.
+    pub force: Option<Force>,
     /// What is heard.
     pub audio: Audio,
+}
+
+/// The force on the finger, and where it is.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Force {
+    /// Rows a second, Hz.
+    #[serde(default = "force_rate")]
+    pub rate_hz: f64,
 }
 
 /// What is felt.
@@ -127,6 +139,14 @@ pub struct Haptic {
     pub output: String,
     /// What sample value 1 stands for; missing: by the level policy of the first surface, for all.
     pub full_scale: Option<f64>,
+}
+
+impl Haptic {
+    /// The column of a quantity that is not the first.
+    #[must_use]
+    pub fn further_column(&self) -> String {
+        format!("haptic_{}", self.output)
+    }
 }
 
 /// What is heard.
@@ -188,6 +208,39 @@ pub enum SplitBy {
     Stroke,
 }
 
+/// One quantity or a list of them; each a name, or a table whose `output` may be a list too.
+fn haptics<'de, D: serde::Deserializer<'de>>(value: D) -> Result<Vec<Haptic>, D::Error> {
+    use serde::de::Error;
+    let one = |value: Value| -> Result<Vec<Haptic>, D::Error> {
+        match value {
+            Value::String(output) => Ok(vec![Haptic { output, ..Haptic::default() }]),
+            Value::Table(mut table) => {
+                let outputs = match table.remove("output") {
+                    Some(Value::Array(outputs)) => outputs.into_iter().map(Some).collect(),
+                    output => vec![output],
+                };
+                let with = |output: Option<Value>| {
+                    let mut table = table.clone();
+                    table.extend(output.map(|output| ("output".to_owned(), output)));
+                    table.try_into().map_err(|error: toml::de::Error| Error::custom(error.message()))
+                };
+                outputs.into_iter().map(with).collect()
+            }
+            _ => Err(Error::custom("haptic must be a quantity, a table of one, or a list of them")),
+        }
+    };
+    match Value::deserialize(value)? {
+        Value::Array(values) => {
+            Ok(values.into_iter().map(one).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+        }
+        value => one(value),
+    }
+}
+
+fn force_rate() -> f64 {
+    1000.0
+}
+
 fn per_shard() -> u64 {
     1000
 }
@@ -210,7 +263,13 @@ impl Default for Finger {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { format: Format::Parquet, tail_s: 0.1, haptic: Haptic::default(), audio: Audio::default() }
+        Self {
+            format: Format::Parquet,
+            tail_s: 0.1,
+            haptic: vec![Haptic::default()],
+            force: None,
+            audio: Audio::default(),
+        }
     }
 }
 
@@ -294,6 +353,35 @@ impl Spec {
         }
     }
 
+    /// Checks what is felt and the force.
+    fn check_felt(&self) -> Result<(), FileError> {
+        let output = &self.says.output;
+        if output.haptic.is_empty() {
+            return Err(FileError::new("output.haptic", "is empty", "name a quantity, or leave it out"));
+        }
+        let known = ["displacement", "acceleration", "tangential"];
+        for (place, haptic) in output.haptic.iter().enumerate() {
+            let fastest = [100.0, output.audio.rate_hz];
+            let right = "must be 100 Hz to the rate of the audio";
+            number("output.haptic.rate_hz", haptic.rate_hz, fastest, right)?;
+            if !known.contains(&haptic.output.as_str()) {
+                return Err(unknown("output.haptic.output", &haptic.output, &known.join(", ")));
+            }
+            if output.haptic[..place].iter().any(|other| other.output == haptic.output) {
+                let what = format!("{} stands there twice", haptic.output);
+                return Err(FileError::new("output.haptic", what, "name each quantity once"));
+            }
+        }
+        let Some(force) = output.force else { return Ok(()) };
+        let range = asperity::limits::output::FORCE_RATE_HZ;
+        if force.rate_hz > output.audio.rate_hz {
+            let what = format!("{} is refused", force.rate_hz);
+            let right = "must be at most the rate of the audio";
+            return Err(FileError::new("output.force.rate_hz", what, right));
+        }
+        number("output.force.rate_hz", force.rate_hz, [range.low, range.high], range.words)
+    }
+
     fn check(&self) -> Result<(), FileError> {
         let says = &self.says;
         whole("strokes", says.strokes, MOST_STROKES)?;
@@ -307,17 +395,8 @@ impl Spec {
         }
         let rates = asperity::limits::output::SAMPLE_RATE_HZ;
         number("output.audio.rate_hz", says.output.audio.rate_hz, [8000.0, 384_000.0], rates.words)?;
-        number(
-            "output.haptic.rate_hz",
-            says.output.haptic.rate_hz,
-            [100.0, says.output.audio.rate_hz],
-            "must be 100 Hz to the rate of the audio",
-        )?;
+        self.check_felt()?;
         number("output.tail_s", says.output.tail_s, [0.0, 60.0], "must be 0 to 60 s")?;
-        let known = ["displacement", "acceleration", "tangential"];
-        if !known.contains(&says.output.haptic.output.as_str()) {
-            return Err(unknown("output.haptic.output", &says.output.haptic.output, &known.join(", ")));
-        }
         says.output.audio.codec.check(says.output.audio.rate_hz)?;
         let shares =
             [("train", says.split.train), ("validation", says.split.validation), ("test", says.split.test)];

@@ -2,15 +2,16 @@
 
 use crate::distribution::{drawn, drawn_table};
 use crate::draw::Draws;
+use crate::force::{ForceTable, ForceWatch};
 use crate::path::{Motion, Shape};
 use crate::spec::{Output, Spec};
 use crate::surfaces::{Choice, split};
-use asperity::Engine;
 use asperity::files::FileError;
 use asperity::files::contact_log::ContactLog;
 use asperity::files::scene_file::SceneFile;
 use asperity::offline::{self, Options, Render};
 use asperity::open::{Maps, Overrides};
+use asperity::{Engine, Quantity};
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -41,10 +42,10 @@ pub struct Stroke {
 }
 
 /// Levels that hold for every stroke of a data set, so that strokes can be compared.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct DataLevels {
-    /// Metres or m/s² at sample value 1.
-    pub full_scale: f64,
+    /// Metres or m/s² at sample value 1 of each quantity.
+    pub full_scale: Vec<f64>,
     /// Gain of the sound.
     pub gain: f64,
 }
@@ -57,7 +58,7 @@ impl Stroke {
     pub fn drawn(
         spec: &Spec,
         choices: &[Choice],
-        levels: Option<DataLevels>,
+        levels: Option<&DataLevels>,
         number: u64,
         folder: &Path,
     ) -> Result<Self, FileError> {
@@ -83,44 +84,86 @@ impl Stroke {
     ///
     /// # Errors
     /// When the engine refuses the scene.
-    pub fn rendered(&self, spec_kernel: asperity::Isa, maps: &Maps) -> Result<Render, FileError> {
-        render(&self.file, &self.log, spec_kernel, &self.id, maps)
+    pub fn rendered(&self, spec: &Spec, levels: &DataLevels, maps: &Maps) -> Result<Take, FileError> {
+        render(&self.file, &self.log, (spec, levels), &self.id, maps)
     }
 }
 
-/// The scene and the contact log of a record, rendered: what `asperity render` makes of them.
+/// What a stroke renders to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Take {
+    /// What is heard, and the first quantity that is felt.
+    pub render: Render,
+    /// The further quantities.
+    pub further: Vec<Vec<f32>>,
+    /// The force and the path, where they are kept.
+    pub force: Option<ForceTable>,
+}
+
+/// The scene and the contact log of a record, rendered: what `asperity render` makes of them, and of the scene with another `output`.
 ///
 /// # Errors
 /// When either cannot be used.
 pub fn rendered(
     scene: &str,
     contacts: &str,
-    spec_kernel: asperity::Isa,
+    (spec, levels): (&Spec, &DataLevels),
     id: &str,
     folder: &Path,
     maps: &Maps,
-) -> Result<Render, FileError> {
+) -> Result<Take, FileError> {
     let file = SceneFile::parse(scene, &folder.join(format!("{id}.toml")))?;
     let log = ContactLog::parse(contacts, id).map_err(FileError::told)?;
-    render(&file, &log, spec_kernel, id, maps)
+    render(&file, &log, (spec, levels), id, maps)
 }
 
 fn render(
     file: &SceneFile,
     log: &ContactLog,
-    spec_kernel: asperity::Isa,
+    (spec, levels): (&Spec, &DataLevels),
     id: &str,
     maps: &Maps,
-) -> Result<Render, FileError> {
+) -> Result<Take, FileError> {
     let overrides = Overrides {
-        kernel: Some(spec_kernel),
+        kernel: Some(spec.kernel()),
         maps: Some(maps),
         max_contacts: Some(FINGERS),
         ..Overrides::default()
     };
-    let Engine { scene, renderer, names, .. } = Engine::from_scene(file, &overrides)?;
     let options = Options { tail_s: file.tail_s, ..Options::default() };
-    offline::render(scene, renderer, log, &names, &options).map_err(|error| FileError::told(error).within(id))
+    let at = |error| FileError::told(error).within(id);
+    let Engine { scene, renderer, names, .. } = Engine::from_scene(file, &overrides)?;
+    let output = &spec.says.output;
+    let (render, force) = match output.force {
+        None => (offline::render(scene, renderer, log, &names, &options).map_err(at)?, None),
+        Some(force) => {
+            let mut watch = ForceWatch::new(force.rate_hz, renderer.sample_rate_hz());
+            let render = offline::render_tapped(scene, renderer, log, &names, &options, &mut watch);
+            (render.map_err(at)?, Some(watch.finish()))
+        }
+    };
+    // A contact has one haptic channel: every further quantity is felt anew.
+    let mut further = Vec::new();
+    for (haptic, full_scale) in output.haptic.iter().zip(&levels.full_scale).skip(1) {
+        let mut file = file.clone();
+        if let Some(actuator) = file.actuators.first_mut() {
+            actuator.settings.output = quantity(&haptic.output);
+            actuator.full_scale = Some(*full_scale);
+        }
+        let Engine { scene, renderer, names, .. } = Engine::from_scene(&file, &overrides)?;
+        let mut render = offline::render(scene, renderer, log, &names, &options).map_err(at)?;
+        further.push(std::mem::take(&mut render.haptic[0]));
+    }
+    Ok(Take { render, further, force })
+}
+
+/// The quantity of a name that the specification has been checked for.
+fn quantity(name: &str) -> Quantity {
+    match name {
+        "acceleration" => Quantity::Acceleration,
+        "tangential" => Quantity::Tangential,
+        _ => Quantity::Displacement,
+    }
 }
 
 /// The levels of a data set: as its specification says, and where it is silent those that the level policy finds for its first choice.
@@ -133,18 +176,26 @@ pub fn data_levels(
     folder: &Path,
     maps: &Maps,
 ) -> Result<DataLevels, FileError> {
-    let (haptic, audio) = (&spec.says.output.haptic, &spec.says.output.audio);
-    if let (Some(full_scale), Some(gain)) = (haptic.full_scale, audio.gain) {
-        return Ok(DataLevels { full_scale, gain });
-    }
+    let (haptics, audio) = (&spec.says.output.haptic, &spec.says.output.audio);
+    let mut levels = DataLevels { full_scale: Vec::new(), gain: audio.gain.unwrap_or(f64::NAN) };
     let first = Stroke::drawn(spec, &choices[..1], None, 0, folder)?;
-    let file = SceneFile::parse(&first.scene, &folder.join("levels.toml"))?;
     let overrides = Overrides { kernel: Some(spec.kernel()), maps: Some(maps), ..Overrides::default() };
-    let engine = Engine::from_scene(&file, &overrides)?;
-    Ok(DataLevels {
-        full_scale: haptic.full_scale.unwrap_or(engine.levels.full_scale[0]),
-        gain: audio.gain.unwrap_or(engine.levels.gain[0]),
-    })
+    for haptic in haptics {
+        if let (Some(full_scale), false) = (haptic.full_scale, levels.gain.is_nan()) {
+            levels.full_scale.push(full_scale);
+            continue;
+        }
+        let mut file = SceneFile::parse(&first.scene, &folder.join("levels.toml"))?;
+        if let Some(actuator) = file.actuators.first_mut() {
+            actuator.settings.output = quantity(&haptic.output);
+        }
+        let engine = Engine::from_scene(&file, &overrides)?;
+        levels.full_scale.push(haptic.full_scale.unwrap_or(engine.levels.full_scale[0]));
+        if levels.gain.is_nan() {
+            levels.gain = engine.levels.gain[0];
+        }
+    }
+    Ok(levels)
 }
 
 fn motion(spec: &Spec, draws: Draws) -> Result<Motion, FileError> {
@@ -178,7 +229,7 @@ fn motion(spec: &Spec, draws: Draws) -> Result<Motion, FileError> {
 fn scene_of(
     spec: &Spec,
     choice: &Choice,
-    levels: Option<DataLevels>,
+    levels: Option<&DataLevels>,
     id: &str,
     draws: Draws,
 ) -> Result<Table, FileError> {
@@ -202,15 +253,15 @@ fn scene_of(
     Ok(scene)
 }
 
-/// One haptic channel and one bus, at the rate of the sound.
-fn outputs(scene: &mut Table, output: &Output, levels: Option<DataLevels>) {
+/// One haptic channel, of the first quantity, and one bus, at the rate of the sound.
+fn outputs(scene: &mut Table, output: &Output, levels: Option<&DataLevels>) {
     scene.insert("sample_rate_hz".into(), Value::Float(output.audio.rate_hz));
     scene.insert("tail_s".into(), Value::Float(output.tail_s));
     let mut actuator = Table::new();
-    actuator.insert("output".into(), Value::String(output.haptic.output.clone()));
+    actuator.insert("output".into(), Value::String(output.haptic[0].output.clone()));
     let mut audio = Table::new();
     if let Some(levels) = levels {
-        actuator.insert("full_scale".into(), Value::Float(levels.full_scale));
+        actuator.insert("full_scale".into(), Value::Float(levels.full_scale[0]));
         audio.insert("gain".into(), Value::Float(levels.gain));
     }
     scene.insert("actuator".into(), Value::Array(vec![Value::Table(actuator)]));

@@ -5,7 +5,7 @@ use crate::manifest::{Manifest, NAME};
 use crate::parquet_file::Kept;
 use crate::record::Samples;
 use crate::spec::Spec;
-use crate::stroke::rendered;
+use crate::stroke::{DataLevels, rendered};
 use asperity::files::FileError;
 use asperity::open::Maps;
 use std::path::Path;
@@ -42,6 +42,7 @@ pub fn verify(folder: &Path, share: f64, mut progress: impl FnMut()) -> Result<V
         ));
     }
     let maps = Maps::default();
+    let levels = manifest.data_levels();
     let mut found = Verified { missing: spec.shards() - manifest.shards.len() as u64, ..Verified::default() };
     for shard in &manifest.shards {
         let path = folder.join(&shard.file);
@@ -50,7 +51,7 @@ pub fn verify(folder: &Path, share: f64, mut progress: impl FnMut()) -> Result<V
             return Err(FileError::file(&path, "has other bytes than the manifest says", right));
         }
         if share > 0.0 {
-            found.rendered += again(&path, &spec, share, folder, &maps)?;
+            found.rendered += again(&path, (&spec, &levels), share, folder, &maps)?;
         }
         found.shards += 1;
         progress();
@@ -58,7 +59,13 @@ pub fn verify(folder: &Path, share: f64, mut progress: impl FnMut()) -> Result<V
     Ok(found)
 }
 
-fn again(path: &Path, spec: &Spec, share: f64, folder: &Path, maps: &Maps) -> Result<u64, FileError> {
+fn again(
+    path: &Path,
+    (spec, levels): (&Spec, &DataLevels),
+    share: f64,
+    folder: &Path,
+    maps: &Maps,
+) -> Result<u64, FileError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let index: u64 = name
         .trim_start_matches("shard-")
@@ -67,9 +74,10 @@ fn again(path: &Path, spec: &Spec, share: f64, folder: &Path, maps: &Maps) -> Re
         .and_then(|digits| digits.parse().ok())
         .unwrap_or(0);
     let first = index * spec.says.per_shard;
-    let kept = records(path, &|row| is_sampled(spec.says.seed, first + row, share))?;
+    let further = &spec.says.output.haptic[1..];
+    let kept = records(path, further, &|row| is_sampled(spec.says.seed, first + row, share))?;
     for record in &kept {
-        if !same(record, spec, folder, maps)? {
+        if !same(record, (spec, levels), folder, maps)? {
             let what = format!("stroke {} renders to other samples than it holds", record.id);
             return Err(FileError::file(
                 path,
@@ -82,7 +90,12 @@ fn again(path: &Path, spec: &Spec, share: f64, folder: &Path, maps: &Maps) -> Re
 }
 
 /// Whether a record's scene and contacts render to its samples, to the bit.
-fn same(kept: &Kept, spec: &Spec, folder: &Path, maps: &Maps) -> Result<bool, FileError> {
-    let render = rendered(&kept.scene, &kept.contacts, spec.kernel(), &kept.id, folder, maps)?;
-    Ok(Samples::of(&kept.id, &render, &spec.says.output)?.same_bits(&kept.samples))
+fn same(
+    kept: &Kept,
+    (spec, levels): (&Spec, &DataLevels),
+    folder: &Path,
+    maps: &Maps,
+) -> Result<bool, FileError> {
+    let take = rendered(&kept.scene, &kept.contacts, (spec, levels), &kept.id, folder, maps)?;
+    Ok(Samples::of(&kept.id, take, &spec.says.output)?.same_bits(&kept.samples))
 }

@@ -1,11 +1,13 @@
 //! WebDataset shards: a tar file, and in it files of one name a stroke.
 //!
-//! `ID.json` (split, surface, what was drawn, rates, levels, build), `ID.audio.npy` or `ID.audio.flac`, `ID.haptic.npy`,
-//! `ID.contacts.jsonl`, `ID.scene.toml`.
+//! `ID.json` (split, surface, what was drawn, rates, levels, build), `ID.audio.npy` or `ID.audio.flac`, `ID.haptic.npy`
+//! and `ID.haptic_QUANTITY.npy`, `ID.force.npy` (rows by columns of [`crate::force`]), `ID.contacts.jsonl`, `ID.scene.toml`.
 
 use crate::build::Build;
+use crate::force::ForceTable;
 use crate::parquet_file::Kept;
 use crate::record::{Record, Samples, Sound};
+use crate::spec::Haptic;
 use asperity::files::FileError;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -22,17 +24,16 @@ pub struct Shard<W: Write> {
 
 impl<W: Write> Shard<W> {
     /// Begins a shard. `more` stands in every record.
-    pub fn begin(out: W, build: &Build, more: &[(&str, String)]) -> Self {
+    pub fn begin(out: W, build: &Build, more: &[(String, String)]) -> Self {
         let build = serde_json::to_value(build).unwrap_or_default();
-        let more = more.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
-        Self { tar: tar::Builder::new(out), build, more }
+        Self { tar: tar::Builder::new(out), build, more: more.to_vec() }
     }
 
     /// Adds a stroke.
     ///
     /// # Errors
     /// When the disk is full.
-    pub fn add(&mut self, record: &Record) -> io::Result<()> {
+    pub fn add(&mut self, record: &Record, further: &[Haptic]) -> io::Result<()> {
         let stroke = &record.stroke;
         let mut about = json!({
             "id": stroke.id,
@@ -52,6 +53,12 @@ impl<W: Write> Shard<W> {
             Sound::Flac(bytes) => self.file(&stroke.id, "audio.flac", bytes)?,
         }
         self.file(&stroke.id, "haptic.npy", &npy(&record.samples.haptic))?;
+        for (haptic, samples) in further.iter().zip(&record.samples.further) {
+            self.file(&stroke.id, &format!("{}.npy", haptic.further_column()), &npy(samples))?;
+        }
+        if let Some(force) = &record.samples.force {
+            self.file(&stroke.id, "force.npy", &npy_of_table(force))?;
+        }
         self.file(&stroke.id, "contacts.jsonl", stroke.contacts.as_bytes())?;
         self.file(&stroke.id, "scene.toml", stroke.scene.as_bytes())
     }
@@ -76,9 +83,35 @@ impl<W: Write> Shard<W> {
     }
 }
 
-/// Samples as a file of numpy's format, version 1.0.
+/// Samples as a file of numpy's format.
 fn npy(samples: &[f32]) -> Vec<u8> {
-    let head = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({},), }}", samples.len());
+    let mut bytes = npy_head("<f4", &format!("({},)", samples.len()));
+    bytes.extend(samples.iter().flat_map(|sample| sample.to_le_bytes()));
+    bytes
+}
+
+/// Rows by columns.
+fn npy_of_table(table: &ForceTable) -> Vec<u8> {
+    let rows = table[0].len();
+    let mut bytes = npy_head("<f8", &format!("({rows}, {})", table.len()));
+    let row = |row: usize| table.iter().flat_map(move |column| column[row].to_le_bytes());
+    bytes.extend((0..rows).flat_map(row));
+    bytes
+}
+
+fn table_of(bytes: &[u8]) -> Option<ForceTable> {
+    let length = usize::from(u16::from_le_bytes(bytes.get(8..10)?.try_into().ok()?));
+    let (numbers, rest) = bytes.get(10 + length..)?.as_chunks::<8>();
+    let mut table = ForceTable::default();
+    for row in numbers.chunks(table.len()) {
+        table.iter_mut().zip(row).for_each(|(column, eight)| column.push(f64::from_le_bytes(*eight)));
+    }
+    rest.is_empty().then_some(table)
+}
+
+/// The head of a file of numpy's format, version 1.0.
+fn npy_head(kind: &str, shape: &str) -> Vec<u8> {
+    let head = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     // Magic, version and length take ten bytes; the whole head is a multiple of 64 long and ends a line.
     let padded = (10 + head.len() + 1).next_multiple_of(64) - 10;
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
@@ -86,7 +119,6 @@ fn npy(samples: &[f32]) -> Vec<u8> {
     bytes.extend(head.as_bytes());
     bytes.resize(10 + padded - 1, b' ');
     bytes.push(b'\n');
-    bytes.extend(samples.iter().flat_map(|sample| sample.to_le_bytes()));
     bytes
 }
 
@@ -151,11 +183,15 @@ pub fn build_of(path: &Path) -> Result<(Build, u64), FileError> {
 ///
 /// # Errors
 /// When it is no whole shard of ours.
-pub fn records(path: &Path, wanted: &dyn Fn(u64) -> bool) -> Result<Vec<Kept>, FileError> {
+pub fn records(
+    path: &Path,
+    further: &[Haptic],
+    wanted: &dyn Fn(u64) -> bool,
+) -> Result<Vec<Kept>, FileError> {
     let mut kept = Vec::new();
     for_each(path, |number, id, files| {
         if wanted(number) {
-            let record = kept_of(id, files);
+            let record = kept_of(id, files, further);
             kept.push(record.ok_or_else(|| {
                 FileError::file(path, format!("stroke {id} is not whole"), "remove it and make it again")
             })?);
@@ -165,7 +201,7 @@ pub fn records(path: &Path, wanted: &dyn Fn(u64) -> bool) -> Result<Vec<Kept>, F
     Ok(kept)
 }
 
-fn kept_of(id: &str, mut files: Files) -> Option<Kept> {
+fn kept_of(id: &str, mut files: Files, further: &[Haptic]) -> Option<Kept> {
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).ok();
     let audio = match files.remove("audio.flac") {
         Some(bytes) => Sound::Flac(bytes),
@@ -175,7 +211,19 @@ fn kept_of(id: &str, mut files: Files) -> Option<Kept> {
         id: id.to_owned(),
         scene: text(files.remove("scene.toml")?)?,
         contacts: text(files.remove("contacts.jsonl")?)?,
-        samples: Samples { audio, haptic: samples_of(files.get("haptic.npy")?)?, clipped: 0 },
+        samples: Samples {
+            audio,
+            haptic: samples_of(files.get("haptic.npy")?)?,
+            further: further
+                .iter()
+                .map(|haptic| samples_of(files.get(&format!("{}.npy", haptic.further_column()))?))
+                .collect::<Option<_>>()?,
+            force: match files.get("force.npy") {
+                Some(bytes) => Some(table_of(bytes)?),
+                None => None,
+            },
+            clipped: 0,
+        },
     })
 }
 

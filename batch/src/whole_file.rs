@@ -17,9 +17,16 @@ pub fn write_with(
     fill: impl FnOnce(BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), FileError> {
     let temporary = Temporary(path.with_file_name(temporary_name(path)));
-    let written = File::create(&temporary.0)
-        .and_then(|file| fill(BufWriter::with_capacity(1 << 18, file)))
-        .and_then(|()| fs::rename(&temporary.0, path));
+    let write = || {
+        let file = File::create(&temporary.0)?;
+        // Held until the file has its name. Who clears up after killed runs sees by it that this one is alive: the system
+        // takes a dead process's lock away.
+        let held = file.try_clone()?;
+        let _ = held.try_lock();
+        fill(BufWriter::with_capacity(1 << 18, file))?;
+        fs::rename(&temporary.0, path)
+    };
+    let written = write();
     written.map_err(|error| FileError::write(path, &error))
 }
 

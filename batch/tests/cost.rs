@@ -32,8 +32,8 @@ fn drawing_and_opening_cost_at_most_a_fifth_of_rendering_a_stroke_of_a_second() 
         let mut least = [f64::INFINITY; 2];
         for _ in 0..6 {
             let began = Instant::now();
-            let stroke = Stroke::drawn(&spec, &choices, Some(levels), number, folder.path()).unwrap();
-            let whole = stroke.rendered(spec.kernel(), &maps).unwrap();
+            let stroke = Stroke::drawn(&spec, &choices, Some(&levels), number, folder.path()).unwrap();
+            let whole = stroke.rendered(&spec, &levels, &maps).unwrap().render;
             let all_s = began.elapsed().as_secs_f64();
             let alone_s = rendering_alone(&stroke, &spec, folder.path(), &maps, whole.haptic[0].len());
             least = [least[0].min(all_s), least[1].min(alone_s)];

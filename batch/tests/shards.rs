@@ -144,12 +144,16 @@ fn shards_of_another_build_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     make(&set(&folder, SPEC, "set").unwrap(), 0..1);
     let refusal = |text: &str| set(&folder, text, "set").err().unwrap().to_string();
-    assert!(refusal(&SPEC.replace("seed = 11", "seed = 12")).contains("is of another build: spec_sha256"));
+    let other = refusal(&SPEC.replace("seed = 11", "seed = 12"));
+    assert!(other.contains("manifest.json: is of another specification; choose another folder"), "{other}");
     // A shard alone tells as well.
     fs::remove_file(folder.path().join("set/manifest.json")).unwrap();
     let other = set(&folder, &SPEC.replace("seed = 11", "seed = 12"), "set").unwrap();
     let error = other.shard(0, || ()).unwrap_err().to_string();
-    assert!(error.contains("shard-000000.parquet: is of another build"), "{error}");
+    assert!(error.contains("shard-000000.parquet: is of another specification"), "{error}");
+    let mut build = asperity_batch::Build::of(other.spec());
+    build.version = "0.0.9".to_owned();
+    assert!(build.differs(&asperity_batch::Build::of(other.spec())).unwrap().starts_with("version"));
 }
 
 #[test]
@@ -189,14 +193,40 @@ fn wrong_specifications_are_refused_in_one_line_and_leave_no_shard() {
             .and_then(|set| (0..3).try_for_each(|index| set.shard(index, || ()).map(drop)));
         let error = made.err().unwrap_or_else(|| panic!("{to} was accepted")).to_string();
         assert!(error.contains(part) && !error.contains('\n'), "{to}: {error}");
+        // Strokes before the refused one may have made whole shards; without one the folder is gone again.
         let left = fs::read_dir(folder.path().join("set")).into_iter().flatten().filter_map(Result::ok);
-        let shards = left.filter(|entry| entry.file_name().to_string_lossy().contains("shard-"));
-        // Shards before the refused stroke stand whole; nothing half-written does.
-        assert!(
-            shards.map(|entry| entry.file_name()).all(|name| !name.to_string_lossy().ends_with(".part")),
-            "{to}"
-        );
+        let left: Vec<String> = left.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+        assert!(left.is_empty() || left.iter().any(|name| name.ends_with(".parquet")), "{to}: {left:?}");
+        assert!(left.iter().all(|name| !name.ends_with(".part")), "{to}: {left:?}");
     }
+}
+
+#[test]
+fn a_refused_specification_leaves_no_folder_and_takes_none_away() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = SPEC.replace(
+        "solid = \"granite\"",
+        "displacement = \"no.png\", relief_m = 1e-3, width_m = 1, height_m = 1",
+    );
+    assert!(set(&folder, &text, "a/b/set").is_err());
+    assert!(!folder.path().join("a").exists());
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    assert!(set(&folder, &text, "mine").is_err());
+    assert!(folder.path().join("mine").is_dir());
+}
+
+#[test]
+fn a_part_without_a_stroke_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = SPEC.replace("{ solid = \"granite\" }, ", "");
+    let told = set(&folder, &one, "one").unwrap().empty_parts().unwrap();
+    assert!(
+        told.starts_with("no stroke belongs to train and test") || told.contains("no stroke belongs to"),
+        "{told}"
+    );
+    assert!(told.contains("there are 1 surfaces") && told.contains("by = \"stroke\""), "{told}");
+    let by_stroke = format!("{one}[split]\nby = \"stroke\"\ntrain = 0.5\nvalidation = 0.0\ntest = 0.5\n");
+    assert_eq!(set(&folder, &by_stroke, "two").unwrap().empty_parts(), None);
 }
 
 #[test]
@@ -228,22 +258,22 @@ fn a_folder_that_cannot_be_written_is_one_line() {
 }
 
 #[test]
-fn halves_of_killed_runs_are_removed_when_all_shards_are_there() {
+fn halves_of_killed_runs_are_removed_and_those_of_living_ones_stay() {
     let folder = tempfile::tempdir().unwrap();
     let there = set(&folder, SPEC, "set").unwrap();
-    let left = |name: &str, age_s: u64| {
+    let half = |name: &str| {
         let path = folder.path().join("set").join(name);
-        let file = fs::File::create(&path).unwrap();
-        file.set_modified(std::time::SystemTime::now() - std::time::Duration::from_secs(age_s)).unwrap();
-        path
+        (fs::File::create(&path).unwrap(), path)
     };
-    let abandoned = left(".shard-000001.parquet.77-5-0.part", 7200);
-    let alive = left(".shard-000002.parquet.78-6-0.part", 60);
+    let (_, killed) = half(".shard-000001.parquet.77-5-0.part");
+    let (_, manifest) = half(".manifest.json.77-5-1.part");
+    let (held, alive) = half(".shard-000002.parquet.78-6-0.part");
+    held.lock().unwrap();
     make(&there, 0..2);
-    // One is missing: whoever wrote the half may be making it.
-    assert!(abandoned.exists() && alive.exists());
+    assert!(!killed.exists() && !manifest.exists() && alive.exists());
+    drop(held);
     make(&there, [2]);
-    assert!(!abandoned.exists() && alive.exists());
+    assert!(!alive.exists());
 }
 
 #[test]
@@ -266,7 +296,138 @@ fn a_record_drawn_renders_as_its_two_texts_do_and_as_a_scene_with_room_for_more(
         let options = asperity::offline::Options { tail_s: file.tail_s, ..Default::default() };
         let render = asperity::offline::render(scene, renderer, &log, &names, &options).unwrap();
         let output = &there.spec().says.output;
-        let theirs = asperity_batch::record::Samples::of(&stroke.id, &render, output).unwrap();
+        let take = asperity_batch::stroke::Take { render, further: Vec::new(), force: None };
+        let theirs = asperity_batch::record::Samples::of(&stroke.id, take, output).unwrap();
         assert!(theirs.same_bits(&record.samples), "stroke {number}");
+    }
+}
+
+/// Two quantities at rates of their own, and the force.
+fn spec_with_force(format: &str) -> String {
+    let haptic = "haptic = [\"displacement\", { output = \"acceleration\", rate_hz = 4000 }]\nforce = { rate_hz = 500 }";
+    SPEC.replace("haptic = { rate_hz = 8000 }", &format!("{haptic}\nformat = \"{format}\""))
+}
+
+#[test]
+fn a_quantity_more_and_the_force_are_those_of_single_renders() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = set(&folder, &spec_with_force("parquet"), "set").unwrap();
+    let home = folder.path().join("set");
+    let manifest = there.write_manifest().unwrap();
+    for number in 0..3 {
+        let record = there.record(number).unwrap();
+        let stroke = &record.stroke;
+        let log = asperity::files::contact_log::ContactLog::parse(&stroke.contacts, &stroke.id).unwrap();
+        let render = |scene: &str, tap: &mut dyn asperity::Tap| {
+            struct Dynamic<'a>(&'a mut dyn asperity::Tap);
+            impl asperity::Tap for Dynamic<'_> {
+                fn contact(&mut self, block: &asperity::ContactBlock<'_>) {
+                    self.0.contact(block);
+                }
+            }
+            let file =
+                asperity::files::scene_file::SceneFile::parse(scene, &home.join("stroke.toml")).unwrap();
+            let overrides = asperity::open::Overrides {
+                kernel: Some(asperity::Isa::Portable),
+                ..asperity::open::Overrides::default()
+            };
+            let asperity::Engine { scene, renderer, names, .. } =
+                asperity::Engine::from_scene(&file, &overrides).unwrap();
+            let options = asperity::offline::Options { tail_s: file.tail_s, ..Default::default() };
+            asperity::offline::render_tapped(scene, renderer, &log, &names, &options, &mut Dynamic(tap))
+                .unwrap()
+        };
+        // The same scene with the other quantity, as somebody would write it.
+        let full_scale = |text: f64| format!("full_scale = {text:?}");
+        let other = stroke.scene.replace("output = \"displacement\"", "output = \"acceleration\"").replace(
+            &full_scale(manifest.levels.haptic_full_scale),
+            &full_scale(manifest.further_haptic[0].full_scale),
+        );
+        assert_ne!(other, stroke.scene);
+        let felt = render(&other, &mut asperity::NoTap).haptic.swap_remove(0);
+        let felt: Vec<f64> = felt.into_iter().map(f64::from).collect();
+        let at_4_khz = asperity_ports::resample::resampled(&felt, 22_050.0, 4000.0);
+        assert_eq!(record.samples.further.len(), 1);
+        assert!(
+            at_4_khz
+                .iter()
+                .zip(&record.samples.further[0])
+                .all(|(a, b)| (*a as f32).to_bits() == b.to_bits())
+        );
+        assert!(record.samples.further[0].iter().any(|x| *x != 0.0));
+
+        struct Told(Vec<[f64; 4]>, Vec<[f64; 4]>, asperity::live::ports::ForceRows);
+        impl asperity::Tap for Told {
+            fn contact(&mut self, block: &asperity::ContactBlock<'_>) {
+                let Self(rows, samples, force) = self;
+                force.close(block.first_sample, |row| rows.push(told(row)));
+                force.add(block);
+                for (index, sample) in block.contact_samples.iter().enumerate() {
+                    let [u, v] = block.uv[index];
+                    let [x, y] = block.velocity_m_s[index];
+                    samples.push([u, v, x.hypot(y), sample.normal_force_n]);
+                }
+            }
+        }
+        fn told(row: asperity::live::ports::ForceRow) -> [f64; 4] {
+            let [x, y, z] = row.force_n;
+            [row.tick as f64 / 500.0, x, y, z]
+        }
+        let mut tap =
+            Told(Vec::new(), Vec::new(), asperity::live::ports::ForceRows::new(500.0, 22_050.0, 64));
+        render(&stroke.scene, &mut tap);
+        let Told(mut rows, samples, mut force) = tap;
+        force.close(u64::MAX, |row| {
+            if matches!(row.of, asperity::live::ports::Of::Contact(_)) {
+                rows.push(told(row));
+            }
+        });
+        let table = record.samples.force.as_ref().unwrap();
+        assert!(table[0].len() >= 45 && table.iter().all(|column| column.len() == table[0].len()));
+        for (row, wanted) in rows.iter().take(table[0].len()).enumerate() {
+            assert_eq!([0, 1, 2, 3].map(|column| table[column][row]), *wanted, "stroke {number}, row {row}");
+            let sample = (wanted[0] * 22_050.0).round() as usize;
+            assert_eq!([4, 5, 6, 7].map(|column| table[column][row]), samples[sample], "row {row}");
+        }
+    }
+}
+
+#[test]
+fn quantities_and_force_are_read_back_and_rendered_again_from_either_format() {
+    for format in ["parquet", "webdataset"] {
+        let folder = tempfile::tempdir().unwrap();
+        make(&set(&folder, &spec_with_force(format), "set").unwrap(), 0..3);
+        assert_eq!(verify(&folder.path().join("set"), 1.0, || ()).unwrap().rendered, 10, "{format}");
+        let manifest = Manifest::load(&folder.path().join("set")).unwrap().unwrap();
+        let further = &manifest.further_haptic[0];
+        assert_eq!((further.column.as_str(), further.unit.as_str()), ("haptic_acceleration", "m/s^2"));
+        assert_eq!(manifest.force.unwrap().columns[..4], ["time_s", "x_n", "y_n", "z_n"]);
+    }
+}
+
+#[test]
+fn quantities_are_written_as_a_name_a_table_or_a_list() {
+    let folder = tempfile::tempdir().unwrap();
+    let outputs = |haptic: &str| -> Result<Vec<(String, f64)>, FileError> {
+        let spec = spec(&folder, &SPEC.replace("haptic = { rate_hz = 8000 }", haptic))?;
+        Ok(spec.says.output.haptic.into_iter().map(|haptic| (haptic.output, haptic.rate_hz)).collect())
+    };
+    let one = |name: &str, rate_hz: f64| (name.to_owned(), rate_hz);
+    assert_eq!(outputs("haptic = \"acceleration\"").unwrap(), [one("acceleration", 8000.0)]);
+    let both = [one("displacement", 2000.0), one("tangential", 2000.0)];
+    let table = "haptic = { output = [\"displacement\", \"tangential\"], rate_hz = 2000 }";
+    assert_eq!(outputs(table).unwrap(), both);
+    assert_eq!(outputs("haptic = [\"displacement\", \"acceleration\"]").unwrap().len(), 2);
+    for (haptic, part) in [
+        ("haptic = []", "output.haptic: is empty"),
+        ("haptic = [\"displacement\", \"displacement\"]", "displacement stands there twice"),
+        ("haptic = [\"force\"]", "output.haptic.output: \"force\" is unknown"),
+        ("haptic = 3", "haptic must be a quantity"),
+        ("force = { rate_hz = 0 }", "output.force.rate_hz: 0 is refused"),
+        ("force = { rate_hz = 44100 }", "output.force.rate_hz: 44100 is refused"),
+        ("force = { rate = 1000 }", "unknown field `rate`"),
+    ] {
+        let error = outputs(haptic).unwrap_err().to_string();
+        assert!(error.contains(part) && !error.contains('\n'), "{haptic}: {error}");
     }
 }

@@ -86,6 +86,7 @@ struct Report {
     strokes: u64,
     clipped_samples: u64,
     seconds: f64,
+    warnings: Vec<String>,
 }
 
 /// Runs the verb.
@@ -119,6 +120,7 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
         strokes,
         clipped_samples: 0,
         seconds: 0.0,
+        warnings: set.empty_parts().into_iter().collect(),
     };
     for index in mine {
         match set.shard(index, || progress.advance(1)).map_err(CliError::told)? {
@@ -132,6 +134,13 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
     drop(progress);
     report.shards_there = set.write_manifest().map_err(CliError::told)?.shards.len() as u64;
     report.seconds = started.elapsed().as_secs_f64();
+    report.warnings.extend(set.remarks());
+    if report.clipped_samples > 0 {
+        report.warnings.push(format!(
+            "{} samples of the sound were beyond full scale and cut off; lower output.audio.gain, or write codec = \"f32\"",
+            report.clipped_samples
+        ));
+    }
     if options.json {
         return output::say_json(&report);
     }
@@ -143,14 +152,8 @@ fn make(options: &Options, spec: &std::path::Path, folder: &std::path::Path) -> 
         report.shards,
         folder.join(asperity_batch::manifest::NAME).display()
     ));
-    for remark in set.remarks() {
-        output::say(&format!("warning: {remark}"));
-    }
-    if report.clipped_samples > 0 {
-        output::say(&format!(
-            "warning: {} samples of the sound were beyond full scale and cut off; lower output.audio.gain, or write codec = \"f32\"",
-            report.clipped_samples
-        ));
+    for warning in &report.warnings {
+        output::say(&format!("warning: {warning}"));
     }
     Ok(())
 }

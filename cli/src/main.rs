@@ -19,6 +19,10 @@
 
 #[cfg(feature = "web")]
 mod answer;
+#[cfg(feature = "data-sets")]
+mod batch;
+#[cfg(not(feature = "data-sets"))]
+#[path = "no_batch.rs"]
 mod batch;
 mod bench_scene;
 mod csv;
@@ -40,6 +44,9 @@ mod progress;
 mod render;
 mod report;
 mod scene_log;
+mod sounds;
+mod strike;
+mod stroke;
 mod texture;
 mod wav;
 mod web;
@@ -60,6 +67,8 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Demo(demo::Options),
+    Strike(Box<strike::Options>),
+    Stroke(Box<stroke::Options>),
     Fit(Box<fit::Options>),
     Modes(Box<modes::Options>),
     Haptic(Box<haptic::Options>),
@@ -79,6 +88,8 @@ enum Verb {
 fn run(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Demo(options) => demo::run(&options),
+        Verb::Strike(options) => strike::run(&options),
+        Verb::Stroke(options) => stroke::run(&options),
         Verb::Fit(options) => fit::run(&options),
         Verb::Modes(options) => modes::run(&options),
         Verb::Haptic(options) => haptic::run(&options),

@@ -18,9 +18,11 @@
 //! | disc | diameter 50 thicknesses | Bessel functions; Leissa 1969 |
 //! | bowl | hemisphere, diameter 40 thicknesses | Rayleigh, *Theory of sound*, §235 |
 //! | block | 4 : 2 : 1 | Rayleigh–Ritz in three dimensions (Visscher et al. 1991) |
+//! | box, door; can, bottle, pan, barrel | [`solved`] | tetrahedra; thin shells of revolution |
 //!
 //! Measured against `tests/independent/stock_modes.py`: bar within 0.9 % of the exact Timoshenko bar (10 modes).
 
+mod solved;
 mod tables;
 
 use crate::model::bad_value::{BadValue, within};
@@ -66,6 +68,18 @@ pub enum Stock {
     Bowl,
     /// A block 4 : 2 : 1, struck on its largest face: near a corner (0), in the middle (1), between (2).
     Block,
+    /// A hollow box 4 : 3 : 2, as a crate, struck on its largest face: beside the middle (0), in it (1), towards a corner (2).
+    Box,
+    /// A can or a mug, open above: struck at its rim (0), on the wall (1), on the bottom (2).
+    Can,
+    /// An empty bottle: struck on its side (0), at its mouth (1), on the bottom (2).
+    Bottle,
+    /// A pan without its handle: struck at its rim (0), in the middle of the bottom (1), beside it (2).
+    Pan,
+    /// A barrel with both heads: struck on the bulge (0), on a head (1), near an end of the wall (2).
+    Barrel,
+    /// A door leaf that hangs free: struck near a corner (0), in the middle (1), between (2).
+    Door,
 }
 
 /// A shape in a size and a material.
@@ -80,7 +94,7 @@ struct Shape {
 
 impl Stock {
     /// Every shape with its name in scene files.
-    pub const ALL: [(&'static str, Self); 7] = [
+    pub const ALL: [(&'static str, Self); 13] = [
         ("bar", Self::Bar),
         ("tube", Self::Tube),
         ("ring", Self::Ring),
@@ -88,6 +102,12 @@ impl Stock {
         ("disc", Self::Disc),
         ("bowl", Self::Bowl),
         ("block", Self::Block),
+        ("box", Self::Box),
+        ("can", Self::Can),
+        ("bottle", Self::Bottle),
+        ("pan", Self::Pan),
+        ("barrel", Self::Barrel),
+        ("door", Self::Door),
     ];
 
     /// The shape of that name.
@@ -100,6 +120,35 @@ impl Stock {
     #[must_use]
     pub fn names() -> String {
         Self::ALL.map(|(name, _)| name).join(", ")
+    }
+
+    /// What such a thing is usually made of, and how large it is, m.
+    ///
+    /// ```
+    /// use asperity::{Body, Material, Stock};
+    ///
+    /// let (material, size_m) = Stock::Bowl.usual();
+    /// assert_eq!((material, size_m), (Material::CERAMIC, 0.14));
+    /// Body::stock(Stock::Bowl, material, size_m)?;
+    /// # Ok::<(), asperity::BadValue>(())
+    /// ```
+    #[must_use]
+    pub fn usual(self) -> (Material, f64) {
+        match self {
+            Self::Bar => (Material::STEEL, 0.2),
+            Self::Tube => (Material::ALUMINIUM, 0.4),
+            Self::Ring => (Material::STEEL, 0.15),
+            Self::Plate => (Material::CERAMIC, 0.2),
+            Self::Disc => (Material::BRASS, 0.3),
+            Self::Bowl => (Material::CERAMIC, 0.14),
+            Self::Block => (Material::WOOD, 0.2),
+            Self::Box => (Material::SOFTWOOD, 0.4),
+            Self::Can => (Material::STEEL, 0.11),
+            Self::Bottle => (Material::GLASS, 0.3),
+            Self::Pan => (Material::STEEL, 0.28),
+            Self::Barrel => (Material::WOOD, 0.9),
+            Self::Door => (Material::WOOD, 2.0),
+        }
     }
 
     /// The modes of this shape in a material, `size_m` (1 mm–100 m) along its longest side or across its diameter: the answer in pascals at 1 m to an
@@ -131,6 +180,12 @@ impl Stock {
             Self::Disc => disc(material, size_m),
             Self::Bowl => bowl(material, size_m),
             Self::Block => block(material, size_m),
+            Self::Box => solved::shape(&solved::BOX, material, size_m),
+            Self::Can => solved::shape(&solved::CAN, material, size_m),
+            Self::Bottle => solved::shape(&solved::BOTTLE, material, size_m),
+            Self::Pan => solved::shape(&solved::PAN, material, size_m),
+            Self::Barrel => solved::shape(&solved::BARREL, material, size_m),
+            Self::Door => solved::shape(&solved::DOOR, material, size_m),
         }
     }
 }

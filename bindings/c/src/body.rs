@@ -49,7 +49,7 @@ pub struct asp_body {
     pub gain: f64,
     /// What `asp_find`, logs and recordings call it; NULL = nothing.
     pub name: *const c_char,
-    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl" or "block".
+    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can", "bottle", "pan", "barrel" or "door".
     pub stock: *const c_char,
     /// Longest side or diameter of the stock shape, m.
     pub size_m: f64,

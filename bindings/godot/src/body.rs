@@ -12,7 +12,7 @@ use toml::Value;
 #[derive(GodotClass)]
 #[class(init, base = Node3D)]
 pub struct AsperityBody {
-    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl" or "block"; empty: `modes_file` or `table` says, or it is silent.
+    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can", "bottle", "pan", "barrel" or "door"; empty: `modes_file` or `table` says, or it is silent.
     #[export]
     #[init(val = "plate".into())]
     stock: GString,

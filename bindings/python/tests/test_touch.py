@@ -303,3 +303,13 @@ def test_a_metamer_comes_nearer_to_the_feel_than_it_was():
     image, told = asp.texture.metamer(look, feel, iterations=10)
     assert image.shape == look.shape and told["mean_after"] < 0.3 * told["mean_before"]
     assert feel.min() - 1e-9 <= image.min() and image.max() <= feel.max() + 1e-9
+
+
+def test_a_stroke_keeps_its_force_where_that_is_asked_for_by_its_own_word():
+    surface = asp.Surface(1e-4 * np.random.default_rng(0).random((16, 16)), 0.14)
+    take = asp.stroke(surface, force=0.6, duration=0.3, force_output=500.0)
+    assert take.force is not None and take.force.dtype.names[:2] == ("time_s", "contact")
+    assert abs(np.diff(take.force["time_s"]).mean() - 1 / 500) < 1e-9
+    assert asp.stroke(surface, duration=0.1).force is None
+    with pytest.raises(ValueError, match="force: True is refused.*force_output"):
+        asp.stroke(surface, force=True)

@@ -9,6 +9,13 @@ use crate::render::Report;
 use std::fmt::Write;
 use std::path::Path;
 
+/// Peak below which a channel is silent: −60 dBFS.
+const SILENT: f32 = 1e-3;
+
+/// What asperity is, in one sentence.
+const WHAT: &str = "asperity turns touch into signal: from where a finger or a tool is and how hard it presses, it computes what the \
+                    finger feels and what the thing sounds like.";
+
 /// What to do with the files, in one paragraph.
 const HOW: &str = "NAME.audio.wav is what is heard; NAME.haptic.wav is what a vibration actuator at the fingertip \
                    would play (through headphones it is a low rumble); NAME.svg is a picture of both: the surface \
@@ -87,7 +94,7 @@ pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report], bodies: 
 /// `README.txt`.
 #[must_use]
 pub fn text(scenes: &[DemoScene], reports: &[Report], bodies: &Bodies) -> String {
-    let mut text = format!("asperity demo\n=============\n\n{}\n", wrapped(HOW));
+    let mut text = format!("asperity demo\n=============\n\n{}\n{}\n", wrapped(WHAT), wrapped(HOW));
     let _ = write!(text, "\nThe fit\n-------\n{}{}\n", wrapped(FIT), found(&bodies.fitted));
     let _ = write!(text, "\nThe bowl\n--------\n{}{}\n", wrapped(SHAPE), solved(&bodies.solved));
     for (scene, report) in scenes.iter().zip(reports) {
@@ -136,26 +143,28 @@ pub fn html(scenes: &[DemoScene], reports: &[Report], bodies: &Bodies) -> String
          section {{ margin: 3rem 0 }} h2 {{ margin: 0 }} img {{ width: 100%; border: 1px solid #e4e6ea }}\n\
          .players {{ display: flex; flex-wrap: wrap; gap: 1rem; margin: .6rem 0 }}\n\
          label {{ display: flex; align-items: center; gap: .5rem; color: #667 }}\n\
-         </style></head><body>\n<h1>asperity demo</h1>\n<p>{HOW}</p>\n<p>"
+         </style></head><body>\n<h1>asperity demo</h1>\n<p>{WHAT}</p>\n<p>"
     );
     for scene in scenes {
         let _ = write!(page, "<a href=\"#{0}\">{1}</a> · ", scene.name, scene.title);
     }
     page.push_str(
-        "<a href=\"#fit\">A recording becomes modes</a> · <a href=\"#shape\">A mesh becomes a body</a></p>\n",
+        "<a href=\"#fit\">A recording becomes modes</a> · <a href=\"#shape\">A mesh becomes a body</a> · \
+         <a href=\"#files\">The files</a></p>\n",
     );
     for (scene, report) in scenes.iter().zip(reports) {
         let name = scene.name;
         let _ = write!(
             page,
             "<section id=\"{name}\"><h2>{}</h2>\n<p>{}</p>\n<div class=\"players\">\
-             <label>heard <audio controls preload=\"none\" src=\"{name}.audio.wav\"></audio></label>\
-             <label>felt <audio controls preload=\"none\" src=\"{name}.haptic.wav\"></audio></label></div>\n\
+             {}{}</div>\n\
              <p>{} · {} micro-collisions · {} impacts · audio peak {} · <a href=\"{name}.toml\">scene</a> · \
              <a href=\"{name}.jsonl\">contact log</a></p>\n<img src=\"{name}.svg\" alt=\"profile, pad, impulses and \
              spectra of {name}\"></section>\n",
             scene.title,
             scene.notice,
+            player("heard", name, "audio", report.audio_peak),
+            player("felt", name, "haptic", report.haptic_peak.iter().copied().fold(0.0, f32::max)),
             quantity(report.duration_s, "s"),
             report.micro_collisions,
             report.impacts,
@@ -179,6 +188,21 @@ pub fn html(scenes: &[DemoScene], reports: &[Report], bodies: &Bodies) -> String
         bowl::MODES,
         bowl::PICTURE
     );
-    page.push_str("</body></html>\n");
+    let _ = write!(
+        page,
+        "<section id=\"files\"><h2>The files</h2>\n<p>{}</p></section>\n</body></html>\n",
+        HOW.replace(
+            "`asperity render NAME.toml -o NAME --plot`",
+            "<code>asperity render NAME.toml -o NAME --plot</code>"
+        )
+    );
     page
+}
+
+/// A player of a channel; nothing where it is silent.
+fn player(label: &str, name: &str, kind: &str, peak: f32) -> String {
+    if peak < SILENT {
+        return String::new();
+    }
+    format!("<label>{label} <audio controls preload=\"none\" src=\"{name}.{kind}.wav\"></audio></label>")
 }

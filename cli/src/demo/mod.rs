@@ -1,13 +1,15 @@
 //! `asperity demo`: the main job in one command, with nothing to download and nothing to install.
 //!
-//! Writes the shipped scenes into a folder, fits the shipped recording, solves the shipped mesh, renders every scene through the
-//! very path of `asperity render --plot`, and writes an index that says what each file is.
+//! Writes the shipped scenes into a folder, fits the shipped recording, solves the shipped mesh, gives every scene the gain that makes it
+//! as loud as the others ([`loudness`]), renders it through the very path of `asperity render --plot`, and writes an index that says
+//! what each file is.
 
 mod answering;
 mod bowl;
 mod demo_scene;
 mod gallery;
 mod index;
+mod loudness;
 mod plates;
 mod scenes;
 mod strokes;
@@ -89,6 +91,7 @@ fn fit_tile(folder: &Path) -> Result<fit::Report, CliError> {
 }
 
 fn render_scene(folder: &Path, name: &str) -> Result<render::Report, CliError> {
+    loudness::level(&folder.join(format!("{name}.toml")))?;
     render::render(&render::Options {
         scene: folder.join(format!("{name}.toml")),
         output: folder.join(name),

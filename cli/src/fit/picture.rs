@@ -22,29 +22,33 @@ pub fn svg(recording: &Recording, fit: &Fit) -> String {
         figure = figure.subtitle(format!("warning: {warning}"));
     }
     let struck = fit.resynthesis();
-    let parts: [(&str, &[f64], bool); 3] = [
-        ("recording, its modes drawn as long as they ring (60 dB)", &recording.samples, true),
-        ("the struck body: what the engine plays", &struck, false),
-        ("what is left", &fit.residual.samples, false),
+    let parts: [(&str, &str, &[f64], bool); 3] = [
+        ("recording", "recording, its modes drawn as long as they ring (60 dB)", &recording.samples, true),
+        ("struck body", "the struck body: what the engine plays", &struck, false),
+        ("what is left", "what is left", &fit.residual.samples, false),
     ];
     let from = fit.onset_sample.saturating_sub((BEFORE_S * rate) as usize);
     let until = (fit.onset_sample + (ATTACK_S * rate) as usize).min(struck.len());
     let loudest =
         [&recording.samples, &struck].into_iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let wave = |samples: &[f64], from: usize, until: usize| {
+    let wave = |title: String, samples: &[f64], from: usize, until: usize| {
         let axis = Axis::new("sample value", "").range(-loudest, loudest);
         let wave = Series::signal(samples[from..until].iter().copied(), rate, start_s + from as f64 / rate);
-        Panel::new("", Axis::new("time", "s"), axis).with(Layer::line("", palette::AUDIO, wave))
+        Panel::new(title, Axis::new("time", "s"), axis).with(Layer::line("", palette::AUDIO, wave))
     };
-    figure.row(80.0, parts.map(|(_, samples, _)| wave(samples, from, until)));
-    figure.row(60.0, parts.map(|(_, samples, _)| wave(samples, 0, struck.len())));
+    let attack = |name: &str| format!("{name}: the first {:.0} ms", 1e3 * ATTACK_S);
+    figure.row(80.0, parts.map(|(name, _, samples, _)| wave(attack(name), samples, from, until)));
+    figure.row(
+        60.0,
+        parts.map(|(name, _, samples, _)| wave(format!("{name}: all of it"), samples, 0, struck.len())),
+    );
     let mut options = SpectrogramOptions {
         start_s,
         unit: "dB re 1".to_owned(),
         top_db: None,
         ..SpectrogramOptions::default()
     };
-    for (title, samples, with_modes) in parts {
+    for (_, title, samples, with_modes) in parts {
         let picture = spectrogram(samples, rate, &options);
         // All three on the recording's scale.
         options.top_db = options.top_db.or(picture.bar.as_ref().map(|bar| bar.range[1]));

@@ -89,8 +89,9 @@ fn shape(body: &SolvedBody, mode: usize) -> Panel {
         let colours = triangle.map(|i| normal[i as usize] / most_normal);
         fill(&corners, colours, [WIDTH, height], &mut values, &mut depth);
     }
-    let axis = |range: [f64; 2]| Axis::new("", "m").range(range[0], range[1]).without_numbers();
-    Panel::new(format!("{:.1} Hz", body.frequency_hz[mode]), axis(x), axis(y)).true_scale().with(Picture {
+    let axis = |name: &str, range: [f64; 2]| Axis::new(name, "m").range(range[0], range[1]);
+    let title = format!("{:.1} Hz", body.frequency_hz[mode]);
+    Panel::new(title, axis("across the view", x), axis("up the view", y)).true_scale().with(Picture {
         x,
         y,
         width: WIDTH,

@@ -91,7 +91,11 @@ fn force_rate(text: &str) -> Result<f64, String> {
     if range.holds(rate) { Ok(rate) } else { Err(format!("must be {}", range.words)) }
 }
 
-fn sample_rate(text: &str) -> Result<f64, String> {
+/// A sample rate of the command line.
+///
+/// # Errors
+/// When it is no whole number, or out of range.
+pub fn sample_rate(text: &str) -> Result<f64, String> {
     let rate: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
     if limits::SAMPLE_RATE_HZ.holds(rate) && rate.fract() == 0.0 {
         Ok(rate)
@@ -254,6 +258,31 @@ fn check_outputs(options: &Options, file: &SceneFile) -> Result<(), CliError> {
 /// What the picture of a surface of sand is called after the stem.
 fn sand_suffix(surface: &str) -> String {
     format!("{}.sand.png", file_name(surface))
+}
+
+/// Renders a scene and a log that are in memory, as [`render`] does without options. Returns the samples and what is to be warned of.
+///
+/// # Errors
+/// When the scene or the log is refused.
+pub fn in_memory(mut file: SceneFile, log: &ContactLog) -> Result<(Render, Vec<String>), CliError> {
+    let built = Engine::from_scene(&file, &Overrides { threads: Some(1), ..Overrides::default() })?;
+    let levels = built.levels.clone();
+    for (actuator, full_scale) in file.actuators.iter_mut().zip(&levels.full_scale) {
+        actuator.full_scale = Some(*full_scale);
+    }
+    let surfaces: Vec<(String, SurfaceId)> =
+        built.names.surfaces.iter().map(|(name, id)| (name.clone(), *id)).collect();
+    let Engine { scene, renderer, names, .. } = built;
+    let (rate_hz, kernel) = (renderer.sample_rate_hz(), renderer.kernel());
+    check_length(&file, log.end_s() + file.tail_s, rate_hz)?;
+    let settings = offline::Options { tail_s: file.tail_s, ..offline::Options::default() };
+    let render = offline::render(scene, renderer, log, &names, &settings).map_err(CliError::told)?;
+    check_finite(&render)?;
+    let report = report(&render, kernel, levels, Duration::ZERO);
+    let full_scale = report.full_scale.clone();
+    let rendered = Rendered { file: &file, log, render: &render, full_scale: &full_scale, surfaces: &surfaces };
+    let warnings = told::warnings(&rendered, &report);
+    Ok((render, warnings))
 }
 
 fn check_length(file: &SceneFile, duration_s: f64, rate_hz: f64) -> Result<(), CliError> {

@@ -100,13 +100,25 @@ pub fn draw(take: &Take<'_>) -> String {
     let mut figure = Figure::new(take.title.clone());
     figure.subtitle.extend(take.summary.iter().cloned());
     if take.contacts.iter().any(|contact| !contact.height_m.is_empty()) {
-        figure.row(80.0, [force_panel(take), speed_panel(take)]);
+        // What stands still has no speed to show.
+        let slides = highest(take, |contact| &contact.speed_m_s) > 0.0;
+        figure.row(
+            80.0,
+            std::iter::once(force_panel(take)).chain(slides.then(|| speed_panel(take))).collect::<Vec<_>>(),
+        );
         figure.row(120.0, [profile_panel(take)]);
         // What bows a body drives it by friction and sends no impulses.
-        if take.contacts.iter().any(|contact| contact.impulses.iter().any(|[_, impulse]| *impulse != 0.0)) {
+        let strikes = |contact: &ContactCurve| {
+            contact.impulses.iter().any(|[_, impulse]| impulse.abs() > NO_IMPULSE_N_S)
+        };
+        let strikes = take.contacts.iter().any(strikes);
+        if strikes {
             figure.row(70.0, [impulse_panel(take)]);
         }
-        figure.row(190.0, zoom_panels(take));
+        // Without a collision and without momentum there is nothing to enlarge.
+        if strikes || take.contacts.iter().any(|contact| !contact.collisions.is_empty()) {
+            figure.row(190.0, zoom_panels(take));
+        }
         for row in take.grounds.chunks(GROUNDS_A_ROW).filter(|_| take.grounds.len() > 1) {
             figure.row(130.0, row.iter().map(|ground| ground_panel(take, ground)).collect::<Vec<_>>());
         }
@@ -216,6 +228,9 @@ fn impulse_panel(take: &Take<'_>) -> Panel {
     )
     .with(Layer::Stems { label: String::new(), colour: palette::IMPACT.to_owned(), points })
 }
+
+/// Momentum in a sample that is none: a thousandth of what the lightest stroke sends.
+const NO_IMPULSE_N_S: f64 = 1e-11;
 
 /// The window with the most collisions, or else the most momentum, on the contact it belongs to.
 fn busiest(take: &Take<'_>) -> Option<(usize, f64)> {

@@ -18,7 +18,8 @@ use asperity_texture::light::Light;
 use asperity_texture::raster::Raster;
 use asperity_texture::shape_from_shading::{Method, STEPS};
 use clap::{Args, ValueEnum};
-use report::{Report, Size};
+pub use report::Report;
+use report::Size;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -113,11 +114,52 @@ const WRITTEN: [&str; 15] = [
     "report.json",
 ];
 
+impl Options {
+    /// The options of `asperity texture from-photo PHOTO -o DIR`.
+    #[must_use]
+    pub fn plain(photo: PathBuf, output: PathBuf) -> Self {
+        Self {
+            photo,
+            output,
+            light: None,
+            method: None,
+            bright_is_deep: false,
+            width_m: None,
+            relief_m: None,
+            calibration: None,
+            known: None,
+            known_relief_m: None,
+            exaggerate: 1.0,
+            variants: false,
+            object: ObjectOptions::default(),
+            json: false,
+        }
+    }
+
+    /// Whether no option says how wide the photograph is.
+    fn assumes_width(&self) -> bool {
+        self.object.width_mm.is_none() && self.width_m.is_none()
+    }
+}
+
 /// Runs the verb.
 ///
 /// # Errors
 /// When a photograph cannot be read or is too small, or the folder cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
+    let report = make(options)?;
+    if options.json {
+        return output::say_json(&report);
+    }
+    output::say(&report.in_words(options));
+    Ok(())
+}
+
+/// Makes the maps and the scene; `stroke` uses it too.
+///
+/// # Errors
+/// As [`run`].
+pub fn make(options: &Options) -> Result<Report, CliError> {
     WRITTEN.iter().try_for_each(|name| output::refuse_input(&options.output.join(name)))?;
     let photograph = load(&options.photo)?;
     options.object.check_destination()?;
@@ -158,12 +200,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     if colour > COLOUR_LIMIT {
         surface.doubts.push(Doubt::Condition(Condition::Coloured(colour)));
     }
-    let report = write(options, &picture, &surface, size, start)?;
-    if options.json {
-        return output::say_json(&report);
-    }
-    output::say(&report.in_words(options));
-    Ok(())
+    write(options, &picture, &surface, size, start)
 }
 
 fn load(path: &Path) -> Result<Photograph, CliError> {
@@ -242,22 +279,7 @@ mod tests {
         let tiles = Raster::from_fn(96, 80, |x, y| if x % 16 < 2 || y % 16 < 2 { 0.2 } else { 0.7 });
         image_io::save_gray16(&photo, &tiles).unwrap();
         let out = folder.path().join("out");
-        let options = Options {
-            photo,
-            output: out.clone(),
-            light: None,
-            method: None,
-            bright_is_deep: false,
-            width_m: None,
-            relief_m: None,
-            calibration: None,
-            known: None,
-            known_relief_m: None,
-            exaggerate: 1.0,
-            variants: true,
-            object: ObjectOptions::default(),
-            json: false,
-        };
+        let options = Options { variants: true, ..Options::plain(photo, out.clone()) };
         run(&options).unwrap();
         let report: serde_json::Value =
             serde_json::from_slice(&std::fs::read(out.join("report.json")).unwrap()).unwrap();
@@ -272,10 +294,26 @@ mod tests {
             assert!(!report[field].is_null(), "{field}");
         }
         assert_eq!(report["light_is_estimated"], false, "no light was found");
+        assert_eq!(report["width_is_assumed"], true);
         // The cell alone, repeated without end, is as high as the map.
         let mapped = render_scene(&out.join("scene_x1.toml"), &out.join("stroke"));
         let repeated = render_scene(&out.join("scene_lattice.toml"), &out.join("stroke"));
         assert!((repeated / mapped - 1.0).abs() < 0.3, "{repeated} against {mapped}");
+    }
+
+    #[test]
+    fn a_photograph_says_how_wide_it_was_taken_to_be_and_how_to_say_otherwise() {
+        let folder = tempfile::tempdir().unwrap();
+        let photo = folder.path().join("wall.png");
+        image_io::save_gray16(&photo, &Raster::from_fn(96, 80, |x, y| ((x * 7 + y * 13) % 31) as f32 / 31.0))
+            .unwrap();
+        let out = folder.path().join("wall");
+        let assumed = Options::plain(photo.clone(), out.clone());
+        let words = make(&assumed).unwrap().in_words(&assumed);
+        assert!(words.starts_with("taken to be 15 mm wide (--width-m says another width);"), "{words}");
+        let told = Options { width_m: Some(0.5), ..Options::plain(photo, out) };
+        let words = make(&told).unwrap().in_words(&told);
+        assert!(words.starts_with("500 mm wide;"), "{words}");
     }
 
     #[test]

@@ -116,3 +116,20 @@ fn a_strike_at_a_node_leaves_that_mode_out() {
     assert!(model.positions[0][1].abs() < 1e-6 * model.modes[1].amplitude.abs());
     assert!(model.positions[0][0].abs() > 0.3 * model.modes[0].amplitude.abs());
 }
+
+#[test]
+fn a_door_is_the_published_free_plate_and_hollow_things_ring_lower_than_solid_ones() {
+    // Leissa, J. Sound Vib. 31 (1973), free plate with sides 5 : 2: ω a² √(ρ h / D) of the longer side.
+    let published = [21.643, 33.050, 60.137, 71.484, 117.45];
+    let stiffness = (plate_stiffness_n_m(&EVEN, 0.02) / (EVEN.density_kg_m3 * 0.02)).sqrt();
+    let ours: Vec<f64> =
+        Stock::Door.shape(&EVEN, 1.0).modes.iter().map(|(omega, _)| omega / stiffness).collect();
+    assert_close(&ours, &published, 0.013);
+    // Rayleigh's bound: a bottom holds a can's wall, so that it rings above the free cylinder of its middle surface.
+    let (radius, wall) = (1.0 / 3.0, 1.0 / 60.0);
+    let free = wall / (12f64.sqrt() * radius * radius) * 6.0 / 5f64.sqrt();
+    let can = Stock::Can.shape(&EVEN, 1.0).modes[0].0 / EVEN.rod_speed_m_s();
+    assert!((free..1.3 * free).contains(&can), "{can} beside {free}");
+    let lowest_hz = |shape: Stock| frequencies_hz(shape, &Material::SOFTWOOD, 0.4)[0];
+    assert!(lowest_hz(Stock::Box) < 0.4 * lowest_hz(Stock::Block));
+}

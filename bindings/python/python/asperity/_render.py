@@ -80,21 +80,24 @@ def stroke(
     seed: int | None = None,
     kernel: str | None = None,
     trace: bool = False,
+    force_output: bool | float = False,
     progress: Progress = None,
 ) -> Take:
     """One straight stroke over a surface.
 
-    speed: m/s. force: N that presses. duration: s. start: uv, 1 spans the surface. direction_deg: 0 along u, 90 along v. probe: what
+    speed: m/s. force: N that presses. force_output: keeps `Take.force`, the 3-D force, at 1 kHz or at as many Hz as it says. duration: s. start: uv, 1 spans the surface. direction_deg: 0 along u, 90 along v. probe: what
     touches, a preset of `names_of("probe")` or a table; the fingertip unless told otherwise. actuators, audio: tables of the scene
     file; without them a stroke of 0.1 m/s at 1 N lands at -26 dBFS felt and -32 dBFS heard. tail_s: ring-out, s. The rest is as in
     `render`.
     """
+    if isinstance(force, bool):
+        raise ValueError(f"force: {force} is refused; it is how hard the finger presses, in N: force_output=True or =1000.0 keeps Take.force")
     scene = SceneFile(surface, probe=probe, actuators=actuators, audio=audio, tail_s=tail_s)
     events = _contacts.stroke(
         speed=speed, force=force, duration=duration, extent=surface.extent, surface=surface.name, start=start,
         direction_deg=direction_deg,
     )  # fmt: skip
-    return render(scene, events, sr=sr, seed=seed, kernel=kernel, trace=trace, progress=progress)
+    return render(scene, events, sr=sr, seed=seed, kernel=kernel, trace=trace, force=force_output, progress=progress)
 
 
 def _log(contacts: ContactsLike) -> tuple[str, str]:

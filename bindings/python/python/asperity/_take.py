@@ -18,9 +18,10 @@ class Take:
     """What a render gave. Sample 0 is game time 0.
 
     audio: float32 (samples,), or (buses, samples) where the scene has several. haptic: float32 (channels, samples), full scale as
-    `stats["full_scale"]` says, in m or m/s². sr: samples a second. stats: what the engine counted, and the levels in use. trace, force:
-    structured arrays where they were asked for, with the columns of `asperity render --trace` and `--force`. sand: heights in metres
-    (rows, columns) of each surface of sand after the last contact.
+    `stats["full_scale"]` says: a sample times it is in m or m/s². sr: samples a second. stats: what the engine counted, and the levels in
+    use. trace, force: structured arrays where they were asked for, with the columns of `asperity render --trace` and `--force`: `x_n` is the
+    force on the finger along u, `y_n` along v (friction points against the motion), `z_n` out of the surface, in N. sand: heights in
+    metres (rows, columns) of each surface of sand after the last contact.
     """
 
     audio: npt.NDArray[np.float32]

@@ -27,8 +27,9 @@ struct CellReport {
     relief_m: f64,
 }
 
+/// What `report.json` and `--json` hold.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub struct Report {
     photo: PathBuf,
     /// Texels of the maps; those of the photograph over `reduced_by`.
     width: usize,
@@ -37,6 +38,8 @@ pub(super) struct Report {
     texel_m: f64,
     width_m: f64,
     height_m: f64,
+    /// Whether no option said how wide it is.
+    width_is_assumed: bool,
     relief_m: f64,
     micro_relief_m: f64,
     /// The same in millimetres.
@@ -78,7 +81,7 @@ pub(super) struct Size {
 }
 
 impl Report {
-    pub fn new(
+    pub(super) fn new(
         options: &Options,
         surface: &PhotoSurface,
         size: Size,
@@ -100,6 +103,7 @@ impl Report {
             texel_m: size.texel_m,
             width_m: width as f64 * size.texel_m,
             height_m: height as f64 * size.texel_m,
+            width_is_assumed: options.assumes_width(),
             relief_m: surface.relief_m,
             micro_relief_m: surface.micro_relief_m,
             size: size_mm,
@@ -139,6 +143,21 @@ impl Report {
         }
     }
 
+    /// How wide the photograph is, and how to say another width where that was assumed.
+    pub fn width_in_words(&self) -> String {
+        let millimetres = format!("{} mm wide", (1e3 * self.width_m).round());
+        if self.width_is_assumed {
+            format!("taken to be {millimetres} (--width-m says another width)")
+        } else {
+            millimetres
+        }
+    }
+
+    /// What is to be doubted.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
     /// The same for people.
     pub fn in_words(&self, options: &Options) -> String {
         let lattice = self.lattice.as_ref().map_or("nothing repeats".to_owned(), |lattice| {
@@ -146,7 +165,7 @@ impl Report {
             let wanders = if lattice.wanders { ", but wanders: nothing is averaged" } else { "" };
             format!("repeats along {:.1?} and {:.1?} texels ({group}){wanders}", lattice.t1_px, lattice.t2_px)
         });
-        let mut text = format!("{lattice}; heights by {}", self.method);
+        let mut text = format!("{}; {lattice}; heights by {}", self.width_in_words(), self.method);
         if let (Some([x, y, z]), true) = (self.light, self.light_is_estimated) {
             let _ = write!(text, " under a light found at ({x:.2}, {y:.2}, {z:.2})");
         }

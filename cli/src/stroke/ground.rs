@@ -1,0 +1,251 @@
+//! Ground: what is stroked, as a scene.
+
+use super::Options;
+use crate::error::CliError;
+use crate::sounds::{Folder, stem, with_absolute_paths};
+use crate::strike::has_end;
+use crate::texture::from_photo;
+use asperity::files::scene_file::{SceneFile, Source};
+use asperity::{Material, ModalModel, PROBE_PRESETS, Wrap};
+use asperity_texture::from_photo::TEXEL_M;
+use asperity_texture::image_io::{Channel, load_channel, load_photograph};
+use std::fs;
+use std::path::{Path, PathBuf};
+use toml::{Table, Value};
+
+/// Height of white over black of a map that does not say, m.
+const RELIEF_M: f64 = 1e-3;
+/// A map's body: a plate of that material, so many metres along its side.
+const BODY: (&str, f64) = ("wood", 0.2);
+/// A picture of which more is colour than this is a photograph.
+const COLOURED: f64 = 0.01;
+/// Longest ring-out that is looked at where nothing says how long bodies ring, s.
+const TAIL_S: f64 = 5.0;
+
+/// What is stroked.
+pub struct Ground {
+    /// A name for files.
+    pub name: String,
+    /// The scene, its paths absolute.
+    scene: Table,
+    /// Name of the surface.
+    pub surface: String,
+    /// What uv 1 spans, m.
+    pub extent_m: [f64; 2],
+    /// Whether there is ground beyond its edges.
+    pub runs_on: bool,
+    /// Name of the default probe, for files.
+    pub probe: String,
+    /// How long what rings is waited for, s.
+    pub tail_s: f64,
+    /// Every file that is read.
+    pub inputs: Vec<PathBuf>,
+}
+
+impl Ground {
+    /// What the first argument is; a photograph's maps are made below the folder first. Says what was assumed, too.
+    ///
+    /// # Errors
+    /// When it is nothing to stroke.
+    pub fn of(options: &Options, folder: &Folder) -> Result<(Self, Vec<String>), CliError> {
+        let what = &options.what;
+        if what.is_dir() {
+            let scene = what.join("scene.toml");
+            if !scene.is_file() {
+                let right = "name a folder that `asperity texture from-photo` made, a map or a scene";
+                return Err(CliError::file(what, "is a folder without a scene.toml", right));
+            }
+            let name = what.canonicalize().map_or_else(|_| "surface".to_owned(), |path| stem(&path));
+            return Ok((Self::of_scene(options, &scene, name)?, Vec::new()));
+        }
+        if !what.is_file() {
+            let right = "name a map, a photograph, a folder of from-photo or a scene";
+            return Err(CliError::file(what, "no such file", right));
+        }
+        if has_end(what, &["toml"]) {
+            return Ok((Self::of_scene(options, what, stem(what))?, Vec::new()));
+        }
+        if has_end(what, &["wav", "flac", "ogg", "mp3", "aiff", "m4a", "json"]) {
+            let right = "`asperity strike` takes recordings and modes files";
+            return Err(CliError::file(what, "is nothing to stroke", right));
+        }
+        if is_photograph(what)? { Self::of_photo(options, folder) } else { Self::of_map(options) }
+    }
+
+    fn of_photo(options: &Options, folder: &Folder) -> Result<(Self, Vec<String>), CliError> {
+        if options.material.is_some() {
+            let right = "leave it out, or put a body into the scene that from-photo makes and stroke that";
+            return Err(CliError::new("--material", "is for maps", right));
+        }
+        let name = stem(&options.what);
+        let maps = folder.path().join(format!("{name}-surface"));
+        let report = from_photo::make(&from_photo::Options {
+            width_m: options.width_m,
+            relief_m: options.relief_m,
+            ..from_photo::Options::plain(options.what.clone(), maps.clone())
+        })?;
+        let mut assumed =
+            vec![format!("a photograph, {}; its maps are in {}", report.width_in_words(), maps.display())];
+        assumed.extend(report.warnings().iter().map(|warning| format!("warning: {warning}")));
+        let plain = Options { width_m: None, relief_m: None, ..options.clone() };
+        let mut ground = Self::of_scene(&plain, &maps.join("scene.toml"), name)?;
+        ground.inputs.push(options.what.clone());
+        Ok((ground, assumed))
+    }
+
+    fn of_map(options: &Options) -> Result<(Self, Vec<String>), CliError> {
+        let what = &options.what;
+        let map = load_channel(what, Channel::Luma).map_err(CliError::told)?.raster;
+        let mut assumed = Vec::new();
+        let width_m = options.width_m.unwrap_or_else(|| {
+            let width_m = TEXEL_M * map.width as f64;
+            assumed
+                .push(format!("a height map, taken to be {} mm wide (--width-m)", (1e3 * width_m).round()));
+            width_m
+        });
+        let relief_m = options.relief_m.unwrap_or_else(|| {
+            assumed.push(format!("white taken to be {} mm above black (--relief-m)", 1e3 * RELIEF_M));
+            RELIEF_M
+        });
+        let material = match &options.material {
+            None => {
+                assumed.push(format!("on a plate of {}, {} m (--material)", BODY.0, BODY.1));
+                BODY.0
+            }
+            Some(name) if Material::by_name(name).is_some() => name,
+            Some(name) => {
+                let right = format!("must be one of: {}", Material::names());
+                return Err(CliError::new("--material", format!("\"{name}\" is unknown"), right));
+            }
+        };
+        let path = fs::canonicalize(what).map_err(|error| CliError::read(what, &error))?;
+        let text = |text: &str| Value::String(text.to_owned());
+        let mut body = Table::new();
+        body.insert("name".into(), text("plate"));
+        body.insert("stock".into(), text("plate"));
+        body.insert("size_m".into(), Value::Float(BODY.1));
+        body.insert("material".into(), text(material));
+        let mut surface = Table::new();
+        surface.insert("name".into(), text("map"));
+        surface.insert("body".into(), text("plate"));
+        surface.insert("displacement".into(), text(&path.to_string_lossy()));
+        surface.insert("width_m".into(), Value::Float(width_m));
+        surface.insert("height_m".into(), Value::Float(width_m * map.height as f64 / map.width as f64));
+        surface.insert("relief_m".into(), Value::Float(relief_m));
+        let mut scene = Table::new();
+        scene.insert("body".into(), Value::Array(vec![Value::Table(body)]));
+        scene.insert("surface".into(), Value::Array(vec![Value::Table(surface)]));
+        let home = path.parent().unwrap_or(Path::new(""));
+        Ok((Self::of_table(options, scene, home, stem(what))?, assumed))
+    }
+
+    fn of_scene(options: &Options, path: &Path, name: String) -> Result<Self, CliError> {
+        for (option, is_given) in [
+            ("--width-m", options.width_m.is_some()),
+            ("--relief-m", options.relief_m.is_some()),
+            ("--material", options.material.is_some()),
+        ] {
+            if is_given {
+                let right = format!("change it in {}", path.display());
+                return Err(CliError::new(option, "is for maps and photographs", right));
+            }
+        }
+        let file = SceneFile::load(path)?;
+        let text = fs::read_to_string(path).map_err(|error| CliError::read(path, &error))?;
+        let scene: Table = text.parse().map_err(CliError::told)?;
+        let home = file.path.parent().unwrap_or(Path::new("")).to_owned();
+        let mut ground = Self::of_table(options, with_absolute_paths(&scene, &home), &home, name)?;
+        ground.inputs.push(path.to_owned());
+        ground.inputs.extend(file.contacts.clone());
+        Ok(ground)
+    }
+
+    fn of_table(options: &Options, scene: Table, home: &Path, name: String) -> Result<Self, CliError> {
+        let text = toml::to_string(&scene).map_err(CliError::told)?;
+        let file = SceneFile::parse(&text, &home.join("scene.toml"))?;
+        let named = |name: &String| file.surfaces.iter().find(|surface| surface.name == *name);
+        let surface = match &options.surface {
+            None => file.surfaces.first(),
+            Some(name) => named(name),
+        };
+        let surface = surface.ok_or_else(|| {
+            let names: Vec<&str> = file.surfaces.iter().map(|surface| surface.name.as_str()).collect();
+            match (&options.surface, names.is_empty()) {
+                (Some(name), false) => {
+                    let right = format!("must be one of: {}", names.join(", "));
+                    CliError::new("--surface", format!("\"{name}\" is unknown"), right)
+                }
+                _ => CliError::file(
+                    &options.what,
+                    "has no surface",
+                    "write a [[surface]], or `asperity strike` it",
+                ),
+            }
+        })?;
+        let decays = file.bodies.iter().filter_map(|body| match (&body.modes, &body.stock) {
+            (Some(path), _) => ModalModel::load(path).ok(),
+            (None, Some((stock, size_m))) => {
+                stock.modes(&body.material.unwrap_or(Material::PLA), *size_m).ok()
+            }
+            (None, None) => None,
+        });
+        let slowest =
+            decays.flat_map(|model| model.modes).map(|mode| mode.decay_per_s).fold(f64::INFINITY, f64::min);
+        let probe = scene.get("probe").and_then(|probe| probe.get("preset")).and_then(Value::as_str);
+        Ok(Self {
+            name,
+            surface: surface.name.clone(),
+            extent_m: [surface.width_m, surface.height_m],
+            runs_on: surface.wrap != Wrap::Clamp && !matches!(surface.source, Source::Sand(_)),
+            probe: probe.unwrap_or("fingertip").to_owned(),
+            tail_s: if slowest.is_finite() {
+                (9.21 / slowest.max(1e-3)).clamp(0.3, 20.0)
+            } else {
+                TAIL_S.min(0.3)
+            },
+            inputs: file.named_files().into_iter().map(Path::to_owned).collect(),
+            scene,
+        })
+    }
+
+    /// The scene with a probe, and the name that contacts call it by; none where it is the default one.
+    ///
+    /// # Errors
+    /// When there is no probe of that name.
+    pub fn with_probe(&self, name: Option<&str>) -> Result<(Table, Option<String>), CliError> {
+        let mut scene = self.scene.clone();
+        let Some(name) = name else { return Ok((scene, None)) };
+        let is_it = |probe: &Value| probe.get("name").and_then(Value::as_str) == Some(name);
+        let probes = scene.get("probe").and_then(Value::as_array);
+        if probes.is_some_and(|probes| probes.iter().any(is_it)) {
+            return Ok((scene, Some(name.to_owned())));
+        }
+        if !PROBE_PRESETS.iter().any(|(known, _)| *known == name) {
+            let known: Vec<&str> = PROBE_PRESETS.iter().map(|(known, _)| *known).collect();
+            let right = format!("must be one of: {}, or a probe of the scene", known.join(", "));
+            return Err(CliError::new("--probe", format!("\"{name}\" is unknown"), right));
+        }
+        let mut preset = Table::new();
+        preset.insert("preset".into(), Value::String(name.to_owned()));
+        match scene.get_mut("probe") {
+            Some(Value::Array(probes)) => {
+                preset.insert("name".into(), Value::String(name.to_owned()));
+                probes.push(Value::Table(preset));
+                Ok((scene, Some(name.to_owned())))
+            }
+            _ => {
+                scene.insert("probe".into(), Value::Table(preset));
+                Ok((scene, None))
+            }
+        }
+    }
+}
+
+/// A picture in colours is a photograph, as is a JPEG; a grey one is a map.
+fn is_photograph(path: &Path) -> Result<bool, CliError> {
+    if has_end(path, &["exr", "pgm"]) {
+        return Ok(false);
+    }
+    let (_, colour) = load_photograph(path).map_err(CliError::told)?;
+    Ok(colour > COLOURED || has_end(path, &["jpg", "jpeg"]))
+}
