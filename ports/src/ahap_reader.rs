@@ -10,7 +10,7 @@
 //!
 //! The vendor says of the three times that they run from 0 to 1 and grow, not by what law: they are told. Curves of a file that
 //! holds strokes alone do not reach the file beside it, as two patterns are played by themselves. Intensities are squared, so that
-//! a ramp of one bends: it is cut into pieces that stay within 0.3 dB of it.
+//! a ramp of one bends: it is cut into pieces that stay within 0.3 dB of it, down to −60 dB.
 
 use crate::clip::{AmplitudePoint, Clip, Emphasis, FrequencyPoint, Line, Read};
 use crate::error::{PortError, within};
@@ -19,10 +19,10 @@ use serde_json::Value;
 
 /// How long a clip of strokes goes on behind the last one, s.
 const STROKE_S: f64 = 0.05;
-/// A ramp of intensity is straight enough when its ends differ by at most this part of their sum.
-const STRAIGHT: f64 = 0.17;
-/// Pieces of a ramp from 0 to 1.
-const PIECES: f64 = 16.0;
+/// A ramp of intensity is cut where it has grown by this factor: its square is then within 0.25 dB of straight.
+const GROWN: f64 = 1.4;
+/// Intensities below this are not told apart: −60 dB.
+const FAINT: f64 = 0.03;
 
 /// A continuous event as it was read.
 struct Held {
@@ -235,7 +235,8 @@ impl Pieces {
         edges.push(last_s);
         edges.extend(self.strokes.first().map(|(begins_s, _)| *begins_s));
         let first_s = edges.iter().copied().fold(last_s, f64::min);
-        edges.extend(curve.times_s().filter(|t| *t > first_s && *t < last_s));
+        let bends = curve.times_s().chain(curve.crossings_s(0.0));
+        edges.extend(bends.filter(|t| *t > first_s && *t < last_s));
         edges.sort_by(f64::total_cmp);
         // Events that follow each other without a gap are one.
         edges.dedup_by(|b, a| (*a - *b).abs() < 1e-9);
@@ -256,14 +257,9 @@ impl Pieces {
                 sounding.iter().map(|h| inside(h, one_sided) * factor).collect()
             };
             let (from, to) = (ends(from_s, true), ends(to_s, false));
-            let steps = from.iter().zip(&to).map(|(a, b)| (b - a).abs() / (a + b).max(1e-12));
-            let bent = steps.fold(0.0, f64::max) > STRAIGHT;
-            let rise = from.iter().zip(&to).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
-            let pieces = if bent { (PIECES * rise).ceil().max(1.0) as usize } else { 1 };
-            for piece in 0..=pieces {
-                let part = piece as f64 / pieces as f64;
+            for part in parts(&from, &to) {
                 let power: f64 = from.iter().zip(&to).map(|(a, b)| (a + part * (b - a)).powi(2)).sum();
-                let time_s = if piece == pieces { to_s } else { from_s + part * (to_s - from_s) };
+                let time_s = if part == 1.0 { to_s } else { from_s + part * (to_s - from_s) };
                 points.push((time_s, power.min(1.0)));
             }
         }
@@ -291,7 +287,10 @@ impl Pieces {
         let begins_s = self.held.iter().map(|h| h.begins_s).fold(f64::MAX, f64::min);
         let ends_s = self.held.iter().map(|h| h.bends_s()[4]).fold(0.0, f64::max);
         let mut edges: Vec<f64> = self.held.iter().flat_map(|h| [h.begins_s, h.bends_s()[4]]).collect();
-        edges.extend(curve.times_s().filter(|t| *t > begins_s && *t < ends_s));
+        // Where the sum reaches an end of its range, it stays there.
+        let held = self.held.iter().flat_map(|h| [-h.sharpness, 1.0 - h.sharpness]);
+        let bends = curve.times_s().chain(held.flat_map(|level| curve.crossings_s(level)));
+        edges.extend(bends.filter(|t| *t > begins_s && *t < ends_s));
         edges.sort_by(f64::total_cmp);
         edges.dedup_by(|b, a| (*a - *b).abs() < 1e-9);
         let mut points: Vec<FrequencyPoint> = Vec::new();
@@ -316,6 +315,20 @@ impl Pieces {
         }
         points
     }
+}
+
+/// Where ramps of intensities are cut, as parts of their length: their squares are straight enough in between.
+fn parts(from: &[f64], to: &[f64]) -> Vec<f64> {
+    let mut parts = vec![0.0, 1.0];
+    for (&a, &b) in from.iter().zip(to) {
+        let (low, high) = (a.min(b).max(FAINT), a.max(b));
+        let levels = std::iter::successors(Some(high / GROWN), |x| Some(x / GROWN));
+        let levels = levels.take_while(|x| *x > low).chain((a.min(b) < low).then_some(low));
+        parts.extend(levels.map(|x| (x - a) / (b - a)).filter(|part| *part > 0.0 && *part < 1.0));
+    }
+    parts.sort_by(f64::total_cmp);
+    parts.dedup();
+    parts
 }
 
 /// A number that may be missing.

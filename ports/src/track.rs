@@ -52,6 +52,14 @@ impl Points {
         self.points.iter().map(|p| p.0)
     }
 
+    /// Times at which it crosses a level on its way, s.
+    pub(crate) fn crossings_s(&self, level: f64) -> impl Iterator<Item = f64> + '_ {
+        self.points.windows(2).filter_map(move |w| {
+            let (from, to) = (w[0].1 - level, w[1].1 - level);
+            (from * to < 0.0).then(|| w[0].0 + from / (from - to) * (w[1].0 - w[0].0))
+        })
+    }
+
     /// Its value at a time; at a jump that before it or behind it.
     pub(crate) fn at(&self, time_s: f64, behind: bool) -> f64 {
         let is_past = |p: &(f64, f64)| if behind { p.0 <= time_s + 1e-9 } else { p.0 < time_s - 1e-9 };

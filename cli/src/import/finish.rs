@@ -21,7 +21,7 @@ pub struct Finish {
 
 /// Reads σ, ℓ and p, each with the draft's default.
 pub fn finish(document: &Document, surface: &Value, at: &str) -> Result<Finish, CliError> {
-    let number = |key: &str, default: f64, low: f64, high: f64| {
+    let number = |key: &str, default: f64, low: f64, high: f64| -> Result<f64, CliError> {
         let value = surface[key].as_f64().unwrap_or(default);
         let inside = value.is_finite()
             && value > low
