@@ -1,4 +1,5 @@
-//! An output that is an input is refused by every verb, by whatever path, and the input is as it was.
+//! An output that is an input is refused by every verb, by whatever path, and the input is as it
+//! was.
 
 #![cfg(unix)]
 
@@ -61,7 +62,8 @@ const CASES: [Case; 27] = [
     ),
 ];
 
-/// A verb whose outputs get their names from a stem or a folder, and the input that one of them would be.
+/// A verb whose outputs get their names from a stem or a folder, and the input that one of them
+/// would be.
 const NAMED: [Case; 14] = [
     (&["render", "named.toml", "-o", "OUTtake", "--trace"], "take.trace.csv"),
     (&["render", "log-is-audio.toml", "-o", "OUTtake"], "take.audio.wav"),

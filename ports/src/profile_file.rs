@@ -8,7 +8,8 @@ impl Device {
     /// A profile from TOML, or an actuator configuration (ACF) from JSON with comments.
     ///
     /// # Errors
-    /// When it is neither, or a number is one that no device has; the message names line and key where the file's writer can be shown them.
+    /// When it is neither, or a number is one that no device has; the message names line and key
+    /// where the file's writer can be shown them.
     pub fn parse(text: &str) -> Result<Self, PortError> {
         let plain = acf::without_comments(text);
         if plain.trim_start().starts_with('{') { acf::device(&plain) } else { Self::from_toml(text) }

@@ -3,8 +3,8 @@
 use super::{FileError, nearest};
 
 impl FileError {
-    /// An error of the TOML reader: the line and the key, and the key that was meant where one is misspelt. `right` is what
-    /// would be right where nothing nearer is known.
+    /// An error of the TOML reader: the line and the key, and the key that was meant where one is
+    /// misspelt. `right` is what would be right where nothing nearer is known.
     pub fn toml(text: &str, error: &toml::de::Error, right: &str) -> Self {
         let message = error.message().replace('\n', " ");
         let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
@@ -25,7 +25,8 @@ impl FileError {
         }
     }
 
-    /// The error with the line of `text` in which its key is set; as it is where none or several lines set that key.
+    /// The error with the line of `text` in which its key is set; as it is where none or several
+    /// lines set that key.
     #[must_use]
     pub fn at_line_in(self, text: &str) -> Self {
         let key = self.at().rsplit(['.', ' ']).next().unwrap_or_default().to_owned();
