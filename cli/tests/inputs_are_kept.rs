@@ -195,7 +195,7 @@ fn an_output_that_is_an_input_is_refused_by_every_verb_and_by_whatever_path() {
         ];
         for way in ways {
             let arguments: Vec<&str> =
-                arguments.iter().map(|part| if *part == "OUT" { &*way } else { part }).collect();
+                arguments.iter().map(|part| if *part == "OUT" { &*way } else { *part }).collect();
             assert_refused(&asperity(at, &arguments), &["read", "write somewhere else"]);
             assert_eq!(everything(at), before, "{arguments:?}");
             refused += 1;

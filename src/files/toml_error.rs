@@ -7,6 +7,7 @@ impl FileError {
     /// misspelt. `right` is what would be right where nothing nearer is known.
     pub fn toml(text: &str, error: &toml::de::Error, right: &str) -> Self {
         let message = error.message().replace('\n', " ");
+        let message = message.replace("u64", "a whole number from 0 on").replace("f64", "a number");
         let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
         if let (true, [unknown, known @ ..]) = (message.starts_with("unknown field"), words.as_slice()) {
             let meant = nearest(unknown, known).map_or_else(String::new, |meant| format!("write {meant}; "));
