@@ -1,10 +1,12 @@
-//! Files that appear complete, together, or not at all, and never over an input; and the one JSON object on stdout.
+//! Files that appear complete, together, or not at all, and never over an input; and the one JSON
+//! object on stdout.
 //!
-//! A verb hands over what it reads ([`reads`]); whatever is written afterwards is compared with it, as the file system does: through links, hard
-//! links and detours of a path.
+//! A verb hands over what it reads ([`reads`]); whatever is written afterwards is compared with it,
+//! as the file system does: through links, hard links and detours of a path.
 //!
-//! Every file is written beside its final name under a temporary one. [`Outputs::commit`] gives all of
-//! them their names at the end of the verb; an error or a panic before that leaves nothing behind.
+//! Every file is written beside its final name under a temporary one. [`Outputs::commit`] gives all
+//! of them their names at the end of the verb; an error or a panic before that leaves nothing
+//! behind.
 
 use crate::error::CliError;
 use std::cell::RefCell;
@@ -67,7 +69,8 @@ impl Outputs {
     /// Opens a file that will be called `path` after [`Self::commit`].
     ///
     /// # Errors
-    /// When the folder is missing or cannot be written, or `path` is a folder or a file that is read.
+    /// When the folder is missing or cannot be written, or `path` is a folder or a file that is
+    /// read.
     pub fn create(&mut self, path: &Path) -> Result<BufWriter<File>, CliError> {
         check_destination(path)?;
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -148,7 +151,8 @@ impl Drop for Outputs {
 /// Refuses a path that cannot become a file, before any work is done for it.
 ///
 /// # Errors
-/// When the path has no file name, is a folder or a file that is read, or lies in a folder that does not exist.
+/// When the path has no file name, is a folder or a file that is read, or lies in a folder that
+/// does not exist.
 pub fn check_destination(path: &Path) -> Result<(), CliError> {
     if path.file_name().is_none() {
         return Err(CliError::file(path, "is not a file name", "name the file to write"));

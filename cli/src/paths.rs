@@ -1,8 +1,10 @@
-//! Paths of the command line: which arguments are read, which are written, and what a written one ends in.
+//! Paths of the command line: which arguments are read, which are written, and what a written one
+//! ends in.
 //!
-//! [`check`] runs before the verb. It hands every file that is read to [`output::reads`], so that no verb can write over it, and refuses an output
-//! that is an input, or whose name says that it holds something else. What a verb reads besides (maps of a scene, buffers of a document) it hands
-//! over itself.
+//! [`check`] runs before the verb. It hands every file that is read to [`output::reads`], so that
+//! no verb can write over it, and refuses an output that is an input, or whose name says that it
+//! holds something else. What a verb reads besides (maps of a scene, buffers of a document) it
+//! hands over itself.
 
 use crate::error::CliError;
 use crate::output;
@@ -32,7 +34,8 @@ const READ: [&str; 16] = [
 /// Arguments that are pictures or folders of pictures to read.
 const READ_PICTURES: [&str; 3] = ["image", "maps", "folder"];
 
-/// Arguments that name files to write, and what the file ends in; `None` where the verb itself says so.
+/// Arguments that name files to write, and what the file ends in; `None` where the verb itself says
+/// so.
 const WRITTEN: [(&str, Option<&str>); 8] = [
     ("output", None),
     ("port", None),
@@ -82,9 +85,12 @@ fn innermost(arguments: &ArgMatches) -> Option<(&str, &ArgMatches)> {
     Some(innermost(inner).unwrap_or((verb, inner)))
 }
 
+/// Paths that an argument holds: flags and numbers of the same name hold none.
 fn values(arguments: &ArgMatches, name: &str) -> Vec<PathBuf> {
-    let given = arguments.try_get_raw(name).ok().flatten();
-    given.into_iter().flatten().map(PathBuf::from).collect()
+    let paths = arguments.try_get_many::<PathBuf>(name).ok().flatten().into_iter().flatten().cloned();
+    let texts =
+        arguments.try_get_many::<String>(name).ok().flatten().into_iter().flatten().map(PathBuf::from);
+    paths.chain(texts).collect()
 }
 
 fn ends_in(path: &Path, ending: &str) -> Result<(), CliError> {
@@ -121,6 +127,16 @@ mod tests {
             let read = READ.contains(&name.as_str()) || READ_PICTURES.contains(&name.as_str());
             let written = WRITTEN.iter().any(|(written, _)| *written == name);
             assert!(read != written, "{name}: add it to READ or to WRITTEN");
+        }
+    }
+
+    #[test]
+    fn flags_that_are_named_as_outputs_of_other_verbs_are_no_paths() {
+        for line in [
+            &["asperity", "render", "a.toml", "-o", "a", "--plot"][..],
+            &["asperity", "render", "a.toml", "-o", "a"],
+        ] {
+            check(&Arguments::command().try_get_matches_from(line).unwrap()).unwrap();
         }
     }
 

@@ -7,8 +7,8 @@ use asperity::files::scene_file::SceneFile;
 use asperity::{BodyId, ProbeId, SurfaceId};
 use std::path::Path;
 
-/// The contact log that a scene file names, and the keys in it that are read past. Every file of the scene is noted as
-/// one that is read ([`output::reads`]).
+/// The contact log that a scene file names, and the keys in it that are read past. Every file of
+/// the scene is noted as one that is read ([`output::reads`]).
 ///
 /// # Errors
 /// When none is named, it is no log, or it speaks of a channel that the scene does not have.

@@ -1,4 +1,5 @@
-//! An output that is an input is refused by every verb, by whatever path, and the input is as it was.
+//! An output that is an input is refused by every verb, by whatever path, and the input is as it
+//! was.
 
 #![cfg(unix)]
 
@@ -61,7 +62,8 @@ const CASES: [Case; 27] = [
     ),
 ];
 
-/// A verb whose outputs get their names from a stem or a folder, and the input that one of them would be.
+/// A verb whose outputs get their names from a stem or a folder, and the input that one of them
+/// would be.
 const NAMED: [Case; 14] = [
     (&["render", "named.toml", "-o", "OUTtake", "--trace"], "take.trace.csv"),
     (&["render", "log-is-audio.toml", "-o", "OUTtake"], "take.audio.wav"),
@@ -193,7 +195,7 @@ fn an_output_that_is_an_input_is_refused_by_every_verb_and_by_whatever_path() {
         ];
         for way in ways {
             let arguments: Vec<&str> =
-                arguments.iter().map(|part| if *part == "OUT" { &*way } else { part }).collect();
+                arguments.iter().map(|part| if *part == "OUT" { &*way } else { *part }).collect();
             assert_refused(&asperity(at, &arguments), &["read", "write somewhere else"]);
             assert_eq!(everything(at), before, "{arguments:?}");
             refused += 1;

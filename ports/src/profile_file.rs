@@ -8,7 +8,8 @@ impl Device {
     /// A profile from TOML, or an actuator configuration (ACF) from JSON with comments.
     ///
     /// # Errors
-    /// When it is neither, or a number is one that no device has; the message names line and key where the file's writer can be shown them.
+    /// When it is neither, or a number is one that no device has; the message names line and key
+    /// where the file's writer can be shown them.
     pub fn parse(text: &str) -> Result<Self, PortError> {
         // TOML begins with a name, a table or a hash; JSON5 with a brace or a comment.
         let begins = text.trim_start_matches('\u{feff}').trim_start();

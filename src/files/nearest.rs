@@ -32,8 +32,9 @@ const SYNONYMS: [(&str, &str); 28] = [
     ("strike", "impact"),
 ];
 
-/// The word among `known` that was meant by `word`: the same in another case, another name for it, one that begins like it or holds it, or one
-/// that is a slip or two away. `None` where nothing is near.
+/// The word among `known` that was meant by `word`: the same in another case, another name for it,
+/// one that begins like it or holds it, or one that is a slip or two away. `None` where nothing is
+/// near.
 #[must_use]
 pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let plain = |word: &str| word.to_lowercase().replace(['-', ' ', '_'], "");
@@ -59,7 +60,7 @@ pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     alike.or_else(near).or_else(holds).copied()
 }
 
-/// How many letters have to be put in, left out, changed or swapped with the next.
+/// Number of letters that have to be put in, left out, changed or swapped with the next.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];

@@ -1,6 +1,7 @@
 //! Files of another kind, given where a scene belongs: which tool reads them.
 
-/// What a file is and what reads it, by its first bytes; `None` where it may be a scene with a slip.
+/// Kind of a file and the tool that reads it, by its first bytes; `None` where it may be a scene
+/// with a slip.
 pub(crate) fn other_file(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     const RECORDING: (&str, &str) = (
         "is a recording, not a scene",

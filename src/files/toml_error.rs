@@ -3,10 +3,11 @@
 use super::{FileError, nearest};
 
 impl FileError {
-    /// An error of the TOML reader: the line and the key, and the key that was meant where one is misspelt. `right` is what
-    /// would be right where nothing nearer is known.
+    /// An error of the TOML reader: the line and the key, and the key that was meant where one is
+    /// misspelt. `right` is what would be right where nothing nearer is known.
     pub fn toml(text: &str, error: &toml::de::Error, right: &str) -> Self {
         let message = error.message().replace('\n', " ");
+        let message = message.replace("u64", "a whole number from 0 on").replace("f64", "a number");
         let words: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
         if let (true, [unknown, known @ ..]) = (message.starts_with("unknown field"), words.as_slice()) {
             let meant = nearest(unknown, known).map_or_else(String::new, |meant| format!("write {meant}; "));
@@ -25,7 +26,8 @@ impl FileError {
         }
     }
 
-    /// The error with the line of `text` in which its key is set; as it is where none or several lines set that key.
+    /// The error with the line of `text` in which its key is set; as it is where none or several
+    /// lines set that key.
     #[must_use]
     pub fn at_line_in(self, text: &str) -> Self {
         let key = self.at().rsplit(['.', ' ']).next().unwrap_or_default().to_owned();

@@ -9,50 +9,50 @@ use crate::model::id::SurfaceId;
 pub(crate) use motions::{Motions, Sheet};
 use std::fmt;
 
-/// What the reports of one surface say twice, and differently.
+/// Disagreement between two things that the reports of one surface say of the same motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Contradiction {
     /// Place and velocity move at different speeds.
     Speed {
-        /// Where.
+        /// Surface of the reports.
         surface: SurfaceId,
         /// Speed at which uv moves, m/s.
         uv_m_s: f64,
         /// Speed that `velocity_m_s` says, m/s.
         velocity_m_s: f64,
-        /// What the factor between them looks like.
+        /// Likeliest cause of the factor between them.
         likely: Likely,
     },
     /// The velocity points against the motion of uv, along the axes that are true.
     Turned {
-        /// Where.
+        /// Surface of the reports.
         surface: SurfaceId,
         /// Along u and along v.
         axes: [bool; 2],
     },
     /// The velocity along v is that of u, and the other way round.
     Swapped {
-        /// Where.
+        /// Surface of the reports.
         surface: SurfaceId,
     },
     /// Contacts begin again while they touch.
     BeginsAgain {
-        /// Where.
+        /// Surface of the reports.
         surface: SurfaceId,
-        /// How often.
+        /// Number of such begins.
         count: u32,
     },
     /// One contact is at two places in turn.
     TwoPlaces {
-        /// Where.
+        /// Surface of the reports.
         surface: SurfaceId,
-        /// How often it leapt.
+        /// Number of leaps.
         count: u32,
     },
 }
 
-/// What a factor between two speeds looks like.
+/// Likeliest cause of a factor between two speeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Likely {
@@ -70,7 +70,8 @@ pub enum Likely {
     VelocityInCentimetres,
     /// Times in milliseconds.
     TimesInMilliseconds,
-    /// uv spans another width and height than the surface's, m; none along an axis that was not used.
+    /// uv spans another width and height than the surface's, m; none along an axis that was not
+    /// used.
     AnotherSize([Option<f64>; 2]),
 }
 

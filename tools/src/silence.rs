@@ -1,5 +1,5 @@
-//! Losses and silence of a render, in the words of scene files and logs: what was refused or lost, and for each bus and channel that
-//! holds nothing its own reason.
+//! Losses and silence of a render, in the words of scene files and logs: what was refused or lost,
+//! and for each bus and channel that holds nothing its own reason.
 
 use asperity::files::contact_log::{ContactLog, LogEvent, LogHand};
 use asperity::files::scene_file::SceneFile;
@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Audio peaks below this are silence: −120 dB of full scale.
 const SILENT: f32 = 1e-6;
-/// Of these, peaks above are faint: something sounds, as a ball does that rolls slowly, and nobody hears it.
+/// Silent peaks above this are called faint: something sounds, as a ball does that rolls slowly.
 const FAINT: f32 = 1e-9;
 /// Haptic peaks below this are silence, m or m/s²: a hundredth of what a fingertip just feels.
 const UNFELT: f64 = 1e-9;
@@ -21,16 +21,16 @@ pub struct Rendered<'a> {
     pub file: &'a SceneFile,
     /// Its log.
     pub log: &'a ContactLog,
-    /// What came of them.
+    /// Their render.
     pub render: &'a Render,
     /// m or m/s² at sample value 1 of each haptic channel.
     pub full_scale: &'a [f64],
-    /// Which surface has which name.
+    /// Names of the surfaces.
     pub surfaces: &'a [(String, SurfaceId)],
 }
 
 impl Rendered<'_> {
-    /// What was refused, lost or told twice and differently: one line each, with what mends it.
+    /// Events that were refused, lost or contradict themselves: one line each, with what mends it.
     #[must_use]
     pub fn losses(&self) -> Vec<String> {
         let lost = self.render.why_silent.iter().filter(|reason| reason.count() > 0);
@@ -89,7 +89,7 @@ impl Rendered<'_> {
         silent.map(|(index, _)| index).collect()
     }
 
-    /// Why nothing is heard on a bus.
+    /// Reason for the silence of a bus.
     fn unheard(&self, bus: usize) -> String {
         let Self { file, log, .. } = self;
         let entry = file.audio.get(bus);
@@ -134,7 +134,7 @@ impl Rendered<'_> {
         self.because(&[], "nothing was loud enough; raise gain under [audio], or press or strike harder")
     }
 
-    /// Why nothing is felt on a channel.
+    /// Reason for the silence of a channel.
     fn unfelt(&self, channel: usize) -> String {
         let lines = self.log.lines.iter();
         let hands: Vec<&LogHand> = lines.filter_map(|line| hand(&line.event)).collect();
@@ -257,7 +257,7 @@ impl Rendered<'_> {
     }
 }
 
-/// Who feels an event and what of it.
+/// Hand of an event: the channel that feels it, and its gain.
 fn hand(event: &LogEvent) -> Option<&LogHand> {
     match event {
         LogEvent::Begin { touching, .. } => Some(&touching.hand),
@@ -272,7 +272,7 @@ fn peak(samples: &[f32]) -> f32 {
 
 /// The first move or end of a contact that no begin has begun: its time, s, and the contact.
 fn first_stray(log: &ContactLog) -> Option<(f64, u64)> {
-    let mut touching = std::collections::BTreeSet::new();
+    let mut touching = BTreeSet::new();
     for line in &log.lines {
         match line.event {
             LogEvent::Begin { contact, .. } => {
@@ -286,7 +286,8 @@ fn first_stray(log: &ContactLog) -> Option<(f64, u64)> {
     None
 }
 
-/// The first contact of which nothing is heard for so long: the time of its last line, s, and the contact.
+/// The first contact of which nothing is heard for so long: the time of its last line, s, and the
+/// contact.
 fn first_gap(log: &ContactLog, timeout_s: f64) -> Option<(f64, u64)> {
     let mut heard: BTreeMap<u64, f64> = BTreeMap::new();
     let mut gaps = Vec::new();

@@ -116,7 +116,8 @@ pub enum LogError {
 }
 
 impl LogError {
-    /// The error with the line of the log's text that it speaks of; `name` is what errors call the log.
+    /// The error with the line of the log's text that it speaks of; `name` is what errors call the
+    /// log.
     #[must_use]
     pub fn in_text(self, text: &str, name: &str) -> FileError {
         let Self::Event { number, problem, .. } = self else { return FileError::told(self).within(name) };

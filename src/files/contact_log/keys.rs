@@ -1,4 +1,5 @@
-//! Keys of a line of the contact log: which each event needs and takes, and what they hold. docs/formats.md has a table for each.
+//! Keys of a line of the contact log: which each event needs and takes, and what they hold.
+//! docs/formats.md has a table for each.
 
 use super::{LogError, VERSION};
 use crate::files::nearest::nearest;
@@ -10,7 +11,7 @@ use std::fmt;
 /// Keys of any line.
 const OF_ANY: [&str; 3] = ["t", "event", "version"];
 
-/// What a key holds.
+/// Type of a key's value.
 #[derive(Clone, Copy)]
 enum Holds {
     Number,
@@ -20,17 +21,18 @@ enum Holds {
     Pair,
     Triple,
     Striker,
-    /// What an edit holds is read by its own type.
+    /// Any value: edits are read by their own type.
     Any,
 }
 
-/// A key, and what it holds.
+/// Key and type of its value.
 type Key = (&'static str, Holds);
 
 /// A key that must be there, the keys that may be there instead, and what to write.
 type Needed = (Key, &'static [&'static str], &'static str);
 
-/// An event's name, the keys it needs, those it takes, and those of the format that this version reads past.
+/// An event's name, the keys it needs, those it takes, and those of the format that this version
+/// reads past.
 struct Event {
     name: &'static str,
     needs: &'static [Needed],

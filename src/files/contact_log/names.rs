@@ -18,7 +18,8 @@ pub struct Names {
 }
 
 impl ContactLog {
-    /// Checks every name in the log against those of a scene, unless the log itself edits the scene.
+    /// Checks every name in the log against those of a scene, unless the log itself edits the
+    /// scene.
     ///
     /// # Errors
     /// [`LogError::Event`], the first whose names are not all in `names`.

@@ -1,16 +1,20 @@
 //! Motions as they are reported: place against velocity, step by step, surface by surface.
 //!
-//! A report holds a place and a velocity. From one report of a contact to the next its place moves by
-//! `d = Δuv · size`, and its velocity says `e = ½ (v₀ + v₁) Δt`. Whoever writes uv in millimetres or a velocity in uv a second
-//! has `|d| / |e|` wrong by the same factor at every step, and the factor tells which. Medians over the steps on a surface are
-//! compared, so that teleports, hitches and the first step of a stroke do not count; a motion whose factors scatter (a crate that
-//! rests on this corner and that) is not judged.
+//! A report holds a place and a velocity. From one report of a contact to the next its place moves
+//! by `d = Δuv · size`, and its velocity says `e = ½ (v₀ + v₁) Δt`. Whoever writes uv in
+//! millimetres or a velocity in uv a second has `|d| / |e|` wrong by the same factor at every step,
+//! and the factor tells which. Medians over the steps on a surface are compared, so that teleports,
+//! hitches and the first step of a stroke do not count; a motion whose factors scatter (a crate
+//! that rests on this corner and that) is not judged.
 //!
 //! ```text
-//! factor of u, v        meant                       factor of u, v     meant
-//! width_m, height_m     uv in m, or velocity in uv/s   1/1000          velocity in mm/s, or times in ms (steps above 0.3 s)
-//! 100 ×, 1000 × those   uv in cm, mm                1/100              velocity in cm/s
-//! above 8               uv in texels                anything else      a plane of another size than the surface
+//! factor of u, v        likely
+//! width_m, height_m     uv in m, or velocity in uv/s
+//! 100, 1000 times that  uv in cm, in mm
+//! above 8               uv in texels
+//! 1/100                 velocity in cm/s
+//! 1/1000                velocity in mm/s; times in ms where steps last 0.3 s and more
+//! anything else         a plane of another size than the surface
 //! ```
 
 use super::{Contradiction, Likely};
@@ -24,15 +28,15 @@ const LEAST_SPEED_M_S: f64 = 0.005;
 const LEAST_STEPS: u32 = 6;
 /// A place that leaps by more, forth and back, may be two fingers', m.
 const LEAP_M: f64 = 0.002;
-/// So many fields a factor of two has in a tally.
+/// Fields of a histogram for a factor of two.
 const FIELDS_AN_OCTAVE: f64 = 16.0;
-/// Fields of a tally; the middle one holds a factor of 1.
+/// Fields of a histogram; the middle one holds a factor of 1.
 const FIELDS: usize = 640;
 /// Longer steps than this are no game's, s: times in milliseconds.
 const LONG_STEP_S: f64 = 0.3;
 /// A factor that is told lies beyond this one or its inverse.
 const FACTOR: f64 = 2.0;
-/// So many fields on either side of the median count as its own.
+/// Fields on either side of the median that count as its own.
 const NEAR: usize = 8;
 /// A step over a larger share of the surface may have crossed its edge.
 const FAST: f64 = 0.4;
@@ -41,33 +45,33 @@ const MOST_LAPS: f64 = 2.5;
 /// Factors of one unit differ by less.
 const ALIKE: f64 = 1.15;
 
-/// Where and when a contact was reported last, and how it got there.
+/// Newest report of a contact, and the step that led to it.
 #[derive(Clone, Copy)]
 struct Last {
     surface: SurfaceId,
     time_s: f64,
     sample: ContactSample,
-    /// When its place changed last: it may be reported more often than it moves.
+    /// Time at which its place changed last: it may be reported more often than it moves.
     since_s: f64,
     step_m: Option<[f64; 2]>,
 }
 
-/// What has to be known of a surface to compare places on it.
+/// Size and period of a surface, by which places on it are compared.
 #[derive(Clone, Copy)]
 pub(crate) struct Sheet {
     pub(crate) size_m: [f64; 2],
-    /// After which it repeats, m; infinite where it does not.
+    /// Period, m; infinite where it does not repeat.
     pub(crate) period_m: [f64; 2],
 }
 
-/// How many factors lay where.
+/// Histogram of factors.
 struct Factors {
     fields: [u32; FIELDS],
     count: u32,
     against: u32,
 }
 
-/// What was reported on one surface.
+/// Counts of what was reported on one surface.
 struct Tally {
     sheet: Sheet,
     reports: u32,
@@ -89,7 +93,8 @@ pub(crate) struct Motions {
 }
 
 impl Motions {
-    /// Notes an accepted event; `sheet` tells the surface's size, and a contact that is silent for `timeout_s` has ended.
+    /// Notes an accepted event; `sheet` tells the surface's size, and a contact that is silent for
+    /// `timeout_s` has ended.
     pub(crate) fn note(
         &mut self,
         time_s: f64,
@@ -131,7 +136,7 @@ impl Motions {
         self.contacts.insert(contact, last);
     }
 
-    /// What contradicts itself, surface by surface.
+    /// Contradictions found so far, surface by surface.
     pub(crate) fn contradictions(&self) -> Vec<Contradiction> {
         let mut told: Vec<_> =
             self.tallies.iter().flat_map(|(surface, tally)| tally.contradictions(*surface)).collect();
@@ -157,7 +162,7 @@ impl Tally {
         }
     }
 
-    /// Counts a step of a contact; how far its place moved.
+    /// Counts a step of a contact and returns how far its place moved.
     fn step(&mut self, last: &Last, time_s: f64, sample: &ContactSample) -> Option<[f64; 2]> {
         let step_s = time_s - last.since_s;
         let said = last.sample.velocity_m_s.zip(sample.velocity_m_s);
@@ -209,7 +214,7 @@ impl Tally {
         told
     }
 
-    /// What place and velocity disagree in.
+    /// Disagreement of place and velocity, if there is one.
     fn motion(&self, surface: SurfaceId) -> Option<Contradiction> {
         if 10 * self.swapped >= 6 * self.steps {
             return Some(Contradiction::Swapped { surface });
@@ -256,7 +261,8 @@ impl Tally {
 }
 
 impl Sheet {
-    /// How far a place has moved, m: over the edge of a surface that repeats, the way that the velocity says or the shorter one.
+    /// Distance that a place has moved, m: over the edge of a surface that repeats, the way that
+    /// the velocity says or the shorter one.
     fn moved_m(&self, from: [f64; 2], to: [f64; 2], said_m: [f64; 2]) -> [f64; 2] {
         let d = [0, 1].map(|c| (to[c] - from[c]) * self.size_m[c]);
         let wraps = |c: usize| {
@@ -283,7 +289,7 @@ impl Factors {
         self.against += u32::from(factor < 0.0);
     }
 
-    /// The factor that most have, if they have one: the mean around the median.
+    /// Factor that most have, if they have one: the mean around the median.
     fn steady(&self, least: u32) -> Option<f64> {
         if self.count < least.max(LEAST_STEPS / 2) {
             return None;
