@@ -153,3 +153,16 @@ fn what_is_missing_is_named_with_what_would_be_right() {
     files.add_picture("level/maps/rough.png", Picture::new(1, 1, Samples::F32(vec![f32::NAN])).unwrap());
     assert!(refusal(&files).contains("level/maps/rough.png: the value at column 0, row 0 is not finite"));
 }
+
+#[test]
+fn a_coloured_map_without_a_channel_is_told_with_the_key_that_names_one() {
+    assert!(Engine::open_from(&memory(), "level/scene.toml").unwrap().remarks.is_empty());
+    let mut files = memory();
+    files.add("level/scene.toml", SCENE.replace("channel = \"g\"\n", ""));
+    let remarks = Engine::open_from(&files, "level/scene.toml").unwrap().remarks;
+    assert_eq!(remarks.len(), 1, "{remarks:?}");
+    assert!(
+        remarks[0].contains("disp.png: is coloured") && remarks[0].contains("channel = \"r\""),
+        "{remarks:?}"
+    );
+}
