@@ -22,7 +22,9 @@ mod perceptual_order;
 mod refused_pictures;
 mod render;
 mod report;
+mod sounds;
 mod sources;
+mod stock_bodies;
 mod support;
 #[path = "../../texture/tests/surfaces/mod.rs"]
 mod surfaces;

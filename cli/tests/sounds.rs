@@ -1,6 +1,6 @@
 //! `asperity strike` and `asperity stroke` from the outside: one command, a folder of sounds.
 
-mod support;
+use crate::support;
 
 use serde_json::Value;
 use std::collections::BTreeSet;

@@ -1,6 +1,6 @@
 //! The tables of the hollow box and the door, solved again from their meshes.
 
-mod support;
+use crate::support;
 
 use asperity::{Material, Stock};
 use serde_json::Value;
