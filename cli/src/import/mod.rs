@@ -59,6 +59,7 @@ struct Report {
 /// When the document is no glTF, its extension breaks the draft, or a file cannot be written.
 pub fn run(options: &Options) -> Result<(), CliError> {
     let document = Document::read(&options.document)?;
+    output::reads(document.files());
     let mut scene = Scene::of(&document, options)?;
     ensure_folder(&options.output)?;
     let mut outputs = Outputs::new();

@@ -79,6 +79,14 @@ impl Document {
         self.json[key].as_array().map_or(&[][..], Vec::as_slice)
     }
 
+    /// Files beside the document that it names: buffers and pictures.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let uris = ["buffers", "images"].into_iter().flat_map(|key| self.list(key));
+        let names = uris.filter_map(|entry| entry["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
+        names.map(|uri| self.path.with_file_name(percent_decoded(uri))).collect()
+    }
+
     /// Positions are packed by an extension that is not read.
     #[must_use]
     pub fn is_packed(&self, primitive: &Value) -> bool {
@@ -106,9 +114,7 @@ impl Document {
                 "must be a data uri or a file beside the document",
             ));
         }
-        let beside = self.path.with_file_name(uri);
-        crate::output::reads([&beside]);
-        file(&beside)
+        file(&self.path.with_file_name(uri))
     }
 
     fn view(&self, index: &Value, at: &str) -> Result<&[u8], ShapeError> {
