@@ -10,7 +10,7 @@ use asperity::files::scene_file::SceneFile;
 use asperity::offline::{self, Options};
 use asperity::open::{Maps, Overrides};
 use asperity_batch::record::{Record, Samples};
-use asperity_batch::stroke::{DataLevels, Stroke, data_levels};
+use asperity_batch::stroke::{DataLevels, Stroke, Take, data_levels};
 use asperity_batch::surfaces::choices;
 use asperity_batch::{Build, Spec, parquet_file};
 use std::error::Error;
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for stroke in 0..strokes {
         let mut least = [f64::INFINITY; PHASES.len()];
         for _ in 0..times {
-            let took = one(&spec, &choices, levels, stroke, &folder, &maps, &mut seconds, &mut bytes)?;
+            let took = one(&spec, &choices, &levels, stroke, &folder, &maps, &mut seconds, &mut bytes)?;
             least.iter_mut().zip(took).for_each(|(least, took)| *least = least.min(took));
         }
         sums.iter_mut().zip(least).for_each(|(sum, least)| *sum += least);
@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn one(
     spec: &Spec,
     choices: &[asperity_batch::surfaces::Choice],
-    levels: DataLevels,
+    levels: &DataLevels,
     number: u64,
     folder: &Path,
     maps: &Maps,
@@ -95,11 +95,11 @@ fn one(
     let options = Options { tail_s: file.tail_s, ..Options::default() };
     let render = offline::render(scene, renderer, &log, &names, &options)?;
     lap(2);
-    let samples = Samples::of(&stroke.id, &render, &spec.says.output)?;
-    lap(3);
     *seconds += render.haptic[0].len() as f64 / render.sample_rate_hz;
-    let mut shard =
-        parquet_file::Shard::begin(Vec::new(), &Build::of(spec), spec.says.output.audio.codec, &[])?;
+    let take = Take { render, further: Vec::new(), force: None };
+    let samples = Samples::of(&stroke.id, take, &spec.says.output)?;
+    lap(3);
+    let mut shard = parquet_file::Shard::begin(Vec::new(), &Build::of(spec), &spec.says.output, &[])?;
     shard.add(Record { stroke, samples })?;
     *bytes += shard.finish()?.len() as u64;
     lap(4);

@@ -280,7 +280,8 @@ pub fn in_memory(mut file: SceneFile, log: &ContactLog) -> Result<(Render, Vec<S
     check_finite(&render)?;
     let report = report(&render, kernel, levels, Duration::ZERO);
     let full_scale = report.full_scale.clone();
-    let rendered = Rendered { file: &file, log, render: &render, full_scale: &full_scale, surfaces: &surfaces };
+    let rendered =
+        Rendered { file: &file, log, render: &render, full_scale: &full_scale, surfaces: &surfaces };
     let warnings = told::warnings(&rendered, &report);
     Ok((render, warnings))
 }
