@@ -15,7 +15,17 @@ struct File {
     vertex: Vec<Vertex>,
     #[serde(default)]
     face: Vec<Face>,
+    // Rows of other elements have to be named to be passed over.
+    #[serde(default, rename = "edge")]
+    _edge: Vec<Skipped>,
+    #[serde(default, rename = "material")]
+    _material: Vec<Skipped>,
+    #[serde(default, rename = "camera")]
+    _camera: Vec<Skipped>,
 }
+
+#[derive(Deserialize)]
+struct Skipped {}
 
 #[derive(Deserialize)]
 struct Vertex {
