@@ -161,6 +161,9 @@ fn stroked(wrap: Wrap, beyond: Beyond) -> (Arc<Calls>, f64) {
     (calls, loudest)
 }
 
+/// One of the counters.
+type Counter = fn(&Calls) -> &AtomicU64;
+
 #[test]
 fn a_source_gets_every_call_in_every_combination() {
     for beyond in [Beyond::Same, Beyond::Fresh] {
@@ -168,9 +171,8 @@ fn a_source_gets_every_call_in_every_combination() {
         for (name, wrap) in wrappers() {
             let (calls, loudest) = stroked(wrap, beyond);
             println!("{name}, {beyond:?}: {calls:?}, {loudest}");
-            let of =
-                |which: fn(&Calls) -> &AtomicU64| [&plain, &calls].map(|calls| which(calls).load(Relaxed));
-            let once: [(&str, fn(&Calls) -> &AtomicU64); 4] = [
+            let of = |which: Counter| [&plain, &calls].map(|calls| which(calls).load(Relaxed));
+            let once: [(&str, Counter); 4] = [
                 ("begins", |calls| &calls.begins),
                 ("presses", |calls| &calls.presses),
                 ("stands", |calls| &calls.stands),
@@ -180,7 +182,7 @@ fn a_source_gets_every_call_in_every_combination() {
                 let [wanted, found] = of(which);
                 assert!(wanted > 0 && found == wanted, "{name}, {beyond:?}: {call} {found} of {wanted}");
             }
-            let often: [(&str, fn(&Calls) -> &AtomicU64); 5] = [
+            let often: [(&str, Counter); 5] = [
                 ("properties", |calls| &calls.properties),
                 ("prepare", |calls| &calls.prepare),
                 ("sample", |calls| &calls.sample),

@@ -19,7 +19,7 @@ fn main() {
     };
     let material = Elastic { young_pa: 70e9, poisson: 0.33, density_kg_m3: 2700.0 };
     let wanted = Wanted { up_to_hz: None, most: 46 };
-    let making = Making { material, size_m: None, thickness_m: None, wanted };
+    let making = Making { material, size_m: None, thickness_m: None, unit_m: None, wanted };
     let began = Instant::now();
     let body = make(Mesh::Volume(mesh), &making, &mut |_| ());
     match body {

@@ -208,7 +208,7 @@ fn rms_force(source: &mut dyn HeightField, rate: f64) -> f64 {
             first_sample: 1 + n as u64,
             contact: 0,
             slopes: true,
-            ..PathBlock::default()
+            ..Default::default()
         };
         source.sample(&path, &mut out);
         if n % 64 == 0 {

@@ -157,7 +157,7 @@ fn a_grating_of_black_and_white_is_no_flat_glass() {
 #[test]
 fn letters_of_two_greys_keep_their_edges() {
     for [dark, bright] in [[0, 255], [100, 200], [100, 101]] {
-        let letters = |at: usize| if (at % 64 / 5 * (at / 64 / 7)) % 3 == 0 { bright } else { dark };
+        let letters = |at: usize| if (at % 64 / 5 * (at / 64 / 7)).is_multiple_of(3) { bright } else { dark };
         let picture = Picture::new(64, 64, Samples::U8((0..64 * 64).map(letters).collect())).unwrap();
         let read = picture.channel(Channel::Luma).unwrap();
         assert_eq!(read.debanded(Wrap::Repeat), read.raster, "{dark} and {bright}");

@@ -35,19 +35,25 @@ impl Scene {
             let (Some(map), Some(mesh)) = (map, node["mesh"].as_u64()) else { continue };
             let named = document.json["meshes"][mesh as usize]["name"].as_str().or(node["name"].as_str());
             let name = format!("{}-{mesh}", plain(named.unwrap_or("mesh")));
-            if bodies.contains_key(&mesh) {
-                self.tell(
-                    "meshes that several nodes place are bodies once, of the first node's size".to_owned(),
-                );
-            } else if tried == MOST_BODIES {
-                self.tell(format!("the first {MOST_BODIES} meshes are bodies, the others are left out"));
-                bodies.insert(mesh, None);
-            } else {
-                tried += 1;
-                let body = self.solved(document, mesh, map, &name, (material, path))?;
-                bodies.insert(mesh, body.then(|| name.clone()));
-            }
-            let body = bodies.get(&mesh).cloned().flatten();
+            let body = match bodies.get(&mesh) {
+                Some(body) => {
+                    self.tell(
+                        "meshes that several nodes place are bodies once, of the first node's size"
+                            .to_owned(),
+                    );
+                    body.clone()
+                }
+                None if tried == MOST_BODIES => {
+                    self.tell(format!("the first {MOST_BODIES} meshes are bodies, the others are left out"));
+                    None
+                }
+                None => {
+                    tried += 1;
+                    let solved = self.solved(document, mesh, map, &name, (material, path))?;
+                    solved.then(|| name.clone())
+                }
+            };
+            bodies.insert(mesh, body.clone());
             for primitive in
                 document.json["meshes"][mesh as usize]["primitives"].as_array().into_iter().flatten()
             {

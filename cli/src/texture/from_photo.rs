@@ -305,7 +305,7 @@ mod tests {
     fn a_photograph_says_how_wide_it_was_taken_to_be_and_how_to_say_otherwise() {
         let folder = tempfile::tempdir().unwrap();
         let photo = folder.path().join("wall.png");
-        image_io::save_gray16(&photo, &Raster::from_fn(96, 80, |x, y| ((x * 7 + y * 13) % 31) as f32 / 31.0))
+        image_io::save_gray16(&photo, &Raster::from_fn(96, 80, |x, y| ((x * 7 + y * 13) % 31) as f64 / 31.0))
             .unwrap();
         let out = folder.path().join("wall");
         let assumed = Options::plain(photo.clone(), out.clone());

@@ -26,6 +26,9 @@ pub fn place(map: &Placed, p: Vec3) -> Vec3 {
     std::array::from_fn(|c| map[0][c] * p[0] + map[1][c] * p[1] + map[2][c] * p[2] + map[3][c])
 }
 
+/// Points, and the three of each triangle.
+pub type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
+
 impl Document {
     /// The map of every node to the scene; none where a node is not reached from a root.
     ///
@@ -63,11 +66,7 @@ impl Document {
     ///
     /// # Errors
     /// When accessors do not hold what they should.
-    pub fn triangles(
-        &self,
-        primitive: &Value,
-        at: &str,
-    ) -> Result<Option<(Vec<Vec3>, Vec<[u32; 3]>)>, ShapeError> {
+    pub fn triangles(&self, primitive: &Value, at: &str) -> Result<Option<Triangles>, ShapeError> {
         let mode = primitive["mode"].as_u64().unwrap_or(4);
         let positions = &primitive["attributes"]["POSITION"];
         if !(4..=6).contains(&mode) || positions.is_null() {
