@@ -360,7 +360,7 @@ fn a_quantity_more_and_the_force_are_those_of_single_renders() {
         impl asperity::Tap for Told {
             fn contact(&mut self, block: &asperity::ContactBlock<'_>) {
                 let Self(rows, samples, force) = self;
-                force.close(block.first_sample, |row| rows.push(told(row)));
+                force.close(block.first_sample, |row| rows.extend(told(row)));
                 force.add(block);
                 for (index, sample) in block.contact_samples.iter().enumerate() {
                     let [u, v] = block.uv[index];
@@ -369,19 +369,16 @@ fn a_quantity_more_and_the_force_are_those_of_single_renders() {
                 }
             }
         }
-        fn told(row: asperity::live::ports::ForceRow) -> [f64; 4] {
+        fn told(row: asperity::live::ports::ForceRow) -> Option<[f64; 4]> {
             let [x, y, z] = row.force_n;
-            [row.tick as f64 / 500.0, x, y, z]
+            let of_contact = matches!(row.of, asperity::live::ports::Of::Contact(_));
+            of_contact.then_some([row.tick as f64 / 500.0, x, y, z])
         }
         let mut tap =
             Told(Vec::new(), Vec::new(), asperity::live::ports::ForceRows::new(500.0, 22_050.0, 64));
         render(&stroke.scene, &mut tap);
         let Told(mut rows, samples, mut force) = tap;
-        force.close(u64::MAX, |row| {
-            if matches!(row.of, asperity::live::ports::Of::Contact(_)) {
-                rows.push(told(row));
-            }
-        });
+        force.close(u64::MAX, |row| rows.extend(told(row)));
         let table = record.samples.force.as_ref().unwrap();
         assert!(table[0].len() >= 45 && table.iter().all(|column| column.len() == table[0].len()));
         for (row, wanted) in rows.iter().take(table[0].len()).enumerate() {
@@ -425,7 +422,7 @@ fn quantities_are_written_as_a_name_a_table_or_a_list() {
         ("haptic = 3", "haptic must be a quantity"),
         ("force = { rate_hz = 0 }", "output.force.rate_hz: 0 is refused"),
         ("force = { rate_hz = 44100 }", "output.force.rate_hz: 44100 is refused"),
-        ("force = { rate = 1000 }", "unknown field `rate`"),
+        ("force = { rate = 1000 }", "rate: unknown key; write rate_hz"),
     ] {
         let error = outputs(haptic).unwrap_err().to_string();
         assert!(error.contains(part) && !error.contains('\n'), "{haptic}: {error}");

@@ -293,7 +293,7 @@ typedef struct asp_body {
     double gain;
     /// What `asp_find`, logs and recordings call it; NULL = nothing.
     const char *name;
-    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl" or "block".
+    /// A stock shape: "bar", "tube", "ring", "plate", "disc", "bowl", "block", "box", "can", "bottle", "pan", "barrel" or "door".
     const char *stock;
     /// Longest side or diameter of the stock shape, m.
     double size_m;
@@ -785,7 +785,7 @@ void asp_report_load(struct asp_renderer *renderer,
                      float load);
 
 /// What a renderer gives: haptic channels, audio buses, their rate in Hz, and by how many samples all of them lag behind the stamps of
-/// their events. Any of the places may be NULL.
+/// their events (sound by two samples of the rate inside more). Any of the places may be NULL.
 int32_t asp_signals(struct asp_renderer *renderer,
                     uint32_t *haptic_channels,
                     uint32_t *audio_buses,

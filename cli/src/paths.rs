@@ -12,7 +12,7 @@ use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
 /// Arguments that name files to read.
-const READ: [&str; 16] = [
+const READ: [&str; 17] = [
     "scene",
     "recording",
     "merge",
@@ -29,6 +29,7 @@ const READ: [&str; 16] = [
     "original",
     "reference",
     "spec",
+    "what",
 ];
 
 /// Arguments that are pictures or folders of pictures to read.

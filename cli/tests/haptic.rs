@@ -105,12 +105,13 @@ fn clips_change_their_format_and_keep_their_envelopes() {
     let (was, is) = (envelopes("in.haptic"), envelopes("back.haptic"));
     for (key, values) in [("amplitude", ["time", "amplitude"]), ("frequency", ["time", "frequency"])] {
         let (was, is) = (was[key].as_array().unwrap(), is[key].as_array().unwrap());
-        assert_eq!(was.len(), is.len(), "{key}: {is:?}");
-        for (was, is) in was.iter().zip(is) {
-            assert!(
-                values.iter().all(|v| (was[v].as_f64().unwrap() - is[v].as_f64().unwrap()).abs() < 1e-6),
-                "{was} {is}"
-            );
+        // Between them are points of ramps, which are straight in another quantity there.
+        assert!(was.len() <= is.len(), "{key}: {is:?}");
+        for was in was {
+            let kept = |is: &&Value| {
+                values.iter().all(|v| (was[v].as_f64().unwrap() - is[v].as_f64().unwrap()).abs() < 1e-6)
+            };
+            assert!(is.iter().any(|is| kept(&is)), "{was} is not in {is:?}");
         }
     }
     let stroke = &is["amplitude"][1]["emphasis"];

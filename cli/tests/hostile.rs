@@ -289,5 +289,5 @@ fn scene_files_with_absurd_numbers_are_refused_by_key() {
 fn a_channel_that_is_not_there_is_an_error_with_the_number_of_channels() {
     let scene = Scene::new();
     scene.write("stroke.jsonl", stroke(1, 0.3).replace("\"actuator\":0", "\"actuator\":9"));
-    assert_refused(&scene.render(&[]), &["actuator 9", "must be below 1"]);
+    assert_refused(&scene.render(&[]), &["stroke.jsonl:1: actuator: 9", "must be below 1"]);
 }

@@ -70,7 +70,7 @@ fn names_that_are_not_there_and_tables_that_contradict_each_other_are_refused() 
     let scene = with("");
     let log = |from: &str, to: &str| scene.write("stroke.jsonl", stroke(1, 0.5).replacen(from, to, 1));
     log("\"actuator\":0", "\"actuator\":0,\"probe\":\"broom\"");
-    assert_refused(&scene.render(&[]), &["probe \"broom\" is unknown", "stylus"]);
+    assert_refused(&scene.render(&[]), &["stroke.jsonl:1: probe: \"broom\" is unknown", "stylus"]);
     log("\"actuator\":0", "\"holder\":\"hand\"");
     assert_refused(&scene.render(&[]), &["holder \"hand\" is unknown", "pen"]);
     log("\"event\":\"move\"", "\"event\":\"move\",\"probe\":\"stylus\"");

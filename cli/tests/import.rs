@@ -91,7 +91,7 @@ fn what_breaks_the_draft_is_refused_where_it_stands() {
             vec!["nodes[0]", "modalModel", "modalModels"],
         ),
         ("/nodes/0/extensions/KHR_audio_rigid_bodies/gain", json!(-1), vec!["nodes[0]", "gain"]),
-        ("/nodes", json!([]), vec!["nodes", "modalModel"]),
+        ("/nodes", json!([]), vec!["nodes", "KHR_audio_rigid_bodies"]),
         ("/accessors/0/count", json!(0), vec!["frequencies"]),
         ("/accessors/0/count", json!(1_u64 << 60), vec!["frequencies"]),
         ("/accessors/3/count", json!(5), vec!["shapes"]),

@@ -33,11 +33,11 @@ fn an_ordinary_render_warns_of_nothing() {
 
 #[test]
 fn refused_events_are_counted_with_the_first_of_them_and_its_field() {
-    let fast = stroke(1, 0.5).replace("[0.08,0.0]", "[200.0,0.0]");
-    let said = said(TOML, &fast);
+    let slow = stroke(1, 0.5).replace("\"velocity_m_s\":[0.08,0.0]", "\"velocity_m_s\":[0.08,0.0],\"slip_m_s\":-1.0");
+    let said = said(TOML, &slow);
     assert_says(
         &said,
-        &["30 of 31 events were refused, the first at t = 0 s", "velocity_m_s: 200 is refused; must be"],
+        &["30 of 31 events were refused, the first at t = 0 s", "slip_m_s: -1 is refused; must be"],
     );
     assert_says(&said, &["the audio is silence", "every haptic channel is silence"]);
 }

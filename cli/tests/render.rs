@@ -196,7 +196,7 @@ fn nothing_is_written_when_the_run_fails() {
     let scene = Scene::new();
     scene.write("stroke.jsonl", stroke(1, 0.5).replace("plate", "ghost"));
     let refused = scene.render(&["--trace", "--force", "--plot", "--json"]);
-    assert_refused(&refused, &["stroke.jsonl", "surface \"ghost\" is unknown", "plate"]);
+    assert_refused(&refused, &["stroke.jsonl:1: surface: \"ghost\" is unknown", "plate"]);
     assert!(scene.outputs().is_empty(), "{:?}", scene.outputs());
 }
 

@@ -192,7 +192,7 @@ mod tests {
         let text = SHIPPED[0].1.replace("quality = 8.0", "quality = 0.3");
         let refused = ActuatorPreset::parse(&text, "mine.toml").unwrap_err().to_string();
         assert!(refused.starts_with("mine.toml: quality: "), "{refused}");
-        let text = SHIPPED[0].1.replace("quality", "qality");
+        let text = SHIPPED[0].1.replacen("quality =", "qality =", 1);
         let refused = ActuatorPreset::parse(&text, "x").unwrap_err().to_string();
         assert!(
             refused.starts_with("x: line ") && refused.contains("qality: unknown key; write quality"),

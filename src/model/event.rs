@@ -260,6 +260,18 @@ impl ContactEvent {
         self
     }
 
+    /// The same with the velocity that another one tells, beyond what the models reach too.
+    pub(crate) fn with_velocity_of(mut self, told: &Self) -> Self {
+        if let (
+            Self::Begin { sample, .. } | Self::Moved { sample, .. },
+            Self::Begin { sample: told, .. } | Self::Moved { sample: told, .. },
+        ) = (&mut self, told)
+        {
+            sample.velocity_m_s = told.velocity_m_s.or(sample.velocity_m_s);
+        }
+        self
+    }
+
     /// A contact lifts off.
     #[must_use]
     pub fn end(contact: ContactId) -> Self {

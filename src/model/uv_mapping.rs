@@ -69,7 +69,7 @@ impl UvMapping {
             Self::Sphere { radius_m, span_m } => {
                 let theta = (place.y / place.length()).clamp(-1.0, 1.0).acos();
                 let wide = theta.sin().max(1e-3);
-                let meridian = |east: DVec3| place.cross(east).normalize_or_zero();
+                let meridian = |east: DVec3| east.cross(place).normalize_or_zero();
                 tangent(place, (radius_m, span_m), [1.0 / wide, radius_m * theta / span_m[1]], meridian)
             }
             Self::Cylinder { span_m, .. } if outward.y.abs() > 0.5 => by_normal(span_m),
@@ -134,8 +134,9 @@ mod tests {
         for (about, theta) in [(0.3f64, 1.57f64), (-2.0, 0.9), (3.0, 2.0)] {
             let outward = DVec3::new(about.sin() * theta.sin(), theta.cos(), about.cos() * theta.sin());
             let east = DVec3::new(about.cos(), 0.0, -about.sin());
-            let (uv, _) = step(globe, 0.5 * outward, outward, 1e-4 * outward.cross(east));
+            let (uv, told) = step(globe, 0.5 * outward, outward, 1e-4 * east.cross(outward));
             assert!((uv[1] - 1e-4 / 0.25).abs() < 1e-7 && uv[0].abs() < 1e-8, "{uv:?}");
+            assert!((told[1] - 1e-4).abs() < 1e-9, "{told:?}");
             let (uv, told) = step(globe, 0.5 * outward, outward, 1e-4 * east);
             assert!((uv[0] * theta.sin() - 1e-4 / 0.25).abs() < 1e-6, "{uv:?}");
             assert!((told[0] - 1e-4).abs() < 1e-9, "{told:?}");

@@ -1,7 +1,7 @@
 //! Loudness of the demo's scenes: all the same, so that the first click is no louder than the next.
 
 use crate::error::CliError;
-use crate::output::Outputs;
+use crate::output::{self, Outputs};
 use crate::render;
 use crate::scene_log::load_log;
 use crate::sounds::integrated_lufs;
@@ -22,6 +22,8 @@ pub fn level(path: &Path) -> Result<(), CliError> {
     let (render, _) = render::in_memory(file, &log)?;
     let audio: Vec<&[f32]> = render.audio.iter().map(Vec::as_slice).collect();
     let Some(lufs) = integrated_lufs(&audio, render.sample_rate_hz) else { return Ok(()) };
+    // Every file that was read here is the demo's own.
+    output::clear_reads();
     let mut outputs = Outputs::new();
     outputs.write(path, louder(&text, LUFS - lufs).as_bytes())?;
     outputs.commit().map(drop)

@@ -8,7 +8,7 @@ use crate::texture::from_photo;
 use asperity::files::scene_file::{SceneFile, Source};
 use asperity::{Material, ModalModel, PROBE_PRESETS, Wrap};
 use asperity_texture::from_photo::TEXEL_M;
-use asperity_texture::image_io::{Channel, load_channel, load_photograph};
+use asperity_texture::image_io::{Channel, load_channel};
 use std::fs;
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -17,7 +17,7 @@ use toml::{Table, Value};
 const RELIEF_M: f64 = 1e-3;
 /// A map's body: a plate of that material, so many metres along its side.
 const BODY: (&str, f64) = ("wood", 0.2);
-/// A picture of which more is colour than this is a photograph.
+/// A picture whose red and blue differ by more than this in the mean is a photograph.
 const COLOURED: f64 = 0.01;
 /// Longest ring-out that is looked at where nothing says how long bodies ring, s.
 const TAIL_S: f64 = 5.0;
@@ -246,6 +246,11 @@ fn is_photograph(path: &Path) -> Result<bool, CliError> {
     if has_end(path, &["exr", "pgm"]) {
         return Ok(false);
     }
-    let (_, colour) = load_photograph(path).map_err(CliError::told)?;
-    Ok(colour > COLOURED || has_end(path, &["jpg", "jpeg"]))
+    if has_end(path, &["jpg", "jpeg"]) {
+        return Ok(true);
+    }
+    let of = |channel| Ok::<_, CliError>(load_channel(path, channel).map_err(CliError::told)?.raster.values);
+    let (red, blue) = (of(Channel::R)?, of(Channel::B)?);
+    let apart: f64 = red.iter().zip(&blue).map(|(red, blue)| (red - blue).abs()).sum();
+    Ok(apart > COLOURED * red.len() as f64)
 }

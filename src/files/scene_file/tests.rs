@@ -171,7 +171,7 @@ fn roughness_is_a_number_a_map_or_gloss() {
 fn an_unknown_key_is_refused_with_its_place_and_the_accepted_ones() {
     assert_eq!(
         refusal("[audio]\ngian = 2.0"),
-        "dir/scene.toml: audio: gian: unknown key; accepted here: gain, limit, name, pascals_at_full_scale"
+        "dir/scene.toml: audio: gian: unknown key; write gain; accepted here: gain, limit, name, pascals_at_full_scale"
     );
     let line = refusal(&format!("{SURFACE}colour = 1"));
     assert!(line.starts_with("dir/scene.toml: surface 1 \"tiles\": colour: unknown key;"), "{line}");

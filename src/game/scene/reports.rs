@@ -72,7 +72,7 @@ impl Scene {
         self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
         self.flush_held();
         let stamp = stamped.stamp;
-        let in_game_time = event;
+        let in_game_time = event.with_velocity_of(&told);
         let event = event.at_pace(self.clock.pace());
         self.send_stamped(stamp, event)?;
         self.reported.accept(&event, stamp, self.rings(&event));
