@@ -33,7 +33,8 @@ fn an_ordinary_render_warns_of_nothing() {
 
 #[test]
 fn refused_events_are_counted_with_the_first_of_them_and_its_field() {
-    let slow = stroke(1, 0.5).replace("\"velocity_m_s\":[0.08,0.0]", "\"velocity_m_s\":[0.08,0.0],\"slip_m_s\":-1.0");
+    let slow = stroke(1, 0.5)
+        .replace("\"velocity_m_s\":[0.08,0.0]", "\"velocity_m_s\":[0.08,0.0],\"slip_m_s\":-1.0");
     let said = said(TOML, &slow);
     assert_says(
         &said,

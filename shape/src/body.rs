@@ -123,7 +123,10 @@ pub fn make_as_fine_as(
     }
     let scale = making.scale(&mesh, &mut told)?;
     mesh.change(|p| p.map(|x| x * scale));
-    check_side(longest_side(mesh.points()))?;
+    // A mesh without points is refused below, for what it lacks.
+    if !mesh.points().is_empty() {
+        check_side(longest_side(mesh.points()))?;
+    }
     let mut body = match mesh {
         Mesh::Volume(_) | Mesh::Curved(..) if making.thickness_m.is_some() => Err(ShapeError::new(
             "--thickness",

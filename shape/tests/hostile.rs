@@ -116,7 +116,8 @@ fn what_is_no_body_is_refused_with_the_reason() {
     let [a, b, c, _] = block.tets[0];
     overlapping.tets.push([a, b, c, overlapping.points.len() as u32 - 1]);
     assert!(refused(Mesh::Volume(overlapping)).contains("overlap"));
-    assert!(refused(Mesh::Volume(VolumeMesh::default())).contains("no tetrahedron"));
+    let message = refused(Mesh::Volume(VolumeMesh::default()));
+    assert!(message.contains("no tetrahedron"), "{message}");
 }
 
 #[test]
@@ -140,6 +141,7 @@ fn another_size_and_stiffness_need_no_new_solve() {
 /// Deals the triangles out in another order, each begun at another corner.
 fn shuffled(mesh: &SurfaceMesh, step: usize) -> SurfaceMesh {
     let n = mesh.triangles.len();
+    assert!((0..n).map(|t| t * step % n).collect::<std::collections::HashSet<_>>().len() == n, "{n}, {step}");
     let triangles = (0..n).map(|t| {
         let [a, b, c] = mesh.triangles[(t * step + 3) % n];
         if t % 2 == 0 { [b, c, a] } else { [c, a, b] }
@@ -257,7 +259,8 @@ fn holes_that_share_a_corner_are_closed_each_for_itself() {
         t += 1;
         t - 1 != first && t - 1 != second
     });
-    for step in [1, 5, 7] {
+    // Steps that share no factor with the number of triangles, 430.
+    for step in [1, 7, 11] {
         let solved = made(Mesh::Surface(shuffled(&mesh, step)), None).unwrap();
         assert!((solved.frequency_hz[0] / expected.frequency_hz[0] - 1.0).abs() < 5e-3);
         assert!((solved.volume_m3 / expected.volume_m3 - 1.0).abs() < 5e-3);

@@ -6,12 +6,78 @@
 
 use crate::recording::sound_format::{Format, MOST_CHANNELS, Refusal};
 use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
 use symphonia::core::codecs::audio::{AudioDecoder, AudioDecoderOptions};
 use symphonia::core::errors::Error;
 use symphonia::core::formats::probe::Hint;
 use symphonia::core::formats::{FormatOptions, FormatReader, TrackType};
-use symphonia::core::io::{MediaSourceStream, MediaSourceStreamOptions};
+use symphonia::core::io::{MediaSource, MediaSourceStream, MediaSourceStreamOptions};
 use symphonia::core::meta::MetadataOptions;
+
+/// Bytes at the end in which a tag of ID3v2 is looked for.
+const TAG_REACH: u64 = 1 << 18;
+
+/// A file up to its last tag: behind the last frame of FLAC nothing may lie, or that frame is lost.
+struct Untagged {
+    file: File,
+    at: u64,
+    bytes: u64,
+}
+
+impl Untagged {
+    fn new(mut file: File) -> std::io::Result<Self> {
+        let at = file.stream_position()?;
+        let length = file.metadata()?.len();
+        let begins = length.saturating_sub(TAG_REACH).max(at);
+        file.seek(SeekFrom::Start(begins))?;
+        let mut tail = Vec::new();
+        file.by_ref().take(length - begins).read_to_end(&mut tail)?;
+        file.seek(SeekFrom::Start(at))?;
+        let old = tail.len().checked_sub(128).filter(|&place| tail[place..].starts_with(b"TAG"));
+        tail.truncate(old.unwrap_or(tail.len()));
+        // ID3v2 counts what lies behind its ten bytes, seven bits a byte.
+        let fits = |place: &usize| match tail[*place..] {
+            [b'I', b'D', b'3', 2..=4, _, _, a, b, c, d, ..] => {
+                let size = [a, b, c, d].iter().fold(0, |size, byte| size << 7 | usize::from(byte & 0x7f));
+                place + 10 + size == tail.len()
+            }
+            _ => false,
+        };
+        let bytes = (1..tail.len()).find(fits).unwrap_or(tail.len());
+        Ok(Self { file, at, bytes: begins + bytes as u64 })
+    }
+}
+
+impl Read for Untagged {
+    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+        let left = usize::try_from(self.bytes.saturating_sub(self.at)).unwrap_or(usize::MAX);
+        let most = into.len().min(left);
+        let read = self.file.read(&mut into[..most])?;
+        self.at += read as u64;
+        Ok(read)
+    }
+}
+
+impl Seek for Untagged {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        let to = match to {
+            SeekFrom::End(by) => SeekFrom::Start(self.bytes.saturating_add_signed(by)),
+            to => to,
+        };
+        self.at = self.file.seek(to)?;
+        Ok(self.at)
+    }
+}
+
+impl MediaSource for Untagged {
+    fn is_seekable(&self) -> bool {
+        true
+    }
+
+    fn byte_len(&self) -> Option<u64> {
+        Some(self.bytes)
+    }
+}
 
 /// A packed file.
 pub(crate) struct PackedFile {
@@ -31,7 +97,8 @@ pub(crate) struct PackedFile {
 
 impl PackedFile {
     pub(crate) fn open(file: File, kind: &'static str) -> Result<Self, Refusal> {
-        let stream = MediaSourceStream::new(Box::new(file), MediaSourceStreamOptions::default());
+        let stream =
+            MediaSourceStream::new(Box::new(Untagged::new(file)?), MediaSourceStreamOptions::default());
         let (format, meta) = (FormatOptions::default(), MetadataOptions::default());
         let reader = symphonia::default::get_probe()
             .probe(&Hint::new(), stream, format, meta)

@@ -37,7 +37,7 @@ impl SoundFile {
                 file.seek(SeekFrom::Start(offset))?;
                 match WavFile::open(file) {
                     Ok(file) => Ok(Self::Wav(file)),
-                    Err(Refusal::Not(what)) => {
+                    Err(Refusal::Not(what)) if what.contains("ADPCM") => {
                         packed(File::open(path)?, "WAV").map_err(|_| Refusal::Not(what))
                     }
                     Err(error) => Err(error),
