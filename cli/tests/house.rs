@@ -72,7 +72,7 @@ fn names_that_are_not_there_and_tables_that_contradict_each_other_are_refused() 
     log("\"actuator\":0", "\"actuator\":0,\"probe\":\"broom\"");
     assert_refused(&scene.render(&[]), &["stroke.jsonl:1: probe: \"broom\" is unknown", "stylus"]);
     log("\"actuator\":0", "\"holder\":\"hand\"");
-    assert_refused(&scene.render(&[]), &["holder \"hand\" is unknown", "pen"]);
+    assert_refused(&scene.render(&[]), &["holder: \"hand\" is unknown", "pen"]);
     log("\"event\":\"move\"", "\"event\":\"move\",\"probe\":\"stylus\"");
     assert_refused(&scene.render(&[]), &["stroke.jsonl:2: probe"]);
     scene.write("stroke.jsonl", stroke(1, 0.5));
