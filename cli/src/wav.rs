@@ -51,10 +51,10 @@ pub fn write(
     write_bits(outputs, path, channels, sample_rate_hz, Bits::Float).map(drop)
 }
 
-/// [`write`] in another sample format. Returns how many samples whole numbers have cut off at full scale.
+/// [`write()`] in another sample format. Returns how many samples whole numbers have cut off at full scale.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_bits(
     outputs: &mut Outputs,
     path: &Path,

@@ -16,8 +16,6 @@ use asperity_fft::num_complex::Complex64;
 /// Ratio of the mean step across a seam to the mean step inside up to which an image tiles. Source:
 /// ours; tileable maps of the corpus stay below 1.3, photographs are above 2.
 pub const SEAM_LIMIT: f64 = 1.6;
-/// The same up to which a surface that was made meets itself: what the maps of the corpus that tile stay below.
-pub const MEETS: f64 = 1.3;
 /// Part of the step across a seam within which two neighbours inside must equal the two at the seam for it to be one of the
 /// pattern's own edges. Source: ours; strips of photographs differ by the step itself.
 const SAME_STRIP: f64 = 0.25;
@@ -40,7 +38,7 @@ impl Borders {
     #[must_use]
     pub fn decide(self, image: &Raster) -> Self {
         match self {
-            Self::Detect if seams_within(image, SEAM_LIMIT) => Self::Periodic,
+            Self::Detect if seam_ratio(image) <= SEAM_LIMIT || has_ordinary_seams(image) => Self::Periodic,
             Self::Detect => Self::Smooth,
             decided => decided,
         }
@@ -68,29 +66,22 @@ pub fn seam_ratio(image: &Raster) -> f64 {
     ratio(across_x, inside_x).max(ratio(across_y, inside_y))
 }
 
-/// Whether an image that was made to tile does: its steps across both seams are within [`MEETS`] of those inside, or are met there.
-#[must_use]
-pub fn meets_itself(image: &Raster) -> bool {
-    seams_within(image, MEETS)
-}
-
-/// Whether the steps across both seams are within `limit` times those inside, or are met there.
-fn seams_within(image: &Raster, limit: f64) -> bool {
+/// Whether the steps across both seams are no larger than others or are met inside.
+fn has_ordinary_seams(image: &Raster) -> bool {
     let (w, h) = (image.width, image.height);
     let turned = || Raster::from_fn(h, w, |x, y| image.at(y, x));
-    seam_ratio(image) <= limit
-        || (w >= 4 && h >= 4 && seam_is_met_inside(image, limit) && seam_is_met_inside(&turned(), limit))
+    w >= 4 && h >= 4 && seam_is_met_inside(image) && seam_is_met_inside(&turned())
 }
 
 /// Whether two neighbouring rows inside are those that meet at the seam, the last one and the first one.
-fn seam_is_met_inside(image: &Raster, limit: f64) -> bool {
+fn seam_is_met_inside(image: &Raster) -> bool {
     let last = image.height - 1;
     let distance = |a: usize, b: usize| -> f64 {
         image.row(a).iter().zip(image.row(b)).map(|(a, b)| (a - b).abs()).sum()
     };
     let across = distance(last, 0);
     let inside = distance(0, 1) + distance(last - 1, last);
-    2.0 * across <= limit * inside
+    2.0 * across <= SEAM_LIMIT * inside
         || (0..last).any(|row| distance(row, last) + distance(row + 1, 0) <= SAME_STRIP * across)
 }
 

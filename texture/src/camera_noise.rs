@@ -14,7 +14,7 @@
 //! | N_step | an eighth bit's rounding |
 //! | N_most | [`MOST_NOISE`]: what is stronger is not a camera's, but a rough surface under a low light, which is white as well |
 //!
-//! Uneven light is no noise and no relief: octaves are those of the picture [without it](crate::symmetry::detrended), which comes back where anything
+//! Uneven light is no noise and no relief: octaves are those of the picture without it, which comes back where anything
 //! is left. Where each octave has noise's even spread of power and less than [`FAINT`], noise that somebody blurred (denoised, reduced, recompressed) and
 //! a faint surface are the same picture, and it is flat; so it is where less than [`NOTHING`] is left of 4–128 texels.
 //!

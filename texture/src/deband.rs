@@ -8,7 +8,7 @@
 //! the kernel's neighbourhood, it is as good an explanation of the stored numbers as q itself, and
 //! takes its place; elsewhere the smaller radius (or q) stays. The largest radius that explains the
 //! numbers wins. A busy texture contradicts even the smallest and is left as it is. No texel moves by more than
-//! [`TOLERANCE_STEPS`] of a step.
+//! `TOLERANCE_STEPS` of a step.
 //!
 //! Steps are rounding only where there are many of them: a map of black and white, or of 4 or 16 even greys, shows edges (a
 //! constant at half height is within half a step of both levels of a grating, and would be glass). So a map keeps its steps where

@@ -140,7 +140,7 @@ pub struct Metamer {
     pub before: Distance,
     /// Distance of `image`, analysed anew.
     pub after: Distance,
-    /// Whether `image` tiles: its steps across the borders are those inside ([`crate::borders::meets_itself`]).
+    /// Whether `image` tiles.
     pub tileable: bool,
     /// Passes done on the image's own grid.
     pub passes: usize,

@@ -18,7 +18,7 @@
 //! ```
 //! and [`SlopeSpectrum::heights`] takes no more height from the slopes than that leaves. Normals that were resized, saved as JPEG or
 //! painted over are those of no surface by more than that: how much is measured at every frequency, as what lies across the derivative, and taken off too. What made
-//! such a map is never certain, and where heights by differences would have more of the shortest waves than of longer ones ([`short_waves`]), true slopes are taken; where it is flat but for walls, these are taken for narrower than they look ([`Walls`]); of the derivatives that may have, the one that raises short waves the least is taken. 8-bit maps have no number for 0 (127.5),
+//! such a map is never certain, and where heights by differences would have more of the shortest waves than of longer ones (`short_waves`), true slopes are taken; where it is flat but for walls, these are taken for narrower than they look ([`Walls`]); of the derivatives that may have, the one that raises short waves the least is taken. 8-bit maps have no number for 0 (127.5),
 //! so that a flat map tilts by 0.4 %: the mean slope of a map that tiles is
 //! dropped, and of one that does not, too, unless [`NormalMapOptions::keep_tilt`]. What is flat in a map comes out at the step next to 0:
 //! where that step stands out of the others, its texels are taken for what they are on average.

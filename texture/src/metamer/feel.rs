@@ -6,7 +6,7 @@ use super::level::{Gait, Level, Sought, Task, add, on_grid};
 use super::spectrum::with_amplitudes;
 use super::terraces::{ground_under, heights_of_terraces};
 use super::{Distance, EMPTY_BAND, Metamer, MetamerOptions, Method, check_finite};
-use crate::borders::{Borders, SplitBorders, meets_itself};
+use crate::borders::{Borders, SplitBorders};
 use crate::pyramid::{Kind, Pyramid, Sampling, Subband};
 use crate::raster::Raster;
 use crate::wrap::Wrap;
@@ -108,11 +108,10 @@ impl Feel {
         };
         add(&mut image, seam.as_ref(), 1.0);
         let image = stored(image);
-        let has_no_seam = seam.is_none();
-        let after = self.distance(&image, has_no_seam);
+        let tileable = seam.is_none();
+        let after = self.distance(&image, tileable);
         let subbands = self.level.full.pyramid.subbands().to_vec();
-        let [with_original, with_reference] = self.arrangement(&ours.periodic, &image, has_no_seam);
-        let tileable = has_no_seam && meets_itself(&image);
+        let [with_original, with_reference] = self.arrangement(&ours.periodic, &image, tileable);
         Ok(Metamer {
             image,
             subbands,
