@@ -261,7 +261,7 @@ static void ids_and_numbers(void) {
     REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_BAD_ARGUMENT, "kind");
     event.kind = ASP_BEGIN, event.slip_m_s = -1;
     REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "slip_m_s");
-    event = asp_rolling(event, 11, 0);
+    event = asp_rolling(event, -1, 0);
     REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "roll_radius_m");
     event.slip_m_s = event.roll_radius_m = NAN, event.depth_m = 0.001;
     REFUSED(asp_report(scene, 0, &event, 1, sizeof event, NULL), ASP_REFUSED, "depth_m");
