@@ -1,4 +1,4 @@
-//! What a game should know of its things, said once a thing.
+//! Notices to a game about its things, each given once a thing.
 
 use std::fmt;
 

@@ -101,7 +101,7 @@ pub fn radius_m(own: [Option<f64>; 2]) -> f64 {
 /// |cos| between an axis and a normal up to which what is round about the axis lies on its side.
 const ACROSS: f32 = 0.5;
 
-/// Whether what is round about an axis lies on its side.
+/// Returns whether a body that is round about an axis lies on its side.
 #[must_use]
 pub fn lies_across(axis: Vec3, normal: Vec3) -> bool {
     axis.dot(normal).abs() < ACROSS

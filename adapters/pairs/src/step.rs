@@ -1,4 +1,4 @@
-//! What of a pair's step follows from mechanics alone: who is scraped, how fast, and the blow of a landing.
+//! Mechanics of a pair's step: which side is scraped, how fast, and the blow of a landing.
 
 use crate::side::{Side, radius_m};
 use asperity::{Impact, ProbeId};
@@ -19,7 +19,7 @@ pub const NOMINAL_FORCE_N: f32 = 1.0;
 pub struct Solved {
     /// Where, in space, m: the mean of its points, weighted by their impulses.
     pub point_m: Vec3,
-    /// Of length 1, from the first collider to the second.
+    /// Unit vector from the first collider to the second.
     pub normal: Vec3,
     /// Along the normal, over the whole step, N·s.
     pub impulse_n_s: f32,
@@ -28,17 +28,17 @@ pub struct Solved {
     /// Approach speed there as the solver met it, m/s; 0 where only gravity's share of the step brings the two together, as it does to all
     /// that rests.
     pub closing_m_s: f32,
-    /// Whether the force is a nominal one, of two that the engine lets pass through each other: a hand on fixed ground.
+    /// Set where the force is a nominal one, of two that the engine lets pass through each other: a hand on fixed ground.
     pub is_nominal: bool,
 }
 
-/// What a pair needs to know of a step.
+/// Input of a pair's step.
 pub struct Step<'a> {
     /// The two, in the physics engine's order.
     pub sides: [&'a dyn Side; 2],
     /// Their contact; none: nothing presses.
     pub solved: Option<Solved>,
-    /// What things touch with that do not say otherwise.
+    /// Probe of things that name none.
     pub rigid: ProbeId,
     /// Length of the step, s.
     pub step_s: f32,
@@ -95,7 +95,7 @@ impl Step<'_> {
         )
     }
 
-    /// The same where what touches the scraped one rolls.
+    /// Radius of curvature where the side that touches the scraped one rolls, m; none where it does not.
     pub(crate) fn roll_radius_m(&self, solved: &Solved, scraped: usize) -> Option<f64> {
         self.sides[1 - scraped].rolls_m(solved.point_m, solved.normal)?;
         Some(self.radius_m(solved))
