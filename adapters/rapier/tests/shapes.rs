@@ -236,11 +236,16 @@ fn a_wheel_that_spins_on_the_spot_is_reported_with_its_slip() {
         let wheel = at(0.0, 0.301, 0.0).can_sleep(false).enabled_translations(false, true, false);
         let ball = of_mass(ColliderBuilder::ball(0.3), 20.0).friction(0.0);
         let ball = ball.friction_combine_rule(CoefficientCombineRule::Min);
-        world.insert(wheel.angvel(Vector::new(0.0, 0.0, spin_rad_s)), ball, Thing::of(Material::STEEL));
+        let wheel = wheel.angvel(Vector::new(0.0, 0.0, spin_rad_s));
+        let wheel = world.insert(wheel, ball, Thing::of(Material::STEEL));
         world.run(1.0);
+        // The solver takes some of a spin of a radian a step by itself.
+        let spins_rad_s = world.physics.bodies[wheel].angvel().z;
+        println!("{spin_rad_s} rad/s at first, {spins_rad_s} after 1 s");
+        assert!(spins_rad_s > 0.7 * spin_rad_s);
         let touch = world.adapter.touches().next().unwrap();
         assert!(touch.kind == Kind::Scrapes && touch.contact.is_some(), "{touch:?}");
-        assert!((touch.slip_m_s / (0.3 * spin_rad_s) - 1.0).abs() < 0.05, "{touch:?}");
+        assert!((touch.slip_m_s / (0.3 * spins_rad_s) - 1.0).abs() < 0.05, "{touch:?}");
     }
 }
 
