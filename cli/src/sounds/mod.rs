@@ -315,20 +315,10 @@ fn in_words(report: &Report, folder: &Path) -> String {
 
 /// Refuses to write over what is read, by whatever path.
 fn check_outputs(sounds: &[Sound], folder: &Folder, inputs: &[PathBuf]) -> Result<(), CliError> {
-    let inputs: Vec<PathBuf> = inputs.iter().filter_map(|path| fs::canonicalize(path).ok()).collect();
-    for sound in sounds {
-        for end in ["wav", "haptic.wav", "toml", "jsonl"] {
-            let path = folder.path().join(format!("{}.{end}", sound.name));
-            if fs::canonicalize(&path).is_ok_and(|path| inputs.contains(&path)) {
-                return Err(CliError::file(
-                    &path,
-                    "is an input of this command",
-                    "name another folder with -o",
-                ));
-            }
-        }
-    }
-    Ok(())
+    output::reads(inputs);
+    let ends = ["wav", "haptic.wav", "toml", "jsonl"];
+    let names = sounds.iter().flat_map(|sound| ends.map(|end| format!("{}.{end}", sound.name)));
+    names.map(|name| folder.path().join(name)).try_for_each(|path| output::refuse_input(&path))
 }
 
 /// A scene's table with the files that it names written as absolute paths.
