@@ -3,7 +3,7 @@
 use asperity_dsp::rng::Rng;
 use std::time::{Duration, Instant};
 
-/// How long each target is driven.
+/// Duration of each target.
 const BUDGET: Duration = Duration::from_secs(3);
 
 /// Numbers that break things.

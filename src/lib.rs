@@ -135,7 +135,7 @@ pub use rate::{AtRate, RateError};
 /// Kernels: what happens to one sample.
 pub use asperity_dsp as dsp;
 pub use asperity_dsp::DesignError;
-/// What [`ContactBlock::contact_samples`] holds: the pad at one sample.
+/// Contents of [`ContactBlock::contact_samples`]: the pad at one sample.
 pub use asperity_dsp::micro_contact::ContactSample as PadSample;
 pub use asperity_dsp::micro_contact::{Integrator, Probe};
 pub use asperity_dsp::modal_bank::Culling;

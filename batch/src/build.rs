@@ -17,7 +17,7 @@ pub struct Build {
 }
 
 impl Build {
-    /// Of a specification here and now.
+    /// Build of a specification here and now.
     #[must_use]
     pub fn of(spec: &Spec) -> Self {
         Self {
@@ -28,7 +28,7 @@ impl Build {
         }
     }
 
-    /// What differs from another build, in words; none where they are the same.
+    /// Difference from another build, in words; none where they are equal.
     #[must_use]
     pub fn differs(&self, other: &Self) -> Option<String> {
         let pairs = [

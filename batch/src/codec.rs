@@ -12,7 +12,7 @@ const BLOCK: usize = 4096;
 /// Highest rate that FLAC's encoder takes, Hz.
 const MOST_FLAC_HZ: f64 = 96_000.0;
 
-/// How samples are stored.
+/// Codec of stored samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Codec {

@@ -52,7 +52,7 @@ impl Fresh {
     }
 }
 
-/// What became of a shard.
+/// Result of making a shard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// It was made.
@@ -110,13 +110,13 @@ impl DataSet {
         (!empty.is_empty()).then(|| format!("no stroke belongs to {}: {right}", empty.join(" and ")))
     }
 
-    /// What it is made of.
+    /// Specification that it is made of.
     #[must_use]
     pub fn spec(&self) -> &Spec {
         &self.spec
     }
 
-    /// What is doubtful in the pictures that were read so far ([`Maps::remarks`]).
+    /// Doubts about the pictures that were read so far ([`Maps::remarks`]).
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         self.maps.remarks()
@@ -195,7 +195,7 @@ impl DataSet {
         Ok(manifest)
     }
 
-    /// Whether a shard is there whole. One that was cut off is made again; one of another build is an error.
+    /// Tests whether a shard is there whole. One that was cut off is made again; one of another build is an error.
     fn is_there(&self, path: &Path, strokes: u64) -> Result<bool, FileError> {
         if !path.exists() {
             return Ok(false);
@@ -299,7 +299,7 @@ fn same_build(path: &Path, ours: &Build, theirs: &Build) -> Result<(), FileError
     }
 }
 
-/// What made a shard, and how many strokes it holds.
+/// Build that made a shard, and its number of strokes.
 pub(crate) fn build_of(path: &Path) -> Result<(Build, u64), FileError> {
     if is_tar(path) { webdataset::build_of(path) } else { parquet_file::build_of(path) }
 }

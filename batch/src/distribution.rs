@@ -35,7 +35,7 @@ pub fn drawn(written: &Value, field: &str, draws: Draws) -> Result<Value, FileEr
     }
 }
 
-/// The same of every key of a table.
+/// Draws every key of a table.
 ///
 /// # Errors
 /// As [`drawn`].

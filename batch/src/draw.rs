@@ -9,11 +9,11 @@
 
 /// Multipliers of the rounds (Salmon et al. 2011, section 3.3).
 const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
-/// What the key grows by each round: the golden ratio and √3 − 1.
+/// Growth of the key by each round: the golden ratio and √3 − 1.
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 const ROUNDS: usize = 10;
 
-/// Where draws come from: a specification's seed and a stroke's number.
+/// Source of draws: a specification's seed and a stroke's number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Draws {
     /// Seed of the whole data set.

@@ -24,14 +24,14 @@ const LOCK: &str = ".manifest.lock";
 /// A file that nobody has written to for so long is nobody's.
 const ABANDONED: Duration = Duration::from_secs(3600);
 
-/// What a data set holds.
+/// Contents of a data set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of this layout.
     pub format: u32,
     /// Name of the data set.
     pub name: String,
-    /// What made it.
+    /// Build that made it.
     #[serde(flatten)]
     pub build: Build,
     /// Seed of every draw.
@@ -40,9 +40,9 @@ pub struct Manifest {
     pub strokes: u64,
     /// Strokes a shard; the last may have fewer.
     pub per_shard: u64,
-    /// What sample value 1 stands for, and the gain of the sound.
+    /// Meaning of sample value 1, and the gain of the sound.
     pub levels: Levels,
-    /// What samples are in, and how many there are a second.
+    /// Unit and rate of samples.
     pub units: Units,
     /// Further quantities that are felt, in the order of their columns.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -71,11 +71,11 @@ pub struct Levels {
 pub struct FurtherHaptic {
     /// Its column.
     pub column: String,
-    /// What is felt.
+    /// Haptic quantity.
     pub output: String,
     /// Unit of `full_scale`.
     pub unit: String,
-    /// What sample value 1 stands for.
+    /// Meaning of sample value 1.
     pub full_scale: f64,
     /// Samples a second, Hz.
     pub rate_hz: f64,
@@ -100,15 +100,15 @@ fn unit_of(output: &str) -> String {
 pub struct Units {
     /// Unit of `haptic_full_scale`.
     pub haptic: String,
-    /// What is felt.
+    /// Haptic column.
     pub haptic_output: String,
     /// Samples a second of `haptic`, Hz.
     pub haptic_rate_hz: f64,
-    /// What sample value 1 of `audio` is.
+    /// Meaning of sample value 1 of `audio`.
     pub audio: String,
     /// Samples a second of `audio`, Hz.
     pub audio_rate_hz: f64,
-    /// How `audio` is stored.
+    /// Codec of `audio`.
     pub audio_codec: String,
 }
 
@@ -124,7 +124,7 @@ pub struct Shard {
 }
 
 impl Manifest {
-    /// Of a specification, without shards.
+    /// Manifest of a specification, without shards.
     #[must_use]
     pub fn new(spec: &Spec, build: &Build, levels: &DataLevels, splits: BTreeMap<String, String>) -> Self {
         let output = &spec.says.output;
@@ -213,7 +213,7 @@ impl Manifest {
     }
 }
 
-/// Where a shard's hash stands.
+/// Place of a shard's hash.
 #[must_use]
 pub fn sum_name(file: &str) -> String {
     format!("{file}.sha256")

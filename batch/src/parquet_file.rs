@@ -224,7 +224,7 @@ fn reader(path: &Path) -> Result<SerializedFileReader<File>, FileError> {
     })
 }
 
-/// What made a shard, and how many strokes it holds.
+/// Build that made a shard, and its number of strokes.
 ///
 /// # Errors
 /// When it is no whole shard of ours.
@@ -238,7 +238,7 @@ pub fn build_of(path: &Path) -> Result<(Build, u64), FileError> {
     Ok((build, metadata.num_rows().unsigned_abs()))
 }
 
-/// What a record held that is compared when it is rendered again.
+/// Part of a record that is compared when it is rendered again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Kept {
     /// The stroke's number.
@@ -247,7 +247,7 @@ pub struct Kept {
     pub scene: String,
     /// Contact log.
     pub contacts: String,
-    /// What is heard and felt.
+    /// Audio and haptics.
     pub samples: Samples,
 }
 

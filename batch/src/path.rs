@@ -55,14 +55,14 @@ pub struct Motion {
     pub speed_m_s: f64,
     /// Force, N.
     pub force_n: f64,
-    /// How long it touches, s.
+    /// Duration of touch, s.
     pub duration_s: f64,
     /// Reports a second, Hz.
     pub reports_hz: f64,
 }
 
 impl Motion {
-    /// What a game would have reported: contact 0 on the surface of that name and size (m), felt by actuator 0.
+    /// Reports as a game makes them: contact 0 on the surface of that name and size (m), felt by actuator 0.
     #[must_use]
     pub fn log(&self, surface: &str, size_m: [f64; 2], draws: Draws) -> ContactLog {
         let way = Way::drawn(self, size_m, draws);
@@ -97,7 +97,7 @@ struct Way {
     start_m: [f64; 2],
     /// Angle of the direction at the start, rad.
     heading: f64,
-    /// How far an arc turns, rad.
+    /// Angle of an arc, rad.
     turn: f64,
     size_m: [f64; 2],
 }

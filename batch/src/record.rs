@@ -7,7 +7,7 @@ use crate::stroke::{Stroke, Take};
 use asperity::files::FileError;
 use asperity_ports::resample::resampled;
 
-/// What is heard, as it is stored.
+/// Audio, as it is stored.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Sound {
     /// Samples.
@@ -19,7 +19,7 @@ pub enum Sound {
 /// The samples of a stroke, as a data set keeps them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
-    /// What is heard.
+    /// Audio.
     pub audio: Sound,
     /// The first quantity that is felt, at its own rate.
     pub haptic: Vec<f32>,
@@ -34,9 +34,9 @@ pub struct Samples {
 /// One row of a data set.
 #[derive(Debug, Clone)]
 pub struct Record {
-    /// What was drawn.
+    /// Draws.
     pub stroke: Stroke,
-    /// What came of it.
+    /// Result.
     pub samples: Samples,
 }
 
@@ -69,7 +69,7 @@ impl Samples {
         Ok(Self { audio, haptic, further, force: take.force, clipped })
     }
 
-    /// Whether two hold the same bits.
+    /// Tests whether two hold equal bits.
     #[must_use]
     pub fn same_bits(&self, other: &Self) -> bool {
         let same = |a: &[f32], b: &[f32]| {

@@ -36,7 +36,7 @@ pub struct Spec {
     pub path: PathBuf,
     /// Its bytes.
     pub text: String,
-    /// What it says.
+    /// Contents.
     pub says: Says,
 }
 
@@ -50,7 +50,7 @@ pub struct Says {
     /// Seed of every draw.
     #[serde(default)]
     pub seed: u64,
-    /// How many strokes there are.
+    /// Number of strokes.
     pub strokes: u64,
     /// Strokes a shard.
     #[serde(default = "per_shard")]
@@ -58,18 +58,18 @@ pub struct Says {
     /// Kernel family; missing: portable, whose bits do not depend on the processor.
     #[serde(default = "portable")]
     pub kernel: String,
-    /// What is touched.
+    /// Surface.
     pub surface: Surfaces,
-    /// What rings: keys of a `[[body]]`; missing: what the choice says, or nothing.
+    /// Body: keys of a `[[body]]`; missing: that of the choice, or none.
     #[serde(default)]
     pub body: Table,
-    /// What touches: keys of `[probe]`.
+    /// Probe: keys of `[probe]`.
     #[serde(default)]
     pub probe: Table,
-    /// How it moves.
+    /// Motion.
     #[serde(default)]
     pub finger: Finger,
-    /// What is kept.
+    /// Outputs that are kept.
     #[serde(default)]
     pub output: Output,
     /// Who learns and who is asked.
@@ -77,7 +77,7 @@ pub struct Says {
     pub split: Split,
 }
 
-/// What is touched.
+/// Surfaces.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Surfaces {
     /// Scene files (a name may hold `*`), or tables with the keys of a `[[surface]]`.
@@ -87,7 +87,7 @@ pub struct Surfaces {
     pub over: Table,
 }
 
-/// How a finger moves.
+/// Motion of a finger.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Finger {
@@ -97,13 +97,13 @@ pub struct Finger {
     pub force_n: Value,
     /// `line`, `arc` or `back-and-forth`.
     pub path: Value,
-    /// How long the finger touches, s.
+    /// Duration of touch, s.
     pub duration_s: Value,
     /// Reports a second, Hz.
     pub reports_hz: Value,
 }
 
-/// What is kept.
+/// Outputs that are kept.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
@@ -111,12 +111,12 @@ pub struct Output {
     pub format: Format,
     /// Ring-out after the finger lifts, s.
     pub tail_s: f64,
-    /// What is felt, a quantity each: the first is the column `haptic`, further ones are `haptic_QUANTITY`.
+    /// Haptic quantities: the first is the column `haptic`, further ones are `haptic_QUANTITY`.
     #[serde(deserialize_with = "haptics")]
     pub haptic: Vec<Haptic>,
     /// The 3-D force and the path, as `STEM.force.csv` has them; missing: not kept.
     pub force: Option<Force>,
-    /// What is heard.
+    /// Audio.
     pub audio: Audio,
 }
 
@@ -129,7 +129,7 @@ pub struct Force {
     pub rate_hz: f64,
 }
 
-/// What is felt.
+/// Haptic quantity.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Haptic {
@@ -137,7 +137,7 @@ pub struct Haptic {
     pub rate_hz: f64,
     /// `displacement` (m), `acceleration` (m/s²) or `tangential` (m).
     pub output: String,
-    /// What sample value 1 stands for; missing: by the level policy of the first surface, for all.
+    /// Meaning of sample value 1; missing: by the level policy of the first surface, for all.
     pub full_scale: Option<f64>,
 }
 
@@ -149,19 +149,19 @@ impl Haptic {
     }
 }
 
-/// What is heard.
+/// Audio.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Audio {
     /// Samples a second, Hz: the engine's own rate.
     pub rate_hz: f64,
-    /// How samples are stored.
+    /// Codec of samples.
     pub codec: Codec,
     /// Linear gain; missing: by the level policy of the first surface, for all.
     pub gain: Option<f64>,
 }
 
-/// How shards are written.
+/// Format of shards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
@@ -173,7 +173,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// What shards of it end with.
+    /// Ending of its shards.
     #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
@@ -197,7 +197,7 @@ pub struct Split {
     pub test: f64,
 }
 
-/// What is never parted.
+/// Group that is never parted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SplitBy {
@@ -325,7 +325,7 @@ impl Spec {
         sha256(self.text.as_bytes())
     }
 
-    /// How many shards there are.
+    /// Number of shards.
     #[must_use]
     pub fn shards(&self) -> u64 {
         self.says.strokes.div_ceil(self.says.per_shard)

@@ -20,7 +20,7 @@ const FINGERS: usize = 1;
 /// Longest stroke, s.
 const MOST_S: f64 = 600.0;
 
-/// What was drawn for one stroke.
+/// Draws for one stroke.
 #[derive(Debug, Clone)]
 pub struct Stroke {
     /// Its number in twelve digits.
@@ -33,11 +33,11 @@ pub struct Stroke {
     pub scene: String,
     /// Contact log, JSON Lines.
     pub contacts: String,
-    /// How the finger moves.
+    /// Motion of the finger.
     pub motion: Motion,
-    /// What `scene` says.
+    /// Parsed `scene`.
     file: SceneFile,
-    /// What `contacts` says.
+    /// Parsed `contacts`.
     log: ContactLog,
 }
 
@@ -80,7 +80,7 @@ impl Stroke {
         Ok(Self { id, split, surface: choice.name.clone(), scene, contacts, motion, file, log })
     }
 
-    /// What the stroke renders to: the same as [`rendered`] makes of its two texts, without reading them.
+    /// Renders the stroke: equal to what [`rendered`] makes of its two texts, without reading them.
     ///
     /// # Errors
     /// When the engine refuses the scene.
@@ -89,10 +89,10 @@ impl Stroke {
     }
 }
 
-/// What a stroke renders to.
+/// Outputs of a stroke.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Take {
-    /// What is heard, and the first quantity that is felt.
+    /// Audio, and the first haptic quantity.
     pub render: Render,
     /// The further quantities.
     pub further: Vec<Vec<f32>>,

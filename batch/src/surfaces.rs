@@ -13,7 +13,7 @@ use toml::{Table, Value};
 
 /// Digits of a file's hash that its folder is called by.
 const DIGITS: usize = 16;
-/// Where the copies lie in a data set.
+/// Place of the copies in a data set.
 const FOLDER: &str = "surfaces";
 
 /// One choice.

@@ -10,7 +10,7 @@ use asperity::files::FileError;
 use asperity::open::Maps;
 use std::path::Path;
 
-/// What was looked at.
+/// Shards and strokes that were looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verified {
     /// Shards whose bytes are those that were written.
@@ -89,7 +89,7 @@ fn again(
     Ok(kept.len() as u64)
 }
 
-/// Whether a record's scene and contacts render to its samples, to the bit.
+/// Tests whether a record's scene and contacts render to its samples, to the bit.
 fn same(
     kept: &Kept,
     (spec, levels): (&Spec, &DataLevels),

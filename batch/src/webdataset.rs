@@ -161,7 +161,7 @@ fn for_each(
     Ok(number)
 }
 
-/// What made a shard, and how many strokes it holds.
+/// Build that made a shard, and its number of strokes.
 ///
 /// # Errors
 /// When it is no whole shard of ours.

@@ -57,7 +57,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_with(path, |mut file| file.write_all(bytes).and_then(|()| file.flush()))
 }
 
-/// The same, unless the file is there already and holds them.
+/// Writes a whole file, unless it is there already and holds these bytes.
 ///
 /// # Errors
 /// As [`write_with`].

@@ -69,7 +69,7 @@ fn fraction(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What Slurm says of an array's task; none where this is none.
+/// Number that Slurm gives an array's task; none outside an array.
 fn share_of_slurm(variable: impl Fn(&str) -> Option<String>) -> Option<Share> {
     let number = |name: &str| variable(name)?.parse::<u64>().ok();
     let (task, of) = (number("SLURM_ARRAY_TASK_ID")?, number("SLURM_ARRAY_TASK_COUNT")?);

@@ -12,7 +12,7 @@ use std::time::Instant;
 /// Events a second and finger, as games report them.
 const EVENT_RATE_HZ: f64 = 60.0;
 
-/// What is to be measured.
+/// Scene to be measured.
 #[derive(Debug, Clone, Copy)]
 pub struct Load {
     /// Fingers stroking at once.
@@ -21,7 +21,7 @@ pub struct Load {
     pub bodies: usize,
     /// Modes of each body.
     pub modes_per_body: usize,
-    /// Whether the fingers lift after a tenth of a second, so that everything rings out.
+    /// Lifts the fingers after a tenth of a second, so that everything rings out.
     pub lift: bool,
 }
 
@@ -75,7 +75,7 @@ impl Bench {
         Self::of(load, config, &modes(load.modes_per_body))
     }
 
-    /// The same with bodies of these modes; without any, where `load` has none.
+    /// Measurement with bodies of these modes; without any, where `load` has none.
     pub fn of(load: Load, config: Config, model: &ModalModel) -> Option<Self> {
         let rate_hz = config.sample_rate_hz;
         let asperity::Engine { mut scene, renderer, .. } = config.build().ok()?;
@@ -98,7 +98,7 @@ impl Bench {
         self.blocks(1, haptic, audio)
     }
 
-    /// The same of some blocks in a row, of which the last stays: looking at the clock takes as long as a stage of a short one.
+    /// Measurement of some blocks in a row, of which the last stays: reading the clock takes as long as a stage of a short one.
     pub fn blocks(&mut self, count: usize, haptic: &mut [f32], audio: &mut [f32]) -> f64 {
         while self.next_event < self.renderer.position() + (count * audio.len()) as u64 {
             self.report();
@@ -117,7 +117,7 @@ impl Bench {
         be_late(&mut self.renderer, level);
     }
 
-    /// What every finger did since the last report.
+    /// Reports of every finger since the last report.
     fn report(&mut self) {
         let t = self.event as f64 / EVENT_RATE_HZ;
         let lift = self.load.lift && t > 0.1;

@@ -15,7 +15,7 @@ impl From<FileError> for CliError {
 }
 
 impl CliError {
-    /// What it says, without the word that begins the program's last line.
+    /// Message, without the word that begins the program's last line.
     #[cfg(any(feature = "device", test))]
     pub fn without_prefix(&self) -> &FileError {
         &self.0

@@ -31,7 +31,7 @@ pub struct Options {
     /// Document to write; `.gltf` carries its numbers inside it
     #[arg(short, long = "output", value_name = "OUT.(gltf|glb)")]
     pub output: PathBuf,
-    /// What the bodies are made of: a preset
+    /// Material of the bodies: a preset
     #[arg(long, value_name = "NAME")]
     pub material: Option<String>,
     /// Print one JSON object
@@ -91,7 +91,7 @@ fn name(path: &Path) -> String {
     file.split_once('.').map_or(&*file, |(stem, _)| stem).to_owned()
 }
 
-/// What the document holds so far.
+/// Document so far.
 #[derive(Default)]
 struct Document {
     binary: Binary,

@@ -45,7 +45,7 @@ struct Report {
     threads: u8,
     cpu: String,
     instruction_set: String,
-    /// How every figure is taken.
+    /// Method of measurement of every figure.
     estimate: &'static str,
     scenes: Vec<SceneRow>,
     modal_bank: Vec<BankRow>,
@@ -84,10 +84,10 @@ struct ContactRow {
     ns_per_sample_p90: f64,
 }
 
-/// How the cost of a whole scene grows.
+/// Growth of the cost of a whole scene.
 #[derive(Debug, Serialize)]
 struct GrowthRow {
-    /// What there is more and more of: `contacts`, each on a body of its own, or `modes` of one body under one finger.
+    /// Quantity that grows: `contacts`, each on a body of its own, or `modes` of one body under one finger.
     axis: &'static str,
     count: usize,
     /// Cost of each: for modes, what they add to a finger on a silent plate.

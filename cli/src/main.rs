@@ -63,7 +63,7 @@ struct Arguments {
     verb: Verb,
 }
 
-/// What to do.
+/// Verbs.
 #[derive(Debug, Subcommand)]
 enum Verb {
     Demo(demo::Options),

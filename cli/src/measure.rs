@@ -9,7 +9,7 @@ const REPETITION: Duration = Duration::from_micros(500);
 /// Repetitions; fewer where one call of the work is long.
 const REPETITIONS: std::ops::RangeInclusive<usize> = 5..=120;
 
-/// How long something takes, in the same unit throughout.
+/// Durations, in the same unit throughout.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
     /// Half of all took longer.
@@ -21,7 +21,7 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Of many timings.
+    /// Median of many timings.
     pub fn of(mut times: Vec<f64>) -> Self {
         times.sort_by(f64::total_cmp);
         Self { median: quantile(&times, 0.5), p10: quantile(&times, 0.1), p90: quantile(&times, 0.9) }
@@ -71,7 +71,7 @@ pub fn seconds() -> f64 {
     BEGAN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// What the machine calls its processor.
+/// Name that the machine gives its processor.
 pub fn cpu_name() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     info.lines()

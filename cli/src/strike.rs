@@ -16,7 +16,7 @@ const RUNG_OUT: f64 = 9.21;
 const LEAST_TAIL_S: f64 = 0.3;
 /// Rebound over approach speed of a hand-held striker. Source: assumed.
 const RESTITUTION: f64 = 0.5;
-/// How far takes differ: speed, mass and radius of the striker as ratios (standard deviation of their logarithms), the place over
+/// Spread of takes: speed, mass and radius of the striker as ratios (standard deviation of their logarithms), the place over
 /// the body's size. Source: assumed; drummers who repeat a stroke spread by 5 to 15 % in force.
 const SPREAD: [f64; 4] = [0.1, 0.05, 0.15, 0.02];
 /// Milliseconds of what a recording has besides modes, kept as `asperity fit --burst-ms 40` does.
@@ -28,19 +28,19 @@ pub struct Options {
     /// A modes file (.json), a recording of a hit (fitted first), or a stock body: bar, bowl, can, …
     #[arg(value_name = "MODES.json|RECORDING|STOCK")]
     pub what: PathBuf,
-    /// What the body is made of [default: for a stock body the usual one]
+    /// Material of the body [default: for a stock body the usual one]
     #[arg(long, value_name = "NAME", value_parser = material)]
     pub material: Option<Material>,
     /// Longest side or diameter of a stock body, m [default: the usual one]
     #[arg(long, value_name = "M")]
     pub size: Option<f64>,
-    /// What hits it: materials
+    /// Materials of what hits it
     #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', default_value = "wood", value_parser = material)]
     pub with: Vec<Material>,
-    /// How fast, m/s
+    /// Speeds, m/s
     #[arg(long, value_name = "M_S", num_args = 1.., value_delimiter = ',', default_value = "1", value_parser = positive)]
     pub speeds: Vec<f64>,
-    /// Where, m, in the frame of a body with shapes (`asperity modes`)
+    /// Place, m, in the frame of a body with shapes (`asperity modes`)
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true)]
     pub at: Option<[f64; 3]>,
     /// Which of the body's strike positions, from 0, where it has no shapes
@@ -93,7 +93,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     sounds::make(&sounds, &options.sounds, &folder, &inputs, assumed)
 }
 
-/// What the first argument is.
+/// Meaning of the first argument.
 enum Kind {
     Stock(Stock),
     Modes,
@@ -128,12 +128,12 @@ impl Kind {
     }
 }
 
-/// Whether a file's name ends with one of these, in any case.
+/// Tests whether a file's name ends with one of these, in any case.
 pub fn has_end(path: &Path, ends: &[&str]) -> bool {
     path.extension().is_some_and(|end| ends.iter().any(|known| end.eq_ignore_ascii_case(known)))
 }
 
-/// What rings.
+/// Body that rings.
 struct Body {
     name: String,
     /// Its `[[body]]`, paths absolute.

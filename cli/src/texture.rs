@@ -19,7 +19,7 @@ use asperity_texture::raster::Raster;
 use clap::Subcommand;
 use std::path::Path;
 
-/// What to do with a texture.
+/// Verbs on textures.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     Analyze(analyze::AnalyzeArgs),
@@ -83,7 +83,7 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What the verbs that make heights from nothing report.
+/// Report of the verbs that make heights from nothing.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Preview {
     /// Texels a side.

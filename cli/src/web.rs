@@ -130,7 +130,7 @@ mod carried {
         }
     }
 
-    /// What a file is, by its ending; browsers insist on it for scripts and engines.
+    /// Media type of a file, by its ending; browsers insist on it for scripts and engines.
     fn kind(name: &str) -> &'static str {
         match name.rsplit_once('.').map_or("", |(_, ending)| ending) {
             "html" => "text/html; charset=utf-8",

@@ -26,7 +26,7 @@ pub enum Colour {
     HighPass(i32),
 }
 
-/// What a fit is tried on.
+/// Signal that a fit is tried on.
 pub const COLOURS: [(&str, Colour); 18] = [
     ("white", Colour::White),
     ("pink, 1/f to 20 Hz", Colour::Power(1.0, 20.0)),

@@ -39,7 +39,7 @@ pub fn cramer_rao(modes: &[Mode], rate_hz: f64, count: usize, noise_std: f64) ->
     (0..modes.len()).map(|k| [std(4 * k), std(4 * k + 1), std(4 * k + 2), std(4 * k + 3)]).collect()
 }
 
-/// Whether the data can tell this mode at all.
+/// Tests whether the data determine this mode at all.
 pub fn identifiable(mode: &Mode, bound: &[f64; 4]) -> bool {
     bound[2] < 0.15
         && bound[1] < 0.3 * mode.decay_per_s

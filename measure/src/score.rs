@@ -5,7 +5,7 @@ use crate::impact::{Impact, render_fast};
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 
-/// How well modes were found.
+/// Score of found modes.
 #[derive(Debug, Clone, Default)]
 pub struct Score {
     /// True modes that the data can tell.
@@ -20,11 +20,11 @@ pub struct Score {
     pub d_ratio: Vec<f64>,
     /// Signal to error of the resynthesis, dB.
     pub snr_db: f64,
-    /// The same of the best unbiased estimate, dB.
+    /// Error of the best unbiased estimate, dB.
     pub limit_db: f64,
-    /// What was missed, and its bounds.
+    /// Missed modes, and their bounds.
     pub missed_modes: Vec<(Mode, [f64; 4])>,
-    /// What was invented.
+    /// Invented modes.
     pub spurious_modes: Vec<Mode>,
 }
 

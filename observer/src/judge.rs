@@ -17,7 +17,7 @@ pub struct Feature {
     pub value: f64,
     /// The observer's own deviation at κ = 1.
     pub sd: f64,
-    /// What chance alone does to it.
+    /// Effect of chance alone.
     pub chance: f64,
 }
 

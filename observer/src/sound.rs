@@ -1,4 +1,4 @@
-//! What an ear knows of a sound.
+//! Features of a sound that an ear has.
 
 use crate::constants::{
     DECAY_JND, ERB_NUMBERS, LOOK_S, MOST_LOOKS, SOUND_GROUPS_HZ, SOUND_LEVEL_SD_DB, hearing_threshold_db,
@@ -17,7 +17,7 @@ fn erb_hz(number: f64) -> f64 {
     (10f64.powf(number / 21.4) - 1.0) / 4.37e-3
 }
 
-/// What is heard of a signal in pascals; `rings_from` is the sample from which the body is left alone, if it is, and the hand's place
+/// Features of a signal in pascals; `rings_from` is the sample from which the body is left alone, if it is, and the hand's place
 /// counts where the task gives it.
 #[must_use]
 pub fn heard(signal: &[f64], rate_hz: f64, rings_from: Option<usize>, hand: Option<Hand<'_>>) -> Percept {
@@ -44,7 +44,7 @@ pub fn heard(signal: &[f64], rate_hz: f64, rings_from: Option<usize>, hand: Opti
     Percept { features }
 }
 
-/// How fast a ring dies away over its first 30 dB, 1/s; NaN where there is none.
+/// Decay of a ring over its first 30 dB, 1/s; NaN where there is none.
 fn decay_per_s(ring: &[f64], rate_hz: f64) -> f64 {
     let length = (0.02 * rate_hz) as usize;
     let levels: Vec<f64> =

@@ -10,7 +10,7 @@ pub(crate) struct Band {
     pub(crate) high_hz: f64,
 }
 
-/// Where the looks at a signal begin, and how long each is, samples: at most `most`, evenly over the whole.
+/// Beginnings of the windows on a signal, and their length, samples: at most `most`, evenly over the whole.
 pub(crate) fn looks(samples: usize, look: usize, most: usize) -> (Vec<usize>, usize) {
     let length = look.min(samples).max(1);
     let count = (samples / length).clamp(1, most);

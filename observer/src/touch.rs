@@ -1,4 +1,4 @@
-//! What a fingertip knows of a vibration.
+//! Features of a vibration that a fingertip has.
 
 use crate::constants::{
     FIRST_THIRD_OCTAVE_HZ, FRAME_S, LOOK_S, MOST_LOOKS, PLACES, THIRD_OCTAVES, TOUCH_GROUPS_HZ, touch_sd_db,
@@ -8,7 +8,7 @@ use crate::judge::{Feature, Percept};
 use crate::spectra::{Band, Spectra, deviation, looks, mean, over_threshold_db};
 use std::f64::consts::PI;
 
-/// What the samples of a haptic channel are.
+/// Quantity of a haptic channel's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
     /// Metres.
@@ -17,7 +17,7 @@ pub enum Unit {
     Acceleration,
 }
 
-/// Where the hand is, sample by sample: 0–1 across the plate, and along which axis it moves (0: u, 1: v).
+/// Place of the hand, sample by sample: 0–1 across the plate, and the axis along which it moves (0: u, 1: v).
 #[derive(Debug, Clone, Copy)]
 pub struct Hand<'a> {
     /// Along u and v.
@@ -32,7 +32,7 @@ pub fn third_octave_hz(band: usize) -> f64 {
     FIRST_THIRD_OCTAVE_HZ * 2f64.powf(band as f64 / 3.0)
 }
 
-/// What is felt of a signal in SI units; with the place of the hand where the task gives it.
+/// Features of a signal in SI units; with the place of the hand where the task gives it.
 #[must_use]
 pub fn felt(signal: &[f64], rate_hz: f64, unit: Unit, hand: Option<Hand<'_>>) -> Percept {
     let weight = |f: f64| {

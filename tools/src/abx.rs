@@ -56,7 +56,7 @@ const EVENTS_HZ: f64 = 100.0;
 /// Levels of one stroke, dB.
 pub type Features = [f64; BANDS];
 
-/// How large the surfaces are.
+/// Size of the surfaces.
 #[derive(Debug, Clone, Copy)]
 pub struct Size {
     /// Side of a texel, m.

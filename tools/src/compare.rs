@@ -10,12 +10,12 @@ use serde::Serialize;
 /// Fewest and most strokes on a surface.
 pub const STROKES: [usize; 2] = [20, 10_000];
 
-/// How surfaces are stroked.
+/// Strokes over the surfaces.
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison {
     /// Strokes on each surface.
     pub strokes: usize,
-    /// What a map's width is on the surface, m.
+    /// Width of a map on the surface, m.
     pub width_m: f64,
     /// Height of 1 over 0, m.
     pub relief_m: f64,

@@ -10,7 +10,7 @@ use asperity_shape::surface_field::SurfaceField;
 use serde::Serialize;
 use std::path::Path;
 
-/// What the file holds.
+/// Contents of the file.
 #[derive(Serialize)]
 pub struct ModesFile {
     format: &'static str,

@@ -16,7 +16,7 @@ const TELEPORT_M: f32 = 0.01;
 /// A pair whose slip is below this share of its path rolls.
 const ROLLING: f32 = 0.3;
 
-/// What a pair does.
+/// Activity of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Kind {
@@ -28,10 +28,10 @@ pub enum Kind {
     Rolls,
 }
 
-/// What a pair that touches does in a step.
+/// Activity of a touching pair in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Doing {
-    /// What it does.
+    /// Activity.
     pub kind: Kind,
     /// The contact that is reported; none while it rests, or where nothing can be scraped.
     pub contact: Option<ContactId>,
@@ -52,7 +52,7 @@ pub struct Pair {
     contact: Option<ContactId>,
     /// Place of contact in the space of the scraped collider.
     local_m: Option<Vec3>,
-    /// How far the scraped one's own surface has run since the contact began, in its space.
+    /// Distance that the scraped one's own surface has run since the contact began, in its space.
     run_m: Vec3,
     /// The plane that it is mapped on by its normal, kept until another is clearly nearer.
     path: Option<TriplanarPath>,
@@ -61,7 +61,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// What it did in the last step; none: it did not touch.
+    /// Activity in the last step; none: it did not touch.
     #[must_use]
     pub fn doing(&self) -> Option<Doing> {
         self.doing
@@ -138,7 +138,7 @@ impl Pair {
         events.push(ContactEvent::begin_with(contact, touching, sample));
     }
 
-    /// Where and how the pair touches, on the surface of the scraped one.
+    /// Place and manner of the pair's touch, on the surface of the scraped one.
     fn sample(
         &mut self,
         step: &Step<'_>,

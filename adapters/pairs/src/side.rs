@@ -6,18 +6,18 @@ use glam::Vec3;
 /// Radius of an edge or a corner that nobody gave one, m: what is broken with sandpaper. Assumed.
 pub const EDGE_RADIUS_M: f64 = 0.002;
 
-/// What a collider is to asperity.
+/// Role of a collider in asperity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thing {
-    /// What it is made of.
+    /// Material.
     pub material: Material,
-    /// What rings when it is struck or stroked.
+    /// Body that rings when it is struck or stroked.
     pub body: Option<BodyId>,
-    /// What is stroked on it.
+    /// Surface that is stroked on it.
     pub surface: Option<SurfaceId>,
     /// The haptic channel that feels it: a finger, or a tool in the hand.
     pub actuator: Option<Actuator>,
-    /// What it touches with; none = a finger is the engine's own probe, anything else a rigid one.
+    /// Probe that it touches with; none = a finger is the engine's own probe, anything else a rigid one.
     pub probe: Option<ProbeId>,
 }
 
@@ -29,10 +29,10 @@ impl Thing {
     }
 }
 
-/// How a rigid body moves at an instant; still for what has none.
+/// Motion of a rigid body at an instant; zero for what has none.
 #[derive(Clone, Copy, Default, Debug, PartialEq)]
 pub struct Motion {
-    /// Of its centre of mass, m/s.
+    /// Velocity of its centre of mass, m/s.
     pub linear_m_s: Vec3,
     /// rad/s.
     pub angular_rad_s: Vec3,
@@ -48,15 +48,15 @@ impl Motion {
     }
 }
 
-/// What a physics engine knows of one of the two.
+/// Data that a physics engine has of one of the two.
 pub trait Side {
-    /// What it is to asperity.
+    /// Role in asperity.
     fn thing(&self) -> Thing;
-    /// How it moves after the step.
+    /// Motion after the step.
     fn motion(&self) -> Motion;
     /// Mass, kg; infinite for what nothing moves.
     fn mass_kg(&self) -> f32;
-    /// How much faster its point goes along a direction after an impulse of 1 N·s along it there, 1/kg: 0 for what nothing moves.
+    /// Mobility: gain in speed of its point along a direction after an impulse of 1 N·s along it there, 1/kg: 0 for what nothing moves.
     fn mobility_per_kg(&self, point_m: Vec3, along: Vec3) -> f32;
     /// Radius of curvature with which it rolls on something that it meets at a point with a normal, m: then its place of contact moves with
     /// its centre. None where it does not roll: of a box, of a cylinder that stands on its end.

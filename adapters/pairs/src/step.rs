@@ -17,7 +17,7 @@ pub const NOMINAL_FORCE_N: f32 = 1.0;
 /// A contact as the solver left it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solved {
-    /// Where, in space, m: the mean of its points, weighted by their impulses.
+    /// Place, in space, m: the mean of its points, weighted by their impulses.
     pub point_m: Vec3,
     /// Unit vector from the first collider to the second.
     pub normal: Vec3,

@@ -43,7 +43,7 @@ pub const FIRST_CONTACT: u64 = 1 << 32;
 pub struct Touch {
     /// Its colliders, in rapier's order.
     pub colliders: [ColliderHandle; 2],
-    /// What it does.
+    /// Activity.
     pub kind: Kind,
     /// The contact that is reported; none while it rests, or where nothing can be scraped.
     pub contact: Option<ContactId>,
@@ -53,7 +53,7 @@ pub struct Touch {
     pub slip_m_s: f32,
     /// Force between them, mean of the step, N.
     pub force_n: f32,
-    /// Whether it is not heard because its mapping tells no texture coordinates there.
+    /// True where it is silent because its mapping gives no texture coordinates there.
     pub is_unplaced: bool,
 }
 
@@ -120,7 +120,7 @@ impl Adapter {
         self.notices.look_at(view, &self.things);
     }
 
-    /// What the game should know of its things and its world since it last asked, each of it once: to be logged.
+    /// Notices about things and the world since the last call, each once: to be logged.
     pub fn warnings(&mut self) -> Vec<Warning> {
         self.notices.take()
     }

@@ -13,7 +13,7 @@ use std::mem::Discriminant;
 pub struct Warning {
     /// The collider that it is about; none: the world.
     pub collider: Option<ColliderHandle>,
-    /// What it is.
+    /// Notice.
     pub notice: Notice,
 }
 

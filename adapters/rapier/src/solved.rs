@@ -67,13 +67,13 @@ fn overlapping(pair: &ContactPair, view: &View<'_>, nominal_n: [f32; 2]) -> Opti
     })
 }
 
-/// What a point has pushed in the step, N·s.
+/// Impulse of a point in the step, N·s.
 #[cfg(not(feature = "bevy-rapier-0-36"))]
 fn pushed_n_s(point: &ContactData) -> f32 {
     point.impulse
 }
 
-/// The same of rapier 0.35, which counts what the step before handed over as well: of steps alike that is what this one hands on, a quarter of
+/// Impulse in rapier 0.35, which counts what the step before handed over as well: of steps alike that is what this one hands on, a quarter of
 /// the weight of what lies still.
 #[cfg(feature = "bevy-rapier-0-36")]
 fn pushed_n_s(point: &ContactData) -> f32 {

@@ -7,7 +7,7 @@ use rapier3d::parry::query::PointQueryWithLocation;
 use rapier3d::parry::shape::ShapeType;
 use rapier3d::prelude::*;
 
-/// What a collider is to asperity.
+/// Role of a collider in asperity.
 #[derive(Debug, Clone)]
 pub struct Thing {
     pub(crate) material: Material,
@@ -89,7 +89,7 @@ impl Thing {
         self
     }
 
-    /// What the rules of pairs need to know of it.
+    /// Data of it for the rules of pairs.
     pub(crate) fn facts(&self) -> asperity_pairs::Thing {
         asperity_pairs::Thing {
             material: self.material,

@@ -31,7 +31,7 @@ impl<'a> From<&'a PhysicsWorld> for View<'a> {
     }
 }
 
-/// How a rigid body moves.
+/// Motion of a rigid body.
 pub(crate) fn motion(body: &RigidBody) -> Motion {
     Motion {
         linear_m_s: told(body.linvel()),

@@ -28,7 +28,7 @@ pub const RIGID_PROBE: &str = "avian's rigid things";
 /// Ids of these contacts begin here, so that the app's own stay free below.
 const FIRST_CONTACT: u64 = 1 << 33;
 
-/// How often avian 0.7 counts an impulse: it adds what a substep has pushed so far to `normal_impulse` after the substep's solving and again after
+/// Number of times that avian 0.7 counts an impulse: it adds what a substep has pushed so far to `normal_impulse` after the substep's solving and again after
 /// its relaxing. What rests presses with its weight only then.
 const COUNTED: f32 = 2.0;
 
@@ -65,7 +65,7 @@ struct Listener {
     rigid: asperity::ProbeId,
     pairs: BTreeMap<[Entity; 2], Listed>,
     next_contact: u64,
-    /// What was warned of: an entity that cannot be heard, none: the world.
+    /// Entities that were warned of because they are silent; none: the world.
     told: HashSet<Option<Entity>>,
 }
 

@@ -1,4 +1,4 @@
-//! What entities are to touch. Adding a component puts it into the scene, removing it or the entity takes it out.
+//! Components: roles of entities in touch. Adding a component puts it into the scene, removing it or the entity takes it out.
 
 use asperity::{Body, Material, Probe, Surface, UvMapping};
 use bevy_ecs::prelude::*;
@@ -45,7 +45,7 @@ impl TouchSurface {
 /// The entity touches: a finger, a pen. Without it an entity that touches is the engine's own probe, felt by the first actuator.
 #[derive(Component, Debug, Clone, Copy, Default)]
 pub struct TouchProbe {
-    /// What touches; none = the engine's own probe.
+    /// Probe; none = the engine's own.
     pub probe: Option<Probe>,
     /// The haptic channel that feels it; none = it is heard only.
     pub actuator: Option<u16>,
@@ -59,16 +59,16 @@ impl TouchProbe {
     }
 }
 
-/// What a collider of a physics engine is to touch; put it on the entity that has the collider. It rings as the entity's
+/// Role of a physics engine's collider in touch; put it on the entity that has the collider. It rings as the entity's
 /// [`TouchBody`], and what slides on it strokes the entity's [`TouchSurface`]. Colliders without it are not heard.
 #[derive(Component, Debug, Clone, PartialEq)]
 pub struct TouchThing {
-    /// What it is made of.
+    /// Material.
     pub material: Material,
     /// The plane of its surface in the collider's own space, m: the place of uv (0, 0), the edge along u, the edge along v. A collider with a
     /// surface needs it, or a `mapping`.
     pub plane_m: Option<[[f64; 3]; 3]>,
-    /// How places on it become texture coordinates, where that is no plane: by the normal, around a sphere or a cylinder.
+    /// Mapping of places on it to texture coordinates, where that is no plane: by the normal, around a sphere or a cylinder.
     pub mapping: Option<UvMapping>,
     /// The haptic channel that feels what it touches: a finger, or a tool in the hand.
     pub actuator: Option<u16>,

@@ -15,9 +15,9 @@ pub struct NullOutput {
     renderer: Mutex<Renderer>,
     block: [Vec<Vec<f32>>; 2],
     keep: bool,
-    /// What was rendered, a channel an actuator; empty unless it is kept.
+    /// Rendered samples, a channel an actuator; empty unless they are kept.
     pub haptic: Vec<Vec<f32>>,
-    /// What was rendered, a channel an audio bus; empty unless it is kept.
+    /// Rendered samples, a channel an audio bus; empty unless they are kept.
     pub audio: Vec<Vec<f32>>,
 }
 

@@ -1,12 +1,12 @@
-//! Where the sound and the vibration go.
+//! Destination of the sound and the vibration.
 
 /// The output, chosen when the plugin is added.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Output {
-    /// Nobody hears it: tests and servers. Paced by `Time<Real>` of the app, without a thread and without sleeping.
+    /// Silent output for tests and servers. Paced by `Time<Real>` of the app, without a thread and without sleeping.
     Null {
-        /// Whether what was rendered is kept in [`NullOutput`](crate::NullOutput); it grows by 4 bytes a channel and sample.
+        /// Keeps rendered samples in [`NullOutput`](crate::NullOutput); it grows by 4 bytes a channel and sample.
         keep: bool,
     },
     /// A sound card through cpal: haptic channels on channels of their own, or on a device of their own.

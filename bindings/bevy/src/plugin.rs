@@ -12,7 +12,7 @@ use bevy_app::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_time::{Fixed, Time, Virtual};
 
-/// When what is told is reported; in `FixedPostUpdate`.
+/// Set in which touches are reported; in `FixedPostUpdate`.
 #[derive(SystemSet, Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TouchSystems {
     /// Messages and adapters' contacts go to the engine.
@@ -25,10 +25,10 @@ pub enum TouchSystems {
 /// reason is logged as an error and comes as a [`TouchError`].
 #[derive(Debug, Clone)]
 pub struct AsperityPlugin {
-    /// How the engine is built; a device's rate wins over its own. By default live, 48 kHz, one bus at a gain of 0.1 and one
+    /// Configuration of the engine; a device's rate wins over its own. By default live, 48 kHz, one bus at a gain of 0.1 and one
     /// haptic channel of 0.1 mm at full scale, with their limiters on.
     pub config: Config,
-    /// Where it plays.
+    /// Destination of sound.
     pub output: Output,
 }
 

@@ -33,7 +33,7 @@ pub struct TouchNode {
     actuators: usize,
 }
 
-/// What lies between the game and the graph.
+/// Queue between the game and the graph.
 #[derive(Default)]
 struct Slot {
     /// At the game's disposal.
@@ -116,7 +116,7 @@ impl AudioNode for TouchNode {
 struct Processor {
     slot: Arc<Mutex<Slot>>,
     renderer: Option<Renderer>,
-    /// What is felt goes nowhere from here; ports take it before.
+    /// Haptic samples go nowhere from here; ports take them before.
     haptic: Vec<Vec<f32>>,
 }
 

@@ -50,7 +50,7 @@ impl Touch {
         self.scene.get_mut().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What the engine did so far.
+    /// Statistics of the engine so far.
     pub fn stats(&mut self) -> Stats {
         self.scene().stats()
     }
@@ -67,7 +67,7 @@ impl Touch {
         self.surfaces.get(&entity).copied()
     }
 
-    /// What a recording calls bodies, surfaces and probes: `body 0`, `surface 0`, … in the order in which they were added.
+    /// Names of bodies, surfaces and probes in a recording: `body 0`, `surface 0`, … in the order in which they were added.
     #[must_use]
     pub fn names(&self) -> &Names {
         &self.names
@@ -174,7 +174,7 @@ impl Touch {
         self.names.probes.insert(format!("probe {}", self.names.probes.len()), id);
     }
 
-    /// What an adapter added by itself gets a name too.
+    /// Name for what an adapter added by itself.
     #[cfg(any(feature = "avian", feature = "rapier"))]
     pub(crate) fn name_own_probe(&mut self, name: &str, id: ProbeId) {
         self.names.probes.insert(name.into(), id);

@@ -19,7 +19,7 @@ const STEEL_KG_M3: f64 = 7850.0;
 const BAR_MODES: usize = 8;
 /// Half waves along and across the plate, at most.
 const PLATE_ORDERS: [usize; 2] = [6, 4];
-/// Where the bar's second string of nodes begins, over its length: a strike there leaves the lowest mode out.
+/// Place of the bar's second line of nodes over its length: a strike there leaves the lowest mode out.
 const NODE: f64 = 0.2242;
 
 /// The scene.

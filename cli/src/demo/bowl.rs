@@ -15,7 +15,7 @@ const MESH: &str = "bowl.obj";
 pub const MODES: &str = "bowl.modes.json";
 /// The picture of its shapes.
 pub const PICTURE: &str = "bowl.shapes.svg";
-/// What it is made of.
+/// Material.
 const MATERIAL: &str = "ceramic";
 /// Modes solved for.
 const MODES_WANTED: usize = 12;
@@ -24,7 +24,7 @@ const MODES_WANTED: usize = 12;
 const RADIUS_M: f64 = 0.07;
 /// Wall, m.
 const WALL_M: f64 = 0.006;
-/// How far the wall rises above the equator, rad.
+/// Height of the wall above the equator, rad.
 const RIM_RAD: f64 = -0.1;
 /// Corners from the bottom to the rim, and around.
 const RINGS: usize = 9;
@@ -123,7 +123,7 @@ fn toml() -> String {
     )
 }
 
-/// Of the sound.
+/// Level of the sound.
 const GAIN: f64 = 2.0;
 
 /// Everything that happens, in order.

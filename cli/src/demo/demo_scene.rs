@@ -12,7 +12,7 @@ pub struct DemoScene {
     pub name: &'static str,
     /// Headline.
     pub title: &'static str,
-    /// What to listen to and look at.
+    /// Hints on what to listen to and look at.
     pub notice: &'static str,
     /// `NAME.toml`.
     pub toml: String,

@@ -12,24 +12,24 @@ use std::path::Path;
 /// Peak below which a channel is silent: −60 dBFS.
 const SILENT: f32 = 1e-3;
 
-/// What asperity is, in one sentence.
+/// Description of asperity, in one sentence.
 const WHAT: &str = "asperity turns touch into signal: from where a finger or a tool is and how hard it presses, it computes what the \
                     finger feels and what the thing sounds like.";
 
-/// What to do with the files, in one paragraph.
+/// Use of the files, in one paragraph.
 const HOW: &str = "NAME.audio.wav is what is heard; NAME.haptic.wav is what a vibration actuator at the fingertip \
                    would play (through headphones it is a low rumble); NAME.svg is a picture of both: the surface \
                    passing under the finger, the pad on it, the impulses sent to the body, and the spectra. \
                    NAME.toml and NAME.jsonl are the scene and the contact log it was made from; change them and \
                    run `asperity render NAME.toml -o NAME --plot` again.";
 
-/// What is said about the fit, beside its pictures.
+/// Text about the fit, beside its pictures.
 const FIT: &str = "tile_strike.wav is a recorded impact, made by the project (synthetic: a tile in a room, with noise), \
                    fitted as `asperity fit tile_strike.wav -o tile.modes.json --max-modes 32 --plot tile.fit.svg` does. \
                    tile.resynthesis.wav is what the modes alone sound like; the tile of the struck scene plays them. \
                    Do the same with a recording of your own.";
 
-/// What is said about the mesh, beside its picture.
+/// Text about the mesh, beside its picture.
 const SHAPE: &str = "bowl.obj is a mesh made by the project. `asperity modes bowl.obj --material ceramic --max-modes 12 --shapes-glb -o bowl.modes.json \
                      --plot bowl.shapes.svg` makes the body of the bowl scene of it. Do the same with a mesh of your own.";
 
@@ -41,7 +41,7 @@ pub struct Bodies {
     pub solved: modes::Report,
 }
 
-/// What the mesh came to.
+/// Result of the mesh.
 fn solved(report: &modes::Report) -> String {
     format!(
         "{} modes from {:.0} to {:.0} Hz, {} unknowns, {:.1} s",
@@ -49,7 +49,7 @@ fn solved(report: &modes::Report) -> String {
     )
 }
 
-/// What the fit came to.
+/// Result of the fit.
 fn found(fitted: &fit::Report) -> String {
     format!(
         "{} modes in {:.1} s, {:.0} dB above what they leave",
@@ -61,7 +61,7 @@ fn level(report: &Report) -> String {
     quantity(20.0 * f64::from(report.audio_peak).max(1e-10).log10(), "dB")
 }
 
-/// What is printed at the end.
+/// Text printed at the end.
 #[must_use]
 pub fn summary(folder: &Path, scenes: &[DemoScene], reports: &[Report], bodies: &Bodies) -> String {
     let mut text = format!(

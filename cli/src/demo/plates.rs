@@ -26,7 +26,7 @@ pub struct Plate {
     pub name: &'static str,
     /// Headline of the index.
     pub title: &'static str,
-    /// What to listen to and look at.
+    /// Hints on what to listen to and look at.
     pub notice: &'static str,
     /// Pad displacement at sample value 1 of the haptic file, m.
     pub full_scale_m: f64,

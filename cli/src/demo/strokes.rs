@@ -20,7 +20,7 @@ const RAMP_S: f64 = 0.16;
 const TREMOR_M: f64 = 3e-5;
 const TREMOR_HZ: f64 = 9.0;
 
-/// Where a finger strokes, and how.
+/// Place and manner of a finger's strokes.
 #[derive(Debug, Clone)]
 pub struct Finger<'a> {
     /// Contact id.
@@ -35,9 +35,9 @@ pub struct Finger<'a> {
     pub start_s: f64,
     /// Force, N.
     pub normal_force_n: f64,
-    /// Where it lands, m.
+    /// Landing place, m.
     pub from_m: [f64; 2],
-    /// Where each stroke ends, m, and its speed, m/s.
+    /// End of each stroke, m, and its speed, m/s.
     pub strokes: Vec<([f64; 2], f64)>,
 }
 

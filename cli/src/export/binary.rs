@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
-/// What a view of points or of corners is for.
+/// Purpose of a view: points or corners.
 const VERTICES: u32 = 34962;
 const CORNERS: u32 = 34963;
 

@@ -26,12 +26,12 @@ const MAX_BYTES: u64 = 64 << 20;
 /// Names of columns with levels.
 const LEVELS: [&str; 4] = ["amplitude", "gain", "level_db", "op"];
 
-/// What a table lacks.
+/// Numbers that stand for what a table lacks.
 #[derive(Debug, Clone, Default)]
 pub struct Missing {
     /// Which object of a list.
     pub entry: Option<String>,
-    /// What a ratio of 1 is, Hz.
+    /// Frequency of a ratio of 1, Hz.
     pub base_hz: Option<f64>,
     /// 60 dB decay time where the table has none, s.
     pub t60_s: Option<f64>,
@@ -47,11 +47,11 @@ pub struct Imported {
     pub positions: Vec<Vec<f64>>,
     /// Impulse that the file names, if it is a modes file.
     pub impulse_n_s: Option<f64>,
-    /// What was left out.
+    /// Modes that were left out.
     pub warnings: Vec<String>,
 }
 
-/// Whether a file is a table by its name.
+/// Tests whether a file is a table by its name.
 pub fn is_table(path: &Path) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
     matches!(ending.as_deref(), Some("csv" | "json"))

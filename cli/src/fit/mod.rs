@@ -98,13 +98,13 @@ pub struct Options {
     /// Put this much of what the modes do not explain into the modes file; impacts will play it, ms
     #[arg(long, value_name = "MS")]
     pub burst_ms: Option<f64>,
-    /// Of a table with several bodies, the one to import
+    /// Body to import of a table with several
     #[arg(long, value_name = "NAME")]
     pub entry: Option<String>,
-    /// What a frequency ratio of 1 is in a table of ratios, Hz
+    /// Frequency of a ratio of 1 in a table of ratios, Hz
     #[arg(long, value_name = "HZ")]
     pub base_hz: Option<f64>,
-    /// How long the modes of a table without decays ring (60 dB), s
+    /// Ringing time (60 dB) of the modes of a table without decays, s
     #[arg(long, value_name = "S")]
     pub t60: Option<f64>,
     /// Sample rate of a table's pole radii, Hz

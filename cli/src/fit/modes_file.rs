@@ -8,7 +8,7 @@ use asperity_fit::{Fit, FittedMode};
 use serde::Serialize;
 use std::path::Path;
 
-/// What a modes file holds.
+/// Contents of a modes file.
 #[derive(Serialize)]
 pub struct Body<'a> {
     format: &'static str,

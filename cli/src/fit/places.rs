@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 /// Below this the places explain too little to be believed.
 const DOUBTFUL: f64 = 0.5;
 
-/// What `--json` says of it.
+/// Figures of a strike's place for `--json`.
 #[derive(Debug, Serialize)]
 pub struct PlacesReport {
-    /// How much of the difference between the strikes their places explain; 1 = all.
+    /// Share of the difference between the strikes that their places explain; 1 = all.
     pub r_squared: f64,
     /// Measured over computed frequencies.
     pub frequency_factor: f64,
@@ -31,7 +31,7 @@ pub struct StrikeReport {
     pub recording: PathBuf,
     /// Nearest point of the mesh, in the body's frame.
     pub at_m: [f64; 3],
-    /// How hard, against the first.
+    /// Strength, relative to the first.
     pub level: f64,
 }
 

@@ -16,9 +16,9 @@ const LONGEST_T60_S: f64 = 60.0;
 /// The object of `--json`.
 #[derive(Debug, Serialize)]
 pub struct Report {
-    /// How many modes were found.
+    /// Number of modes found.
     pub modes: usize,
-    /// Where the strike begins, s of the file.
+    /// Beginning of the strike, s of the file.
     pub onset_s: f64,
     /// From the onset to where the modes were fitted, s.
     pub start_offset_s: f64,
@@ -26,17 +26,17 @@ pub struct Report {
     pub resynthesis_snr_db: f64,
     /// Recording over what the struck body leaves of it, from the onset on, dB.
     pub snr_from_onset_db: f64,
-    /// The same within half an octave of the modes, dB: without rumble and hiss.
+    /// SNR within half an octave of the modes, dB: without rumble and hiss.
     pub snr_in_band_db: f64,
     /// Peak of what the engine plays at the file's own impulse over the recording's, dB.
     pub struck_peak_db: f64,
     /// Noise power, dB re full scale.
     pub noise_floor_db: f64,
-    /// How long the fit took.
+    /// Duration of the fit.
     pub seconds: f64,
-    /// What the user should know.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// How many samples, strikes or modes each kind of warning is about.
+    /// Number of samples, strikes or modes that each kind of warning is about.
     pub warning_counts: BTreeMap<&'static str, usize>,
     /// α of d = α + β ω², 1/s.
     pub damping_alpha_per_s: Option<f64>,
@@ -108,11 +108,11 @@ impl Report {
 /// The object of `--json` for an imported table.
 #[derive(Debug, Serialize)]
 pub struct TableReport {
-    /// How many modes were imported.
+    /// Number of modes imported.
     pub modes: usize,
     /// Strike positions, the first included.
     pub positions: usize,
-    /// What the user should know.
+    /// Warnings.
     pub warnings: Vec<String>,
     /// α of d = α + β ω², 1/s.
     pub damping_alpha_per_s: Option<f64>,

@@ -1,4 +1,4 @@
-//! What is read: samples, a scene that is rendered, or a clip.
+//! Inputs: samples, a scene that is rendered, or a clip.
 
 use super::{name_of, port::transients_of};
 use crate::error::CliError;
@@ -15,13 +15,13 @@ use std::path::Path;
 /// Longest file that is read as text, bytes.
 const LONGEST_TEXT: u64 = 1 << 30;
 
-/// What was read.
+/// Vibration that was read.
 pub enum Input {
     /// Samples of displacement.
     Samples {
         samples: Vec<f64>,
         rate_hz: f64,
-        /// Where contacts begin and bodies are struck, s.
+        /// Times at which contacts begin and bodies are struck, s.
         strokes_s: Vec<f64>,
         told: Vec<String>,
         source: String,
@@ -107,7 +107,7 @@ fn sound(path: &Path, channel: usize) -> Result<Input, CliError> {
     })
 }
 
-/// What an actuator of a scene is driven by.
+/// Quantity that drives an actuator of a scene.
 fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
     let file = SceneFile::load(path)?;
     let Some(actuator) = file.actuators.get(channel) else {
@@ -134,7 +134,7 @@ fn scene(path: &Path, channel: usize) -> Result<Input, CliError> {
     })
 }
 
-/// When something lands on a channel's hand or strikes in it, s.
+/// Times at which something lands on a channel's hand or strikes in it, s.
 pub fn strokes_s(log: &ContactLog, channel: usize) -> Vec<f64> {
     let felt_here = |event: &LogEvent| match event {
         LogEvent::Begin { touching, .. } => touching.hand.actuator,

@@ -27,7 +27,7 @@ pub struct Options {
     /// Samples of displacement, a scene with its contact log, or a clip
     #[arg(value_name = "IN.(wav|flac|ogg|toml|haptic|ahap|hjif)")]
     pub input: PathBuf,
-    /// What to write: an envelope of two curves, a waveform in few points, or samples of what is left
+    /// Way of writing: an envelope of two curves, a waveform in few points, or samples of what is left
     #[arg(short, long = "output", value_name = "OUT.(haptic|ahap|hjif|android.json|pcm.wav|wav)")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -35,7 +35,7 @@ pub struct Options {
     /// Channel of the WAV file or of the clip, actuator of the scene, from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub channel: usize,
-    /// How far what is left lies from what was
+    /// Scores the distance between what is left and what was
     #[arg(long)]
     pub score: bool,
     /// Picture of what was and of what is left
@@ -46,10 +46,10 @@ pub struct Options {
     pub json: bool,
 }
 
-/// How a port is written.
+/// Settings of a port.
 #[derive(Debug, Args)]
 pub struct PortOptions {
-    /// What plays it: quest, console, iphone, lra-170, or a profile (TOML, or an actuator configuration)
+    /// Device that plays it: quest, console, iphone, lra-170, or a profile (TOML, or an actuator configuration)
     #[arg(long, value_name = "NAME|FILE", default_value = "quest")]
     pub device: String,
     /// Most envelope points a second
@@ -147,7 +147,7 @@ pub fn write_port(
     Ok(made(input, &port, path, &device, &plain, outputs)?.warnings)
 }
 
-/// What was written, and both signals at 8 kHz.
+/// Result, and both signals at 8 kHz.
 struct Made {
     duration_s: f64,
     points: usize,

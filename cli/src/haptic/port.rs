@@ -1,4 +1,4 @@
-//! What is written, by the end of its name.
+//! Ports: formats that are written, by the end of a file's name.
 
 use super::{Made, PortOptions, at_rate};
 use crate::error::CliError;
@@ -41,7 +41,7 @@ impl Port {
         })
     }
 
-    /// Whether it holds the waveform itself. Samples that are written as `.wav` are what is left of them.
+    /// Tests whether it holds the waveform itself. Samples that are written as `.wav` are what is left of them.
     pub fn is_waveform(self) -> bool {
         matches!(self, Self::Hjif | Self::Pcm)
     }

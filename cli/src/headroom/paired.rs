@@ -23,9 +23,9 @@ const MANY: usize = 64;
 /// One thing beside another.
 #[derive(Debug, Serialize)]
 pub(super) struct PairRow {
-    /// What is compared.
+    /// Two things that are compared.
     what: &'static str,
-    /// What either renders.
+    /// Work of either.
     scene: &'static str,
     instruction_set: &'static str,
     /// A sample of the first, and of the second; where contacts are counted, a sample and contact.
@@ -35,11 +35,11 @@ pub(super) struct PairRow {
     times_the_first: f64,
 }
 
-/// What the paired rows came to.
+/// Result of the paired rows.
 #[derive(Debug, Serialize)]
 pub(super) struct Paired {
     rows: Vec<PairRow>,
-    /// How much more work two threads that only count do in a time than one.
+    /// Factor by which two threads that only count do more work in a time than one.
     two_busy_loops: f64,
 }
 
@@ -58,7 +58,7 @@ struct Way {
     frames: usize,
     /// Frames of a turn.
     turn_frames: usize,
-    /// What its cost is divided by.
+    /// Divisor of its cost.
     shares: usize,
 }
 
@@ -131,7 +131,7 @@ fn pair(
     })
 }
 
-/// What no engine can do better than on this machine at this time.
+/// Bound of any engine on this machine at this time.
 fn two_busy_loops() -> f64 {
     let busy = || {
         let began = Instant::now();

@@ -37,7 +37,7 @@ pub struct Options {
     /// Folder to fill: scene.toml, contacts.jsonl, modes and heights
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: PathBuf,
-    /// What bodies are made of where the document does not say: a preset
+    /// Material of bodies where the document has none: a preset
     #[arg(long, value_name = "NAME", default_value = "ceramic")]
     pub material: String,
     /// Print one JSON object
@@ -87,7 +87,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     Ok(())
 }
 
-/// What the nodes of a document give.
+/// Bodies and surfaces of the nodes of a document.
 #[derive(Default)]
 struct Scene {
     bodies: Vec<(String, String)>,

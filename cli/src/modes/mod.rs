@@ -30,7 +30,7 @@ pub struct Report {
     pub lowest_hz: f64,
     /// Highest mode, Hz.
     pub highest_hz: f64,
-    /// What it took, s.
+    /// Duration, s.
     pub seconds: f64,
     peak_mib: Option<f64>,
     warnings: Vec<String>,

@@ -22,7 +22,7 @@ pub struct Options {
     /// Modes file to write
     #[arg(short, long = "output", value_name = "OUT.modes.json")]
     pub output: PathBuf,
-    /// What it is made of: a preset
+    /// Material: a preset
     #[arg(long, value_name = "NAME")]
     pub material: Option<String>,
     /// Young's modulus, Pa, instead of the material's
@@ -49,7 +49,7 @@ pub struct Options {
     /// Damping of a recorded body of the same material: its modes file
     #[arg(long, value_name = "HIT.modes.json")]
     pub damping_from: Option<PathBuf>,
-    /// How loud each mode is in the air at 1 m, in pascals, and what radiation takes from it; without this levels are relative
+    /// Finds the level of each mode in the air at 1 m, in pascals, and its radiation loss; without this levels are relative
     #[arg(long)]
     pub radiation: bool,
     /// Write the shapes into a file of their own, OUT.shapes, a fifth as large
@@ -142,7 +142,7 @@ impl Options {
         })
     }
 
-    /// What it is made of and how that damps.
+    /// Material and its damping.
     pub fn material(&self) -> Result<(Elastic, Damping), CliError> {
         let preset = self.material.as_deref().map(preset).transpose()?;
         let missing = |option: &str| {

@@ -32,7 +32,7 @@ pub struct Options {
     /// A second device for the actuators; its clock is followed by a small resampler
     #[arg(long, value_name = "ID")]
     pub haptic_device: Option<String>,
-    /// What goes where: audio=0,1 haptic=2,3 or dualsense
+    /// Channels of the device: audio=0,1 haptic=2,3 or dualsense
     #[arg(long, value_name = "MAP", num_args = 1..=2)]
     pub channels: Vec<String>,
     /// Frames a callback to ask for; the device may decide otherwise
@@ -77,7 +77,7 @@ fn play(options: &Options) -> Result<(), CliError> {
     if options.list_devices { session::list(options) } else { session::run(options) }
 }
 
-/// Of a program that was built without sound card support: names the feature to build with.
+/// Refusal of a program that was built without sound card support: names the feature to build with.
 #[cfg(not(feature = "device"))]
 fn play(_options: &Options) -> Result<(), CliError> {
     Err(CliError::new(

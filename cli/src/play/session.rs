@@ -21,16 +21,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-/// How far ahead of the sound events are sent, s; the player may sleep for so long unnoticed.
+/// Lead of events over the sound, s; the player may sleep for so long unnoticed.
 const LEAD_S: f64 = 0.25;
-/// How often the player looks whether events are due.
+/// Interval at which the player looks for due events.
 const STEP: Duration = Duration::from_millis(10);
 /// A device that stands still for so long is given up.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Group delay of the 30 Hz path filter, s (Hasti §III-C).
 const PATH_DELAY_S: f64 = 0.0075;
 
-/// What is printed at the end.
+/// Summary printed at the end.
 #[derive(Debug, Serialize)]
 struct Summary {
     /// The device, or null where the scene was played silently.
@@ -51,7 +51,7 @@ struct Summary {
     late: u64,
     dropped: u64,
     interrupted: bool,
-    /// What was refused, lost or left out, and what speaks against sound.
+    /// Events refused, lost or left out, and reasons for silence.
     warnings: Vec<String>,
 }
 
@@ -187,7 +187,7 @@ impl Feed<'_> {
     }
 }
 
-/// What may change while it plays.
+/// Parts that may change while it plays.
 struct Live<'a> {
     names: Names,
     watch: Option<Watch<'a>>,

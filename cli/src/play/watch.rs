@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-/// How often the file is looked at.
+/// Interval at which the file is looked at.
 const EVERY: Duration = Duration::from_millis(200);
 
 /// A scene file that is watched.
@@ -32,7 +32,7 @@ fn named(file: &SceneFile) -> BTreeMap<PathBuf, Option<SystemTime>> {
     file.named_files().into_iter().map(|path| (path.to_owned(), written(path))).collect()
 }
 
-/// When a file was written last; none while an editor puts another in its place.
+/// Time of a file's last change; none while an editor puts another in its place.
 fn written(path: &Path) -> Option<SystemTime> {
     std::fs::metadata(path).and_then(|file| file.modified()).ok()
 }
@@ -44,7 +44,7 @@ impl<'a> Watch<'a> {
         Self { file, overrides, seen, named, looked: Instant::now(), sand: Vec::new() }
     }
 
-    /// What there is to say since the last look: what was applied, what waits, or why the old scene goes on.
+    /// News since the last look: what was applied, what waits, or why the old scene goes on.
     pub fn look(&mut self, scene: &mut Scene, names: &mut Names) -> Vec<String> {
         if self.looked.elapsed() < EVERY {
             return Vec::new();

@@ -3,7 +3,7 @@
 /// One axis of a panel.
 #[derive(Debug, Clone)]
 pub struct Axis {
-    /// What it measures.
+    /// Quantity on the axis.
     pub label: String,
     /// Unit without prefix (`m`, `s`, `Hz`, `N·s`); `dB`, `%` and an empty unit take no prefix.
     pub unit: String,
@@ -11,7 +11,7 @@ pub struct Axis {
     pub log: bool,
     /// Ends; none = as the data need.
     pub range: Option<[f64; 2]>,
-    /// Whether numbers stand at the ticks.
+    /// Writes numbers at the ticks.
     pub numbers: bool,
 }
 

@@ -1,6 +1,6 @@
 //! Colours, few and always with the same meaning.
 
-/// What each colour stands for in every picture.
+/// Colours of all pictures, by what they stand for.
 pub mod palette {
     /// The surface, filled.
     pub const GROUND: &str = "#e4ddd0";
@@ -10,9 +10,9 @@ pub mod palette {
     pub const PAD: &str = "#1565c0";
     /// Collisions and impacts.
     pub const IMPACT: &str = "#d84315";
-    /// What is felt.
+    /// Felt.
     pub const HAPTIC: &str = "#00796b";
-    /// What is heard.
+    /// Heard.
     pub const AUDIO: &str = "#5e35b1";
     /// Distinct colours for rows of things without a meaning of their own.
     pub const SERIES: [&str; 8] =

@@ -68,7 +68,7 @@ fn visible(len: usize, at: &impl Fn(usize) -> f64, columns: &Range<f64>) -> Rang
     first..(last + 1).min(len)
 }
 
-/// How many indices come first for which `before` holds.
+/// Number of first indices for which `before` holds.
 fn partition(len: usize, before: impl Fn(usize) -> bool) -> usize {
     let (mut low, mut high) = (0, len);
     while low < high {

@@ -73,7 +73,7 @@ fn bar_of(panel: &Panel) -> Option<&Picture> {
     })
 }
 
-/// Where a panel's values lie in the picture.
+/// Place of a panel's values in the picture.
 struct Place {
     x: Ruler,
     y: Ruler,

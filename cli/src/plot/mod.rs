@@ -81,7 +81,7 @@ pub struct Panel {
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
-    /// Whether a unit is as long across as down, as on a map; needs both axes' ranges.
+    /// Makes a unit as long across as down, as on a map; needs both axes' ranges.
     pub true_scale: bool,
     /// Back to front.
     pub layers: Vec<Layer>,
@@ -157,7 +157,7 @@ impl Series {
     }
 }
 
-/// What a panel shows.
+/// Contents of a panel.
 #[derive(Debug, Clone)]
 pub enum Layer {
     /// A line, and the area below it when `fill` holds a colour.
@@ -203,7 +203,7 @@ pub enum Layer {
         label: String,
         /// Stroke colour.
         colour: String,
-        /// Where.
+        /// Place.
         x: Vec<f64>,
     },
     /// A picture over a rectangle of the plane.
@@ -263,7 +263,7 @@ impl From<Picture> for Layer {
     }
 }
 
-/// What the ends of a colour scale mean.
+/// Meaning of the ends of a colour scale.
 #[derive(Debug, Clone)]
 pub struct ColourBar {
     /// Values at 0 and 1.

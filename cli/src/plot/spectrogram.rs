@@ -7,7 +7,7 @@
 use super::{ColourBar, Picture, colour::Scale};
 use asperity_fft::{FftPlanner, num_complex::Complex};
 
-/// How a spectrogram is made.
+/// Settings of a spectrogram.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectrogramOptions {
     /// Time of the first sample, seconds.
@@ -24,7 +24,7 @@ pub struct SpectrogramOptions {
     pub top_db: Option<f64>,
     /// Extent of the colour scale, dB.
     pub range_db: f64,
-    /// What the levels refer to, above the colour bar: `dB re 1 µm`.
+    /// Reference of the levels, above the colour bar: `dB re 1 µm`.
     pub unit: String,
     /// Added to every level, dB: 120 turns metres into micrometres.
     pub offset_db: f64,

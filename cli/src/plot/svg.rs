@@ -12,7 +12,7 @@ pub struct Svg {
     clips: usize,
 }
 
-/// How text stands on its point.
+/// Alignment of text to its point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextStyle<'a> {
     /// `start`, `middle` or `end`.

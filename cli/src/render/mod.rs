@@ -50,13 +50,13 @@ pub struct Options {
     /// Seed of every random number, whatever the scene says
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// How exact the engine is, from the fastest on: fast, default, accurate; the options below count more
+    /// Accuracy of the engine, from the fastest on: fast, default, accurate; the options below count more
     #[arg(long, value_name = "NAME", value_parser = presets(), default_value = "default")]
     pub preset: Preset,
-    /// How the contact model is integrated
+    /// Integrator of the contact model
     #[arg(long, value_name = "NAME", value_parser = integrators())]
     pub integrator: Option<Integrator>,
-    /// How sparse positions become a path
+    /// Way from sparse positions to a path
     #[arg(long, value_name = "NAME", value_parser = paths())]
     pub path: Option<PathMode>,
     /// Instruction set of the kernels whose last bits depend on it: portable gives the same files on every processor
@@ -255,7 +255,7 @@ fn check_outputs(options: &Options, file: &SceneFile) -> Result<(), CliError> {
     options.port.as_deref().map_or(Ok(()), check_destination)
 }
 
-/// What the picture of a surface of sand is called after the stem.
+/// Ending, after the stem, of the picture of a surface of sand.
 fn sand_suffix(surface: &str) -> String {
     format!("{}.sand.png", file_name(surface))
 }

@@ -18,14 +18,14 @@ const ZOOM_S: f64 = 0.03;
 /// Between two reports of most games, s.
 const REPORT_S: f64 = 1.0 / 60.0;
 
-/// What one contact did, sample by sample.
+/// Samples of one contact.
 #[derive(Debug, Clone, Default)]
 pub struct ContactCurve {
     /// `finger on tiles`.
     pub label: String,
     /// Time of the first sample, s.
     pub start_s: f64,
-    /// How many samples it lasted.
+    /// Duration in samples.
     pub samples: u64,
     /// Profile under the contact, m.
     pub height_m: Vec<f64>,
@@ -35,7 +35,7 @@ pub struct ContactCurve {
     pub speed_m_s: Vec<f64>,
     /// Normal force, N.
     pub normal_force_n: Vec<f64>,
-    /// Where it went, in texture coordinates, some hundred times a second.
+    /// Path in texture coordinates, some hundred points a second.
     pub path_uv: Vec<[f64; 2]>,
     /// Times, s, and momenta, N·s, sent to the body.
     pub impulses: Vec<[f64; 2]>,
@@ -50,7 +50,7 @@ pub struct HapticChannel<'a> {
     pub quantity: &'a str,
     /// Its unit.
     pub unit: &'a str,
-    /// What sample value 1 means.
+    /// Meaning of sample value 1.
     pub full_scale: f64,
     /// n, where it grows beside the pad's own motion, ∝ Fⁿ.
     pub felt_force_exponent: f64,
@@ -65,7 +65,7 @@ pub struct Ground {
     pub title: String,
     /// Extent along u and v, m.
     pub extent_m: [f64; 2],
-    /// How it goes on beyond its edges.
+    /// Continuation beyond its edges.
     pub wrap: Wrap,
     /// Heights, 0 = lowest, 1 = highest, top row first.
     pub heights: Raster,
@@ -82,15 +82,15 @@ pub struct Take<'a> {
     pub summary: Vec<String>,
     /// Rate of both outputs, Hz.
     pub sample_rate_hz: f64,
-    /// What is heard.
+    /// Audio.
     pub audio: &'a [f32],
-    /// What is felt.
+    /// Haptics.
     pub haptic: Vec<HapticChannel<'a>>,
-    /// What touched.
+    /// Contacts.
     pub contacts: &'a [ContactCurve],
     /// Times of impacts, s.
     pub impacts_s: Vec<f64>,
-    /// What was touched, as far as it can be drawn from above.
+    /// Surfaces, as far as they can be drawn from above.
     pub grounds: Vec<Ground>,
 }
 
@@ -177,7 +177,7 @@ fn highest(take: &Take<'_>, values: impl Fn(&ContactCurve) -> &Vec<f64>) -> f64 
     drawn(take).flat_map(|(contact, _)| values(contact)).copied().fold(0.0, f64::max)
 }
 
-/// What the legend says: the pad where there is one contact, and as much of each name as there is room
+/// Text of the legend: the pad where there is one contact, and as much of each name as there is room
 /// for where there are more. The colours are those of the force and speed panels above.
 fn legend(take: &Take<'_>, contact: &ContactCurve) -> String {
     match take.contacts.len() {

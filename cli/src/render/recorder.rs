@@ -22,7 +22,7 @@ const PATH_EVERY: u64 = 256;
 
 type Table = CsvWriter<BufWriter<File>>;
 
-/// What a render keeps besides its samples.
+/// Data that a render keeps besides its samples.
 pub struct Recorder {
     sample_rate_hz: f64,
     trace: Option<Trace>,

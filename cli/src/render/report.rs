@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     /// Length of both WAV files.
@@ -57,7 +57,7 @@ pub struct Report {
     pub sand: BTreeMap<String, SandReport>,
     /// Every file written.
     pub files: Vec<PathBuf>,
-    /// What was refused, lost or clipped, and why a file is silence: one line each, with what mends it.
+    /// Events refused, lost or clipped, and why a file is silence: one line each, with what mends it.
     pub warnings: Vec<String>,
 }
 
@@ -82,7 +82,7 @@ fn peak(samples: &[f32]) -> f32 {
     samples.iter().fold(0.0, |peak, sample| sample.abs().max(peak))
 }
 
-/// What is told of a render; files, sand and warnings come later.
+/// Report of a render; files, sand and warnings come later.
 pub(super) fn report(render: &Render, kernel: Isa, levels: Levels, watching: Duration) -> Report {
     let stats = &render.stats;
     let processing_s = render.processing.saturating_sub(watching).as_secs_f64().max(1e-9);

@@ -87,7 +87,7 @@ pub fn preset_rows() -> Result<Vec<Row>, CliError> {
     Preset::ALL.into_iter().map(choice).collect()
 }
 
-/// What of a contact excites the body.
+/// Part of a contact that excites the body.
 pub fn exciter_rows() -> Result<Vec<Row>, CliError> {
     let choice = |excitation: &'static str| {
         let chain = Chain { excitation: Some(excitation), ..Chain::default() };

@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 
 /// The reference's inner samples over the engine's.
 const INNER: usize = 16;
-/// How many samples an impulse of the tap is later than the force that it is: the kernel is two samples long on each side, and a mean
+/// Delay in samples of an impulse of the tap behind the force that it is: the kernel is two samples long on each side, and a mean
 /// over a step belongs half a step before its end.
 const LATE_SAMPLES: f64 = 2.5;
 /// The stages, from the contact on.
@@ -38,7 +38,7 @@ pub struct Preset {
     pub error_db: f64,
     /// One contact on a body of nine modes, all cases.
     pub ns_per_sample: f64,
-    /// What each stage adds to the error's power.
+    /// Share of each stage in the error's power.
     pub stages: BTreeMap<&'static str, f64>,
     /// Every case by itself.
     pub cases: Vec<CaseLevel>,
@@ -47,9 +47,9 @@ pub struct Preset {
 /// A preset on a case.
 #[derive(Debug, Clone, Serialize)]
 pub struct CaseLevel {
-    /// Of the case.
+    /// Name of the case.
     pub name: &'static str,
-    /// Whether it forgets how it came to where it is; elsewhere waveforms cannot be compared.
+    /// True where the case loses its initial state; elsewhere waveforms cannot be compared.
     pub contractive: bool,
     /// dB.
     pub felt_db: f64,
@@ -63,13 +63,13 @@ pub fn with_exact_contact(preset: EnginePreset) -> Chain {
     Chain { preset, integrator, oversampling: Some(INNER), ..Chain::default() }
 }
 
-/// What leaves the reference.
+/// Outputs of the reference.
 pub struct Reference {
     /// At the engine's samples.
     pub felt: Vec<f64>,
     /// At the inner ones.
     heard: Vec<f64>,
-    /// Of the contact, at the engine's samples: the pad's displacement, and the mean force over the sample that ends there.
+    /// Contact at the engine's samples: the pad's displacement, and the mean force over the sample that ends there.
     pub contact: [Vec<f64>; 2],
 }
 
@@ -82,7 +82,7 @@ impl Reference {
         Self::excited_by(case, seed, log, None)
     }
 
-    /// The same where this excites the body in place of the contact's force.
+    /// Error where this excites the body in place of the contact's force.
     ///
     /// # Errors
     /// Never but by a defect.
@@ -98,7 +98,7 @@ impl Reference {
         Ok(Self { felt: take.haptic, heard, contact })
     }
 
-    /// What is heard at each of the engine's samples, so much later, s.
+    /// Sound at each of the engine's samples, so much later, s.
     pub fn heard(&self, later_s: f64) -> Vec<f64> {
         let later = later_s * SAMPLE_RATE_HZ * INNER as f64;
         let at = |n: usize| (n * INNER) as f64 + LATE_SAMPLES - later;
@@ -193,7 +193,7 @@ fn stages(
     }))
 }
 
-/// Whether a path moved by a picometre is felt and heard the same.
+/// Tests whether a path moved by a picometre gives equal outputs.
 ///
 /// # Errors
 /// Never but by a defect.

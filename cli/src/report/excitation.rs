@@ -1,4 +1,4 @@
-//! What the ear is said to miss where something is left out: differences of its excitation, with spreading and the threshold in quiet
+//! Excitation that the ear misses where something is left out: differences of its excitation, with spreading and the threshold in quiet
 //! (`asperity_dsp::masking`), in cells of an ERB and 20 ms of what was rendered.
 
 use asperity_dsp::masking::{erb_number, excitation_db, quiet_db_spl};
@@ -15,7 +15,7 @@ const LOUDEST_DB_SPL: f64 = 70.0;
 /// Share of the cells that are within what is told.
 const MOST: f64 = 0.99;
 
-/// What is said to be missed.
+/// Missed excitation.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Missed {
     /// In 99 of 100 cells the difference is at most this, dB.
@@ -59,12 +59,12 @@ fn excited(bands: &[f64], loudest: f64) -> impl Iterator<Item = f64> {
     })
 }
 
-/// What is missed of a sound; both begin together.
+/// Missed excitation of a sound; both begin together.
 pub fn missed(less: &[f64], whole: &[f64], rate_hz: f64) -> Missed {
     missed_in_the_mean([(less, whole)].into_iter(), rate_hz)
 }
 
-/// The same in the mean over several, as strikes whose modes begin at other phases: two tones within an ERB beat, and of a beat it is chance which
+/// Mean over several sounds, as strikes whose modes begin at other phases: two tones within an ERB beat, and of a beat it is chance which
 /// frame it falls in.
 pub fn missed_in_the_mean<'a>(pairs: impl Iterator<Item = (&'a [f64], &'a [f64])>, rate_hz: f64) -> Missed {
     let [mut less, mut whole] = [Vec::new(), Vec::new()];

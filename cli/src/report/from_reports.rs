@@ -15,11 +15,11 @@ use asperity_fft::{FftPlanner, num_complex::Complex};
 use serde::Serialize;
 
 const REPORT_RATE_HZ: f64 = 60.0;
-/// Of the reference.
+/// Levels of the reference.
 const DENSE_RATE_HZ: f64 = 2_000.0;
 const REFERENCE: &str = "the same mode, told of the same hand 2000 times a second: what 60 reports a second cost. On rough ground no path is near enough \
                          for waveforms; there levels count (the table from 60 reports a second)";
-/// How far the hand goes, m.
+/// Length of the hand's way, m.
 const REACH_M: f64 = 0.09;
 /// Frames in which levels are compared, s.
 const FRAME_S: f64 = 0.1;
@@ -29,17 +29,17 @@ const BANDS: std::ops::RangeInclusive<i32> = -12..=3;
 /// A path mode on a ground.
 #[derive(Debug, Clone, Serialize)]
 pub struct Stroke {
-    /// Of the ground.
+    /// Wavelength of the ground.
     pub name: &'static str,
     /// As on the command line.
     pub path: &'static str,
-    /// Of the waveform that is felt, dB.
+    /// Error of the haptic waveform, dB.
     pub felt_db: f64,
-    /// Of the one that is heard, dB.
+    /// Error of the audio waveform, dB.
     pub heard_db: f64,
     /// Median difference of third-octave levels of what is felt, dB.
     pub felt_levels_db: f64,
-    /// Of what is heard, dB.
+    /// Error of the audio, dB.
     pub heard_levels_db: f64,
 }
 

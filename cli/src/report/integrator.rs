@@ -18,7 +18,7 @@ pub const OVERSAMPLING: usize = 8;
 const REFERENCE: &str = "exact-event at 8 times the rate over the same ground, profiles of four seeds a case, which an independent \
                          Runge–Kutta integration confirms; what is heard against the whole chain at 16 inner samples with the bank in f64, lag taken out";
 
-/// Whether a row's force is the mean over the sample that is centred on it.
+/// Tests whether a row's force is the mean over the sample that is centred on it.
 fn is_centred(integrator: Integrator) -> bool {
     matches!(integrator, Integrator::SemiImplicitEuler | Integrator::SemiImplicitEulerExplicitDamper)
 }
@@ -29,12 +29,12 @@ pub struct Reference {
     /// Means over the sample that ends at the row, and is centred on it.
     force_n: [Vec<f64>; 2],
     felt: Vec<f64>,
-    /// The same two.
+    /// Errors of the two.
     heard: [Vec<f64>; 2],
 }
 
 impl Reference {
-    /// Of what was rendered, or would be, at the higher rate.
+    /// Figures at the higher rate, rendered or estimated.
     pub fn new(fine: &Take) -> Self {
         let count = fine.audio.len() / OVERSAMPLING;
         let each = |signal: &[f64]| signal.iter().step_by(OVERSAMPLING).copied().collect();

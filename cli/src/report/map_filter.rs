@@ -138,7 +138,7 @@ fn map_of(case: &Case, seed: u64) -> Option<(Raster, f64)> {
     Some((Raster { width, height: 4, values: row.repeat(4) }, relief_m))
 }
 
-/// The same on the named cases that have a map: what the contact makes of it.
+/// Filters on the named cases that have a map: the contact's response to it.
 pub fn rows_on_cases() -> Result<Vec<Row>, CliError> {
     let none = || refused("case: has no map; please report it");
     let truth = Truth::new(|case| case.roughness().is_none(), &|case, seed, places_m, _| {

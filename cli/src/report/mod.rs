@@ -50,7 +50,7 @@ pub struct Options {
 /// One choice, measured.
 #[derive(Debug, Clone, Serialize)]
 pub struct Row {
-    /// What is chosen.
+    /// Choice.
     pub axis: &'static str,
     /// Which choice.
     pub choice: String,
@@ -58,19 +58,19 @@ pub struct Row {
     pub ns_per_sample: f64,
     /// Rms of the difference over the alternating rms of the reference: the worst of all cases.
     pub error: f64,
-    /// What it is compared with.
+    /// Reference that it is compared with.
     pub reference: &'static str,
     /// The error on each named case, where a choice has them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cases: Vec<CaseError>,
-    /// The same as `error`.
+    /// Second error, measured as `error`.
     pub worst: f64,
     /// Over all cases and quantities.
     pub geometric_mean: f64,
-    /// How far what comes out is behind the reports, ms; of a path.
+    /// Delay of a path behind the reports, ms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latency_ms: Option<f64>,
-    /// Where modes of a struck body are left out: within this 99 of 100 cells of an ERB and 20 ms excite the ear as all modes do, dB.
+    /// Missed excitation where modes of a struck body are left out: within this 99 of 100 cells of an ERB and 20 ms excite the ear as all modes do, dB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excitation_db: Option<f64>,
 }
@@ -78,15 +78,15 @@ pub struct Row {
 /// A choice on a named case ([`cases`]).
 #[derive(Debug, Clone, Serialize)]
 pub struct CaseError {
-    /// Of the case.
+    /// Name of the case.
     pub name: &'static str,
-    /// Of the pad's displacement, where the choice reaches it.
+    /// Error of the pad's displacement, where the choice reaches it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub displacement: Option<f64>,
-    /// Of the contact force, where the choice reaches it.
+    /// Error of the contact force, where the choice reaches it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_force: Option<f64>,
-    /// Of what leaves the engine: the worse of felt and heard.
+    /// Error of the outputs: the worse of felt and heard.
     pub output: f64,
 }
 

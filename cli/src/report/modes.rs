@@ -25,7 +25,7 @@ const SHEDDING_REFERENCE: &str =
     "all 256 modes of a body under the strokes of the named cases; a masking model orders what is left out";
 const STRUCK_SHEDDING_REFERENCE: &str =
     "all 256 modes of a body struck once, 0.37 s; levels from 5 on leave no more modes out";
-/// What is rendered of a struck body that falls asleep.
+/// Renders of a struck body that falls asleep.
 const SLEEP_SAMPLES: usize = 6 * 44_100;
 const FORMAT_REFERENCE: &str =
     "the paper's two-pole filter in f64, 256 modes under the strokes of the named cases";
@@ -66,7 +66,7 @@ fn bank(groups: &[ModeGroup], kernel: Level, impulses: &[f32]) -> Vec<f32> {
     run(ModalBank::new(kernel, groups, states).sleeping_below(0.0), groups.len(), impulses)
 }
 
-/// The same where the groups that have rung out sleep, and only the first `driven` hear what strikes.
+/// Bank whose groups sleep once they have rung out, and of which only the first `driven` are excited.
 fn sleeping_bank(groups: &[ModeGroup], driven: usize, threshold: f32, impulses: &[f32]) -> Vec<f32> {
     let states = vec![GroupState::REST; groups.len()];
     run(ModalBank::new(Level::detect(), groups, states).sleeping_below(threshold), driven, impulses)
@@ -117,7 +117,7 @@ pub fn sleep_rows() -> Result<Vec<Row>, CliError> {
     Ok(rows)
 }
 
-/// The same under the strokes of the cases, in which little falls asleep.
+/// Costs under the strokes of the cases, in which little falls asleep.
 pub fn stroked_sleep_rows() -> Result<Vec<Row>, CliError> {
     let strokes = Strokes::new()?;
     let mut modes = body();
@@ -169,7 +169,7 @@ pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
     Ok(rows.collect())
 }
 
-/// The same of a body that is struck once.
+/// Costs of a body that is struck once.
 pub fn struck_shedding_rows() -> Result<Vec<Row>, CliError> {
     let (modes, levels) = in_order_of_need(&bench_scene::modes(MODES).modes);
     let groups = designed(&modes)?;
@@ -203,7 +203,7 @@ pub fn culling_rows() -> Result<Vec<Row>, CliError> {
     })
 }
 
-/// The same of a body that is struck once.
+/// Errors of a body that is struck once.
 pub fn struck_culling_rows() -> Result<Vec<Row>, CliError> {
     let impulses = strike();
     let reference: Vec<f64> = wide(bank(&designed(&body())?, Level::detect(), &impulses)).collect();
@@ -248,7 +248,7 @@ fn direct_f64(modes: &[ReferenceMode], impulses: &[f32]) -> Vec<f64> {
     out
 }
 
-/// The same in f32, as it is often written.
+/// Bank in f32, as it is often written.
 fn direct_f32(modes: &[Mode], impulses: &[f32]) -> Vec<f32> {
     let mut out = vec![0.0f32; impulses.len()];
     for mode in modes {

@@ -76,7 +76,7 @@ const CASE_RMS_AT_1_MM_M: f64 = 2.2e-5;
 const CASES_REFERENCE: &str = "the relief that a footprint at the engine's own rate leaves, sampled at 8 times that rate, through the same contact; cases \
                                without micro-relief have their own axis";
 
-/// The same on the named cases that have micro-relief: what the contact makes of it.
+/// Noise on the named cases that have micro-relief: the contact's response to it.
 pub fn rows_on_cases() -> Result<Vec<Row>, CliError> {
     let read = |level: Option<Level>, footprints: f64| {
         move |case: &Case, seed: u64, places_m: &[f64], _: f64| {

@@ -96,7 +96,7 @@ fn velocities(design: &TrajectoryDesign, events: &[PathEvent]) -> Vec<f64> {
     out
 }
 
-/// What a mode costs a sample where velocities are reported, and by how much it is behind, s.
+/// Cost of a mode of path a sample where velocities are reported, and its delay, s.
 pub fn cost(mode: PathMode) -> Result<(f64, f64), CliError> {
     let design = TrajectoryDesign::new(mode, 30.0, SAMPLE_RATE_HZ, [f64::INFINITY; 2]).map_err(refused)?;
     let events = events(&reaches(), true, 0.0);

@@ -1,4 +1,4 @@
-//! What each level of load leaves out, as the engine renders it: what the ear and the finger are said to miss, and what it saves.
+//! Levels of load, as the engine renders them: the excitation missed by ear and finger, and the cost saved.
 
 use super::excitation::{Missed, missed, missed_in_the_mean};
 use super::{SAMPLE_RATE_HZ, refused};
@@ -12,7 +12,7 @@ use serde::Serialize;
 /// Ten fingers on one body of 256 modes.
 const LOAD: Load = Load { contacts: 10, bodies: 1, modes_per_body: 256, lift: false };
 const BLOCK: usize = 64;
-/// What is compared, after a quarter of a second in which the fingers begin.
+/// Span that is compared, after a quarter of a second in which the fingers begin.
 const BLOCKS: usize = 689;
 const SKIPPED: usize = 172;
 /// The highest level.
@@ -23,13 +23,13 @@ const HIGHEST: usize = 16;
 pub struct LoadLevel {
     /// 0: nothing is left out.
     pub level: usize,
-    /// What goes at it, beside all of the levels below.
+    /// Parts left out at this level, beside all of the levels below.
     pub leaves_out: &'static str,
     /// Ten fingers, median of the blocks.
     pub ns_per_sample: f64,
-    /// What is missed of ten fingers that stroke.
+    /// Excitation missed of ten fingers that stroke.
     pub stroke: Missed,
-    /// What is missed of a strike.
+    /// Excitation missed of a strike.
     pub strike: Missed,
     /// The most that a third octave of what is felt differs, 63 Hz–2 kHz, dB.
     pub felt_worst_db: f64,

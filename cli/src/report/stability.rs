@@ -45,7 +45,7 @@ pub struct Cell {
     pub substeps: usize,
     /// Largest energy of an undamped bounce over that at the landing, less 1.
     pub energy_gain: f64,
-    /// How far two strokes a picometre apart end from each other, dB of their movement.
+    /// Final distance of two strokes that begin a picometre apart, dB of their movement.
     pub difference_db: f64,
     pub contractive: bool,
 }

@@ -1,4 +1,4 @@
-//! What a choice of the bank costs on the named cases: a body of 256 modes under what the contact of each case sends it.
+//! Costs of a choice of the bank on the named cases: a body of 256 modes under what the contact of each case sends it.
 
 use super::cases::{CASES, Chain, SEEDS, take};
 use super::resampled::after_the_lead_in;
@@ -6,7 +6,7 @@ use super::{CaseError, SAMPLE_RATE_HZ};
 use crate::error::CliError;
 use crate::measure::relative_error;
 
-/// What the amplitudes of the body stand for, N·s.
+/// Impulse that the amplitudes of the body stand for, N·s.
 const IMPULSE_N_S: f64 = 0.01;
 
 /// The six cases as a bank hears them.
@@ -25,18 +25,18 @@ impl Strokes {
         sent.collect::<Result<_, _>>().map(Self)
     }
 
-    /// What sounds under each, by some bank.
+    /// Sound under each case, by some bank.
     pub fn heard<T: Into<f64>>(&self, bank: impl Fn(&[f32]) -> Vec<T>) -> Vec<Vec<f64>> {
         self.0.iter().map(|(_, sent)| bank(sent).into_iter().map(Into::into).collect()).collect()
     }
 
-    /// What sounds under the case of this name.
+    /// Sound under the case of this name.
     pub fn heard_of(&self, name: &str, bank: impl Fn(&[f32]) -> Vec<f32>) -> Option<Vec<f64>> {
         let (_, sent) = self.0.iter().find(|(case, _)| *case == name)?;
         Some(bank(sent).into_iter().map(f64::from).collect())
     }
 
-    /// How far it is from a reference.
+    /// Distance from a reference.
     pub fn errors(&self, found: &[Vec<f64>], reference: &[Vec<f64>]) -> Vec<CaseError> {
         let pairs = self.0.iter().zip(found.iter().zip(reference));
         pairs

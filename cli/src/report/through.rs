@@ -25,7 +25,7 @@ const PROBE: Probe = Probe {
     ridge_m: 0.0,
 };
 
-/// What a contact makes of heights at this rate.
+/// Response of a contact to heights at this rate.
 fn through(case: &Case, heights: &[f64], rate_hz: f64) -> Result<Take, CliError> {
     let probe = Probe { leash_m: Probe::default().leash_m, ..PROBE };
     let model = MicroContact::new(&probe, Integrator::ExactEvent, rate_hz).map_err(refused)?;

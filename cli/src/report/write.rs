@@ -143,7 +143,7 @@ pub fn svg(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
     figure.svg()
 }
 
-/// What a choice is besides its name on the command line.
+/// Description of a choice besides its name on the command line.
 fn note(row: &Row) -> &'static str {
     match (row.axis, row.choice.as_str()) {
         ("integrator", "semi-implicit-euler-explicit") => " (the paper's equations as written)",
@@ -178,7 +178,7 @@ fn presets_table(presets: &[Preset]) -> String {
     text + "\n"
 }
 
-/// What sparse reports cost.
+/// Costs of sparse reports.
 #[must_use]
 pub fn strokes_table(strokes: &[Stroke]) -> String {
     let mut text = "\n## from 60 reports a second\n\nReference: the same hand, reported 2000 times a second. Waveforms, and the median \
@@ -193,7 +193,7 @@ pub fn strokes_table(strokes: &[Stroke]) -> String {
     text
 }
 
-/// What each level of load leaves out.
+/// Parts left out at each level of load.
 #[must_use]
 pub fn load_table(levels: &[LoadLevel]) -> String {
     let mut text = "\n## levels of load\n\nReference: level 0. Ten fingers on one body of 256 modes that differ by 60 dB, and a strike on it; the ear by a masking model at 70 dB SPL: share of the cells of an ERB \

@@ -64,23 +64,23 @@ pub struct Sound {
     pub name: String,
     /// The scene, its paths absolute, without contacts and tail.
     pub scene: Table,
-    /// What happens.
+    /// Kind of sound.
     pub log: ContactLog,
     /// Most of what it may ring out, s; nothing of a loop does.
     pub tail_s: f64,
-    /// Whether a finger or a tool feels something.
+    /// True where a finger or a tool feels something.
     pub is_felt: bool,
-    /// Where it is cut to be played again and again.
+    /// Span that is cut to be played again and again.
     pub cut: Option<Loop>,
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Debug, Serialize)]
 struct Report {
     files: Vec<FileReport>,
     /// Linear gain that all of them were written with; null where the scene says its own.
     gain: Option<f64>,
-    /// What was assumed because no option said it.
+    /// Assumptions, where no option was given.
     assumed: Vec<String>,
     warnings: Vec<String>,
 }
@@ -169,10 +169,10 @@ pub fn make(
     Ok(())
 }
 
-/// What the first rendering of a sound tells.
+/// Result of a sound's first rendering.
 struct Trial {
     scene: Table,
-    /// Whether the level is the set's.
+    /// True where the level is the set's.
     is_levelled: bool,
     peak: f64,
     tail_s: f64,
@@ -210,7 +210,7 @@ fn ended(render: &Render, level: f64) -> usize {
     render.audio.iter().map(last).max().unwrap_or(0)
 }
 
-/// Whether the scene says how loud a bus is.
+/// Tests whether the scene gives a bus its gain.
 fn has_level(scene: &Table) -> bool {
     let says = |bus: &Value| bus.get("gain").is_some() || bus.get("pascals_at_full_scale").is_some();
     match scene.get("audio") {
@@ -329,7 +329,7 @@ pub fn with_absolute_paths(scene: &Table, home: &Path) -> Table {
     })
 }
 
-/// The same with paths from a folder.
+/// Scene with paths from a folder.
 fn with_relative_paths(scene: &Table, folder: &Path) -> Table {
     with_paths(scene, &|text| Path::new(text).is_absolute().then(|| relative(Path::new(text), folder)))
 }

@@ -17,9 +17,9 @@ const BLEND_SHARE: f64 = 0.25;
 /// A stretch of a rendering that is to follow itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loop {
-    /// Where it begins, s.
+    /// Beginning, s.
     pub from_s: f64,
-    /// How long it is, s.
+    /// Length, s.
     pub seconds: f64,
 }
 

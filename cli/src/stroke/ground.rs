@@ -22,7 +22,7 @@ const COLOURED: f64 = 0.01;
 /// Longest ring-out that is looked at where nothing says how long bodies ring, s.
 const TAIL_S: f64 = 5.0;
 
-/// What is stroked.
+/// Ground that is stroked.
 pub struct Ground {
     /// A name for files.
     pub name: String,
@@ -30,20 +30,20 @@ pub struct Ground {
     scene: Table,
     /// Name of the surface.
     pub surface: String,
-    /// What uv 1 spans, m.
+    /// Metres that uv 1 spans.
     pub extent_m: [f64; 2],
-    /// Whether there is ground beyond its edges.
+    /// True where there is ground beyond its edges.
     pub runs_on: bool,
     /// Name of the default probe, for files.
     pub probe: String,
-    /// How long what rings is waited for, s.
+    /// Wait for what rings, s.
     pub tail_s: f64,
     /// Every file that is read.
     pub inputs: Vec<PathBuf>,
 }
 
 impl Ground {
-    /// What the first argument is; a photograph's maps are made below the folder first. Says what was assumed, too.
+    /// Meaning of the first argument, and what was assumed; a photograph's maps are made below the folder first.
     ///
     /// # Errors
     /// When it is nothing to stroke.

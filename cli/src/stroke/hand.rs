@@ -27,10 +27,10 @@ const ASLANT: f64 = 0.05;
 const REACH: f64 = 0.4;
 /// Speed along v over that along u of a zigzag, at most.
 const DRIFT: f64 = 0.2;
-/// How far a hand's force wanders, as a share, and at what rates, Hz (Smith 2002 has a few percent).
+/// Wander of a hand's force, as a share, and its rates, Hz (Smith 2002 has a few percent).
 const WANDER: [(f64, f64); 2] = [(0.04, 1.7), (0.02, 4.1)];
 
-/// How the hand moves.
+/// Motion of the hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Path {
     /// On and on.
@@ -75,14 +75,14 @@ pub struct Hand {
     pub speed_m_s: f64,
     pub force_n: f64,
     pub seconds: f64,
-    /// How long it strokes before a loop begins, s; none where it is no loop.
+    /// Time of stroking before a loop begins, s; none where it is no loop.
     pub settled_s: Option<f64>,
     pub extent_m: [f64; 2],
-    /// Whether there is ground beyond the edges.
+    /// True where there is ground beyond the edges.
     pub runs_on: bool,
     pub surface: String,
     pub probe: Option<String>,
-    /// Where it begins, and how the force wanders.
+    /// Beginning, and the wander of the force.
     pub seed: u64,
     /// The first take begins in the middle.
     pub is_first: bool,

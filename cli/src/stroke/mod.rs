@@ -26,19 +26,19 @@ pub struct Options {
     /// A height map, a photograph, a folder of `asperity texture from-photo`, or a scene
     #[arg(value_name = "MAP|PHOTO|DIR|SCENE.toml")]
     pub what: PathBuf,
-    /// What touches: fingertip, fingernail, stylus, …, or a probe of the scene [default: the scene's]
+    /// Probe: fingertip, fingernail, stylus, …, or a probe of the scene [default: the scene's]
     #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',')]
     pub probe: Vec<String>,
-    /// How fast, m/s
+    /// Speed, m/s
     #[arg(long, value_name = "M_S", num_args = 1.., value_delimiter = ',', default_value = "0.1", value_parser = positive)]
     pub speed: Vec<f64>,
-    /// How hard, N
+    /// Pressing force, N
     #[arg(long, value_name = "N", num_args = 1.., value_delimiter = ',', default_value = "0.6", value_parser = positive)]
     pub force: Vec<f64>,
-    /// How the hand moves: line, circle, zigzag, or a contact log, which is rendered at the scene's own levels
+    /// Motion of the hand: line, circle, zigzag, or a contact log, which is rendered at the scene's own levels
     #[arg(long, value_name = "line|circle|zigzag|LOG.jsonl", default_value = "line")]
     pub path: Way,
-    /// How long the hand strokes, and how long a loop is, s
+    /// Length of the stroke, and of a loop, s
     #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive)]
     pub seconds: f64,
     /// Cut each sound so that it follows itself without a seam
@@ -47,13 +47,13 @@ pub struct Options {
     /// Which surface of a scene [default: its first]
     #[arg(long, value_name = "NAME")]
     pub surface: Option<String>,
-    /// How wide a map or a photograph is, m [default: 40 mm a 256 texels]
+    /// Width of a map or a photograph, m [default: 40 mm a 256 texels]
     #[arg(long, value_name = "M", value_parser = positive)]
     pub width_m: Option<f64>,
     /// Height of white over black, m [default: 1 mm for a map, what contrast gives for a photograph]
     #[arg(long, value_name = "M", value_parser = positive)]
     pub relief_m: Option<f64>,
-    /// What a map's body is made of [default: wood]
+    /// Material of a map's body [default: wood]
     #[arg(long, value_name = "NAME")]
     pub material: Option<String>,
     /// Folder, format, takes

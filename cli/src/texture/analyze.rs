@@ -23,7 +23,7 @@ pub struct AnalyzeArgs {
     /// Picture or height map
     #[arg(value_name = "IMAGE")]
     pub image: PathBuf,
-    /// How the lattice is sought
+    /// Search for the lattice
     #[arg(long, value_enum, default_value_t = LatticeMethod::Sweep)]
     pub lattice_method: LatticeMethod,
     /// Distortion that the document's method averages
@@ -40,16 +40,16 @@ pub struct AnalyzeArgs {
     pub json: bool,
 }
 
-/// How the lattice is sought.
+/// Search for the lattice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum LatticeMethod {
     /// Without a threshold
     Sweep,
-    /// By the thesis' own steps, with its threshold
+    /// By the steps and the threshold of the published analysis
     Document,
 }
 
-/// The two distortions of the thesis' Def. 7.7.
+/// Two distortions that a lattice may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum DistortionKind {
     /// Mean square of differences
@@ -82,7 +82,7 @@ fn share(word: &str) -> Result<f64, String> {
     }
 }
 
-/// What `--json` prints.
+/// Output of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
     width_px: usize,
@@ -94,7 +94,7 @@ pub struct Analysis {
     lattice: Option<Lattice>,
     wallpaper_group: Option<&'static str>,
     pattern: Option<Pattern>,
-    /// What repeats along one direction, where nothing repeats along two.
+    /// Pattern along one direction, where nothing repeats along two.
     frieze: Option<Frieze>,
     warnings: Vec<String>,
 }
@@ -203,13 +203,13 @@ fn describe(picture: &Raster, lattice: &Lattice) -> (&'static str, Pattern) {
     (symmetry.group.name(), pattern)
 }
 
-/// How much of a picture is colour rather than light.
+/// Share of a picture that is colour rather than light.
 fn colour(path: &Path) -> Result<f64, CliError> {
     let channel = |which| load_channel(path, which).map(|image| image.raster).map_err(CliError::told);
     Ok(colour_fraction(&channel(Channel::R)?, &channel(Channel::G)?, &channel(Channel::B)?))
 }
 
-/// The same for people.
+/// Report for people.
 fn text(analysis: &Analysis) -> String {
     let d = &analysis.fractal_dimension;
     let mut lines = format!(
@@ -240,7 +240,7 @@ fn text(analysis: &Analysis) -> String {
     lines
 }
 
-/// What repeats along one direction, or that a pattern of few repeats would not be seen.
+/// Pattern along one direction, or a remark that one of few repeats would not be seen.
 fn without_lattice(frieze: Option<&Frieze>) -> String {
     let Some(frieze) = frieze else {
         return "no pattern repeats along two directions, or fewer than five times a side (twice where the map tiles); none \

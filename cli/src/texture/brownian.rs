@@ -22,7 +22,7 @@ pub struct Options {
     /// Rms height, m
     #[arg(long, value_name = "M", default_value_t = 1e-4, value_parser = positive)]
     pub rms_m: f64,
-    /// What the picture spans on the surface, m
+    /// Width of the picture on the surface, m
     #[arg(long, value_name = "M", default_value_t = 0.1, value_parser = positive)]
     pub width_m: f64,
     /// Let the surface end at its edges instead of repeating without a seam (at most 1024 texels a side)

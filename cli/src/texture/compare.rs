@@ -27,10 +27,10 @@ pub struct Options {
     /// Passes of the default metamer
     #[arg(long, default_value_t = PASSES, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000))]
     pub iterations: usize,
-    /// What a map's width is on the surface, m [default: 40 mm, as in document 002]
+    /// Width of a map on the surface, m [default: 40 mm, that of the published study's samples]
     #[arg(long, value_name = "M", default_value = "0.04", value_parser = positive)]
     pub width_m: f64,
-    /// Height of white over black, m [default: 2 mm, as in document 002]
+    /// Height of white over black, m [default: 2 mm, that of the samples]
     #[arg(long, value_name = "M", default_value = "0.002", value_parser = positive)]
     pub relief_m: f64,
     /// Seed of the strokes

@@ -25,7 +25,7 @@ pub struct Options {
     /// Which way green points; found out unless given
     #[arg(long, value_name = "WAY")]
     pub green: Option<GreenName>,
-    /// What took the map's slopes from heights; found out unless given
+    /// Operator that took the map's slopes from heights; estimated by default
     #[arg(long, value_name = "HOW")]
     pub derivative: Option<DerivativeName>,
     /// Take x from alpha: DXT5nm, where red is blank
@@ -34,7 +34,7 @@ pub struct Options {
     /// Keep the mean slope of a map that does not tile
     #[arg(long)]
     pub keep_tilt: bool,
-    /// What the map's width is on the surface, m: adds relief_m to the report
+    /// Width of the map on the surface, m: adds relief_m to the report
     #[arg(long, value_name = "M", value_parser = positive, conflicts_with = "width_mm")]
     pub width_m: Option<f64>,
     /// The object's file and size
@@ -74,7 +74,7 @@ pub enum DerivativeName {
     Exact,
     /// Half the difference of the texels on both sides.
     Central,
-    /// The same, averaged across (¼, ½, ¼): many height-to-normal converters.
+    /// Central difference averaged across (¼, ½, ¼): many height-to-normal converters.
     Sobel,
     /// Half way between the first two: what is taken when the map does not tell them apart.
     ExactOrCentral,
@@ -116,18 +116,18 @@ struct Report {
     /// Height of white over black in texels: times the size of a texel it is `relief_m`.
     relief_per_px: f64,
     relief_m: Option<f64>,
-    /// Where a width is told or an object written.
+    /// Width, where it is given or an object is written.
     #[serde(flatten)]
     size: Option<SizeMm>,
     green: GreenName,
     green_is_certain: bool,
     derivative: DerivativeName,
-    /// Whether it was told or the map says so.
+    /// True where it was given or found in the map.
     derivative_is_certain: bool,
     tileable: bool,
-    /// How far the map was taken for flat places with walls between them, 0–1.
+    /// Degree to which the map was taken for flat places with walls between them, 0–1.
     walls: f64,
-    /// What no surface has of the map's slopes, 0–1.
+    /// Share of the map's slopes that no surface has, 0–1.
     curl: f64,
     warnings: Vec<String>,
     files: Vec<PathBuf>,
@@ -223,7 +223,7 @@ fn warnings(options: &Options, relief_per_px: f64, size: Option<SizeMm>) -> Vec<
 /// Mean of x or y from which a map that tiles was not stored as normals are.
 const LEANS: f64 = 0.1;
 
-/// What is wrong with the way normals are stored: x in alpha, or a gamma.
+/// Fault in the way normals are stored: x in alpha, or a gamma.
 fn doubtful_normals(options: &Options, [red, green]: [&Raster; 2], tileable: bool) -> Option<String> {
     let varies = |raster: &Raster| raster.range().1 - raster.range().0 > LEANS;
     let (low, high) = red.range();

@@ -40,13 +40,13 @@ pub struct Options {
     /// Direction to the light: right, down, out of the surface; found out unless given
     #[arg(long, value_name = "X,Y,Z", value_parser = light, allow_hyphen_values = true)]
     pub light: Option<Light>,
-    /// How heights are found; by what the light allows unless given
+    /// Method that finds heights; by the light unless given
     #[arg(long, value_enum)]
     pub method: Option<MethodName>,
     /// Turn the heights over: what is bright lies deep
     #[arg(long)]
     pub bright_is_deep: bool,
-    /// What the photograph's width is on the surface, m [default: 40 mm a 256 texels]
+    /// Width of the photograph on the surface, m [default: 40 mm a 256 texels]
     #[arg(long, value_name = "M", value_parser = positive, conflicts_with = "width_mm")]
     pub width_m: Option<f64>,
     /// Height from the lowest to the highest point, m [default: what contrast gives]
@@ -136,7 +136,7 @@ impl Options {
         }
     }
 
-    /// Whether no option says how wide the photograph is.
+    /// Tests whether no option gives the photograph's width.
     fn assumes_width(&self) -> bool {
         self.object.width_mm.is_none() && self.width_m.is_none()
     }

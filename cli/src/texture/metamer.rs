@@ -47,10 +47,10 @@ pub struct Options {
     /// Largest share of the reference's own arrangement to take where the original's does not come near enough
     #[arg(long, value_name = "0-1", default_value_t = 1.0, value_parser = share)]
     pub borrow: f64,
-    /// How the original is changed
+    /// Way of changing the original
     #[arg(long, value_enum, default_value_t = MethodName::Iterated)]
     pub method: MethodName,
-    /// Whether the maps tile
+    /// Tiling of the maps
     #[arg(long, value_enum, default_value_t = BordersName::Detect)]
     pub borders: BordersName,
     /// Size of the original's texels, mm
@@ -82,7 +82,7 @@ pub enum MethodName {
     Spectrum,
 }
 
-/// What is known about the borders.
+/// Knowledge about the borders.
 #[derive(Debug, Clone, Copy, ValueEnum, PartialEq)]
 pub enum BordersName {
     /// Look at the seams.
@@ -134,7 +134,7 @@ struct Report {
     clipped: f64,
     #[serde(flatten)]
     size: SizeMm,
-    /// Of a scene file that uses the map: height of its white over its black, m.
+    /// Value for a scene file that uses the map: height of its white over its black, m.
     relief_m: f64,
     warnings: Vec<String>,
     seconds: f64,

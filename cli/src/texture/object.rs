@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Thickness under the lowest point, mm, of the document's blocks.
 const BASE_MM: f64 = 10.0;
 
-/// Where the object goes and how large it is.
+/// Path and size of the object.
 #[derive(Debug, Clone, Args)]
 pub struct ObjectOptions {
     /// Also write the surface as a closed block for a 3-D printer: binary STL, in millimetres
@@ -21,7 +21,7 @@ pub struct ObjectOptions {
     /// Thickness of the block under its lowest point, mm
     #[arg(long, value_name = "MM", default_value_t = BASE_MM, value_parser = positive)]
     pub base_mm: f64,
-    /// What the map's width is on the surface, mm
+    /// Width of the map on the surface, mm
     #[arg(long, value_name = "MM", value_parser = positive)]
     pub width_mm: Option<f64>,
 }
@@ -52,7 +52,7 @@ impl SizeMm {
         Self { width_mm, height_mm, texel_mm, relief_mm: 1e3 * (high - low) }
     }
 
-    /// What a printed block of this size would be felt to lack, if anything.
+    /// Warning about what a printed block of this size lacks to the touch, if anything.
     pub fn warning(&self) -> Option<String> {
         (self.texel_mm > 1e3 * FINEST_TEXEL_M).then(|| {
             format!(

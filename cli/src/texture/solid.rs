@@ -21,7 +21,7 @@ pub struct Options {
     /// Seed of the noise
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// What the picture spans on the surface, m
+    /// Width of the picture on the surface, m
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = positive)]
     pub width_m: f64,
     /// 16-bit PNG to write

@@ -55,7 +55,7 @@ impl Desk {
         Ok(Self { server })
     }
 
-    /// Where the page is.
+    /// Address of the page.
     pub fn address(&self) -> String {
         format!("http://{}/", self.server.server_addr())
     }
@@ -112,7 +112,7 @@ impl Desk {
         path != "/end" || done.is_err()
     }
 
-    /// Whether a request comes from this machine's own page.
+    /// Tests whether a request comes from this machine's own page.
     fn is_ours(&self, request: &Request) -> bool {
         let own = self.server.server_addr().to_string();
         let port = own.rsplit(':').next().unwrap_or_default();
@@ -143,7 +143,7 @@ fn plays(tuned: &mut Tuned<'_>, body: &str) -> Result<(), CliError> {
     Ok(())
 }
 
-/// What the page shows.
+/// Contents of the page.
 fn state(tuned: &Tuned<'_>) -> serde_json::Value {
     let stats = tuned.scene.stats();
     let surfaces = tuned.file.surfaces.iter();

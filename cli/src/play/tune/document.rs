@@ -9,9 +9,9 @@ use toml_edit::{DocumentMut, Item, TableLike, Value};
 /// A number, or a vector, that can be turned.
 #[derive(Debug, Serialize)]
 pub struct Setting {
-    /// Where it stands: the keys and numbers of the tables around it, with points between.
+    /// Path of a number: the keys and numbers of the tables around it, with points between.
     path: String,
-    /// What that is called: `surface "tiles" · sand`.
+    /// Label of that path: `surface "tiles" · sand`.
     place: String,
     key: &'static str,
     unit: &'static str,
@@ -22,9 +22,9 @@ pub struct Setting {
     whole: bool,
     components: usize,
     default: Option<f64>,
-    /// What the file says; empty where it says nothing.
+    /// Value in the file; empty where it has none.
     value: Vec<f64>,
-    /// When a new value is heard: `sounding`, `anew` or `opened`.
+    /// Moment at which a new value is heard: `sounding`, `anew` or `opened`.
     changes: &'static str,
     meaning: &'static str,
     source: &'static str,
@@ -89,7 +89,7 @@ impl Document {
     }
 }
 
-/// Where the walk through a file is.
+/// Position of the walk through a file.
 #[derive(Clone, Default)]
 struct Place {
     path: String,
@@ -152,7 +152,7 @@ fn gather(table: &dyn TableLike, place: &Place, found: &mut Vec<Setting>) {
     }
 }
 
-/// What the file says there; none where it says something that is no number, as a preset's name or a map.
+/// Number in the file; none where it has something else, as a preset's name or a map.
 fn setting(table: &dyn TableLike, place: &Place, parameter: &'static Parameter) -> Option<Setting> {
     let value = match table.get(parameter.key) {
         None => Vec::new(),

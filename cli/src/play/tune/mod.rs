@@ -26,9 +26,9 @@ use document::Document;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How far ahead of the sound events are sent, s: those of the log as those of a finger on the page, because a scene takes them in order of time.
+/// Lead of events over the sound, s: those of the log as those of a finger on the page, because a scene takes them in order of time.
 const LEAD_S: f64 = 0.06;
-/// How often the page is listened to.
+/// Interval at which the page is read.
 const STEP: Duration = Duration::from_millis(5);
 /// Frames of a block where nobody hears.
 #[cfg(not(feature = "device"))]
@@ -52,7 +52,7 @@ struct Tuned<'a> {
     latest_s: f64,
     /// Engine time minus the page's clock, s, of the finger that touches.
     touch_offset_s: Option<f64>,
-    /// What was said last: what changed, what waits.
+    /// Last messages: what changed, what waits.
     said: Vec<String>,
 }
 
@@ -216,12 +216,12 @@ impl Tuned<'_> {
     }
 }
 
-/// Whether the queue had no room; other refusals are counted by the scene.
+/// Tests whether the queue had no room; other refusals are counted by the scene.
 fn full(reported: Result<(), Refusal>) -> bool {
     reported == Err(Refusal::QueueFull)
 }
 
-/// What renders.
+/// Renderer.
 #[cfg(feature = "device")]
 struct Sounding(Player);
 #[cfg(not(feature = "device"))]

@@ -14,7 +14,7 @@ pub const SEEDS: std::ops::RangeInclusive<u64> = 1..=4;
 const ROWS: usize = 4;
 /// Reports a second, as games send them.
 const REPORT_RATE_HZ: f64 = 60.0;
-/// When the finger comes and goes, s.
+/// Times at which the finger comes and goes, s.
 pub const STROKE_S: (f64, f64) = (0.05, 0.6);
 /// The body's file.
 const MODES: &str = "plate.modes.json";
@@ -150,7 +150,7 @@ pub fn files(case: &Case, seed: u64, excitation: Option<&str>) -> Result<Vec<(St
     Ok(files)
 }
 
-/// The same in memory, and the log as it was written.
+/// Case in memory, and the log as it was written.
 ///
 /// # Errors
 /// As [`files`].

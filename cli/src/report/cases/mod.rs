@@ -32,7 +32,7 @@ const TEXELS: usize = 2048;
 pub struct Case {
     /// As it is called in the report.
     pub name: &'static str,
-    /// What is touched.
+    /// Surface that is touched.
     ground: Ground,
     /// Along u, m/s.
     pub speed_m_s: f64,
@@ -75,7 +75,7 @@ pub const CASES: [Case; 6] = [
     Case { name: "light", ground: Ground::Rough(0.5), speed_m_s: 0.1, force_n: 0.05 },
 ];
 
-/// What a real hand strokes, reported 60 times a second: two gratings, and a rough plate.
+/// Strokes of a real hand, reported 60 times a second: two gratings, and a rough plate.
 pub const FROM_REPORTS: [Case; 3] = [
     Case {
         name: "grating of 2 mm",

@@ -10,12 +10,12 @@ use asperity::open::Overrides;
 use asperity::{ContactBlock, Engine, Integrator, PathMode, Preset, Tap};
 use std::path::PathBuf;
 
-/// How the engine is set for a render.
+/// Settings of the engine for a render.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Chain {
     /// Hz; none: the scene's.
     pub rate_hz: Option<f64>,
-    /// How exact.
+    /// Accuracy.
     pub preset: Preset,
     /// Counts more.
     pub integrator: Option<Integrator>,
@@ -23,7 +23,7 @@ pub struct Chain {
     pub oversampling: Option<usize>,
     /// None: extrapolate.
     pub path: Option<PathMode>,
-    /// What excites the body, in place of the contact's force.
+    /// Excitation of the body in place of the contact's force.
     pub excitation: Option<&'static str>,
     /// Rows of the contact at the rate inside.
     pub inner_rows: bool,
@@ -67,7 +67,7 @@ impl Take {
     }
 }
 
-/// What is compared.
+/// Quantities that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
     Displacement,

@@ -15,7 +15,7 @@ struct LatticeReport {
     confidence: f64,
     /// Fraction of the picture's variance that repeats.
     share: f64,
-    /// Whether the pattern wanders off the lattice: heights are then the whole picture's.
+    /// True where the pattern wanders off the lattice: heights are then the whole picture's.
     wanders: bool,
 }
 
@@ -27,7 +27,7 @@ struct CellReport {
     relief_m: f64,
 }
 
-/// What `report.json` and `--json` hold.
+/// Contents of `report.json` and `--json`.
 #[derive(Debug, Serialize)]
 pub struct Report {
     photo: PathBuf,
@@ -38,11 +38,11 @@ pub struct Report {
     texel_m: f64,
     width_m: f64,
     height_m: f64,
-    /// Whether no option said how wide it is.
+    /// True where no option gave the width.
     width_is_assumed: bool,
     relief_m: f64,
     micro_relief_m: f64,
-    /// The same in millimetres.
+    /// Width in millimetres.
     #[serde(flatten)]
     size: SizeMm,
     /// Factor on the heights that contrast gives; may be passed again as `--calibration`.
@@ -54,7 +54,7 @@ pub struct Report {
     sign_confidence: f64,
     /// Unit vector to the light that was used.
     light: Option<[f64; 3]>,
-    /// Whether that light was found in the picture.
+    /// True where that light was found in the picture.
     light_is_estimated: bool,
     unexplained: Option<f64>,
     /// Rms of what was taken for the camera's noise, of white.
@@ -72,7 +72,7 @@ pub struct Report {
     files: Vec<String>,
 }
 
-/// How large things are.
+/// Sizes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Size {
     pub texel_m: f64,
@@ -143,7 +143,7 @@ impl Report {
         }
     }
 
-    /// How wide the photograph is, and how to say another width where that was assumed.
+    /// Width of the photograph, and the option for another one where it was assumed.
     pub fn width_in_words(&self) -> String {
         let millimetres = format!("{} mm wide", (1e3 * self.width_m).round());
         if self.width_is_assumed {
@@ -153,12 +153,12 @@ impl Report {
         }
     }
 
-    /// What is to be doubted.
+    /// Doubts.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// The same for people.
+    /// Report for people.
     pub fn in_words(&self, options: &Options) -> String {
         let lattice = self.lattice.as_ref().map_or("nothing repeats".to_owned(), |lattice| {
             let group = self.wallpaper_group.unwrap_or("p1");
