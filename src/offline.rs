@@ -16,12 +16,12 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::Duration;
 
-/// How a log is rendered.
+/// Options of a render.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Frames a block; the result does not depend on it. What lies outside 1–4096 counts as the nearer of the two.
     pub block_frames: usize,
-    /// How long bodies may ring after the last event, s.
+    /// Time for bodies to ring after the last event, s.
     pub tail_s: f64,
     /// Reads a clock, s, so that [`Render::processing`] is known; nothing here reads one by itself.
     pub clock_s: Option<fn() -> f64>,
@@ -42,11 +42,11 @@ pub struct Render {
     pub audio: Vec<Vec<f32>>,
     /// One channel an actuator, in order.
     pub haptic: Vec<Vec<f32>>,
-    /// What happened.
+    /// Statistics.
     pub stats: Stats,
     /// The first event that was refused, and its game time, s.
     pub first_refused: Option<(f64, ReportError)>,
-    /// What speaks against anything being heard or felt ([`Scene::why_silent`]).
+    /// Reasons against anything being heard or felt ([`Scene::why_silent`]).
     pub why_silent: Vec<SilentBecause>,
     /// Surfaces of sand as they lie after the last contact, settled.
     pub sand: Vec<SandAfter>,

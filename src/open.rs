@@ -24,22 +24,22 @@ pub use parts::ReadSurface;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-/// How a scene is opened, and what may be set whatever the scene file says.
+/// Way of opening a scene, and settings that count more than the scene file's.
 #[derive(Clone, Copy)]
 pub struct Overrides<'a> {
-    /// Where the files lie that the scene names; the disk unless told otherwise.
+    /// Place of the files that the scene names; the disk unless told otherwise.
     pub files: &'a dyn Files,
     /// Rate of the outputs, Hz.
     pub sample_rate_hz: Option<f64>,
     /// Seed of every random number.
     pub seed: Option<u64>,
-    /// How exact the engine is; the fields below count more.
+    /// Accuracy of the engine; the fields below count more.
     pub preset: Preset,
     /// Inner samples where there would be one ([`Config::oversampling`]).
     pub oversampling: Option<usize>,
     /// Integrator of the contact model.
     pub integrator: Option<Integrator>,
-    /// How sparse positions become a path.
+    /// Way from sparse positions to a path.
     pub path: Option<PathMode>,
     /// Instruction set of the kernels whose last bits depend on it.
     pub kernel: Option<Isa>,
@@ -48,7 +48,7 @@ pub struct Overrides<'a> {
     pub max_contacts: Option<usize>,
     /// Threads that render at once; 1 unless told otherwise ([`Config::threads`](field@crate::Config::threads)).
     pub threads: Option<usize>,
-    /// How game time becomes samples; exactly unless told otherwise, for a render or a replay. A game that opens a scene and runs now takes
+    /// Conversion of game time to samples; exactly unless told otherwise, for a render or a replay. A game that opens a scene and runs now takes
     /// [`ClockMode::LIVE`].
     pub clock: Option<ClockMode>,
     /// For a sound card: sand is simulated on a thread of its own, and peaks of the audio are limited.
@@ -195,7 +195,7 @@ fn assemble(
     Ok(Engine { scene, renderer, names, workers, levels: Levels::default(), remarks: Vec::new() })
 }
 
-/// How loud impacts are on a body that is added later: as on those that share what the level policy has found.
+/// Gain of impacts on a body that is added later: as on those that share what the level policy has found.
 fn shared(file: &SceneFile, levels: &Levels) -> f64 {
     let silent = file.bodies.iter().zip(&levels.strike_gain).filter(|(entry, _)| entry.strike_gain.is_none());
     silent.map(|(_, strike_gain)| *strike_gain).fold(1.0, f64::min)

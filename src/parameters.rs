@@ -8,14 +8,14 @@ use asperity_dsp::limits::{self, Range};
 use asperity_dsp::micro_contact as contact;
 use asperity_texture::sand::SandLaw;
 
-/// When a new value is heard and felt.
+/// Moment at which a new value is heard and felt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Changes {
     /// While it sounds, without a step.
     Sounding,
     /// While it sounds; what it belongs to begins anew.
     Anew,
-    /// When the scene is opened.
+    /// At the opening of the scene.
     Opened,
     /// With every event.
     Event,
@@ -31,19 +31,19 @@ pub struct Parameter {
     pub key: &'static str,
     /// Its unit, empty for a plain number.
     pub unit: &'static str,
-    /// What is accepted.
+    /// Accepted range.
     pub range: Range,
-    /// Whether it is a whole number.
+    /// True for a whole number.
     pub whole: bool,
-    /// How many numbers it holds, each in the range: 2 or 3 for a vector.
+    /// Number of values that it holds, each in the range: 2 or 3 for a vector.
     pub components: usize,
-    /// What counts where it is not written; none where it must be, or where something else decides.
+    /// Value where it is not written; none where it must be, or where something else decides.
     pub default: Option<f64>,
-    /// When a new value is heard and felt.
+    /// Moment at which a new value is heard and felt.
     pub changes: Changes,
-    /// What it is.
+    /// Description.
     pub meaning: &'static str,
-    /// Where its default comes from; empty where there is none, or it says nothing.
+    /// Source of its default; empty where there is none, or it says nothing.
     pub source: &'static str,
 }
 
@@ -125,7 +125,7 @@ parameters! {
         MASS_KG: "mass_kg", "kg", limits::material::MASS_KG,
             "Mass, for friction that rings a body without shapes; a stock body's is known";
     }
-    /// What a body is made of.
+    /// Material of a body.
     mod material = "material" {
         YOUNG_PA: "young_pa", "Pa", limits::material::YOUNG_PA, "Young's modulus";
         POISSON: "poisson", "", limits::material::POISSON, "Poisson ratio";
@@ -161,7 +161,7 @@ parameters! {
         STRIKE_POSITION: "strike_position", "", Range::new(0.0, 15.0, "0 to 15"),
             "Which of the body's strike positions contacts here excite", whole(), or(0.0);
     }
-    /// Where a surface lies in its body.
+    /// Place of a surface in its body.
     mod frame = "surface.frame" {
         ORIGIN_M: "origin_m", "m", limits::PLACE_M, "Where uv (0, 0) lies in the body, each coordinate; missing: its origin",
             vector(3), changes(Anew);
@@ -170,7 +170,7 @@ parameters! {
         V_AXIS: "v_axis", "", limits::AXIS, "Where v grows to, at a right angle to u; missing: the body's y",
             vector(3), changes(Anew);
     }
-    /// What touches.
+    /// Probe.
     mod probe = "probe" {
         PAD_MASS_KG: "pad_mass_kg", "kg", limits::probe::PAD_MASS_KG, "Mass of the skin that moves with the surface",
             or(contact::PAD_MASS_KG), from("0.1 to 0.25 g in fingertip models"), changes(Opened);

@@ -116,7 +116,7 @@ impl Scene {
     }
 }
 
-/// What is designed before anything is taken from the old renderer.
+/// Parts that are designed before anything is taken from the old renderer.
 struct New {
     renderer: Renderer,
     to_audio: ring::Sender<crate::link::message::Message>,

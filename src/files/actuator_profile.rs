@@ -22,11 +22,11 @@ use std::path::Path;
 /// A profile and what is known about it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ActuatorPreset {
-    /// What it is.
+    /// Description.
     pub label: String,
     /// Its numbers.
     pub profile: DeviceProfile,
-    /// Where each number comes from, by field.
+    /// Source of each number, by field.
     pub source: BTreeMap<String, String>,
 }
 
@@ -42,7 +42,7 @@ pub enum PresetError {
     Unreadable {
         /// The file.
         place: String,
-        /// What the system says.
+        /// Message of the system.
         source: std::io::Error,
     },
     /// It is not a profile.
@@ -50,7 +50,7 @@ pub enum PresetError {
     Malformed {
         /// The file.
         place: String,
-        /// What is wrong.
+        /// Fault.
         message: String,
     },
     /// A number no device has.

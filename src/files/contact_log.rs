@@ -29,12 +29,12 @@ pub const VERSION: u64 = 1;
 pub struct LogLine {
     /// Game time, s.
     pub t: f64,
-    /// What happened.
+    /// Event.
     #[serde(flatten)]
     pub event: LogEvent,
 }
 
-/// What happened, with names instead of ids.
+/// Event, with names instead of ids.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "lowercase")]
 pub enum LogEvent {
@@ -42,10 +42,10 @@ pub enum LogEvent {
     Begin {
         /// The contact's name.
         contact: u64,
-        /// What touches what, and who feels it.
+        /// Surface, probe and actuator.
         #[serde(flatten)]
         touching: LogTouching,
-        /// Where and how.
+        /// Place and manner.
         #[serde(flatten)]
         sample: ContactSample,
     },
@@ -53,10 +53,10 @@ pub enum LogEvent {
     Move {
         /// The contact's name.
         contact: u64,
-        /// Where and how.
+        /// Place and manner.
         #[serde(flatten)]
         sample: ContactSample,
-        /// How loud and how important from now on.
+        /// Gain and importance from now on.
         #[serde(flatten)]
         emphasis: Emphasis,
     },
@@ -78,7 +78,7 @@ pub enum LogEvent {
         mass_kg: f64,
         /// Radius of curvature, m.
         radius_m: f64,
-        /// What the striker is made of.
+        /// Material of the striker.
         striker: Striker,
         /// Rebound over approach speed; missing: 1, the loss-free Hertz impact.
         #[serde(default = "loss_free")]
@@ -86,7 +86,7 @@ pub enum LogEvent {
         /// Which of the body's strike positions is hit; missing: 0.
         #[serde(default, skip_serializing_if = "is_first")]
         position: usize,
-        /// Where it is hit, m in the body's frame; missing: at `position`.
+        /// Place that is hit, m in the body's frame; missing: at `position`.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at_m: Option<[f64; 3]>,
         /// Along what it is hit; missing: the inward normal.
@@ -101,7 +101,7 @@ pub enum LogEvent {
     Edit(LogEdit),
 }
 
-/// What touches what, and who feels it.
+/// Surface, probe and actuator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LogTouching {
     /// Name of the surface.
@@ -227,7 +227,7 @@ impl ContactLog {
         self.lines.iter().enumerate().try_for_each(|(index, line)| line.write(index == 0, &mut out))
     }
 
-    /// Whether every event that is felt is felt on one of so many channels: on another it would be felt nowhere.
+    /// Tests whether every event that is felt is felt on one of so many channels: on another it would be felt nowhere.
     ///
     /// # Errors
     /// [`LogError::Event`], the first.

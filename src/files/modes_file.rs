@@ -101,7 +101,7 @@ impl ModalModel {
         })
     }
 
-    /// The same with whatever tells the bytes of a file beside it.
+    /// Parses with whatever gives the bytes of a file beside it.
     fn parse_with(
         text: &str,
         beside: &dyn Fn(&str) -> Result<Vec<u8>, String>,
@@ -141,7 +141,7 @@ impl ModalModel {
         serde_json::to_string(&self.file()).unwrap_or_default()
     }
 
-    /// The same with the shapes in a file of their own, `name` beside it (a glTF document where it ends in `.glb`): its text, and the bytes of that
+    /// Writes with the shapes in a file of their own, `name` beside it (a glTF document where it ends in `.glb`): its text, and the bytes of that
     /// file. None where there are no shapes.
     #[must_use]
     pub fn to_json_beside(&self, name: &str) -> Option<(String, Vec<u8>)> {

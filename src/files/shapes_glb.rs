@@ -108,7 +108,7 @@ struct Document<'a> {
     numbers: &'a [u8],
 }
 
-/// Where an accessor's elements lie.
+/// Place of an accessor's elements.
 struct Elements<'a> {
     bytes: &'a [u8],
     component: u64,

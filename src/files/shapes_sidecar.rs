@@ -78,7 +78,7 @@ pub fn shapes_from_bytes(bytes: &[u8], modes: usize) -> Result<ModeShapes, Strin
     Ok(shapes)
 }
 
-/// What has not been read.
+/// Bytes that have not been read.
 struct Rest<'a>(&'a [u8]);
 
 impl Rest<'_> {

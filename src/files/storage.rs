@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
-/// Where files lie.
+/// Place of files.
 ///
 /// ```
 /// use asperity::Engine;

@@ -71,7 +71,7 @@ impl ChannelMap {
         Ok(map)
     }
 
-    /// How many channels a device must have.
+    /// Number of channels that a device must have.
     #[must_use]
     pub fn width(&self) -> usize {
         self.audio.iter().flatten().chain(&self.haptic).max().map_or(0, |last| last + 1)

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// What a paced loop met.
+/// Counters of a paced loop.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pace {
     /// Blocks rendered.

@@ -14,9 +14,9 @@ use std::path::Path;
 /// Makes the surfaces of a recording that the game's own code made, by name: `None` for one it does not know.
 pub type MakeSurface<'a> = dyn FnMut(&str, &Names) -> Option<Surface> + 'a;
 
-/// What the edits of a recording are made with when it is rendered again.
+/// Makers of the edits of a recording that is rendered again.
 pub struct Edits<'a> {
-    /// Where the files lie that surfaces name; the disk unless told otherwise.
+    /// Place of the files that surfaces name; the disk unless told otherwise.
     pub files: &'a dyn Files,
     /// Sources of one's own, as in [`Overrides::own`](crate::open::Overrides::own).
     pub own: &'a [(&'a str, MakeSource)],

@@ -6,7 +6,7 @@ use crate::files::scene_file::MakeSource;
 use asperity_texture::sand::SandWorker;
 use std::cell::RefCell;
 
-/// What every thing of a scene is made with.
+/// Makers of every thing of a scene.
 #[derive(Clone, Copy)]
 pub(crate) struct Maker<'a> {
     pub files: &'a dyn Files,
@@ -16,6 +16,6 @@ pub(crate) struct Maker<'a> {
     pub own: &'a [(&'a str, MakeSource)],
     /// For sources that name none.
     pub seed: u64,
-    /// Where the workers of sand go that is simulated elsewhere; none = it is simulated within the source.
+    /// Place for the workers of sand that is simulated elsewhere; none = it is simulated within the source.
     pub workers: Option<&'a RefCell<Vec<SandWorker>>>,
 }

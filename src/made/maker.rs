@@ -57,7 +57,7 @@ impl<'a> Maker<'a> {
         Ok(Body { mass_kg: entry.mass_kg.or_else(stock_kg), strike_gain, ..body })
     }
 
-    /// What all sources of a surface share.
+    /// Settings that all sources of a surface share.
     pub fn ground(&self, entry: &SurfaceEntry) -> Ground<'a> {
         let extent = Extent { width_m: entry.width_m, height_m: entry.height_m, relief_m: 1.0 };
         Ground { maker: *self, extent, wrap: entry.wrap, frame: entry.frame }
@@ -148,7 +148,7 @@ pub(crate) fn actuator(
     })
 }
 
-/// How a finger's displacement grows with what presses: metres that a scene writes are the pad's own.
+/// Exponent of a finger's displacement over what presses: metres that a scene writes are the pad's own.
 pub(crate) fn felt_force_exponent(entry: &ActuatorEntry) -> f64 {
     let by_policy = entry.full_scale.is_none() && entry.settings.output == Quantity::Displacement;
     entry.felt_force_exponent.unwrap_or(if by_policy { FELT_FORCE_EXPONENT } else { 0.0 })

@@ -11,7 +11,7 @@ use asperity_texture::raster::Raster;
 use asperity_texture::wrap::Wrap;
 use std::cell::RefCell;
 
-/// How a picture becomes the values of a map.
+/// Conversion of a picture to the values of a map.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Values {
     /// Its greys, white 1.
@@ -20,7 +20,7 @@ pub(crate) enum Values {
     Debanded,
 }
 
-/// What a map is made of.
+/// Parts of a map.
 #[derive(Clone, PartialEq)]
 pub(crate) struct MapOf {
     pub image: Pixels,
@@ -41,7 +41,7 @@ impl MapOf {
     }
 }
 
-/// What a picture holds that is read past, and the key that would name it.
+/// Channels of a picture that are read past, and the key that would name them.
 fn remark(image: &Pixels, read: &ChannelImage, key: &str) -> Option<String> {
     let ignored = read.ignored?;
     let path = image.path.display();
@@ -73,7 +73,7 @@ pub struct Maps {
 }
 
 impl Maps {
-    /// What is doubtful in the pictures that were read, a line each.
+    /// Doubts about the pictures that were read, a line each.
     pub fn remarks(&self) -> Vec<String> {
         self.remarks.borrow().clone()
     }

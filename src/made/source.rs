@@ -25,7 +25,7 @@ const GRAPH_POINTS: usize = 1 << 14;
 
 type Boxed = Box<dyn HeightField>;
 
-/// What every source of a surface shares.
+/// Settings that every source of a surface shares.
 #[derive(Clone, Copy)]
 pub(crate) struct Ground<'a> {
     pub maker: Maker<'a>,
@@ -75,7 +75,7 @@ impl Ground<'_> {
         self.maker.maps.get(of, self.maker.files)
     }
 
-    /// Whether heights belong to places.
+    /// True where heights belong to places.
     fn has_places(source: &Source) -> bool {
         match source {
             Source::Brownian(brownian) => !brownian.graph,

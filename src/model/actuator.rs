@@ -6,7 +6,7 @@ pub use asperity_dsp::actuator::{DeviceProfile, Quantity};
 /// plate would spend 26 dB of head room there.
 pub const ACCELERATION_BAND_HZ: f64 = 1000.0;
 
-/// How the displacement of a finger is felt to grow with what presses where the level policy sets the channel: ∝ F^⅓.
+/// Exponent of growth of a finger's displacement with what presses where the level policy sets the channel: ∝ F^⅓.
 ///
 /// The pad of a finger that is pressed harder follows the same ground, so its displacement stays as it is; what is felt grows
 /// (Lederman 1974: roughness of gratings grows with the force of the finger). The virtual finger touches with more skin, A ∝ F^⅔
@@ -28,7 +28,7 @@ pub const FELT_FORCE_EXPONENT: f64 = 1.0 / 3.0;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ActuatorSettings {
-    /// What the channel plays: the pad's displacement (the paper), its acceleration, or how friction drags the skin sideways.
+    /// Quantity of the channel: the pad's displacement (the paper), its acceleration, or how friction drags the skin sideways.
     pub output: Quantity,
     /// m (or m/s²) at sample value 1.0; 1.0 gives SI units.
     pub full_scale: f64,
@@ -46,7 +46,7 @@ pub struct ActuatorSettings {
     pub equalise: Option<DeviceProfile>,
     /// Device whose excursion and heat are kept within limits.
     pub limit: Option<DeviceProfile>,
-    /// Whether a peak limiter keeps the channel within ±1, whatever the device.
+    /// Keeps the channel within ±1 by a peak limiter, whatever the device.
     pub limit_peaks: bool,
 }
 

@@ -10,7 +10,7 @@ pub struct BadValue {
     pub field: &'static str,
     /// Its value.
     pub value: f64,
-    /// What would be accepted.
+    /// Accepted values.
     pub expected: &'static str,
 }
 

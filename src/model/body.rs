@@ -26,7 +26,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// What a body, or a surface without one, is made of unless told otherwise.
+    /// Material of a body, or of a surface without one, unless told otherwise.
     pub const DEFAULT_MATERIAL: Material = Material::PLA;
 
     /// A body of PLA on bus 0.
@@ -35,7 +35,7 @@ impl Body {
         Self { model, material: Self::DEFAULT_MATERIAL, bus: 0, gain: 1.0, strike_gain: 1.0, mass_kg: None }
     }
 
-    /// Of another material, which decides how long impacts on it last.
+    /// Sets the material, which decides how long impacts on it last.
     #[must_use]
     pub fn of(mut self, material: Material) -> Self {
         self.material = material;
@@ -67,7 +67,7 @@ impl Body {
         self
     }
 
-    /// How loud impacts on it are beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike is then far above a
+    /// Gain of impacts beside strokes, linear, 0–1000: 1 is what mechanics says, and a strike is then far above a
     /// stroke. A scene file that leaves it out has the [level policy](crate::open::levels) find it.
     #[must_use]
     pub fn strike_gain(mut self, gain: f64) -> Self {

@@ -20,7 +20,7 @@ pub const MAX_BUSES: usize = 64;
 pub struct AudioBus {
     /// Linear gain, 0–1e6.
     pub gain: f64,
-    /// Whether a peak limiter keeps the output within ±1.
+    /// Keeps the output within ±1 by a peak limiter.
     pub limit: bool,
     /// Sound pressure that full scale stands for, Pa, where somebody knows it. While a machine is late, modes are left out as they are missed at the
     /// level that follows from it; without, the loudest mode of a body is taken to be at 70 dB SPL. No sample depends on it otherwise.

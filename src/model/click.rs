@@ -57,7 +57,7 @@ impl Click {
         }
     }
 
-    /// How many samples a blow's click may touch; 0 where it is too faint.
+    /// Number of samples that a blow's click may touch; 0 where it is too faint.
     pub(crate) fn samples_of(&self, pulse: &HertzPulse, sample_rate_hz: f64) -> u64 {
         if self.peak(pulse).abs() < SILENT { 0 } else { Self::samples(pulse, sample_rate_hz) }
     }

@@ -1,6 +1,6 @@
 //! Clock modes: how game seconds become samples.
 
-/// How a stamp becomes a sample.
+/// Conversion of a stamp to a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum ClockMode {

@@ -27,7 +27,7 @@ pub(crate) struct TriangleTree {
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// What of `order` lies in it.
+    /// Part of `order` that lies in it.
     range: (u32, u32),
     /// Its two halves; none for a leaf.
     halves: Option<(u32, u32)>,

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// Most inner samples for each that leaves, besides those of low rates.
 const MAX_OVERSAMPLING: usize = 16;
 
-/// How an engine is built. `Config::default()` is one finger, one actuator, 44.1 kHz, rendered offline;
+/// Settings of an engine. `Config::default()` is one finger, one actuator, 44.1 kHz, rendered offline;
 /// [`Config::live`] is the same for a game that runs now.
 ///
 /// As text it is a table with these fields, of which any may be missing, and no others ([`Config::parse`]).
@@ -39,11 +39,11 @@ pub struct Config {
     pub oversampling: usize,
     /// Seed of the micro-noise: the same seed feels the same at the same place. Default 1.
     pub seed: u64,
-    /// How sparse contact positions become a path.
+    /// Way from sparse contact positions to a path.
     pub path: PathMode,
     /// Cutoff of the path's Butterworth filter, Hz (Hasti §III-C: 30 Hz).
     pub path_cutoff_hz: f64,
-    /// How the micro-contact model is integrated.
+    /// Integrator of the micro-contact model.
     pub integrator: Integrator,
     /// The engine's own probe, for contacts that name no other: the fingertip unless told otherwise.
     pub probe: Probe,
@@ -65,14 +65,14 @@ pub struct Config {
     pub queue_capacity: usize,
     /// A contact that is not refreshed for so long fades, s: a lost `end` cannot stick. 0.01–3600 s, default 0.25 s.
     pub contact_timeout_s: f64,
-    /// How game time becomes samples: exactly, as an offline render wants it, unless told otherwise. A game that
+    /// Conversion of game time to samples: exactly, as an offline render wants it, unless told otherwise. A game that
     /// runs now begins with [`Config::live`].
     pub clock: ClockMode,
     /// Modes that are left out when a body is added, because nobody can hear them; `None` keeps all. The
     /// default costs −100 dB of error or less; [`Culling::default`] goes further, as far as the ear does.
     #[serde(with = "culling_or_none")]
     pub culling: Option<Culling>,
-    /// Whether the audio half leaves out the least audible work while blocks run late, as told by
+    /// Lets the audio half leave out the least audible work while blocks run late, as told by
     /// [`Renderer::report_load`](crate::Renderer::report_load). Where nobody reports a load, nothing is ever left out.
     pub shed_load: bool,
     /// Instruction set of the kernels whose last bits depend on it, the modal bank and the contact model: [`Isa::Portable`] gives the
@@ -114,7 +114,7 @@ impl Default for Config {
 }
 
 impl Config {
-    /// What a game wants that runs now: the device's rate, and a clock that follows the game through pauses, restarts,
+    /// Settings for a game that runs now: the device's rate, and a clock that follows the game through pauses, restarts,
     /// slow motion and bursts of ticks ([`ClockMode::LIVE`]). The default's exact clock is for offline renders.
     #[must_use]
     pub fn live(sample_rate_hz: f64) -> Self {

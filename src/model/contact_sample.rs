@@ -13,7 +13,7 @@ use crate::model::error::Refusal;
 use crate::model::frame::SurfaceFrame;
 use asperity_dsp::limits;
 
-/// Where and how a contact touches at one instant.
+/// Place and manner of a contact at one instant.
 ///
 /// ```
 /// use asperity::ContactSample;
@@ -39,7 +39,7 @@ pub struct ContactSample {
     pub closing_m_s: f64,
     /// Place in the frame of the body that the surface belongs to, m.
     pub at_m: Option<[f64; 3]>,
-    /// How deep the tip stands below the untouched surface, m; below 0 it is above it. For surfaces that give way.
+    /// Depth of the tip below the untouched surface, m; below 0 it is above it. For surfaces that give way.
     pub depth_m: Option<f64>,
     /// Speed at which what touches slides on the ground where they touch, m/s: missing = as fast as it moves, a stroke; 0 = it rolls. Between
     /// them it does a bit of both ([`asperity_dsp::rolling`]).
@@ -48,7 +48,7 @@ pub struct ContactSample {
     pub roll_radius_m: Option<f64>,
 }
 
-/// The same as it is written.
+/// Sample as it is written.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Written {
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -120,12 +120,12 @@ impl From<ContactSample> for Written {
     }
 }
 
-/// What has to be known of a surface to place a contact on it.
+/// Data of a surface for placing a contact on it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place {
     pub(crate) frame: Option<SurfaceFrame>,
     pub(crate) size_m: [f64; 2],
-    /// Whether it gives way.
+    /// True where it gives way.
     pub(crate) is_soft: bool,
 }
 
@@ -188,7 +188,7 @@ impl ContactSample {
         self
     }
 
-    /// The same sample with a negative force set to 0, and force and speeds that no model reaches held at their limits: 1e4 N and
+    /// Sample with a negative force set to 0, and force and speeds that no model reaches held at their limits: 1e4 N and
     /// 100 m/s, of a velocity in its own direction.
     ///
     /// # Errors
@@ -197,7 +197,7 @@ impl ContactSample {
         self.held().map(|(sample, _)| sample)
     }
 
-    /// The same, and whether something was held at its limit.
+    /// Held sample, and true where something was held at its limit.
     pub(crate) fn held(mut self) -> Result<(Self, bool), BadValue> {
         let mut at_limit = false;
         for x in self.at_m.into_iter().flatten() {

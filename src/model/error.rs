@@ -23,9 +23,9 @@ pub enum ConfigError {
         "threads: the system gives no {threads} threads ({error}); must be fewer, 1 renders on the calling thread alone"
     )]
     Threads {
-        /// How many were asked for.
+        /// Number that was asked for.
         threads: usize,
-        /// What the system says.
+        /// Message of the system.
         error: std::io::ErrorKind,
     },
 }
@@ -83,7 +83,7 @@ pub enum Refusal {
     UnknownActuator {
         /// The index given.
         index: u16,
-        /// How many channels there are.
+        /// Number of channels.
         channels: usize,
     },
 }
@@ -97,7 +97,7 @@ pub enum AddError {
     Full {
         /// "surfaces", "bodies", "probes" or "ports".
         kind: &'static str,
-        /// How many places there are.
+        /// Number of places.
         capacity: usize,
     },
     /// The way to the audio half is full.
@@ -114,7 +114,7 @@ pub enum AddError {
     UnknownBus {
         /// The index given.
         bus: usize,
-        /// How many buses there are.
+        /// Number of buses.
         buses: usize,
     },
     /// The surface never changes, so that there is nothing to be shown.
@@ -125,7 +125,7 @@ pub enum AddError {
         "excitation: friction sticks and slips with a body, so its motion must be known; put the surface on a body whose modes have shapes and give it a frame, or tell the body's mass_kg"
     )]
     CannotRub,
-    /// What it refers to is not in this scene.
+    /// Thing that it refers to and that is not in this scene.
     #[error("{0}: is not in this scene; add it first")]
     Unknown(&'static str),
 }

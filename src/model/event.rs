@@ -28,7 +28,7 @@ pub struct ContactId(pub u64);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Actuator(pub u16);
 
-/// What touches what, and who feels it: fixed for as long as the contact lasts.
+/// Surface, probe and actuator of a contact: fixed for as long as the contact lasts.
 ///
 /// ```
 /// use asperity::{Actuator, Config, Engine, Surface, Touching, probe_by_name};
@@ -43,9 +43,9 @@ pub struct Actuator(pub u16);
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Touching {
-    /// What is touched.
+    /// Surface that is touched.
     pub surface: SurfaceId,
-    /// What touches; none = the engine's own probe ([`Config::probe`](crate::Config::probe)).
+    /// Probe that touches; none = the engine's own ([`Config::probe`](crate::Config::probe)).
     pub probe: Option<ProbeId>,
     /// Which haptic channel feels it; none = it is heard only.
     pub actuator: Option<Actuator>,
@@ -124,14 +124,14 @@ pub struct Impact {
     pub mass_kg: f64,
     /// Radius of curvature at the point of contact, m.
     pub radius_m: f64,
-    /// What the striker is made of.
+    /// Material of the striker.
     pub striker: Material,
     /// Ratio of rebound to approach speed, 0–1; 1 is the loss-free impact of Hertz theory.
     pub restitution: f64,
     /// Which of the body's strike positions is hit; 0 is the one every body has, and one that the body
     /// does not have counts as its last.
     pub position: usize,
-    /// Where it is hit, m in the body's frame: the nearest point of its surface counts, instead of `position`. Only a body whose modes have
+    /// Place that is hit, m in the body's frame: the nearest point of its surface counts, instead of `position`. Only a body whose modes have
     /// [shapes](crate::ModeShapes) takes it.
     pub at_m: Option<[f64; 3]>,
     /// Along what it is hit there, in the body's frame; none = the inward normal. Its length does not count.
@@ -140,13 +140,13 @@ pub struct Impact {
     pub actuator: Option<Actuator>,
     /// The body in the hand, which rings at its position 0 from the same pulse with opposite sign.
     pub holder: Option<BodyId>,
-    /// What of the hand feels it; none = the engine's own probe.
+    /// Probe of the hand that feels it; none = the engine's own.
     pub probe: Option<ProbeId>,
     /// Linear gain of what is felt and heard of it, 0–1000.
     pub gain: f64,
 }
 
-/// How loud and how important a contact is from now on; none = as it was.
+/// Gain and importance of a contact from now on; none = as it was.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Emphasis {
     /// Linear gain of what is felt and heard of it, 0–1000; reached within some milliseconds.
@@ -158,7 +158,7 @@ pub struct Emphasis {
 }
 
 impl Emphasis {
-    /// What an earlier report said, where this one says nothing.
+    /// Fills from an earlier report what this one leaves out.
     pub(crate) fn or(self, earlier: Self) -> Self {
         Self { gain: self.gain.or(earlier.gain), importance: self.importance.or(earlier.importance) }
     }
@@ -190,18 +190,18 @@ pub enum ContactEvent {
     Begin {
         /// The contact's name from now on.
         contact: ContactId,
-        /// What touches what, and who feels it.
+        /// Surface, probe and actuator.
         touching: Touching,
-        /// Where and how.
+        /// Place and manner.
         sample: ContactSample,
     },
     /// A contact goes on, somewhere else or with another force.
     Moved {
         /// The contact's name.
         contact: ContactId,
-        /// Where and how.
+        /// Place and manner.
         sample: ContactSample,
-        /// How loud and how important.
+        /// Gain and importance.
         emphasis: Emphasis,
     },
     /// A contact lifts off.
@@ -238,7 +238,7 @@ impl ContactEvent {
         Self::Moved { contact, sample, emphasis }
     }
 
-    /// The same in a second of audio during which `pace` seconds of the game go by: in slow motion a contact
+    /// Event in a second of audio during which `pace` seconds of the game go by: in slow motion a contact
     /// moves slowly. Forces and blows stay what they are.
     pub(crate) fn at_pace(mut self, pace: f64) -> Self {
         if let Self::Begin { sample, .. } | Self::Moved { sample, .. } = &mut self {
@@ -248,7 +248,7 @@ impl ContactEvent {
         self
     }
 
-    /// The same at the place in the body that another one tells.
+    /// Event at the place in the body that another one tells.
     pub(crate) fn at_place_of(mut self, told: &Self) -> Self {
         if let (
             Self::Begin { sample, .. } | Self::Moved { sample, .. },
@@ -260,7 +260,7 @@ impl ContactEvent {
         self
     }
 
-    /// The same with the velocity that another one tells, beyond what the models reach too.
+    /// Event with the velocity that another one tells, beyond what the models reach too.
     pub(crate) fn with_velocity_of(mut self, told: &Self) -> Self {
         if let (
             Self::Begin { sample, .. } | Self::Moved { sample, .. },
@@ -344,7 +344,7 @@ impl Impact {
         self
     }
 
-    /// The same, with speed, mass and radius beyond what the models reach held at their limits: 100 m/s, 1e4 kg, 10 m.
+    /// Impact with speed, mass and radius beyond what the models reach held at their limits: 100 m/s, 1e4 kg, 10 m.
     ///
     /// # Errors
     /// When a number is not finite or no striker can have it.
@@ -352,7 +352,7 @@ impl Impact {
         self.held().map(|(impact, _)| impact)
     }
 
-    /// The same, and whether something was held at its limit.
+    /// Held impact, and true where something was held at its limit.
     pub(crate) fn held(mut self) -> Result<(Self, bool), BadValue> {
         let mut at_limit = false;
         for (field, value, range) in [

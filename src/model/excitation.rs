@@ -24,7 +24,7 @@ impl Exciter {
     }
 }
 
-/// What sliding sends to the body; empty: nothing, so that the body is rung by impacts alone.
+/// Excitation of the body by sliding; empty: none, so that the body is rung by impacts alone.
 ///
 /// ```
 /// use asperity::{Excitation, Exciter};
@@ -56,13 +56,13 @@ impl Excitation {
         ("both", Self::BOTH),
     ];
 
-    /// The same and one more.
+    /// Adds one more.
     #[must_use]
     pub const fn with(self, exciter: Exciter) -> Self {
         Self(self.0 | exciter.bit())
     }
 
-    /// Whether it is among them.
+    /// Tests whether it is among them.
     #[must_use]
     pub const fn has(self, exciter: Exciter) -> bool {
         self.0 & exciter.bit() != 0

@@ -12,7 +12,7 @@ use asperity_dsp::limits;
 use glam::DVec3;
 use mint::Vector3;
 
-/// How far the axes may be from a right angle, as the cosine between them: what single precision leaves of one.
+/// Largest deviation of the axes from a right angle, as the cosine between them: what single precision leaves of one.
 const SQUARE: f64 = 1e-4;
 
 /// A plane in a body: an origin and two axes at a right angle.
@@ -62,7 +62,7 @@ impl SurfaceFrame {
         [0, 1].map(|axis| from_origin.dot(self.axes[axis]) / size_m[axis])
     }
 
-    /// How deep a point of the body lies below the plane, m, against the direction u × v, which points out of the body.
+    /// Depth of a point of the body below the plane, m, against the direction u × v, which points out of the body.
     #[must_use]
     pub fn depth_m<T: Into<f64>>(&self, point_m: impl Into<Vector3<T>>) -> f64 {
         let [u, v] = self.axes;
@@ -82,7 +82,7 @@ impl SurfaceFrame {
         (-u.cross(v)).to_array()
     }
 
-    /// Where uv (0, 0) lies, m.
+    /// Place of uv (0, 0), m.
     #[must_use]
     pub fn origin_m(&self) -> [f64; 3] {
         self.origin_m.to_array()

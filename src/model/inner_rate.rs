@@ -20,9 +20,9 @@ pub(crate) struct InnerRate {
     at: usize,
 }
 
-/// What is not done where every sample leaves stays out of the way of what is.
+/// Work that is not needed where every sample leaves stays out of the way of the rest.
 impl InnerRate {
-    /// How many inner samples there are for each at `sample_rate_hz`.
+    /// Number of inner samples for each at `sample_rate_hz`.
     pub(crate) fn samples(sample_rate_hz: f64) -> usize {
         ((LOWEST_INNER_HZ / sample_rate_hz - 1e-9).ceil() as usize).max(1)
     }
@@ -32,12 +32,12 @@ impl InnerRate {
         Self { every, at: latency_samples % every }
     }
 
-    /// Of a lag in inner samples, the outer samples that are left of it.
+    /// Outer samples that are left of a lag in inner samples.
     pub(crate) fn lag(&self, inner_samples: usize) -> usize {
         (inner_samples - self.at.min(inner_samples)).div_ceil(self.every)
     }
 
-    /// Whether an inner sample leaves.
+    /// Tests whether an inner sample leaves.
     pub(crate) fn leaves(&self, sample: u64) -> bool {
         sample % self.every as u64 == self.at as u64
     }
@@ -54,7 +54,7 @@ impl InnerRate {
         (first, out.iter_mut().zip(leaving).map(|(to, x)| *to = *x).count())
     }
 
-    /// The same of the means; `mean` is what the first of them has come to already, and then the last.
+    /// Means that leave; `mean` is what the first of them has come to already, and then the last.
     #[cold]
     #[inline(never)]
     pub(crate) fn leaving_means(

@@ -1,6 +1,6 @@
 //! Levels of a scene: what full scale stands for, and the gains of the buses.
 
-/// What was resolved: one number a channel, bus or body, whoever gave it.
+/// Levels that were resolved: one number a channel, bus or body, from the file or the policy.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Levels {
     /// m or m/s² at sample value 1.0 of each actuator.

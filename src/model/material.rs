@@ -15,7 +15,7 @@ use crate::model::bad_value::{BadValue, within};
 use asperity_dsp::damping::Damping;
 use asperity_dsp::limits::{self, material as range};
 
-/// What a thing is made of.
+/// Material of a thing.
 ///
 /// ```
 /// use asperity::Material;
@@ -64,21 +64,21 @@ pub struct Material {
 pub struct MaterialPreset {
     /// Its name in scene files, contact logs and on the command line.
     pub name: &'static str,
-    /// What it stands for.
+    /// Material that it stands for.
     pub what: &'static str,
     /// Its numbers.
     pub material: Material,
-    /// Where E, ν and ρ come from.
+    /// Source of E, ν and ρ.
     pub elastic_source: &'static str,
-    /// Where α, η and β come from.
+    /// Source of α, η and β.
     pub damping_source: &'static str,
-    /// Where the friction coefficients come from.
+    /// Source of the friction coefficients.
     pub friction_source: &'static str,
-    /// Where roughness and micro-relief come from.
+    /// Source of roughness and micro-relief.
     pub finish_source: &'static str,
 }
 
-/// What a material has that is given by its elastic constants only.
+/// Properties of a material that is given by its elastic constants only.
 mod default {
     use super::Material;
 
@@ -133,7 +133,7 @@ impl Material {
         Self::PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>().join(", ")
     }
 
-    /// How its modes decay.
+    /// Decay of its modes.
     #[must_use]
     pub const fn damping(&self) -> Damping {
         Damping { alpha_per_s: self.alpha_per_s, eta: self.eta, beta_s: self.beta_s }

@@ -29,7 +29,7 @@ pub const MAX_MODES: usize = 65_536;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalModel {
-    /// What was recorded or where the modes come from; free text.
+    /// Recording or source of the modes; free text.
     pub source: String,
     /// The strike that `modes` is the answer to, N·s.
     pub impulse_n_s: f64,
@@ -38,13 +38,13 @@ pub struct ModalModel {
     /// Amplitudes when the body is struck elsewhere: strike position 1, 2, … (at most
     /// [`MAX_POSITIONS`] − 1), each with one amplitude for every mode. Position 0 is `modes` itself.
     pub positions: Vec<Vec<f64>>,
-    /// What the strike had besides modes, played at every impact.
+    /// Part of the strike besides modes, played at every impact.
     pub residual: Option<Residual>,
-    /// How the surface moves in each mode: such a body can be struck and stroked anywhere.
+    /// Motion of the surface in each mode: such a body can be struck and stroked anywhere.
     pub shapes: Option<Arc<ModeShapes>>,
-    /// What amplitudes and residual are.
+    /// Unit of amplitudes and residual.
     pub unit: Unit,
-    /// What a blow sounds like because it pushes the body as a whole.
+    /// Sound of a blow because it pushes the body as a whole.
     pub click: Option<Click>,
 }
 
@@ -60,7 +60,7 @@ pub enum ModalModelError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         source: std::io::Error,
     },
     /// The file is not JSON of this shape.
@@ -68,7 +68,7 @@ pub enum ModalModelError {
     Malformed {
         /// The file.
         path: PathBuf,
-        /// What is wrong and where.
+        /// Fault, and its place.
         message: String,
     },
     /// A number that no body can have.
@@ -78,7 +78,7 @@ pub enum ModalModelError {
         field: String,
         /// Its value.
         value: f64,
-        /// What would be accepted.
+        /// Accepted values.
         expected: &'static str,
     },
 }
@@ -109,7 +109,7 @@ impl ModalModel {
         }
     }
 
-    /// The same model, every answer `gain` times as strong.
+    /// Model of which every answer is `gain` times as strong.
     ///
     /// # Errors
     /// When an amplitude leaves ±1e9.
@@ -129,7 +129,7 @@ impl ModalModel {
         Ok(self)
     }
 
-    /// The same body `size` times as large, of `material`: every mode lower by `size`, and its decay as much longer or shorter as the
+    /// Body `size` times as large, of `material`: every mode lower by `size`, and its decay as much longer or shorter as the
     /// material's damping says of its new frequency. Amplitudes stay; a residual is of the size it was recorded at, and is left out.
     ///
     /// ```
@@ -168,7 +168,7 @@ impl ModalModel {
         Ok(self)
     }
 
-    /// The same model with more strike positions: one amplitude for every mode in each list.
+    /// Model with more strike positions: one amplitude for every mode in each list.
     ///
     /// # Errors
     /// When a list is not as long as the modes, a number is not finite, or there are too many.
@@ -178,7 +178,7 @@ impl ModalModel {
         Ok(self)
     }
 
-    /// The same model with what a strike has besides its modes; `gain` scales it, 0 leaves it out.
+    /// Model with what a strike has besides its modes; `gain` scales it, 0 leaves it out.
     ///
     /// # Errors
     /// When the burst is longer than [`LONGEST_S`](crate::model::residual::LONGEST_S) or holds no finite numbers.
@@ -191,7 +191,7 @@ impl ModalModel {
         Ok(self)
     }
 
-    /// The same model with the motion of its surface, in the order of its modes: it can be struck anywhere.
+    /// Model with the motion of its surface, in the order of its modes: it can be struck anywhere.
     ///
     /// # Errors
     /// When the shapes do not fit the modes or each other.
@@ -208,7 +208,7 @@ impl ModalModel {
         Ok(self)
     }
 
-    /// How many strike positions there are, the first included.
+    /// Number of strike positions, the first included.
     #[must_use]
     pub fn position_count(&self) -> usize {
         1 + self.positions.len()
@@ -261,7 +261,7 @@ impl ModalModel {
         self.modes.iter().enumerate().map(most).collect()
     }
 
-    /// What a mode answers an impulse of `impulse_n_s` with where it swings most; 0 without shapes.
+    /// Response of a mode to an impulse of `impulse_n_s` where it swings most; 0 without shapes.
     fn most_anywhere(&self, mode: usize) -> f64 {
         let Some(shapes) = &self.shapes else { return 0.0 };
         let square = |phi: &[f32; 3]| phi.iter().map(|x| f64::from(x * x)).sum::<f64>();

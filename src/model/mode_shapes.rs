@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Most points of a triangulation.
 const MOST_POINTS: usize = 1_000_000;
 
-/// What amplitudes of a modes file are.
+/// Unit of a modes file's amplitudes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Unit {
     /// Right against each other within the file; the scale is free.
@@ -38,7 +38,7 @@ pub struct ModeShapes {
 }
 
 impl ModeShapes {
-    /// The same body `size` times as large: mass-normalised motion falls as its mass grows, and what it sounds like stays.
+    /// Body `size` times as large: mass-normalised motion falls as its mass grows, and what it sounds like stays.
     pub(crate) fn scale(&mut self, size: f64) {
         let heavier = libm::pow(size, 1.5);
         self.points_m.iter_mut().flatten().for_each(|x| *x *= size);

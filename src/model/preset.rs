@@ -12,19 +12,19 @@ use crate::model::config::Config;
 use asperity_dsp::micro_contact::Integrator;
 use asperity_dsp::modal_bank::Culling;
 
-/// How exact an engine is.
+/// Accuracy of an engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Preset {
-    /// As many contacts as fit.
+    /// Many contacts at the lowest cost.
     Fast,
-    /// What [`Config::default`] is.
+    /// Settings of [`Config::default`].
     #[default]
     Default,
     /// For renders that nobody waits for, and to see what the others leave out.
     Accurate,
 }
 
-/// What a preset settles.
+/// Settings of a preset.
 struct Settled {
     name: &'static str,
     integrator: Integrator,
@@ -73,7 +73,7 @@ impl Preset {
 }
 
 impl Config {
-    /// The same engine, as exact as a preset says: integrator, inner samples and modes; nothing else changes.
+    /// Engine as exact as a preset says: integrator, inner samples and modes; nothing else changes.
     ///
     /// ```
     /// use asperity::{Config, Preset};

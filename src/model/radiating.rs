@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 impl ModalModel {
-    /// The same body in pascals at 1 m: each mode as loud as its [shape](crate::ModeShapes) radiates, its decay with what radiation takes, and with the
+    /// Body in pascals at 1 m: each mode as loud as its [shape](crate::ModeShapes) radiates, its decay with what radiation takes, and with the
     /// click of a body of this material that a blow pushes as a whole. One in pascals already stays what it is.
     ///
     /// A mode that radiation damps so much that it no longer swings becomes silent.

@@ -46,7 +46,7 @@ impl Residual {
         }
     }
 
-    /// What of the burst lies below `highest_hz`, if it has more.
+    /// Part of the burst below `highest_hz`, if it has more.
     pub(crate) fn below(&self, highest_hz: f64) -> Self {
         if self.sample_rate_hz <= 2.0 * highest_hz {
             return self.clone();

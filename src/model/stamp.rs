@@ -16,7 +16,7 @@ impl Stamp {
         Self(sample.saturating_mul(Self::PER_SAMPLE))
     }
 
-    /// So many samples later.
+    /// Stamp so many samples later.
     pub(crate) fn later(self, samples: u64) -> Self {
         Self(self.0.saturating_add(samples.saturating_mul(Self::PER_SAMPLE)))
     }
@@ -26,7 +26,7 @@ impl Stamp {
         self.0 / Self::PER_SAMPLE
     }
 
-    /// How far it lies beyond that sample, 0 to 255/256.
+    /// Distance beyond that sample, 0 to 255/256.
     pub(crate) fn fraction(self) -> f64 {
         (self.0 % Self::PER_SAMPLE) as f64 / Self::PER_SAMPLE as f64
     }

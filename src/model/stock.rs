@@ -122,7 +122,7 @@ impl Stock {
         Self::ALL.map(|(name, _)| name).join(", ")
     }
 
-    /// What such a thing is usually made of, and how large it is, m.
+    /// Usual material and size, m, of such a thing.
     ///
     /// ```
     /// use asperity::{Body, Material, Stock};

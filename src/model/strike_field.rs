@@ -10,7 +10,7 @@ use crate::model::closest_point::TriangleTree;
 use crate::model::mode_shapes::ModeShapes;
 use std::sync::Arc;
 
-/// Where a strike hits a body that has shapes, and along what.
+/// Place and direction of a strike on a body that has shapes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StrikePlace {
     /// Three points of the shapes.
@@ -95,7 +95,7 @@ impl StrikeField {
         })
     }
 
-    /// What every mode sounds with for 1 N·s there, in the unit of the file.
+    /// Amplitude of every mode for 1 N·s there, in the unit of the file.
     #[must_use]
     pub fn amplitudes(&self, place: &StrikePlace) -> Vec<f64> {
         let modes = self.shapes.gains.iter().zip(&self.shapes.phi_per_sqrt_kg);

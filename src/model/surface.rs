@@ -24,12 +24,12 @@ use std::any::Any;
 #[cfg(feature = "image")]
 use std::path::Path;
 
-/// Where a surface's perceptual roughness R (0–1) comes from.
+/// Source of a surface's perceptual roughness R (0–1).
 #[derive(Debug, Clone)]
 pub enum Roughness {
     /// The source says, or [`DEFAULT_ROUGHNESS`] where it does not.
     FromSource,
-    /// The same everywhere.
+    /// One R everywhere.
     Constant(f64),
     /// A map of its own: its heights are R.
     Map(Box<HeightMap>),
@@ -47,7 +47,7 @@ pub const DEFAULT_OUTER_SCALE_M: f64 = 0.01;
 /// Radius of the asperity that stands for the finger in a micro-collision, m. The true skin would give
 /// contact times of 1–8 ms and dull sounds, so the exciter is a hard bead of the pad's mass instead.
 pub const EXCITER_RADIUS_M: f64 = 1e-3;
-/// What that bead is made of.
+/// Material of that bead.
 pub const EXCITER_MATERIAL: Material = Material::NAIL;
 
 /// Friction of a surface that rubs its body and says nothing else: rosin on a bow's hair, to the order of what is published of it (static 0.8,
@@ -70,7 +70,7 @@ pub struct Surface {
     pub(crate) stick_slip: Option<Friction>,
     pub(crate) strike_position: usize,
     pub(crate) frame: Option<SurfaceFrame>,
-    /// What it was made from, as whoever made it wrote it down, so that a recording can say it again.
+    /// Origin, as its maker wrote it down, so that a recording can say it again.
     pub(crate) described: Option<Box<dyn Any + Send + Sync>>,
 }
 
@@ -109,7 +109,7 @@ impl Surface {
         Self::from_source(Box::new(source), width_m, height_m)
     }
 
-    /// The same for a source that is boxed already.
+    /// Surface of a source that is boxed already.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -212,7 +212,7 @@ impl Surface {
         self
     }
 
-    /// Where it lies in its body.
+    /// Sets where it lies in its body.
     #[must_use]
     pub fn frame(mut self, frame: SurfaceFrame) -> Self {
         self.frame = Some(frame);
@@ -248,7 +248,7 @@ impl Surface {
         self
     }
 
-    /// How far it gives way under each newton, m/N, whatever its source says; 0 leaves that to the source. A cloth on foam: 1e-3.
+    /// Sets how far it gives way under each newton, m/N, whatever its source says; 0 leaves that to the source. A cloth on foam: 1e-3.
     ///
     /// ```text
     /// d = C F        a tip that stands d below the untouched surface is carried with d / C
@@ -284,7 +284,7 @@ impl Surface {
         self.source.touch(&Touch { kind, position_m, ..Touch::default() }).carries_n
     }
 
-    /// What sliding sends to the body.
+    /// Sets what sliding sends to the body.
     #[must_use]
     pub fn excitation(mut self, excitation: Excitation) -> Self {
         self.excitation = excitation;
@@ -313,12 +313,12 @@ impl Surface {
         self
     }
 
-    /// What rubs its body; none where friction does not sound.
+    /// Friction that rubs its body; none where friction does not sound.
     pub(crate) fn rubs(&self) -> Option<Friction> {
         self.stick_slip.filter(|_| self.excitation.has(Exciter::Friction))
     }
 
-    /// Whether texture coordinates wrap at 0 and 1 (a repeating surface, the default): then a jump by
+    /// Sets whether texture coordinates wrap at 0 and 1 (a repeating surface, the default): then a jump by
     /// a whole tile is no movement, and the same coordinates are the same place, lap after lap; a source that never
     /// repeats is cut into tiles without a seam. A source with an edge (a clamped map, sand) never wraps, a mirrored
     /// one at every second tile. A surface that does not wrap takes uv as they are.
@@ -353,7 +353,7 @@ impl Surface {
         self.source.properties([self.width_m, self.height_m])
     }
 
-    /// What the path stage may unwrap by, m.
+    /// Distance that the path stage may unwrap by, m.
     pub(crate) fn wrap_period_m(&self) -> [f64; 2] {
         let tile_m = [self.width_m, self.height_m];
         match self.properties().beyond {
@@ -363,7 +363,7 @@ impl Surface {
         }
     }
 
-    /// The same surface with a source that repeats, if its coordinates wrap.
+    /// Surface with a source that repeats, if its coordinates wrap.
     pub(crate) fn tiled(mut self) -> Self {
         let tile_m = [self.width_m, self.height_m];
         if self.wraps && self.properties().beyond == Beyond::Fresh {

@@ -22,14 +22,14 @@ pub enum UvMapping {
     Plane(UvTriangle),
     /// By the direction in which the surface faces: boxes, hulls, whatever has flat sides.
     ByNormal {
-        /// What uv 1 spans, m.
+        /// Metres that uv 1 spans.
         span_m: [f64; 2],
     },
     /// A sphere about the origin.
     Sphere {
         /// Its radius, m.
         radius_m: f64,
-        /// What uv 1 spans, m; without a seam where it goes a whole number of times into the circumference.
+        /// Metres that uv 1 spans; without a seam where they go a whole number of times into the circumference.
         span_m: [f64; 2],
     },
     /// A cylinder, or a capsule, about the y axis.
@@ -48,7 +48,7 @@ pub enum UvPlace {
     Triangle(UvTriangle),
     /// By the normal: a [`TriplanarPath`](crate::texture::triplanar::TriplanarPath) of this span keeps its plane from report to report.
     ByNormal {
-        /// What uv 1 spans, m.
+        /// Metres that uv 1 spans.
         span_m: [f64; 2],
     },
 }
@@ -103,7 +103,7 @@ fn tangent(
 mod tests {
     use super::*;
 
-    /// How uv moves for a step of `step_m` from a place, and what is told of a velocity along it.
+    /// Movement of uv for a step of `step_m` from a place, and what is told of a velocity along it.
     fn step(mapping: UvMapping, place: DVec3, outward: DVec3, step_m: DVec3) -> ([f64; 2], [f64; 2]) {
         let at = |place: DVec3| match mapping.at(place.to_array(), outward.to_array()) {
             Some(UvPlace::Triangle(triangle)) => triangle.sample(place.to_array(), step_m.to_array(), 1.0),

@@ -93,7 +93,7 @@ impl UvTriangle {
         self.axes.map(|axis| axis.dot(velocity_m_s))
     }
 
-    /// What to report of a contact at a point that slides with a velocity, pressed with a force; its
+    /// Report of a contact at a point that slides with a velocity, pressed with a force; its
     /// closing speed is 0.
     #[must_use]
     pub fn sample<T: Into<f64>, S: Into<f64>>(

@@ -16,13 +16,13 @@ use asperity_texture::sand::SandWorker;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-/// What became of a changed scene file.
+/// Result of a changed scene file.
 #[derive(Default)]
 #[non_exhaustive]
 pub struct Changes {
-    /// What has changed, in words: `surface "tiles": changed`.
+    /// Changes, in words: `surface "tiles": changed`.
     pub done: Vec<String>,
-    /// What has not, with when it will.
+    /// Changes that wait, with when they will come.
     pub waiting: Vec<String>,
     /// Simulations of new sand, to be run on threads of their own as those of [`Engine::workers`](crate::Engine::workers).
     pub workers: Vec<SandWorker>,
@@ -62,7 +62,7 @@ impl Scene {
         Ok(changes)
     }
 
-    /// How loud impacts are on a body that says nothing: as they are on it, and on a new one as on the others, which share what the level policy
+    /// Gain of impacts on a body that has none of its own: as they are on it, and on a new one as on the others, which share what the level policy
     /// has found.
     fn silent_strike_gain(&self, body: Option<&BodyId>) -> f64 {
         body.and_then(|body| self.strike_gain_of(*body).ok()).unwrap_or(self.strike_gain)
@@ -112,7 +112,7 @@ impl Scene {
     }
 }
 
-/// What differs, made and not yet in the scene.
+/// Differences, made and not yet in the scene.
 struct New<'a> {
     probes: Vec<&'a (String, asperity_dsp::micro_contact::Probe)>,
     bodies: Vec<(&'a BodyEntry, Body)>,
@@ -194,7 +194,7 @@ impl<'a> New<'a> {
     }
 }
 
-/// What is fixed when an engine is built, and differs.
+/// Settings that are fixed when an engine is built, and differ.
 fn waiting(before: &SceneFile, after: &SceneFile) -> Vec<String> {
     let buses = |file: &SceneFile| -> Vec<_> {
         // A gain that is no longer written is found by the level policy, anew.

@@ -37,7 +37,7 @@ use asperity_dsp::limits::output as limits;
 
 /// Speed of the reference stroke, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 0.1;
-/// What presses in the reference stroke, N.
+/// Pressing force of the reference stroke, N.
 pub const REFERENCE_FORCE_N: f64 = 1.0;
 /// Rms of a haptic channel under the reference stroke, full scale 1: −26 dB.
 pub const HAPTIC_REFERENCE: f64 = 0.050_118_723_362_727_22;
@@ -50,24 +50,24 @@ pub const FALLBACK_FULL_SCALE_M: f64 = 1e-4;
 /// Acceleration at full scale where nothing says better, m/s².
 pub const FALLBACK_FULL_SCALE_M_S2: f64 = 50.0;
 
-/// How long each stroke lasts, s, and from when on it is measured.
+/// Length of each stroke, s, and the time from which on it is measured.
 const STROKE_S: f64 = 0.35;
 const SETTLED_S: f64 = 0.1;
 /// Strikes of a burst, and between two of them, s.
 const BURST: (u32, f64) = (50, 0.02);
 /// Between two strokes, s.
 const PAUSE_S: f64 = 0.1;
-/// What is weaker is silence: rms in m, m/s² or the modes' own units.
+/// Threshold of silence: rms in m, m/s² or the modes' own units.
 const SILENT: f64 = 1e-10;
-/// Where a stroke begins, uv.
+/// Beginning of a stroke, uv.
 const FROM: [f64; 2] = [0.31, 0.37];
-/// Where they go, unit vectors of u and v: along threads and across them, and between.
+/// Directions of strokes, unit vectors of u and v: along threads and across them, and between.
 const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.6, -0.8], [0.0, 1.0], [0.8, 0.6]];
 /// The least power that one of them counts with, over the strongest: along its ribs a file is silent.
 const LEAST_POWER: f64 = 1.0 / 16.0;
 
 impl Levels {
-    /// What the scene says; NaN where it does not.
+    /// Levels of the scene; NaN where it has none.
     fn written(file: &SceneFile) -> Self {
         Self {
             full_scale: file.actuators.iter().map(|entry| entry.full_scale.unwrap_or(f64::NAN)).collect(),
@@ -163,9 +163,9 @@ impl Burst {
 struct Trials {
     log: ContactLog,
     strokes: Vec<Trial>,
-    /// Whether a body plays on each bus that does not tell in pascals how loud it is.
+    /// True for each bus that a body plays on and that does not tell in pascals how loud it is.
     levelled: Vec<bool>,
-    /// When the single strikes come, from and to.
+    /// Times of the single strikes, from and to.
     strikes_s: [f64; 2],
     bursts: Vec<Burst>,
 }
@@ -224,7 +224,7 @@ impl Trials {
         trials
     }
 
-    /// What rang before is damped.
+    /// Adds a burst; what rang before is damped.
     fn burst(&mut self, name: &str, burst: Burst) {
         let damped = LogLine { t: burst.start_s - Burst::PAUSE_S, event: LogEvent::Edit(LogEdit::FadeAll) };
         self.log.lines.push(damped);

@@ -22,7 +22,7 @@ pub enum LogEdit {
     AddBody {
         /// Its name.
         body: String,
-        /// What it is.
+        /// Description.
         #[serde(flatten)]
         is: LogBody,
     },
@@ -30,7 +30,7 @@ pub enum LogEdit {
     ReplaceBody {
         /// Its name.
         body: String,
-        /// What it is from now on.
+        /// Description from now on.
         #[serde(flatten)]
         is: LogBody,
     },
@@ -50,12 +50,12 @@ pub enum LogEdit {
     },
     /// All that leaves fades, or comes back.
     Mute {
-        /// Whether it fades.
+        /// True where it fades.
         muted: bool,
     },
     /// The game stands still, or goes on.
     Pause {
-        /// Whether it stands still.
+        /// True where it stands still.
         paused: bool,
     },
     /// Every contact ends, and what rings is damped.
@@ -76,7 +76,7 @@ pub enum LogEdit {
     AddSurface {
         /// Its name.
         surface: String,
-        /// What it is.
+        /// Description.
         #[serde(flatten)]
         is: LogSurface,
     },
@@ -84,7 +84,7 @@ pub enum LogEdit {
     ReplaceSurface {
         /// Its name.
         surface: String,
-        /// What it is from now on.
+        /// Description from now on.
         #[serde(flatten)]
         is: LogSurface,
     },
@@ -119,7 +119,7 @@ pub enum LogEdit {
 pub struct LogBody {
     /// Its modes, as in a modes file.
     pub modes: serde_json::Value,
-    /// What it is made of.
+    /// Material.
     pub material: Material,
     /// Index of the bus it plays on.
     pub bus: usize,
@@ -149,10 +149,10 @@ pub struct LogSurface {
     /// Its table of the scene file; none = the game's own code made it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub is: Option<toml::Table>,
-    /// What paths in it are relative to.
+    /// Folder that paths in it are relative to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub folder: Option<String>,
-    /// What its body is made of, if the scene says so: surfaces take their finish from it.
+    /// Material of its body, if the scene says so: surfaces take their finish from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<Material>,
 }

@@ -14,7 +14,7 @@ pub enum LogError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         source: io::Error,
     },
     /// A line is not an event.
@@ -24,7 +24,7 @@ pub enum LogError {
     Malformed {
         /// File and line.
         place: String,
-        /// What is wrong.
+        /// Fault.
         message: String,
     },
     /// A key is missing, or holds what it cannot.
@@ -34,9 +34,9 @@ pub enum LogError {
         place: String,
         /// The key.
         key: String,
-        /// What is wrong with it.
+        /// Fault of it.
         what: String,
-        /// What would be right.
+        /// Remedy.
         right: String,
     },
     /// A line has a key that its event does not know.
@@ -56,7 +56,7 @@ pub enum LogError {
     Version {
         /// File and line.
         place: String,
-        /// What is written.
+        /// Written value.
         version: String,
     },
     /// An edit where only events can be used.
@@ -72,7 +72,7 @@ pub enum LogError {
     NoActuator {
         /// The channel.
         actuator: u16,
-        /// How many there are.
+        /// Number that there is.
         channels: usize,
     },
     /// An edit that cannot be made.
@@ -80,7 +80,7 @@ pub enum LogError {
     CannotEdit {
         /// Its time, s.
         t: f64,
-        /// What is wrong.
+        /// Fault.
         problem: FileError,
     },
     /// Time runs backwards.
@@ -100,7 +100,7 @@ pub enum LogError {
         number: usize,
         /// Its time, s.
         t: f64,
-        /// What is wrong with it.
+        /// Fault of it.
         problem: Box<Self>,
     },
     /// A name the scene does not know.

@@ -17,9 +17,9 @@ pub struct BodyEntry {
     pub modes: Option<PathBuf>,
     /// A stock shape and its size, m.
     pub stock: Option<(Stock, f64)>,
-    /// What it is made of; none = the engine's default.
+    /// Material; none = the engine's default.
     pub material: Option<Material>,
-    /// Whether its modes are as loud as their shapes radiate, in pascals at 1 m.
+    /// True where its modes are as loud as their shapes radiate, in pascals at 1 m.
     pub radiation: bool,
     /// Gain of the residual that its modes file may carry; none = 1, 0 = not played.
     pub residual: Option<f64>,

@@ -36,7 +36,7 @@ impl Fields {
         FileError::new(at, what, right)
     }
 
-    /// Whether a key is there; it counts as accepted.
+    /// Tests whether a key is there; it counts as accepted.
     pub fn has(&mut self, key: &'static str) -> bool {
         self.accept(key);
         self.table.contains_key(key)
@@ -48,7 +48,7 @@ impl Fields {
         }
     }
 
-    /// Whether a key holds a list.
+    /// Tests whether a key holds a list.
     pub fn is_list(&mut self, key: &'static str) -> bool {
         self.accept(key);
         matches!(self.table.get(key), Some(Value::Array(_)))

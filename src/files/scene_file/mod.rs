@@ -54,7 +54,7 @@ pub struct SceneFile {
     pub bodies: Vec<BodyEntry>,
     /// Things that are touched.
     pub surfaces: Vec<SurfaceEntry>,
-    /// What touches unless a contact says otherwise.
+    /// Probe that touches unless a contact says otherwise.
     pub probe: Probe,
     /// Further probes, by name.
     pub probes: Vec<(String, Probe)>,

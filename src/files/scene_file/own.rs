@@ -6,7 +6,7 @@ use asperity_texture::height_field::HeightField;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-/// What a scene says of a source of somebody's own.
+/// Table of a scene for a source of somebody's own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OwnSource {
     /// Which one.
@@ -22,7 +22,7 @@ pub struct OwnSource {
 pub type MakeSource = fn(&OwnSource, [f64; 2]) -> Result<Box<dyn HeightField>, FileError>;
 
 impl OwnSource {
-    /// What the scene says beside `kind`, as plain data; let `T` refuse unknown fields.
+    /// Keys beside `kind`, as plain data; let `T` refuse unknown fields.
     ///
     /// # Errors
     /// When a key is missing, unknown or of another type.

@@ -13,7 +13,7 @@ use std::path::Path;
 pub struct Sand {
     /// Everything but the size, which is the surface's, and the tool, if it is a picture.
     pub design: SandDesign,
-    /// What is dragged through it, by its picture; none = the design's own.
+    /// Picture of what is dragged through it; none = the design's own.
     pub tool: Option<ToolPicture>,
 }
 

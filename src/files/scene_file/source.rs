@@ -15,7 +15,7 @@ use asperity_texture::solid_noise::{ForceDirection, SolidNoiseParameters};
 use std::path::Path;
 use toml::Value;
 
-/// Where heights come from.
+/// Source of heights.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
     /// No relief but the overlay.
@@ -31,7 +31,7 @@ pub enum Source {
     },
     /// Solid noise.
     Solid {
-        /// Those of the preset, and what was written.
+        /// Layers of the preset, and what was written.
         parameters: Box<SolidNoiseParameters>,
         /// Seed; none = the scene's.
         seed: Option<u64>,
@@ -63,7 +63,7 @@ pub enum Source {
         from: Box<Self>,
         /// Felt in the end.
         to: Box<Self>,
-        /// When the change begins, s.
+        /// Beginning of the change, s.
         at_s: f64,
     },
 }

@@ -24,36 +24,36 @@ pub struct SurfaceEntry {
     pub body: Option<String>,
     /// Which of the body's strike positions contacts here excite; the modes file lists them, 0 is its own amplitudes.
     pub strike_position: usize,
-    /// Where its heights come from.
+    /// Source of its heights.
     pub source: Source,
     /// Perceptual roughness R.
     pub roughness: RoughnessEntry,
-    /// What uv 1 spans along u, m.
+    /// Metres that uv 1 spans along u.
     pub width_m: f64,
-    /// What uv 1 spans along v, m.
+    /// Metres that uv 1 spans along v.
     pub height_m: f64,
     /// Level of the 1/f^α overlay, m; none = that of its material, or the engine's default.
     pub micro_relief_m: Option<f64>,
     /// Wavelength beyond which the overlay is flat, m; none = the engine's default.
     pub outer_scale_m: Option<f64>,
-    /// What lies beyond the edge.
+    /// Continuation beyond the edge.
     pub wrap: Wrap,
-    /// What sliding sends to the body.
+    /// Excitation of the body by sliding.
     pub excitation: Excitation,
-    /// Where it lies in its body.
+    /// Place in its body.
     pub frame: Option<SurfaceFrame>,
-    /// What contacts stick and slip with; none where friction is no exciter.
+    /// Friction with which contacts stick and slip; none where friction is no exciter.
     pub stick_slip: Option<Friction>,
     /// Coulomb friction coefficient, for the 3-D force; none = the source's.
     pub friction: Option<f64>,
-    /// How far it gives way, m/N; none = as its source does.
+    /// Compliance, m/N; none = as its source has it.
     pub compliance_m_n: Option<f64>,
 }
 
-/// Where R comes from.
+/// Source of R.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RoughnessEntry {
-    /// The same everywhere; none = the engine's default.
+    /// One R everywhere; none = the engine's default.
     Number(Option<f64>),
     /// A map of R, or of gloss 1 − R.
     Map {

@@ -34,9 +34,9 @@ pub struct DeviceOptions {
 /// One output device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeviceInfo {
-    /// What [`DeviceOptions::device`] takes.
+    /// Identifier that [`DeviceOptions::device`] takes.
     pub id: String,
-    /// What people call it.
+    /// Name for people.
     pub name: String,
     /// Channels of its default configuration; 0 when it tells none.
     pub channels: u16,
@@ -70,9 +70,9 @@ pub enum DeviceError {
     Block {
         /// Frames asked for.
         asked: u32,
-        /// What the system says.
+        /// Message of the system.
         why: cpal::Error,
-        /// What would be right.
+        /// Remedy.
         right: String,
     },
     /// The system gives no thread.
@@ -123,7 +123,7 @@ pub fn sample_rate_hz(options: &DeviceOptions) -> Result<f64, DeviceError> {
     Ok(f64::from(device.default_output_config()?.sample_rate()))
 }
 
-/// What a running device met, readable at any time.
+/// Counters of a running device, readable at any time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DeviceReport {
     /// Callbacks so far.
@@ -157,7 +157,7 @@ struct Meters {
     peak_load_ppm: AtomicU64,
 }
 
-/// What the supervisor is told.
+/// Messages to the supervisor.
 enum Message {
     /// The stream with this number is gone.
     Lost(u64),
@@ -266,7 +266,7 @@ impl Player {
         }
     }
 
-    /// What the device met so far; of a null sink only [`stop`](Self::stop) tells.
+    /// Counters of the device so far; of a null sink only [`stop`](Self::stop) tells.
     #[must_use]
     pub fn report(&self) -> DeviceReport {
         let meters = &self.meters;

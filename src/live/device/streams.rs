@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// How long to wait between attempts to get a lost device back.
+/// Waits between attempts to get a lost device back.
 const RETRY: Duration = Duration::from_millis(500);
 /// Frames a callback to ask for when nobody says: left to themselves some sound servers keep two seconds.
 const BLOCK_FRAMES: u32 = 512;
@@ -43,7 +43,7 @@ pub(super) fn host(name: Option<&str>) -> Result<cpal::Host, DeviceError> {
     Ok(cpal::host_from_id(id.ok_or(DeviceError::UnknownHost { host: name.into(), known })?)?)
 }
 
-/// What a device says to a block size that it does not take: the size it does.
+/// Block size that a device takes, from its answer to one that it does not.
 fn refused_block(device: &Device, asked: u32, why: cpal::Error) -> DeviceError {
     let right = match device.default_output_config().map(|config| *config.buffer_size()) {
         Ok(SupportedBufferSize::Range { min, max }) if min == max => format!("ask for {min}, or for none"),
@@ -53,7 +53,7 @@ fn refused_block(device: &Device, asked: u32, why: cpal::Error) -> DeviceError {
     DeviceError::Block { asked, why, right }
 }
 
-/// What a running stream needs; built anew with every stream.
+/// Needs of a running stream; built anew with every stream.
 struct Job {
     device: Arc<Mutex<Interleaver>>,
     options: DeviceOptions,

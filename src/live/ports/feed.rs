@@ -7,9 +7,9 @@ use crate::model::event::Actuator;
 /// Which signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feed {
-    /// What drives an actuator.
+    /// Samples that drive an actuator.
     Haptic(Actuator),
-    /// What a bus sounds like.
+    /// Samples of a bus.
     Bus(usize),
 }
 

@@ -18,7 +18,7 @@ use asperity_dsp::limits;
 pub struct Force {
     /// Rows a second and contact, Hz; up to the sample rate.
     pub rate_hz: f64,
-    /// How much a late reader still finds, s; 1 ms to 60 s.
+    /// Span that a late reader still finds, s; 1 ms to 60 s.
     pub holds_s: f64,
 }
 

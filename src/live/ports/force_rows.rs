@@ -70,19 +70,19 @@ struct Track {
     rows: Box<[OpenRow]>,
     /// The first that is open, and one past the last that lies within the contact.
     open: [u64; 2],
-    /// When something pressed last, ticks; none = not yet.
+    /// Last tick at which something pressed; none = not yet.
     pressed_at: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct OpenRow {
-    /// Whether the contact was there at this tick.
+    /// True where the contact was there at this tick.
     is_told: bool,
     /// Nothing has pressed for as long as a row reaches, and what presses next comes after this tick.
     is_before_touch: bool,
     weight: f64,
     sum_n: [f64; 3],
-    /// Of all samples in it the lowest.
+    /// Lowest of all samples in it.
     cap_n: f64,
 }
 
@@ -258,7 +258,7 @@ mod tests {
         pushed(rate_hz, sample_rate_hz, f64::INFINITY, |t| [force(t), 0.0, 1.0])
     }
 
-    /// The same with all three forces, which a cap limits.
+    /// Row with all three forces, which a cap limits.
     fn pushed(
         rate_hz: f64,
         sample_rate_hz: f64,

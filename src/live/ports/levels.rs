@@ -13,9 +13,9 @@ const ANY_HZ: [f64; 2] = [20.0, 250.0];
 pub struct Levels {
     /// Which signal.
     pub from: Feed,
-    /// How many a second; pads take 20 to 60.
+    /// Number a second; pads take 20 to 60.
     pub rate_hz: f64,
-    /// How much a late reader still finds, s; 1 ms to 60 s.
+    /// Span that a late reader still finds, s; 1 ms to 60 s.
     pub holds_s: f64,
 }
 

@@ -13,7 +13,7 @@ use asperity_dsp::limits;
 pub struct Pcm {
     /// Which signal.
     pub from: Feed,
-    /// How much a late reader still finds, s; 1 ms to 60 s.
+    /// Span that a late reader still finds, s; 1 ms to 60 s.
     pub holds_s: f64,
 }
 
@@ -98,7 +98,7 @@ impl PcmPort {
         self.words.lost()
     }
 
-    /// How many samples since the port was opened lie before the next one to be read: those read and those lost. The first one is the first
+    /// Number of samples since the port was opened that lie before the next one to be read: those read and those lost. The first one is the first
     /// of the block that was rendered next after the opening.
     #[must_use]
     pub fn position(&self) -> u64 {

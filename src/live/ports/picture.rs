@@ -10,7 +10,7 @@ pub use asperity_texture::moving_picture::PictureReader as PicturePort;
 /// A port of pictures. Its reading end draws the tiles that have [changed](PicturePort::changed) since it last looked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Picture {
-    /// Of which surface; one whose source never changes is refused.
+    /// Surface; one whose source never changes is refused.
     pub surface: SurfaceId,
 }
 

@@ -18,9 +18,9 @@ use asperity_dsp::vibration_points::{PointDesign, PointState};
 pub struct Points {
     /// Which signal.
     pub from: Feed,
-    /// How many a second, within which frequencies, which tone.
+    /// Number a second, range of frequencies, and tone.
     pub settings: PointSettings,
-    /// How much a late reader still finds, s; 1 ms to 60 s.
+    /// Span that a late reader still finds, s; 1 ms to 60 s.
     pub holds_s: f64,
 }
 

@@ -21,7 +21,7 @@ use crate::model::material::Material;
 
 /// A shape of size 1.
 pub(super) struct Solved<const MODES: usize> {
-    /// Of its walls.
+    /// Thickness of its walls.
     volume: f64,
     /// Surface that radiates: of hollow things what is outside.
     outside: f64,
