@@ -17,7 +17,7 @@
 
 use crate::block::MAX_BLOCK;
 
-/// What a surface answers at each sample of a block.
+/// Answer of a surface at each sample of a block.
 #[derive(Debug, Clone)]
 pub struct Answer {
     is_empty: bool,
@@ -26,7 +26,7 @@ pub struct Answer {
     cap_n: [f64; MAX_BLOCK],
 }
 
-/// What a surface answers at one sample.
+/// Answer of a surface at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnswerAt {
     /// Along u, v and out of the surface, N.
@@ -62,7 +62,7 @@ impl Answer {
         }
     }
 
-    /// Whether no sample has one.
+    /// Tests whether no sample has one.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.is_empty

@@ -20,7 +20,7 @@ pub const SEAM_LIMIT: f64 = 1.6;
 /// pattern's own edges. Source: ours; strips of photographs differ by the step itself.
 const SAME_STRIP: f64 = 0.25;
 
-/// Whether an image tiles.
+/// Decision whether an image tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Borders {
     /// Look at the seams: [`seam_ratio`] against [`SEAM_LIMIT`], unless the same step is met inside, too: the edge of a
@@ -66,14 +66,14 @@ pub fn seam_ratio(image: &Raster) -> f64 {
     ratio(across_x, inside_x).max(ratio(across_y, inside_y))
 }
 
-/// Whether the steps across both seams are no larger than others or are met inside.
+/// Tests whether the steps across both seams are no larger than others or are met inside.
 fn has_ordinary_seams(image: &Raster) -> bool {
     let (w, h) = (image.width, image.height);
     let turned = || Raster::from_fn(h, w, |x, y| image.at(y, x));
     w >= 4 && h >= 4 && seam_is_met_inside(image) && seam_is_met_inside(&turned())
 }
 
-/// Whether two neighbouring rows inside are those that meet at the seam, the last one and the first one.
+/// Tests whether two neighbouring rows inside are those that meet at the seam, the last one and the first one.
 fn seam_is_met_inside(image: &Raster) -> bool {
     let last = image.height - 1;
     let distance = |a: usize, b: usize| -> f64 {

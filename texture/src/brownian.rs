@@ -36,7 +36,7 @@ pub const MAX_OPEN_SIZE: usize = 1024;
 /// Longest path, samples.
 pub const MAX_PATH: usize = 1 << 22;
 
-/// How a Brownian relief is made.
+/// Method that makes a Brownian relief.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
     /// By circulant embedding: exact.
@@ -55,9 +55,9 @@ pub struct BrownianDesign {
     pub size: usize,
     /// Seed.
     pub seed: u64,
-    /// How it is made.
+    /// Method.
     pub method: Method,
-    /// Whether it repeats without a seam.
+    /// Repeats without a seam.
     pub periodic: bool,
     /// Root mean square of the heights about their mean, metres, at or above 0.
     pub rms_m: f64,
@@ -147,7 +147,7 @@ fn circle(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     field.into_iter().map(|c| c.re).collect()
 }
 
-/// The same on the torus in four dimensions that a periodic square is.
+/// Relief on the torus in four dimensions that a periodic square is.
 fn torus(hurst: f64, n: usize, rng: &mut Rng) -> Vec<f64> {
     let chord: Vec<f64> = (0..n).map(|i| sine_squared(i, n)).collect();
     let mut field: Vec<Complex> =

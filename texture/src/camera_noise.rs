@@ -43,7 +43,7 @@ const FEWEST_WAVES: f64 = 40.0;
 /// 1.0–1.5; gravel, the most level of real grounds looked at, 1.85.
 const LEVEL: f64 = 1.45;
 const NOT_LEVEL: f64 = 1.7;
-/// How much more than the mean of level octaves is taken off: a mosaic and JPEG leave them uneven by a fifth.
+/// Factor over the mean of level octaves that is taken off: a mosaic and JPEG leave them uneven by a fifth.
 const MARGIN: f64 = 1.3;
 /// Rms of the white noise that a JPEG of divisor 1 hides, levels of 255: quantisation takes what is below half a divisor, and steps of its
 /// block means are white noise of 1/√12 of it. Source: ours, above what walls of quality 76–92 keep (0.35–0.7).
@@ -65,7 +65,7 @@ const DOUBT: f64 = 3.0;
 /// A picture without its camera's noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quiet {
-    /// What is left.
+    /// Remainder.
     pub picture: Raster,
     /// Rms of what was taken for noise, in the picture's unit.
     pub noise: f64,
@@ -147,11 +147,11 @@ impl Rings {
     }
 }
 
-/// What octaves say of the noise.
+/// Estimate of the noise from octaves.
 struct Floor {
     /// Power of the corner, of the plateau, of level octaves or of what JPEG hides, whichever is most.
     noise: f64,
-    /// What is to be taken off.
+    /// Power to be taken off.
     taken: f64,
     /// Nothing rises above blurred noise.
     is_faint: bool,
@@ -179,7 +179,7 @@ fn floor(waves: &Waves, texels: f64, hidden: f64) -> Floor {
     Floor { noise: noise.max(level), taken: noise.max(MARGIN * level), is_faint }
 }
 
-/// Whether three octaves or more are seen, and none rises above [`FAINT`] or is more uneven than noise.
+/// Tests whether three octaves or more are seen, and none rises above [`FAINT`] or is more uneven than noise.
 fn are_faint(octaves: &[Mean], texels: f64) -> bool {
     let seen = || octaves.iter().filter(|octave| octave.count >= FEWEST_WAVES);
     let is_faint = |octave: &Mean| {
@@ -265,7 +265,7 @@ mod tests {
         assert!((left - 1.0).abs() < 0.05, "{left}");
     }
 
-    /// What was open: a sensor's mosaic blurs noise over a texel or two, so that neither its corner nor 4–8 texels tell how strong it is.
+    /// Open question: a sensor's mosaic blurs noise over a texel or two, so that neither its corner nor 4–8 texels tell how strong it is.
     #[test]
     fn a_wall_loses_noise_that_a_mosaic_has_blurred() {
         let mut rng = Rng::new(7);

@@ -15,7 +15,7 @@ pub struct ChangedTiles {
 }
 
 impl ChangedTiles {
-    /// Of a grid of `columns` × `rows` cells, all of it marked.
+    /// Tiles of a grid of `columns` × `rows` cells, all of it marked.
     #[must_use]
     pub fn all(columns: usize, rows: usize) -> Self {
         let (across, down) = (columns.div_ceil(TILE_CELLS), rows.div_ceil(TILE_CELLS));
@@ -38,7 +38,7 @@ impl ChangedTiles {
         }
     }
 
-    /// Whether a tile is marked, row after row of tiles.
+    /// Tests whether a tile is marked, row after row of tiles.
     #[must_use]
     pub fn is_marked(&self, tile: usize) -> bool {
         self.marked.get(tile).copied().unwrap_or(true)

@@ -142,7 +142,7 @@ impl HeightField for Scale {
         &mut self.source
     }
 
-    /// What carries a tip does not depend on the factor.
+    /// Force that carries a tip, which does not depend on the factor.
     fn shares(&mut self, touch: &Touch) -> Shares {
         let stands = matches!(touch.kind, TouchKind::Stands { .. });
         shared([(*touch, if stands { 1.0 } else { self.factor.at(touch.sample) })])
@@ -162,7 +162,7 @@ pub struct CrossfadeTo(pub f64);
 pub struct Crossfade {
     sources: [Source; 2],
     position: Fade<f64>,
-    /// When it moves to the second source by itself, s.
+    /// Time at which it moves to the second source by itself, s.
     at_s: Option<f64>,
     other: SurfaceBlock,
 }

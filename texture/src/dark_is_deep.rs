@@ -41,7 +41,7 @@ pub fn dark_is_deep(image: &Raster) -> Raster {
     })
 }
 
-/// What stays of a wave: little when it is longer than a quarter of the shorter side. Slow changes of brightness are the
+/// Share of a wave that stays: little when it is longer than a quarter of the shorter side. Slow changes of brightness are the
 /// light's, the lens' or dirt.
 #[must_use]
 pub fn high_pass(frequency: f64, width: usize, height: usize) -> f64 {

@@ -23,7 +23,7 @@ use crate::wrap::Wrap;
 
 /// Radii of the running means, texels.
 const RADII: [usize; 6] = [1, 2, 4, 8, 16, 32];
-/// How far from the stored number a smooth map may be, steps: rounding, and a little for values that
+/// Largest distance of a smooth map from the stored number, steps: rounding, and a little for values that
 /// were rounded twice.
 const TOLERANCE_STEPS: f64 = 0.52;
 /// Share of contradicting texels in a neighbourhood that rules a radius out.

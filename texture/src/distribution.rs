@@ -29,7 +29,7 @@ const WITHIN_BITS: u32 = f64::MANTISSA_DIGITS - 1 - OCTAVE_BITS;
 /// distribution stay below half of it.
 const MOST_UNRESOLVED: f64 = 2.5e-3;
 
-/// Where the bins lie.
+/// Places of the bins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Grid {
     centre: f64,
@@ -59,7 +59,7 @@ impl Grid {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Distribution {
     grid: Grid,
-    /// How many numbers lie below each edge.
+    /// Number of values that lie below each edge.
     below: Vec<u32>,
     deviation: f64,
 }
@@ -139,7 +139,7 @@ impl Distribution {
         }
     }
 
-    /// What the lower edge of each bin becomes and how wide the bin becomes when this distribution is given that of
+    /// New lower edge and width of each bin when this distribution is given that of
     /// `wanted`; how far numbers can be, in the mean, from where their ranks belong.
     fn pieces(&self, wanted: &Self) -> (Vec<[f64; 2]>, f64) {
         let (mut lower, mut upper) = (Quantiles { of: wanted, bin: 0 }, Quantiles { of: wanted, bin: 0 });

@@ -70,7 +70,7 @@ impl Fft2 {
         self.width * self.height
     }
 
-    /// Whether the image has no value at all.
+    /// Tests whether the image has no value at all.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0

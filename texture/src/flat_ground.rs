@@ -40,7 +40,7 @@ const MEDIAN_OF_HALF_NORMAL: f64 = 0.674_5;
 const MOST_SPREAD: f64 = 0.5;
 /// Levels to both sides that count as one crowd.
 const CROWD: usize = 4;
-/// How often the ground's brightness is averaged anew.
+/// Number of times that the ground's brightness is averaged anew.
 const ROUNDS: usize = 3;
 /// Levels of the histogram.
 const LEVELS: usize = 256;

@@ -25,7 +25,7 @@ const RINGS: [(f64, f64, u32); 5] = [
     (0.752_481, 0.300_516, 17),
     (0.924_952, 0.038_548, 15),
 ];
-/// How much each ring is turned against the one within, radians.
+/// Turn of each ring against the one within, radians.
 const TURN_RAD: f64 = 0.37;
 /// To what share of a the source is blurred: the rings do not see what is finer.
 const BLUR: f64 = 0.145;
@@ -122,7 +122,7 @@ mod tests {
         HeightMap::new(&Raster::from_fn(side, side, wave), extent, Wrap::Repeat).unwrap()
     }
 
-    /// How high a ball feels the waves, and the rms of what it feels besides over theirs, by fitting the wave to 64 places.
+    /// Height of the waves under a ball, and the rms of the rest over theirs, by fitting the wave to 64 places.
     fn height_felt(map: &mut HeightMap, u: usize, v: usize, radius_m: f64, velocity: [f64; 2]) -> (f64, f64) {
         let places: Vec<[f64; 2]> =
             (0..64).map(|i| [0.0131 * f64::from(i) * SIDE_M, 0.0077 * f64::from(i) * SIDE_M]).collect();

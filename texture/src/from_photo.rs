@@ -57,21 +57,21 @@ pub const SMALL_PX: usize = 64;
 /// R where a picture is too small or too even to tell it. Assumed: α of 1.75.
 const UNKNOWN_ROUGHNESS: f64 = 0.5;
 
-/// What repeats in the picture.
+/// Repeating pattern of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repetition {
     /// Its translations.
     pub lattice: Lattice,
     /// Its symmetries.
     pub group: WallpaperGroup,
-    /// How much of the picture's variance repeats, 0–1.
+    /// Share of the picture's variance that repeats, 0–1.
     pub share: f64,
-    /// Whether the pattern drifts off its lattice, so that its mean cell is a blur: heights and roughness are then those of
+    /// True where the pattern drifts off its lattice, so that its mean cell is a blur: heights and roughness are then those of
     /// the whole picture.
     pub wanders: bool,
 }
 
-/// What to doubt in a surface.
+/// Doubts about a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Doubt {
     /// An input condition of the document that does not hold.
@@ -151,7 +151,7 @@ pub struct PhotoSurface {
     pub micro_relief_m: f64,
     /// Dimension of the residual's relief, or of the whole where nothing repeats; `None` when that is flat.
     pub dimension: Option<f64>,
-    /// What repeats; `None` when nothing does.
+    /// Repeating pattern; `None` when nothing repeats.
     pub repetition: Option<Repetition>,
     /// The pattern's cell as heights; `None` when nothing repeats or the pattern wanders.
     pub cell: Option<HeightCell>,
@@ -159,19 +159,19 @@ pub struct PhotoSurface {
     pub primitive: Raster,
     /// The cell repeated, or the picture.
     pub symmetric: Raster,
-    /// What does not repeat; nothing where nothing does.
+    /// Part that does not repeat; empty where nothing does.
     pub residual: Raster,
-    /// How the heights were found.
+    /// Method that found the heights.
     pub shape: Shape,
     /// Which way up they are.
     pub sign: Sign,
-    /// Whether the light was found in the picture (and not told).
+    /// True where the light was found in the picture (and not told).
     pub light_was_found: bool,
     /// Rms of what was taken for the camera's noise, of white.
     pub noise: f64,
-    /// What to doubt.
+    /// Doubts.
     pub doubts: Vec<Doubt>,
-    /// Whether the picture tiles.
+    /// True where the picture tiles.
     pub tileable: bool,
 }
 

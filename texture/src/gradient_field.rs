@@ -45,14 +45,14 @@ use crate::fft2::angular_frequency;
 use crate::raster::Raster;
 use asperity_fft::num_complex::Complex64;
 
-/// How slopes were taken from heights.
+/// Operator that took slopes from heights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Derivative {
     /// The true derivative, as normals baked from geometry are.
     Exact,
     /// Half the difference of the neighbours on both sides.
     Central,
-    /// The same, averaged across with weights ¼, ½, ¼, as many height-to-normal converters do.
+    /// Central difference averaged across with weights ¼, ½, ¼, as many height-to-normal converters have it.
     Sobel,
     /// Half way between [`Derivative::Exact`] and [`Derivative::Central`]: for slopes that either may have made. With D_x the smaller of two
     /// symbols and D_x' the larger, (D_x' − D_x)/(D_x' + D_x) is the least relative error of a wave's height that can be had in the worse case. Waves shorter than
@@ -66,7 +66,7 @@ pub const DERIVATIVES: [Derivative; 3] = [Derivative::Exact, Derivative::Central
 /// |D|² below which a frequency in the upper half of the spectrum is left at zero: a difference that
 /// does not see a wave (neighbours two apart are equal) cannot tell its height.
 const BLIND: f64 = 0.004;
-/// The same for [`Derivative::Sobel`], which is nearly blind to many more.
+/// Limit for [`Derivative::Sobel`], which is nearly blind to many more.
 const SOBEL_BLIND: f64 = 0.01;
 /// By how much [`Derivative::ExactOrCentral`] may raise waves above those of true slopes: a fifth more power.
 const MOST_RAISED: f64 = 1.1;

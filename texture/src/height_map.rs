@@ -62,10 +62,10 @@ pub struct HeightMap {
     band: WavelengthBand,
     /// Largest height, either way.
     reach_m: f64,
-    /// Where it has relief; none = nowhere.
+    /// Region with relief; none = nowhere.
     local: Option<Arc<LocalRelief>>,
     friction: f64,
-    /// What tips of some radii ride on, and the one that rides now.
+    /// Maps that tips of some radii ride on, and the one that rides now.
     tips: Vec<(f64, Pyramid)>,
     tip: Option<usize>,
 }
@@ -128,7 +128,7 @@ impl HeightMap {
         Self::new(&Raster::constant(1, 1, 0.0), extent, Wrap::Repeat)?.with_roughness(roughness)
     }
 
-    /// The same surface with one roughness everywhere, 0–1.
+    /// Sets one roughness everywhere, 0–1.
     ///
     /// # Errors
     /// When it is outside 0–1.
@@ -140,7 +140,7 @@ impl HeightMap {
         Ok(self)
     }
 
-    /// The same surface with a roughness map (values 0–1, clamped) of any size over the same extent. A
+    /// Sets a roughness map (values 0–1, clamped) of any size over the same extent. A
     /// gloss map is `raster.map(|gloss| 1.0 − gloss)`.
     ///
     /// # Errors
@@ -152,7 +152,7 @@ impl HeightMap {
         Ok(self)
     }
 
-    /// The same surface with another Coulomb friction coefficient.
+    /// Sets the Coulomb friction coefficient.
     #[must_use]
     pub fn with_friction(mut self, coefficient: f64) -> Self {
         self.friction = coefficient;
@@ -165,13 +165,13 @@ impl HeightMap {
         self.extent
     }
 
-    /// How the map goes on beyond its edges.
+    /// Continuation of the map beyond its edges.
     #[must_use]
     pub fn wrap(&self) -> Wrap {
         self.wrap
     }
 
-    /// What the tip that rides now rides on.
+    /// Map that the tip rides on which rides now.
     fn ridden(&self) -> &Pyramid {
         self.tip.and_then(|tip| self.tips.get(tip)).map_or(&self.heights, |(_, map)| map)
     }
@@ -215,7 +215,7 @@ impl Pyramid {
         self.sample_blurred::<SLOPES>(finest, path, out);
     }
 
-    /// The same where some footprint is wider than a texel.
+    /// Fills where some footprint is wider than a texel.
     #[inline(never)]
     fn sample_blurred<const SLOPES: bool>(&self, finest: &Spline, path: &PathBlock<'_>, out: &mut Samples) {
         let mut between = Blend::new();
@@ -278,7 +278,7 @@ impl Pyramid {
     }
 }
 
-/// Whether the finest level needs no blur in any direction.
+/// Tests whether the finest level needs no blur in any direction.
 #[inline]
 fn is_sharp(footprint_m: f64, texels_per_metre: [f64; 2]) -> bool {
     2.0 * footprint_m * texels_per_metre[0].max(texels_per_metre[1]) <= 1.0

@@ -21,7 +21,7 @@ pub const TIE: f64 = 1e-9;
 /// Bits sorted in one pass.
 const DIGIT_BITS: u32 = 11;
 const DIGITS: usize = 1 << DIGIT_BITS;
-/// Where the two digits lie that are sorted by: the upper 22 bits of the 32 of a key, which lie above its position.
+/// Places of the two digits that are sorted by: the upper 22 bits of the 32 of a key, which lie above its position.
 /// What these leave together, a few neighbours as a rule, is sorted by comparing.
 const DIGIT_SHIFTS: [u32; 2] = [64 - 2 * DIGIT_BITS, 64 - DIGIT_BITS];
 

@@ -59,11 +59,11 @@ pub fn load_photograph(path: impl AsRef<Path>) -> Result<(ChannelImage, f64), Im
 pub struct Photograph {
     /// Brightness 0–1: means of [`Photograph::reduced_by`]² pixels.
     pub brightness: Raster,
-    /// How many pixels a side are one texel.
+    /// Number of pixels a side that are one texel.
     pub reduced_by: usize,
     /// Pixels in a row of the file.
     pub width_px: usize,
-    /// How much of it is colour rather than light ([`ColourSums::fraction`]).
+    /// Share that is colour rather than light ([`ColourSums::fraction`]).
     pub colour: f64,
     /// [`PhotoOptions::jpeg_divisor`](crate::from_photo::PhotoOptions::jpeg_divisor).
     pub jpeg_divisor: f64,
@@ -159,7 +159,7 @@ fn decode(file: impl BufRead + Seek, channel: Channel) -> Result<Picture, Proble
     Ok(decode_as(file, channel)?.0)
 }
 
-/// The same, and what kind of file it is.
+/// Picture, and the kind of file it is.
 fn decode_as(mut file: impl BufRead + Seek, channel: Channel) -> Result<(Picture, ImageFormat), Problem> {
     let format = format_of(&mut file)?;
     #[cfg(feature = "exr")]
@@ -197,7 +197,7 @@ fn decode_as(mut file: impl BufRead + Seek, channel: Channel) -> Result<(Picture
     Ok((picture(image)?, format))
 }
 
-/// What kind of file it is, by its first bytes.
+/// Kind of a file, by its first bytes.
 fn format_of(file: &mut (impl BufRead + Seek)) -> Result<ImageFormat, Problem> {
     let mut first = Vec::new();
     file.by_ref().take(FIRST_BYTES).read_to_end(&mut first).map_err(Problem::Io)?;
@@ -209,7 +209,7 @@ fn format_of(file: &mut (impl BufRead + Seek)) -> Result<ImageFormat, Problem> {
     }
 }
 
-/// Whether these are the first bytes of a TGA file, which has no signature: palette or none, a kind of picture, bits a pixel.
+/// Tests whether these are the first bytes of a TGA file, which has no signature: palette or none, a kind of picture, bits a pixel.
 /// Source: Truevision, TGA file format specification 2.0, field 1–5.
 fn is_tga(first: &[u8]) -> bool {
     let [_, palette, kind, .., bits, descriptor] = first.first_chunk::<18>().unwrap_or(&[0; 18]);
@@ -222,7 +222,7 @@ fn is_tga(first: &[u8]) -> bool {
         && descriptor & 0xC0 == 0
 }
 
-/// How much of a picture is colour; 0 of a grey one.
+/// Share of a picture that is colour; 0 of a grey one.
 #[cfg(feature = "offline")]
 fn colour_of(picture: &Picture) -> f64 {
     let mut sums = ColourSums::default();

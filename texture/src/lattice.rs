@@ -83,7 +83,7 @@ impl Lattice {
         })
     }
 
-    /// The same relief with a roughness R (0–1) and a friction coefficient.
+    /// Sets a roughness R (0–1) and a friction coefficient.
     #[must_use]
     pub fn with_material(self, roughness: f64, friction: f64) -> Self {
         Self { roughness, friction, ..self }

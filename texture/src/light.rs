@@ -115,7 +115,7 @@ pub fn estimate_light(image: &Raster) -> Option<Light> {
     Light::at(ASSUMED_SLANT_RAD, if up { axis } else { axis + PI }).ok()
 }
 
-/// What an image has between two wavelengths, texels.
+/// Part of an image between two wavelengths, texels.
 pub(crate) fn band(image: &Raster, [shortest_px, longest_px]: [f64; 2]) -> Raster {
     let periodic = SplitBorders::of(image, Borders::Detect).periodic;
     let kept = TAU / longest_px..TAU / shortest_px;

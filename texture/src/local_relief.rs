@@ -18,7 +18,7 @@ const LONGEST_LAG_M: f64 = 2e-3;
 /// Cells of the picture of P along the longer side of a map.
 const CELLS: usize = 128;
 
-/// So many cells from the origin no fraction of one is left in a number.
+/// Distance in cells from the origin at which no fraction of one is left in a number.
 const MOST_CELLS: f64 = 1e15;
 
 /// P over a tile.
@@ -30,7 +30,7 @@ pub(crate) struct LocalRelief {
 }
 
 impl LocalRelief {
-    /// Of heights in metres, `size_m` along u and v.
+    /// Relief of heights in metres, `size_m` along u and v.
     pub fn new(heights: &Raster, size_m: [f64; 2], wrap: Wrap) -> Self {
         let (w, h) = (heights.width, heights.height);
         let (width, height) = (w.min(CELLS), h.min(CELLS));
@@ -57,7 +57,7 @@ impl LocalRelief {
         }
     }
 
-    /// The same, added to nothing, of places between two corners; not one by one where all of it is 0, or `fills_m2` and more.
+    /// Relief, added to nothing, of places between two corners; not one by one where all of it is 0, or `fills_m2` and more.
     pub fn along(
         &self,
         position_m: &[[f64; 2]],
@@ -116,7 +116,7 @@ struct Corners {
 }
 
 impl Corners {
-    /// Whether a place lies between them.
+    /// Tests whether a place lies between them.
     fn hold(&self, x: f64, y: f64) -> bool {
         x >= self.left && x < self.left + 1.0 && y >= self.top && y < self.top + 1.0
     }

@@ -71,7 +71,7 @@ pub const BORROWED: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.9];
 /// against this deviation instead of its own.
 pub const EMPTY_BAND: f64 = 0.01;
 
-/// How the original is changed.
+/// Way of changing the original.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// The document's: oriented bands once, nothing else.
@@ -82,16 +82,16 @@ pub enum Method {
     Spectrum,
 }
 
-/// What to match and how.
+/// Match and its settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MetamerOptions {
     /// Bands of wavelength, an octave each.
     pub bands: usize,
     /// Orientations of each band.
     pub orientations: usize,
-    /// How the original is changed.
+    /// Way of changing the original.
     pub method: Method,
-    /// Whether the images tile.
+    /// True where the images tile.
     pub borders: Borders,
     /// Size of a texel of the original over that of the reference; 1 when both have the same scale.
     pub scale: f64,
@@ -117,14 +117,14 @@ impl Default for MetamerOptions {
     }
 }
 
-/// How far an image is from a reference: mean distances between equal quantiles, over the reference's standard deviation.
+/// Distance of an image from a reference: mean distances between equal quantiles, over the reference's standard deviation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Distance {
     /// One a sub-band, from fine to coarse, with the residuals first and last.
     pub subbands: Vec<f64>,
     /// Mean over the oriented sub-bands.
     pub mean: f64,
-    /// Of the heights themselves.
+    /// Distance of the heights themselves.
     pub heights: f64,
 }
 
@@ -134,13 +134,13 @@ pub struct Metamer {
     /// As large as the original, in the reference's unit of height. [`Method::Iterated`] leaves no height outside the
     /// reference's range, the other methods do.
     pub image: Raster,
-    /// What the distances are of.
+    /// Subject of the distances.
     pub subbands: Vec<Subband>,
     /// Distance of the original.
     pub before: Distance,
     /// Distance of `image`, analysed anew.
     pub after: Distance,
-    /// Whether `image` tiles.
+    /// True where `image` tiles.
     pub tileable: bool,
     /// Passes done on the image's own grid.
     pub passes: usize,
@@ -150,10 +150,10 @@ pub struct Metamer {
     pub borrowed: f64,
     /// Mean correlation of the oriented sub-bands with the original's: 1 where its arrangement is kept, 0 where nothing of it is left.
     pub correlation_with_original: f64,
-    /// The same with the reference's, laid out over the original's size and moved to where it is highest: a grid that was moved is still
+    /// Correlation with the reference's, laid out over the original's size and moved to where it is highest: a grid that was moved is still
     /// the grid. Strangers of 256² texels reach 0.07–0.1 so.
     pub correlation_with_reference: f64,
-    /// How far the reference is moved for that along u and v, texels.
+    /// Shift of the reference for that along u and v, texels.
     pub shift_from_reference_px: [usize; 2],
 }
 

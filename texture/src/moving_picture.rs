@@ -206,7 +206,7 @@ mod tests {
         ChangedTiles::all(70, 40)
     }
 
-    /// What a reader makes of its tiles.
+    /// Reader's view of its tiles.
     fn draw(reader: &mut PictureReader, drawn: &mut [Vec<f32>]) -> usize {
         reader.changed(|tile| {
             for (y, row) in tile.height_m.chunks(tile.size[0]).enumerate() {

@@ -59,14 +59,14 @@ pub enum Green {
     DirectX,
 }
 
-/// What is known about a normal map.
+/// Facts given about a normal map.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct NormalMapOptions {
     /// Which way green points.
     pub green: Green,
-    /// How its slopes were taken from heights; `None`: find out.
+    /// Operator that took its slopes from heights; `None`: estimated.
     pub derivative: Option<Derivative>,
-    /// Whether it tiles.
+    /// True where it tiles.
     pub borders: Borders,
     /// Keep the mean slope of a map that does not tile.
     pub keep_tilt: bool,
@@ -79,17 +79,17 @@ pub struct NormalMapHeights {
     pub height_px: Raster,
     /// Which way green points.
     pub green: Green,
-    /// Whether the map says so: false when both conventions fit alike.
+    /// True where the map shows it: false when both conventions fit alike.
     pub green_is_certain: bool,
-    /// How its slopes were taken.
+    /// Operator that took its slopes.
     pub derivative: Derivative,
-    /// Whether it was told or the map says so: false when several fit alike, or none to within rounding.
+    /// True where it was told or the map shows it: false when several fit alike, or none to within rounding.
     pub derivative_is_certain: bool,
-    /// Whether it tiles.
+    /// True where it tiles.
     pub tileable: bool,
-    /// How far it was taken for flat places with walls between them, 0–1 ([`Walls`]): short waves are then lowered.
+    /// Degree to which it was taken for flat places with walls between them, 0–1 ([`Walls`]): short waves are then lowered.
     pub walls: f64,
-    /// What is not integrable in it, 0–1 of the power of its slopes' derivatives.
+    /// Part that is not integrable, 0–1 of the power of its slopes' derivatives.
     pub curl: f64,
 }
 
@@ -154,7 +154,7 @@ struct Made {
 }
 
 impl Made {
-    /// Of slopes that rounding left a variance of `rounding` in, if they were rounded.
+    /// Map of slopes that rounding left a variance of `rounding` in, if they were rounded.
     fn of(
         spectrum: SlopeSpectrum,
         derivative: Derivative,

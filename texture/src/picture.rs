@@ -192,7 +192,7 @@ pub struct ChannelImage {
     /// Distance between two neighbouring levels of the file, in the raster's units; 0 for floating
     /// point. Measured, so that 8-bit data in a 16-bit file is known for what it is.
     pub step: f64,
-    /// What else the picture holds, where nobody named a channel.
+    /// Further contents of the picture, where no channel was named.
     pub ignored: Option<Ignored>,
 }
 
@@ -210,11 +210,11 @@ impl ChannelImage {
 pub struct ImageError {
     /// The file.
     pub file: PathBuf,
-    /// What is wrong with it.
+    /// Fault of it.
     pub problem: Problem,
 }
 
-/// What is wrong with a file.
+/// Fault of a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {
@@ -269,7 +269,7 @@ pub enum Problem {
     /// Samples that do not fill the pixels.
     #[error("{count} samples do not fill {width} × {height} pixels; one to four a pixel are needed")]
     Samples {
-        /// How many there are.
+        /// Number that there is.
         count: usize,
         /// Pixels in a row.
         width: u32,
@@ -342,7 +342,7 @@ fn channel_of(pixel: &[f64], channel: Channel, luma: Luma) -> f64 {
     }
 }
 
-/// How colours become brightness.
+/// Conversion of colours to brightness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Luma {
     /// As eyes weigh them (Rec. 709).

@@ -42,20 +42,20 @@ use asperity_fft::num_complex::Complex64;
 use level::Level;
 use std::f64::consts::PI;
 
-/// How many samples of a band are kept.
+/// Number of samples of a band that are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sampling {
-    /// As many as its bandwidth needs: halved from band to band.
+    /// Samples as its bandwidth needs: halved from band to band.
     #[default]
     Reduced,
-    /// As many as the image has.
+    /// Samples as the image has.
     Full,
 }
 
 /// Which part of the spectrum a sub-band holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// What lies above the finest band.
+    /// Part above the finest band.
     HighResidual,
     /// One band of wavelengths in one orientation.
     Oriented {
@@ -64,7 +64,7 @@ pub enum Kind {
         /// Direction along which the wave runs, in steps of π/K from u towards v.
         orientation: usize,
     },
-    /// What lies below the coarsest band, with the mean.
+    /// Part below the coarsest band, with the mean.
     LowResidual,
 }
 
@@ -254,7 +254,7 @@ impl Pyramid {
         image
     }
 
-    /// The same filters for sub-bands of another sampling: most of the work of a design is to evaluate them.
+    /// Filters for sub-bands of another sampling: most of the work of a design is to evaluate them.
     #[must_use]
     pub(crate) fn sampled(&self, sampling: Sampling) -> Self {
         let mut planner = FftPlanner::new();

@@ -52,7 +52,7 @@ impl Raster {
         &self.values[y * self.width..(y + 1) * self.width]
     }
 
-    /// The same raster with every value changed.
+    /// Raster with every value changed.
     #[must_use]
     pub fn map(&self, mut change: impl FnMut(f64) -> f64) -> Self {
         let values = self.values.iter().map(|&v| change(v)).collect();

@@ -183,7 +183,7 @@ fn fit(points: &[[f64; 3]], blur: Option<f64>) -> [f64; 3] {
     [my - exponent * mx - rest, exponent, square]
 }
 
-/// How much of a wave of so many radians a texel belongs to the octave about a wavelength, fading smoothly.
+/// Share of a wave of so many radians a texel in the octave about a wavelength, fading smoothly.
 fn octave(frequency: f64, centre_px: f64) -> f64 {
     let octaves = (frequency * centre_px / TAU).max(1e-9).log2();
     (-0.5 * (octaves / 0.4).powi(2)).exp()

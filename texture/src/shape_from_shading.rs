@@ -46,14 +46,14 @@ pub const STEPS: usize = 100;
 const DAMPING: f64 = 0.03;
 /// Steepest slope a step may take (76°).
 const STEEPEST: f64 = 4.0;
-/// How much the start trusts frequencies across the light, which shading does not show.
+/// Trust of the start in frequencies across the light, which shading does not show.
 const ACROSS: f64 = 0.1;
 /// Slant below which shading says nothing of direction, radians: 10°.
 pub const LEAST_SLANT_RAD: f64 = 0.1745;
 /// |f'| that Tsai–Shah keeps. Source: ours.
 const LEAST_DERIVATIVE: f64 = 0.01;
 
-/// How heights are found.
+/// Method that finds heights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// Slopes improved and projected, this many times.
@@ -62,7 +62,7 @@ pub enum Method {
     TsaiShah(usize),
     /// Brightness is height.
     DarkIsDeep,
-    /// What stands out of a flat ground under frontal light.
+    /// Relief that stands out of a flat ground under frontal light.
     FlatGround,
 }
 
@@ -71,11 +71,11 @@ pub enum Method {
 pub struct Shape {
     /// Heights in texels, mean 0.
     pub height_px: Raster,
-    /// How they were found.
+    /// Method that found them.
     pub method: Method,
     /// The light that was used; `None` for [`Method::DarkIsDeep`], from the viewer for [`Method::FlatGround`].
     pub light: Option<Light>,
-    /// What the surface, lit by that light, does not explain of the image: root mean square error over
+    /// Part of the image that the surface, lit by that light, does not explain: root mean square error over
     /// the image's standard deviation. `None` but for [`Method::Integrable`].
     pub unexplained: Option<f64>,
 }

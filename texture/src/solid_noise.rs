@@ -83,7 +83,7 @@ impl SolidNoise {
         })
     }
 
-    /// The same block of noise, cut elsewhere.
+    /// Block of the same noise, cut elsewhere.
     #[must_use]
     pub fn with_cut(self, cut: SolidCut) -> Self {
         Self { cut, ..self }
@@ -123,7 +123,7 @@ impl SolidNoise {
         sum
     }
 
-    /// How far the block has flowed past the surface, metres in the block.
+    /// Distance that the block has flowed past the surface, metres in the block.
     fn flown_m(&self, parameters: &SolidNoiseParameters, sample: u64) -> [f64; 3] {
         let [u, v, out] = parameters.flow_m_s.map(|speed| speed * (sample as f64 * self.step_s));
         let (u_axis, v_axis, normal) = (self.cut.u_axis, self.cut.v_axis, self.cut.normal());
@@ -222,7 +222,7 @@ impl SolidNoise {
     }
 }
 
-/// How much of an octave is left at a footprint given in its cells.
+/// Share of an octave that is left at a footprint given in its cells.
 #[inline]
 fn resolved(footprint_cells: f64) -> f64 {
     let t = (FOOTPRINT_SILENT - footprint_cells) / (FOOTPRINT_SILENT - FOOTPRINT_WHOLE);
@@ -269,7 +269,7 @@ impl HeightField for SolidNoise {
         }
     }
 
-    /// What flows is felt by a resting finger.
+    /// Movement that a resting finger feels of what flows.
     fn touch(&mut self, _touch: &Touch) -> Reaction {
         Reaction {
             stirs: self.parameters.values().iter().any(|p| p.flow_m_s != [0.0; 3]),

@@ -32,7 +32,7 @@ const LONGEST_PX: f64 = 8192.0;
 /// Power over the largest of the envelope below which there is nothing to change (−300 dB).
 const NOTHING: f64 = 1e-30;
 
-/// Where a wave lies among the tents: in this ring and the next one, and how much of it in each direction.
+/// Place of a wave among the tents: in this ring and the next one, and its share in each direction.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     ring: u32,
@@ -41,7 +41,7 @@ struct Place {
 }
 
 impl Place {
-    /// Of the wave of bins kx, ky in images of `width` × `height`.
+    /// Place of the wave of bins kx, ky in images of `width` × `height`.
     fn new([kx, width]: [usize; 2], [ky, height]: [usize; 2]) -> Self {
         let (wx, wy) = (angular_frequency(kx, width), angular_frequency(ky, height));
         let ring = ring(wx.hypot(wy));

@@ -32,7 +32,7 @@ const SETTLE: usize = 40;
 /// Coefficients kept beyond each edge, so that any 4 × 4 neighbourhood is contiguous. A clamped map
 /// needs more: its slope beyond the edge falls by |z| a texel until it is cut off at `REACH`.
 const PAD: usize = 14;
-/// How far beyond the first and last texel centre a clamped map is still evaluated, texels.
+/// Distance beyond the first and last texel centre at which a clamped map is still evaluated, texels.
 const REACH: f64 = 12.0;
 
 /// Coefficients are asked for ahead of a stroke over so many texels a block at most.
@@ -160,7 +160,7 @@ impl Spline {
         Cell::new(rows, [four(0), four(1), four(2), four(3)])
     }
 
-    /// Where the 4 × 4 coefficients around texel (column, row) and the next begin.
+    /// Place where the 4 × 4 coefficients around texel (column, row) and the next begin.
     #[inline(always)]
     fn first(&self, column: f64, row: f64) -> usize {
         self.axes[1].first(row) * self.stride + self.axes[0].first(column)

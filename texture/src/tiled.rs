@@ -25,7 +25,7 @@ pub struct Place {
     pub slope_per_m: f64,
 }
 
-/// How near to a tile's edge, against all lengths at hand, rounding might have a say: far more than it has.
+/// Distance to a tile's edge, against all lengths at hand, within which rounding might have a say: far more than it has.
 const EDGE: f64 = 1e-12;
 
 /// One axis of a tile.
@@ -44,7 +44,7 @@ impl TileAxis {
         Self { length_m, blend_m: longest_m.min(0.25 * length_m) }
     }
 
-    /// Where a place on the unwrapped surface is in its tile.
+    /// Place in its tile of a place on the unwrapped surface.
     #[inline]
     #[must_use]
     pub fn place(&self, position_m: f64) -> Place {
@@ -71,7 +71,7 @@ impl TileAxis {
         self.inside(position_m - self.length_m * *turn)
     }
 
-    /// Where the tile begins that all places from `low_m` to `high_m` lie in, well inside and before its blend: each is then
+    /// Beginning of the tile that all places from `low_m` to `high_m` lie in, well inside and before its blend: each is then
     /// [at](Place::at_m) its distance from there, to the bit. None where they may lie otherwise.
     #[must_use]
     pub fn begin_of_all_m(&self, low_m: f64, high_m: f64) -> Option<f64> {
@@ -139,7 +139,7 @@ impl Tiled {
         [self.axes[0].place(position_m[0]), self.axes[1].place(position_m[1])]
     }
 
-    /// Where a copy of the tile is read.
+    /// Place where a copy of the tile is read.
     fn back(&self, places: &[Place; 2], copy: [usize; 2]) -> [f64; 2] {
         [0, 1].map(|axis| places[axis].at_m - if copy[axis] == 1 { self.axes[axis].length_m } else { 0.0 })
     }

@@ -16,7 +16,7 @@ const STICK_M_S: f64 = 1e-3;
 /// No spring carries more, N.
 const MOST_N: f64 = 1e9;
 
-/// How a surface answers a depth.
+/// Answer of a surface to a depth.
 #[expect(
     clippy::large_enum_variant,
     reason = "a plain value that a device's thread copies once; boxing it would end that"
@@ -27,7 +27,7 @@ pub enum TipLaw {
     Sand(SandLaw),
     /// A spring with Coulomb friction: a soft map, or a wall as stiff as a loop can hold.
     Spring {
-        /// How far it gives way, m/N, above 0.
+        /// Compliance, m/N, above 0.
         compliance_m_n: f64,
         /// Coulomb coefficient.
         friction: f64,
@@ -59,7 +59,7 @@ impl TipLaw {
         }
     }
 
-    /// How much the force grows with the depth at a place of the untouched surface, N/m: [`stiffness_n_m`](Self::stiffness_n_m), and over a stone
+    /// Growth of the force with the depth at a place of the untouched surface, N/m: [`stiffness_n_m`](Self::stiffness_n_m), and over a stone
     /// the stone's.
     #[must_use]
     pub fn stiffness_at_n_m(&self, position_m: [f64; 2], depth_m: f64) -> f64 {
@@ -69,7 +69,7 @@ impl TipLaw {
         (carried_n(depth_m + step_m) - carried_n(depth_m - step_m)) / (2.0 * step_m)
     }
 
-    /// How much the force grows with the depth, N/m: what a loop of period T can hold with a device that damps with b is at most 2 b / T.
+    /// Growth of the force with the depth, N/m: what a loop of period T can hold with a device that damps with b is at most 2 b / T.
     #[must_use]
     pub fn stiffness_n_m(&self, depth_m: f64) -> f64 {
         match self {

@@ -65,7 +65,7 @@ fn projected(axis: usize, vector: [f64; 3], size_m: [f64; 2]) -> [f64; 2] {
     [vector[(axis + 1) % 3] / size_m[0], vector[(axis + 2) % 3] / size_m[1]]
 }
 
-/// Where a contact is on the surface, and how it moves there.
+/// Place and movement of a contact on the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {
     /// Place, in widths and heights of the surface, as contact events have it; not wrapped.
@@ -91,7 +91,7 @@ pub struct SurfacePoint {
 pub struct TriplanarPath {
     size_m: [f64; 2],
     plane: Option<usize>,
-    /// What is added to the plane's own uv.
+    /// Offset added to the plane's own uv.
     offset: [f64; 2],
 }
 

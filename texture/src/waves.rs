@@ -20,7 +20,7 @@ pub(crate) struct Wave {
     pub wy: f64,
     /// |X|².
     pub power: f64,
-    /// How many waves of the whole spectrum it stands for, 1 or 2.
+    /// Number of waves of the whole spectrum that it stands for, 1 or 2.
     pub count: f64,
 }
 

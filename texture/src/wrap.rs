@@ -1,6 +1,6 @@
 //! Edge modes of a map: what lies beyond its border.
 
-/// How a map goes on beyond its edges.
+/// Continuation of a map beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Wrap {

@@ -26,7 +26,7 @@
 use asperity_dsp::rng::Rng;
 use std::collections::BTreeMap;
 
-/// Where points near a new one may be known, in half steps; corners first, then what the same step made before.
+/// Places of points near a new one that may be known, in half steps; corners first, then those of the same step.
 type Offsets = &'static [[isize; 2]];
 
 const CENTRE: Offsets = &[
@@ -160,7 +160,7 @@ impl Grid {
     }
 }
 
-/// How a kind of new point follows from what is known near it.
+/// Rule by which a kind of new point follows from what is known near it.
 struct Displacement {
     hurst: f64,
     offsets: Offsets,

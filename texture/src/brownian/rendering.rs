@@ -126,7 +126,7 @@ impl HeightField for BrownianSurface {
     }
 }
 
-/// How far a contact has travelled.
+/// Distance that a contact has travelled.
 #[derive(Debug, Clone, Copy, Default)]
 struct Travelled {
     /// Block asked for last, and the distance at its first sample.

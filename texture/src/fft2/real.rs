@@ -159,7 +159,7 @@ impl RealFft2 {
     }
 }
 
-/// How many columns of `height` values are transformed at once.
+/// Number of columns of `height` values that are transformed at once.
 fn in_block(height: usize) -> usize {
     (BLOCK_BYTES / (size_of::<Complex64>() * height)).max(FEWEST_IN_BLOCK)
 }

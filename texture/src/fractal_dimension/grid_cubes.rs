@@ -81,7 +81,7 @@ struct Columns {
     spans: Vec<[u8; 2]>,
 }
 
-/// How the columns of a relief fill the cubes of one side.
+/// Filling of the cubes of one side by the columns of a relief.
 struct Occupation {
     /// N: number of cubes that a column touches.
     cubes: f64,

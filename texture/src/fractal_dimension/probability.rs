@@ -31,7 +31,7 @@ const SCALE_RMS: f64 = 7.0;
 /// Half the largest cube: centres keep this distance from the border.
 const MARGIN: usize = 8;
 
-/// Of larger pictures only every second, third, … row has centres, so that no more than this many points are centres.
+/// Largest number of centres: of larger pictures only every second, third, … row has some, so that no more than this many points are centres.
 const MOST_CENTRES: usize = 1 << 20;
 
 /// Probability dimension D_P of a picture.

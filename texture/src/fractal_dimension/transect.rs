@@ -31,11 +31,11 @@ const LAGS: [usize; 4] = [1, 2, 4, 8];
 /// Least share of the signal in W(k) for a lag to count: below it the noise of rounding is no longer known well enough.
 const LEAST_SIGNAL: f64 = 0.2;
 
-/// How far the two looks may differ before the picture counts as not Brownian: above the largest
+/// Largest difference of the two estimates before the picture counts as not Brownian: above the largest
 /// difference on 180 exact surfaces, 0.07 at D = 2.1.
 const AGREEMENT: f64 = 0.15;
 
-/// What the transects of a picture say.
+/// Estimate from the transects of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transects {
     /// Fractal dimension of the surface, 2–3: the one to use.
@@ -51,7 +51,7 @@ pub struct Transects {
 }
 
 impl Transects {
-    /// Whether the two looks contradict each other: the relief is not Brownian at scales of a few texels.
+    /// Tests whether the two estimates contradict each other: the relief is not Brownian at scales of a few texels.
     #[must_use]
     pub fn disagree(&self) -> bool {
         self.second_dimension.is_none_or(|d| (d - self.madogram_dimension).abs() > AGREEMENT)

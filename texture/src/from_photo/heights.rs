@@ -17,7 +17,7 @@ const DARKEST_MEAN: f64 = 0.05;
 const USUAL_MEAN: f64 = 0.4;
 /// Relief over the shorter side from which a found light is not believed. Source: ours; the map sets stay below 0.08.
 const MOST_RELIEF: f64 = 0.1;
-/// What a found light may leave unexplained of the image, over its standard deviation.
+/// Largest unexplained part of the image under a found light, over its standard deviation.
 const MOST_UNEXPLAINED: f64 = 0.7;
 
 /// Why heights were not found as the light seemed to allow.
@@ -131,7 +131,7 @@ fn by_brightness(picture: &Raster, whole: &Raster, fallback: Option<Fallback>) -
     Ok(Found { shape, sign: Sign::of_brightness(whole), light_was_found: false, fallback })
 }
 
-/// Whether relief stands out of its ground or is sunk into it, frontal light cannot say: out of it is custom.
+/// Choice of relief that stands out of its ground: frontal light cannot say; out of it is custom.
 fn above_the_ground(shape: Shape) -> Found {
     Found { shape, sign: Sign::of_found_light(), light_was_found: false, fallback: None }
 }

@@ -8,14 +8,14 @@ use asperity_dsp::DesignError;
 /// Size of a texel when nobody says: 40 mm over 256 texels (document 002, document 004 §8.3: 40 mm).
 pub const TEXEL_M: f64 = 0.04 / 256.0;
 
-/// What is known about a photograph.
+/// Facts given about a photograph.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhotoOptions {
-    /// Where the light was; `None`: find out.
+    /// Place of the light; `None`: estimated.
     pub light: Option<Light>,
-    /// How heights are found; `None`: by what the light allows.
+    /// Method that finds heights; `None`: by what the light allows.
     pub method: Option<Method>,
-    /// Whether bright is deep: heights are turned over.
+    /// True where bright is deep: heights are turned over.
     pub bright_is_deep: bool,
     /// Size of a texel, m.
     pub texel_m: f64,
@@ -46,7 +46,7 @@ impl Default for PhotoOptions {
     }
 }
 
-/// How high heights in texels are.
+/// Scale of heights in texels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale {
     /// Metres of a texel of height.

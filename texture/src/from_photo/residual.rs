@@ -1,4 +1,4 @@
-//! What does not repeat of a pattern, as heights: its fine waves stay in the map, its law goes on below the map's texels.
+//! Residual of a pattern, the part that does not repeat, as heights: its fine waves stay in the map, its law goes on below the map's texels.
 //!
 //! ```text
 //! Z(ω) += Z_r(ω) g(λ)        g = 1 up to FINE_PX[0], cos² in octaves down to 0 at FINE_PX[1]

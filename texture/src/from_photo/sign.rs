@@ -43,7 +43,7 @@ impl Sign {
         Self { bright_is_deep, confidence: 1.0 }
     }
 
-    /// Of a light that was found in the picture.
+    /// Sign under a light that was found in the picture.
     pub(crate) const fn of_found_light() -> Self {
         Self { bright_is_deep: false, confidence: FOUND_LIGHT }
     }
@@ -57,14 +57,14 @@ impl Sign {
         Self { bright_is_deep: false, confidence: if is_guess { confidence.min(GUESS) } else { confidence } }
     }
 
-    /// Whether it is more than a guess.
+    /// Tests whether it is more than a guess.
     #[must_use]
     pub fn is_decided(&self) -> bool {
         self.confidence >= DECIDED
     }
 }
 
-/// Whether fine waves have a tail towards dark.
+/// Tests whether fine waves have a tail towards dark.
 fn has_narrow_shadows(picture: &Raster) -> bool {
     skewness(&band(picture, FINE_PX)) <= FINE_TAIL
 }

@@ -7,7 +7,7 @@ pub(super) const SECTORS: usize = 8;
 /// |D|² below which a derivative sees nothing.
 pub(super) const UNSEEN: f64 = 1e-9;
 
-/// What a field of slopes shows at one frequency.
+/// Statistics of a field of slopes at one frequency.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Seen {
     /// |D|².
@@ -26,12 +26,12 @@ pub(super) struct Bands {
     pub rings: usize,
     /// Width of a ring, radians per texel.
     pub width: f64,
-    /// Whether k and its mirror image are one, as in waves of a map that goes on mirrored.
+    /// True where k and its mirror image are one, as in waves of a map that goes on mirrored.
     mirrored: bool,
 }
 
 impl Bands {
-    /// Of a spectrum stored column by column, from its frequencies along u and v, radians per texel, and the rings' width.
+    /// Bands of a spectrum stored column by column, from its frequencies along u and v, radians per texel, and the rings' width.
     pub fn new(along_u: &[f64], along_v: &[f64], width: f64) -> Self {
         let places = || along_u.iter().flat_map(|&wx| along_v.iter().map(move |&wy| (wx, wy)));
         let ring: Vec<u32> = places().map(|(wx, wy)| (wx.hypot(wy) / width).round() as u32).collect();
@@ -54,7 +54,7 @@ impl Bands {
         self.sector[place] as usize * self.rings + self.ring(place)
     }
 
-    /// The same ring of the sector a quarter turn away.
+    /// Band of the same ring in the sector a quarter turn away.
     pub fn across(&self, band: usize) -> usize {
         let turned = (band / self.rings + SECTORS / 2) % SECTORS;
         let sector = if self.mirrored { (SECTORS - turned) % SECTORS } else { turned };

@@ -19,7 +19,7 @@ const NEARLY_BLIND: f64 = 0.1;
 /// slopes taken by Sobel leave 0.2–2.4, with slopes taken otherwise and halved 6–60.
 const TOO_MUCH: f64 = 4.0;
 
-/// Whether slopes of this power hold waves which the derivative would not have left in them. `noise` is that of one slope.
+/// Tests whether slopes of this power hold waves which the derivative would not have left in them. `noise` is that of one slope.
 pub(super) fn made_blind(
     derivative: Derivative,
     power: &[f64],

@@ -7,7 +7,7 @@
 
 use super::Slopes;
 
-/// What a field's borders hold of the difference to the only neighbour.
+/// Share of a field's borders in the difference to the only neighbour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum BorderShare {
     None,

@@ -92,7 +92,7 @@ fn averaged_across(surface: &Raster) -> Raster {
     })
 }
 
-/// The same along v.
+/// Differences along v.
 fn averaged_down(surface: &Raster) -> Raster {
     let last = surface.height - 1;
     Raster::from_fn(surface.width, surface.height, |x, y| {

@@ -12,12 +12,12 @@ use asperity_fft::{Fft, FftPlanner};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// How a row goes on beyond its ends.
+/// Continuation of a row beyond its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mirror {
     /// Mirrored half a texel beyond the last one.
     EvenBetween,
-    /// The same with the sign turned.
+    /// Mirrored with the sign turned.
     OddBetween,
     /// Mirrored at the last texel.
     EvenAt,

@@ -68,23 +68,23 @@ impl Noise {
         noise
     }
 
-    /// That of a slope at a band's frequencies.
+    /// Noise of a slope at a band's frequencies.
     pub fn mean(&self, band: usize) -> f64 {
         self.levels[band].mean
     }
 
-    /// The same where there is any.
+    /// Noise where there is any.
     pub fn gathered(&self, band: usize) -> f64 {
         self.levels[band].gathered
     }
 
-    /// What is taken off a line: rounding is known apart from the surface's own lines, other noise falls on them.
+    /// Power taken off a line: rounding is known apart from the surface's own lines, other noise falls on them.
     pub fn of_line(&self, band: usize) -> f64 {
         let level = &self.levels[band];
         if level.is_rounding { level.mean } else { level.gathered }
     }
 
-    /// What the noise may add to a band's Σ |D_x* P + D_y* Q|² beyond what noise spread over all frequencies may, from the band's
+    /// Largest addition of the noise to a band's Σ |D_x* P + D_y* Q|² beyond that of noise spread over all frequencies, from the band's
     /// Σ |D|⁴ and the number of its frequencies: both standard deviations for many, an exponential's tail for few. Noise that is measured is known so well that
     /// nothing is added, but for waves shorter than three texels, where a surface is the weakest: one standard deviation.
     pub fn excess(&self, band: usize, under: f64, places: f64) -> f64 {
@@ -101,7 +101,7 @@ impl Noise {
     }
 }
 
-/// What lies across D in each band or a quarter turn away, whichever is more, over so many neighbouring rings that there are enough frequencies.
+/// Power across D in each band or a quarter turn away, whichever is more, over so many neighbouring rings that there are enough frequencies.
 fn by_bands(bands: &Bands, seen: &[Seen]) -> Vec<Level> {
     let rings = bands.rings;
     // Count, Σ a and Σ a² of all rings of a sector below.

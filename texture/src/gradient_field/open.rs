@@ -25,16 +25,16 @@ pub(super) struct Open {
     /// Frequencies of the columns and the rows, radians per texel.
     along_u: Vec<f64>,
     along_v: Vec<f64>,
-    /// How the surface goes on.
+    /// Continuation of the surface.
     mirror: Mirror,
-    /// Whether p and q are steps made of true slopes.
+    /// True where p and q are steps made of true slopes.
     steps: bool,
     width: usize,
     height: usize,
 }
 
 impl Open {
-    /// Of slopes taken by `derivative`; all that are neither central nor Sobel's are true slopes.
+    /// Field of slopes taken by `derivative`; all that are neither central nor Sobel's are true slopes.
     pub fn of(field: &Slopes, derivative: Derivative) -> Self {
         let (width, height) = (field.along_u.width, field.along_u.height);
         let mut transform = MirrorTransform::default();
@@ -91,7 +91,7 @@ impl Open {
         (alongs, seen)
     }
 
-    /// What is seen at every place.
+    /// Statistics at every place.
     pub fn all_seen(&self, derivative: Derivative) -> Vec<Seen> {
         self.seen(derivative).1
     }
@@ -119,7 +119,7 @@ impl Open {
     }
 }
 
-/// What makes steps of true slopes' integrals, and of slopes half way between true and central ones.
+/// Filter that makes steps of true slopes' integrals, and of slopes half way between true and central ones.
 fn raised(omega: f64, derivative: Derivative) -> f64 {
     let missed = steps::seen_inside(omega).max(1.0 / RAISED).recip();
     let taken = if derivative == Derivative::ExactOrCentral && omega > 0.0 {
@@ -154,7 +154,7 @@ pub fn integrate_open(field: &Slopes, derivative: Derivative) -> Raster {
     integrate_open_rounded(field, derivative, f64::INFINITY)
 }
 
-/// The same where the slopes have a noise: `noise` is the variance in each that rounding leaves at the most; what is more is measured.
+/// Integral where the slopes have a noise: `noise` is the variance in each that rounding leaves at the most; what is more is measured.
 #[must_use]
 pub fn integrate_open_rounded(field: &Slopes, derivative: Derivative, noise: f64) -> Raster {
     Open::of(field, derivative).heights(derivative, noise, Walls::NONE)

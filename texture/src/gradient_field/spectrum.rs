@@ -25,7 +25,7 @@ impl std::fmt::Debug for SlopeSpectrum {
 }
 
 impl SlopeSpectrum {
-    /// Of slopes of a surface that tiles, or does not.
+    /// Spectrum of slopes of a surface that tiles, or does not.
     #[must_use]
     pub fn of(field: Slopes, tiles: bool) -> Self {
         let waves = if tiles {
@@ -51,7 +51,7 @@ impl SlopeSpectrum {
         }
     }
 
-    /// How far the slopes are from being those of any surface, 0–1 ([`super::curl`]).
+    /// Distance of the slopes from those of any surface, 0–1 ([`super::curl`]).
     #[must_use]
     pub fn curl(&self, derivative: Derivative) -> f64 {
         match &self.waves {

@@ -43,7 +43,7 @@ pub(super) fn along_v(slopes: &Raster) -> Raster {
     Raster::from_fn(slopes.width, n.saturating_sub(1), |x, y| step(|i| slopes.at(x, i), y, n))
 }
 
-/// How much of a wave's steps its slopes give inside, 0–1.
+/// Share of a wave's steps that its slopes give inside, 0–1.
 pub(super) fn seen_inside(omega: f64) -> f64 {
     if omega < 1e-6 {
         return 1.0;

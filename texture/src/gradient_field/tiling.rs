@@ -58,7 +58,7 @@ impl Tiling {
         (along, Seen { square, along: along.norm_sqr(), across })
     }
 
-    /// What is seen at every place.
+    /// Statistics at every place.
     pub fn all_seen(&self, derivative: Derivative) -> Vec<Seen> {
         (0..self.len()).map(|place| self.seen(place, derivative).1).collect()
     }

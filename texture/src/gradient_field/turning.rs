@@ -26,13 +26,13 @@ const RULED_OUT: f64 = 20.0;
 const HIGHEST_ASKED: f64 = 1.2;
 /// A derivative is only ruled out by one that leaves at most this fraction of what it leaves.
 const CLEARLY: f64 = 0.85;
-/// The same where the best one leaves more than rounding: what is no rounding in a map made by others
+/// Limit where the best one leaves more than rounding: what is no rounding in a map made by others
 /// (resizing, JPEG) is neither derivative's. Source: ours; 0.04–0.4 for the derivative that made a map, 0.5–1 for others in real maps.
 const CLEARLY_OF_OTHER_NOISE: f64 = 0.5;
 /// Mean power across D over that of rounding from which it is something else.
 const NOT_ROUNDING: f64 = 2.0;
 
-/// How far slopes are from being those of any surface, 0–1: the share of their power that lies across D,
+/// Distance of slopes from those of any surface, 0–1: the share of their power that lies across D,
 /// Σ |D_y P − D_x Q|²/|D|² / Σ (|P|² + |Q|²), where the slopes stand out of their noise (eight times the median
 /// power). A field that does not tile must come as its periodic component.
 #[must_use]
@@ -40,7 +40,7 @@ pub fn curl(field: &Slopes, derivative: Derivative) -> f64 {
     share_across(&Tiling::of(field).all_seen(derivative))
 }
 
-/// The same of what is seen at every place.
+/// Share at every place.
 pub(super) fn share_across(seen: &[Seen]) -> f64 {
     let told = || seen.iter().skip(1).filter(|at| at.square > 0.0);
     let power = |at: &Seen| at.along / at.square + at.across;
@@ -62,7 +62,7 @@ pub(super) struct Evidence {
 }
 
 impl Evidence {
-    /// Of a surface that tiles; rounding leaves a variance of `noise` in each slope.
+    /// Share of a surface that tiles; rounding leaves a variance of `noise` in each slope.
     pub fn of_tiling(tiling: &Tiling, noise: f64) -> Self {
         let power: Vec<f64> = (0..tiling.len()).map(|place| tiling.power(place)).collect();
         let across =
@@ -73,7 +73,7 @@ impl Evidence {
         Self { power: power[1..].to_vec(), across, blind, rounding: noise }
     }
 
-    /// The same of a surface that does not tile: each derivative's turning is taken by its own differences, away from the borders, and
+    /// Share of a surface that does not tile: each derivative's turning is taken by its own differences, away from the borders, and
     /// under a window. Only long waves are asked, whose true derivative differences can take.
     pub fn of_inside(field: &Slopes, noise: f64) -> Self {
         let (w, h) = (field.along_u.width, field.along_u.height);

@@ -18,10 +18,10 @@ use super::Slopes;
 
 /// Median slope over the root mean square up to which a surface is flat places and walls: 0–0.05 in sheets, gratings and panels.
 const ALL_WALLS: f64 = 0.05;
-/// The same from which it is not: 0.1–0.6 in all others.
+/// Limit from which it is not: 0.1–0.6 in all others.
 const NO_WALLS: f64 = 0.1;
 
-/// How far a surface consists of flat places and walls, 0–1.
+/// Degree to which a surface consists of flat places and walls, 0–1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walls(f64);
 
@@ -50,7 +50,7 @@ impl Walls {
         self.0
     }
 
-    /// Whether there are any.
+    /// Tests whether there are any.
     pub(super) fn are_none(self) -> bool {
         self.0 == 0.0
     }
@@ -65,7 +65,7 @@ impl Walls {
     }
 }
 
-/// What walls leave of the height that true slopes give a wave, from [`Walls::axis`] of both axes.
+/// Share that walls leave of the height that true slopes give a wave, from [`Walls::axis`] of both axes.
 pub(super) fn gain([wx, dx]: [f64; 2], [wy, dy]: [f64; 2]) -> f64 {
     let square = dx * dx + dy * dy;
     if square > 0.0 { (dx * wx + dy * wy) / square } else { 1.0 }

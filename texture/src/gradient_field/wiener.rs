@@ -21,7 +21,7 @@
 use super::bands::{Bands, Seen, UNSEEN};
 use super::noise::{LINE, Noise};
 
-/// How often lines are looked for at the most, weaker ones once the stronger are known.
+/// Largest number of searches for lines, weaker ones once the stronger are known.
 const ROUNDS: usize = 4;
 /// |D|² from which a line is believed.
 const LEAST_OF_LINE: f64 = 0.01;

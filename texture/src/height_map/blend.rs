@@ -2,7 +2,7 @@
 
 use crate::spline::{Places, Samples};
 
-/// What a block is blended from; it holds nothing between two blocks.
+/// Buffers that a block is blended from; they hold nothing between two blocks.
 pub(super) struct Blend {
     pub(super) places: Places,
     pub(super) finer: Samples,

@@ -37,7 +37,7 @@ impl HeightMap {
         }
     }
 
-    /// What is the same everywhere.
+    /// Constants of a block.
     pub(super) fn tell_the_rest(&self, n: usize, out: &mut SurfaceBlock) {
         out.friction[..n].fill(self.friction);
         out.compliance_m_n[..n].fill(0.0);

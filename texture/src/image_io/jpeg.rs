@@ -1,4 +1,4 @@
-//! What a JPEG file says of its own coarseness.
+//! Coarseness of a JPEG file, as it says itself.
 //!
 //! A file is a row of segments: FF, marker, length of two bytes (big-endian, with itself), contents. Table DQT (marker DB) holds a byte (upper half: 0 for
 //! divisors of one byte, 1 for two; lower half: number of the table, 0 is the brightness') and 64 divisors from slow waves to fast ones.

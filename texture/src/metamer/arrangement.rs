@@ -16,7 +16,7 @@ use asperity_fft::num_complex::Complex64;
 /// Mean correlations of the oriented sub-bands of two images.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Correlation {
-    /// Where both are.
+    /// Place of both.
     pub in_place: f64,
     /// The highest of all shifts.
     pub highest: f64,

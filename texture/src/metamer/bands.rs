@@ -62,7 +62,7 @@ impl Bands {
         Ok(Self { pyramid, wanted })
     }
 
-    /// The same, of the same reference, with bands as large as their waves need.
+    /// Bands of the same reference, as large as their waves need.
     pub fn reduced(&self, reference: &Raster, scratch: &mut Scratch) -> Result<Self, DesignError> {
         let pyramid = self.pyramid.sampled(Sampling::Reduced);
         let mut theirs = pyramid.clone();

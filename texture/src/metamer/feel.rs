@@ -58,7 +58,7 @@ impl Feel {
         self.range
     }
 
-    /// How far `image`, of the originals' size, is from the reference; `tiles`: its borders meet.
+    /// Distance of `image`, of the originals' size, from the reference; `tiles`: its borders meet.
     #[must_use]
     pub fn distance(&mut self, image: &Raster, tiles: bool) -> Distance {
         let borders = if tiles { Borders::Periodic } else { Borders::Smooth };
@@ -126,7 +126,7 @@ impl Feel {
         })
     }
 
-    /// What the ground under the reference feels like, if that is terraces; it is to be put back.
+    /// Feel of the ground under the reference, if that is terraces; it is to be put back.
     pub(super) fn take_ground(&mut self) -> Result<Option<Box<Self>>, DesignError> {
         if self.ground.is_some() {
             return Ok(self.ground.take());
@@ -141,7 +141,7 @@ impl Feel {
         Ok(Some(Box::new(Self::new(&ground, width, height, &options)?)))
     }
 
-    /// Of every sample of every band, as the result is judged: as many samples as the waves need may show a fifth less.
+    /// Tolerance of every sample of every band, as the result is judged: as many samples as the waves need may show a fifth less.
     pub(super) fn mean_of(&mut self, image: &Raster) -> f64 {
         let distances = distances(&mut self.level, image, &mut self.scratch);
         mean(&self.level, &distances)

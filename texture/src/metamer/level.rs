@@ -28,13 +28,13 @@ use crate::spectral_envelope::Envelope;
 use crate::spectral_resample::{resample, resample_mirrored};
 use asperity_dsp::DesignError;
 
-/// How far each pass moves the surface along the change that matching the bands makes. Beyond 1: the
+/// Factor of each pass's move of the surface along the change that matching the bands makes. Beyond 1: the
 /// change is the same from pass to pass, only smaller.
 const BAND_STEP: f64 = 1.7;
-/// How much of a pass's move the next one repeats, where it must: surfaces without plateaus come near without, and momentum
+/// Share of a pass's move that the next one repeats, where it must: surfaces without plateaus come near without, and momentum
 /// carries them away from the original's arrangement (correlation of the sub-bands 0.8–0.9 without, 0.4–0.6 with it).
 const MOMENTUM: f64 = 0.8;
-/// How much of what the heights took back is still there a pass later. Source: ours, the best of 0.8, 0.9, 0.95 and 1 on terraces,
+/// Share of what the heights took back that is still there a pass later. Source: ours, the best of 0.8, 0.9, 0.95 and 1 on terraces,
 /// islands and dots of two heights.
 const KEPT: f64 = 0.95;
 /// First passes that go no further than the change itself: only once the amplitudes are near the reference's does
@@ -55,7 +55,7 @@ const FEWEST_PASSES: usize = 4;
 /// Last passes on grids finer than [`SIDE`] that see every band in full; the others see as many samples as its waves need.
 const FULL_PASSES: usize = 1;
 
-/// What surfaces on one grid are matched to.
+/// Target that surfaces on one grid are matched to.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
     pub size: [usize; 2],
@@ -63,14 +63,14 @@ pub(super) struct Level {
     pub full: Bands,
     /// Every band as large as its waves need; on fine grids.
     reduced: Option<Bands>,
-    /// Of the whole reference, with its borders.
+    /// Target of the whole reference, with its borders.
     pub heights: Histogram,
     envelope: Envelope,
     power: Vec<f64>,
     pub coarser: Option<Box<Level>>,
 }
 
-/// How a surface is moved.
+/// Movement of a surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Task {
     /// Passes asked for.
@@ -79,7 +79,7 @@ pub(super) struct Task {
     pub gait: Gait,
 }
 
-/// What is to be made of which surface.
+/// Task: a surface, and the one to be made of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sought<'a> {
     /// The part of it that tiles, and what is added for its heights.
@@ -88,7 +88,7 @@ pub(super) struct Sought<'a> {
     pub task: Task,
 }
 
-/// What a pass does beyond the change that matching the bands makes.
+/// Steps of a pass beyond the change that matching the bands makes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Gait {
     /// Nothing: this keeps the most of the original's arrangement.
@@ -111,7 +111,7 @@ impl Gait {
         if pass <= first || pass + last > all { Self::Plain } else { self }
     }
 
-    /// What is added to a height, and what is carried to the next pass: the height before, or the one before the heights were matched.
+    /// Addition to a height, and what is carried to the next pass: the height before, or the one before the heights were matched.
     fn add(self, value: f64, change: f64, carried: f64) -> (f64, f64) {
         match self {
             Self::Plain => (value + change, value),

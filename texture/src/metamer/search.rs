@@ -14,15 +14,15 @@ const MOST_GAIN: f64 = 1e6;
 const MARGIN: f64 = 0.9;
 /// Times the distance asked for up to which passes over terraces have a prospect.
 const HOPEFUL: f64 = 2.0;
-/// The same of their first round, where there are more.
+/// Passes of the first round, where there are more.
 const PROMISING: f64 = 5.0;
 /// Texels that rounds over terraces may pass over, all together, and most rounds in a row. Source: ours; at 1024² these are two, three seconds each.
 const TEXELS: usize = 2 << 20;
 const MOST_ROUNDS: usize = 6;
-/// What a round must leave of the distance at the most for another one to be worth it.
+/// Share of the distance that a round may leave at the most for another one to be worth it.
 const WORTH: f64 = 0.95;
 
-/// What passes have made of a start.
+/// Result of passes from a start.
 #[derive(Debug, Clone)]
 pub(super) struct Made {
     pub image: Raster,
@@ -37,10 +37,10 @@ impl Made {
     }
 }
 
-/// Where passes begin and how they go on from there.
+/// Start of passes, and how they go on from there.
 #[derive(Debug, Clone, Copy)]
 struct Try {
-    /// Of the reference's own arrangement in the start.
+    /// Share of the reference's own arrangement in the start.
     share: f64,
     task: Task,
 }
@@ -81,7 +81,7 @@ impl Feel {
         self.is_hopeful(sought.original, sought).then(|| self.rounds(sought.original.clone(), sought, rounds))
     }
 
-    /// The same from what the original becomes under the ground of the reference.
+    /// Search from what the original becomes under the ground of the reference.
     fn by_ground(&mut self, sought: Sought, rounds: usize) -> Result<Option<Made>, DesignError> {
         let Sought { original, seam, task } = sought;
         let Some(mut ground) = self.take_ground()? else { return Ok(None) };
@@ -107,7 +107,7 @@ impl Feel {
         Ok(start.map(|start| Made { borrowed: start.borrowed, ..self.rounds(start.image, sought, rounds) }))
     }
 
-    /// Whether passes with a memory bring the coarser copy of a large surface near.
+    /// Tests whether passes with a memory bring the coarser copy of a large surface near.
     fn is_hopeful(&mut self, start: &Raster, sought: Sought) -> bool {
         let with = remembering(sought.task);
         self.is_moderate() || self.try_coarsely(start, sought.seam, with).mean <= HOPEFUL * self.goal()
@@ -225,7 +225,7 @@ impl Feel {
         self.level.of_moderate_size().1 == 0
     }
 
-    /// What counts as near enough.
+    /// Distance that counts as near enough.
     fn goal(&self) -> f64 {
         self.options.until.unwrap_or(REACH)
     }

@@ -19,7 +19,7 @@ use crate::wrap::Wrap;
 const MOST_HEIGHTS: usize = 64;
 /// The shorter side over the first h.
 const FIRST: usize = 8;
-/// How often each h smooths.
+/// Number of times that each h smooths.
 const EACH: usize = 3;
 
 /// The different heights of a surface from low to high, if they are 2 to [`MOST_HEIGHTS`].

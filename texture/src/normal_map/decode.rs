@@ -55,7 +55,7 @@ pub(super) fn slopes_of_normals(red: &Raster, green: &Raster, blue: &Raster, ste
     Slopes { along_u, along_v }
 }
 
-/// Whether blue is what is left of a unit vector, or of the average of some.
+/// Tests whether blue is what is left of a unit vector, or of the average of some.
 fn blue_is_theirs(red: &Raster, green: &Raster, blue: &Raster) -> bool {
     let (low, high) = blue.range();
     if low == high {
@@ -73,13 +73,13 @@ fn left_of_unit([x, y, _]: [f64; 3]) -> f64 {
     (1.0 - x * x - y * y).max(0.0).sqrt()
 }
 
-/// Whether normals may be averages of unit vectors that point up.
+/// Tests whether normals may be averages of unit vectors that point up.
 fn are_averages(normals: impl Iterator<Item = [f64; 3]>, count: f64) -> bool {
     let none = |n: &[f64; 3]| n[2] < 0.0 || n.iter().map(|c| c * c).sum::<f64>() > LONGEST * LONGEST;
     normals.filter(none).count() as f64 <= FEW * count
 }
 
-/// That of two numbers, from both.
+/// Deviation of two numbers, from both.
 fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     let mut sums = [0.0; 6];
     for (a, b) in pairs {

@@ -21,12 +21,12 @@ const ENOUGH: f64 = 64.0;
 pub(super) struct NextToZero {
     /// Distance of two values.
     step: f64,
-    /// What the values half a step below and above 0 are taken for.
+    /// Meaning of the values half a step below and above 0.
     means: [f64; 2],
 }
 
 impl NextToZero {
-    /// Of a channel 0–1 of `steps` steps, an odd number: the middle is between two.
+    /// Meaning for a channel 0–1 of `steps` steps, an odd number: the middle is between two.
     pub(super) fn of(channel: &Raster, steps: f64) -> Self {
         let mut counts = [[0.0_f64; 3]; 2];
         for value in &channel.values {
@@ -42,7 +42,7 @@ impl NextToZero {
         Self { step, means: [-step * below, step * above] }
     }
 
-    /// What a component −1–1 is taken for.
+    /// Value that a component −1–1 is taken for.
     pub(super) fn value(&self, component: f64) -> f64 {
         if component.abs() < self.step { self.means[usize::from(component > 0.0)] } else { component }
     }

@@ -50,7 +50,7 @@ const FIRST_WAVE: usize = 3;
 const MOST_JUMP: f64 = 1.5;
 const MOST_OF_WAVE: f64 = 3.0;
 
-/// Whether slopes and heights go on across both seams.
+/// Tests whether slopes and heights go on across both seams.
 pub(super) fn tiles(field: &Slopes) -> bool {
     let turned = Slopes { along_u: field.along_v.transposed(), along_v: field.along_u.transposed() };
     let [ju, jv] = heights_end(field);
@@ -79,7 +79,7 @@ fn slopes_end(field: &Slopes) -> f64 {
     sum / (evidence + DOUBT)
 }
 
-/// Whether slopes change many times more across the seam than next to it.
+/// Tests whether slopes change many times more across the seam than next to it.
 fn has_step(field: &Slopes) -> bool {
     let (mut across, mut next) = (0.0, 0.0);
     for slope in [&field.along_u, &field.along_v] {
@@ -92,7 +92,7 @@ fn has_step(field: &Slopes) -> bool {
     across > STEP * next
 }
 
-/// Whether the step of either normal's component across the seam, mean square of all rows, is larger than any between neighbours inside: in a map that tiles
+/// Tests whether the step of either normal's component across the seam, mean square of all rows, is larger than any between neighbours inside: in a map that tiles
 /// a seam is a place like any other. Normals, because a few walls outweigh the rest of a map's slopes.
 fn stands_out(field: &Slopes) -> bool {
     let (width, rows) = (field.along_u.width, field.along_u.height);

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 /// Power of the shortest waves over that of longer ones from which they were raised; 1 of white noise.
 const MOST: f64 = 1.5;
 
-/// Whether the shortest waves of these heights outgrow longer ones.
+/// Tests whether the shortest waves of these heights outgrow longer ones.
 pub(super) fn outgrow_longer_ones(heights: &Raster) -> bool {
     let (w, h) = (heights.width, heights.height);
     let spectrum = Fft2::new(w, h).spectrum(&heights.values);

@@ -13,7 +13,7 @@ const VARIES: f64 = 0.1;
 /// Pixels that are looked at.
 const LOOKED_AT: usize = 4096;
 
-/// What a picture holds besides the brightness that was read of it.
+/// Contents of a picture besides the brightness that was read of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ignored {
     /// Its red, green and blue differ.
@@ -32,7 +32,7 @@ impl std::fmt::Display for Ignored {
 }
 
 impl Picture {
-    /// What is read past where the brightness is taken.
+    /// Channels that are read past where the brightness is taken.
     pub(super) fn ignored(&self, channel: Channel) -> Option<Ignored> {
         if channel != Channel::Luma || self.channels == 1 {
             return None;

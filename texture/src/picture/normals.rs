@@ -8,18 +8,18 @@
 
 use super::{Picture, Samples};
 
-/// How far a stored vector's length may be from 1: what 8 bits and JPEG leave.
+/// Largest deviation of a stored vector's length from 1: what 8 bits and JPEG leave.
 const LENGTH: f64 = 0.15;
 /// Smallest component out of the surface.
 const OUTWARD: f64 = 0.1;
-/// How much further out of the surface than along it the mean of all points. A light grey, stored as three equal colours, points along all three.
+/// Factor by which the mean of all must point further out of the surface than along it. A light grey, stored as three equal colours, points along all three
 const UPRIGHT: f64 = 2.0;
 /// Part of the pixels that must be such vectors.
 const MOST: f64 = 0.95;
 /// Pixels that are looked at.
 const LOOKED_AT: usize = 4096;
 
-/// Whether the picture's pixels are normals.
+/// Tests whether the picture's pixels are normals.
 pub(super) fn is_normal_map(picture: &Picture) -> bool {
     let pixels = picture.width * picture.height;
     if picture.channels < 3 || pixels < 16 {

@@ -6,7 +6,7 @@
 pub struct Coefficients {
     /// One sub-band after the other: in one piece, allocators keep the memory from one image to the next.
     pub(super) values: Vec<f64>,
-    /// Where each sub-band ends.
+    /// Ends of the sub-bands.
     pub(super) ends: Vec<usize>,
 }
 
@@ -17,7 +17,7 @@ impl Coefficients {
         self.ends.len()
     }
 
-    /// Whether there is none.
+    /// Tests whether there is none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()

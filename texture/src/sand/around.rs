@@ -31,7 +31,7 @@ pub(super) struct Around<'a> {
     pub(super) cell_m: f64,
     /// Depth of the untouched bed, metres.
     pub(super) depth_m: f64,
-    /// How deep the tool stands in untouched sand, metres.
+    /// Depth of the tool in untouched sand, metres.
     pub(super) sinks_m: f64,
 }
 

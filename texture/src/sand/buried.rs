@@ -26,24 +26,24 @@ pub const MAX_BURIED: usize = 8;
 /// A stone or a shell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Buried {
-    /// Where its highest point lies along u and v, metres.
+    /// Place of its highest point along u and v, metres.
     pub at_m: [f64; 2],
-    /// How deep below the untouched sand that is, metres, at or above 0.
+    /// Depth of that below the untouched sand, metres, at or above 0.
     pub top_m: f64,
     /// Half its width along u and v, metres, above 0.
     pub half_m: [f64; 2],
-    /// How much lower it is at half its width, metres, above 0.
+    /// Drop at half its width, metres, above 0.
     pub height_m: f64,
     /// Its hardness against the top sand's, above 0.
     pub hardness: f64,
 }
 
-/// What a tool meets below a place.
+/// Obstacle that a tool meets below a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Met {
-    /// How deep it must go, metres.
+    /// Depth at which it is met, metres.
     pub top_m: f64,
-    /// How that grows along u and v.
+    /// Slope of that depth along u and v.
     pub slope: [f64; 2],
     /// Hardness below.
     pub hardness: f64,
@@ -67,7 +67,7 @@ impl Buried {
         Ok(())
     }
 
-    /// What a tool with an underside of `tip_radius_m` meets of it below a place where the sand lies `above_m` over the untouched bed.
+    /// Obstacle that a tool with an underside of `tip_radius_m` meets of it below a place where the sand lies `above_m` over the untouched bed.
     #[must_use]
     pub fn met(&self, position_m: [f64; 2], above_m: f64, tip_radius_m: f64) -> Met {
         let slope = [0, 1].map(|a| {
@@ -80,7 +80,7 @@ impl Buried {
     }
 }
 
-/// What a tool meets first.
+/// Obstacle that a tool meets first.
 #[must_use]
 pub fn first_met(
     buried: &[Option<Buried>],

@@ -51,7 +51,7 @@ pub struct Erosion {
     level: Level,
 }
 
-/// What moved in a tile, one bit a row.
+/// Cells that moved in a tile, one bit a row.
 #[derive(Default)]
 struct Slides {
     /// Anything.
@@ -94,7 +94,7 @@ impl Erosion {
         Ok(())
     }
 
-    /// The same on a chosen instruction set; the sand is the same.
+    /// Erodes on a chosen instruction set; the sand is the same.
     #[must_use]
     pub fn on(self, level: Level) -> Self {
         Self { level, ..self }
@@ -120,7 +120,7 @@ impl Erosion {
         }
     }
 
-    /// Whether nothing slides any more.
+    /// Tests whether nothing slides any more.
     #[must_use]
     pub fn is_settled(&self) -> bool {
         self.active.iter().all(|&rows| rows == 0)

@@ -89,7 +89,7 @@ impl SandGrid {
         self.cell_m
     }
 
-    /// Where a cell's height is.
+    /// Index of a cell's height.
     #[inline]
     pub(super) fn index(&self, x: usize, y: usize) -> usize {
         (y + 1) * self.stride() + x + 1

@@ -14,12 +14,12 @@ use crate::height_field::MAX_BLOCK;
 /// one under way.
 pub(super) const PATCHES_A_CONTACT: usize = 4;
 
-/// Where the simulation runs.
+/// Place where the simulation runs.
 pub(super) enum Link {
     Here(Box<SandSimulation>),
     Elsewhere {
         near: Near,
-        /// Where the worker finds the other ends of new rings.
+        /// Place where the worker finds the other ends of new rings.
         line: NewEnds,
     },
 }
@@ -61,7 +61,7 @@ pub(super) fn rings(contacts: usize) -> (Far, Near) {
     (far, near)
 }
 
-/// What one contact reads.
+/// Data that one contact reads.
 pub(super) struct Slot {
     /// The sand that it landed on.
     pub(super) ground: Box<Patch>,

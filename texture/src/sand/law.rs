@@ -192,13 +192,13 @@ impl SandLaw {
         top + libm::log1p(left / (hardness * self.wet_stiffness_n() * libm::exp(k * top))) / k
     }
 
-    /// The same law under another tool, by its [bearing](super::Tool::bearing) and the [radius of its underside](super::Tool::tip_radius_m).
+    /// Law under another tool, by its [bearing](super::Tool::bearing) and the [radius of its underside](super::Tool::tip_radius_m).
     #[must_use]
     pub fn under(self, bearing: f64, tip_radius_m: f64) -> Self {
         Self { bearing, tip_radius_m, ..self }
     }
 
-    /// What the tool meets below a place where the sand lies `above_m` over the untouched bed.
+    /// Obstacle that the tool meets below a place where the sand lies `above_m` over the untouched bed.
     #[must_use]
     pub fn met(&self, position_m: [f64; 2], above_m: f64) -> Option<Met> {
         first_met(&self.buried, position_m, above_m, self.tip_radius_m)
@@ -228,7 +228,7 @@ impl SandLaw {
         met.top_m + libm::log1p(carried_by_it_n / stiff_n) / k
     }
 
-    /// How much what is met pushes aside a tool that is carried with `force_n`, along u and v, for each newton.
+    /// Push aside on a tool that is carried with `force_n` by what is met, along u and v, for each newton.
     #[must_use]
     pub fn push_per_n(&self, met: Option<&Met>, force_n: f64) -> [f64; 2] {
         let Some(met) = met.filter(|_| force_n > 0.0) else { return [0.0; 2] };

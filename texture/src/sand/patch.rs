@@ -37,7 +37,7 @@ impl Patch {
         }
     }
 
-    /// Whether it shows the very heights that another shows.
+    /// Tests whether it shows the very heights that another shows.
     #[must_use]
     pub fn shows(&self, other: &Self) -> bool {
         self.origin_m == other.origin_m

@@ -3,7 +3,7 @@
 /// Frames a second.
 pub const FRAMES_PER_S: f64 = 60.0;
 
-/// Where a contact is.
+/// Place of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Its number.

@@ -44,7 +44,7 @@ pub struct SandDesign {
     pub talus_deg: f64,
     /// Force law, wetness, layers, grains.
     pub law: SandLaw,
-    /// What every contact drags.
+    /// Tool that every contact drags.
     pub tool: Tool,
 }
 
@@ -63,7 +63,7 @@ impl Default for SandDesign {
     }
 }
 
-/// What a render tells about the sand.
+/// Figures of the sand for a render.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SandFigures {
     /// Volume when it was made, m³.
@@ -78,7 +78,7 @@ pub struct SandFigures {
     pub print_m: f64,
 }
 
-/// What is known of a contact.
+/// State of a contact.
 #[derive(Debug, Clone, Copy, Default)]
 struct Track {
     told: Option<Pose>,
@@ -108,7 +108,7 @@ pub struct SandSimulation {
     print_m: f64,
     /// For whoever draws the sand.
     moving_picture: Arc<MovingPicture>,
-    /// What of it was not shown yet.
+    /// Part that was not shown yet.
     changed: ChangedTiles,
 }
 
@@ -214,7 +214,7 @@ impl SandSimulation {
         }
     }
 
-    /// Whether a contact's tool stands in the sand.
+    /// Tests whether a contact's tool stands in the sand.
     #[must_use]
     pub fn is_down(&self, contact: usize) -> bool {
         self.tracks.get(contact).is_some_and(|t| t.pose.is_some())
@@ -261,7 +261,7 @@ impl SandSimulation {
         self.erosion.settle(&mut self.grid);
     }
 
-    /// Whether nothing slides and no tool is down.
+    /// Tests whether nothing slides and no tool is down.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.erosion.is_settled() && self.tracks.iter().all(|t| t.pose.is_none() && t.told.is_none())

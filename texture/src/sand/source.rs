@@ -145,7 +145,7 @@ impl SandSource {
         }
     }
 
-    /// What a device's loop feels of it.
+    /// Law that a device's loop feels of it.
     #[must_use]
     pub fn tip_law(&self) -> TipLaw {
         TipLaw::Sand(self.law.target())
@@ -306,7 +306,7 @@ impl SandSource {
     }
 }
 
-/// Where a touch is; a contact that has just landed says so itself.
+/// Place of a touch; a contact that has just landed says so itself.
 fn pose(touch: &Touch) -> Pose {
     Pose {
         contact: touch.contact,

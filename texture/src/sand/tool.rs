@@ -22,7 +22,7 @@ const RIM: [f64; 2] = [1.2, 1.607];
 /// Width of the rim over the radius of the cut.
 const RIM_WIDTH: f64 = RIM[1] / RIM[0] - 1.0;
 
-/// What is pressed into the sand.
+/// Tool that is pressed into the sand.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Tool {
     /// A sphere of a radius in metres.
@@ -96,7 +96,7 @@ impl Tool {
         if let Self::Sphere { radius_m } = self { *radius_m } else { 0.0 }
     }
 
-    /// How much more it is carried than the document's sphere, by the area of its print; see the [law](super::law).
+    /// Ratio of its bearing to the source's sphere, by the area of its print; see the [law](super::law).
     #[must_use]
     pub fn bearing(&self) -> f64 {
         let reference = Self::Sphere { radius_m: REFERENCE_RADIUS_M };
@@ -133,7 +133,7 @@ pub struct Press {
     rim: Vec<(usize, f64)>,
 }
 
-/// What a press did.
+/// Result of a press.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Displaced {
     /// Sand that was moved, units of height in cells.
@@ -297,7 +297,7 @@ impl Press {
         Displaced { units: cut.units, columns: near.columns, rows: near.rows }
     }
 
-    /// Whether a cell of the box has a neighbour in a ring.
+    /// Tests whether a cell of the box has a neighbour in a ring.
     fn touches(&self, area: &Area, x: usize, y: usize, ring: u8) -> bool {
         let [left, right] = area.columns;
         let [top, bottom] = area.rows;
@@ -306,7 +306,7 @@ impl Press {
     }
 }
 
-/// What was cut: how much, its middle in cells, the cells around it.
+/// Cut: its volume, its middle in cells, the cells around it.
 struct Cut {
     units: i64,
     middle: [f64; 2],

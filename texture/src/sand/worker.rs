@@ -18,7 +18,7 @@ pub(super) struct Far {
     pub(super) touched: Vec<bool>,
 }
 
-/// Where the game thread leaves the ends of new rings, when an engine takes the surface.
+/// Place where the game thread leaves the ends of new rings, when an engine takes the surface.
 pub(super) type NewEnds = Arc<Mutex<Option<Far>>>;
 
 /// Takes poses and sends patches; [`SandWorker::frame`] is to be called 60 times a second.

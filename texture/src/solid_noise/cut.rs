@@ -3,7 +3,7 @@
 /// The plane in which a surface cuts the block of noise: position = origin + u · u_axis + v · v_axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolidCut {
-    /// Where (0, 0) of the surface lies in the block, metres.
+    /// Place of the surface's (0, 0) in the block, metres.
     pub origin_m: [f64; 3],
     /// Direction of u, a unit vector.
     pub u_axis: [f64; 3],

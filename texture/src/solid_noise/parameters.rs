@@ -62,14 +62,14 @@ pub struct SolidNoiseParameters {
     pub cap_n: f64,
     /// Direction of the texture force.
     pub direction: ForceDirection,
-    /// Whether the texture force is multiplied by the normal force in newtons (as the document's
+    /// Multiplies the texture force by the normal force in newtons (as the document's
     /// references 5 and 6 ask; the document itself does not).
     pub proportional_to_contact: bool,
     /// Drag −b v of the medium, N·s/m, at or above 0.
     pub viscosity_n_s_m: f64,
     /// Coulomb friction coefficient, at or above 0.
     pub friction: f64,
-    /// How fast the block flows past the surface, m/s along u, along v and out of the surface; the last makes the texture boil in its
+    /// Speed of the block past the surface, m/s along u, along v and out of the surface; the last makes the texture boil in its
     /// place.
     pub flow_m_s: [f64; 3],
 }
@@ -105,7 +105,7 @@ impl SolidNoiseParameters {
         (frequency, amplitude)
     }
 
-    /// How far from zero its heights can be, metres.
+    /// Largest distance of its heights from zero, metres.
     pub(super) fn reach_m(&self) -> f64 {
         let octaves = |module: &NoiseModule| -> f64 {
             (0..module.octaves).map(|index| self.octave(module, index).1.abs()).sum()

@@ -18,7 +18,7 @@ impl Samples {
     /// Nothing yet.
     pub const EMPTY: Self = Self { value: [0.0; ROOM], slope_u: [0.0; ROOM], slope_v: [0.0; ROOM] };
 
-    /// The same value everywhere, level where anybody looks at slopes.
+    /// Cell of one value everywhere, level where slopes are read.
     pub fn fill<const SLOPES: bool>(&mut self, value: f64) {
         self.value.fill(value);
         if SLOPES {

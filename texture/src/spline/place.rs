@@ -12,7 +12,7 @@ const FEW: usize = 2 * MOST_LANES;
 /// Places of a block and of the lanes beyond its end.
 pub(super) const ROOM: usize = MAX_BLOCK + MOST_LANES;
 
-/// What turns a texel coordinate into a place along one axis.
+/// Conversion of a texel coordinate to a place along one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Axis {
     wrap: Wrap,
@@ -29,7 +29,7 @@ struct OnlyTexel {
     texel: f64,
 }
 
-/// Where along one axis: the texel before, how far beyond it (0–1), and slope per metre for a slope of
+/// Place along one axis: the texel before, the distance beyond it (0–1), and slope per metre for a slope of
 /// 1 per texel (negative in a mirrored copy, 0 beyond a clamped edge).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Place {
@@ -46,7 +46,7 @@ pub(super) struct AxisPlaces {
     slope: [f64; ROOM],
 }
 
-/// Where the positions of a block lie; found once for all maps of one grid.
+/// Places of the positions of a block; found once for all maps of one grid.
 #[derive(Debug, Clone)]
 pub struct Places {
     /// The grid that they were found for.
@@ -208,7 +208,7 @@ impl Places {
 impl AxisPlaces {
     const EMPTY: Self = Self { texel: [0.0; ROOM], fraction: [0.0; ROOM], slope: [0.0; ROOM] };
 
-    /// How far beyond their texels N places from `n` on are.
+    /// Distances of N places from `n` on beyond their texels.
     #[inline(always)]
     pub(super) fn fraction<const N: usize>(&self, n: usize) -> &[f64; N] {
         room(&self.fraction, n)
@@ -269,13 +269,13 @@ impl Axis {
         (alike && self.wrap == Wrap::Repeat).then_some(OnlyTexel { copy: copies[0], texel: texels[0] })
     }
 
-    /// How far beyond that texel a position is, by the steps of [`place`](Self::place).
+    /// Distance of a position beyond that texel, by the steps of [`place`](Self::place).
     #[inline(always)]
     fn beyond(&self, only: OnlyTexel, position_m: f64) -> f64 {
         ((position_m * self.texels_per_metre - 0.5) - only.copy) - only.texel
     }
 
-    /// Where a position is.
+    /// Place of a position.
     #[inline(always)]
     pub(super) fn place(&self, position_m: f64) -> Place {
         let n = self.len;

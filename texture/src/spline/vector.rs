@@ -17,7 +17,7 @@ pub(super) trait Vector<const N: usize>: Copy {
     fn add(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
     fn sub(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
     fn mul(self, a: Self::Lanes, b: Self::Lanes) -> Self::Lanes;
-    /// How many lanes from the first on are equal numbers.
+    /// Number of lanes from the first on that hold equal numbers.
     fn equal_lanes(self, a: Self::Lanes, b: Self::Lanes) -> usize;
 }
 

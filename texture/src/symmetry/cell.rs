@@ -24,10 +24,10 @@ pub struct AveragedCell {
     /// The cell in lattice coordinates: sample (i, j) of N × N lies at (i/N)·t1 + (j/N)·t2 from the centre of the picture's
     /// first texel. Mean 0.
     pub cell: Raster,
-    /// How much of the mean cell's variance is pattern and not noise, 0–1, from the agreement of two
+    /// Share of the mean cell's variance that is pattern and not noise, 0–1, from the agreement of two
     /// halves of the cells (odd and even along t1, along t2, or both: the worst).
     pub reliability: f64,
-    /// How many cells each sample averages, at least.
+    /// Least number of cells that each sample averages.
     pub repeats: usize,
 }
 
@@ -87,7 +87,7 @@ pub(crate) fn averaged_even_cell(even: &Raster, lattice: &Lattice) -> AveragedCe
     }
 }
 
-/// How faithfully a pattern keeps to its lattice all over the picture, 0–1: the variance of its mean cell over what texels have
+/// Faithfulness of a pattern to its lattice all over the picture, 0–1: the variance of its mean cell over what texels have
 /// in common with those one translation on. 1 for a strict pattern, however noisy or unevenly lit; near 0 when cells are like
 /// their neighbours but drift, as scales on a bent skin do, and the mean of all of them is a blur.
 #[must_use]

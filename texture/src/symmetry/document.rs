@@ -19,7 +19,7 @@ use super::lattice::{Lattice, combine, length, reduced, solve, upright};
 use super::search::SMALLEST_SIDE;
 use crate::raster::Raster;
 
-/// How fast the concentration falls with the distance, 1/texel.
+/// Fall of the concentration with the distance, 1/texel.
 pub const LAMBDA_PER_PX: f64 = 0.5;
 
 /// Deviation of the normal distribution that a distance stands for, texels.
@@ -37,7 +37,7 @@ const MOST_POINTS: usize = 300;
 /// Larger pictures are averaged down: the absolute distortion is summed shift by shift.
 const LARGEST_SIDE: usize = 256;
 
-/// What the document's user tunes.
+/// Parameters that the method's user tunes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DocumentSearch {
     /// Which distortion is averaged.

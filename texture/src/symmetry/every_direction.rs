@@ -20,9 +20,9 @@ use std::f64::consts::{LN_2, PI, TAU};
 const QUIET: f64 = 0.04;
 /// Directions in half a turn.
 const SECTORS: usize = 24;
-/// Where the ring is looked for, over one wave a translation.
+/// Band in which the ring is looked for, over one wave a translation.
 const SOUGHT: [f64; 2] = [0.7, 1.6];
-/// The same of a lattice of several waves a cell, as chance proposes where nothing but the ring is seen.
+/// Band for a lattice of several waves a cell, as chance proposes where nothing but the ring is seen.
 const SEVERAL: [f64; 2] = [1.6, 4.5];
 /// Share of the picture's power that the ring then has at least: a pattern's harmonics stand beside its fundamental.
 const MOST_OF_ALL: f64 = 0.6;
@@ -34,7 +34,7 @@ const CLEAR_OF_NOISE: f64 = 2.5;
 /// Waves across the shorter side below which a sector has too few frequencies.
 const FEWEST_WAVES: f64 = 6.0;
 
-/// Whether a picture's waves about as long as a translation, texels, have every direction.
+/// Tests whether a picture's waves about as long as a translation, texels, have every direction.
 pub(super) fn has_waves_of_every_direction(picture: &Raster, translation_px: f64) -> bool {
     let waves = Waves::of(picture);
     let step = TAU / picture.width.min(picture.height) as f64;
@@ -60,7 +60,7 @@ struct Wave {
 struct Waves(Vec<Wave>);
 
 impl Waves {
-    /// Whether the ring about this frequency has every direction.
+    /// Tests whether the ring about this frequency has every direction.
     fn have_every_direction(&self, middle: f64, step: f64) -> bool {
         if middle < FEWEST_WAVES * step {
             return false;

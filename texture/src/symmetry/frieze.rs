@@ -39,18 +39,18 @@ const MOST_BETWEEN: f64 = 0.8;
 /// Directions that are tried over half a turn.
 const DIRECTIONS: usize = 360;
 
-/// What repeats along one direction only.
+/// Pattern that repeats along one direction only.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Frieze {
     /// The translation, texels; it points right, or straight down.
     pub t_px: [f64; 2],
     /// Share of the picture's variance that repeats, 0.5–1.
     pub confidence: f64,
-    /// Whether the pattern is the same all along its stripes.
+    /// True where the pattern is constant all along its stripes.
     pub stripes: bool,
-    /// How the strip is symmetric.
+    /// Symmetry of the strip.
     pub group: FriezeGroup,
-    /// How many strips the primitive averages.
+    /// Number of strips that the primitive averages.
     pub repeats: usize,
     /// One strip, its mean the picture's: columns along the translation, rows (a texel high) along its perpendicular, turned clockwise
     /// as seen on the picture. Of stripes it is as high as long.
@@ -120,7 +120,7 @@ fn shortest_good(fit: &Fit) -> Option<[f64; 2]> {
     good.map(|(t, _)| t).min_by(|a, b| length(*a).total_cmp(&length(*b)))
 }
 
-/// Whether shifts across a translation fit as well as it does.
+/// Tests whether shifts across a translation fit as well as it does.
 fn fits_across(fit: &Fit, t: [f64; 2]) -> bool {
     let across = ridge(fit, t);
     let depths: Vec<f64> = (1..).map_while(|k| fit.at(combine(across, across, f64::from(k), 0.0))).collect();
@@ -181,7 +181,7 @@ fn polished(fit: &Fit, start: [f64; 2], sideways: f64) -> [f64; 2] {
     pointing_right(best)
 }
 
-/// The same direction or its opposite, to the right or straight down.
+/// Direction or its opposite, to the right or straight down.
 fn pointing_right(t: [f64; 2]) -> [f64; 2] {
     if t[0] < -1e-3 * t[1].abs() || (t[0].abs() <= 1e-3 * t[1].abs() && t[1] < 0.0) {
         t.map(|c| -c)

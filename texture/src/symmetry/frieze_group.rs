@@ -23,7 +23,7 @@ const SYMMETRY_LIMIT: f64 = 0.955;
 /// Longest strip that is compared texel by texel; longer ones are averaged down.
 const LONGEST: usize = 64;
 
-/// The same for its height: its axis is found to half a texel, so that it is kept finer.
+/// Tolerance for its height: its axis is found to half a texel, so that it is kept finer.
 const HIGHEST: usize = 256;
 
 /// Correlation of the rows' means below which they differ.

@@ -13,7 +13,7 @@ pub struct Lattice {
     pub t1_px: [f64; 2],
     /// Second translation, texels.
     pub t2_px: [f64; 2],
-    /// How sure it is that the pattern repeats, 0–1; 0.5 is where "no lattice" begins.
+    /// Certainty that the pattern repeats, 0–1; 0.5 is where "no lattice" begins.
     pub confidence: f64,
 }
 
@@ -90,7 +90,7 @@ pub(super) fn reduced(a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
     [short, long]
 }
 
-/// The same lattice with the first translation as nearly to the right as one of the shortest can be, so that noise
+/// Lattice with the first translation as nearly to the right as one of the shortest can be, so that noise
 /// does not turn a square lattice by 90°.
 pub(super) fn upright([a, b]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     let shortest = length(a) * (1.0 + AS_SHORT);

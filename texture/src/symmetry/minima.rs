@@ -19,7 +19,7 @@ pub(super) struct Minimum {
     pub depth: f64,
 }
 
-/// How well shifts fit: 1 − SFM over its median, blurred, and readable between texels.
+/// Fit of shifts: 1 − SFM over its median, blurred, and readable between texels.
 pub(super) struct Fit {
     depth: Raster,
     reach: [f64; 2],
@@ -35,7 +35,7 @@ impl Fit {
         Self::blurred(matrix, BLUR)
     }
 
-    /// The same with a blur of one texel, for minima that are known to be there: less of it, less of a lopsided
+    /// Fit with a blur of one texel, for minima that are known to be there: less of it, less of a lopsided
     /// neighbourhood pulls at them.
     pub fn sharp(matrix: &FeatureMatrix) -> Option<Self> {
         Self::blurred(matrix, 1.0)

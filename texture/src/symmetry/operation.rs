@@ -69,7 +69,7 @@ impl Matrix {
         (fixed(1), fixed(-1))
     }
 
-    /// Whether the vectors along and across a reflection's axis span only half of the lattice.
+    /// Tests whether the vectors along and across a reflection's axis span only half of the lattice.
     pub fn axes_are_centred(self) -> bool {
         let ([a, b], [c, d]) = self.axes();
         (a * d - b * c).abs() == 2

@@ -38,7 +38,7 @@ const SWEEP: [usize; 16] = [2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181,
 /// Depths, as a share of the deepest, down to which minima propose lattices.
 const DEPTH_SWEEP: [f64; 6] = [0.95, 0.9, 0.8, 0.65, 0.5, 0.35];
 
-/// Of each of them, this many shortest are paired.
+/// Number of the shortest of each of them that are paired.
 const PAIRED: usize = 7;
 
 /// The nodes outside every coarser lattice must fit at least this well, relative to those on it.
@@ -142,7 +142,7 @@ fn sharpened(even: &Raster, basis: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
     again.unwrap_or(basis)
 }
 
-/// Whether two bases span the same lattice to a tenth of a cell.
+/// Tests whether two bases span one lattice to a tenth of a cell.
 fn near(a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]) -> bool {
     let whole =
         |t: &[f64; 2]| super::lattice::solve(b[0], b[1], *t).iter().all(|c| (c - c.round()).abs() < 0.1);
@@ -164,7 +164,7 @@ struct Candidate {
     score: f64,
     /// Mean depth at the nodes that did not propose the lattice, in standard errors of as many random shifts.
     merit: f64,
-    /// Whether no coarser lattice holds all the good nodes.
+    /// True where no coarser lattice holds all the good nodes.
     even: bool,
 }
 
@@ -258,7 +258,7 @@ fn usable(fit: &Fit, a: [f64; 2], b: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     (!flat && length(short) >= SHORTEST && inside(short) && inside(long)).then_some([short, long])
 }
 
-/// Whether two bases differ by less than half a texel.
+/// Tests whether two bases differ by less than half a texel.
 fn same(a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]) -> bool {
     (0..2).all(|i| (a[i][0] - b[i][0]).abs() < 0.5 && (a[i][1] - b[i][1]).abs() < 0.5)
 }

@@ -45,7 +45,7 @@ const LEAST_REPEATING: f64 = 0.5;
 /// Standard errors at which a lattice is as likely as none. Some thousand lattices are tried: of periodic noise, blobs and rings
 /// of waves none reaches 5.
 const MERIT_LIMIT: f64 = 6.0;
-/// The same without the strongest line of waves.
+/// Spectrum without the strongest line of waves.
 const ACROSS_LIMIT: f64 = 4.0;
 /// Share of the power outside the strongest line below which a map is striped.
 const LEAST_ACROSS: f64 = 0.05;
@@ -118,7 +118,7 @@ impl Torus {
         f64::from(self.a * self.d)
     }
 
-    /// Whether all waves of another lattice are waves of this one.
+    /// Tests whether all waves of another lattice are waves of this one.
     fn spans(&self, other: &Self) -> bool {
         self.holds([other.a, 0]) && self.holds([other.b, other.d])
     }
@@ -169,7 +169,7 @@ impl Waves {
         Self(self.0.iter().filter(|(k, _)| Some(direction(*k)) != along).copied().collect())
     }
 
-    /// Whether waves that a coarser lattice has and a finer one has not are beyond what chance makes of those that neither has: then the
+    /// Tests whether waves that a coarser lattice has and a finer one has not are beyond what chance makes of those that neither has: then the
     /// finer one is a fraction of the pattern's.
     fn shows_between(&self, coarser: &Torus, finer: &Torus) -> bool {
         if coarser.cells() >= finer.cells() || !coarser.spans(finer) {

@@ -23,17 +23,17 @@ use asperity_fft::{FftPlanner, num_complex::Complex};
 /// false one, true ones at least 0.997 (`analysis_table groups`).
 const SYMMETRY_LIMIT: f64 = 0.99;
 
-/// How much less is asked for of a cell that is not perfectly known, per unit of missing reliability.
+/// Discount for a cell that is not perfectly known, per unit of missing reliability.
 const DOUBT: f64 = 2.0;
 
-/// The same for a cell that is known badly: what is asked for falls from here, and slower.
+/// Reliability of a cell that is known badly: what is asked for falls from here, and slower.
 const NOISY_LIMIT: f64 = 0.97;
 const NOISY_DOUBT: f64 = 0.7;
 
 /// Least that is asked for.
 const LEAST_LIMIT: f64 = 0.85;
 
-/// How much a symmetry may change the lattice's lengths and angles, relative: nearly square lattices are tried as square.
+/// Largest change by a symmetry of the lattice's lengths and angles, relative: nearly square lattices are tried as square.
 const METRIC_TOLERANCE: f64 = 0.08;
 
 /// One of the 17 ways in which a pattern can repeat.
@@ -204,7 +204,7 @@ fn name(point_group: &[Fit], basis: [[f64; 2]; 2]) -> WallpaperGroup {
     }
 }
 
-/// Whether a reflection about an axis of a primitive lattice needs no translation along that axis.
+/// Tests whether a reflection about an axis of a primitive lattice needs no translation along that axis.
 fn is_mirror(fit: &Fit) -> bool {
     let axis = fit.matrix.axes().0.map(|a| a as f64);
     let image = fit.matrix.apply(fit.translation);

@@ -19,7 +19,7 @@ pub(super) struct Steepness {
     pub diagonal: (i32, i32),
 }
 
-/// What comes first in a pass.
+/// First step of a pass.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Order {
     /// The lowest row, and the diagonal to the left.
@@ -28,7 +28,7 @@ pub(super) struct Order {
     odd: usize,
 }
 
-/// What a row did.
+/// Result of a row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Moved {
     /// Anything moved.
@@ -81,7 +81,7 @@ fn row(here: &mut Row, below: &mut Row, steepness: &Steepness, order: Order) -> 
     moved
 }
 
-/// What goes from a cell to another.
+/// Sand that goes from a cell to another.
 #[inline(always)]
 fn given(from: i32, to: i32, (limit, steep): (i32, i32)) -> i32 {
     let difference = from.wrapping_sub(to);

@@ -8,7 +8,7 @@ use crate::sand::tool::Press;
 /// Steps of a tool in a frame, at most.
 const STEPS_A_FRAME: usize = 64;
 
-/// Where a tool goes in a frame.
+/// Way of a tool in a frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
     to: Pose,
