@@ -200,8 +200,8 @@ def test_a_missing_file_is_a_file_not_found_error(heights_m, tmp_path):
 def test_refused_events_and_silence_are_warned_of(heights_m):
     surface = asp.Surface(heights_m, 0.14)
     rows = asp.contacts.stroke(duration=0.2, extent=surface.extent)
-    rows["normal_force_n"][3] = -1.0
-    with pytest.warns(asp.TouchWarning, match="1 of 13 events were refused, the first at t = 0.05 s: normal_force_n"):
+    rows["gain"][3] = -1.0
+    with pytest.warns(asp.TouchWarning, match="1 of 13 events were refused, the first at t = 0.05 s: gain"):
         asp.render(surface, rows)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
