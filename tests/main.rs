@@ -16,6 +16,7 @@ mod contradictions;
 #[path = "common/counting.rs"]
 mod counting;
 mod debounce;
+mod direct_current;
 mod documents;
 mod dragged_skin;
 mod feel_of_tools;

@@ -137,6 +137,12 @@ impl State {
         Output { low, band, high: input - SQRT_2 * band - low }
     }
 
+    /// Tests whether nothing is left in it that is larger than `least`, in the input's unit.
+    #[must_use]
+    pub fn is_within(&self, least: f64) -> bool {
+        self.band.abs() < least && self.low.abs() < least
+    }
+
     /// Moves the whole state by `offset`, as when a path wraps round: nothing else changes.
     pub fn shift(&mut self, offset: f64) {
         self.low += offset;

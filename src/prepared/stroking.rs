@@ -14,6 +14,9 @@ use asperity_dsp::micro_contact::Probe;
 const FORCE_HIGH_PASS_SHARE: f64 = 0.5;
 /// Bounds of that cutoff, Hz; the upper one keeps a body of high modes audible when it is scraped slowly.
 const FORCE_HIGH_PASS_HZ: (f64, f64) = (20.0, 500.0);
+/// Cutoff of the high-pass of pulses, Hz. Collisions and grains only ever push, and a push that lasts is no sound: without
+/// it a rough stroke holds a fifth of its energy below 40 Hz. A third octave at 63 Hz loses 0.04 dB.
+const PULSE_HIGH_PASS_HZ: f64 = 20.0;
 
 /// Designed on the game thread whenever a surface or its body is set.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +27,8 @@ pub(crate) struct Stroking {
     pub(crate) ground: Ground,
     /// Keeps the part of the contact force that the body answers.
     pub(crate) force_high_pass: Butterworth,
+    /// Takes the mean push from pulses that follow each other.
+    pub(crate) pulse_high_pass: Butterworth,
 }
 
 impl Stroking {
@@ -41,6 +46,7 @@ impl Stroking {
             hertz: HertzContact::new(&exciter, &body, EXCITER_RADIUS_M, pad_mass_kg)?,
             ground: Ground::of(material),
             force_high_pass: Butterworth::new(cutoff_hz, sample_rate_hz)?,
+            pulse_high_pass: Butterworth::new(PULSE_HIGH_PASS_HZ, sample_rate_hz)?,
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Excitation of the touched body: what a contact sends it, by exciters of which a surface names those that sound (Hasti §III-D).
 //!
 //! ```text
-//! collisions, grains → Hertz pulses → ring ┐
-//! alternating contact force ───────────────┴ × loudness → impulses, N·s, spread for the bank
+//! collisions, grains → Hertz pulses → ring → high-pass ┐
+//! alternating contact force ──────────────────────────┴ × loudness → impulses, N·s, spread for the bank
 //! friction ── speed and force along the motion → the body's own step
 //! ```
 //! Pulses and force meet sample by sample, not in the ring, so that the order of additions depends on no split into blocks.
@@ -12,6 +12,7 @@ mod force;
 mod friction;
 mod grains;
 mod loudness;
+mod pulses;
 
 pub(super) use force::ForceRun;
 pub(super) use loudness::Loudness;
@@ -20,7 +21,6 @@ use super::PadSample;
 use super::PathPoint;
 use super::block::VoiceBlock;
 use crate::model::excitation::Exciter;
-use crate::prepared::impulse_ring::ImpulseRing;
 use crate::prepared::probe::PreparedProbe;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_texture::height_field::Reaction;
@@ -28,6 +28,7 @@ use collisions::Collisions;
 use force::ContactForce;
 use friction::Rubbing;
 use grains::Grains;
+use pulses::Pulses;
 
 /// Longest contact of a micro-collision, s, at every rate: the bead against rubber lasts 2 ms, against jelly 20.
 const LONGEST_COLLISION_S: f64 = 0.04;
@@ -54,7 +55,7 @@ pub(super) struct Exciters {
     force: ContactForce,
     rubbing: Rubbing,
     loudness: Loudness,
-    pulses: ImpulseRing,
+    pulses: Pulses,
 }
 
 impl Exciters {
@@ -66,7 +67,7 @@ impl Exciters {
             force: ContactForce::default(),
             rubbing: Rubbing::default(),
             loudness: Loudness::default(),
-            pulses: ImpulseRing::new(LONGEST_COLLISION_S, sample_rate_hz),
+            pulses: Pulses::new(sample_rate_hz),
         }
     }
 
@@ -77,9 +78,7 @@ impl Exciters {
         self.force = ContactForce::default();
         self.rubbing = Rubbing::default();
         self.loudness = Loudness::of(loudness);
-        if !self.pulses.is_empty(position) {
-            self.pulses.clear();
-        }
+        self.pulses.begin(position);
     }
 
     /// More of it sounds, or less, and it moves elsewhere: called at the steps of the absolute sample grid.
@@ -114,19 +113,14 @@ impl Exciters {
         for (row, sample) in rows.iter().zip(by.position..) {
             if let Some(onset) = row.onset {
                 collisions += 1;
-                shortened += u64::from(self.collisions.strike(by, &onset, sample, &mut self.pulses));
+                shortened += u64::from(self.collisions.strike(by, &onset, sample, &mut self.pulses.ring));
             }
             if grains {
-                self.grains.shift(by, sample, &mut self.pulses);
+                self.grains.shift(by, sample, &mut self.pulses.ring);
             }
         }
         let impulse_n_s = &mut out.impulse_n_s[..rows.len()];
-        // The ring is empty beyond its last pulse.
-        let beats = !self.pulses.is_empty(by.position);
-        if beats {
-            let mut next = self.pulses.drain(by.position);
-            impulse_n_s.iter_mut().for_each(|y| *y = next());
-        }
+        let beats = self.pulses.take(&by.slot.stroking.pulse_high_pass, by.position, impulse_n_s);
         self.force.add(force, impulse_n_s, beats);
         self.loudness.weigh(by.position, by.slow_step, impulse_n_s);
         (out.collisions, out.shortened, out.excites) = (collisions, shortened, true);
@@ -134,11 +128,12 @@ impl Exciters {
 
     /// Whether nothing sounds from `end` on, when this was the last impulse.
     pub(super) fn are_still(&self, last_n_s: f64, end: u64) -> bool {
-        last_n_s.abs() < STILL_N_S && self.pulses.is_empty(end)
+        last_n_s.abs() < STILL_N_S && self.pulses.are_still(end)
     }
 
-    /// Forgets the forces of a contact that has come to rest.
+    /// Drops what is left of the forces of a contact that has come to rest.
     pub(super) fn settle(&mut self) {
         self.force = ContactForce::default();
+        self.pulses.settle();
     }
 }
