@@ -9,7 +9,7 @@ use crate::link::stats::Counters;
 use crate::model::config::Config;
 use crate::model::error::ConfigError;
 use crate::model::levels::Levels;
-use crate::prepared::probe::PreparedProbe;
+use crate::prepared::probe::{PreparedProbe, remark};
 use asperity_texture::sand::SandWorker;
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ pub struct Engine {
     pub workers: Vec<SandWorker>,
     /// Levels that were written or resolved, where the engine was built from a file; empty otherwise.
     pub levels: Levels,
-    /// What is doubtful in the files that were read and no error, a line each: a coloured picture taken by its brightness.
+    /// Doubts that are no errors, a line each: a coloured picture taken by its brightness, another integrator than the one asked for.
     pub remarks: Vec<String>,
 }
 
@@ -56,6 +56,7 @@ impl Config {
         let kernel = self.kernel()?;
         let probe =
             PreparedProbe::new(&self.probe, &self.probe, self.integrator, self.inner_rate_hz(), kernel)?;
+        let remarks = remark(probe.micro_contact.choice()).into_iter().collect();
         let counters = Arc::new(Counters::new(self.audio.len()));
         let (to_audio, from_game) = ring::channel(self.queue_capacity);
         // Every resource that can be alive, and as many that are being replaced, and every port.
@@ -69,7 +70,7 @@ impl Config {
             names: Names::default(),
             workers: Vec::new(),
             levels: Levels::default(),
-            remarks: Vec::new(),
+            remarks,
         })
     }
 }

@@ -14,7 +14,8 @@ use crate::model::bus::AudioBus;
 use crate::model::clock_mode::ClockMode;
 use crate::model::config::Config;
 use crate::model::preset::Preset;
-use asperity_dsp::micro_contact::Integrator;
+use crate::prepared::probe::remark;
+use asperity_dsp::micro_contact::{Integrator, MicroContact};
 use asperity_dsp::simd::Isa;
 use asperity_dsp::trajectory::PathMode;
 use asperity_texture::raster::Raster;
@@ -133,7 +134,7 @@ fn build(file: &SceneFile, overrides: &Overrides<'_>) -> Result<Engine, FileErro
     let levels = levels::resolve(file, &calibrated(file, overrides)?, trial)?;
     let mut engine = assemble(file, overrides, maps, &levels, |config| config)?;
     engine.levels = levels;
-    engine.remarks = maps.remarks();
+    engine.remarks.extend(maps.remarks());
     Ok(engine)
 }
 
@@ -169,11 +170,15 @@ fn assemble(
         seed: config.seed,
         workers: overrides.live.then_some(&workers),
     };
-    let Engine { mut scene, renderer, mut names, .. } =
+    let Engine { mut scene, renderer, mut names, mut remarks, .. } =
         config.build().map_err(|error| at(FileError::told(error)))?;
     for (name, probe) in &file.probes {
         let place = |error: FileError| at(error.within(format!("probe \"{name}\"")));
         let id = scene.add_probe(*probe).map_err(|error| place(FileError::told(error)))?;
+        let Config { integrator, .. } = *scene.config();
+        let contact = MicroContact::new(probe, integrator, scene.config().inner_rate_hz());
+        let contact = contact.map_err(|error| place(FileError::told(error)))?;
+        remarks.extend(remark(contact.choice()).map(|remark| format!("probe \"{name}\": {remark}")));
         names.probes.insert(name.clone(), id);
     }
     scene.strike_gain = shared(file, levels);
@@ -192,7 +197,7 @@ fn assemble(
         names.surfaces.insert(entry.name.clone(), id);
     }
     let workers = workers.into_inner();
-    Ok(Engine { scene, renderer, names, workers, levels: Levels::default(), remarks: Vec::new() })
+    Ok(Engine { scene, renderer, names, workers, levels: Levels::default(), remarks })
 }
 
 /// Gain of impacts on a body that is added later: as on those that share what the level policy has found.

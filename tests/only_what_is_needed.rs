@@ -215,39 +215,32 @@ fn a_late_engine_leaves_out_the_least_first_and_takes_everything_back() {
     assert_eq!(late.blocks(200, None), whole.blocks(200, None));
     // The engine's own work is two thirds of its time.
     assert_eq!(late.blocks(31, Some(0.7)), whole.blocks(31, None));
-    let mut shed = 0;
-    let (mut errors, mut louder_db) = (Vec::new(), Vec::new());
-    for level in 1..=8 {
-        // One late block a level, then neither late nor easy: half a second each.
+    // One late block, then neither late nor easy for half a second: modes go that nobody hears, which is not what errs least by waveform
+    // (`cli/tests/perceptual_order.rs` holds what is heard).
+    late.blocks(1, Some(0.9));
+    whole.blocks(1, None);
+    let (found, wanted) = (late.blocks(344, Some(0.7)), whole.blocks(344, None));
+    let louder_db = 20.0 * (common::rms(&found) / common::rms(&wanted)).log10();
+    println!("level 1: error {:.1} dB, {louder_db:+.2} dB louder", error_db(&found, &wanted));
+    assert!(error_db(&found, &wanted) < -35.0 && louder_db.abs() < 0.1);
+    let mut shed = late.scene.stats().shed;
+    assert!(shed > 0 && late.scene.stats().contacts == 10);
+    // Then one finger after the other, and nothing of those that stay.
+    for fewer in 1..=3 {
         late.blocks(1, Some(0.9));
-        let found = late.blocks(344, Some(0.7));
-        whole.blocks(1, None);
-        let wanted = whole.blocks(344, None);
-        let error = error_db(&found, &wanted);
-        let louder = 20.0 * (common::rms(&found) / common::rms(&wanted)).log10();
-        println!("level {level}: error {error:.1} dB, {louder:+.2} dB louder");
-        errors.push(error);
-        louder_db.push(louder);
-        // Without their finest octaves the pads no longer leave the ground, and the micro-collisions fall silent.
-        assert!(louder.abs() < 30.0, "level {level} is {louder} dB louder");
-        assert!(late.scene.stats().shed > shed, "level {level} leaves something out");
+        late.blocks(344, Some(0.7));
+        whole.blocks(345, None);
+        assert_eq!(late.scene.stats().contacts, 10 - fewer);
+        assert!(late.scene.stats().shed > shed, "level {} leaves something out", 1 + fewer);
         shed = late.scene.stats().shed;
-        assert_eq!(late.scene.stats().contacts, 10);
     }
-    // What nobody hears goes first, which is not what errs least by waveform (`cli/tests/perceptual_order.rs` holds what is heard); then the last
-    // but sixteen, and octaves of the relief.
-    assert!(errors[..3].iter().all(|error| *error < -35.0) && errors[3] < -8.0, "{errors:?}");
-    assert!(
-        louder_db[..3].iter().all(|louder| louder.abs() < 0.1) && louder_db[3].abs() < 1.0,
-        "{louder_db:?}"
-    );
     late.blocks(30, Some(2.0));
     whole.blocks(30, None);
     let few = late.scene.stats().contacts;
     assert!((1..=3).contains(&few), "{few} contacts are left");
-    // Easy again: sixteen levels of half a second; then every finger sounds again, and as if nothing had been.
-    late.blocks(6400, Some(0.1));
-    whole.blocks(6400, None);
+    // Easy again: nine levels of half a second; then every finger sounds again, and as if nothing had been.
+    late.blocks(3600, Some(0.1));
+    whole.blocks(3600, None);
     assert_eq!(late.scene.stats().contacts, 10, "the next move revives a contact");
     shed = late.scene.stats().shed;
     let (found, wanted) = (late.blocks(344, Some(0.1)), whole.blocks(344, None));

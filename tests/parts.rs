@@ -4,8 +4,8 @@ use asperity::files::Memory;
 use asperity::files::scene_file::SceneFile;
 use asperity::open::Overrides;
 use asperity::{
-    Actuator, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine, Renderer, Scene, SurfaceId,
-    Touching,
+    Actuator, ClockMode, Config, ContactEvent, ContactId, ContactSample, Engine, Integrator, Probe, Renderer,
+    Scene, SurfaceId, Touching,
 };
 use std::path::Path;
 
@@ -86,4 +86,30 @@ fn sand_of_a_live_scene_brings_its_worker() {
     let overrides = Overrides { live: true, ..Overrides::default() };
     let read = scene.read_surface(table, Path::new(""), None, &names, &overrides).unwrap();
     assert_eq!(read.workers.len(), 1);
+}
+
+#[test]
+fn another_integrator_than_the_one_asked_for_is_told_and_so_are_sub_steps() {
+    let told = |integrator, contact_stiffness_n_m| {
+        let probe = Probe { contact_stiffness_n_m, ..Probe::default() };
+        Config { integrator, probe, ..Config::default() }.build().unwrap().remarks
+    };
+    let [remark] = &told(Integrator::SemiImplicitEuler, 1e6)[..] else { panic!("no remark") };
+    assert!(remark.contains("energy-conserving instead of semi-implicit-euler"), "{remark}");
+    assert!(remark.contains("contact_stiffness_n_m"), "{remark}");
+    let [remark] = &told(Integrator::SemiImplicitEuler, 2e5)[..] else { panic!("no remark") };
+    assert!(remark.contains("2 sub-steps"), "{remark}");
+    assert!(told(Integrator::SemiImplicitEuler, 5e4).is_empty());
+    let [remark] = &told(Integrator::ExactEvent, 1e7)[..] else { panic!("no remark") };
+    assert!(remark.contains("energy-conserving instead of exact-event"), "{remark}");
+    for preset in asperity::Preset::ALL {
+        assert!(Config::default().preset(preset).build().unwrap().remarks.is_empty(), "{preset:?}");
+    }
+    // Of a scene file each probe is told by its name.
+    let mut files = Memory::new();
+    files.add("scene.toml", "[[probe]]\nname = \"steel\"\npreset = \"rigid\"\ncontact_stiffness_n_m = 2e7\n");
+    let scene = SceneFile::load_from(&files, Path::new("scene.toml")).unwrap();
+    let asked = Overrides { files: &files, ..Overrides::default() };
+    let remarks = Engine::from_scene(&scene, &asked).unwrap().remarks;
+    assert!(remarks.len() == 1 && remarks[0].starts_with("probe \"steel\": integrator: "), "{remarks:?}");
 }

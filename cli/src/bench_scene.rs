@@ -52,7 +52,8 @@ pub fn modes(count: usize) -> ModalModel {
     ModalModel { source: "made for measuring".to_owned(), impulse_n_s: 0.01, modes, ..ModalModel::silent() }
 }
 
-fn plate() -> Option<HeightMap> {
+/// Waves on a map, smooth on one half and matte on the other.
+pub fn plate() -> Option<HeightMap> {
     let waves = Raster::from_fn(512, 512, |x, y| {
         let (u, v) = (x as f64 / 512.0, y as f64 / 512.0);
         0.5 + 0.25 * (2.0 * PI * 40.0 * u).sin() + 0.25 * (2.0 * PI * 23.0 * (u + v)).cos()

@@ -4,6 +4,7 @@
 //! every block is timed; the kernels are timed alone in many short repetitions. Every figure is the median of its blocks or
 //! repetitions, with the range of the middle eight tenths beside it.
 
+mod kernels;
 mod paired;
 
 use crate::bench_scene::{Bench, Load, modes};
@@ -17,6 +18,7 @@ use asperity_dsp::modal_bank::{GroupOptions, GroupState, Inputs, ModalBank, desi
 use asperity_dsp::rng::Rng;
 use asperity_dsp::simd::Level;
 use clap::Args;
+use kernels::Kernels;
 use paired::Paired;
 use serde::Serialize;
 
@@ -51,6 +53,7 @@ struct Report {
     modal_bank: Vec<BankRow>,
     contact: Vec<ContactRow>,
     growth: Vec<GrowthRow>,
+    kernels: Kernels,
     paired: Paired,
 }
 
@@ -66,6 +69,7 @@ struct SceneRow {
     block_p50_us: f64,
     block_p99_9_us: f64,
     ns_per_sample: f64,
+    samples_per_s: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -118,7 +122,7 @@ const ESTIMATE: &str =
 /// # Errors
 /// When the engine refuses a scene made for measuring.
 pub fn run(options: &Options) -> Result<(), CliError> {
-    let mut progress = Progress::new("measuring", (SCENES.len() + BANKS.len() + 5) as u64);
+    let mut progress = Progress::new("measuring", (SCENES.len() + BANKS.len() + 6) as u64);
     let mut scenes = Vec::new();
     for (name, load) in SCENES {
         scenes.push(scene(name, load, options.threads)?);
@@ -136,6 +140,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     }
     let growth = growth()?;
     progress.advance(1);
+    let kernels = kernels::measured()?;
+    progress.advance(1);
     let paired = paired::rows()?;
     progress.advance(1);
     drop(progress);
@@ -150,6 +156,7 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         modal_bank,
         contact,
         growth,
+        kernels,
         paired,
     };
     if options.json {
@@ -191,6 +198,7 @@ fn scene(name: &str, load: Load, threads: u8) -> Result<SceneRow, CliError> {
         block_p50_us: block.median * 1e6,
         block_p99_9_us: p99_9_s * 1e6,
         ns_per_sample: block.median * 1e9 / BLOCK_FRAMES as f64,
+        samples_per_s: BLOCK_FRAMES as f64 / block.median.max(1e-12),
     })
 }
 
@@ -298,18 +306,19 @@ fn table(report: &Report) -> String {
     );
     let _ = writeln!(
         text,
-        "{:<28}{:>9}{:>7}{:>12}{:>14}{:>11}{:>12}",
-        "scene", "contacts", "modes", "× real time", "range", "p50 µs", "p99.9 µs"
+        "{:<28}{:>9}{:>7}{:>12}{:>14}{:>12}{:>11}{:>12}",
+        "scene", "contacts", "modes", "× real time", "range", "samples/s", "p50 µs", "p99.9 µs"
     );
     for row in &report.scenes {
         let _ = writeln!(
             text,
-            "{:<28}{:>9}{:>7}{:>12.0}{:>14}{:>11.1}{:>12.1}",
+            "{:<28}{:>9}{:>7}{:>12.0}{:>14}{:>12}{:>11.1}{:>12.1}",
             row.name,
             row.contacts,
             row.modes,
             row.real_time_factor,
             format!("{:.0}–{:.0}", row.real_time_factor_p10, row.real_time_factor_p90),
+            format!("{:.2} M", row.samples_per_s * 1e-6),
             row.block_p50_us,
             row.block_p99_9_us
         );
@@ -337,6 +346,7 @@ fn table(report: &Report) -> String {
             let _ = writeln!(text, "{:<34}{:>22.3}{change:>+12.1} %", row.count, row.ns_per_sample_each);
         }
     }
+    report.kernels.table(&mut text);
     report.paired.table(&mut text);
     text.trim_end().to_owned()
 }

@@ -94,7 +94,9 @@ fn headroom_reports_every_promised_row() {
     let rows = |list: &str| report[list].as_array().unwrap().clone();
     for scene in rows("scenes") {
         assert!(scene["name"].is_string());
-        for field in ["contacts", "modes", "real_time_factor", "block_p50_us", "block_p99_9_us"] {
+        for field in
+            ["contacts", "modes", "real_time_factor", "samples_per_s", "block_p50_us", "block_p99_9_us"]
+        {
             assert!(scene[field].is_number(), "{scene}");
         }
     }
@@ -104,6 +106,12 @@ fn headroom_reports_every_promised_row() {
     let contact = rows("contact");
     let integrators: Vec<&str> = contact.iter().map(|row| row["integrator"].as_str().unwrap()).collect();
     assert_eq!(integrators, ["semi-implicit-euler", "exact-event", "energy-conserving"]);
+    // The whole chain of one contact beside the kernels that it is made of: the rest is glue, and it may not grow.
+    let kernels = &report["kernels"];
+    assert_eq!(kernels["rows"].as_array().unwrap().len(), 6);
+    let times = kernels["chain_over_kernels"].as_f64().unwrap();
+    println!("the chain takes {times:.2} times its kernels: {kernels}");
+    assert!((1.0..3.0).contains(&times), "{kernels}");
     let pairs = report["paired"]["rows"].as_array().unwrap();
     for what in [
         "64 contacts beside 1, each",

@@ -108,7 +108,6 @@ impl Renderer {
             probes: (0..config.max_probes).map(|_| None).collect(),
             row_latency,
             noise: FractalNoise::new(config.seed).on(kernel),
-            noise_octaves_gone: 0,
             fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
         };
         let voices = config.voices();
@@ -210,8 +209,6 @@ impl Renderer {
     pub fn report_load(&mut self, load: f32) {
         self.counters.set_load(load);
         self.governor.hear(load, self.position, self.sounding_count());
-        let octaves_gone = self.governor.octaves_gone();
-        self.change_shared(|shared| shared.noise_octaves_gone = octaves_gone);
         if self.sounding_count() > self.contact_limit() {
             Counters::add(&self.counters.shed, 1);
             self.silence_least();
@@ -318,8 +315,7 @@ impl Renderer {
             !self.bodies[index].is_empty()
         });
         let sounding = self.sounding_count() as u64;
-        let octaves = u64::from(self.governor.octaves_gone()) * self.sounding_count() as u64;
-        Counters::add(&self.counters.shed, self.groups_shed as u64 + octaves);
+        Counters::add(&self.counters.shed, self.groups_shed as u64);
         self.counters.contacts.store(sounding, Relaxed);
     }
 }

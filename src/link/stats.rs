@@ -99,8 +99,7 @@ counters! {
     ahead,
     /// By how much the peak limiters have turned down at most, whole dB.
     limiter_db,
-    /// Pieces of work left out because blocks ran late: a group of modes or an octave of a contact's noise
-    /// for 64 samples, or a contact.
+    /// Pieces of work left out because blocks ran late: a group of modes for 64 samples, or a contact.
     shed,
     /// Contacts sounding now.
     contacts,

@@ -9,7 +9,7 @@
 use crate::prepared::stiffness::Ladder;
 use crate::prepared::stroking::restitution;
 use asperity_dsp::DesignError;
-use asperity_dsp::micro_contact::{Integrator, MicroContact, Probe};
+use asperity_dsp::micro_contact::{Choice, Integrator, MicroContact, Probe};
 use asperity_dsp::mobility::Mobility;
 use asperity_dsp::simd::Level;
 
@@ -49,6 +49,15 @@ pub(crate) fn colliding_kg(probe: &Probe) -> f64 {
 /// By how many samples the rows of every probe lag behind its inputs.
 pub(crate) fn row_latency(integrator: Integrator) -> usize {
     usize::from(integrator == Integrator::ExactEvent)
+}
+
+/// A line where another integrator runs than the one asked for, or in more steps.
+pub(crate) fn remark(choice: Choice) -> Option<String> {
+    (!choice.is_as_asked()).then(|| {
+        format!(
+            "integrator: {choice}; a lower contact_stiffness_n_m or a higher sample rate runs it as asked"
+        )
+    })
 }
 
 impl PreparedProbe {

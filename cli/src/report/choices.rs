@@ -1,4 +1,4 @@
-//! Choices of the whole engine on the named cases: how many inner samples, which preset, what excites the body.
+//! Choices of the whole engine on the named cases: how many inner samples, what excites the body.
 
 use super::cases::{CASES, Case, Chain, SEEDS, Signal, Take, take};
 use super::end_to_end::Reference;
@@ -7,7 +7,6 @@ use super::resampled::after_the_lead_in;
 use super::{CaseError, Row, SAMPLE_RATE_HZ, end_to_end};
 use crate::error::CliError;
 use crate::measure::relative_error;
-use asperity::Preset;
 
 const REFERENCE: &str = "the whole chain at 16 inner samples, the bank in f64, profiles of four seeds a case; the whole renderer, one contact, is timed";
 const EXCITER_REFERENCE: &str = "the same exciter, the whole chain at 16 inner samples; what is felt and how the contact moves do not depend on it. Collisions of a \
@@ -75,16 +74,6 @@ pub fn oversampling_rows() -> Result<Vec<Row>, CliError> {
         row(("oversampling", format!("{inner} inner samples{note}")), &chain, &truths, REFERENCE)
     };
     [1, 2, 4, 8].into_iter().map(choice).collect()
-}
-
-/// Engine presets.
-pub fn preset_rows() -> Result<Vec<Row>, CliError> {
-    let truths = truths(None)?;
-    let choice = |preset: Preset| {
-        let chain = Chain { preset, ..Chain::default() };
-        row(("preset", preset.name().to_owned()), &chain, &truths, REFERENCE)
-    };
-    Preset::ALL.into_iter().map(choice).collect()
 }
 
 /// Part of a contact that excites the body.

@@ -14,7 +14,7 @@ use super::resampled::{after_the_lead_in, between};
 use crate::error::CliError;
 use crate::measure::{Timing, relative_error};
 use asperity::files::contact_log::ContactLog;
-use asperity::{Integrator, Preset as EnginePreset};
+use asperity::{Integrator, ModalModel, Preset as EnginePreset};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -94,7 +94,7 @@ impl Reference {
     ) -> Result<Self, CliError> {
         let chain = Chain { inner_rows: true, excitation, ..with_exact_contact(EnginePreset::Accurate) };
         let take = take(case, seed, &chain, log)?;
-        let (heard, contact) = (rung(&take.impulse_n_s, take.inner_rate_hz), contact_of(&take));
+        let (heard, contact) = (rung(&plate(), &take.impulse_n_s, take.inner_rate_hz), contact_of(&take));
         Ok(Self { felt: take.haptic, heard, contact })
     }
 
@@ -122,8 +122,7 @@ pub fn contact_of(take: &Take) -> [Vec<f64>; 2] {
 ///
 /// An impulse is the force of the step that ends at its sample, spread by a cubic B-spline and its delay; each mode undoes the spline. h₀ is
 /// the mode's continuous integral less the other samples of its response, so that a slow force is answered exactly whatever the phase.
-fn rung(impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
-    let model = plate();
+fn rung(model: &ModalModel, impulse_n_s: &[f64], rate_hz: f64) -> Vec<f64> {
     let mut out = vec![0.0; impulse_n_s.len()];
     for mode in &model.modes {
         let (decay, angle) = (mode.decay_per_s / rate_hz, TAU * mode.frequency_hz / rate_hz);
@@ -263,4 +262,43 @@ fn ns_per_sample() -> Result<Vec<f64>, CliError> {
         }
     }
     Ok(best.into_iter().map(|best| Timing::of(best).median).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use asperity::Mode;
+
+    #[test]
+    fn a_slow_force_rings_a_mode_of_any_phase_as_the_convolution_does() {
+        let (rate_hz, pushed_s) = (SAMPLE_RATE_HZ * INNER as f64, 2e-3);
+        let force_n = |t: f64| if t < pushed_s { 0.5 - 0.5 * (TAU * t / pushed_s).cos() } else { 0.0 };
+        for phase_rad in [0.0, 0.7, -1.3, 3.0] {
+            let mode = Mode { frequency_hz: 900.0, decay_per_s: 60.0, amplitude: 0.3, phase_rad };
+            let model = ModalModel::new(vec![mode], 0.01).unwrap();
+            let count = (4e-3 * rate_hz) as usize;
+            let impulses: Vec<f64> = (0..count).map(|n| force_n(n as f64 / rate_hz) / rate_hz).collect();
+            let found = rung(&model, &impulses, rate_hz);
+            let answer = |t: f64| {
+                mode.amplitude / 0.01
+                    * (-mode.decay_per_s * t).exp()
+                    * (TAU * mode.frequency_hz * t + phase_rad).sin()
+            };
+            let (mut apart, mut all) = (0.0, 0.0);
+            for n in (0..count).step_by(97) {
+                let now_s = n as f64 / rate_hz;
+                // Simpson's rule over what has pushed so far.
+                let steps = 2000;
+                let h = now_s.min(pushed_s) / f64::from(steps);
+                let at = |k: i32| force_n(h * f64::from(k)) * answer(now_s - h * f64::from(k));
+                let weight = |k: i32| if k == 0 || k == steps { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
+                let wanted = h / 3.0 * (0..=steps).map(|k| weight(k) * at(k)).sum::<f64>();
+                apart += (found[n] - wanted).powi(2);
+                all += wanted * wanted;
+            }
+            let error_db = decibels(apart / all);
+            println!("phase {phase_rad}: {error_db:.1} dB");
+            assert!(error_db < -80.0, "phase {phase_rad}: {error_db} dB");
+        }
+    }
 }

@@ -144,9 +144,8 @@ struct Report {
 type Axis = fn() -> Result<Vec<Row>, CliError>;
 
 /// Every axis, in the order of the report.
-const AXES: [Axis; 18] = [
+const AXES: [Axis; 17] = [
     integrator::rows,
-    choices::preset_rows,
     choices::oversampling_rows,
     choices::exciter_rows,
     path::rows,

@@ -24,7 +24,7 @@ const SLEEP_REFERENCE: &str = "256 modes of a body struck once that all ring on 
 const SHEDDING_REFERENCE: &str =
     "all 256 modes of a body under the strokes of the named cases; a masking model orders what is left out";
 const STRUCK_SHEDDING_REFERENCE: &str =
-    "all 256 modes of a body struck once, 0.37 s; levels from 5 on leave no more modes out";
+    "all 256 modes of a body struck once, 0.37 s; levels from 2 on leave no more modes out";
 /// Renders of a struck body that falls asleep.
 const SLEEP_SAMPLES: usize = 6 * 44_100;
 const FORMAT_REFERENCE: &str =
@@ -147,7 +147,7 @@ fn in_order_of_need(modes: &[Mode]) -> (Vec<Mode>, SheddingLevels) {
     (order.iter().map(|ranked| modes[ranked.index]).collect(), levels)
 }
 
-/// A stroked body of which some groups no longer hear the force, as the governor's first levels leave it.
+/// A stroked body of which some groups no longer hear the force, as the governor's first level leaves it.
 pub fn shedding_rows() -> Result<Vec<Row>, CliError> {
     let strokes = Strokes::new()?;
     let (modes, levels) = in_order_of_need(&body());

@@ -16,7 +16,7 @@ const BLOCK: usize = 64;
 const BLOCKS: usize = 689;
 const SKIPPED: usize = 172;
 /// The highest level.
-const HIGHEST: usize = 16;
+const HIGHEST: usize = 9;
 
 /// A level of load.
 #[derive(Debug, Clone, Serialize)]
@@ -40,12 +40,8 @@ pub struct LoadLevel {
 fn leaves_out(level: usize) -> &'static str {
     match level {
         0 => "nothing",
-        1 => "modes that nobody hears, with 6 dB of safety",
-        2 => "modes that nobody hears",
-        3 => "modes heard by up to 6 dB",
-        4 => "modes heard by up to 12 dB",
-        5..=8 => "the finest octave of micro-relief that sounds",
-        _ => "the least important contacts",
+        1 => "modes that nobody hears, two fifths at least",
+        _ => "the least important of ten contacts",
     }
 }
 

@@ -144,11 +144,12 @@ fn difference_db(model: &MicroContact, grounds: &[Vec<f64>; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use asperity_dsp::micro_contact::CONTACT_STIFFNESS_N_M;
 
     #[test]
     fn the_default_contact_is_contractive_and_gains_nothing_and_a_stiff_one_changes_its_scheme() {
         let grounds = [0.0, MOVED_M].map(|moved_m| ground(44_100.0, moved_m));
-        let fingertip = cell(5e4, 44_100.0, Integrator::ExactEvent, &grounds).unwrap();
+        let fingertip = cell(CONTACT_STIFFNESS_N_M, 44_100.0, Integrator::ExactEvent, &grounds).unwrap();
         assert!(fingertip.contractive && fingertip.energy_gain < 1e-6, "{fingertip:?}");
         let stiff = cell(1e9, 44_100.0, Integrator::SemiImplicitEuler, &grounds).unwrap();
         assert_eq!((stiff.used, stiff.substeps), ("energy-conserving", 1));

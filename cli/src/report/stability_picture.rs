@@ -1,8 +1,9 @@
-//! The stability of the contact model as a picture and as a table.
+//! The stability of the contact model as a picture and as a sentence.
 
 use super::stability::{Cell, RATES_HZ, STIFFNESS_N_M};
 use crate::plot::{Svg, TextStyle, quantity};
 use asperity::Integrator;
+use asperity_dsp::micro_contact::CONTACT_STIFFNESS_N_M;
 use std::fmt::Write;
 
 const CELL_PX: [f64; 2] = [62.0, 40.0];
@@ -34,7 +35,11 @@ pub fn svg(cells: &[Cell]) -> String {
 fn heading(svg: &mut Svg) {
     let plain = TextStyle { size: 12.0, ..TextStyle::default() };
     svg.text([20.0, 30.0], TextStyle { size: 18.0, bold: true, ..plain }, "Where the contact model is safe");
-    svg.text([20.0, 50.0], plain, "Upper line: steps a sample. Lower line: energy an undamped bounce gains in a second. The fingertip is 5·10⁴ N/m.");
+    let fingertip = quantity(CONTACT_STIFFNESS_N_M, "N/m");
+    let key = format!(
+        "Upper line: steps a sample. Lower line: energy an undamped bounce gains in a second. The fingertip is {fingertip}."
+    );
+    svg.text([20.0, 50.0], plain, &key);
     svg.text([20.0, 68.0], plain, "A red corner: chaotic, two rough strokes a picometre apart end more than −80 dB apart: compare levels there, not waveforms.");
     svg.text([20.0, 94.0], TextStyle { bold: true, ..plain }, "What runs:");
     let mut x = 96.0;
@@ -57,7 +62,7 @@ fn axes(svg: &mut Svg, [x, y]: [f64; 2], wanted: Integrator) {
     }
     for (row, stiffness_n_m) in STIFFNESS_N_M.into_iter().enumerate() {
         let middle = bottom - CELL_PX[1] * (row as f64 + 0.5) + 4.0;
-        let bold = stiffness_n_m == asperity_dsp::micro_contact::CONTACT_STIFFNESS_N_M;
+        let bold = stiffness_n_m == CONTACT_STIFFNESS_N_M;
         let label = quantity(stiffness_n_m, "N/m");
         svg.text([x - 6.0, middle], TextStyle { anchor: "end", bold, ..style }, &label);
     }
@@ -92,32 +97,23 @@ fn gain(gain: f64) -> String {
     }
 }
 
-/// One table: a row a scheme and stiffness, a column a rate.
+/// The rate of the sentence, Hz.
+const RATE_HZ: f64 = 44_100.0;
+
+/// The fingertip under each scheme in a sentence; the picture has all cells.
 #[must_use]
 pub fn markdown(cells: &[Cell]) -> String {
-    let mut text = "\n## stability of the contact\n\nFor each scheme asked for and contact stiffness: what runs (blank: as asked), \
-         sub-steps, energy an undamped bounce gains in a second, and *chaotic* where two rough strokes a picometre apart end more \
-         than −80 dB apart. The picture is `stability.svg`.\n\n| asked for | N/m |"
-        .to_owned();
-    for rate_hz in RATES_HZ {
-        let _ = write!(text, " {} kHz |", rate_hz / 1e3);
-    }
-    let _ = writeln!(text, "\n|---|--:|{}", "---|".repeat(RATES_HZ.len()));
-    for wanted in Integrator::ALL {
-        for stiffness_n_m in STIFFNESS_N_M {
-            let _ = write!(text, "| {} | {stiffness_n_m:.0e} |", wanted.name());
-            for rate_hz in RATES_HZ {
-                let found = cells.iter().find(|cell| {
-                    cell.wanted == wanted.name()
-                        && cell.contact_stiffness_n_m == stiffness_n_m
-                        && cell.sample_rate_hz == rate_hz
-                });
-                let _ = write!(text, " {} |", found.map_or_else(String::new, entry));
-            }
-            text.push('\n');
-        }
-    }
-    text
+    let here = cells
+        .iter()
+        .filter(|cell| cell.contact_stiffness_n_m == CONTACT_STIFFNESS_N_M && cell.sample_rate_hz == RATE_HZ);
+    let each: Vec<String> = here.map(|cell| format!("`{}`: {}", cell.wanted, entry(cell))).collect();
+    format!(
+        "\n## stability of the contact\n\nThe fingertip ({}) at {} kHz, what runs if it is not what is asked for, sub-steps, and the energy \
+         that an undamped bounce gains in a second: {}. `stability.svg` has all stiffnesses and rates.\n",
+        quantity(CONTACT_STIFFNESS_N_M, "N/m"),
+        RATE_HZ / 1e3,
+        each.join("; ")
+    )
 }
 
 fn entry(cell: &Cell) -> String {

@@ -10,9 +10,6 @@ use std::fmt::Write;
 /// Errors below this are drawn here: a logarithmic axis has no zero.
 const FLOOR: f64 = 1e-8;
 
-/// Choices of an axis whose panel stands beside another.
-const MOST_BESIDE_ANOTHER: usize = 10;
-
 fn axes(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
     let mut axes: Vec<(&'static str, Vec<&Row>)> = Vec::new();
     for row in rows {
@@ -22,55 +19,6 @@ fn axes(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
         }
     }
     axes
-}
-
-fn place(row: &Row) -> [f64; 2] {
-    [row.error.max(FLOOR), row.ns_per_sample * 1e-9]
-}
-
-/// The choices that no other beats in both time and error, from the most accurate on.
-fn front(rows: &[&Row]) -> Vec<[f64; 2]> {
-    let mut points: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let mut best = f64::INFINITY;
-    points.retain(|point| {
-        let better = point[1] < best;
-        best = best.min(point[1]);
-        better
-    });
-    points
-}
-
-fn panel(axis: &str, rows: &[&Row]) -> Panel {
-    let points: Vec<[f64; 2]> = rows.iter().map(|row| place(row)).collect();
-    let front = front(rows);
-    // What is on the front is larger.
-    let radius_px = points.iter().map(|point| if front.contains(point) { 6.0 } else { 3.5 }).collect();
-    let ends = |of: usize| {
-        let values = points.iter().map(|point| point[of]);
-        (values.clone().fold(f64::INFINITY, f64::min), values.fold(0.0, f64::max))
-    };
-    let ((low, high), (fast, slow)) = (ends(0), ends(1));
-    Panel::new(
-        axis,
-        Axis::log("error", "").range(low / 4.0, (high * 30.0).max(low * 100.0)),
-        Axis::log("time a sample", "s").range(fast / 1.6, (slow * 1.6).max(fast * 4.0)),
-    )
-    .with(Layer::Line {
-        label: "nothing is better in both".to_owned(),
-        colour: palette::IMPACT.to_owned(),
-        width_px: 1.2,
-        fill: None,
-        dashed: true,
-        data: Series::Points(front),
-    })
-    .with(Layer::Dots {
-        label: String::new(),
-        colour: palette::PAD.to_owned(),
-        points,
-        radius_px,
-        names: rows.iter().map(|row| row.choice.clone()).collect(),
-    })
 }
 
 /// The engine at a glance: its presets, from reports to what leaves it, over the integrators alone.
@@ -118,28 +66,15 @@ fn overview(rows: &[Row], presets: &[Preset]) -> Panel {
     ))
 }
 
-/// One panel an axis, its Pareto front drawn in.
+/// The front in one plot.
 #[must_use]
 pub fn svg(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
     let mut figure = Figure::new("Speed against error")
         .subtitle(format!(
             "one thread of {cpu}; error = rms of the difference over the reference's alternating rms"
         ))
-        .subtitle("lower left is better; errors of exactly zero are drawn at 10⁻⁸");
-    if !presets.is_empty() {
-        figure.row(420.0, [overview(rows, presets)]);
-    }
-    // Many names need room.
-    let (crowded, mut others): (Vec<_>, Vec<_>) =
-        axes(rows).into_iter().partition(|(_, members)| members.len() > MOST_BESIDE_ANOTHER);
-    while !others.is_empty() {
-        let rest = others.split_off(others.len().min(2));
-        figure.row(230.0, others.iter().map(|(axis, members)| panel(axis, members)).collect::<Vec<_>>());
-        others = rest;
-    }
-    for (axis, members) in &crowded {
-        figure.row(420.0, [panel(axis, members)]);
-    }
+        .subtitle("lower left is better");
+    figure.row(420.0, [overview(rows, presets)]);
     figure.svg()
 }
 
@@ -216,65 +151,43 @@ pub fn load_table(levels: &[LoadLevel]) -> String {
 
 /// An error in dB.
 fn decibels(error: f64) -> String {
-    if error > 0.0 { format!("{:.1}", 20.0 * error.log10()) } else { "exact".to_owned() }
+    if error > 0.0 { format!("{:.1} dB", 20.0 * error.log10()) } else { "exact".to_owned() }
 }
 
-/// The choices of an axis; where they have them, how late they are, what the ear misses, and the worst of each named case, dB.
-fn axis_table(members: &[&Row]) -> String {
-    let late = members.iter().any(|row| row.latency_ms.is_some());
-    let heard = members.iter().any(|row| row.excitation_db.is_some());
-    let names = || members.iter().flat_map(|row| &row.cases).map(|case| case.name);
-    let mut cases: Vec<&str> = Vec::new();
-    names().for_each(|name| {
-        if !cases.contains(&name) {
-            cases.push(name);
-        }
-    });
-    let mut text = "| choice | ns a sample | error | dB |".to_owned();
-    text += if late { " late, ms |" } else { "" };
-    text += if heard { " 99 % of ERB × 20 ms cells within |" } else { "" };
-    cases.iter().for_each(|case| {
-        let _ = write!(text, " {case} |");
-    });
-    text += &format!("\n|---|{}\n", "--:|".repeat(3 + usize::from(late) + usize::from(heard) + cases.len()));
-    for row in members {
-        let (choice, ns, error) = (&row.choice, row.ns_per_sample, row.error);
-        let _ = write!(text, "| {choice}{} | {ns:.2} | {error:.2e} | {} |", note(row), decibels(error));
-        if late {
-            let _ = write!(text, " {} |", row.latency_ms.map_or_else(String::new, |ms| format!("{ms:.1}")));
-        }
-        if heard {
-            let _ =
-                write!(text, " {} |", row.excitation_db.map_or_else(String::new, |db| format!("{db:.1} dB")));
-        }
-        for name in &cases {
-            let of = row.cases.iter().find(|case| case.name == *name);
-            let worst = of.map(|case| {
-                [case.displacement, case.contact_force, Some(case.output)]
-                    .into_iter()
-                    .flatten()
-                    .fold(0.0, f64::max)
-            });
-            let _ = write!(text, " {} |", worst.map_or_else(String::new, decibels));
-        }
-        text.push('\n');
+/// Axes that stand on the page; all others are in the JSON file.
+const ON_THE_PAGE: [&str; 6] =
+    ["integrator", "path", "map filter", "noise octaves", "mode culling", "number format"];
+
+/// What the engine offers, a line a choice, and what each axis is compared with.
+fn choices_table(rows: &[Row]) -> String {
+    let mut text = "\n## choices\n\n| of | choice | ns a sample | error |\n|---|---|--:|--:|\n".to_owned();
+    let axes = axes(rows);
+    let (shown, others): (Vec<_>, Vec<_>) =
+        axes.into_iter().partition(|(axis, _)| ON_THE_PAGE.contains(axis));
+    for row in shown.iter().flat_map(|(_, members)| members) {
+        let Row { axis, choice, ns_per_sample, error, .. } = row;
+        let (note, error_db) = (note(row), decibels(*error));
+        let _ = writeln!(text, "| {axis} | {choice}{note} | {ns_per_sample:.2} | {error_db} |");
     }
-    text
+    text += "\nErrors are those of the worst case, against: ";
+    let references = shown.iter().filter_map(|(axis, members)| Some((axis, members.first()?.reference)));
+    let references: Vec<String> =
+        references.map(|(axis, reference)| format!("*{axis}*: {reference}")).collect();
+    text += &references.join(". ");
+    if !others.is_empty() {
+        let names: Vec<&str> = others.iter().map(|(axis, _)| *axis).collect();
+        let _ = write!(text, ".\n\nIn `speed_vs_error.json`, with every case: {}", names.join("; "));
+    }
+    text + ".\n"
 }
 
-/// One table an axis.
+/// What is printed, without strokes, levels of load and stability.
 #[must_use]
 pub fn markdown(cpu: &str, rows: &[Row], presets: &[Preset]) -> String {
-    let mut text = format!(
+    let text = format!(
         "# Speed against error\n\nOne thread of {cpu}. Error: rms of the difference over the alternating rms of the reference.\n"
     );
-    text += &presets_table(presets);
-    for (axis, members) in axes(rows) {
-        let reference = members.first().map_or("", |row| row.reference);
-        let _ = write!(text, "\n## {axis}\n\nReference: {reference}.\n\n");
-        text += &axis_table(&members);
-    }
-    text
+    text + &presets_table(presets) + &choices_table(rows)
 }
 
 #[cfg(test)]
@@ -286,20 +199,13 @@ mod tests {
     }
 
     #[test]
-    fn the_front_holds_only_what_nothing_beats() {
-        let rows = [row("a", 10.0, 1e-5), row("b", 5.0, 1e-3), row("c", 7.0, 1e-2), row("d", 1.0, 1e-1)];
-        let members: Vec<&Row> = rows.iter().collect();
-        let front = front(&members);
-        assert_eq!(front.iter().map(|point| point[0]).collect::<Vec<_>>(), [1e-5, 1e-3, 1e-1]);
-    }
-
-    #[test]
-    fn the_table_has_a_row_for_every_choice() {
-        let text = markdown("cpu", &[row("a", 10.0, 0.0), row("b", 5.0, 1e-3)], &[]);
-        assert!(
-            text.contains("| a | 10.00 | 0.00e0 | exact |")
-                && text.contains("| b | 5.00 | 1.00e-3 | -60.0 |")
-        );
-        assert!(svg("cpu", &[row("a", 10.0, 0.0)], &[]).contains("test"));
+    fn the_page_has_a_line_for_every_choice_that_is_offered_and_names_what_else_was_measured() {
+        let rows = [row("a", 10.0, 0.0), row("b", 5.0, 1e-3)].map(|row| Row { axis: "path", ..row });
+        let other = Row { axis: "block size", ..row("c", 1.0, 1.0) };
+        let text = markdown("cpu", &[rows[0].clone(), rows[1].clone(), other], &[]);
+        assert!(text.contains("| path | a | 10.00 | exact |"), "{text}");
+        assert!(text.contains("| path | b | 5.00 | -60.0 dB |"), "{text}");
+        assert!(text.contains("*path*: truth") && text.contains("with every case: block size"), "{text}");
+        assert!(!text.contains("| c |"), "{text}");
     }
 }

@@ -202,7 +202,7 @@ fn quarters_of<S: Set>(
     n: usize,
 ) -> [[f64x4<S>; 4]; 2] {
     let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };
-    let (half, two, three_halves, sixth) = (splat(0.5), splat(2.0), splat(1.5), splat(1.0 / 6.0));
+    let (half, three_halves) = (splat(0.5), splat(1.5));
     let (h0, h1, h2, h3) = (at.at(s, n), at.at(s, n + 1), at.at(s, n + 2), at.at(s, n + 3));
     let (m0, m1, m2) = (mid.at(s, n), mid.at(s, n + 1), mid.at(s, n + 2));
     let (a1, a2) = (first.at(s, n), first.at(s, n + 1));
@@ -212,20 +212,33 @@ fn quarters_of<S: Set>(
     let k2 = (three_halves * inside - before) - half * after;
     let k3 = half * (before + after) - inside;
     // Slopes a half sample, where it begins, midway and where it ends.
-    let slope = |low, high, before, after| (splat(8.0) * (high - low) - (after - before)) * sixth;
-    let (s0, s1, s2) = (slope(b0, a1, m0, m1), slope(a1, b1, h1, h2), slope(b1, a2, m1, m2));
-    // The quartic of a half, in coefficients a whole sample.
-    let quartic = |rise: f64x4<S>, begin: f64x4<S>, end: f64x4<S>, middle: f64x4<S>| {
-        let bump = splat(16.0) * ((middle - half * rise) - splat(0.125) * (begin - end));
-        let square = (splat(3.0) * rise - (two * begin + end)) + bump;
-        let cube = (begin + end) - two * (rise + bump);
-        [two * begin, splat(4.0) * square, splat(8.0) * cube, splat(16.0) * bump]
-    };
-    let [c1, c2, c3, c4] = quartic(m1 - h1, s0, s1, a1 - h1);
-    let [d1, d2, d3, d4] = quartic(h2 - m1, s1, s2, b1 - m1);
+    let s0 = slope(s, [b0, a1], m1 - m0);
+    let s1 = slope(s, [a1, b1], inside);
+    let s2 = slope(s, [b1, a2], m2 - m1);
+    let [c1, c2, c3, c4] = quartic(s, m1 - h1, [s0, s1], a1 - h1);
+    let [d1, d2, d3, d4] = quartic(s, h2 - m1, [s1, s2], b1 - m1);
     // The cubic, seen from midway.
     let (slope, curve) = (k1 + (k2 + splat(0.75) * k3), k2 + three_halves * k3);
     [[c1 - k1, c2 - k2, c3 - k3, c4], [d1 - slope, d2 - curve, d3 - k3, d4]]
+}
+
+// Not closures: those take no instructions of their set, and each product would be a call.
+
+/// The slope a half sample, from the heights a quarter before and after and the rise from a half before to a half after.
+#[inline(always)]
+fn slope<S: Set>(s: S, [low, high]: [f64x4<S>; 2], rise: f64x4<S>) -> f64x4<S> {
+    (f64x4::splat(s, 8.0) * (high - low) - rise) * f64x4::splat(s, 1.0 / 6.0)
+}
+
+/// The quartic of a half sample, in coefficients a whole sample, from its rise, the slopes at its ends and its height midway.
+#[inline(always)]
+fn quartic<S: Set>(s: S, rise: f64x4<S>, [begin, end]: [f64x4<S>; 2], middle: f64x4<S>) -> [f64x4<S>; 4] {
+    let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };
+    let two = splat(2.0);
+    let bump = splat(16.0) * ((middle - splat(0.5) * rise) - splat(0.125) * (begin - end));
+    let square = (splat(3.0) * rise - (two * begin + end)) + bump;
+    let cube = (begin + end) - two * (rise + bump);
+    [two * begin, splat(4.0) * square, splat(8.0) * cube, splat(16.0) * bump]
 }
 
 #[cfg(test)]

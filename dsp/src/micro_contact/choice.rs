@@ -80,6 +80,12 @@ pub struct Choice {
 }
 
 impl Choice {
+    /// The wanted integrator runs, in one step a sample.
+    #[must_use]
+    pub fn is_as_asked(&self) -> bool {
+        self.used == self.wanted && self.substeps == 1
+    }
+
     pub(super) fn new(probe: &Probe, wanted: Integrator, step_s: f64) -> Self {
         let phase = probe.contact_rate_per_s() * step_s;
         let stiffness = probe.contact_stiffness_n_m;

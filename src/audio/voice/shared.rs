@@ -28,8 +28,6 @@ pub(crate) struct Shared {
     /// By how many samples the rows of every probe lag behind its inputs.
     pub(crate) row_latency: usize,
     pub(crate) noise: FractalNoise,
-    /// Octaves of noise left out because blocks run late.
-    pub(crate) noise_octaves_gone: u32,
     /// The rise of a fade, 0 to 1.
     pub(crate) fade: Box<[f64]>,
 }
@@ -41,10 +39,9 @@ impl Shared {
         added.unwrap_or(&self.own_probe)
     }
 
-    /// How many times as wide as a sample's way the micro-relief takes it to be, so that it is the same relief at every rate; a footprint
-    /// twice as wide hides the finest octave that is left.
+    /// How many times as wide as a sample's way the micro-relief takes it to be, so that it is the same relief at every rate.
     pub(super) fn noise_footprints(&self) -> f64 {
-        (self.sample_rate_hz / OVERLAY_RATE_HZ).max(1.0) * f64::from(1u32 << self.noise_octaves_gone)
+        (self.sample_rate_hz / OVERLAY_RATE_HZ).max(1.0)
     }
 
     /// How long a contact takes to fade.
