@@ -79,6 +79,30 @@ fn a_blank_reference_and_a_blank_normal_map_are_told_to_be_flat() {
     }
 }
 
+/// A map whose x lies in alpha was called a photograph, or lacked the word where its ribs lie along u.
+#[test]
+fn a_normal_map_with_x_in_alpha_is_told_from_a_photograph() {
+    let scene = with_maps(&[]);
+    let level = |place: u32| (127.5 + 40.0 * (f64::from(place) * 0.4).sin()).round() as u8;
+    let grey = |x: u32, y: u32| image::Rgba([level(y), level(y), level(y), level(x)]);
+    let white = |x: u32, y: u32| image::Rgba([255, level(y), level(y), level(x)]);
+    let ribs = |x: u32, _: u32| image::Rgba([0, 128, 0, level(x)]);
+    image::RgbaImage::from_fn(64, 64, grey).save(scene.path("grey.png")).unwrap();
+    image::RgbaImage::from_fn(64, 64, white).save(scene.path("white.png")).unwrap();
+    image::RgbaImage::from_fn(64, 64, ribs).save(scene.path("ribs.png")).unwrap();
+    let run = |name, more: &[&str]| {
+        let all = [&["texture", "from-normals", name, "-o", "out.png"], more].concat();
+        told(&asperity(scene.folder.path(), &all))
+    };
+    for name in ["grey.png", "white.png", "ribs.png"] {
+        let (status, said, err) = run(name, &[]);
+        assert_eq!(status == 0, name == "ribs.png", "{name}: {said}{err}");
+        assert!(format!("{said}{err}").contains("write --x-in-alpha"), "{name}: {said}{err}");
+        let (status, said, err) = run(name, &["--x-in-alpha"]);
+        assert!(status == 0 && !said.contains("warning"), "{name}: {said}{err}");
+    }
+}
+
 #[test]
 fn options_that_make_no_sense_are_refused() {
     let scene = with_maps(&[("a.png", ground(64))]);

@@ -2,7 +2,7 @@
 //!
 //! | in a clip | in the file |
 //! |---|---|
-//! | amplitude a | `HapticIntensityControl` √a, because an intensity is felt as its square |
+//! | amplitude a | `HapticIntensityControl` √a, because an intensity is felt as its square; a ramp bends and is cut as on reading |
 //! | frequency f | `HapticSharpnessControl` f |
 //! | duration | `HapticContinuous` events of intensity 1 and sharpness 0, at most 30 s each |
 //! | a stroke | `HapticTransient` of intensity √a and sharpness f |
@@ -11,7 +11,7 @@
 //! own `Time`, its points count from there. Curves scale *every* event of their pattern, so strokes that stand beside curves go into a
 //! second file. `AudioCustom` plays a sound file in step.
 
-use crate::ahap_reader::Pieces;
+use crate::ahap_reader::{Pieces, parts};
 use crate::clip::{Clip, Read};
 use crate::error::PortError;
 use serde::Serialize;
@@ -107,6 +107,26 @@ fn text(pattern: Vec<Item>) -> Result<String, PortError> {
         .map_err(|error| PortError::new("ahap", error, "please report it"))
 }
 
+/// Intensities that are straight in between where the clip's amplitudes are.
+fn intensities(clip: &Clip) -> Vec<(f64, f64)> {
+    let mut points: Vec<_> = clip.amplitude.iter().take(1).map(|p| (p.time_s, p.amplitude.sqrt())).collect();
+    for pair in clip.amplitude.windows(2) {
+        let [from, to] = [&pair[0], &pair[1]];
+        let (a, b) = (from.amplitude.sqrt(), to.amplitude.sqrt());
+        let lasts_s = to.time_s - from.time_s;
+        if lasts_s > 0.0 {
+            let between = parts(&[a], &[b]).into_iter().filter(|part| *part > 0.0 && *part < 1.0);
+            points.extend(between.map(|part| {
+                let intensity = a + part * (b - a);
+                let share = (intensity * intensity - from.amplitude) / (to.amplitude - from.amplitude);
+                (from.time_s + share.clamp(0.0, 1.0) * lasts_s, intensity)
+            }));
+        }
+        points.push((to.time_s, b));
+    }
+    points
+}
+
 /// Writes a clip; with the path of a sound that plays in step, if any.
 ///
 /// # Errors
@@ -148,7 +168,7 @@ pub fn write(clip: &Clip, sound: Option<&str>) -> Result<Files, PortError> {
         pattern.push(Item::Event(event));
         time += LONGEST_EVENT_S;
     }
-    let intensity: Vec<_> = clip.amplitude.iter().map(|p| (p.time_s, p.amplitude.sqrt())).collect();
+    let intensity = intensities(&clip);
     let sharpness: Vec<_> = match clip.frequency.as_slice() {
         [] => vec![(begins_s, 0.5), (ends_s, 0.5)],
         points => points.iter().map(|p| (p.time_s, p.frequency)).collect(),

@@ -318,12 +318,13 @@ impl Pieces {
 }
 
 /// Where ramps of intensities are cut, as parts of their length: their squares are straight enough in between.
-fn parts(from: &[f64], to: &[f64]) -> Vec<f64> {
+pub(crate) fn parts(from: &[f64], to: &[f64]) -> Vec<f64> {
     let mut parts = vec![0.0, 1.0];
     for (&a, &b) in from.iter().zip(to) {
         let (low, high) = (a.min(b).max(FAINT), a.max(b));
         let levels = std::iter::successors(Some(high / GROWN), |x| Some(x / GROWN));
-        let levels = levels.take_while(|x| *x > low).chain((a.min(b) < low).then_some(low));
+        // What was cut so before is not cut again beside its ends.
+        let levels = levels.take_while(|x| *x > low * (1.0 + 1e-6)).chain((a.min(b) < low).then_some(low));
         parts.extend(levels.map(|x| (x - a) / (b - a)).filter(|part| *part > 0.0 && *part < 1.0));
     }
     parts.sort_by(f64::total_cmp);

@@ -202,6 +202,45 @@ fn each_rule_of_a_clip_is_refused_by_its_point() {
     assert!(late.told[0].contains("1 frequency points") && late.clip.frequency.is_empty());
 }
 
+/// What a phone plays: the square of the intensities that its curve joins by straight lines.
+fn played(file: &str, time_s: f64) -> f64 {
+    let file: serde_json::Value = serde_json::from_str(file).unwrap();
+    let curves = file["Pattern"].as_array().unwrap().iter().map(|item| &item["ParameterCurve"]);
+    let curves = curves.filter(|curve| curve["ParameterID"] == "HapticIntensityControl");
+    let points = curves.flat_map(|curve| {
+        let begins_s = curve["Time"].as_f64().unwrap();
+        let points = curve["ParameterCurveControlPoints"].as_array().unwrap().iter();
+        points.map(move |p| (begins_s + p["Time"].as_f64().unwrap(), p["ParameterValue"].as_f64().unwrap()))
+    });
+    let points: Vec<(f64, f64)> = points.collect();
+    let after = points.partition_point(|p| p.0 <= time_s).clamp(1, points.len() - 1);
+    let ((from_s, a), (to_s, b)) = (points[after - 1], points[after]);
+    let part = if to_s > from_s { (time_s - from_s) / (to_s - from_s) } else { 1.0 };
+    (a + part * (b - a)).powi(2)
+}
+
+#[test]
+fn a_slow_fade_is_as_strong_in_an_ahap_halfway_as_in_the_clip() {
+    for (a, b) in [(0.0, 1.0), (1.0, 0.0), (0.02, 0.7), (0.9, 0.3), (0.5, 0.5), (0.0, 0.0004)] {
+        let point = |time_s, amplitude| AmplitudePoint { time_s, amplitude, emphasis: None };
+        let clip = Clip { amplitude: vec![point(0.0, a), point(1.0, b), point(3.0, b)], ..Clip::default() };
+        let file = ahap::write(&clip, None).unwrap().main;
+        let mut back = ahap::parse(&file).unwrap().clip;
+        for time_s in (1..100).map(|i| f64::from(i) / 100.0) {
+            let (told, is) = (a + time_s * (b - a), played(&file, time_s));
+            let off_db = 20.0 * (is / told).log10();
+            assert!(is == told || off_db.abs() < 0.3 || (is - told).abs() < 0.001, "{a} {b} {time_s}: {is}");
+        }
+        // What is read and written again grows by nothing.
+        let points = back.amplitude.len();
+        assert!(points < 20, "{points}");
+        for _ in 0..3 {
+            back = ahap::parse(&ahap::write(&back, None).unwrap().main).unwrap().clip;
+        }
+        assert_eq!(back.amplitude.len(), points, "{a} {b}");
+    }
+}
+
 #[test]
 fn sounds_and_strokes_of_an_ahap_are_where_they_belong() {
     let stroke = Some(Emphasis { amplitude: 0.64, frequency: 0.3 });

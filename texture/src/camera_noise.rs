@@ -2,14 +2,14 @@
 //!
 //! ```text
 //! X'(k) = X(k) √max(0, 1 − N/P(r) · (1 + 3/√n))       r = |k|
-//! N = min(N_most, max(N_step, N_corner, N_plateau, N_level, N_jpeg))
+//! N = max(N_step, N_level, min(N_most, max(N_corner, N_plateau, N_jpeg)))
 //! ```
 //! | symbol | here |
 //! |---|---|
 //! | P, n | mean power of a ring of waves of one length, and how many they are: what a ring has beyond three standard errors of noise is kept |
 //! | N_corner | mean power where both frequencies are above `CORNER`: a lens leaves nothing there, white noise is as strong as elsewhere |
 //! | N_plateau | power of 4–8 texels where 8–16 texels have no more: JPEG takes noise out of the corner, not out of the middle |
-//! | N_level | power of three octaves that are level, of 8–64 or of 16–128 texels: a sensor's mosaic and its sharpening colour noise below 8 texels and leave longer waves white; a surface's rise or have a hump there |
+//! | N_level | power of three octaves that are level, of 8–64 or of 16–128 texels: a sensor's mosaic and its sharpening colour noise below 8 texels and leave longer waves white; a surface's rise or have a hump there. Such octaves may be as strong as [`MOST_LEVEL`] |
 //! | N_jpeg | the most of the octaves of 8–64 texels (of 64–128 too, where they are as weak) where none has more than what JPEG hides: noise below its divisors, and the steps between its blocks. A surface that has nothing there has nothing in shorter waves |
 //! | N_step | an eighth bit's rounding |
 //! | N_most | [`MOST_NOISE`]: what is stronger is not a camera's, but a rough surface under a low light, which is white as well |
@@ -45,6 +45,9 @@ const LEVEL: f64 = 1.45;
 const NOT_LEVEL: f64 = 1.7;
 /// Factor over the mean of level octaves that is taken off: a mosaic and JPEG leave them uneven by a fifth.
 const MARGIN: f64 = 1.3;
+/// Rms of the strongest octaves that are taken for noise because they are level, of white: eight levels of 255. Source: ours; a wall under six
+/// levels of noise before its mosaic has 7.4.
+pub const MOST_LEVEL: f64 = 8.0 / 255.0;
 /// Rms of the white noise that a JPEG of divisor 1 hides, levels of 255: quantisation takes what is below half a divisor, and steps of its
 /// block means are white noise of 1/√12 of it. Source: ours, above what walls of quality 76–92 keep (0.35–0.7).
 const HIDDEN: f64 = 0.8;
@@ -89,8 +92,6 @@ pub fn without_noise_and_steps(picture: &Raster, jpeg_divisor: f64) -> Quiet {
     let texels = picture.values.len() as f64;
     let hidden = HIDDEN * jpeg_divisor / 255.0;
     let Floor { noise, taken, is_faint } = floor(&waves, texels, hidden * hidden);
-    let [noise, taken] =
-        [noise, taken].map(|power| power.clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE));
     let gains: Vec<f64> = rings
         .power
         .iter()
@@ -173,10 +174,16 @@ fn floor(waves: &Waves, texels: f64, hidden: f64) -> Floor {
         }
     });
     let level = octaves[1..].windows(3).map(of_level_octaves).fold(0.0, f64::max);
-    let level = level.max(of_hidden_octaves(&octaves[1..], hidden));
+    let hidden = of_hidden_octaves(&octaves[1..], hidden);
     let noise = corner.get().max(plateau(&octaves));
+    let noise = noise.clamp(LEAST_NOISE * LEAST_NOISE, MOST_NOISE * MOST_NOISE);
     let is_faint = are_faint(&octaves[1..], texels);
-    Floor { noise: noise.max(level), taken: noise.max(MARGIN * level), is_faint }
+    let most = MOST_NOISE * MOST_NOISE;
+    Floor {
+        noise: noise.max(level).max(hidden.min(most)),
+        taken: noise.max(MARGIN * level).max((MARGIN * hidden).min(most)),
+        is_faint,
+    }
 }
 
 /// Tests whether three octaves or more are seen, and none rises above [`FAINT`] or is more uneven than noise.
@@ -208,7 +215,7 @@ fn of_level_octaves(octaves: &[Mean]) -> f64 {
     let powers = || octaves.iter().map(Mean::of_noise);
     let (least, most) = (powers().fold(f64::INFINITY, f64::min), powers().fold(0.0, f64::max));
     // What is stronger than a camera's is a surface.
-    if most > MOST_NOISE * MOST_NOISE || octaves.iter().any(|octave| octave.count < FEWEST_WAVES) {
+    if most > MOST_LEVEL * MOST_LEVEL || octaves.iter().any(|octave| octave.count < FEWEST_WAVES) {
         return 0.0;
     }
     let doubt = (most / least - LEVEL) / (NOT_LEVEL - LEVEL);
@@ -286,6 +293,22 @@ mod tests {
         };
         let kept = rms(&without_camera_noise(&rising(1.0)).picture) / rms(&rising(1.0));
         assert!(kept > 0.6, "{kept}");
+    }
+
+    /// What was open: a wall taken at night, blurred or as JPEG, was felt with 4 to 6 µm.
+    #[test]
+    fn a_wall_loses_the_strong_noise_of_a_dark_room() {
+        for (seed, levels) in [(21, 5.0), (22, 6.0), (23, 7.0)] {
+            let mut rng = Rng::new(seed);
+            let white = Raster::from_fn(403, 303, |_, _| rng.normal());
+            // The mean of 3 × 3 leaves long waves as strong as they were.
+            let blurred = Raster::from_fn(400, 300, |x, y| {
+                let sum: f64 = (0..9).map(|i| white.at(x + i % 3, y + i / 3)).sum();
+                0.7 + levels / 255.0 * sum / 9.0
+            });
+            let left = rms(&without_camera_noise(&blurred).picture) / rms(&blurred);
+            assert!(left < 0.1, "{levels}: {left}");
+        }
     }
 
     #[test]

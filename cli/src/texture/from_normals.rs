@@ -157,8 +157,12 @@ pub fn run(options: &Options) -> Result<(), CliError> {
         keep_tilt: options.keep_tilt,
         ..NormalMapOptions::default()
     };
-    let found = heights_from_normals(&red, &green, &blue, &settings)
-        .map_err(|error| refused(&options.normals, &error))?;
+    let x_may_be_in_alpha = !options.x_in_alpha && may_be_in_alpha(options, [&red, &green]);
+    let found = heights_from_normals(&red, &green, &blue, &settings).map_err(|error| {
+        let in_alpha = || CliError::file(&options.normals, "holds no normals in red, green and blue", IN_ALPHA);
+        let is_none = error.field == "normal map";
+        if is_none && x_may_be_in_alpha { in_alpha() } else { refused(&options.normals, &error) }
+    })?;
     let (low, high) = found.height_px.range();
     let relief_per_px = high - low;
     let scaled = found.height_px.map(|z| if relief_per_px > 0.0 { (z - low) / relief_per_px } else { 0.5 });
@@ -171,7 +175,8 @@ pub fn run(options: &Options) -> Result<(), CliError> {
     options.object.write(&mut outputs, &heights_m, texel_m.unwrap_or(TEXEL_M))?;
     let size = texel_m.map(|texel_m| SizeMm::of(&heights_m, texel_m));
     let mut warnings = warnings(options, relief_per_px, size);
-    warnings.extend(doubtful_normals(options, [&red, &green], found.tileable));
+    warnings.extend(x_may_be_in_alpha.then(|| IN_ALPHA.to_owned()));
+    warnings.extend(doubtful_normals([&red, &green], found.tileable).filter(|_| !x_may_be_in_alpha));
     let report = Report {
         width: scaled.width,
         height: scaled.height,
@@ -223,17 +228,19 @@ fn warnings(options: &Options, relief_per_px: f64, size: Option<SizeMm>) -> Vec<
 /// Mean of x or y from which a map that tiles was not stored as normals are.
 const LEANS: f64 = 0.1;
 
-/// Fault in the way normals are stored: x in alpha, or a gamma.
-fn doubtful_normals(options: &Options, [red, green]: [&Raster; 2], tileable: bool) -> Option<String> {
+/// Way out where x is not in red.
+const IN_ALPHA: &str = "red is blank or a copy of green, and alpha varies: if x lies there (DXT5nm), write --x-in-alpha";
+
+/// Tests whether red holds nothing of its own while alpha varies.
+fn may_be_in_alpha(options: &Options, [red, green]: [&Raster; 2]) -> bool {
     let varies = |raster: &Raster| raster.range().1 - raster.range().0 > LEANS;
     let (low, high) = red.range();
-    if low == high && varies(green) {
-        let alpha = channel(&options.normals, Channel::A).is_ok_and(|alpha| varies(&alpha));
-        return alpha.then(|| {
-            "red is the same everywhere and alpha varies: if x lies there (DXT5nm), write --x-in-alpha"
-                .to_owned()
-        });
-    }
+    (low == high || (red == green && varies(green)))
+        && channel(&options.normals, Channel::A).is_ok_and(|alpha| varies(&alpha))
+}
+
+/// Tells of a gamma that normals were stored through.
+fn doubtful_normals([red, green]: [&Raster; 2], tileable: bool) -> Option<String> {
     let neutral = [red, green].map(Raster::mean);
     let [x, y] = neutral.map(|mean| 2.0 * mean - 1.0);
     let leans = x.abs().max(y.abs()) > LEANS;
