@@ -11,6 +11,8 @@
 //!    or as fast as any may be ([`disguised`]).
 //! 2. From some proposed end of it on ([`crate::ways::contact`]) modes leave no more than noise.
 //! 3. They are fewer, by more than those that such a late beginning cannot see ([`saves`]).
+//! 4. A fit from the onset on leaves more of the sound, or 20 dB more of what follows the push: two stones of four were
+//!    fitted from 4.99 ms on, 9.8 and 9.2 dB from the onset, and 20.7 and 18.0 from it.
 //!
 //! Then the end is where those modes, continued backwards, first leave more than noise ([`release_samples`]).
 
@@ -28,6 +30,7 @@ use crate::options::FitOptions;
 use crate::recording::{FEWEST_SAMPLES, Recording};
 use crate::search::limits::Limits;
 use crate::search::sum_of_modes::may_be_sum_of_modes;
+use crate::sinusoid::partial::Partial;
 use crate::sinusoid::refinement::refine;
 use crate::ways::analysis::{Analysis, analyse, settle, subtract};
 use crate::ways::contact::{LONGEST_S, contact_samples, release_samples};
@@ -56,6 +59,8 @@ const MODES_OF_A_PUSH: usize = 80;
 /// than that and fewer giants, it is a recording of many modes, and another fit would take as long.
 const GIANT: f64 = 0.2;
 const GIANTS: usize = 5;
+/// Modes that leave so many times as much of what follows a push do not know the body: 20 dB.
+const BY_FAR: f64 = 100.0;
 /// Modes of a sum are nearer than those of the tail even if they leave 3 dB more: a resonance is one of them.
 const CONVERGED: f64 = 2.0;
 /// An end of the contact this much earlier than where the fit began is worth a fit from there, s.
@@ -82,9 +87,19 @@ impl Sound<'_> {
             return (0, if right { whole } else { self.nearer(whole, &limits, progress) });
         }
         if let Some(pushed) = self.pushed(&whole, progress) {
-            return pushed;
+            let struck = if right { whole } else { self.nearer(whole, &limits, progress) };
+            return if self.worse_from_the_onset(&struck, &pushed) { pushed } else { (0, struck) };
         }
         (0, if right { whole } else { self.nearer(whole, &limits, progress) })
+    }
+
+    /// Whether modes from the onset on explain less than those of a push do: of all the sound, or by far of what follows
+    /// the push, where the latter know the body.
+    fn worse_from_the_onset(&self, struck: &Analysis, (offset, pushed): &(usize, Analysis)) -> bool {
+        let energy = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+        let early: Vec<Partial> = pushed.partials.iter().map(|p| p.moved(-(*offset as f64))).collect();
+        let (left, pushed) = (subtract(self.samples, &struck.partials), subtract(self.samples, &early));
+        energy(&left) > energy(&pushed) || energy(&left[*offset..]) > BY_FAR * energy(&pushed[*offset..])
     }
 
     /// Of `whole` and a fit from the tail, neither of which is right, the one that leaves less.
