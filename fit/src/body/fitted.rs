@@ -3,19 +3,17 @@
 //! Everything that is said of the modes is said of the *struck body*: of what the engine plays when the modes file is
 //! struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t + φ) from the onset on and nothing else.
 
-use crate::body::last_solve::{last_solve, peak_ratio};
 use crate::body::residual::{Burst, Residual, ratio_db};
-use crate::body::struck::{lead, struck};
-use crate::noise::noise_floor::NoiseFloor;
+use crate::body::solved::{Solved, Solving};
+use crate::body::struck::struck;
 use crate::options::{FitOptions, Found, LARGEST_AMPLITUDE};
-use crate::proof::known_decay::{bound_rings, refined_together, take_unknown};
 use crate::proof::pruning::{Uncertainty, uncertainties};
 use crate::proof::rumble::take_rumble;
 use crate::proof::suspicion::{self, energy_spectrum};
 pub use crate::proof::warning::Warning;
 use crate::recording::Recording;
 use crate::sinusoid::partial::Partial;
-use crate::ways::analysis::{Analysis, subtract};
+use crate::ways::analysis::Analysis;
 use asperity_dsp::mode::Mode;
 use std::f64::consts::PI;
 
@@ -122,10 +120,6 @@ pub struct Fit {
 const TAKEN: f64 = 0.95;
 /// Below this resynthesis, dB, a user should know.
 const POOR_DB: f64 = 6.0;
-/// A struck body may be so much louder than its recording: 2.5 dB.
-const LOUDEST: f64 = 1.334;
-/// By how much, as a factor, the squared residual may rise for fewer modes: 0.2 dB.
-const MISSED: f64 = 1.047;
 /// The band of the modes reaches this far beyond the lowest and the highest, as a factor.
 const HALF_OCTAVE: f64 = std::f64::consts::SQRT_2;
 
@@ -157,26 +151,16 @@ impl Fit {
             let left: f64 = analysis.residual.iter().map(|x| x * x).sum();
             warnings.extend(take_rumble(&mut partials, count, left, rate));
         }
-        let segment = &samples[onset + offset..end];
-        let as_is = analysis.explained || offset > 0;
-        if !as_is {
-            refined_together(segment, &mut partials, options.fastest_decay_per_s / rate);
-        }
-        let mut fewer = partials.clone();
-        if !as_is {
-            take_unknown(segment, &mut fewer, &analysis.noise);
-        }
-        let mut candidates = vec![partials];
-        if fewer.len() < candidates[0].len() {
-            candidates.insert(0, fewer);
-        }
-        let mut solved: Vec<Solved> = Vec::new();
-        for partials in candidates {
-            solved.push(Solved::of(samples, (onset, end), offset, partials, &analysis.noise, rate, as_is));
-        }
-        // Fewer modes are taken where the struck body does not miss the others.
-        let best = usize::from(solved.len() > 1 && solved[0].left > MISSED * solved[1].left);
-        let Solved { partials, early, lead, told, .. } = solved.swap_remove(best);
+        let solving = Solving {
+            samples,
+            found: Found { onset, end },
+            offset,
+            noise: &analysis.noise,
+            rate_hz: rate,
+            as_is: analysis.explained || offset > 0,
+        };
+        let any = !partials.is_empty();
+        let (Solved { partials, early, lead, .. }, told) = solving.solved(partials);
         warnings.extend(told);
         warnings.extend(suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
         // The strike itself, from which times are told now.
@@ -196,7 +180,7 @@ impl Fit {
             .map(|(uncertainty, partial)| FittedMode::new(partial, uncertainty, offset, count, rate))
             .collect();
         modes.sort_by(|a, b| b.energy.total_cmp(&a.energy));
-        if modes.is_empty() {
+        if modes.is_empty() && !any {
             warnings.push(Warning::NoModes);
         } else if snr_in_band_db < POOR_DB {
             warnings.push(Warning::PoorFit { snr_db: snr_in_band_db });
@@ -242,51 +226,6 @@ impl Fit {
         let mut samples = vec![0.0; self.onset_sample];
         samples.extend(self.resynthesise(self.residual.samples.len() - self.onset_sample));
         samples
-    }
-}
-
-/// Modes whose amplitudes are those of the recording.
-struct Solved {
-    /// Amplitudes at the first fitted sample, and at the strike.
-    partials: Vec<Partial>,
-    early: Vec<Partial>,
-    /// Samples by which the strike comes before the onset.
-    lead: usize,
-    /// Squared residual.
-    left: f64,
-    told: Vec<Warning>,
-}
-
-impl Solved {
-    /// `partials`, of no longer rings than are known, as they leave least of the sound from `onset` to `end`; amplitudes
-    /// `as_is` are solved anew only where the body is too loud.
-    fn of(
-        samples: &[f64],
-        (onset, end): (usize, usize),
-        offset: usize,
-        mut partials: Vec<Partial>,
-        noise: &NoiseFloor,
-        rate_hz: f64,
-        as_is: bool,
-    ) -> Self {
-        let residual = subtract(&samples[onset + offset..end], &partials);
-        let mut told: Vec<Warning> =
-            bound_rings(&mut partials, &residual, noise, rate_hz).into_iter().collect();
-        let at_onset: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
-        let lead = lead(&at_onset, samples, onset);
-        let mut early: Vec<Partial> = at_onset.iter().map(|p| p.moved(-(lead as f64))).collect();
-        let sound = &samples[onset - lead..end];
-        let over = peak_ratio(sound, &early);
-        if over > LOUDEST {
-            told.push(Warning::LouderThanRecorded { over_db: 20.0 * over.log10() });
-        }
-        if over > LOUDEST || !as_is {
-            last_solve(sound, &mut early, LOUDEST);
-            partials = early.iter().map(|p| p.moved((offset + lead) as f64)).collect();
-        }
-        let struck = struck(&early, sound.len());
-        let left = sound.iter().zip(struck).map(|(y, s)| (y - s).powi(2)).sum();
-        Self { partials, early, lead, left, told }
     }
 }
 

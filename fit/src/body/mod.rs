@@ -3,6 +3,7 @@
 //! | file | from → to |
 //! |---|---|
 //! | [`fitted`] | partials → modes with standard deviations, and figures of them |
+//! | `solved` | partials → those that are known, with the amplitudes that are played |
 //! | `struck` | partials → the samples that the engine plays |
 //! | `last_solve` | poles → amplitudes and phases that leave least of the recording and are no louder |
 //! | [`residual`] | recording and struck body → what no mode explains |
@@ -10,4 +11,5 @@
 pub mod fitted;
 mod last_solve;
 pub mod residual;
+mod solved;
 mod struck;

@@ -9,17 +9,14 @@
 //!
 //! The least known of a neighbourhood goes first, then deviations and amplitudes are taken anew, since of a crowd within
 //! one bandwidth each is unknown and one of them is not: a water glass of 3.3 s had 20 modes within 6 Hz, three with
-//! deviations of 3 to 10 times the decay, and rang for 65 s. All that goes may cost [`COST`]. A mode that is proven to
-//! ring longer keeps its decay.
+//! deviations of 3 to 10 times the decay, and rang for 65 s. What the body misses stays (`body::solved`). A mode that is
+//! proven to ring longer keeps its decay.
 
 use crate::noise::noise_floor::NoiseFloor;
 use crate::proof::pruning::{neighbours, uncertainties};
 use crate::proof::suspicion::energy_spectrum;
 use crate::proof::warning::Warning;
-use crate::sinusoid::amplitudes::fit_amplitudes_at_cost;
 use crate::sinusoid::partial::Partial;
-use crate::sinusoid::refinement::{Bounds, refine};
-use crate::ways::analysis::subtract;
 use std::f64::consts::{LN_10, PI};
 
 /// A decay is known whose standard deviation is at most this part of it.
@@ -28,64 +25,9 @@ const KNOWN: f64 = 0.5;
 const LONGEST: f64 = 3.0;
 /// Deviations within which a decay must be slower than that to stay.
 const DEVIATIONS: f64 = 2.0;
-/// By how much, as a part, the squared residual may rise: 0.2 dB.
-const COST: f64 = 0.047;
-/// Cost of a mode's own energy, as a part of it.
-const ENERGY_COST: f64 = 1e-4;
-/// Steps of the refit of all modes together.
-const STEPS: usize = 4;
-/// Most rounds.
-const ROUNDS: usize = 8;
 
-/// Refits all modes of what is no sum of modes together: stages leave each as it was when the others were not known. What
-/// rings for longer than three times the sound stays as it is, and nothing becomes so.
-pub(crate) fn refined_together(segment: &[f64], partials: &mut Vec<Partial>, fastest: f64) {
-    let slowest = slowest(segment.len());
-    let (long, mut others): (Vec<Partial>, Vec<Partial>) = partials.iter().partition(|p| p.delta < slowest);
-    let bounds = Bounds {
-        omega_low: 0.0,
-        omega_high: PI,
-        delta_low: slowest,
-        delta_high: fastest.max(slowest),
-        amplitude_high: f64::INFINITY,
-        energy_cost: ENERGY_COST,
-    };
-    refine(&subtract(segment, &long), &mut others, &bounds, STEPS);
-    *partials = [long, others].concat();
-    partials.sort_by(|a, b| a.omega.total_cmp(&b.omega));
-}
-
-/// Takes modes of unknown decay out of `partials`, as long as `segment` does not miss them.
-pub(crate) fn take_unknown(segment: &[f64], partials: &mut Vec<Partial>, noise: &NoiseFloor) {
-    let left = |partials: &[Partial]| subtract(segment, partials).iter().map(|x| x * x).sum::<f64>();
-    let may_leave = (1.0 + COST) * left(partials);
-    let mut most = usize::MAX;
-    for _ in 0..ROUNDS {
-        let mut doomed = least_known(partials, noise, segment.len());
-        doomed.truncate(most);
-        if doomed.is_empty() {
-            break;
-        }
-        let mut fewer = partials.clone();
-        let mut k = 0;
-        fewer.retain(|_| {
-            k += 1;
-            !doomed.contains(&(k - 1))
-        });
-        fit_amplitudes_at_cost(segment, &mut fewer, ENERGY_COST);
-        if left(&fewer) <= may_leave {
-            *partials = fewer;
-        } else if doomed.len() > 1 {
-            // Those of the least known decays alone.
-            most = doomed.len() / 2;
-        } else {
-            break;
-        }
-    }
-}
-
-/// Indices of the partials of unknown decay that are least known among their neighbours, the least known first.
-fn least_known(partials: &[Partial], noise: &NoiseFloor, count: usize) -> Vec<usize> {
+/// The partials of unknown decay that are least known among their neighbours, the least known first.
+pub(crate) fn least_known(partials: &[Partial], noise: &NoiseFloor, count: usize) -> Vec<Partial> {
     let unknown: Vec<f64> = uncertainties(partials, noise, count)
         .iter()
         .zip(partials)
@@ -98,7 +40,7 @@ fn least_known(partials: &[Partial], noise: &NoiseFloor, count: usize) -> Vec<us
         })
         .collect();
     least.sort_by(|&a, &b| unknown[b].total_cmp(&unknown[a]));
-    least
+    least.into_iter().map(|k| partials[k]).collect()
 }
 
 /// The slowest decay that the sound supports, nepers a sample.
@@ -108,34 +50,32 @@ fn slowest(count: usize) -> f64 {
 
 /// Lets what is not proven to ring longer ring for three times `residual`, which `partials` leave. What is left around a
 /// mode is what its decay is known in: beats and a room are no noise, but they bend it as noise does.
-pub(crate) fn bound_rings(
-    partials: &mut [Partial],
-    residual: &[f64],
-    noise: &NoiseFloor,
-    rate_hz: f64,
-) -> Option<Warning> {
+pub(crate) fn bound_rings(partials: &mut [Partial], residual: &[f64], noise: &NoiseFloor) {
     let count = residual.len();
     let slowest = slowest(count);
     if partials.iter().all(|p| p.delta >= slowest) {
-        return None;
+        return;
     }
     let spectrum = energy_spectrum(residual);
     let known = uncertainties(partials, noise, count);
-    let (mut bounded, mut strongest, mut frequency_hz) = (0, 0.0, 0.0);
     for (partial, known) in partials.iter_mut().zip(known) {
         let left = left_around(partial, &spectrum, count) / noise.variance_of(partial).max(f64::MIN_POSITIVE);
         let deviation = known.delta * left.max(1.0).sqrt();
-        if partial.delta >= slowest || partial.delta + DEVIATIONS * deviation <= slowest {
-            continue;
+        if partial.delta + DEVIATIONS * deviation > slowest {
+            partial.delta = partial.delta.max(slowest);
         }
-        let energy = partial.energy(count);
-        if energy > strongest {
-            (strongest, frequency_hz) = (energy, partial.omega * rate_hz / (2.0 * PI));
-        }
-        partial.delta = slowest;
-        bounded += 1;
     }
-    (bounded > 0).then_some(Warning::UnknownDecay { count: bounded, frequency_hz })
+}
+
+/// Warning of the modes that ring for three times the sound since they are not known to ring longer.
+pub(crate) fn bounded(partials: &[Partial], count: usize, rate_hz: f64) -> Option<Warning> {
+    let at_the_bound = |p: &&Partial| (p.delta / slowest(count) - 1.0).abs() < 1e-12;
+    let strongest =
+        partials.iter().filter(at_the_bound).max_by(|a, b| a.energy(count).total_cmp(&b.energy(count)))?;
+    Some(Warning::UnknownDecay {
+        count: partials.iter().filter(at_the_bound).count(),
+        frequency_hz: strongest.omega * rate_hz / (2.0 * PI),
+    })
 }
 
 /// Variance, as if it were white, of what is left within some bandwidths of a partial.
@@ -152,6 +92,7 @@ fn left_around(partial: &Partial, spectrum: &[f64], count: usize) -> f64 {
 mod tests {
     use super::*;
     use crate::sinusoid::projection::synthesise;
+    use crate::ways::analysis::subtract;
     use asperity_dsp::rng::Rng;
     use nalgebra::Complex;
 
@@ -181,8 +122,9 @@ mod tests {
             let (sound, floor) = heard(&[partial(1065.0, t60_s, 0.1)], noise);
             let mut partials = [partial(1065.0, t60_s, 0.1)];
             let left = subtract(&sound, &partials);
-            let told = bound_rings(&mut partials, &left, &floor, RATE_HZ);
-            (3.0 * LN_10 / (partials[0].delta * RATE_HZ), told.is_some())
+            bound_rings(&mut partials, &left, &floor);
+            let told = bounded(&partials, COUNT, RATE_HZ).is_some();
+            (3.0 * LN_10 / (partials[0].delta * RATE_HZ), told)
         };
         // Of δ N, with N samples of noise σ and a mode of amplitude A, the deviation is √(24 / N) σ / A or more: 0.1 for
         // σ = 0.3, 0.5 for 1.5 and 1.3 for 4. At the bound δ N is 2.3; of 2 s it is 1.73, of 10 s 0.35.
@@ -199,32 +141,14 @@ mod tests {
     }
 
     #[test]
-    fn a_crowd_that_is_one_mode_goes_and_the_mode_stays() {
-        let truth = partial(1065.0, 0.8, 0.1);
-        let (sound, floor) = heard(&[truth], 1e-3);
-        let mut crowd: Vec<Partial> =
+    fn of_a_crowd_that_is_one_mode_the_least_known_goes_first_and_a_doublet_is_known() {
+        let (_, floor) = heard(&[partial(1065.0, 0.8, 0.1)], 1e-3);
+        let crowd: Vec<Partial> =
             (0..5).map(|k| partial(1064.6 + 0.2 * f64::from(k), 0.6 + 0.1 * f64::from(k), 0.02)).collect();
-        fit_amplitudes_at_cost(&sound, &mut crowd, ENERGY_COST);
-        take_unknown(&sound, &mut crowd, &floor);
-        assert!(crowd.len() <= 2, "{crowd:?}");
+        let doomed = least_known(&crowd, &floor, COUNT);
+        assert!(doomed.len() == 1 && crowd.contains(&doomed[0]), "{doomed:?}");
         // A doublet that beats stays two.
         let two = [partial(700.0, 2.0, 0.1), partial(704.0, 2.0, 0.08)];
-        let (sound, floor) = heard(&two, 1e-3);
-        let mut found = two.to_vec();
-        take_unknown(&sound, &mut found, &floor);
-        assert_eq!(found.len(), 2);
-    }
-
-    #[test]
-    fn modes_refitted_together_leave_less_and_none_becomes_endless() {
-        let truth = [partial(400.0, 0.3, 0.1), partial(420.0, 0.5, 0.1), partial(900.0, 40.0, 0.01)];
-        let (sound, _) = heard(&truth, 1e-3);
-        let mut found =
-            truth.map(|p| Partial { omega: p.omega * 1.0005, delta: 1.1 * p.delta, ..p }).to_vec();
-        let left = |p: &[Partial]| subtract(&sound, p).iter().map(|x| x * x).sum::<f64>();
-        let before = left(&found);
-        refined_together(&sound, &mut found, 0.1);
-        assert!(left(&found) < 0.9 * before, "{} {before}", left(&found));
-        assert_eq!(found.iter().filter(|p| p.delta < slowest(COUNT)).count(), 1, "{found:?}");
+        assert_eq!(least_known(&two, &heard(&two, 1e-3).1, COUNT), []);
     }
 }
