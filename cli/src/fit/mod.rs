@@ -42,6 +42,13 @@ pub struct Options {
     /// Recording of a strike: WAV, AIFF, FLAC, Ogg Vorbis, MP3 or M4A, 1 kHz – 1 MHz; or a modal table (.csv, .json), or a modes file
     #[arg(value_name = "RECORDING.wav")]
     pub recording: PathBuf,
+    /// With --family: further takes, hits of the same object
+    #[arg(value_name = "TAKE.wav", requires = "family")]
+    pub takes: Vec<PathBuf>,
+    /// Make one body of all the recordings: poles in common, and each take's own excitation as one of the body's strike
+    /// positions
+    #[arg(long, requires = "takes")]
+    pub family: bool,
     /// Modes file to write
     #[arg(short, long = "output", value_name = "OUT.modes.json")]
     pub output: PathBuf,
@@ -121,6 +128,8 @@ impl Options {
     pub fn plain(recording: PathBuf, output: PathBuf) -> Self {
         Self {
             recording,
+            takes: Vec::new(),
+            family: false,
             output,
             impulse: 0.01,
             max_modes: FitOptions::default().max_modes,
@@ -145,6 +154,11 @@ impl Options {
             table_rate: 44_100.0,
             json: false,
         }
+    }
+
+    /// The further recordings of the same object: of `--family`, and of `--merge`.
+    fn others(&self) -> impl Iterator<Item = &PathBuf> {
+        self.takes.iter().chain(&self.merge)
     }
 
     fn fit_options(&self) -> FitOptions {
@@ -187,13 +201,13 @@ pub fn fit(options: &Options) -> Result<Report, CliError> {
     let plain: Vec<Mode> = fit.modes.iter().map(asperity_fit::FittedMode::mode).collect();
     let burst = options.burst_ms.map(|ms| fit.burst(1e-3 * ms));
     let mut places = None;
-    if options.merge.is_empty() {
+    if options.others().next().is_none() {
         let body = modes_file::Body::fitted(&fit, &changed(&plain), options.impulse).with_burst(burst);
         modes_file::write(&mut outputs, &options.output, &body)?;
     } else {
         let merged = write_strikes(&mut outputs, options, channel, &recording, &fit, burst, &changed)?;
         let recordings: Vec<&Path> =
-            std::iter::once(&options.recording).chain(&options.merge).map(PathBuf::as_path).collect();
+            std::iter::once(&options.recording).chain(options.others()).map(PathBuf::as_path).collect();
         let mesh = options.mesh.as_deref();
         places = mesh.map(|mesh| PlacesReport::new(mesh, &merged, &recordings)).transpose()?;
     }
@@ -227,6 +241,7 @@ fn import_table(options: &Options) -> Result<TableReport, CliError> {
         ("--resynthesis", options.resynthesis.is_some()),
         ("--plot", options.plot.is_some()),
         ("--merge", !options.merge.is_empty()),
+        ("--family", options.family),
         ("--burst-ms", options.burst_ms.is_some()),
         ("--strike", options.strike.is_some()),
     ];
@@ -276,9 +291,11 @@ fn check_options(options: &Options) -> Result<(), CliError> {
         let right = format!("must be above 0 and at most {longest_ms} ms");
         return Err(CliError::new("--burst-ms", format!("{ms} is refused"), right));
     }
-    if options.merge.len() >= asperity::MAX_POSITIONS {
+    let others = options.others().count();
+    if others >= asperity::MAX_POSITIONS {
         let right = format!("at most {} more strikes fit a body", asperity::MAX_POSITIONS - 1);
-        return Err(CliError::new("--merge", format!("{} are too many", options.merge.len()), right));
+        let option = if options.family { "--family" } else { "--merge" };
+        return Err(CliError::new(option, format!("{others} are too many"), right));
     }
     check_destination(&options.output)?;
     for path in [&options.residual, &options.resynthesis, &options.plot, &options.csv].into_iter().flatten() {
@@ -348,8 +365,7 @@ fn write_strikes(
     changed: &dyn Fn(&[Mode]) -> Vec<Mode>,
 ) -> Result<Merged, CliError> {
     let others = options
-        .merge
-        .iter()
+        .others()
         .map(|path| fitted(path, channel, options))
         .collect::<Result<Vec<_>, CliError>>()?;
     let strikes: Vec<(&Recording, &Fit)> =

@@ -7,11 +7,13 @@
 
 use crate::body::fitted::{Fit, FittedMode, partial_of};
 use crate::recording::Recording;
-use crate::sinusoid::amplitudes::fit_amplitudes;
+use crate::sinusoid::amplitudes::fit_amplitudes_at_cost;
 use asperity_dsp::mode::Mode;
 
 /// Relative distance within which two frequencies may be one mode.
 const SAME: f64 = 1e-3;
+/// Cost of a mode's own energy in a strike that hardly has it, as a part of it.
+const ENERGY_COST: f64 = 1e-4;
 /// Least relative standard deviation an average gives a mode, so that none rules alone.
 const LEAST_STD: f64 = 1e-6;
 
@@ -138,7 +140,7 @@ fn weights(recording: &Recording, fit: &Fit, common: &[Mode]) -> Vec<Mode> {
     let segment: Vec<f64> =
         recording.samples[from..to.min(recording.samples.len())].iter().map(|x| x - mean).collect();
     let mut partials: Vec<_> = common.iter().map(|mode| partial_of(mode, rate)).collect();
-    fit_amplitudes(&segment, &mut partials);
+    fit_amplitudes_at_cost(&segment, &mut partials, ENERGY_COST);
     partials
         .iter()
         .zip(common)

@@ -3,9 +3,9 @@
 //! Everything that is said of the modes is said of the *struck body*: of what the engine plays when the modes file is
 //! struck once by its own impulse, which is Σ amplitude · e^(−d t) · sin(2π f t + φ) from the onset on and nothing else.
 
-use crate::body::no_louder::no_louder;
 use crate::body::residual::{Burst, Residual, ratio_db};
-use crate::body::struck::{lead, struck};
+use crate::body::solved::{Solved, Solving};
+use crate::body::struck::struck;
 use crate::options::{FitOptions, Found, LARGEST_AMPLITUDE};
 use crate::proof::pruning::{Uncertainty, uncertainties};
 use crate::proof::rumble::take_rumble;
@@ -120,8 +120,6 @@ pub struct Fit {
 const TAKEN: f64 = 0.95;
 /// Below this resynthesis, dB, a user should know.
 const POOR_DB: f64 = 6.0;
-/// A struck body may be so much louder than its recording: 2.5 dB.
-const LOUDEST: f64 = 1.334;
 /// The band of the modes reaches this far beyond the lowest and the highest, as a factor.
 const HALF_OCTAVE: f64 = std::f64::consts::SQRT_2;
 
@@ -153,19 +151,21 @@ impl Fit {
             let left: f64 = analysis.residual.iter().map(|x| x * x).sum();
             warnings.extend(take_rumble(&mut partials, count, left, rate));
         }
+        let solving = Solving {
+            samples,
+            found: Found { onset, end },
+            offset,
+            noise: &analysis.noise,
+            rate_hz: rate,
+            as_is: analysis.explained || offset > 0,
+        };
+        let any = !partials.is_empty();
+        let (Solved { partials, early, lead, .. }, told) = solving.solved(partials);
+        warnings.extend(told);
         warnings.extend(suspicion::doubts(&partials, &analysis.residual, &analysis.noise, rate));
-        let mut early: Vec<Partial> = partials.iter().map(|p| p.moved(-(offset as f64))).collect();
         // The strike itself, from which times are told now.
-        let lead = lead(&early, samples, onset);
         let (contact, onset, offset) = (offset, onset - lead, offset + lead);
-        early.iter_mut().for_each(|p| *p = p.moved(-(lead as f64)));
         let sound = &samples[onset..end];
-        if let Some(louder) = no_louder(sound, &mut early, LOUDEST) {
-            warnings.push(Warning::LouderThanRecorded { over_db: 20.0 * louder.log10() });
-            for (partial, early) in partials.iter_mut().zip(&early) {
-                partial.c = early.moved(offset as f64).c;
-            }
-        }
         let struck = struck(&early, samples.len() - onset);
         let mut left = samples.to_vec();
         left[onset..].iter_mut().zip(&struck).for_each(|(left, struck)| *left -= struck);
@@ -180,7 +180,7 @@ impl Fit {
             .map(|(uncertainty, partial)| FittedMode::new(partial, uncertainty, offset, count, rate))
             .collect();
         modes.sort_by(|a, b| b.energy.total_cmp(&a.energy));
-        if modes.is_empty() {
+        if modes.is_empty() && !any {
             warnings.push(Warning::NoModes);
         } else if snr_in_band_db < POOR_DB {
             warnings.push(Warning::PoorFit { snr_db: snr_in_band_db });

@@ -3,11 +3,13 @@
 //! | file | from → to |
 //! |---|---|
 //! | [`fitted`] | partials → modes with standard deviations, and figures of them |
+//! | `solved` | partials → those that are known, with the amplitudes that are played |
 //! | `struck` | partials → the samples that the engine plays |
-//! | `no_louder` | modes louder than their recording → modes that are not |
+//! | `last_solve` | poles → amplitudes and phases that leave least of the recording and are no louder |
 //! | [`residual`] | recording and struck body → what no mode explains |
 
 pub mod fitted;
-mod no_louder;
+mod last_solve;
 pub mod residual;
+mod solved;
 mod struck;

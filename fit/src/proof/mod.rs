@@ -2,12 +2,14 @@
 //!
 //! | file | from → to |
 //! |---|---|
+//! | `known_decay` | modes whose decay the sound does not tell → fewer, none of which rings longer than it supports |
 //! | `pruning` | partials → proven partials with standard deviations |
 //! | `ringing` | segment → is there anything but noise; partials → which stand out of steep noise |
 //! | `suspicion` | partials → hum, no decay, not exponential |
 //! | `rumble` | partials → those from the lowest partial of the body on |
 //! | [`warning`] | what is said of all this |
 
+pub(crate) mod known_decay;
 pub(crate) mod pruning;
 pub(crate) mod ringing;
 pub(crate) mod rumble;

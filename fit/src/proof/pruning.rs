@@ -183,7 +183,7 @@ fn rao_gains(residual: &[f64], others: &[Partial], candidates: &[Partial]) -> Ve
 }
 
 /// Partials that share a neighbourhood with `k` (itself among them), at most a dozen.
-fn neighbours(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
+pub(crate) fn neighbours(partials: &[Partial], k: usize, count: usize) -> Vec<usize> {
     let gap = |j: usize| (partials[j].omega - partials[k].omega).abs();
     let reach = |j: usize| 4.0 * PI / count as f64 + 2.0 * (partials[j].delta + partials[k].delta);
     let mut near: Vec<usize> = (0..partials.len()).filter(|&j| gap(j) <= reach(j)).collect();

@@ -47,6 +47,13 @@ pub enum Warning {
         /// Frequency of the strongest.
         frequency_hz: f64,
     },
+    /// Modes that ring so long that the sound does not tell their decay; they ring three times as long as it.
+    UnknownDecay {
+        /// How many.
+        count: usize,
+        /// Frequency of the strongest, Hz.
+        frequency_hz: f64,
+    },
     /// Faint tones that do not decay, left out of the modes.
     Steady {
         /// How many.
@@ -114,6 +121,7 @@ impl Warning {
             Self::NoModes => "no modes",
             Self::ModesCapped { .. } => "mode limit",
             Self::Undamped { .. } => "undamped",
+            Self::UnknownDecay { .. } => "decay unknown",
             Self::Steady { .. } => "steady tone",
             Self::Hum { .. } => "hum",
             Self::Rumble { .. } => "rumble",
@@ -132,6 +140,7 @@ impl Warning {
             Self::Clipped { samples } => *samples,
             Self::SecondStrike { others_s, .. } => others_s.len(),
             Self::Undamped { count, .. }
+            | Self::UnknownDecay { count, .. }
             | Self::Steady { count, .. }
             | Self::Hum { count, .. }
             | Self::Rumble { count, .. }
@@ -196,6 +205,12 @@ impl fmt::Display for Warning {
                 "{} not decay within the sound, the strongest at {frequency_hz:.1} Hz; set to ring \
                  twenty times as long as it; record until it is silent",
                 does(*count, "mode")
+            ),
+            Self::UnknownDecay { count, frequency_hz } => write!(
+                f,
+                "{} longer than the sound tells, the strongest at {frequency_hz:.1} Hz; set to ring three times as long \
+                 as it; record until it is silent",
+                if *count == 1 { "1 mode rings".to_owned() } else { format!("{count} modes ring") }
             ),
             Self::Steady { count, frequency_hz } => write!(
                 f,

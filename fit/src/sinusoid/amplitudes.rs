@@ -14,11 +14,17 @@ const RIDGE: f64 = 1e-11;
 
 /// Sets every `c` to the least-squares amplitude at `signal[0]`.
 pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial]) {
+    fit_amplitudes_at_cost(signal, partials, RIDGE);
+}
+
+/// The same beside a `cost` of each partial's own energy, as a part of it, which keeps pairs from growing against each
+/// other.
+pub fn fit_amplitudes_at_cost(signal: &[f64], partials: &mut [Partial], cost: f64) {
     let right = DVector::from_iterator(
         2 * partials.len(),
         correlate_values(signal, partials).into_iter().flat_map(|p0| [p0.re, -p0.im]),
     );
-    let Some(system) = factored(partials, signal.len()) else { return };
+    let Some(system) = factored(partials, signal.len(), cost) else { return };
     let solution = system.solve(&right);
     for (k, partial) in partials.iter_mut().enumerate() {
         partial.c = Complex::new(solution[2 * k], solution[2 * k + 1]);
@@ -29,7 +35,7 @@ pub fn fit_amplitudes(signal: &[f64], partials: &mut [Partial]) {
 /// refitted. Never more than its energy, and next to nothing for one of two giants that cancel.
 #[must_use]
 pub fn contributions(partials: &[Partial], count: usize) -> Vec<f64> {
-    let Some(system) = factored(partials, count) else {
+    let Some(system) = factored(partials, count, RIDGE) else {
         return partials.iter().map(|p| p.energy(count)).collect();
     };
     let inverse = system.inverse_blocks::<2>();
@@ -43,9 +49,9 @@ pub fn contributions(partials: &[Partial], count: usize) -> Vec<f64> {
         .collect()
 }
 
-fn factored(partials: &[Partial], count: usize) -> Option<Scaled> {
+fn factored(partials: &[Partial], count: usize, ridge: f64) -> Option<Scaled> {
     let gram = amplitude_gram(partials, count);
-    (0..4).find_map(|power| Scaled::new(&gram, RIDGE * 1e3_f64.powi(power)))
+    (0..4).find_map(|power| Scaled::new(&gram, ridge * 1e3_f64.powi(power)))
 }
 
 /// The (Re c, Im c) rows and columns of the Gram matrix.
