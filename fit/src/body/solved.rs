@@ -161,6 +161,6 @@ mod tests {
         let truth = [partial(400.0, 0.5, 0.1), partial(1310.0, 0.3, 0.05)];
         let upside_down = truth.map(|p| Partial { c: -p.c, ..p }).to_vec();
         let (_, left) = solved(&truth, upside_down, true);
-        assert!(left < 2e-3, "{left}");
+        assert!(left < 5e-3, "{left}");
     }
 }
