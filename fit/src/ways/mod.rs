@@ -11,9 +11,9 @@
 //!    or as fast as any may be ([`disguised`]).
 //! 2. From some proposed end of it on ([`crate::ways::contact`]) modes leave no more than noise.
 //! 3. They are fewer, by more than those that such a late beginning cannot see ([`saves`]).
-//! 4. A fit from the onset on leaves more of the sound, or 20 dB more of what follows the push; or both leave noise, and
-//!    so little of it that a push is told from fast modes (40 dB). Two stones of four were fitted from 4.99 ms on, 9.8 and
-//!    9.2 dB from the onset, and 20.7 and 18.0 from it.
+//! 4. A fit from the onset on leaves more of the sound, or 20 dB more of what follows the push; or
+//!    both leave noise, and so little of it that a push is told from fast modes (40 dB). Two stones
+//!    of four were fitted from 4.99 ms on, 9.8 and 9.2 dB from the onset, and 20.7 and 18.0 from it.
 //!
 //! Then the end is where those modes, continued backwards, first leave more than noise ([`release_samples`]).
 
@@ -60,10 +60,11 @@ const MODES_OF_A_PUSH: usize = 80;
 /// than that and fewer giants, it is a recording of many modes, and another fit would take as long.
 const GIANT: f64 = 0.2;
 const GIANTS: usize = 5;
-/// Modes that leave so many times as much of what follows a push do not know the body: 20 dB.
+/// Modes that leave so many times as much of what follows a push are not the body's: 20 dB.
 const BY_FAR: f64 = 100.0;
-/// Modes after a push that leave this little of what follows it are right, and the more that a fit from the onset needs to
-/// leave as little are the push in disguise: 40 dB. Made pushes leave 57 to 60; stones that were no pushes, 15 to 21.
+/// Modes after a push that leave this little of what follows it are right, and the more that a fit
+/// from the onset needs to leave as little are the push in disguise: 40 dB. Made pushes leave 57 to
+/// 60 dB; stones that were no pushes, 15 to 21.
 const FINE: f64 = 1e4;
 /// Modes of a sum are nearer than those of the tail even if they leave 3 dB more: a resonance is one of them.
 const CONVERGED: f64 = 2.0;
@@ -99,13 +100,13 @@ impl Sound<'_> {
         (0, if right { whole } else { self.nearer(whole, &limits, progress) })
     }
 
-    /// Whether the modes of a push leave so little of what follows it that those it saves are the push's.
+    /// Is true of a push whose modes leave so little of what follows it that those it saves are its own.
     fn fine(&self, (offset, pushed): &(usize, Analysis)) -> bool {
         energy(&self.samples[*offset..]) > FINE * energy(&pushed.residual)
     }
 
-    /// Whether modes from the onset on explain less than those of a push do: of all the sound, or by far of what follows
-    /// the push, where the latter know the body.
+    /// Is true where modes from the onset on explain less than those of a push do: of all the sound,
+    /// or by far of what follows the push.
     fn worse_from_the_onset(&self, struck: &Analysis, (offset, pushed): &(usize, Analysis)) -> bool {
         let early: Vec<Partial> = pushed.partials.iter().map(|p| p.moved(-(*offset as f64))).collect();
         let (left, pushed) = (subtract(self.samples, &struck.partials), subtract(self.samples, &early));
