@@ -232,12 +232,7 @@ fn slope<S: Set>(s: S, [low, high]: [f64x4<S>; 2], rise: f64x4<S>) -> f64x4<S> {
 
 /// The quartic of a half sample, in coefficients a whole sample, from its rise, the slopes at its ends and its height midway.
 #[inline(always)]
-fn quartic<S: Set>(
-    s: S,
-    rise: f64x4<S>,
-    [begin, end]: [f64x4<S>; 2],
-    middle: f64x4<S>,
-) -> [f64x4<S>; 4] {
+fn quartic<S: Set>(s: S, rise: f64x4<S>, [begin, end]: [f64x4<S>; 2], middle: f64x4<S>) -> [f64x4<S>; 4] {
     let splat = |x: f64| -> f64x4<S> { f64x4::splat(s, x) };
     let two = splat(2.0);
     let bump = splat(16.0) * ((middle - splat(0.5) * rise) - splat(0.125) * (begin - end));
