@@ -4,7 +4,6 @@ use super::stability::{Cell, RATES_HZ, STIFFNESS_N_M};
 use crate::plot::{Svg, TextStyle, quantity};
 use asperity::Integrator;
 use asperity_dsp::micro_contact::CONTACT_STIFFNESS_N_M;
-use std::fmt::Write;
 
 const CELL_PX: [f64; 2] = [62.0, 40.0];
 const LEFT_PX: f64 = 96.0;
