@@ -14,8 +14,8 @@ pub(crate) struct Recording {
     surfaces: HashMap<SurfaceId, String>,
     bodies: HashMap<BodyId, String>,
     probes: HashMap<ProbeId, String>,
-    /// What the audio half may not have come to yet: a [`reset`](Self::reset) drops it.
-    waiting: VecDeque<LogLine>,
+    /// What the audio half may not have come to yet, with the clock's epoch when it was reported: a [`reset`](Self::reset) drops it.
+    waiting: VecDeque<(LogLine, u64)>,
     kept: Kept,
 }
 
@@ -73,12 +73,19 @@ impl Recording {
         }
     }
 
-    /// Keeps what lies before `time_s` for good.
-    pub(crate) fn settle(&mut self, time_s: f64) {
-        while self.waiting.front().is_some_and(|line| line.t < time_s) {
-            let line = self.waiting.pop_front();
-            line.into_iter().for_each(|line| self.keep(line));
+    /// Keeps what lies before `time_s` for good, but for the impacts that the audio half has dropped: the clock's epoch is `epoch` by now.
+    pub(crate) fn settle(&mut self, time_s: f64, epoch: u64) {
+        while self.waiting.front().is_some_and(|(line, _)| line.t < time_s) {
+            let Some((line, then)) = self.waiting.pop_front() else { return };
+            if !(is_strike(&line) && then < epoch) {
+                self.keep(line);
+            }
         }
+    }
+
+    /// Impacts that wait never happen.
+    pub(crate) fn drop_strikes(&mut self) {
+        self.waiting.retain(|(line, _)| !is_strike(line));
     }
 
     fn keep(&mut self, line: LogLine) {
@@ -91,17 +98,17 @@ impl Recording {
 
     /// What is reported for after `time_s` never happens; edits that waited behind it happen now.
     pub(crate) fn reset(&mut self, time_s: f64) {
-        self.waiting.retain(|line| line.t <= time_s || matches!(line.event, LogEvent::Edit(_)));
-        self.waiting.iter_mut().for_each(|line| line.t = line.t.min(time_s));
+        self.waiting.retain(|(line, _)| line.t <= time_s || matches!(line.event, LogEvent::Edit(_)));
+        self.waiting.iter_mut().for_each(|(line, _)| line.t = line.t.min(time_s));
     }
 
     /// Notes an edit that the engine makes at `time_s`.
     pub(crate) fn note_edit(&mut self, time_s: f64, edit: LogEdit) {
-        self.waiting.push_back(LogLine { t: time_s, event: LogEvent::Edit(edit) });
+        self.waiting.push_back((LogLine { t: time_s, event: LogEvent::Edit(edit) }, 0));
     }
 
-    /// Notes an event that the engine applies at `time_s`.
-    pub(crate) fn note(&mut self, time_s: f64, event: &ContactEvent) {
+    /// Notes an event that the engine applies at `time_s`, and the clock's epoch.
+    pub(crate) fn note(&mut self, time_s: f64, epoch: u64, event: &ContactEvent) {
         let event = match *event {
             ContactEvent::Begin { contact, touching, sample } => LogEvent::Begin {
                 contact: contact.0,
@@ -130,12 +137,16 @@ impl Recording {
                 hand: self.hand(impact.actuator, impact.probe, impact.holder, impact.gain),
             },
         };
-        self.waiting.push_back(LogLine { t: time_s, event });
+        if self.waiting.back().is_some_and(|(line, _)| line.t > time_s) {
+            // Game time was tied anew: what lay further ahead comes now.
+            self.waiting.iter_mut().for_each(|(line, _)| line.t = line.t.min(time_s));
+        }
+        self.waiting.push_back((LogLine { t: time_s, event }, epoch));
     }
 
     /// Ends the recording: what is in memory, or how many lines were written.
     pub(crate) fn end(mut self) -> (ContactLog, io::Result<u64>) {
-        self.settle(f64::INFINITY);
+        self.settle(f64::INFINITY, 0);
         match self.kept {
             Kept::Memory(lines) => (ContactLog { lines }, Ok(0)),
             Kept::Stream { lines, writer } => {
@@ -172,6 +183,10 @@ impl Recording {
     pub(crate) fn body(&self, id: BodyId) -> String {
         self.bodies.get(&id).cloned().unwrap_or_else(|| numbered("body", id.0))
     }
+}
+
+fn is_strike(line: &LogLine) -> bool {
+    matches!(line.event, LogEvent::Impact { .. })
 }
 
 /// A factor that a log need not hold when it is 1.
