@@ -190,7 +190,7 @@ fn what_is_removed_right_after_a_strike_rings_out_as_if_it_had_stayed() {
 fn more_bodies_than_may_ring_fade_without_a_click_and_the_quietest_first() {
     let Engine { mut scene, mut renderer, .. } = Config::live(RATE_HZ).build().unwrap();
     let mut audio = Vec::new();
-    let mut play = |blocks: usize| {
+    let mut play = |audio: &mut Vec<f32>, blocks: usize| {
         for _ in 0..blocks {
             let mut block = [0.0; 64];
             renderer.render(&mut [&mut [0.0; 64]], &mut [&mut block]);
@@ -203,13 +203,13 @@ fn more_bodies_than_may_ring_fade_without_a_click_and_the_quietest_first() {
             let shape = body(150.0 + f64::from(index % 100), 0.05);
             let id = scene.add_body(shape.gain(if index == 100 { 50.0 } else { 0.1 })).unwrap();
             scene.report(f64::from(index) * 64.0 / RATE_HZ, strike(id)).unwrap();
-            play(1);
+            play(&mut audio, 1);
             id
         })
         .collect();
-    play(150);
+    play(&mut audio, 150);
     bodies.into_iter().for_each(|id| scene.remove_body(id).unwrap());
-    play(1500);
+    play(&mut audio, 1500);
     assert_eq!(scene.stats().given_way, 250 - 64);
     let gone = 400 * 64;
     let (before, after) = (&audio[gone - 4_800..gone], &audio[gone - 2..gone + 9_600]);
@@ -226,14 +226,14 @@ fn more_bodies_than_may_ring_fade_without_a_click_and_the_quietest_first() {
     let now_s = 1900.0 * 64.0 / RATE_HZ;
     scene.report(now_s, strike(loud)).unwrap();
     scene.remove_body(loud).unwrap();
-    play(150);
+    play(&mut audio, 150);
     for index in 0..200 {
         let id = scene.add_body(body(250.0, 0.05).gain(0.1)).unwrap();
         scene.report(now_s + (150.0 + f64::from(index)) * 64.0 / RATE_HZ, strike(id)).unwrap();
         scene.remove_body(id).unwrap();
-        play(1);
+        play(&mut audio, 1);
     }
-    play(150);
+    play(&mut audio, 150);
     let at = (1900 + 150) * 64;
     let kept = rms(&audio[audio.len() - 4_800..]) / rms(&audio[at - 4_800..at]);
     println!("{kept:.3} of the loud one is left");

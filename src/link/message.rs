@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// Game thread → audio thread, in order.
 pub(crate) enum Message {
     /// What a contact does, when it holds, and where on a body that has shapes.
-    Event { stamp: Stamp, event: ContactEvent, place: Option<StrikePlace> },
+    Event { stamp: Stamp, epoch: u64, event: ContactEvent, place: Option<StrikePlace> },
     /// A rigid striker hits a body, and perhaps rings itself.
     Strike {
         stamp: Stamp,

@@ -72,8 +72,8 @@ impl Renderer {
         old.waiting
             .into_iter()
             .map(|message| match message {
-                Message::Event { stamp, event, place } => {
-                    Message::Event { stamp: at_rate(stamp), event, place }
+                Message::Event { stamp, epoch, event, place } => {
+                    Message::Event { stamp: at_rate(stamp), epoch, event, place }
                 }
                 Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse } => {
                     let stamp = at_rate(stamp);

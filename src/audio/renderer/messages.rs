@@ -5,6 +5,7 @@ use crate::audio::seat::Change;
 use crate::audio::voice::Phase;
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::stats::Counters;
+use crate::model::event::ContactEvent;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
 use crate::prepared::spot::Spot;
@@ -56,7 +57,13 @@ impl Renderer {
             {
                 Counters::add(&self.counters.superseded, 1);
             }
-            Message::Event { stamp, event, place } => {
+            // It is elsewhere by now, and leaps there instead of running after what was missed.
+            Message::Event { epoch, event: ContactEvent::Moved { .. }, .. }
+                if epoch < self.counters.epoch.load(Relaxed) =>
+            {
+                Counters::add(&self.counters.superseded, 1);
+            }
+            Message::Event { stamp, event, place, .. } => {
                 let stamp = in_order(&self.counters, stamp);
                 self.note_arrival(stamp);
                 self.apply_event(&event, stamp);

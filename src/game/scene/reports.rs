@@ -88,8 +88,9 @@ impl Scene {
         let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
         self.motions.note(time_s, &in_game_time, self.config.contact_timeout_s, sheet);
         if let Some(recording) = &mut self.recording {
-            let time_s = stamp.samples() / self.config.inner_rate_hz();
-            recording.note(time_s, self.clock.epoch(), &event.at_place_of(&told));
+            let rate_hz = self.config.inner_rate_hz();
+            let reported = (self.clock.epoch(), position as f64 / rate_hz);
+            recording.note(stamp.samples() / rate_hz, reported, &event.at_place_of(&told));
         }
         Ok(())
     }
@@ -282,7 +283,7 @@ impl Scene {
         if let ContactEvent::End { contact } = &event {
             self.touched.remove(contact);
         }
-        self.send_event(Message::Event { stamp, event, place })
+        self.send_event(Message::Event { stamp, epoch: self.clock.epoch(), event, place })
     }
 
     /// Where an impact hits a body that has shapes.
