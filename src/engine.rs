@@ -59,8 +59,7 @@ impl Config {
         let remarks = remark(probe.micro_contact.choice()).into_iter().collect();
         let counters = Arc::new(Counters::new(self.audio.len()));
         let (to_audio, from_game) = ring::channel(self.queue_capacity);
-        // Every resource that can be alive, and as many that are being replaced, and every port.
-        let (to_game, from_audio) = ring::channel(2 * (self.max_surfaces + self.max_bodies) + self.max_ports);
+        let (to_game, from_audio) = ring::channel(self.most_to_free());
         let renderer = Renderer::new(&self, kernel, probe, from_game, to_game, counters.clone())?;
         let clock = Clock::new(self.clock, self.inner_rate_hz());
         let scene = Scene::new(self, kernel, clock, to_audio, from_audio, counters);

@@ -79,15 +79,14 @@ impl Scene {
         let (kernel, inner_hz) = (self.kernel, config.inner_rate_hz());
         let probe = PreparedProbe::new(&config.probe, &config.probe, config.integrator, inner_hz, kernel)?;
         let (to_audio, from_game) = ring::channel(config.queue_capacity);
-        let (to_game, from_audio) =
-            ring::channel(2 * (config.max_surfaces + config.max_bodies) + config.max_ports);
+        let (to_game, from_audio) = ring::channel(config.most_to_free());
         let mut renderer = Renderer::new(config, kernel, probe, from_game, to_game, self.counters.clone())
             .map_err(design)?;
         for (place, probe) in self.probes.iter() {
             renderer.install(self.prepared_probe(ProbeId(place), probe)?);
         }
         for (id, body) in &self.given {
-            renderer.install(self.prepared_body(*id, body)?.0);
+            renderer.install(self.prepared_body(*id, body, None)?.0);
         }
         Ok(New { renderer, to_audio, from_audio })
     }
@@ -107,6 +106,7 @@ impl Scene {
         }
         (self.to_audio, self.from_audio) = (to_audio, from_audio);
         self.open_ports = 0;
+        self.rested.clear();
         self.clock.at_rate(self.config.inner_rate_hz());
         for message in renderer.take_over(old) {
             // As many as the old queue held.

@@ -185,3 +185,88 @@ fn strokes_on_the_surface_of_a_body_that_has_gone_do_not_ring_the_one_that_took_
     assert!(heard[0].iter().all(|x| *x == 0.0));
     assert!(scene.stats().contacts == 1);
 }
+
+#[test]
+fn a_body_is_heard_by_four_listeners_each_at_a_gain_of_its_own() {
+    let gains = [1.0, 0.5, 0.25, 2.0];
+    let mut heard = Vec::new();
+    for sends in [false, true] {
+        let (mut scene, mut renderer) = engine(4);
+        let body = scene.add_body(bar()).unwrap();
+        for (bus, gain) in gains.iter().enumerate().skip(1).filter(|_| sends) {
+            scene.set_body_send(body, bus, *gain).unwrap();
+        }
+        // They are there within a tenth of a second.
+        render(&mut renderer, 4, 8192, 256);
+        scene.report(8192.0 / 44_100.0, strike(body, 1.0)).unwrap();
+        heard.push(render(&mut renderer, 4, 8192, 256));
+    }
+    for (bus, gain) in gains.iter().enumerate() {
+        let off = |(own, sent): (&f32, &f32)| (gain * f64::from(*own) - f64::from(*sent)).abs();
+        let worst = heard[0][0].iter().zip(&heard[1][bus]).map(off).fold(0.0, f64::max);
+        println!("bus {bus}: {worst:.1e} of {:.1e}", peak(&heard[0][0]));
+        assert!(worst <= 1e-6 * peak(&heard[0][0]), "bus {bus}: {worst}");
+    }
+}
+
+#[test]
+fn a_listener_that_comes_and_goes_makes_no_step_and_any_split_gives_the_same_bits() {
+    let game = |sends: bool, block: usize| {
+        let (mut scene, mut renderer) = engine(2);
+        let body = scene.add_body(bar()).unwrap();
+        scene.report(0.0, strike(body, 1.0)).unwrap();
+        let mut heard = render(&mut renderer, 2, 4096, block);
+        for gain in [0.5, 0.0].into_iter().filter(|_| sends) {
+            scene.set_body_send(body, 1, gain).unwrap();
+            let after = render(&mut renderer, 2, 8192, block);
+            heard.iter_mut().zip(after).for_each(|(bus, after)| bus.extend(after));
+        }
+        heard
+    };
+    let sent = game(true, 64);
+    for block in [1, 63, 100, 4096] {
+        assert!(game(true, block) == sent, "blocks of {block} differ");
+    }
+    let step = |x: &[f32]| x.windows(2).map(|w| f64::from((w[1] - w[0]).abs())).fold(0.0, f64::max);
+    assert!(step(&sent[1]) <= 1.01 * step(&sent[0][4000..]));
+    assert!(peak(&sent[1]) > 0.0 && sent[1][16_384..].iter().all(|x| *x == 0.0), "it has gone");
+}
+
+#[test]
+fn a_body_has_four_further_listeners_and_its_own_bus_is_none_of_them() {
+    let (mut scene, _renderer) = engine(7);
+    let body = scene.add_body(bar()).unwrap();
+    assert!(scene.set_body_send(body, 0, 0.5).unwrap_err().to_string().contains("further bus"));
+    assert!(scene.set_body_send(body, 1, f64::NAN).is_err());
+    assert!(scene.set_body_send(body, 7, 1.0).is_err());
+    (1..5).for_each(|bus| scene.set_body_send(body, bus, 0.5).unwrap());
+    let full = AddError::Full { kind: "sends of a body", capacity: 4 };
+    assert_eq!(scene.set_body_send(body, 5, 0.5), Err(full));
+    scene.set_body_send(body, 3, 0.0).unwrap();
+    scene.set_body_send(body, 5, 0.5).unwrap();
+    // Another bus of its own ends them.
+    scene.set_body_bus(body, 6).unwrap();
+    (1..5).for_each(|bus| scene.set_body_send(body, bus, 0.5).unwrap());
+}
+
+#[test]
+fn the_same_blow_told_twice_within_the_least_time_sounds_once() {
+    let mut heard = Vec::new();
+    for (least_time_s, blows) in [(0.0, 1), (0.03, 2), (0.0, 2)] {
+        let (mut scene, mut renderer) = engine(1);
+        let body = scene.add_body(Body::new(bar()).least_time_s(least_time_s)).unwrap();
+        (0..blows).for_each(|n| scene.report(0.005 * f64::from(n), strike(body, 1.0)).unwrap());
+        heard.push((render(&mut renderer, 1, 8192, 256), scene.stats().too_soon, scene.stats().impacts));
+    }
+    assert!(heard[0].0 == heard[1].0 && heard[1].0 != heard[2].0);
+    assert_eq!(heard.iter().map(|heard| (heard.1, heard.2)).collect::<Vec<_>>(), [(0, 1), (1, 1), (0, 2)]);
+    // What is stronger, or comes later, is another sound.
+    let (mut scene, mut renderer) = engine(1);
+    let body = scene.add_body(Body::new(bar()).least_time_s(0.03)).unwrap();
+    for (t, speed_m_s) in [(0.0, 0.5), (0.005, 1.0), (0.010, 0.9), (0.036, 0.1)] {
+        scene.report(t, strike(body, speed_m_s)).unwrap();
+    }
+    render(&mut renderer, 1, 8192, 256);
+    assert_eq!((scene.stats().impacts, scene.stats().too_soon), (3, 1));
+    assert!(scene.add_body(Body::new(bar()).least_time_s(-1.0)).is_err());
+}

@@ -384,3 +384,80 @@ fn measured_trajectories_are_right_and_in_millimetres_they_are_not() {
         assert!(told.len() == 1 && is(&told[0], Likely::UvInMillimetres), "{told:?}");
     }
 }
+
+/// A box that slides at 0.3 m/s for 4 s, whose point hops among its corners every so many ticks.
+fn hopping(side_m: f64, every: usize, tells_velocity: bool, seed: u64) -> Vec<Contradiction> {
+    let Engine { mut scene, .. } = Config { queue_capacity: 1 << 15, ..Config::default() }.build().unwrap();
+    let surface = scene.add_surface(Surface::flat(4.0, 4.0).unwrap()).unwrap();
+    let (mut rng, mut corner) = (Rng::new(seed), [0.0; 2]);
+    for tick in 0..240 {
+        let t = tick as f64 / 60.0;
+        if tick % every == 0 {
+            corner = [0, 1].map(|_| if rng.uniform() < 0.5 { 0.0 } else { side_m });
+        }
+        let sample = ContactSample::new([(1.0 + 0.3 * t + corner[0]) / 4.0, (1.0 + corner[1]) / 4.0], 2.0);
+        let sample = if tells_velocity { sample.sliding([0.3, 0.0]) } else { sample };
+        let event = if tick == 0 {
+            ContactEvent::begin_with(ContactId(1), Touching::on(surface), sample)
+        } else {
+            ContactEvent::moved(ContactId(1), sample)
+        };
+        scene.report(t, event).unwrap();
+    }
+    contradictions(&scene)
+}
+
+#[test]
+fn a_box_whose_point_hops_among_its_corners_without_a_velocity_is_told() {
+    let mut missed = Vec::new();
+    for side_m in [0.05, 0.1, 0.3, 1.0] {
+        for every in [1, 2, 3, 5, 10] {
+            for seed in 0..8 {
+                let told = hopping(side_m, every, false, seed);
+                let right = |told: &Contradiction| {
+                    matches!(told, Contradiction::Hops { .. } | Contradiction::TwoPlaces { .. })
+                };
+                if !(told.len() == 1 && right(&told[0])) {
+                    missed.push(format!("{side_m} m, every {every}, seed {seed}: {told:?}"));
+                }
+                let steady = hopping(side_m, every, true, seed);
+                assert!(!steady.iter().any(|told| matches!(told, Contradiction::Hops { .. })), "{steady:?}");
+            }
+        }
+    }
+    println!("{} of 160 missed\n{}", missed.len(), missed.join("\n"));
+    assert!(missed.len() <= 8, "{} missed\n{}", missed.len(), missed.join("\n"));
+}
+
+#[test]
+fn a_finger_that_tells_no_velocity_does_not_hop() {
+    let mut rng = Rng::new(77);
+    for number in 0..300 {
+        let kind = MOTIONS[number % MOTIONS.len()];
+        let stroke = stroke(kind, &mut rng);
+        let Engine { mut scene, .. } =
+            Config { queue_capacity: 1 << 15, ..Config::default() }.build().unwrap();
+        let [width_m, height_m] = stroke.size_m;
+        let surface = scene.add_surface(Surface::flat(width_m, height_m).unwrap()).unwrap();
+        let mut left = 0;
+        for (i, report) in stroke.reports.iter().enumerate() {
+            // Hitches, and places that jitter by a tenth of a millimetre.
+            if left == 0 && rng.uniform() < 0.02 {
+                left = (8.0 * rng.uniform()) as u32;
+            }
+            left = left.saturating_sub(1);
+            if i > 0 && left > 0 {
+                continue;
+            }
+            let uv = [0, 1].map(|c| report.uv[c] + 1e-4 * rng.normal() / stroke.size_m[c]);
+            let sample = ContactSample::new(uv, 0.5);
+            let event = if i == 0 {
+                ContactEvent::begin_with(ContactId(1), Touching::on(surface), sample)
+            } else {
+                ContactEvent::moved(ContactId(1), sample)
+            };
+            scene.report(report.t, event).unwrap();
+        }
+        assert_eq!(contradictions(&scene), [], "{number}, {kind}");
+    }
+}

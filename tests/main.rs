@@ -43,6 +43,7 @@ mod matte_and_shiny;
 mod modal_tables;
 #[path = "../fuzz/mutation.rs"]
 mod mutation;
+mod one_shots;
 mod only_what_is_needed;
 mod own_sources;
 mod parameters;
@@ -82,6 +83,7 @@ mod stability;
 #[path = "common/steps.rs"]
 mod steps;
 mod stick_slip;
+mod stood_still;
 mod storage;
 mod strike_anywhere;
 mod strike_field;

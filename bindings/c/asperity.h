@@ -619,11 +619,17 @@ int32_t asp_replace_body(struct asp_scene *scene,
                          uint64_t id,
                          const struct asp_body *body);
 
-/// Takes a body away; it rings out. Its id is refused from then on.
+/// Takes a body away; it rings out until it sleeps. Its id is refused from then on.
 int32_t asp_remove_body(struct asp_scene *scene, uint64_t id);
 
 /// Lets a body sound on another bus, without a click.
 int32_t asp_set_body_bus(struct asp_scene *scene, uint64_t id, uint32_t bus);
+
+/// Lets a body sound on a bus beside its own, so loud, linear, 0 to 1000, without a step; 0 for no longer. At most four: a bus for each listener.
+int32_t asp_set_body_send(struct asp_scene *scene,
+                          uint64_t id,
+                          uint32_t bus,
+                          double gain);
 
 /// Makes a body louder or softer, linear, 0 to 1000, without a step.
 int32_t asp_set_body_gain(struct asp_scene *scene, uint64_t id, double gain);

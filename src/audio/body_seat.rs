@@ -1,8 +1,9 @@
-//! A body's place on the audio half, where one body can follow another while both ring.
+//! A body's place on the audio half, or one where a body rings out that has left its own.
 
 use crate::audio::smoothed::Smoothed;
-use crate::link::message::Dead;
+use crate::link::message::{Dead, Made};
 use crate::link::ring::Sender;
+use crate::model::body::{Body, MAX_SENDS, Sends};
 use crate::model::id::BodyId;
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
@@ -12,36 +13,60 @@ use crate::prepared::body_rub::RubAsked;
 use crate::prepared::spot::Spot;
 use asperity_dsp::hertz::HertzPulse;
 use asperity_dsp::micro_contact::Probe;
+use std::sync::Arc;
 
-/// A body's place on the audio half. A replaced or removed body rings on without input and fades.
+/// A body's place on the audio half.
 pub(crate) struct BodySeat {
     current: Option<Box<BodySlot>>,
-    /// The name of what is here.
+    /// What it was made of.
+    of: Option<Arc<Body>>,
+    /// The name of what is here; none where a body rings out.
     id: Option<BodyId>,
     bus: usize,
-    /// The bus it comes from, and how much of it plays on its own by now.
-    moving: Option<(usize, Smoothed)>,
+    shares: [Share; SHARES],
+    /// It sounds on its own bus and no other, as loud as it is.
+    alone: bool,
     /// Linear gain, and the way there.
     gain: f64,
     smoothed: Smoothed,
     /// How many samples are left of being damped.
     damped: Option<u32>,
-    /// How many samples a body that leaves takes to fade.
-    leaving_samples: u32,
-    sample_rate_hz: f64,
-    leaving: [Option<Leaving>; LEAVING],
+    /// How many samples a body that is damped takes to fade.
+    fade_samples: u32,
+    /// How loud it rings out before its gain, as the last look found.
+    rings: f32,
 }
 
-/// Replacements of one body that may still be fading at the same time; more wait in the queue.
-const LEAVING: usize = 4;
-/// How long a body that leaves takes to fade, s: 4096 samples at 44.1 kHz.
-const LEAVING_S: f64 = 4096.0 / 44_100.0;
+/// Buses that a body sounds on at the same time: its own, those it is sent to, and those it is leaving.
+const SHARES: usize = 2 * (MAX_SENDS + 1);
 
-struct Leaving {
-    body: Box<BodySlot>,
+/// A bus that a body sounds on: how loud, and the way there.
+#[derive(Clone, Copy)]
+struct Share {
     bus: usize,
-    gain: f32,
-    left: u32,
+    gain: f64,
+    smoothed: Smoothed,
+}
+
+/// How long a body that is damped takes to fade, s: 4096 samples at 44.1 kHz.
+const FADE_S: f64 = 4096.0 / 44_100.0;
+impl Share {
+    fn go_to(&mut self, gain: f64) {
+        self.gain = gain;
+    }
+
+    /// Is there at once.
+    fn arrive(&mut self) {
+        self.smoothed.set(self.gain);
+    }
+
+    fn is_over(&self) -> bool {
+        self.gain == 0.0 && self.smoothed.settled_at(0.0)
+    }
+
+    fn is_whole(&self) -> bool {
+        self.gain == 1.0 && self.smoothed.settled_at(1.0)
+    }
 }
 
 impl BodySeat {
@@ -49,39 +74,54 @@ impl BodySeat {
     pub(crate) fn new(sample_rate_hz: f64) -> Self {
         Self {
             current: None,
+            of: None,
             id: None,
             bus: 0,
-            moving: None,
+            shares: [Share { bus: 0, gain: 0.0, smoothed: Smoothed::settled(0.0, sample_rate_hz) }; SHARES],
+            alone: false,
             gain: 1.0,
             smoothed: Smoothed::new(sample_rate_hz),
             damped: None,
-            leaving_samples: (LEAVING_S * sample_rate_hz).round() as u32,
-            sample_rate_hz,
-            leaving: Default::default(),
+            fade_samples: (FADE_S * sample_rate_hz).round() as u32,
+            rings: 0.0,
         }
     }
 
-    /// Whether the body can be replaced now.
-    pub(crate) fn can_change(&self) -> bool {
-        self.leaving.iter().any(Option::is_none)
-    }
-
-    /// Whether nothing is here and nothing fades.
+    /// Whether nothing is here.
     pub(crate) fn is_empty(&self) -> bool {
-        self.current.is_none() && self.leaving.iter().all(Option::is_none)
+        self.current.is_none()
     }
 
-    /// Puts a body here; the one before it rings out.
-    pub(crate) fn set(&mut self, id: BodyId, body: Box<BodySlot>, bus: usize, gain: f64) {
-        self.remove();
-        if self.id == Some(id) {
-            self.play_on(bus);
-        } else {
-            (self.id, self.bus, self.moving) = (Some(id), bus, None);
+    /// Whether what is here is being damped.
+    pub(crate) fn is_damped(&self) -> bool {
+        self.damped.is_some()
+    }
+
+    /// How loud it rings out.
+    pub(crate) fn loudness(&self) -> f32 {
+        let fade = self.damped.map_or(1.0, |left| left as f32 / self.fade_samples as f32);
+        let shares = self.shares.iter().fold(0.0, |most, share| f64::max(most, share.gain));
+        let gain = fade * (self.gain * shares) as f32;
+        // What is on its way counts as infinitely loud, unless nobody would hear it.
+        if gain > 0.0 { self.rings * gain } else { 0.0 }
+    }
+
+    /// Puts a body here.
+    pub(crate) fn set(&mut self, id: BodyId, body: Made, (bus, sends): (usize, &Sends), gain: f64) {
+        if self.id != Some(id) {
+            (self.id, self.bus) = (Some(id), bus);
+            self.shares.iter_mut().for_each(|share| share.go_to(0.0));
+            self.shares.iter_mut().for_each(Share::arrive);
+            self.send_to(bus, 1.0);
+            sends.iter().flatten().for_each(|(bus, gain)| self.send_to(*bus, *gain));
+            self.shares.iter_mut().for_each(Share::arrive);
             self.smoothed.set(gain);
+        } else if self.bus != bus {
+            self.play_on(bus);
         }
         (self.gain, self.damped) = (gain, None);
-        self.current = Some(body);
+        self.alone = self.is_alone();
+        (self.current, self.of) = (Some(body.slot), Some(body.of));
     }
 
     /// The bus it plays on.
@@ -89,12 +129,25 @@ impl BodySeat {
         self.bus
     }
 
-    /// Sounds on another bus from now on.
+    /// Sounds on a bus and no other from now on.
     pub(crate) fn play_on(&mut self, bus: usize) {
-        if bus != self.bus {
-            let from = std::mem::replace(&mut self.bus, bus);
-            self.moving = Some((from, Smoothed::settled(0.0, self.sample_rate_hz)));
+        self.shares.iter_mut().for_each(|share| share.go_to(0.0));
+        self.bus = bus;
+        self.send_to(bus, 1.0);
+    }
+
+    /// Sounds so loud on a bus from now on, whatever it does on others.
+    pub(crate) fn send_to(&mut self, bus: usize, gain: f64) {
+        let place = self.shares.iter().position(|share| share.bus == bus && !share.is_over());
+        let place = place.or_else(|| self.shares.iter().position(Share::is_over));
+        // Where a body goes from bus to bus many times within a fade, the oldest ends at once.
+        let share = &mut self.shares[place.unwrap_or(0)];
+        if share.bus != bus {
+            share.smoothed.set(0.0);
+            share.bus = bus;
         }
+        share.go_to(gain);
+        self.alone = false;
     }
 
     /// Louder or softer from now on.
@@ -104,16 +157,12 @@ impl BodySeat {
 
     /// What rings fades as if a hand were laid on it.
     pub(crate) fn damp(&mut self) {
-        self.damped = self.damped.or(self.current.is_some().then_some(self.leaving_samples));
-        self.leaving
-            .iter_mut()
-            .flatten()
-            .for_each(|leaving| leaving.left = leaving.left.min(self.leaving_samples));
+        self.damped = self.damped.or(self.current.is_some().then_some(self.fade_samples));
     }
 
-    /// Whether the body sounds as it is: at a gain of 1, on one bus, and not being damped.
+    /// Whether the body sounds as it is: at a gain of 1, on one bus, neither being damped nor ringing out.
     pub(crate) fn is_plain(&self) -> bool {
-        let keeps = self.damped.is_none() && self.moving.is_none();
+        let keeps = self.id.is_some() && self.damped.is_none() && self.alone;
         keeps && self.gain == 1.0 && self.smoothed.settled_at(1.0)
     }
 
@@ -123,7 +172,7 @@ impl BodySeat {
             let mut gain = self.smoothed.tick(self.gain) as f32;
             if let Some(left) = &mut self.damped {
                 *left = left.saturating_sub(1);
-                gain *= *left as f32 / self.leaving_samples as f32;
+                gain *= *left as f32 / self.fade_samples as f32;
             }
             *x *= gain;
         }
@@ -135,27 +184,36 @@ impl BodySeat {
         }
     }
 
-    /// The bus it comes from and its own; the same when it does not move.
-    pub(crate) fn between(&self) -> (usize, usize) {
-        (self.moving.map_or(self.bus, |(from, _)| from), self.bus)
+    /// Hands its sound to the buses: to `add` each sample of each, by its place.
+    pub(crate) fn spread(&mut self, sound: &[f32], mut add: impl FnMut(usize, usize, f32)) {
+        for share in self.shares.iter_mut().filter(|share| !share.is_over()) {
+            for (i, x) in sound.iter().enumerate() {
+                add(share.bus, i, share.smoothed.tick(share.gain) as f32 * x);
+            }
+        }
+        self.alone = self.is_alone();
     }
 
-    /// Share of its own bus in the next sample.
-    pub(crate) fn arrive(&mut self) -> f32 {
-        let Some((_, arrived)) = &mut self.moving else { return 1.0 };
-        let share = arrived.tick(1.0);
-        if arrived.settled_at(1.0) {
-            self.moving = None;
-        }
-        share as f32
+    fn is_alone(&self) -> bool {
+        self.shares.iter().all(|share| share.is_over() || (share.bus == self.bus && share.is_whole()))
     }
 
-    /// Lets the body ring out.
-    pub(crate) fn remove(&mut self) {
-        if let Some(place) = self.leaving.iter_mut().find(|place| place.is_none()) {
-            let (bus, gain, left) = (self.bus, self.gain as f32, self.damped.unwrap_or(self.leaving_samples));
-            *place = self.current.take().map(|body| Leaving { body, bus, gain, left });
-        }
+    /// The body rings out at another place, as it sounds here.
+    pub(crate) fn leave_for(&mut self, tail: &mut Self, position: u64) {
+        *tail = Self { current: self.current.take(), of: self.of.take(), id: None, ..*self };
+        tail.look(position);
+    }
+
+    /// Takes the body away.
+    pub(crate) fn take(&mut self) -> Option<Made> {
+        self.damped = None;
+        let (slot, of) = self.current.take().zip(self.of.take())?;
+        Some(Made { slot, of })
+    }
+
+    /// Whether nothing rings here and nothing is coming.
+    pub(crate) fn is_silent(&self, position: u64) -> bool {
+        self.current.as_ref().is_none_or(|body| body.is_silent(position))
     }
 
     /// Adds an impact whose contact begins at `stamp`.
@@ -223,40 +281,21 @@ impl BodySeat {
         self.current = body;
     }
 
-    /// Whether any body rings out.
-    pub(crate) fn anything_leaves(&self) -> bool {
-        self.leaving.iter().any(Option::is_some)
+    fn look(&mut self, position: u64) {
+        self.rings = self.current.as_ref().map_or(0.0, |body| body.loudness(position));
     }
 
-    /// Renders each body that rings out to `tail` and hands it to its bus.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn render_leaving(
-        &mut self,
-        terms: Terms,
-        tail: &mut [f32],
-        mut add: impl FnMut(usize, &[f32]),
-    ) {
-        for leaving in self.leaving.iter_mut().flatten() {
-            tail.fill(0.0);
-            leaving.body.render(terms, tail);
-            for x in tail.iter_mut() {
-                leaving.left = leaving.left.saturating_sub(1);
-                *x *= leaving.gain * (leaving.left as f32 / self.leaving_samples as f32);
-            }
-            add(leaving.bus, tail);
-        }
-    }
-
-    /// Sends bodies that have left home.
+    /// Sends a body that has rung out home.
     pub(crate) fn tidy(&mut self, position: u64, home: &mut Sender<Dead>) {
-        for place in &mut self.leaving {
-            let gone = place.as_ref().is_some_and(|l| l.left == 0 || l.body.is_silent(position));
-            if let Some(Leaving { body, bus, gain, left }) = gone.then(|| place.take()).flatten()
-                && let Err(Dead::Body(body)) = home.send(Dead::Body(body))
-            {
-                *place = Some(Leaving { body, bus, gain, left });
-            }
+        if self.id.is_none() {
+            self.look(position);
+        }
+        if self.id.is_none() && self.is_silent(position) {
+            let kept = self.take().and_then(|body| match home.send(Dead::Body(body)) {
+                Err(Dead::Body(body)) => Some(body),
+                _ => None,
+            });
+            (self.current, self.of) = kept.map(|body| (body.slot, body.of)).unzip();
         }
     }
 }

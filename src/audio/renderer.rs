@@ -10,6 +10,7 @@ mod hand_over;
 mod messages;
 mod meter;
 mod outputs;
+mod tails;
 mod voices;
 
 use crate::audio::blows::Blows;
@@ -42,6 +43,7 @@ use outputs::{Bus, HapticChannel, Mix};
 use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
+use tails::TAILS;
 
 /// The audio half of an engine.
 pub struct Renderer {
@@ -59,6 +61,7 @@ pub struct Renderer {
     placed: Vec<Option<StrikePlace>>,
     silent: Vec<SilentContact>,
     seats: Vec<Seat>,
+    /// At the places that the game names, and behind them those that ring out.
     bodies: Vec<BodySeat>,
     /// Which of the three are in use, so that empty places cost nothing.
     voices_used: Occupied,
@@ -111,7 +114,8 @@ impl Renderer {
             fade: raised_cosine((RELEASE_S * rate).ceil() as usize),
         };
         let voices = config.voices();
-        let sizes = (voices, config.max_surfaces, config.max_bodies);
+        let bodies = config.max_bodies + TAILS;
+        let sizes = (voices, config.max_surfaces, bodies);
         let crew = (config.threads > 1).then(|| Crew::new(config.threads, sizes, &shared)).transpose();
         let crew =
             crew.map_err(|error| ConfigError::Threads { threads: config.threads, error: error.kind() })?;
@@ -124,10 +128,10 @@ impl Renderer {
             placed: vec![None; voices],
             voices_used: Occupied::new(voices),
             seats_used: Occupied::new(config.max_surfaces),
-            bodies_used: Occupied::new(config.max_bodies),
+            bodies_used: Occupied::new(bodies),
             silent: Vec::with_capacity(config.max_contacts),
             seats: (0..config.max_surfaces).map(|_| Seat::default()).collect(),
-            bodies: (0..config.max_bodies).map(|_| BodySeat::new(rate)).collect(),
+            bodies: (0..bodies).map(|_| BodySeat::new(rate)).collect(),
             channels: config
                 .actuators
                 .iter()

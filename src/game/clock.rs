@@ -13,7 +13,10 @@ mod live;
 
 use crate::model::clock_mode::ClockMode;
 use crate::model::stamp::Stamp;
-use live::{Followed, Live};
+use live::{BREAK_S, Followed, Live};
+
+/// An impact that was reported longer ago while audio stood still is not played, s.
+const STALE_S: f64 = 0.1;
 
 /// A game time mapped to the audio.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +34,19 @@ pub(crate) struct Clock {
     sample_rate_hz: f64,
     mapping: Mapping,
     last: Stamp,
+    /// Strikes of an earlier epoch have come too late.
+    epoch: u64,
+    stands: Stands,
+}
+
+/// Where the audio stands, and since when.
+#[derive(Debug, Clone, Copy)]
+struct Stands {
+    position: u64,
+    /// Game time of the first report there; infinite before it.
+    since_s: f64,
+    /// It has stood there for longer than any block.
+    long: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -46,7 +62,7 @@ impl Clock {
             ClockMode::Exact => Mapping::Exact(Some(0.0), 1.0),
             ClockMode::Live { max_lead_s } => Mapping::Live(Live::new(max_lead_s, sample_rate_hz)),
         };
-        Self { sample_rate_hz, mapping, last: Stamp::default() }
+        Self { sample_rate_hz, mapping, last: Stamp::default(), epoch: 0, stands: Stands::UNKNOWN }
     }
 
     /// The same times at another rate; a live clock ties itself anew.
@@ -62,6 +78,16 @@ impl Clock {
     /// The newest stamp.
     pub(crate) fn last(&self) -> Stamp {
         self.last
+    }
+
+    /// It counts on whenever what was stamped before has come too late: strikes of an earlier one are dropped.
+    pub(crate) fn epoch(&self) -> u64 {
+        self.epoch
+    }
+
+    /// What was stamped before has come too late.
+    pub(crate) fn let_go(&mut self) {
+        self.epoch += 1;
     }
 
     /// Whether game time may run backwards.
@@ -93,7 +119,7 @@ impl Clock {
             Mapping::Exact(zero, _) => *zero = None,
             Mapping::Live(live) => live.untie(),
         }
-        self.last = Stamp::whole(position);
+        (self.last, self.stands) = (Stamp::whole(position), Stands::UNKNOWN);
     }
 
     /// Where a game time lies, never before an earlier one; `position` is the next sample that the
@@ -105,7 +131,15 @@ impl Clock {
                 let zero = *zero.get_or_insert(position as f64 - target);
                 Followed { sample: target + zero, jumped: false, repaced: false }
             }
-            Mapping::Live(live) => live.follow(time_s, position as f64),
+            Mapping::Live(live) => {
+                let anew = self.stands.look(time_s, position);
+                self.epoch += u64::from(anew);
+                if anew {
+                    live.let_go();
+                }
+                let followed = live.follow(time_s, position as f64);
+                Followed { jumped: followed.jumped || anew, ..followed }
+            }
         };
         if jumped {
             // Stamps already sent may lie ahead of the audio; events must stay in order.
@@ -113,6 +147,22 @@ impl Clock {
         }
         self.last = Stamp::at(sample).max(self.last);
         Stamped { stamp: self.last, jumped, repaced }
+    }
+}
+
+impl Stands {
+    const UNKNOWN: Self = Self { position: 0, since_s: f64::INFINITY, long: false };
+
+    /// Notes where the audio stands at a report, and tells whether game time is to be tied anew: once it has stood for longer than any block, then
+    /// again and again, and when it goes on.
+    fn look(&mut self, time_s: f64, position: u64) -> bool {
+        let goes_on = position != self.position;
+        let limit_s = if self.long { STALE_S } else { BREAK_S };
+        let anew = if goes_on { self.long } else { time_s - self.since_s > limit_s };
+        if goes_on || anew || time_s < self.since_s {
+            *self = Self { position, since_s: time_s, long: anew && !goes_on };
+        }
+        anew
     }
 }
 

@@ -50,6 +50,13 @@ pub enum Contradiction {
         /// Number of leaps.
         count: u32,
     },
+    /// The point of a contact hops, as among the corners of what slides, and no velocity says how fast it slides.
+    Hops {
+        /// Surface of the reports.
+        surface: SurfaceId,
+        /// Number of hops.
+        count: u32,
+    },
 }
 
 /// Likeliest cause of a factor between two speeds.
@@ -84,7 +91,8 @@ impl Contradiction {
             | Self::Turned { surface, .. }
             | Self::Swapped { surface }
             | Self::BeginsAgain { surface, .. }
-            | Self::TwoPlaces { surface, .. } => *surface,
+            | Self::TwoPlaces { surface, .. }
+            | Self::Hops { surface, .. } => *surface,
         }
     }
 }
@@ -119,6 +127,11 @@ impl fmt::Display for Contradiction {
             Self::TwoPlaces { count, .. } => write!(
                 f,
                 "one contact leaps between two places, {count} times; give each finger a contact number of its own"
+            ),
+            Self::Hops { count, .. } => write!(
+                f,
+                "the point of a contact hops, {count} times, as among the corners of a box, and each hop sounds as a fast stroke; report \
+                 velocity_m_s with it, the velocity of what slides, or a place that does not hop"
             ),
         }
     }

@@ -14,9 +14,18 @@ pub(crate) struct Recording {
     surfaces: HashMap<SurfaceId, String>,
     bodies: HashMap<BodyId, String>,
     probes: HashMap<ProbeId, String>,
-    /// What the audio half may not have come to yet: a [`reset`](Self::reset) drops it.
-    waiting: VecDeque<LogLine>,
+    /// What the audio half may not have come to yet, with the clock's epoch when it was reported: a [`reset`](Self::reset) drops it.
+    waiting: VecDeque<Waiting>,
     kept: Kept,
+}
+
+/// A line that the audio half may not have come to.
+struct Waiting {
+    line: LogLine,
+    /// The clock's epoch when it was reported.
+    epoch: u64,
+    /// How far the audio was then, s: what was late already waits for the next block all the same.
+    told_s: f64,
 }
 
 /// Where a recording goes.
@@ -73,12 +82,20 @@ impl Recording {
         }
     }
 
-    /// Keeps what lies before `time_s` for good.
-    pub(crate) fn settle(&mut self, time_s: f64) {
-        while self.waiting.front().is_some_and(|line| line.t < time_s) {
-            let line = self.waiting.pop_front();
-            line.into_iter().for_each(|line| self.keep(line));
+    /// Keeps what lies before `time_s` for good, but for the impacts that the audio half has dropped: the clock's epoch is `epoch` by now.
+    pub(crate) fn settle(&mut self, time_s: f64, epoch: u64) {
+        let come_to = |waits: &Waiting| waits.line.t.max(waits.told_s) < time_s;
+        while self.waiting.front().is_some_and(come_to) {
+            let Some(Waiting { line, epoch: then, .. }) = self.waiting.pop_front() else { return };
+            if !(then < epoch && (is_strike(&line) || matches!(line.event, LogEvent::Move { .. }))) {
+                self.keep(line);
+            }
         }
+    }
+
+    /// Impacts that wait never happen.
+    pub(crate) fn drop_strikes(&mut self) {
+        self.waiting.retain(|waits| !is_strike(&waits.line));
     }
 
     fn keep(&mut self, line: LogLine) {
@@ -91,17 +108,19 @@ impl Recording {
 
     /// What is reported for after `time_s` never happens; edits that waited behind it happen now.
     pub(crate) fn reset(&mut self, time_s: f64) {
-        self.waiting.retain(|line| line.t <= time_s || matches!(line.event, LogEvent::Edit(_)));
-        self.waiting.iter_mut().for_each(|line| line.t = line.t.min(time_s));
+        self.waiting
+            .retain(|Waiting { line, .. }| line.t <= time_s || matches!(line.event, LogEvent::Edit(_)));
+        self.waiting.iter_mut().for_each(|waits| waits.line.t = waits.line.t.min(time_s));
     }
 
     /// Notes an edit that the engine makes at `time_s`.
     pub(crate) fn note_edit(&mut self, time_s: f64, edit: LogEdit) {
-        self.waiting.push_back(LogLine { t: time_s, event: LogEvent::Edit(edit) });
+        let line = LogLine { t: time_s, event: LogEvent::Edit(edit) };
+        self.waiting.push_back(Waiting { line, epoch: 0, told_s: 0.0 });
     }
 
-    /// Notes an event that the engine applies at `time_s`.
-    pub(crate) fn note(&mut self, time_s: f64, event: &ContactEvent) {
+    /// Notes an event that the engine applies at `time_s`, told in which of the clock's epochs and when, s of audio.
+    pub(crate) fn note(&mut self, time_s: f64, (epoch, told_s): (u64, f64), event: &ContactEvent) {
         let event = match *event {
             ContactEvent::Begin { contact, touching, sample } => LogEvent::Begin {
                 contact: contact.0,
@@ -130,12 +149,16 @@ impl Recording {
                 hand: self.hand(impact.actuator, impact.probe, impact.holder, impact.gain),
             },
         };
-        self.waiting.push_back(LogLine { t: time_s, event });
+        if self.waiting.back().is_some_and(|waits| waits.line.t > time_s) {
+            // Game time was tied anew: what lay further ahead comes now.
+            self.waiting.iter_mut().for_each(|waits| waits.line.t = waits.line.t.min(time_s));
+        }
+        self.waiting.push_back(Waiting { line: LogLine { t: time_s, event }, epoch, told_s });
     }
 
     /// Ends the recording: what is in memory, or how many lines were written.
     pub(crate) fn end(mut self) -> (ContactLog, io::Result<u64>) {
-        self.settle(f64::INFINITY);
+        self.settle(f64::INFINITY, 0);
         match self.kept {
             Kept::Memory(lines) => (ContactLog { lines }, Ok(0)),
             Kept::Stream { lines, writer } => {
@@ -172,6 +195,10 @@ impl Recording {
     pub(crate) fn body(&self, id: BodyId) -> String {
         self.bodies.get(&id).cloned().unwrap_or_else(|| numbered("body", id.0))
     }
+}
+
+fn is_strike(line: &LogLine) -> bool {
+    matches!(line.event, LogEvent::Impact { .. })
 }
 
 /// A factor that a log need not hold when it is 1.

@@ -15,7 +15,7 @@ use crate::game::contradiction::{Motions, Sheet};
 use crate::game::places::Places;
 use crate::game::recording::Recording;
 use crate::game::silence::Reported;
-use crate::link::message::{Dead, Message};
+use crate::link::message::{Dead, Made, Message};
 use crate::link::ring::{Receiver, Sender};
 use crate::link::stats::{Counters, Stats};
 use crate::model::bad_value::within;
@@ -87,6 +87,10 @@ pub struct Scene {
     motions: Motions,
     /// What each contact touches, and the place in its body that its newest report told.
     touched: HashMap<ContactId, Touched>,
+    /// The newest impact that sounded on each body that has a least time: when, in samples, and its impulse.
+    sounded: HashMap<BodyId, (f64, f64)>,
+    /// Bodies that have rung out, the newest last: the next of the same kind goes out at once.
+    pub(crate) rested: Vec<Made>,
 }
 
 /// What a contact touches.
@@ -158,6 +162,8 @@ impl Scene {
             counters,
             recording: None,
             touched: HashMap::new(),
+            sounded: HashMap::new(),
+            rested: Vec::new(),
         }
     }
 
@@ -330,23 +336,16 @@ impl Scene {
         let gain = within("gain", gain, limits::output::AUDIO_GAIN)?;
         self.send(Message::SetAudioGain { bus, gain })?;
         self.config.audio[bus].gain = gain;
+        // How loud it is decides which modes are left out first.
+        self.rested.clear();
         self.note(|_| LogEdit::AudioGain { bus, gain });
         Ok(())
     }
 
     fn send(&mut self, message: Message) -> Result<(), AddError> {
+        // What comes home makes room for what the message sends home.
+        self.collect();
         self.to_audio.send(message).map_err(|_| AddError::QueueFull)
-    }
-
-    /// Frees surfaces, bodies and ports that the audio half no longer needs; `add_…` and `replace_…` do it
-    /// too. Returns how many were freed.
-    pub fn collect(&mut self) -> usize {
-        let mut freed = 0;
-        while let Some(dead) = self.from_audio.receive() {
-            self.open_ports -= usize::from(matches!(dead, Dead::Outlet(_)));
-            freed += 1;
-        }
-        freed
     }
 
     /// Whether another move might be held back because the audio half lags behind.
@@ -367,6 +366,7 @@ impl Scene {
         self.counters.resets_asked.fetch_add(1, Relaxed);
         Counters::add(&self.counters.superseded, self.held.len() as u64);
         self.held.clear();
+        self.drop_strikes();
         self.forget_what_waits();
         self.clock.reset(self.counters.position.load(Relaxed));
         self.last_time_s = f64::NEG_INFINITY;

@@ -105,6 +105,15 @@ pub enum SilentBecause {
         /// How many.
         count: u64,
     },
+    /// Impacts came too late to be played.
+    #[error(
+        "{count} impacts were dropped because audio stood still when they were reported, or because a reset, a pause or a fade of \
+         everything came before their turn; let the audio callback call Renderer::render without a break"
+    )]
+    Stale {
+        /// How many.
+        count: u64,
+    },
     /// Contacts lasted longer than the engine plays.
     #[error(
         "{count} impacts or micro-collisions would outlast the longest contact that is played ({longest_s:.2} s, a \
@@ -253,6 +262,7 @@ impl Reported {
         }
         let counted = [
             SilentBecause::Dropped { count: stats.dropped },
+            SilentBecause::Stale { count: stats.stale },
             SilentBecause::Orphaned { count: stats.orphaned },
             SilentBecause::Lapsed { count: stats.lapsed, timeout_s: config.contact_timeout_s },
             SilentBecause::Stolen { count: stats.stolen, limit: config.max_contacts },
@@ -277,6 +287,7 @@ impl SilentBecause {
         match self {
             Self::Refused { count, .. }
             | Self::Dropped { count }
+            | Self::Stale { count }
             | Self::Orphaned { count }
             | Self::Lapsed { count, .. }
             | Self::Leapt { count }

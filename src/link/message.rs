@@ -1,6 +1,7 @@
 //! Messages from the game to the audio half, and the dead resources that come home to be freed.
 
 use crate::link::outlet::Outlet;
+use crate::model::body::{Body, Sends};
 use crate::model::event::ContactEvent;
 use crate::model::id::{BodyId, SurfaceId};
 use crate::model::stamp::Stamp;
@@ -12,14 +13,17 @@ use crate::prepared::stroking::Stroking;
 use crate::prepared::surface::SurfaceSlot;
 use asperity_dsp::hertz::HertzPulse;
 use std::any::Any;
+use std::sync::Arc;
 
 /// Game thread → audio thread, in order.
 pub(crate) enum Message {
     /// What a contact does, when it holds, and where on a body that has shapes.
-    Event { stamp: Stamp, event: ContactEvent, place: Option<StrikePlace> },
+    Event { stamp: Stamp, epoch: u64, event: ContactEvent, place: Option<StrikePlace> },
     /// A rigid striker hits a body, and perhaps rings itself.
     Strike {
         stamp: Stamp,
+        /// The clock's epoch when it was reported.
+        epoch: u64,
         body: usize,
         spot: Spot,
         other: Option<usize>,
@@ -38,9 +42,11 @@ pub(crate) enum Message {
     /// A slot falls empty; contacts on it fade.
     RemoveSurface { slot: usize },
     /// A body for a new or used place, the bus it plays on, its gain, and how strokes on its surfaces excite it from now on.
-    SetBody { id: BodyId, body: Box<BodySlot>, bus: usize, gain: f64, stroking: Stroking },
-    /// A body sounds on another bus from now on.
+    SetBody { id: BodyId, body: Made, bus: usize, sends: Sends, gain: f64, stroking: Stroking },
+    /// A body sounds on another bus from now on, and on no other.
     SetBodyBus { slot: usize, bus: usize },
+    /// A body sounds on a bus beside its own from now on, so loud.
+    SetBodySend { slot: usize, bus: usize, gain: f64 },
     /// A body is louder or softer from now on.
     SetBodyGain { slot: usize, gain: f64 },
     /// Everything that leaves fades to nothing, or comes back.
@@ -51,12 +57,18 @@ pub(crate) enum Message {
     FadeAll,
     /// Gain of an audio bus, reached within a few milliseconds.
     SetAudioGain { bus: usize, gain: f64 },
-    /// A slot falls empty; the body rings out unheard from now on.
+    /// A slot falls empty; its body rings out.
     RemoveBody { slot: usize },
     /// The audio half's end of a port that was opened.
     AddOutlet(Box<dyn Outlet>),
     /// Per-user haptic gain of one channel, 0 = mute; reached within a few milliseconds.
     SetHapticGain { channel: usize, gain: f64 },
+}
+
+/// A body as the audio half takes it, and what it was made of.
+pub(crate) struct Made {
+    pub(crate) slot: Box<BodySlot>,
+    pub(crate) of: Arc<Body>,
 }
 
 /// Who feels a strike.
@@ -70,7 +82,11 @@ pub(crate) struct Felt {
 /// Audio thread → game thread: what has to be freed.
 pub(crate) enum Dead {
     Surface(Box<SurfaceSlot>),
-    Body(Box<BodySlot>),
+    /// A body that has rung out.
+    Body(Made),
+    /// A body that was cut while it rang.
+    #[expect(dead_code, reason = "it is freed with the message and never looked at")]
+    Cut(Made),
     /// A port that nobody reads any more.
     #[expect(dead_code, reason = "it is freed with the message and never looked at")]
     Outlet(Box<dyn Outlet>),

@@ -24,6 +24,10 @@ macro_rules! counters {
             pub(crate) bus_peak_bits: Box<[AtomicU32]>,
             /// Resets that the game half has asked for.
             pub(crate) resets_asked: AtomicU64,
+            /// The newest stamp: what was stamped further ahead before game time was tied anew is due by then.
+            pub(crate) newest_bits: AtomicU64,
+            /// The game clock's epoch: strikes of an earlier one have come too late.
+            pub(crate) epoch: AtomicU64,
         }
 
         impl Counters {
@@ -90,6 +94,14 @@ counters! {
     quarantined,
     /// Events that arrived after the sample they were stamped for.
     late,
+    /// Impacts dropped because audio stood still (for more than 0.25 s of game time) when they were reported, and more than 0.1 s had gone by
+    /// when it went on; or because a reset, a pause or a fade of everything came before their turn.
+    stale,
+    /// Impacts dropped because they came sooner after one that was as strong than the least time of their body
+    /// ([`Body::least_time_s`](crate::Body::least_time_s)).
+    too_soon,
+    /// Bodies that were removed or replaced and faded before they had rung out, because more than 64 of them rang.
+    given_way,
     /// Times the game clock was tied to the audio clock anew: pauses, restarts, stamps that were off.
     clock_jumps,
     /// Times the game was found to run at another pace: slow motion, fast motion, back to its own.

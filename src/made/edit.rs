@@ -49,6 +49,9 @@ impl Edits<'_> {
                 scene.replace_body(known_body(names, body)?, new)
             }
             LogEdit::BodyBus { body, bus } => scene.set_body_bus(known_body(names, body)?, *bus),
+            LogEdit::BodySend { body, bus, gain } => {
+                scene.set_body_send(known_body(names, body)?, *bus, *gain)
+            }
             LogEdit::BodyGain { body, gain } => scene.set_body_gain(known_body(names, body)?, *gain),
             LogEdit::Mute { muted } => scene.set_muted(*muted),
             LogEdit::Pause { paused } => scene.set_paused(*paused),

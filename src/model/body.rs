@@ -3,6 +3,12 @@
 use crate::model::material::Material;
 use crate::model::modal_model::ModalModel;
 
+/// Buses that a body may sound on beside its own.
+pub(crate) const MAX_SENDS: usize = 4;
+
+/// Buses that a body sounds on beside its own, and how loud, linear.
+pub(crate) type Sends = [Option<(usize, f64)>; MAX_SENDS];
+
 /// A body, ready to be added to a scene.
 ///
 /// ```
@@ -23,6 +29,8 @@ pub struct Body {
     pub(crate) gain: f64,
     pub(crate) strike_gain: f64,
     pub(crate) mass_kg: Option<f64>,
+    pub(crate) least_time_s: f64,
+    pub(crate) sends: Sends,
 }
 
 impl Body {
@@ -32,7 +40,16 @@ impl Body {
     /// A body of PLA on bus 0.
     #[must_use]
     pub fn new(model: ModalModel) -> Self {
-        Self { model, material: Self::DEFAULT_MATERIAL, bus: 0, gain: 1.0, strike_gain: 1.0, mass_kg: None }
+        Self {
+            model,
+            material: Self::DEFAULT_MATERIAL,
+            bus: 0,
+            gain: 1.0,
+            strike_gain: 1.0,
+            mass_kg: None,
+            least_time_s: 0.0,
+            sends: Sends::default(),
+        }
     }
 
     /// Sets the material, which decides how long impacts on it last.
@@ -64,6 +81,14 @@ impl Body {
     #[must_use]
     pub fn gain(mut self, gain: f64) -> Self {
         self.gain = gain;
+        self
+    }
+
+    /// Least time between equal sounds, 0–60 s: an impact that comes sooner after the last one that sounded, and is no stronger, is
+    /// dropped and counted ([`Stats::too_soon`](crate::Stats::too_soon)). 0, which is usual, drops none.
+    #[must_use]
+    pub fn least_time_s(mut self, least_time_s: f64) -> Self {
+        self.least_time_s = least_time_s;
         self
     }
 

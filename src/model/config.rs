@@ -141,6 +141,11 @@ impl Config {
         self.max_contacts + self.max_contacts.div_ceil(2).max(8)
     }
 
+    /// Most that can wait to be freed by the game half: what can be alive, and what each message of a full queue sends home.
+    pub(crate) fn most_to_free(&self) -> usize {
+        2 * (self.max_surfaces + self.max_bodies) + self.max_ports + self.queue_capacity
+    }
+
     /// The kernel that runs.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use crate::model::click::Click;
 use crate::model::modal_model::{MAX_POSITIONS, ModalModel};
 use crate::model::stamp::Stamp;
 use crate::model::strike_field::StrikePlace;
-use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, MODE_LEVELS, Owner, SheddingLevels};
+use crate::prepared::bank::{Bank, LONGEST_CONTACT_S, MODE_LEVELS, Owner, SheddingLevels, first_samples};
 use crate::prepared::body_field::{BodyField, FIELD_INPUTS};
 use crate::prepared::body_rub::{BodyRub, RubAsked};
 use crate::prepared::bursts::Bursts;
@@ -15,7 +15,7 @@ use asperity_dsp::hertz::{HertzPulse, KERNEL_LATENCY};
 use asperity_dsp::masking::Ranked;
 use asperity_dsp::micro_contact::Probe;
 use asperity_dsp::modal_bank::{
-    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, LaneGains, MissingSamples, ModalBank,
+    self, FirstSamples, GroupOptions, GroupState, Input, Inputs, LaneGains, ModalBank,
 };
 use asperity_dsp::mode::Mode;
 use asperity_dsp::simd::Level;
@@ -246,14 +246,15 @@ impl BodySlot {
         }
     }
 
-    /// Forgets all that rings and all that is on its way.
-    pub(crate) fn silence(&mut self) {
+    /// As it was made; nothing rings, and nothing is on its way.
+    pub(crate) fn rested(mut self: Box<Self>) -> Box<Self> {
+        self.rest();
+        self
+    }
+
+    /// Forgets all that rings.
+    fn rest(&mut self) {
         self.bank.silence();
-        for place in &mut self.places {
-            place.bus.clear();
-            place.contacts_n_s.fill(0.0);
-            place.touched = false;
-        }
         if let Some(field) = &mut self.field {
             field.silence();
         }
@@ -261,7 +262,24 @@ impl BodySlot {
             rub.silence();
         }
         self.bursts.silence();
+    }
+
+    /// Forgets all that rings and all that is on its way.
+    pub(crate) fn silence(&mut self) {
+        self.rest();
+        for place in &mut self.places {
+            place.bus.clear();
+            place.contacts_n_s.fill(0.0);
+            place.touched = false;
+        }
         self.early.clear();
+    }
+
+    /// How loud it rings: the root of the sum of its modes' squared amplitudes; infinite where what has struck it has not sounded yet.
+    pub(crate) fn loudness(&self, position: u64) -> f32 {
+        let waits = !self.places.iter().all(|place| place.is_silent(position));
+        let waits = waits || self.field.as_ref().is_some_and(|field| !field.is_silent(position));
+        if waits { f32::INFINITY } else { self.bank.energy().sqrt() }
     }
 
     /// Whether nothing rings and nothing is coming.
@@ -368,29 +386,4 @@ impl BodySlot {
             out.iter_mut().for_each(|y| *y += next());
         }
     }
-}
-
-/// What a bank of these modes leaves out of the first samples of a strike, for each place and each level of modes left out.
-fn first_samples(
-    modes: &[(Mode, [f32; MAX_POSITIONS])],
-    places: usize,
-    levels: &SheddingLevels,
-    sample_rate_hz: f64,
-) -> Result<Vec<[FirstSamples; MODE_LEVELS]>, DesignError> {
-    let mut sums = vec![MissingSamples::NOTHING; places];
-    let mut all = vec![[FirstSamples::NOTHING; MODE_LEVELS]; places];
-    for (group, modes) in modes.chunks(modal_bank::LANES).enumerate() {
-        for (mode, shares) in modes {
-            let missing = MissingSamples::of(mode, sample_rate_hz)?;
-            for (sum, share) in sums.iter_mut().zip(shares) {
-                sum.add(&missing, f64::from(*share));
-            }
-        }
-        for level in (0..MODE_LEVELS).filter(|level| levels[*level] == group + 1) {
-            for (place, sum) in all.iter_mut().zip(&sums) {
-                place[level] = sum.first_samples();
-            }
-        }
-    }
-    Ok(all)
 }

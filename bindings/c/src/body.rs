@@ -203,7 +203,7 @@ pub unsafe extern "C" fn asp_replace_body(scene: *mut asp_scene, id: u64, body: 
     })
 }
 
-/// Takes a body away; it rings out. Its id is refused from then on.
+/// Takes a body away; it rings out until it sleeps. Its id is refused from then on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn asp_remove_body(scene: *mut asp_scene, id: u64) -> i32 {
     enter(|| {
@@ -221,6 +221,15 @@ pub unsafe extern "C" fn asp_set_body_bus(scene: *mut asp_scene, id: u64, bus: u
     enter(|| {
         let mut half = SCENES.hold(scene as usize)?;
         half.scene.set_body_bus(BodyId::from_bits(id), bus as usize).map_err(|error| refused(&error))
+    })
+}
+
+/// Lets a body sound on a bus beside its own, so loud, linear, 0 to 1000, without a step; 0 for no longer. At most four: a bus for each listener.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn asp_set_body_send(scene: *mut asp_scene, id: u64, bus: u32, gain: f64) -> i32 {
+    enter(|| {
+        let mut half = SCENES.hold(scene as usize)?;
+        half.scene.set_body_send(BodyId::from_bits(id), bus as usize, gain).map_err(|error| refused(&error))
     })
 }
 

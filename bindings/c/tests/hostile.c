@@ -90,6 +90,7 @@ static void nulls(void) {
     REFUSED(asp_remove_body(NULL, 1), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_body_bus(NULL, 1, 0), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_set_body_gain(NULL, 1, 1), ASP_BAD_HANDLE, "scene");
+    REFUSED(asp_set_body_send(NULL, 1, 1, 1), ASP_BAD_HANDLE, "scene");
     REFUSED(asp_add_surface(scene, NULL, &id), ASP_BAD_ARGUMENT, "surface");
     REFUSED(asp_add_surface(scene, &surface, NULL), ASP_BAD_ARGUMENT, "id");
     REFUSED(asp_add_surface(NULL, &surface, &id), ASP_BAD_HANDLE, "scene");

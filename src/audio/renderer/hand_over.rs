@@ -60,6 +60,8 @@ impl Renderer {
         self.position = (old.position as f64 * ratio / every as f64).round() as u64 * every;
         self.counters.position.store(self.position, Relaxed);
         self.resets = old.resets;
+        // Of the other rate.
+        self.counters.newest_bits.store(u64::MAX, Relaxed);
         (self.muted, self.paused) = (old.muted, old.paused);
         self.silent.extend(old.contacts.into_iter().take(self.max_contacts));
         for (channel, control) in self.channels.iter_mut().zip(old.haptic) {
@@ -70,11 +72,12 @@ impl Renderer {
         old.waiting
             .into_iter()
             .map(|message| match message {
-                Message::Event { stamp, event, place } => {
-                    Message::Event { stamp: at_rate(stamp), event, place }
+                Message::Event { stamp, epoch, event, place } => {
+                    Message::Event { stamp: at_rate(stamp), epoch, event, place }
                 }
-                Message::Strike { stamp, body, spot, other, holder, felt, pulse } => {
-                    Message::Strike { stamp: at_rate(stamp), body, spot, other, holder, felt, pulse }
+                Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse } => {
+                    let stamp = at_rate(stamp);
+                    Message::Strike { stamp, epoch, body, spot, other, holder, felt, pulse }
                 }
                 other => other,
             })

@@ -5,6 +5,7 @@ use crate::audio::seat::Change;
 use crate::audio::voice::Phase;
 use crate::link::message::{Dead, Felt, Message};
 use crate::link::stats::Counters;
+use crate::model::event::ContactEvent;
 use crate::model::id::SurfaceId;
 use crate::model::stamp::Stamp;
 use crate::prepared::spot::Spot;
@@ -19,7 +20,8 @@ impl Renderer {
         let to_grid = MAX_BLOCK - (self.position % MAX_BLOCK as u64) as usize;
         let to_event = match self.from_game.peek() {
             Some(Message::Event { stamp, .. } | Message::Strike { stamp, .. }) => {
-                usize::try_from(stamp.sample().saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
+                let sample = in_order(&self.counters, *stamp).sample();
+                usize::try_from(sample.saturating_sub(self.position)).unwrap_or(usize::MAX).max(1)
             }
             _ => usize::MAX,
         };
@@ -31,13 +33,10 @@ impl Renderer {
             let ended = self.counters.resets_asked.load(Relaxed) != self.resets;
             let due = match message {
                 Message::Event { stamp, .. } | Message::Strike { stamp, .. } => {
-                    ended || stamp.sample() <= self.position
+                    ended || in_order(&self.counters, *stamp).sample() <= self.position
                 }
                 Message::Reset => true,
-                // Each of these may send something home; it waits until there is room.
-                Message::SetBody { id, .. } => {
-                    self.to_game.free() > 0 && self.bodies[id.index()].can_change()
-                }
+                // Each of these may send something home; it waits until there is room, and there is unless the game collects nothing.
                 _ => self.to_game.free() > 0,
             };
             if !due {
@@ -54,16 +53,27 @@ impl Renderer {
             Message::Reset => self.resets += 1,
             // It waited for a time that has ended.
             Message::Event { stamp, .. } | Message::Strike { stamp, .. }
-                if stamp.sample() > self.position =>
+                if in_order(&self.counters, stamp).sample() > self.position =>
             {
                 Counters::add(&self.counters.superseded, 1);
             }
-            Message::Event { stamp, event, place } => {
+            // It is elsewhere by now, and leaps there instead of running after what was missed.
+            Message::Event { epoch, event: ContactEvent::Moved { .. }, .. }
+                if epoch < self.counters.epoch.load(Relaxed) =>
+            {
+                Counters::add(&self.counters.superseded, 1);
+            }
+            Message::Event { stamp, event, place, .. } => {
+                let stamp = in_order(&self.counters, stamp);
                 self.note_arrival(stamp);
                 self.apply_event(&event, stamp);
                 self.put(&event, place);
             }
-            Message::Strike { stamp, body, spot, other, holder, felt, pulse } => {
+            Message::Strike { epoch, .. } if epoch < self.counters.epoch.load(Relaxed) => {
+                Counters::add(&self.counters.stale, 1);
+            }
+            Message::Strike { stamp, body, spot, other, holder, felt, pulse, .. } => {
+                let stamp = in_order(&self.counters, stamp);
                 self.note_arrival(stamp);
                 Counters::add(&self.counters.impacts, 1);
                 self.strike(body, &spot, &pulse, stamp);
@@ -95,14 +105,16 @@ impl Renderer {
                 self.seats[slot].remove();
                 self.fade_contacts_on(slot);
             }
-            Message::SetBody { id, body, bus, gain, stroking } => {
-                self.bodies[id.index()].set(id, body, bus, gain);
+            Message::SetBody { id, body, bus, sends, gain, stroking } => {
+                self.let_ring(id.index());
+                self.bodies[id.index()].set(id, body, (bus, &sends), gain);
                 self.bodies_used.insert(id.index());
                 for seat in self.seats_used.iter() {
                     self.seats[seat].body_changed(id, &stroking);
                 }
             }
             Message::SetBodyBus { slot, bus } => self.bodies[slot].play_on(bus),
+            Message::SetBodySend { slot, bus, gain } => self.bodies[slot].send_to(bus, gain),
             Message::SetBodyGain { slot, gain } => self.bodies[slot].set_gain(gain),
             Message::Mute(muted) => self.muted = muted,
             Message::Pause(paused) => {
@@ -115,7 +127,7 @@ impl Renderer {
                 self.end_all();
                 self.bodies_used.iter().for_each(|body| self.bodies[body].damp());
             }
-            Message::RemoveBody { slot } => self.bodies[slot].remove(),
+            Message::RemoveBody { slot } => self.let_ring(slot),
             Message::AddOutlet(outlet) => self.outlets.add(outlet),
             Message::SetAudioGain { bus, gain } => self.buses[bus].set_gain(gain),
             Message::SetHapticGain { channel, gain } => self.channels[channel].control.gain = gain,
@@ -157,4 +169,9 @@ impl Renderer {
         let output = &self.channels[felt.channel].output;
         self.blows.strike(felt, output, pulse, sounds, self.position, self.shared.sample_rate_hz);
     }
+}
+
+/// When something stamped so is due: where game time was tied anew, not after what was reported since.
+fn in_order(counters: &Counters, stamp: Stamp) -> Stamp {
+    stamp.min(Stamp::from_bits(counters.newest_bits.load(Relaxed)))
 }

@@ -8,6 +8,7 @@ use crate::model::actuator::{ACCELERATION_BAND_HZ, ActuatorSettings};
 use crate::model::bus::AudioBus;
 use crate::model::inner_rate::InnerRate;
 use crate::prepared::body::Terms;
+use crate::prepared::impulse_ring::ImpulseRing;
 use asperity_dsp::DesignError;
 use asperity_dsp::actuator::{
     self, ChannelControl, ChannelOptions, ChannelState, ContactOutput, PeakLimiter, PeakLimiterState,
@@ -46,6 +47,8 @@ pub(super) struct Bus {
     sum: [f32; MAX_BLOCK],
     /// How many of its first samples may not be zero.
     added: usize,
+    /// What is left of bodies that were cut.
+    endings: ImpulseRing<f32>,
 }
 
 impl HapticChannel {
@@ -121,6 +124,7 @@ impl Bus {
             meter: Meter::new(sample_rate_hz),
             sum: [0.0; MAX_BLOCK],
             added: 0,
+            endings: ImpulseRing::new(2.0 * MAX_BLOCK as f64 / sample_rate_hz, sample_rate_hz),
         })
     }
 
@@ -129,12 +133,25 @@ impl Bus {
         self.gain = gain;
     }
 
-    /// Nobody has played on it in the stretch that begins.
-    fn begin(&mut self) {
+    /// Nobody has played on it in the stretch of `n` samples that begins, but for what was cut.
+    fn begin(&mut self, position: u64, n: usize) {
         let added = std::mem::take(&mut self.added);
         if added > 0 {
             self.sum[..added].fill(0.0);
         }
+        if !self.endings.is_empty(position) {
+            let mut next = self.endings.drain(position);
+            self.sum[..n].iter_mut().for_each(|sum| *sum = next());
+            self.added = n;
+        }
+    }
+
+    /// Adds to a sample that comes within two blocks.
+    pub(super) fn end_with(&mut self, sample: u64, x: f32) {
+        self.endings.write(sample + 1, |values| {
+            let mask = values.len() - 1;
+            values[sample as usize & mask] += x;
+        });
     }
 
     /// The `n` samples of the present stretch, for a body to add to.
@@ -227,7 +244,7 @@ impl Renderer {
 
     /// The same of what the bodies sound like, bus by bus.
     pub(super) fn render_bodies(&mut self, at: usize, n: usize, audio: &mut [&mut [f32]]) {
-        self.buses.iter_mut().for_each(Bus::begin);
+        self.buses.iter_mut().for_each(|bus| bus.begin(self.position, n));
         let terms = Terms { position: self.position, mode_level: self.governor.mode_level() };
         if let Some(crew) = &mut self.crew {
             crew.ring_bodies(terms, n, (&mut self.bodies, &self.bodies_used), &mut self.scratch);
@@ -240,13 +257,6 @@ impl Renderer {
                 shed += body.render(terms, rung, self.buses[body.bus()].hear(n));
             } else {
                 shed += render_moving(terms, rung, body, &mut self.buses, &mut self.mix.body[..n]);
-            }
-            if body.anything_leaves() {
-                body.render_leaving(terms, &mut self.mix.body[..n], |bus, sound| {
-                    for (sum, x) in self.buses[bus].hear(n).iter_mut().zip(sound) {
-                        *sum += x;
-                    }
-                });
             }
         }
         if let Some(crew) = &mut self.crew {
@@ -276,7 +286,7 @@ impl Renderer {
     }
 }
 
-/// Renders a body that goes from bus to bus, or to another gain, or to rest.
+/// Renders a body that sounds on several buses, goes from one to another, or to another gain, or to rest.
 #[cold]
 #[inline(never)]
 fn render_moving(
@@ -289,12 +299,7 @@ fn render_moving(
     sound.fill(0.0);
     let shed = body.render(terms, rung, sound);
     body.scale(sound);
-    let (from, to) = body.between();
-    for (i, x) in sound.iter().enumerate() {
-        let weight = body.arrive();
-        buses[from].hear(sound.len())[i] += (1.0 - weight) * x;
-        buses[to].hear(sound.len())[i] += weight * x;
-    }
+    body.spread(sound, |bus, i, x| buses[bus].hear(sound.len())[i] += x);
     shed
 }
 

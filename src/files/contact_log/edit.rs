@@ -41,6 +41,15 @@ pub enum LogEdit {
         /// Index of the bus.
         bus: usize,
     },
+    /// A body sounds on a further bus.
+    BodySend {
+        /// Its name.
+        body: String,
+        /// Index of the bus.
+        bus: usize,
+        /// Linear gain there.
+        gain: f64,
+    },
     /// A body is louder or softer.
     BodyGain {
         /// Its name.

@@ -130,6 +130,7 @@ const EVENTS: &[Event] = &[
     edit("replace_body", BODY),
     edit("remove_body", &[("body", Holds::Any)]),
     edit("body_bus", &[("body", Holds::Any), ("bus", Holds::Any)]),
+    edit("body_send", &[("body", Holds::Any), ("bus", Holds::Any), ("gain", Holds::Any)]),
     edit("body_gain", &[("body", Holds::Any), ("gain", Holds::Any)]),
     edit("mute", &[("muted", Holds::Any)]),
     edit("pause", &[("paused", Holds::Any)]),

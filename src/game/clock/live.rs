@@ -10,12 +10,13 @@
 //! | sends ticks in bursts | leads of up to [`BREAK_S`] within a burst | nothing: stamps keep their distances |
 //! | reports again and again while it stands | stamps that are the same | nothing |
 //! | pauses, restarts at 0, skips, stamps one event wrongly | a stamp and the audio part by more than [`BREAK_S`] | tied anew, counted |
+//! | goes on while the audio stands still | reports of more than [`BREAK_S`] at one position | tied anew each 0.1 s and when the audio goes on, counted; strikes from before a tie are dropped |
 //! | runs ahead of the audio for good | no stamp within a window comes close | tied anew, counted |
 //! | runs in slow motion or fast | the smallest lead drifts by the same share in window after window | its pace is followed, counted |
 
 /// A stamp that parts from the audio by more than this is no jitter and no burst, s: eight ticks at 60 Hz are
 /// 117 ms apart.
-const BREAK_S: f64 = 0.25;
+pub(super) const BREAK_S: f64 = 0.25;
 /// Lateness that is the clocks' and not the network's or the frame's, s.
 const SLIGHTLY_LATE_S: f64 = 0.002;
 /// Share of a larger lateness that moves the mapping.
@@ -101,6 +102,11 @@ impl Live {
     pub fn untie(&mut self) {
         self.tied = None;
         self.pace = 1.0;
+    }
+
+    /// Forgets the tie, but not the pace.
+    pub fn let_go(&mut self) {
+        self.tied = None;
     }
 
     /// Game seconds a second of audio.

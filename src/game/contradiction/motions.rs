@@ -28,6 +28,12 @@ const LEAST_SPEED_M_S: f64 = 0.005;
 const LEAST_STEPS: u32 = 6;
 /// A place that leaps by more, forth and back, may be two fingers', m.
 const LEAP_M: f64 = 0.002;
+/// A step that is longer by more than the one before and the one after is a hop.
+const HOP: f64 = 2.5;
+/// Cosine below which a contact turns sharply.
+const SHARP: f64 = 0.25;
+/// So many reports a hop, at most, are no strokes with a hitch now and then.
+const REPORTS_A_HOP: u32 = 20;
 /// Fields of a histogram for a factor of two.
 const FIELDS_AN_OCTAVE: f64 = 16.0;
 /// Fields of a histogram; the middle one holds a factor of 1.
@@ -54,6 +60,8 @@ struct Last {
     /// Time at which its place changed last: it may be reported more often than it moves.
     since_s: f64,
     step_m: Option<[f64; 2]>,
+    /// The step before that one.
+    before_m: Option<[f64; 2]>,
 }
 
 /// Size and period of a surface, by which places on it are compared.
@@ -77,6 +85,8 @@ struct Tally {
     reports: u32,
     begins_again: u32,
     leaps: u32,
+    /// Hops of contacts that tell no velocity.
+    hops: u32,
     steps: u32,
     agree: u32,
     swapped: u32,
@@ -131,7 +141,10 @@ impl Motions {
         let stays = last.filter(|last| last.sample.uv == sample.uv);
         let last = match stays {
             Some(last) => Last { time_s, ..last },
-            None => Last { surface, time_s, sample, since_s: time_s, step_m },
+            None => {
+                let before_m = last.and_then(|last| last.step_m);
+                Last { surface, time_s, sample, since_s: time_s, step_m, before_m }
+            }
         };
         self.contacts.insert(contact, last);
     }
@@ -153,6 +166,7 @@ impl Tally {
             reports: 0,
             begins_again: 0,
             leaps: 0,
+            hops: 0,
             steps: 0,
             agree: 0,
             swapped: 0,
@@ -175,6 +189,12 @@ impl Tally {
             let shorter = length(d).min(length(before));
             let back = length([d[0] + before[0], d[1] + before[1]]) < 0.5 * shorter;
             self.leaps += u32::from(shorter > LEAP_M && back);
+            let turned = d[0] * before[0] + d[1] * before[1];
+            let sharp = shorter > LEAP_M && turned < SHARP * length(d) * length(before);
+            let alone = last.before_m.is_some_and(|two_before| {
+                length(before) > LEAP_M.max(HOP * length(d).max(length(two_before)))
+            });
+            self.hops += u32::from(said.is_none() && (sharp || alone));
         }
         if let (Some(e), Some((a, b))) = (e, said) {
             let goes_on = a[0] * b[0] + a[1] * b[1] > 0.0 && length(a).min(length(b)) >= LEAST_SPEED_M_S;
@@ -208,6 +228,8 @@ impl Tally {
         }
         if many(self.leaps) {
             told.push(Contradiction::TwoPlaces { surface, count: self.leaps });
+        } else if self.hops > LEAST_STEPS && REPORTS_A_HOP * self.hops > self.reports {
+            told.push(Contradiction::Hops { surface, count: self.hops });
         } else if self.steps >= LEAST_STEPS && 2 * self.agree < self.steps {
             told.extend(self.motion(surface));
         }

@@ -2,9 +2,9 @@
 
 use super::{KnownBody, Scene};
 use crate::files::contact_log::LogEdit;
-use crate::link::message::Message;
+use crate::link::message::{Dead, Made, Message};
 use crate::model::bad_value::within;
-use crate::model::body::Body;
+use crate::model::body::{Body, MAX_SENDS, Sends};
 use crate::model::error::AddError;
 use crate::model::id::BodyId;
 use crate::model::strike_field::StrikeField;
@@ -17,6 +17,12 @@ use std::sync::Arc;
 
 /// Levels at which the order of modes is asked for, dB SPL: between a whisper and what hurts.
 const HEARD_DB_SPL: (f64, f64) = (30.0, 100.0);
+
+/// How many bodies that have rung out are kept.
+const MOST_RESTED: usize = 16;
+
+/// Least time between equal sounds, s.
+const LEAST_TIME_S: limits::Range = limits::Range::new(0.0, 60.0, "0 to 60 s");
 
 impl Scene {
     /// Adds a body that rings: a [`Body`]; or a [`ModalModel`](crate::ModalModel), which becomes a body of PLA on the first bus.
@@ -32,15 +38,18 @@ impl Scene {
         Ok(id)
     }
 
-    /// Gives a body other modes, another material and another bus while it sounds; the old modes ring out under the new ones, and
-    /// strokes on its surfaces take the new material at once.
+    /// Gives a body other modes, another material and another bus while it sounds; the old modes ring out under the new ones until they
+    /// sleep (64 bodies at a time; beyond that the quietest fades), and strokes on its surfaces take the new material at once. What it sends
+    /// to further buses stays, unless its own bus is another.
     ///
     /// # Errors
     /// As [`add_body`](Self::add_body), or when the body is not in this scene.
     pub fn replace_body(&mut self, id: BodyId, body: impl Into<Body>) -> Result<(), AddError> {
         self.collect();
         self.known_body(id)?;
-        let body = body.into();
+        let mut body = body.into();
+        body.sends =
+            self.given.get(&id).filter(|old| old.bus == body.bus).map_or(body.sends, |old| old.sends);
         self.set_body(id, &body)?;
         self.given.insert(id, body.clone());
         self.note(|names| LogEdit::ReplaceBody { body: names.body(id), is: (&body).into() });
@@ -55,7 +64,7 @@ impl Scene {
         self.given.get(&id).map(|body| body.strike_gain).ok_or(AddError::Unknown("body"))
     }
 
-    /// Lets a body sound on another bus from now on, without a click.
+    /// Lets a body sound on another bus from now on, and on no other, without a click.
     ///
     /// # Errors
     /// When the body is not in this scene, there is no such bus, or the queue is full.
@@ -64,9 +73,46 @@ impl Scene {
         self.checked_bus(bus)?;
         self.send(Message::SetBodyBus { slot: id.index(), bus })?;
         if let Some(given) = self.given.get_mut(&id) {
-            given.bus = bus;
+            (given.bus, given.sends) = (bus, Sends::default());
         }
         self.note(|names| LogEdit::BodyBus { body: names.body(id), bus });
+        Ok(())
+    }
+
+    /// Lets a body sound on a further bus as well, so loud, linear, without a step; 0 for no longer. For several listeners, as on a split
+    /// screen: a bus each, and how near the body is to each of them. The gain of the body counts on all of them.
+    ///
+    /// ```
+    /// use asperity::{AudioBus, Body, Config, Engine, Material, Stock};
+    ///
+    /// let config = Config { audio: vec![AudioBus::default(); 2], ..Config::default() };
+    /// let Engine { mut scene, .. } = config.build()?;
+    /// let bell = scene.add_body(Body::stock(Stock::Bowl, Material::BRASS, 0.1)?)?;
+    /// // The second player stands further away.
+    /// scene.set_body_send(bell, 1, 0.25)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the body is not in this scene, there is no such bus or it is the body's own (whose gain is the body's), the gain is not in
+    /// 0–1000, the body is sent to four others already, or the queue is full.
+    pub fn set_body_send(&mut self, id: BodyId, bus: usize, gain: f64) -> Result<(), AddError> {
+        self.known_body(id)?;
+        self.checked_bus(bus)?;
+        let gain = within("gain", gain, limits::impact::GAIN)?;
+        let Some(given) = self.given.get(&id).filter(|given| given.bus != bus) else {
+            return Err(AddError::Unknown("further bus"));
+        };
+        let mut sends = given.sends;
+        let at = |wanted: Option<usize>| sends.iter().position(|send| send.map(|(bus, _)| bus) == wanted);
+        let full = AddError::Full { kind: "sends of a body", capacity: MAX_SENDS };
+        let place = at(Some(bus)).or_else(|| at(None)).ok_or(full)?;
+        sends[place] = (gain > 0.0).then_some((bus, gain));
+        self.send(Message::SetBodySend { slot: id.index(), bus, gain })?;
+        if let Some(given) = self.given.get_mut(&id) {
+            given.sends = sends;
+        }
+        self.note(|names| LogEdit::BodySend { body: names.body(id), bus, gain });
         Ok(())
     }
 
@@ -76,24 +122,39 @@ impl Scene {
     }
 
     fn set_body(&mut self, id: BodyId, body: &Body) -> Result<(), AddError> {
-        let (message, known) = self.prepared_body(id, body)?;
+        let rested = self.rested.iter().rposition(|rested| *rested.of == *body);
+        let rested = rested.map(|index| self.rested.remove(index));
+        let (message, known) = self.prepared_body(id, body, rested)?;
         self.send(message)?;
         self.bodies.set(id.0, known);
         Ok(())
     }
 
-    /// A body as the audio half takes it.
-    pub(crate) fn prepared_body(&self, id: BodyId, body: &Body) -> Result<(Message, KnownBody), AddError> {
+    /// A body as the audio half takes it; `rested` is one of the same kind that has rung out.
+    pub(crate) fn prepared_body(
+        &self,
+        id: BodyId,
+        body: &Body,
+        rested: Option<Made>,
+    ) -> Result<(Message, KnownBody), AddError> {
         let (model, material, bus) = (&body.model, body.material.checked()?, self.checked_bus(body.bus)?);
         let gain = within("gain", body.gain, limits::impact::GAIN)?;
+        within("least_time_s", body.least_time_s, LEAST_TIME_S)?;
+        let sends = body.sends;
         let strike_gain = within("strike_gain", body.strike_gain, limits::impact::GAIN)?;
         let (rate, inner) = (self.config.sample_rate_hz, self.config.inner_rate_hz());
-        let audible = self.config.culling.map(|culling| model.audible(rate, &culling));
+        let audible = self.config.culling.filter(|_| rested.is_none());
+        let audible = audible.map(|culling| model.audible(rate, &culling));
         let mass_kg = body.mass_kg.map(|kg| within("mass_kg", kg, limits::material::MASS_KG)).transpose()?;
         let rubs_on = self.surfaces.iter().any(|(_, known)| known.body == Some(id) && known.rubs);
         let heard = audible.as_ref().unwrap_or(model);
-        let body = BodySlot::new(heard, mass_kg, self.loudest_db_spl(body), self.kernel, (rate, inner))?;
-        let body = Box::new(body.struck_with(strike_gain));
+        let body = if let Some(Made { slot, of }) = rested {
+            Made { slot: slot.rested(), of }
+        } else {
+            let loudest_db_spl = self.loudest_db_spl(body);
+            let slot = BodySlot::new(heard, mass_kg, loudest_db_spl, self.kernel, (rate, inner))?;
+            Made { slot: Box::new(slot.struck_with(strike_gain)), of: Arc::new(body.clone()) }
+        };
         let frequencies = model.modes.iter().filter(|m| m.amplitude != 0.0).map(|m| m.frequency_hz);
         let lowest_mode_hz = frequencies.fold(f64::INFINITY, f64::min);
         let field = heard.shapes.as_ref().map(|shapes| Arc::new(StrikeField::new(Arc::clone(shapes))));
@@ -102,7 +163,7 @@ impl Scene {
             return Err(AddError::CannotRub);
         }
         let stroking = self.stroking(&known)?;
-        Ok((Message::SetBody { id, body, bus, gain, stroking }, known))
+        Ok((Message::SetBody { id, body, bus, sends, gain, stroking }, known))
     }
 
     /// Sound pressure level of a body's loudest mode under the strike that its modes stand for, dB; where nobody knows, that of speech.
@@ -122,7 +183,8 @@ impl Scene {
         Stroking::new(body.material, body.lowest_mode_hz, mass_kg, rate_hz)
     }
 
-    /// Takes a body away; it rings out.
+    /// Takes a body away; it rings out until it sleeps. Of bodies that were removed or replaced 64 ring at a time: beyond that the quietest
+    /// fades within a tenth of a second, and is counted ([`Stats::given_way`](crate::Stats::given_way)).
     ///
     /// # Errors
     /// When it is not in this scene or the queue is full.
@@ -131,7 +193,27 @@ impl Scene {
         self.send(Message::RemoveBody { slot: body.index() })?;
         self.bodies.remove(body.0);
         self.given.remove(&body);
+        self.sounded.remove(&body);
         self.note(|names| LogEdit::RemoveBody { body: names.body(body) });
         Ok(())
+    }
+
+    /// Frees surfaces, bodies and ports that the audio half no longer needs; whatever edits the scene does it
+    /// too. Returns how many came home. A few bodies are kept for the next of the same kind, which is added within microseconds.
+    pub fn collect(&mut self) -> usize {
+        let mut freed = 0;
+        while let Some(dead) = self.from_audio.receive() {
+            self.open_ports -= usize::from(matches!(dead, Dead::Outlet(_)));
+            freed += 1;
+            if let Dead::Body(body) = dead
+                && body.of.model.shapes.is_none()
+            {
+                if self.rested.len() == MOST_RESTED {
+                    self.rested.remove(0);
+                }
+                self.rested.push(body);
+            }
+        }
+        freed
     }
 }

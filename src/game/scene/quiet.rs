@@ -35,7 +35,7 @@ impl Scene {
     }
 
     /// The game stands still: all that is felt and heard fades within 20 ms, bodies ring out unheard, and contacts wait, however long,
-    /// without lapsing.
+    /// without lapsing. Impacts that wait for their time are dropped.
     ///
     /// # Errors
     /// When the queue is full.
@@ -54,13 +54,15 @@ impl Scene {
     }
 
     /// Every contact ends, and whatever rings is damped within a tenth of a second: for a cut, a menu, the end of a level. What is
-    /// reported afterwards begins anew; moves of contacts that have ended so are counted as orphaned.
+    /// reported afterwards begins anew; moves of contacts that have ended so are counted as orphaned, and impacts that wait for their time are
+    /// dropped.
     ///
     /// # Errors
     /// When the queue is full.
     pub fn fade_all(&mut self) -> Result<(), AddError> {
         self.held.clear();
         self.send(Message::FadeAll)?;
+        self.drop_strikes();
         self.note(|_| LogEdit::FadeAll);
         Ok(())
     }
@@ -68,6 +70,9 @@ impl Scene {
     /// Stands still or goes on; the clock stays as it is.
     pub(crate) fn set_paused(&mut self, paused: bool) -> Result<(), AddError> {
         self.send(Message::Pause(paused))?;
+        if paused {
+            self.drop_strikes();
+        }
         self.note(|_| LogEdit::Pause { paused });
         Ok(())
     }

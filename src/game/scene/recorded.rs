@@ -39,12 +39,29 @@ impl Scene {
 
     /// Notes an edit, where a recording runs.
     pub(super) fn note(&mut self, edit: impl FnOnce(&Recording) -> LogEdit) {
-        let Some(recording) = &mut self.recording else { return };
         let (rate_hz, position) = (self.config.inner_rate_hz(), self.counters.position.load(Relaxed));
-        recording.settle(position as f64 / rate_hz);
+        self.settle_recording(position);
+        let Some(recording) = &mut self.recording else { return };
         // It is made behind everything that was reported before.
         let edit = edit(recording);
         recording.note_edit(self.clock.last().samples().max(position as f64) / rate_hz, edit);
+    }
+
+    /// Keeps what the audio half has come to, at `position`, since the last report.
+    pub(super) fn settle_recording(&mut self, position: u64) {
+        if let Some(recording) = &mut self.recording {
+            recording.settle(position as f64 / self.config.inner_rate_hz(), self.clock.epoch());
+        }
+    }
+
+    /// Strikes that wait for their time are dropped, there and here.
+    pub(super) fn drop_strikes(&mut self) {
+        self.settle_recording(self.counters.position.load(Relaxed));
+        if let Some(recording) = &mut self.recording {
+            recording.drop_strikes();
+        }
+        self.clock.let_go();
+        self.counters.epoch.store(self.clock.epoch(), Relaxed);
     }
 
     /// What a recording can say of a surface.

@@ -66,7 +66,10 @@ impl Scene {
         Counters::add(&self.counters.held, u64::from(held));
         self.note_touch(&told);
         let position = self.counters.position.load(Relaxed);
+        self.settle_recording(position);
         let stamped = self.clock.stamp(time_s, position);
+        self.counters.newest_bits.store(stamped.stamp.to_bits(), Relaxed);
+        self.counters.epoch.store(self.clock.epoch(), Relaxed);
         Counters::add(&self.counters.clock_jumps, u64::from(stamped.jumped));
         Counters::add(&self.counters.clock_paces, u64::from(stamped.repaced));
         self.counters.ahead.store(stamped.stamp.sample().saturating_sub(position), Relaxed);
@@ -74,15 +77,40 @@ impl Scene {
         let stamp = stamped.stamp;
         let in_game_time = event.with_velocity_of(&told);
         let event = event.at_pace(self.clock.pace());
+        if let ContactEvent::Impact(impact) = &event
+            && self.comes_too_soon(stamp, impact)
+        {
+            Counters::add(&self.counters.too_soon, 1);
+            return Ok(());
+        }
         self.send_stamped(stamp, event)?;
         self.reported.accept(&event, stamp, self.rings(&event));
         let sheet = |surface: SurfaceId| self.surfaces.get(surface.0).map(|known| known.sheet);
         self.motions.note(time_s, &in_game_time, self.config.contact_timeout_s, sheet);
         if let Some(recording) = &mut self.recording {
-            recording.settle(position as f64 / self.config.inner_rate_hz());
-            recording.note(stamp.samples() / self.config.inner_rate_hz(), &event.at_place_of(&told));
+            let rate_hz = self.config.inner_rate_hz();
+            let reported = (self.clock.epoch(), position as f64 / rate_hz);
+            recording.note(stamp.samples() / rate_hz, reported, &event.at_place_of(&told));
         }
         Ok(())
+    }
+
+    /// Whether an impact comes sooner after the last on its body than the least time, and is no stronger; it counts as the last if not.
+    fn comes_too_soon(&mut self, stamp: Stamp, impact: &Impact) -> bool {
+        let least_time_s = self.given.get(&impact.body).map_or(0.0, |body| body.least_time_s);
+        if least_time_s == 0.0 {
+            return false;
+        }
+        let now = stamp.samples();
+        let impulse = impact.gain * impact.mass_kg * impact.speed_m_s * (1.0 + impact.restitution);
+        let least = least_time_s * self.config.inner_rate_hz();
+        let before = self.sounded.get(&impact.body);
+        let too_soon =
+            before.is_some_and(|(then, strong)| (0.0..least).contains(&(now - then)) && impulse <= *strong);
+        if !too_soon {
+            self.sounded.insert(impact.body, (now, impulse));
+        }
+        too_soon
     }
 
     /// Whether what an event touches has modes.
@@ -240,6 +268,7 @@ impl Scene {
             .map(|channel| Felt { channel: usize::from(channel.0), probe: impact.probe.map(ProbeId::index) });
         self.send_event(Message::Strike {
             stamp,
+            epoch: self.clock.epoch(),
             body: impact.body.index(),
             spot: Spot { place: self.struck(impact), position: impact.position },
             other,
@@ -254,7 +283,7 @@ impl Scene {
         if let ContactEvent::End { contact } = &event {
             self.touched.remove(contact);
         }
-        self.send_event(Message::Event { stamp, event, place })
+        self.send_event(Message::Event { stamp, epoch: self.clock.epoch(), event, place })
     }
 
     /// Where an impact hits a body that has shapes.

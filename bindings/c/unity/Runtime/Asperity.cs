@@ -198,6 +198,7 @@ namespace Asperity
         [DllImport(Library, CallingConvention = C)] public static extern int asp_replace_body(IntPtr scene, ulong id, ref NativeBody body);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_remove_body(IntPtr scene, ulong id);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_body_bus(IntPtr scene, ulong id, uint bus);
+        [DllImport(Library, CallingConvention = C)] public static extern int asp_set_body_send(IntPtr scene, ulong id, uint bus, double gain);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_set_body_gain(IntPtr scene, ulong id, double gain);
         [DllImport(Library, CallingConvention = C)] public static extern void asp_surface_init(out NativeSurface surface);
         [DllImport(Library, CallingConvention = C)] public static extern int asp_add_surface(IntPtr scene, ref NativeSurface surface, out ulong id);
@@ -505,6 +506,8 @@ namespace Asperity
         }
 
         public void SetBodyGain(ulong id, double gain) { Native.Must(Native.asp_set_body_gain(handle, id, gain)); }
+        /// <summary>Lets a body sound on a bus beside its own, so loud; 0 for no longer. At most four: a bus for each listener.</summary>
+        public void SetBodySend(ulong id, uint bus, double gain) { Native.Must(Native.asp_set_body_send(handle, id, bus, gain)); }
         public void SetBodyBus(ulong id, uint bus) { Native.Must(Native.asp_set_body_bus(handle, id, bus)); }
         public void SetBusGain(uint bus, double gain) { Native.Must(Native.asp_set_bus_gain(handle, bus, gain)); }
         public void SetHapticGain(uint channel, double gain) { Native.Must(Native.asp_set_haptic_gain(handle, channel, gain)); }

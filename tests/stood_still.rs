@@ -1,0 +1,208 @@
+//! Audio that stood still for a while, as when a headset reconnects: no bang of all that happened meanwhile.
+
+use crate::common;
+
+use asperity::files::contact_log::{LogEvent, Names};
+use asperity::live::channel_map::{ChannelMap, Interleaver};
+use asperity::live::null_sink::NullSink;
+use asperity::offline::{self, Options};
+use asperity::{
+    Actuator, Body, BodyId, Config, ContactEvent, ContactId, ContactSample, Engine, Impact, Material,
+    Renderer, Scene, SilentBecause, Stock, SurfaceId,
+};
+use common::{SIDE_M, peak, plate};
+use std::time::{Duration, Instant};
+
+const RATE_HZ: f64 = 48_000.0;
+/// Samples in a tick of 60 Hz.
+const TICK: usize = 800;
+
+/// What the game does around the gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Does {
+    Nothing,
+    Reset,
+    FadeAll,
+    Pause,
+    Mute,
+}
+
+struct Game {
+    scene: Scene,
+    renderer: Renderer,
+    block: BodyId,
+    surface: SurfaceId,
+    tick: u32,
+    strikes_every: u32,
+    strokes: bool,
+}
+
+impl Game {
+    /// Strikes so many times a second, 0 for never; and strokes, or does not.
+    fn new(strikes_a_second: u32, strokes: bool) -> Self {
+        let Engine { mut scene, renderer, .. } = Config::live(RATE_HZ).build().unwrap();
+        let block = scene.add_body(Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap()).unwrap();
+        let surface = scene.add_surface(plate(0.8).on(block)).unwrap();
+        let strikes_every = 60u32.checked_div(strikes_a_second).unwrap_or(u32::MAX);
+        Self { scene, renderer, block, surface, tick: 0, strikes_every, strokes }
+    }
+
+    /// A tick of the game, as it reports it.
+    fn report(&mut self) {
+        let t = f64::from(self.tick) / 60.0;
+        if self.strokes {
+            let uv = [0.1 + 0.05 * t / SIDE_M, 0.5];
+            let sample = ContactSample::new(uv, 0.6).sliding([0.05, 0.0]);
+            let event = if self.tick == 0 {
+                ContactEvent::begin(ContactId(1), self.surface, Actuator(0), sample)
+            } else {
+                ContactEvent::moved(ContactId(1), sample)
+            };
+            self.scene.report(t, event).unwrap();
+        }
+        if self.tick.is_multiple_of(self.strikes_every) && self.strikes_every < u32::MAX {
+            let impact = Impact::on(self.block).by(Material::STEEL, 0.01, 0.005);
+            self.scene.report(t, ContactEvent::Impact(impact)).unwrap();
+        }
+        self.tick += 1;
+    }
+
+    /// So many ticks that are rendered, and how they sound.
+    fn play(&mut self, ticks: usize) -> Vec<f32> {
+        let mut heard = vec![0.0; ticks * TICK];
+        for audio in heard.chunks_exact_mut(TICK) {
+            self.report();
+            self.renderer.render(&mut [&mut [0.0; TICK]], &mut [audio]);
+        }
+        heard
+    }
+
+    /// So many seconds that nobody renders, while the game does `does` around them.
+    fn stand(&mut self, seconds: u32, does: Does) {
+        match does {
+            Does::Pause => self.scene.pause().unwrap(),
+            Does::Mute => self.scene.set_muted(true).unwrap(),
+            _ => {}
+        }
+        (0..60 * seconds).for_each(|_| self.report());
+        match does {
+            Does::Nothing => {}
+            Does::Reset => self.scene.reset().unwrap(),
+            Does::FadeAll => self.scene.fade_all().unwrap(),
+            Does::Pause => self.scene.resume().unwrap(),
+            Does::Mute => self.scene.set_muted(false).unwrap(),
+        }
+    }
+}
+
+fn db(now: f64, usual: f64) -> f64 {
+    20.0 * (now / usual).log10()
+}
+
+#[test]
+fn audio_that_comes_back_after_a_gap_does_not_bang() {
+    let mut bangs = Vec::new();
+    for (strikes_a_second, strokes) in [(5, false), (20, false), (20, true), (0, true)] {
+        for seconds in [1, 3, 10, 60] {
+            for does in [Does::Nothing, Does::Reset, Does::FadeAll, Does::Pause, Does::Mute] {
+                let what = format!("{strikes_a_second}/s, strokes {strokes}, {seconds} s, {does:?}");
+                let mut game = Game::new(strikes_a_second, strokes);
+                let usual = peak(&game.play(120)[TICK * 30..]);
+                game.stand(seconds, does);
+                let after = db(peak(&game.play(60)), usual);
+                let stats = game.scene.stats();
+                println!("{what}: {after:+.1} dB, {} stale of {}", stats.stale, stats.events);
+                if after > 3.0 {
+                    bangs.push(format!("{what}: {after:+.1} dB"));
+                }
+                let told = game.scene.why_silent().iter().any(
+                    |because| matches!(because, SilentBecause::Stale { count } if *count == stats.stale),
+                );
+                assert_eq!(told, strikes_a_second > 0, "{what}: {:?}", game.scene.why_silent());
+                assert!(strikes_a_second == 0 || stats.stale > 0, "{what}");
+            }
+        }
+    }
+    assert!(bangs.is_empty(), "{}", bangs.join("\n"));
+}
+
+#[test]
+fn what_is_struck_after_a_gap_is_heard() {
+    let mut game = Game::new(5, false);
+    let usual = peak(&game.play(120));
+    game.stand(10, Does::Nothing);
+    game.play(60);
+    let stale = game.scene.stats().stale;
+    let later = db(peak(&game.play(120)), usual);
+    assert!(later.abs() < 1.0, "{later} dB");
+    assert_eq!(game.scene.stats().stale, stale, "nothing more is dropped");
+}
+
+#[test]
+fn nothing_is_dropped_where_audio_is_rendered_in_long_blocks() {
+    let mut game = Game::new(20, false);
+    let mut audio = vec![0.0; 6 * TICK];
+    for _ in 0..40 {
+        (0..6).for_each(|_| game.report());
+        game.renderer.render(&mut [&mut vec![0.0; 6 * TICK]], &mut [&mut audio]);
+    }
+    assert_eq!((game.scene.stats().stale, game.scene.stats().impacts), (0, 80));
+}
+
+#[test]
+fn a_recording_over_a_gap_holds_the_strikes_that_were_played() {
+    for does in [Does::Nothing, Does::Reset, Does::FadeAll] {
+        let mut game = Game::new(20, false);
+        game.scene.start_recording(&Names::default());
+        game.play(60);
+        game.stand(3, does);
+        game.play(60);
+        let log = game.scene.stop_recording();
+        // The last tick's is still on its way.
+        let strikes = log.lines.iter().filter(|line| matches!(line.event, LogEvent::Impact { .. })).count();
+        let played = game.scene.stats().impacts;
+        println!("{does:?}: {strikes} recorded, {played} played");
+        // One may lie on the very sample at which the audio goes on.
+        assert!(played.abs_diff(strikes as u64) <= 1, "{does:?}: {strikes} recorded, {played} played");
+        let Engine { mut scene, renderer, mut names, .. } =
+            Config { sample_rate_hz: RATE_HZ, ..Config::default() }.build().unwrap();
+        let block = Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap();
+        names.bodies.insert("body 0".into(), scene.add_body(block).unwrap());
+        let take = offline::render(scene, renderer, &log, &names, &Options::default()).unwrap();
+        assert_eq!((take.stats.impacts, take.stats.stale), (strikes as u64, 0), "{does:?}");
+    }
+}
+
+#[test]
+fn a_device_that_is_lost_and_comes_back_does_not_bang() {
+    let Engine { mut scene, renderer, .. } = Config::live(RATE_HZ).build().unwrap();
+    let block = scene.add_body(Body::stock(Stock::Block, Material::WOOD, 0.1).unwrap()).unwrap();
+    let mut device = Interleaver::new(renderer, ChannelMap::stereo_then_haptics(1));
+    let began = Instant::now();
+    let mut tick = 0u32;
+    // Loudest of so many ticks in real time.
+    let mut play = |scene: &mut Scene, ticks: u32| {
+        let mut loudest = 0.0f32;
+        for _ in 0..ticks {
+            let due = began + Duration::from_secs_f64(f64::from(tick) / 60.0);
+            std::thread::sleep(due.saturating_duration_since(Instant::now()));
+            if tick.is_multiple_of(12) {
+                let impact = Impact::on(block).by(Material::STEEL, 0.01, 0.005);
+                scene.report(began.elapsed().as_secs_f64(), ContactEvent::Impact(impact)).unwrap();
+            }
+            tick += 1;
+            loudest = loudest.max(scene.stats().bus_levels[0]);
+        }
+        f64::from(loudest)
+    };
+    let sink = NullSink::start(device, 256).unwrap();
+    let usual = play(&mut scene, 60);
+    device = sink.stop().unwrap().0;
+    play(&mut scene, 120);
+    let sink = NullSink::start(device, 256).unwrap();
+    let after = db(play(&mut scene, 60), usual);
+    drop(sink);
+    println!("{after:+.1} dB, {} stale", scene.stats().stale);
+    assert!(after <= 3.0, "{after:+.1} dB");
+    assert!(scene.stats().stale > 5, "{}", scene.stats().stale);
+}
